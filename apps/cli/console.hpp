@@ -1,0 +1,32 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+
+#include <chrono>
+#include <string>
+
+namespace incise::cli {
+
+/// Messages and progress on standard error: a bar with the time left on a terminal, a plain line every few seconds otherwise.
+/// Ctrl-C asks the computation to stop; a second one ends the program at once.
+class Console : public Monitor {
+ public:
+  enum class Level { Quiet, Normal, Verbose };
+  explicit Console(Level level);
+  ~Console() override;
+
+  void message(Severity severity, std::string_view text) override;
+  void progress(std::string_view stage, double fraction) override;
+  [[nodiscard]] bool is_cancelled() const override;
+
+ private:
+  void clear_bar();
+  Level level_;
+  bool is_terminal_;
+  bool has_bar_ = false;
+  std::string stage_;
+  std::chrono::steady_clock::time_point stage_start_;
+  std::chrono::steady_clock::time_point last_shown_;
+};
+
+}  // namespace incise::cli

@@ -1,0 +1,82 @@
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
+#include <incise/io/nearest_name.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <vector>
+
+namespace {
+
+using namespace incise;
+using namespace incise::cli;
+
+std::string joined(int argc, char** argv) {
+  std::string line;
+  for (int i = 0; i < argc; ++i) line += (i == 0 ? "" : " ") + std::string(argv[i]);
+  return line;
+}
+
+/// CLI11 only says that a verb is required.
+void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) verbs.push_back(verb->get_name());
+  if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
+  throw CaseError("command line", "verb", fmt::format("'{}'", word), fmt::format("one of {}", fmt::join(verbs, ", ")),
+                  fmt::format("Did you mean '{}'?", nearest_name(word, verbs)));
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Plans robotic soft-tissue incisions by simulating them first.", "incise");
+  app.set_version_flag("--version", fmt::format("incise {} ({})", version(), source_commit()));
+  app.require_subcommand(1);
+  app.footer("\n`incise VERB --help` explains a verb and ends with an example.\n");
+  Application application(app, joined(argc, argv));
+  add_demo(application);
+  add_run(application);
+  add_phantom(application);
+  add_segment(application);
+  add_mesh(application);
+  add_stages(application);
+  add_evaluate(application);
+  add_export(application);
+  add_report(application);
+  add_schema(application);
+  if (argc > 1 && argv[1][0] != '-') refuse_unknown_verb(app, argv[1]);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int status = app.exit(error);
+    return status == 0 ? kDone : kBadCase;
+  }
+  return application.status();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const CaseError& error) {
+    fmt::print(stderr, "incise: {}\n", error.what());
+    return kBadCase;
+  } catch (const DataError& error) {
+    fmt::print(stderr, "incise: {}\n", error.what());
+    return kBadData;
+  } catch (const Cancelled& error) {
+    fmt::print(stderr, "incise: {}; what was finished is kept, run the same command to go on\n", error.what());
+    return kInterrupted;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "incise: out of memory\n");
+    return kBadData;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "incise: internal error: {}\n", error.what());
+    return kOwnFault;
+  }
+}

@@ -1,0 +1,44 @@
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <thread>
+
+namespace incise::cli {
+
+RunContext CommonOptions::context() const {
+  const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return {command_line, seed, threads > 0 ? threads : all};
+}
+
+std::filesystem::path CommonOptions::required_output(const char* example) const {
+  if (output.empty()) throw CaseError("command line", "-o", "nothing", "where to write", fmt::format("For example: -o {}", example));
+  return output;
+}
+
+CLI::App* Application::add_verb(const std::string& name, const std::string& what, const std::string& example,
+                                std::function<int(const CommonOptions&)> run) {
+  auto options = std::make_shared<CommonOptions>();
+  options->command_line = command_line_;
+  CLI::App* verb = app_.add_subcommand(name, what);
+  verb->footer("\nExample:\n  " + example + "\n");
+  verb->add_option("-o,--output", options->output, "File or folder to write");
+  verb->add_flag("--json", options->json, "One JSON object on standard output");
+  verb->add_flag("--quiet", options->quiet, "Warnings only");
+  verb->add_flag("--verbose", options->verbose, "More detail");
+  verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_option("--seed", options->seed, "Seed of everything random");
+  verb->add_option("--isa", options->isa, "Instruction set; this build has portable kernels only")->check(CLI::IsMember({"portable"}));
+  verb->callback([this, options, run = std::move(run)] { status_ = run(*options); });
+  return verb;
+}
+
+int status_of(Outcome outcome) {
+  if (outcome == Outcome::Success) return kDone;
+  return outcome == Outcome::Cancelled ? kInterrupted : kNotAcceptable;
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "console.hpp"
+
+#include <incise/storage/folder_store.hpp>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace incise::cli {
+
+// Exit statuses of the command.
+inline constexpr int kDone = 0;
+inline constexpr int kOwnFault = 1;
+inline constexpr int kBadCase = 2;
+inline constexpr int kBadData = 3;
+inline constexpr int kNotAcceptable = 4;
+inline constexpr int kInterrupted = 130;
+
+/// What every verb understands.
+struct CommonOptions {
+  std::filesystem::path output;
+  bool json = false;
+  bool quiet = false;
+  bool verbose = false;
+  int threads = 0;
+  std::uint64_t seed = 1;
+  std::string isa;
+  std::string command_line;
+
+  [[nodiscard]] Console::Level level() const {
+    return quiet ? Console::Level::Quiet : verbose ? Console::Level::Verbose : Console::Level::Normal;
+  }
+  [[nodiscard]] RunContext context() const;
+  /// The output, or CaseError where a verb needs one and none was given.
+  [[nodiscard]] std::filesystem::path required_output(const char* example) const;
+};
+
+/// A verb is added to the application together with what it does: a function that returns the exit status.
+class Application {
+ public:
+  Application(CLI::App& app, std::string command_line) : app_(app), command_line_(std::move(command_line)) {}
+
+  /// @param example  shown at the end of --help.
+  CLI::App* add_verb(const std::string& name, const std::string& what, const std::string& example,
+                     std::function<int(const CommonOptions&)> run);
+  [[nodiscard]] int status() const { return status_; }
+
+ private:
+  CLI::App& app_;
+  std::string command_line_;
+  int status_ = kDone;
+};
+
+/// Prints the result: with --json the one object on standard output, else a short table.
+void print_result(const CommonOptions& options, const nlohmann::ordered_json& result);
+
+/// 0 for Success, 130 for Cancelled, 4 for every other outcome.
+[[nodiscard]] int status_of(Outcome outcome);
+
+void add_demo(Application& application);
+void add_run(Application& application);
+void add_phantom(Application& application);
+void add_segment(Application& application);
+void add_mesh(Application& application);
+void add_stages(Application& application);   ///< deform, plan, simulate, compensate
+void add_export(Application& application);
+void add_evaluate(Application& application);
+void add_report(Application& application);
+void add_schema(Application& application);
+
+}  // namespace incise::cli

@@ -1,0 +1,288 @@
+#include "study_report.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/evaluation/contour_errors.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/io/mesh_io.hpp>
+#include <incise/io/path_io.hpp>
+#include <incise/io/pvd_io.hpp>
+#include <incise/io/volume_io.hpp>
+#include <incise/meshing/quality.hpp>
+#include <incise/storage/case_file.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace incise::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kVirtualNotice =
+    "Virtual specimen: the CT is synthetic and the cut is simulated. No tissue was cut, and no number here is a measurement.";
+constexpr const char* kSimulatedNotice =
+    "The scan is of a real body; clamp, stretch and cut are simulated. No tissue was cut, and no number here is a measurement.";
+
+Vec3 vector_from(const Json& json) { return Vec3(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()); }
+
+/// The part of the CT that the labels cover, with a little of its surroundings.
+CtVolume crop(const CtVolume& ct, const VolumeGrid& around) {
+  constexpr double kMarginMm = 12.0;
+  Vec3 low = Vec3::Constant(1e30);
+  Vec3 high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 index((corner & 1) != 0 ? around.size[0] - 1 : 0, (corner & 2) != 0 ? around.size[1] - 1 : 0,
+                     (corner & 4) != 0 ? around.size[2] - 1 : 0);
+    const Vec3 in_ct = ct.grid.index_from_world(around.world_from_index(index));
+    low = low.cwiseMin(in_ct);
+    high = high.cwiseMax(in_ct);
+  }
+  std::array<int, 3> first{};
+  CtVolume part;
+  part.grid = ct.grid;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double margin = kMarginMm / ct.grid.spacing_mm[axis];
+    const auto a = static_cast<std::size_t>(axis);
+    first[a] = std::clamp(static_cast<int>(low[axis] - margin), 0, ct.grid.size[a] - 1);
+    const int last = std::clamp(static_cast<int>(high[axis] + margin) + 1, first[a], ct.grid.size[a] - 1);
+    part.grid.size[a] = last - first[a] + 1;
+  }
+  part.grid.origin_mm = ct.grid.world_from_index(Vec3(first[0], first[1], first[2]));
+  for (int k = 0; k < part.grid.size[2]; ++k) {
+    for (int j = 0; j < part.grid.size[1]; ++j) {
+      for (int i = 0; i < part.grid.size[0]; ++i) part.voxels.push_back(ct.at(first[0] + i, first[1] + j, first[2] + k));
+    }
+  }
+  return part;
+}
+
+void add_ct(const fs::path& root, const CaseFile& file, Monitor& monitor, ReportData& data) {
+  const fs::path labels = root / "labels" / "labels.nrrd";
+  if (!fs::exists(labels) || file.inputs.ct_volume.empty()) return;
+  Monitor quiet;  // what the reader notices was said when the study ran
+  const ReadVolume read = read_ct(file.inputs.ct_volume, file.ct_reading, quiet);
+  const LabelVolume label = read_labels(labels);
+  data.ct.ct = crop(read.volume, label.grid);
+  data.ct.occupancy = occupancy_of(label);
+  data.ct.caption = fmt::format("{} of {} slices; the tissue that was found is outlined", to_string(read.diagnostics.format),
+                                read.diagnostics.slices);
+  for (const std::string& notice : read.diagnostics.notices) data.notices.push_back({Severity::Notice, notice});
+  throw_if_cancelled(monitor, "the report");
+}
+
+void add_mesh(const TetMesh& mesh, ReportData& data) {
+  const MeshQuality quality = quality_of(mesh);
+  data.mesh.mesh = mesh;
+  data.mesh.dihedral_angles = {"dihedral angle", "°", 0.0, 180.0, {}};
+  for (const std::size_t count : quality.dihedral_histogram) data.mesh.dihedral_angles.counts.push_back(static_cast<double>(count));
+  data.mesh.min_dihedral_deg = quality.min_dihedral_deg;
+  data.mesh.max_dihedral_deg = quality.max_dihedral_deg;
+  data.mesh.volume_mm3 = quality.volume_mm3;
+}
+
+/// The frames of one cut, as kept beside frames.pvd.
+std::vector<ReportFrame> read_frames(const fs::path& folder, const TetMesh& mesh, Monitor& monitor) {
+  std::vector<ReportFrame> frames;
+  if (!fs::exists(folder / "frames.pvd")) return frames;
+  const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
+  const Json tools = read_json(folder / "frames" / "tool.json").at("frames");
+  const std::vector<PvdFrame> series = read_pvd(folder / "frames.pvd");
+  for (std::size_t i = 0; i < series.size() && i < tools.size(); ++i) {
+    TetMesh live = read_deformed_tet_mesh(folder / series[i].file);
+    std::vector<std::uint8_t> is_live(mesh.tets.size(), 0);
+    for (const double place : live.cell_data.at("tet").values) is_live.at(static_cast<std::size_t>(place)) = 1;
+    ReportFrame frame = frame_of(mesh, uncut, std::move(live.vertices), is_live);
+    frame.time_s = series[i].time_s;
+    const bool is_tool_in = tools[i].at("is_tool_in");
+    frame.phase = i == 0 ? "stretched" : is_tool_in ? "cutting" : "tool out";
+    if (is_tool_in) {
+      const Json& tip = tools[i].at("tip_mm");
+      const Json& axis = tools[i].at("axis");
+      frame.tool_tip_mm = vector_from(tip);
+      frame.tool_axis = vector_from(axis).normalized();
+    }
+    frames.push_back(std::move(frame));
+    monitor.progress("reading frames", static_cast<double>(i + 1) / static_cast<double>(series.size()));
+  }
+  return frames;
+}
+
+/// Everything that belongs to one of the two cuts.
+struct CutFolder {
+  const char* folder;
+  const char* name;
+};
+constexpr std::array<CutFolder, 2> kCuts{{{"as_planned", "As planned"}, {"corrected", "Corrected"}}};
+
+void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, const TetMesh& mesh, Monitor& monitor, ReportData& data) {
+  const fs::path folder = root / cut.folder;
+  if (!fs::exists(folder / "incision.json")) return;
+  const Json json = read_json(folder / "incision.json");
+  const ToolPath plan = read_tool_path(root / "plan" / "path.json");
+  const bool is_ring = plan.is_closed;
+  ReportIncision incision;
+  incision.name = cut.name;
+  for (const Outcome outcome : {Outcome::Success, Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::NotConverged}) {
+    if (json.at("outcome") == to_string(outcome)) incision.outcome = outcome;
+  }
+  if (json.at("closed_loop").is_boolean()) incision.closed_loop = json.at("closed_loop").get<bool>();
+  if (json.at("negative_margin").is_boolean()) incision.negative_margin = json.at("negative_margin").get<bool>();
+  incision.target_mm = file.settings.plan.lateral_margin_mm;
+  incision.close_margin_mm = file.settings.close_margin_mm;
+  incision.measured_contour = "kerf mid-line, stretched tissue before the cut";
+  incision.tumor_edge = plan.tumor_edge;
+  incision.intended_path = entry_contour(plan);
+  const bool has_correction = fs::exists(root / "correction" / "path.json");
+  if (has_correction) incision.corrected_path = entry_contour(read_tool_path(root / "correction" / "path.json"));
+
+  ReportAnimation animation;
+  animation.name = cut.name;
+  animation.tool_diameter_mm = file.settings.needle.diameter_mm;
+  animation.tool_length_mm = file.settings.needle.length_mm;
+  if (!plan.tumor_edge.points.empty()) animation.lines.push_back({LineKind::TumorEdge, plan.tumor_edge});
+  animation.lines.push_back({LineKind::IntendedPath, incision.intended_path});
+  if (has_correction) animation.lines.push_back({LineKind::CorrectedPath, incision.corrected_path});
+  if (fs::exists(folder / "centerline.csv")) {
+    const Contour midline = read_contour(folder / "centerline.csv", is_ring);
+    animation.lines.push_back({LineKind::KerfMidLine, midline});
+    if (is_ring) {
+      ContourErrors errors = contour_errors(midline, plan.tumor_edge, incision.target_mm, file.settings.plan.approach);
+      incision.incision = std::move(errors.points);
+      incision.signed_error_mm = std::move(errors.signed_error_mm);
+      incision.mean_abs_error_mm = json.at("abs_error_mm").at("mean");
+      data.incisions.push_back(incision);
+    }
+  }
+  animation.frames = read_frames(folder, mesh, monitor);
+  data.animations.push_back(std::move(animation));
+}
+
+std::optional<double> number_at(const Json& json, const std::string& pointer) {
+  const Json::json_pointer place(pointer);
+  if (!json.contains(place) || !json.at(place).is_number()) return std::nullopt;
+  return json.at(place).get<double>();
+}
+
+void add_evaluation(const fs::path& root, ReportData& data) {
+  struct Measure {
+    const char* name;
+    const char* unit;
+    const char* pointer;
+  };
+  static constexpr std::array<Measure, 17> kMeasures{{
+      {"Absolute error of the mid-line against its target, mean", "mm", "/abs_error_mm/mean"},
+      {"… standard deviation along the contour", "mm", "/abs_error_mm/sd"},
+      {"… greatest", "mm", "/abs_error_mm/max"},
+      {"Signed error of the mid-line, mean (negative: too close)", "mm", "/signed_error_mm/mean"},
+      {"… closest", "mm", "/signed_error_mm/min"},
+      {"… farthest", "mm", "/signed_error_mm/max"},
+      {"The paper's figure: mid-line against 4.5 mm, mean", "mm", "/paper_abs_error_mm"},
+      {"Absolute error of the inner edge against 4.5 mm, mean", "mm", "/inner_edge/abs_error_mm/mean"},
+      {"Signed error of the inner edge, mean", "mm", "/inner_edge/signed_error_mm/mean"},
+      {"Hu shape score (0: same shape as the tumour edge)", "", "/hu_score"},
+      {"… of a perfect offset", "", "/hu_score_ideal"},
+      {"Centroid shift", "mm", "/centroid_shift_mm"},
+      {"Points closer than the clinical cut-off", "share", "/close_margin/fraction"},
+      {"Coverage of the ring", "share", "/coverage"},
+      {"Tetrahedra removed", "", "/removed_tets"},
+      {"Greatest force on the tool", "mN", "/peak_tool_force_mn"},
+      {"Simulation time", "s", "/wall_s"},
+  }};
+  const auto read = [&root](const CutFolder& cut) {
+    const fs::path file = root / cut.folder / "incision.json";
+    return fs::exists(file) ? read_json(file) : Json(nullptr);
+  };
+  const Json before = read(kCuts[0]);
+  const Json after = read(kCuts[1]);
+  if (before.is_null()) return;
+  for (const Measure& m : kMeasures) {
+    data.evaluation.push_back({m.name, m.unit, number_at(before, m.pointer), after.is_null() ? std::nullopt : number_at(after, m.pointer)});
+  }
+}
+
+void add_program(const fs::path& root, const Json& study, ReportData& data) {
+  if (!study.contains("program")) return;
+  const Json& program = study.at("program");
+  for (const auto& [key, value] : program.items()) {
+    if (value.is_number() || value.is_boolean() || value.is_string()) data.program.push_back({key, value.is_string() ? value.get<std::string>() : value.dump(), ""});
+  }
+  if (program.contains("checks")) {
+    for (const Json& check : program.at("checks")) {
+      const bool is_least = check.at("text").get<std::string>().find("at least") != std::string::npos;
+      data.checks.push_back({check.at("name"), check.at("unit"), check.at("value"), is_least ? ">=" : "<=", check.at("limit"), check.at("passed")});
+    }
+  }
+  if (program.contains("checks_not_made")) {
+    for (const Json& name : program.at("checks_not_made")) {
+      data.notices.push_back({Severity::Warning, "Not checked for the robot program: " + name.get<std::string>()});
+    }
+  }
+  const fs::path script = root / "program" / "program.script";
+  if (fs::exists(script)) {
+    constexpr std::size_t kShownCharacters = 3000;
+    data.program_text = read_text(script).substr(0, kShownCharacters);
+  }
+}
+
+void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data) {
+  for (const SettingLine& line : settings_of(file)) {
+    if (!line.value.empty()) data.settings.push_back({line.key, line.value, line.unit});
+  }
+  if (fs::exists(root / "manifest.json")) {
+    const Manifest manifest = read_manifest(root);
+    data.provenance = {{"incise", manifest.version, ""},       {"commit", manifest.commit, ""},
+                       {"command", manifest.command, ""},      {"seed", std::to_string(manifest.seed), ""},
+                       {"threads", std::to_string(manifest.threads), ""}, {"instruction set", manifest.instruction_set, ""},
+                       {"machine", manifest.machine, ""}};
+    for (const ManifestInput& input : manifest.inputs) data.provenance.push_back({"SHA-256 of " + input.path, input.sha256, ""});
+  }
+  static constexpr std::array<std::array<const char*, 2>, 8> kFiles{{
+      {"mesh/mesh.vtu", "tetrahedral mesh, unstretched (ParaView)"},
+      {"stretched/deformed.vtu", "clamped and stretched, with displacement and stress (ParaView)"},
+      {"plan/path.json", "intended path"},
+      {"as_planned/frames.pvd", "the first cut over time (ParaView)"},
+      {"as_planned/incision.json", "all numbers of the first cut"},
+      {"correction/path.json", "corrected path"},
+      {"corrected/frames.pvd", "the second cut over time (ParaView)"},
+      {"program/program.script", "robot program (URScript)"},
+  }};
+  for (const auto& [path, meaning] : kFiles) {
+    if (fs::exists(root / path)) data.files.push_back({path, meaning});
+  }
+}
+
+}  // namespace
+
+ReportData study_report(const fs::path& root, Monitor& monitor) {
+  if (!fs::exists(root / "study.json")) {
+    throw DataError(root, "", "no study.json", "a folder made by `incise run`, `demo`, `simulate` or another stage");
+  }
+  const Json study = read_json(root / "study.json");
+  const CaseFile file = read_case(root / study.at("case_file").get<std::string>());
+  ReportData data;
+  data.title = file.settings.title;
+  data.subtitle = "From CT scan to corrected robot path";
+  data.virtual_notice = file.settings.is_virtual ? kVirtualNotice : kSimulatedNotice;
+  data.approach = file.settings.plan.approach;
+  add_ct(root, file, monitor, data);
+  fs::path mesh_file = root / "mesh" / "mesh.vtu";
+  if (!file.inputs.specimen_mesh.empty()) mesh_file = file.inputs.specimen_mesh;
+  if (fs::exists(mesh_file)) {
+    const TetMesh mesh = read_tet_mesh(mesh_file);
+    add_mesh(mesh, data);
+    for (const CutFolder& cut : kCuts) add_cut(root, cut, file, mesh, monitor, data);
+  }
+  add_evaluation(root, data);
+  if (study.contains("stages")) {
+    for (const Json& stage : study.at("stages")) data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
+  }
+  add_program(root, study, data);
+  add_provenance(root, file, data);
+  return data;
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,144 @@
+#include "study_run.hpp"
+
+#include "study_report.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/path_io.hpp>
+#include <incise/report/html_report.hpp>
+#include <incise/robot/program_text.hpp>
+#include <incise/storage/result_json.hpp>
+#include <incise/workflow/robot_frame.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ostream>
+
+namespace incise::cli {
+
+std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options) {
+  if (!options.output.empty()) return options.output;
+  return (std::filesystem::is_directory(case_path) ? case_path : case_path.parent_path()) / "out";
+}
+
+namespace {
+
+/// Before anything is written: the files that the case names.
+CaseFile case_with_inputs(const std::filesystem::path& case_path) {
+  CaseFile file = read_case(case_path);
+  require_input_files(file);
+  return file;
+}
+
+}  // namespace
+
+StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options)
+    : is_new_folder(!std::filesystem::exists(output)), store(case_with_inputs(case_path), output, options.context()) {
+  // Kept apart from the products: which case they are of, for `incise report`.
+  const auto relative = std::filesystem::absolute(store.case_file().file).lexically_proximate(std::filesystem::absolute(output));
+  write_json(output / "study.json", {{"case_file", relative.string()}});
+}
+
+Study StudyRun::run(Stage until, const CommonOptions& options, Monitor& monitor) {
+  Workers workers(options.threads);
+  try {
+    return run_study(store.case_file().settings, store, until, workers, monitor);
+  } catch (...) {
+    remove_if_nothing_was_made();
+    throw;
+  }
+}
+
+void StudyRun::remove_if_nothing_was_made() const {
+  std::error_code ignored;
+  if (!is_new_folder) return;
+  for (const auto& entry : std::filesystem::directory_iterator(store.root(), ignored)) {
+    if (entry.path().filename() != "study.json") return;
+  }
+  std::filesystem::remove_all(store.root(), ignored);
+}
+
+namespace {
+
+/// The program for the corrected path (or the planned one, where nothing was corrected), if it passes the checks.
+nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor& monitor) {
+  const CaseFile& file = study.store.case_file();
+  const std::filesystem::path folder = study.store.root() / "program";
+  nlohmann::ordered_json json;
+  std::filesystem::remove_all(folder);
+  if (!file.settings.T_robot_sim) {
+    monitor.message(Severity::Warning, "no program: the case does not say where the specimen lies (robot.T_robot_sim)");
+    json["written"] = false;
+    json["reason"] = "robot.T_robot_sim is not given";
+    return json;
+  }
+  const ToolPath path = in_robot_frame(done.correction ? done.correction->path : *done.plan, *file.settings.T_robot_sim);
+  const ToolPath intended = in_robot_frame(*done.plan, *file.settings.T_robot_sim);
+  ProgramSettings motion;
+  motion.overlap_mm = file.settings.cut.overlap_mm;
+  const RobotProgram program = make_program(path, motion);
+  CheckSettings settings;
+  settings.must_be_ring = file.settings.plan.kind == PlanKind::Ring;
+  settings.planned_depth_mm = file.settings.plan.depth_mm;
+  settings.close_margin_mm = file.settings.close_margin_mm;
+  const ProgramChecks checks = check_program(program, path, settings, &intended);
+  json = nlohmann::ordered_json::parse(to_json(program, &checks));
+  json.erase("poses");
+  json["written"] = checks.all_passed();
+  if (!checks.all_passed()) {
+    for (const ProgramCheck& check : checks.checks) {
+      if (!check.passed) monitor.message(Severity::Warning, fmt::format("no program: {}: {}", check.name, check.text));
+    }
+    return json;
+  }
+  UrScriptSettings script;
+  script.provenance = {fmt::format("incise {} ({})", version(), source_commit()), file.settings.title};
+  if (file.settings.is_virtual) script.provenance.emplace_back("VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.");
+  AtomicFolder target(folder);
+  write_tool_path(target.path() / "path.json", path);
+  write_atomically(target.path() / "program.json", [&](std::ostream& out) { out << to_json(program, &checks); });
+  write_atomically(target.path() / "program.script", [&](std::ostream& out) { out << to_urscript(program, script); });
+  study.store.write_manifest_to(target.path(), 0.0);
+  target.commit();
+  return json;
+}
+
+nlohmann::ordered_json headline(const nlohmann::ordered_json& cut) {
+  nlohmann::ordered_json json = cut;
+  for (const char* key : {"removals", "removal_columns"}) json.erase(key);
+  return json;
+}
+
+}  // namespace
+
+int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monitor, nlohmann::ordered_json& result) {
+  const auto start = std::chrono::steady_clock::now();
+  const Study done = study.run(Stage::Verify, options, monitor);
+  const std::filesystem::path root = study.store.root();
+  result["stages"] = to_json(done.stages);
+  result["outcome"] = to_string(done.outcome);
+  result["before"] = done.as_planned ? headline(to_json(*done.as_planned)) : nlohmann::ordered_json(nullptr);
+  result["after"] = done.corrected ? headline(to_json(*done.corrected)) : nlohmann::ordered_json(nullptr);
+  result["specimen_is"] = study.store.case_file().settings.is_virtual ? "virtual" : "real";
+  bool has_program = true;
+  if (done.plan) {
+    result["program"] = write_program(study, done, monitor);
+    has_program = !study.store.case_file().settings.T_robot_sim || result["program"]["written"].get<bool>();
+  }
+  const auto elapsed = [&start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  result["wall_s"] = elapsed();
+  nlohmann::ordered_json record = result;
+  record["case_file"] = read_json(root / "study.json").at("case_file");
+  write_json(root / "study.json", record);
+  study.store.write_manifest_to(root, elapsed());
+  monitor.message(Severity::Notice, "report: drawing");
+  write_report(study_report(root, monitor), root / "report.html");
+  result["report"] = (root / "report.html").string();
+  result["wall_s"] = elapsed();
+  return has_program ? status_of(done.outcome) : kNotAcceptable;
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,38 @@
+#include "phantom_case.hpp"
+#include "study_run.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/json_text.hpp>
+
+#include <fmt/format.h>
+
+namespace incise::cli {
+namespace {
+
+constexpr const char* kFormat = "dicom";
+
+/// The virtual specimen of this seed, made unless a complete one is there.
+std::filesystem::path specimen_for(const std::filesystem::path& folder, std::uint64_t seed, Monitor& monitor) {
+  const std::filesystem::path truth = folder / "truth.json";
+  const bool is_there = std::filesystem::exists(truth) && read_json(truth).value("seed", std::uint64_t{0}) == seed;
+  if (!is_there) write_phantom_case(folder, seed, kFormat, monitor);
+  return folder;
+}
+
+}  // namespace
+
+void add_demo(Application& application) {
+  application.add_verb(
+      "demo", "A complete virtual case: make a specimen, then everything that `run` does", "incise demo -o demo",
+      [](const CommonOptions& options) {
+        Console console(options.level());
+        const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
+        StudyRun study(specimen_for(root / "specimen", options.seed, console), root, options);
+        nlohmann::ordered_json result;
+        const int status = run_whole_loop(study, options, console, result);
+        print_result(options, result);
+        return status;
+      });
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,58 @@
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/volume_io.hpp>
+#include <incise/storage/result_json.hpp>
+
+#include <array>
+#include <memory>
+
+namespace incise::cli {
+
+void add_segment(Application& application) {
+  struct Arguments {
+    std::filesystem::path ct;
+    std::vector<double> window{-20.0, 180.0};
+    std::vector<double> roi;
+    std::vector<double> seed;
+    std::vector<double> spacing;
+    std::vector<double> hu;
+    double opening_mm = 0.0;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = application.add_verb(
+      "segment", "Find the tissue in a CT: a label volume", "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd",
+      [arguments](const CommonOptions& options) {
+        Console console(options.level());
+        const std::filesystem::path output = options.required_output("labels.nrrd");
+        CtReadSettings reading;
+        if (!arguments->spacing.empty()) reading.spacing_mm = Vec3(arguments->spacing.data());
+        if (!arguments->hu.empty()) reading.hu = GrayToHu{arguments->hu[0], arguments->hu[1]};
+        SegmentationSettings settings;
+        settings.window_low_hu = arguments->window[0];
+        settings.window_high_hu = arguments->window[1];
+        settings.opening_radius_mm = arguments->opening_mm;
+        if (!arguments->roi.empty()) {
+          settings.roi_box_mm = Box3(Vec3(arguments->roi.data()), Vec3(arguments->roi.data() + 3));
+          if (settings.roi_box_mm->isEmpty()) {
+            throw CaseError("command line", "--roi-box-mm", "a low corner above the high corner", "low x y z, high x y z");
+          }
+        }
+        if (!arguments->seed.empty()) settings.seeds_mm.emplace_back(arguments->seed.data());
+        const Segmentation found = segment(read_ct(arguments->ct, reading, console).volume, settings, console);
+        write_labels(output, found.labels);
+        nlohmann::ordered_json result = to_json(found);
+        result["labels"] = output.string();
+        print_result(options, result);
+        return kDone;
+      });
+  verb->add_option("ct", arguments->ct, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
+  verb->add_option("--window-hu", arguments->window, "Least and greatest HU of tissue")->expected(2);
+  verb->add_option("--roi-box-mm", arguments->roi, "Low x y z and high x y z of the box to look in, LPS")->expected(6);
+  verb->add_option("--seed-mm", arguments->seed, "A point inside the specimen, LPS")->expected(3);
+  verb->add_option("--opening-mm", arguments->opening_mm, "Cut bridges thinner than twice this");
+  verb->add_option("--spacing-mm", arguments->spacing, "PNG slices: column, row and slice spacing")->expected(3);
+  verb->add_option("--hu", arguments->hu, "PNG slices: slope and intercept")->expected(2);
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,63 @@
+#include "study_run.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/storage/result_json.hpp>
+
+#include <memory>
+
+namespace incise::cli {
+namespace {
+
+nlohmann::ordered_json result_of(Stage stage, const Study& study) {
+  nlohmann::ordered_json json;
+  switch (stage) {
+    case Stage::Plan: return plan_summary_json(*study.plan);
+    case Stage::Simulate: return to_json(*study.as_planned);
+    case Stage::Verify:
+      json["before"] = to_json(*study.as_planned);
+      json["after"] = study.corrected ? to_json(*study.corrected) : nlohmann::ordered_json(nullptr);
+      json["correction"] = study.correction ? to_json(*study.correction) : nlohmann::ordered_json(nullptr);
+      return json;
+    default: return to_json(*study.stretched);
+  }
+}
+
+int run_stage(Stage stage, Product product, const std::filesystem::path& case_path, const CommonOptions& options) {
+  Console console(options.level());
+  StudyRun run(case_path, output_of(case_path, options), options);
+  const Study study = run.run(stage, options, console);
+  const bool is_stretched = study.stretched && study.stretched->outcome == Outcome::Success;
+  nlohmann::ordered_json result = is_stretched ? result_of(stage, study) : to_json(*study.stretched);
+  result["folder"] = run.store.folder(product).string();
+  result["stages"] = to_json(study.stages);
+  print_result(options, result);
+  return status_of(study.outcome);
+}
+
+void add_stage(Application& application, const char* name, const char* what, const char* example, Stage stage, Product product) {
+  auto case_path = std::make_shared<std::filesystem::path>();
+  CLI::App* verb = application.add_verb(name, what, example, [=](const CommonOptions& options) {
+    return run_stage(stage, product, *case_path, options);
+  });
+  verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
+}
+
+}  // namespace
+
+void add_stages(Application& application) {
+  add_stage(application, "deform", "Clamp and stretch the tissue: static equilibrium under the case's constraints",
+            "incise deform specimen -o out", Stage::Stretch, Product::Stretched);
+  add_stage(application, "plan", "Lay the intended incision on the stretched tissue", "incise plan specimen -o out", Stage::Plan,
+            Product::Plan);
+  add_stage(application, "simulate", "Cut along the planned path (or the case's own) and measure what comes out",
+            "incise simulate specimen -o out", Stage::Simulate, Product::AsPlanned);
+  auto case_path = std::make_shared<std::filesystem::path>();
+  auto method = std::make_shared<std::string>("paper");
+  CLI::App* verb = application.add_verb(
+      "compensate", "Correct the path by the simulated error and verify it by cutting again", "incise compensate specimen -o out",
+      [=](const CommonOptions& options) { return run_stage(Stage::Verify, Product::Correction, *case_path, options); });
+  verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
+  verb->add_option("--method", *method, "paper: each waypoint moves once by the error measured there")->check(CLI::IsMember({"paper"}));
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,20 @@
+# Every outside library, found once. Each belongs to one module, which links it privately where it can.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(OpenSSL REQUIRED)        # SHA-256 of inputs, in io
+
+find_package(OpenMP REQUIRED COMPONENTS CXX)   # only to hold CHOLMOD's own threads back
+
+# CHOLMOD has neither a CMake nor a pkg-config file in Debian 12. OpenBLAS is linked directly, so that
+# openblas_set_num_threads acts on the library that CHOLMOD uses.
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_library(OPENBLAS_LIBRARY openblas REQUIRED)
+if(NOT TARGET incise_cholmod)
+  add_library(incise_cholmod INTERFACE IMPORTED GLOBAL)   # so that the installed package can define it again
+  target_include_directories(incise_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
+  target_link_libraries(incise_cholmod INTERFACE ${OPENBLAS_LIBRARY} ${CHOLMOD_LIBRARY} OpenMP::OpenMP_CXX)
+endif()

@@ -1,0 +1,54 @@
+# incise_warnings: the flags that our own code is held to; never imposed on a project that uses the library.
+add_library(incise_warnings INTERFACE)
+target_compile_options(incise_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Werror
+  -Wno-missing-field-initializers    # settings are aggregates: what is not named keeps its default
+  -Wno-restrict)                     # g++ 12 sees overlaps in std::string operator+ that are not there (GCC bug 105651)
+
+# Reads cmake/layers.txt and adds each module folder under src/ that exists.
+function(incise_add_modules)
+  file(STRINGS ${PROJECT_SOURCE_DIR}/cmake/layers.txt rows REGEX "^[0-9]")
+  foreach(row IN LISTS rows)
+    string(REGEX MATCH "^[0-9]+ +([a-z_]+)" ignored "${row}")
+    set(module ${CMAKE_MATCH_1})
+    if(EXISTS ${PROJECT_SOURCE_DIR}/src/${module}/CMakeLists.txt)
+      add_subdirectory(src/${module})
+    endif()
+  endforeach()
+endfunction()
+
+# incise_module(<name> SOURCES … [USES <incise modules>] [PUBLIC <targets>] [PRIVATE <targets>])
+# Makes the target incise_<name>, alias incise::<name>, with include/ public and src/ private.
+function(incise_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
+  set(target incise_${name})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(incise::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  list(TRANSFORM ARG_USES PREPEND incise_)
+  target_link_libraries(${target} PUBLIC ${ARG_USES} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:incise_warnings>)
+  set_property(GLOBAL APPEND PROPERTY INCISE_MODULE_TARGETS ${target})
+endfunction()
+
+# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end])
+# One test program per folder under tests/; each TEST in it is one ctest entry.
+function(incise_test name)
+  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;USES;LINK" ${ARGN})
+  if(NOT ARG_LABEL)
+    set(ARG_LABEL unit)
+  endif()
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  set(target ${name}_test)
+  add_executable(${target} ${ARG_SOURCES})
+  list(TRANSFORM ARG_USES PREPEND incise_)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${target} PRIVATE ${ARG_USES} ${ARG_LINK} incise_test_support GTest::gtest_main GTest::gmock incise_warnings)
+  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. 
+    PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${ARG_TIMEOUT} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
+endfunction()

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+namespace incise {
+
+/// Base of every exception that this library throws on purpose.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A caller broke a precondition of a function: a mistake in code, told with what was expected and found.
+class InvalidArgument : public Error {
+ public:
+  using Error::Error;
+};
+
+/// The command line or a case file asks for something that cannot be done (exit status 2 of the command).
+/// The message reads "<where>: <field>: found <found>, expected <expected>. <hint>".
+class CaseError : public Error {
+ public:
+  CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint = "");
+  [[nodiscard]] const std::string& field() const { return field_; }
+
+ private:
+  std::string field_;
+};
+
+/// A data file is missing, damaged or unsuitable, or an output cannot be written (exit status 3 of the command).
+/// The message reads "<path>: <place>: found <found>, expected <expected>. <hint>"; `place` is a line, byte or field.
+class DataError : public Error {
+ public:
+  DataError(const std::filesystem::path& path, std::string place, std::string found, std::string expected,
+            std::string hint = "");
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The person asked a computation to stop (Ctrl-C) and it had no partial result to return (exit status 130).
+class Cancelled : public Error {
+ public:
+  using Error::Error;
+};
+
+namespace core_detail {
+[[noreturn]] void throw_invalid_argument(const char* function, const std::string& message);
+[[noreturn]] void stop_on_broken_invariant(const char* file, int line, const char* condition);
+}  // namespace core_detail
+
+}  // namespace incise
+
+/// Checks a precondition; throws InvalidArgument with a message that says what was expected and found.
+#define INCISE_REQUIRE(condition, message)                                  \
+  do {                                                                      \
+    if (!(condition)) ::incise::core_detail::throw_invalid_argument(__func__, (message)); \
+  } while (false)
+
+/// Checks an invariant of our own; stops the program in debug builds, costs nothing in release builds.
+#ifdef NDEBUG
+#define INCISE_ASSERT(condition) static_cast<void>(0)
+#else
+#define INCISE_ASSERT(condition)                                                                      \
+  do {                                                                                                \
+    if (!(condition)) ::incise::core_detail::stop_on_broken_invariant(__FILE__, __LINE__, #condition); \
+  } while (false)
+#endif

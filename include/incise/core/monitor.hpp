@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string_view>
+
+namespace incise {
+
+enum class Severity { Detail, Notice, Warning };
+
+/// What a long computation is given instead of a console: it reports messages and progress here and asks
+/// whether it should stop. The default discards everything and never stops. The library itself never prints.
+/// Calls come from the thread that called the computation; only `is_cancelled` may come from several threads.
+class Monitor {
+ public:
+  virtual ~Monitor() = default;
+  virtual void message(Severity, std::string_view /*text*/) {}
+  /// @param stage     short present-tense name: "cutting", "meshing".
+  /// @param fraction  done so far, in [0, 1]; never decreases within a stage.
+  virtual void progress(std::string_view /*stage*/, double /*fraction*/) {}
+  [[nodiscard]] virtual bool is_cancelled() const { return false; }
+};
+
+/// Throws Cancelled naming `stage` if the monitor asks to stop; for computations without a partial result.
+void throw_if_cancelled(const Monitor& monitor, std::string_view stage);
+
+}  // namespace incise

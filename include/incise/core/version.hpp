@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+namespace incise {
+
+/// Version of the library, "0.1.0".
+[[nodiscard]] std::string_view version();
+/// Commit of the sources that this was built from, 40 hex digits, "-dirty" appended when files were changed; "unknown" outside a repository.
+[[nodiscard]] std::string_view source_commit();
+
+}  // namespace incise

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// How the simulated tool cuts. Speed and dullness are the two numbers that calibration finds (paper II-C.4); the
+/// defaults are the paper's chosen pair, the rest is described in docs/models/cutting.md.
+struct CutSettings {
+  double speed_mm_s = 13.0;           ///< of the simulated tool, > 0
+  double dullness = 9.0;              ///< contact needed before a tet goes, counted in reference steps, > 0
+  double reference_step_s = 0.02;     ///< the time that one unit of dullness stands for, > 0
+  double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step; (0, needle diameter]
+  double reach_mm = 0.25;             ///< a tet is in contact within needle radius + reach of the axis, >= 0
+  double bond_stiffness_kpa_mm2 = 400.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag
+  double overlap_mm = 8.0;            ///< a ring is cut this far beyond its start, >= 0
+  double residual_tolerance = 1e-2;   ///< each step's linear solve: |r| <= this · |contact force|, (0, 1)
+  double max_step_mm = 1.0;           ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
+
+  /// Contact time that removes a tet, s.
+  [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
+  /// Duration of one simulation step, s.
+  [[nodiscard]] double step_s() const { return advance_per_step_mm / speed_mm_s; }
+};
+
+/// Every violation, one sentence each with the field's name; empty: valid. The step is checked against the needle's diameter.
+[[nodiscard]] std::vector<std::string> validate(const CutSettings& settings, double needle_diameter_mm);
+
+}  // namespace incise

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <incise/cutting/cut_settings.hpp>
+#include <incise/cutting/tool.hpp>
+#include <incise/geometry/tool_path.hpp>
+
+#include <vector>
+
+namespace incise {
+
+/// What the simulated tool does, as a function of time: plunge along the axis at the first waypoint, follow the waypoints (straight
+/// between them), overlap beyond the start if the path is a ring, stay for one dwell time, and leave. All motion at
+/// CutSettings::speed_mm_s: the waypoints' own speeds are the robot's.
+class ToolProgram {
+ public:
+  enum class Phase { Plunge, Follow, Overlap, Dwell };
+
+  /// @pre path in PathFrame::SimStretched with at least 2 waypoints (3 for a ring), finite, unit axes, depth > 0.
+  ToolProgram(const ToolPath& path, const CutSettings& settings);
+
+  [[nodiscard]] double duration_s() const { return keys_.back().time_s; }
+  /// Pose at a time; before 0 and after the end: that of the nearer end.
+  [[nodiscard]] ToolPose pose_at(double time_s) const;
+  [[nodiscard]] Phase phase_at(double time_s) const;
+
+ private:
+  struct Key {
+    double time_s;
+    ToolPose pose;
+    Phase phase;  ///< of the motion that ends at this key
+  };
+  [[nodiscard]] std::size_t key_after(double time_s) const;
+  std::vector<Key> keys_;
+};
+
+}  // namespace incise

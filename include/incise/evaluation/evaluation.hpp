@@ -1,0 +1,96 @@
+#pragma once
+
+#include <incise/core/outcome.hpp>
+#include <incise/evaluation/contour_errors.hpp>
+#include <incise/evaluation/statistics.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// Which line of the cut was measured.
+enum class ContourKind {
+  Centerline,  ///< mid-line of the kerf, as a simulation gives it; one lateral margin outside the tumour edge
+  InnerEdge,   ///< border of the kerf next to the tumour, as a photograph shows it; closer by the electrode's radius
+};
+
+[[nodiscard]] std::string_view to_string(ContourKind kind);  ///< centerline, inner_edge
+
+struct EvaluationSettings {
+  ContourKind contour = ContourKind::Centerline;
+  double lateral_margin_mm = 5.0;    ///< intended, from the tumour edge to the kerf's mid-line, > electrode radius
+  double electrode_radius_mm = 0.5;  ///< half the kerf's width, >= 0
+  /// Intended distance of the measured contour, > 0; absent: see target_mm().
+  std::optional<double> target_mm = std::nullopt;
+  double close_margin_mm = 2.2;    ///< clinical cut-off of the tissue left beside the tumour, > 0 (paper III-A.1, [30])
+  Vec3 approach = -Vec3::UnitZ();  ///< direction in which the camera looks
+  double step_mm = 0.25;           ///< spacing of the points at which errors are taken, > 0
+  double end_tolerance_mm = 1.0;   ///< an open cut is complete if it ends within this of the intended ends, >= 0
+};
+
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const EvaluationSettings& settings);
+
+/// Intended distance of the measured contour: as set, else the lateral margin, less the electrode radius for an inner
+/// edge.
+[[nodiscard]] double target_mm(const EvaluationSettings& settings);
+
+struct CloseMargin {
+  /// Points that leave no more than close_margin_mm of tissue beside the tumour edge, those inside it included.
+  std::size_t points = 0;
+  double fraction = 0.0;  ///< of all points, [0, 1]
+};
+
+/// The measures of one incision (paper III-A.1, III-A.2; docs/models/measures.md). What could not be measured is absent.
+struct Evaluation {
+  /// Success, PositiveMargin or OpenLoop (for an open cut: it does not reach both its ends).
+  Outcome outcome = Outcome::OpenLoop;
+  std::optional<bool> closed_loop;  ///< absent for an open cut
+  /// Tissue is left all round the tumour edge, and a ring encloses it; absent: nothing to measure.
+  std::optional<bool> negative_margin;
+  ContourKind contour = ContourKind::Centerline;
+  double target_mm = 0.0;  ///< 0 for an open cut: its errors are lateral offsets from the intended line
+  std::size_t n_points = 0;
+  std::optional<Summary> abs_error_mm;
+  std::optional<Summary> signed_error_mm;
+  /// Mean and greatest |distance − (lateral margin − electrode radius)|: the paper's figure, which takes 4.5 whatever
+  /// was measured.
+  std::optional<double> paper_abs_error_mm;
+  std::optional<double> paper_max_abs_error_mm;
+  std::optional<bool> paper_success;  ///< closed, and paper_max_abs_error_mm within lateral margin − electrode radius
+  std::optional<double> hu_score;     ///< tumour edge against incision, as OpenCV's I1; needs a closed contour
+  std::optional<double> hu_score_ideal;  ///< what the edge's perfect offset by target_mm would score
+  std::optional<double> hu_score_seven;
+  bool hu_unstable = false;                 ///< see HuScore::is_unstable; of edge and incision
+  std::optional<double> centroid_shift_mm;  ///< between the centres of the two filled regions, in the picture plane
+  std::optional<CloseMargin> close_margin;
+  /// [0, 1]: share of directions from the tumour's centre that meet the incision; of an open cut: share of the line.
+  double coverage = 0.0;
+  std::optional<double> start_gap_mm;  ///< open cut: by how much it falls short of the line's start (0: reaches it)
+  std::optional<double> end_gap_mm;    ///< open cut: the same at the line's end
+  ContourErrors errors;                ///< point by point, in the order of the incision
+};
+
+/// Measures a ring-shaped incision against the tumour edge that it was to keep clear of.
+/// @param incision    as measured, mm; absent when none was found (then only the outcome, open_loop, is given); a
+/// contour that is
+///                    not closed is an open ring.
+/// @param tumor_edge  closed, at least 3 points, mm, same frame and configuration as the incision.
+/// @throws InvalidArgument with every violation of the settings; for contours that are too short or not finite.
+/// @note Margins are of tissue: for a mid-line half the kerf's width is taken off the distance, so a mid-line at 2.7 mm
+/// and an inner edge at 2.2 mm are equally close. Seconds at most; O(points · edge points).
+[[nodiscard]] Evaluation evaluate(const std::optional<Contour>& incision, const Contour& tumor_edge,
+                                  const EvaluationSettings& settings = {});
+
+/// Measures an open cut against the line it was to follow: lateral offset, positive = to the left of the line's
+/// direction seen against the approach. Points beyond the line's ends count as overshoot and are left out of the
+/// errors. Depth is not seen by contours.
+/// @param incision  as measured, mm, open; absent when none was found.
+/// @param line      the intended course, open, at least 2 points, mm, same frame.
+[[nodiscard]] Evaluation evaluate_line(const std::optional<Contour>& incision, const Contour& line,
+                                       const EvaluationSettings& settings = {});
+
+}  // namespace incise

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <incise/geometry/types.hpp>
+
+#include <span>
+
+namespace incise {
+
+/// A polyline in space, mm. Closed: the last point joins the first (and is not a copy of it).
+struct Contour {
+  Points points;
+  bool is_closed = true;
+};
+
+[[nodiscard]] double length_mm(const Contour& contour);
+
+/// `count` points evenly spaced by arc length, starting at the first point; an open contour keeps both ends.
+/// @pre at least 2 points, positive length, count >= 2 (3 if closed).
+[[nodiscard]] Contour resample(const Contour& contour, std::size_t count);
+
+/// The nearest point on a contour's segments.
+struct ContourPoint {
+  Vec3 position_mm = Vec3::Zero();
+  double distance_mm = 0.0;
+  std::size_t segment = 0;   ///< from point `segment` to the next
+  double fraction = 0.0;     ///< along that segment, [0, 1]
+};
+
+/// Nearest point of the contour's segments to p. O(segments). @pre at least 2 points (1 is taken as that point).
+[[nodiscard]] ContourPoint nearest_on(const Contour& contour, const Vec3& p);
+
+/// A right-handed frame that looks along an approach direction: x and y span the picture, z points back at the observer.
+/// Maps points to pictures and back: `picture = (x, y, height)` in mm.
+struct ViewFrame {
+  Vec3 x = Vec3::UnitX();
+  Vec3 y = Vec3::UnitY();
+  Vec3 z = Vec3::UnitZ();   ///< = -approach
+  [[nodiscard]] Vec3 to_view(const Vec3& p) const { return {x.dot(p), y.dot(p), z.dot(p)}; }
+  [[nodiscard]] Vec3 from_view(const Vec3& q) const { return x * q.x() + y * q.y() + z * q.z(); }
+};
+
+/// The view along `approach` (need not be unit; @pre non-zero, finite). x and y are chosen so that for approach (0, 0, -1) they are
+/// world x and y.
+[[nodiscard]] ViewFrame view_along(const Vec3& approach);
+
+/// Signed area, mm², of a closed contour seen against `approach`: positive = counter-clockwise.
+[[nodiscard]] double signed_area_mm2(const Contour& contour, const Vec3& approach);
+
+/// The contour, reversed if needed so that it runs counter-clockwise seen against `approach`; the first point stays first.
+[[nodiscard]] Contour counter_clockwise(Contour contour, const Vec3& approach);
+
+/// The contour rotated to start at the point that lies farthest along `direction`. @pre closed.
+[[nodiscard]] Contour start_farthest_along(Contour contour, const Vec3& direction);
+
+/// Whether the closed polygon, seen along `approach`, contains p (even-odd rule).
+[[nodiscard]] bool contains_in_view(const Contour& polygon, const Vec3& p, const Vec3& approach);
+
+/// Whether any two segments that are not neighbours cross, seen along `approach`. O(n²).
+[[nodiscard]] bool crosses_itself_in_view(const Contour& contour, const Vec3& approach);
+
+/// Mean of the points of the contour weighted by segment length, mm.
+[[nodiscard]] Vec3 curve_centroid(const Contour& contour);
+
+}  // namespace incise

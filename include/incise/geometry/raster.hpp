@@ -1,0 +1,78 @@
+#pragma once
+
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/geometry/types.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace incise {
+
+/// A regular grid of square pixels in the picture plane of a ViewFrame. Pixel (0, 0) has its *centre* at `origin_mm`; x
+/// runs fastest.
+struct RasterGrid {
+  Vec2 origin_mm = Vec2::Zero();
+  double pixel_mm = 1.0;  ///< > 0
+  int width = 0;
+  int height = 0;
+
+  [[nodiscard]] std::size_t pixel_count() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+  [[nodiscard]] bool contains(int i, int j) const { return i >= 0 && j >= 0 && i < width && j < height; }
+  [[nodiscard]] std::size_t offset(int i, int j) const {
+    return static_cast<std::size_t>(i) + static_cast<std::size_t>(width) * static_cast<std::size_t>(j);
+  }
+  [[nodiscard]] Vec2 centre(int i, int j) const { return origin_mm + pixel_mm * Vec2(i, j); }
+  /// Continuous pixel coordinates of a point of the plane.
+  [[nodiscard]] Vec2 index_of(const Vec2& p) const { return (p - origin_mm) / pixel_mm; }
+};
+
+/// A grid with one value per pixel.
+template <class Value>
+struct RasterOf : RasterGrid {
+  std::vector<Value> pixels;  ///< pixel_count() values, x fastest
+
+  RasterOf() = default;
+  RasterOf(const RasterGrid& grid, Value value) : RasterGrid(grid), pixels(grid.pixel_count(), value) {}
+
+  [[nodiscard]] Value at(int i, int j) const { return pixels[offset(i, j)]; }
+  [[nodiscard]] Value& at(int i, int j) { return pixels[offset(i, j)]; }
+  /// The value of the pixel, or `outside` beyond the picture.
+  [[nodiscard]] Value at_or(int i, int j, Value outside) const { return contains(i, j) ? at(i, j) : outside; }
+};
+
+using Raster = RasterOf<std::uint8_t>;  ///< 1 = in the set, 0 = not
+using ScalarRaster = RasterOf<double>;
+
+/// A grid whose pixel centres cover the box [low, high] and at least `border_mm` around it.
+/// @pre finite, low <= high, pixel > 0, border >= 0.  @throws InvalidArgument also for more than 10^8 pixels.
+[[nodiscard]] RasterGrid grid_around(const Vec2& low, const Vec2& high, double pixel_mm, double border_mm);
+
+/// Sets every pixel whose centre lies within `radius_mm` of `centre`. Parts beyond the picture are left out.
+void stamp_disc(Raster& raster, const Vec2& centre, double radius_mm);
+
+/// Sets every pixel whose centre lies in the triangle or on its border, whichever way it turns.
+void stamp_triangle(Raster& raster, const Vec2& a, const Vec2& b, const Vec2& c);
+
+/// Area of the set, mm².
+[[nodiscard]] double area_mm2(const Raster& raster);
+
+/// Value at a point by bilinear interpolation; pixels beyond the picture count as 0.
+[[nodiscard]] double sample(const ScalarRaster& raster, const Vec2& p);
+
+/// What an observer sees of a triangle surface, straight from above: per pixel the nearest surface.
+struct DepthBuffer : RasterGrid {
+  std::vector<double> heights_mm;       ///< view z of the visible surface; not a number where there is none
+  std::vector<std::int32_t> triangles;  ///< index of the visible triangle; -1 where there is none
+};
+
+/// Orthographic depth buffer. Of surfaces at the same height the triangle with the lower index is seen.
+/// @param in_view    vertices in view coordinates (x, y, height), mm; the observer is at +z.
+/// @param triangles  either way round; those seen edge-on or outside the grid are not drawn.
+[[nodiscard]] DepthBuffer depth_buffer(const RasterGrid& grid, std::span<const Vec3> in_view,
+                                       std::span<const Triangle> triangles);
+
+}  // namespace incise

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <incise/core/ids.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace incise {
+
+/// A point of a triangle surface.
+struct SurfacePoint {
+  TriangleId triangle;
+  Vec3 barycentric = Vec3::Zero();  ///< weights of the triangle's corners, sum 1
+  Vec3 position_mm = Vec3::Zero();
+  Vec3 normal = Vec3::Zero();       ///< of the triangle, unit, outwards
+  double distance_mm = 0.0;         ///< from the query point (nearest) or along the ray
+};
+
+/// Nearest points and ray hits on a fixed triangle surface (bounding volume hierarchy). Copies what it needs.
+/// Build O(n log n), query O(log n) typical.
+class SurfaceQuery {
+ public:
+  explicit SurfaceQuery(const TriMesh& surface);
+  ~SurfaceQuery();
+  SurfaceQuery(SurfaceQuery&&) noexcept;
+  SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
+
+  [[nodiscard]] SurfacePoint nearest(const Vec3& p) const;
+  /// First hit of the ray from `origin` along unit `direction`, at a distance in [0, max_mm]; none: nullopt.
+  [[nodiscard]] std::optional<SurfacePoint> first_hit(const Vec3& origin, const Vec3& direction,
+                                                      double max_mm = 1e9) const;
+  /// The point of the surface seen at p when looking along `approach`: the hit of a ray that starts outside the surface's box and
+  /// passes through p. `distance_mm` is signed: how far p lies above (+, on the observer's side) the surface.
+  [[nodiscard]] std::optional<SurfacePoint> seen_at(const Vec3& p, const Vec3& approach) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+/// A material point inside a tet mesh: it follows the mesh wherever its vertices go.
+struct EmbeddedPoint {
+  TetId tet;
+  std::array<double, 4> barycentric{};  ///< sum 1; may leave [0, 1] for points just outside
+};
+
+/// Finds the tets that contain points, for given vertex positions (rest or current). Copies what it needs.
+class TetLocator {
+ public:
+  TetLocator(const TetMesh& mesh, std::span<const Vec3> positions);
+  ~TetLocator();
+  TetLocator(TetLocator&&) noexcept;
+  TetLocator& operator=(TetLocator&&) noexcept;
+
+  /// The tet that contains p, or else the nearest one with its (extrapolating) barycentric coordinates; nullopt when p is farther
+  /// than `tolerance_mm` from every tet.
+  [[nodiscard]] std::optional<EmbeddedPoint> locate(const Vec3& p, double tolerance_mm = 0.5) const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+/// Where an embedded point lies for the given vertex positions, mm.
+[[nodiscard]] Vec3 position_of(const EmbeddedPoint& point, const TetMesh& mesh, std::span<const Vec3> positions);
+
+}  // namespace incise

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <incise/core/ids.hpp>
+#include <incise/geometry/types.hpp>
+
+#include <array>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// A named array attached to points or cells: `components` numbers per item, items one after the other.
+struct DataArray {
+  int components = 1;
+  std::vector<double> values;
+};
+
+using Tet = std::array<VertexId, 4>;
+using Triangle = std::array<VertexId, 3>;
+
+/// Tetrahedral mesh, mm, LPS. A valid tet (a, b, c, d) has (b-a) x (c-a) · (d-a) > 0.
+struct TetMesh {
+  Points vertices;        ///< N x 3
+  std::vector<Tet> tets;  ///< M x 4
+  std::map<std::string, DataArray> point_data;  ///< N items each
+  std::map<std::string, DataArray> cell_data;   ///< M items each
+};
+
+/// Triangle mesh, mm, LPS. Closed surfaces are oriented outwards.
+struct TriMesh {
+  Points vertices;                  ///< N x 3
+  std::vector<Triangle> triangles;  ///< M x 3, counter-clockwise seen from outside
+  std::map<std::string, DataArray> point_data;
+};
+
+[[nodiscard]] inline const Vec3& vertex(std::span<const Vec3> vertices, VertexId id) { return vertices[id.index()]; }
+
+/// Signed volume, mm³, of the tet with the given corners; positive for a valid tet.
+[[nodiscard]] double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
+
+/// Sum of the signed volumes of all tets, mm³.
+[[nodiscard]] double volume_mm3(const TetMesh& mesh);
+
+/// Volume enclosed by a closed, outward oriented surface, mm³ (divergence theorem).
+[[nodiscard]] double enclosed_volume_mm3(const TriMesh& surface);
+
+/// The outer corners of face f (0..3) of a tet: the face opposite corner f, counter-clockwise seen from outside.
+[[nodiscard]] Triangle face_of(const Tet& tet, int face);
+
+/// One triangle of the mesh's skin and the tet that it belongs to.
+struct BoundaryFace {
+  Triangle corners;  ///< counter-clockwise seen from outside
+  TetId tet;
+};
+
+/// The faces that belong to exactly one of the tets for which `is_live` is true (empty span: all tets), in order of tet, then face.
+/// O(M log M).
+[[nodiscard]] std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh, std::span<const std::uint8_t> is_live = {});
+
+/// The skin as a mesh that keeps all N vertices of `mesh` in their order (so vertex ids are shared).
+[[nodiscard]] TriMesh boundary_surface(const TetMesh& mesh);
+
+/// Box around all vertices. @pre at least one vertex.
+[[nodiscard]] Box3 bounding_box(std::span<const Vec3> points);
+
+/// What is wrong with a mesh, at most one entry per kind with the first offender and the count: non-finite coordinates, indices out of
+/// range, inverted or zero-volume tets, duplicate tets, faces shared by more than two tets, unused vertices, more than one
+/// face-connected component, point or cell data of the wrong length. Empty: the mesh is sound.
+struct MeshProblem {
+  enum class Kind {
+    NonFiniteVertex, IndexOutOfRange, InvertedTet, FlatTet, DuplicateTet, NonManifoldFace, UnusedVertex,
+    Disconnected, WrongDataLength, NoTets
+  };
+  Kind kind;
+  std::size_t first_index = 0;  ///< vertex, tet or item
+  std::size_t count = 0;
+  std::string text;             ///< for a person
+};
+[[nodiscard]] std::vector<MeshProblem> find_problems(const TetMesh& mesh);
+
+/// A block [0, size] cut into nx x ny x nz cells of six tets each whose faces match (Kuhn), x fastest: the standard test body.
+[[nodiscard]] TetMesh make_block(const Vec3& size_mm, std::array<int, 3> cells);
+
+}  // namespace incise

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/geometry/contour.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/geometry/volume.hpp>
+#include <incise/imaging/tongue_shape.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// What the synthetic CT shows and how the virtual scanner sees it.
+struct PhantomSettings {
+  std::uint64_t seed = 1;
+  TongueShapeSettings shape;
+
+  Vec3 spacing_mm = Vec3::Constant(0.8);  ///< of the voxels; each in [0.3, 3]
+  double tissue_hu = 55.0;                ///< muscle; [0, 120]
+  double texture_hu = 6.0;                ///< standard deviation of the slow change within the muscle; [0, 30]
+  double noise_hu = 15.0;                 ///< standard deviation of the scanner's noise; [0, 60]
+  double blur_mm = 0.4;                   ///< standard deviation of the scanner's point spread; [0, 2]
+  double holder_hu = -100.0;              ///< the board beneath: low-density polyethylene; [-1000, 1500]
+  double holder_thickness_mm = 8.0;       ///< [0 = none, 30]
+  double field_of_view_mm = 0.0;  ///< > 0: square slices of this size, padding outside the circle; 0: a tight grid
+
+  double tumor_diameter_mm = 20.0;   ///< mean, seen from above; [8, 24]
+  double tumor_irregularity = 0.10;  ///< sum of the amplitudes of harmonics 2..6 / radius; [0, 0.25]
+  double tumor_depth_mm = 4.0;       ///< of the bowl beneath the edge; [1, 8]
+  double tumor_position = 0.46;      ///< centre, as a share of the length from the tip; [0.4, 0.6]
+  int tumor_points = 120;            ///< of the edge; [24, 1000]
+};
+
+/// Every violation, one sentence each; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const PhantomSettings& settings);
+
+/// A specimen's CT together with everything that is true about it. mm, LPS; tip anterior (-y), back of the tongue up
+/// (+z).
+struct Phantom {
+  CtVolume ct;                          ///< HU, limited to a 12-bit scanner's range [-1024, 3071]
+  TongueShape shape;                    ///< exact
+  double true_volume_mm3 = 0.0;         ///< of the shape, by quadrature
+  Contour tumor_edge;                   ///< closed, on the back's rest surface, counter-clockwise seen from above (+z)
+  TriMesh tumor;                        ///< closed surface of the tumour: the back inside the edge and a bowl beneath
+  Vec3 tumor_center_mm = Vec3::Zero();  ///< on the surface
+  double tissue_below_tumor_mm = 0.0;   ///< thickness at the tumour's centre
+  double tip_end_mm = 0.0;              ///< y of the tip
+  double posterior_end_mm = 0.0;        ///< y of the root
+  double platform_z_mm = 0.0;           ///< z of the plane on which the underside rests
+  Vec3 seed_mm = Vec3::Zero();          ///< a point well inside the tissue, for a segmentation that wants one
+  Box3 bounds_mm;                       ///< around the tissue
+};
+
+/// A tongue-like specimen on a plastic board, as a CT scanner would show it: exact shape -> partial volume (exact along
+/// z, 5 x 5 columns a voxel) -> HU of air, board and textured muscle -> point spread -> correlated noise -> whole HU.
+/// The same settings give the same bits. The shape and the tumour depend on seed and shape settings only, not on the
+/// scanner's. The default board touches the underside at about -100 HU (low-density polyethylene), so that a window
+/// from -20 HU up leaves it out.
+/// @throws CaseError listing every violation of `settings`.  @throws Cancelled if the monitor asks to stop.
+[[nodiscard]] Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor);
+
+}  // namespace incise

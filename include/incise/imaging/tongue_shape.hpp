@@ -1,0 +1,81 @@
+#pragma once
+
+#include <incise/core/random.hpp>
+#include <incise/geometry/types.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// Mean size of a tongue-like specimen and how much one differs from the next. mm.
+struct TongueShapeSettings {
+  double length_mm = 110.0;  ///< tip to root (y); [80, 160]
+  double width_mm = 55.0;    ///< left to right (x); [46, 80]
+  double height_mm = 35.0;   ///< platform to the top of the back (z); [30, 50]
+  double variation = 0.05;   ///< greatest relative change of each of the three; [0, 0.08]
+  double bend_mm = 2.0;      ///< greatest sideways bow of the mid-line; [0, 5]
+  double asymmetry = 0.04;   ///< greatest relative difference of a half width from the mean; [0, 0.1]
+  double bump_mm = 1.2;      ///< greatest height of the low-frequency bumps on the back; [0, 2]
+};
+
+/// Every violation, one sentence each; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const TongueShapeSettings& settings);
+
+/// One long wave of the back's relief: amplitude_mm cos(wave · (x, y) + phase).
+struct SurfaceWave {
+  double amplitude_mm = 0.0;
+  Vec2 wave_per_mm = Vec2::Zero();
+  double phase = 0.0;
+};
+
+/// A closed, smooth tongue lying on the plane z = 0, known exactly: over each point (x, y) of its outline the tissue is
+/// one interval of z. Axes as in a patient on the back (LPS): the tip at y = -length/2 (anterior), the root at
+/// +length/2, the back up (+z). Over the distance s in [0, 1] from tip to root the half width a, the upper height h and
+/// the lower depth d rise from 0 and fall to 0 as the root of the distance does, so that both ends are round; with u =
+/// (x - mid-line)/a in [-1, 1] the upper side is z = c + h (1 - |u|^p)^(1/q), superelliptic, and the lower side
+/// likewise, cut flat by the platform with a rounded edge.
+///
+///            ________----------________
+///      ___---                          \      z
+///     (__                               |     |
+///        \______________________________/     +-- y       s = 0 at the left
+///     ======================================  z = 0, the platform
+struct TongueShape {
+  double length_mm = 110.0;
+  double width_mm = 55.0;
+  double height_mm = 35.0;
+  double waist_mm = 9.0;        ///< c: height of the widest outline above the platform
+  double back_taper = 0.7;      ///< s at which the back has reached its full height
+  double outline_taper = 0.55;  ///< s at which the outline has reached its full width
+  double bend_mm = 0.0;         ///< sideways bow of the mid-line, signed
+  double asymmetry = 0.0;       ///< left half width = a (1 + asymmetry), right = a (1 - asymmetry)
+  std::array<SurfaceWave, 6> relief{};
+};
+
+/// A specimen drawn at random; the same state of `random`, the same shape.
+[[nodiscard]] TongueShape draw_tongue_shape(const TongueShapeSettings& settings, Random& random);
+
+/// The tissue over one point of the platform: z from low to high, mm.
+struct TissueSpan {
+  double low_mm = 0.0;
+  double high_mm = 0.0;
+};
+
+/// The tissue over (x, y), mm; nullopt outside the outline.
+[[nodiscard]] std::optional<TissueSpan> span_at(const TongueShape& shape, double x_mm, double y_mm);
+
+/// x of the mid-line at y, mm.
+[[nodiscard]] double midline_x_mm(const TongueShape& shape, double y_mm);
+
+/// Volume, mm³, by midpoint quadrature in variables that take the roots out of the ends: relative error below 1e-5 with
+/// the default.
+/// @param steps  points along the length, and across each half; [16, 4096].
+[[nodiscard]] double volume_mm3(const TongueShape& shape, int steps = 200);
+
+/// A box that holds the shape, mm.
+[[nodiscard]] Box3 bounds_mm(const TongueShape& shape);
+
+}  // namespace incise

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <incise/core/random.hpp>
+
+#include <array>
+
+namespace incise {
+
+/// An irregular tumour edge seen from above, as a closed star-shaped curve:
+/// r(angle) = radius (1 + Σ amplitude_n cos(n angle + phase_n)), n = 2..6. Harmonic 1 would only move it.
+struct TumorStar {
+  double radius_mm = 10.0;
+  std::array<double, 5> amplitude{};  ///< of harmonics 2..6, as shares of the radius
+  std::array<double, 5> phase{};
+
+  [[nodiscard]] double radius_at_mm(double angle) const;
+};
+
+/// A star at random, lower harmonics stronger.
+/// @param diameter_mm   mean; > 0.
+/// @param irregularity  sum of the amplitudes; [0, 0.5].
+[[nodiscard]] TumorStar draw_tumor_star(double diameter_mm, double irregularity, Random& random);
+
+}  // namespace incise

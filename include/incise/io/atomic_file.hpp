@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+namespace incise {
+
+/// Writes a file all or nothing: `write` fills a stream to a temporary name beside `path`, which then takes the place
+/// of `path`. Binary mode; no folder is made. Whatever an exception of `write` says reaches the caller, after the
+/// temporary file is gone.
+/// @throws DataError if the folder is missing, or the file cannot be written completely; an older file then stays as it
+/// was.
+void write_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// The whole content of a file, byte for byte.
+/// @throws DataError if it is missing, is a folder, or cannot be read.
+[[nodiscard]] std::string read_text(const std::filesystem::path& path);
+
+/// A folder that appears all or nothing: fill `path()`, then `commit()`.
+/// Without commit the destructor removes what was written and an older folder of that name stays as it was.
+class AtomicFolder {
+ public:
+  /// Makes an empty folder with a temporary name beside `target`. @throws DataError if the parent folder is missing or
+  /// read-only.
+  explicit AtomicFolder(std::filesystem::path target);
+  ~AtomicFolder();
+  AtomicFolder(const AtomicFolder&) = delete;
+  AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+  /// Where to write until commit.
+  [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+
+  /// Renames the folder to its target; a folder that is there is replaced, and only removed once the new one is in
+  /// place.
+  /// @throws DataError if that cannot be done; then the older folder stays. @pre called once.
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  bool is_committed_ = false;
+};
+
+}  // namespace incise

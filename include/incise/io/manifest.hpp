@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// A file or folder that a result was made from.
+struct ManifestInput {
+  std::string path;
+  std::string sha256;
+};
+
+/// All that is needed to repeat a run: `manifest.json` of an output folder.
+struct Manifest {
+  std::string version;               ///< of incise
+  std::string commit;                ///< of the sources; "unknown" outside a repository
+  std::string command;               ///< the command line
+  std::string settings_json = "{}";  ///< the settings in full, defaults included, as JSON text
+  std::uint64_t seed = 0;
+  int threads = 1;
+  std::string instruction_set;  ///< portable, avx2 or avx512
+  std::vector<ManifestInput> inputs;
+  double wall_s = 0.0;
+  std::string machine;  ///< see machine_description
+};
+
+/// Writes `folder/manifest.json`, all or nothing. @pre settings_json is JSON, wall_s is finite and not negative.
+/// @throws DataError if the file cannot be written.
+void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
+
+/// Reads `folder/manifest.json`; keys that this version does not know are ignored. @throws DataError naming the place.
+[[nodiscard]] Manifest read_manifest(const std::filesystem::path& folder);
+
+/// SHA-256 (FIPS 180-4) as 64 lower-case hex digits.
+[[nodiscard]] std::string sha256_of_text(std::string_view text);
+/// Of a file's bytes. @throws DataError if it is missing, is a folder, or cannot be read.
+[[nodiscard]] std::string sha256_of_file(const std::filesystem::path& path);
+/// Of a folder: the hash of the lines "<sha256>  <relative/path>\n", sorted by path, over all regular files below it.
+/// So it changes with any content or name, and not with the order in which a disk lists them. @throws DataError if it
+/// is missing or unreadable.
+[[nodiscard]] std::string sha256_of_folder(const std::filesystem::path& folder);
+
+/// The processor's model, logical cores and compiler in one line: "Intel(R) Xeon(R) …, 2 logical cores, g++ 12.2.0".
+[[nodiscard]] std::string machine_description();
+
+}  // namespace incise

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <incise/core/workers.hpp>
+#include <incise/mechanics/block_matrix.hpp>
+
+#include <memory>
+#include <span>
+
+namespace incise {
+
+struct PcgSettings {
+  double relative_tolerance = 1e-2;  ///< stops at |r| <= relative_tolerance * max(reference, floor)
+  double reference_mn = 0.0;         ///< scale of the stopping test; 0: |b|
+  double floor_mn = 0.0;             ///< lower bound of that scale
+  int max_iterations = 2000;
+};
+
+struct PcgReport {
+  bool converged = false;
+  int iterations = 0;
+  double residual_mn = 0.0;  ///< |r| at the end
+};
+
+/// Two-level preconditioned conjugate gradients: block-Jacobi plus an additive coarse space of rigid-body modes, one
+/// set of six per aggregate of ~`vertices_per_aggregate` neighbouring vertices (physics of the strategy:
+/// docs/models/solvers.md). Made once per topology and rest positions; `update` refreshes it after the matrix changed
+/// (the coarse part may stay stale for some steps).
+class TwoLevelPcg {
+ public:
+  TwoLevelPcg(std::shared_ptr<const BlockPattern> pattern, std::span<const Vec3> positions,
+              int vertices_per_aggregate = 140);
+  ~TwoLevelPcg();
+  TwoLevelPcg(TwoLevelPcg&&) noexcept;
+  TwoLevelPcg& operator=(TwoLevelPcg&&) noexcept;
+
+  /// Takes the diagonal blocks of `matrix`, and with `refresh_coarse` its coarse matrix too. Throws InvalidArgument if
+  /// not positive definite.
+  void update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers);
+  /// Solves matrix * x = b from x = 0. Deterministic for any thread count.
+  PcgReport solve(const BlockMatrix& matrix, std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings,
+                  Workers& workers);
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+/// Sparse Cholesky (CHOLMOD supernodal, METIS ordering, one BLAS thread): analysed once per pattern, factored per
+/// matrix.
+class SparseCholesky {
+ public:
+  explicit SparseCholesky(std::shared_ptr<const BlockPattern> pattern);
+  ~SparseCholesky();
+  /// False when the matrix is not positive definite.
+  [[nodiscard]] bool factor(const BlockMatrix& matrix);
+  void solve(std::span<const Vec3> b, std::span<Vec3> x) const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace incise

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/outcome.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/mechanics/tissue.hpp>
+
+#include <string>
+#include <vector>
+
+namespace incise {
+
+struct StaticSettings {
+  double relative_tolerance = 1e-6;  ///< |free residual| / max(|reactions|, floor)
+  int max_newton_iterations = 60;    ///< in all
+  double first_load_fraction = 1.0;  ///< of the prescribed displacements; halved by itself when Newton stalls
+};
+
+/// Static equilibrium under the model's constraints.
+struct StaticResult {
+  Outcome outcome = Outcome::NotConverged;  ///< Success, NotConverged, ElementInverted or Cancelled
+  TissueState state;
+  int iterations = 0;
+  int load_steps = 0;
+  double relative_residual = 0.0;
+  std::vector<double> residual_history;
+  std::vector<Vec3> reactions_mn;  ///< one per entry of model.constraints: the force of the constraint on the tissue
+  double max_displacement_mm = 0.0;
+  double penetration_mm = 0.0;  ///< deepest vertex behind a support plane
+  std::size_t inverted_tets = 0;
+  double wall_s = 0.0;
+  std::string solver;  ///< what was chosen and why, for a person
+};
+
+/// Newton with line search on the energy/residual, from `start` (default: rest): the prescribed displacements are
+/// spread over load steps that adapt by themselves. Every failure is an outcome. Cost: one sparse factorisation per
+/// iteration.
+[[nodiscard]] StaticResult solve_static(const TissueModel& model, const StaticSettings& settings, Workers& workers,
+                                        Monitor& monitor, const TissueState* start = nullptr);
+
+/// Von Mises stress of each live tet (0 for carved ones), kPa (Cauchy stress of the corotational law: R σ Rᵀ).
+[[nodiscard]] std::vector<double> von_mises_kpa(const TissueModel& model, const TissueState& state);
+
+}  // namespace incise

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <incise/core/workers.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/mechanics/block_matrix.hpp>
+#include <incise/mechanics/constraints.hpp>
+#include <incise/mechanics/material.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace incise {
+
+/// A support plane and the stiffness with which it pushes a vertex back, mN/mm per vertex (penalty, chosen from the
+/// material and the vertex's surface area so that penetration stays below 0.05 mm under the loads of a clamped tongue).
+struct SupportPlane {
+  std::size_t constraint = 0;  ///< index into TissueModel::constraints
+  Vec3 point_mm = Vec3::Zero();
+  Vec3 normal = Vec3::UnitZ();     ///< unit
+  std::vector<VertexId> vertices;  ///< boundary vertices that can move along the normal
+  std::vector<double> stiffness;   ///< mN/mm, one per vertex
+};
+
+/// Everything about the tissue that a simulation does not change. Built once, shared between runs.
+struct TissueModel {
+  TetMesh mesh;  ///< rest positions, mm
+  Material material;
+  std::vector<Constraint> constraints;           ///< as given
+  std::vector<std::array<Vec3, 4>> gradients;    ///< per tet: gradient of each corner's shape function at rest, 1/mm
+  std::vector<double> volumes_mm3;               ///< per tet, at rest
+  std::vector<LameParameters> lame;              ///< per tet
+  std::vector<double> vertex_mass_kg;            ///< lumped: a quarter of each adjacent tet
+  std::vector<std::array<bool, 3>> is_fixed;     ///< per vertex and axis
+  std::vector<Vec3> prescribed_displacement_mm;  ///< per vertex; used where is_fixed
+  std::vector<std::array<std::int32_t, 3>>
+      holder;                         ///< per vertex and axis: the first constraint that holds it, -1: none
+  std::vector<Vec3> dead_load_mn;     ///< per vertex: gravity and tractions
+  std::vector<Vec3> applied_load_mn;  ///< per constraint: sum of its tractions (0 for other kinds)
+  std::vector<SupportPlane> supports;
+  std::shared_ptr<const BlockPattern> pattern;
+  std::vector<std::array<std::int32_t, 16>> tet_slots;  ///< per tet: slot of block (corner a, corner b) at 4 a + b
+  std::vector<std::int32_t> vertex_tet_start;           ///< N + 1, into vertex_tets
+  std::vector<std::int32_t> vertex_tets;                ///< 4 * tet + corner, ascending: for gathering in fixed order
+};
+
+/// Builds the model. Throws CaseError (field "specimen.…") for a material out of range, a region that selects nothing,
+/// contradictory constraints on one vertex, too few constraints to stop rigid motion; InvalidArgument when
+/// find_problems(mesh) finds any.
+[[nodiscard]] TissueModel make_tissue_model(TetMesh mesh, const Material& material, std::vector<Constraint> constraints,
+                                            const Vec3& gravity_mm_s2 = Vec3::Zero());
+
+/// What a simulation changes: a value that can be saved, compared and restored.
+struct TissueState {
+  Points positions;                   ///< N x 3, mm
+  std::vector<Mat3> rotations;        ///< per tet, warm start of the polar decomposition; proper
+  std::vector<std::uint8_t> is_live;  ///< per tet: 1 until it is carved
+};
+[[nodiscard]] TissueState rest_state(const TissueModel& model);
+
+/// Elastic forces (minus the energy gradient) of the live tets at state.positions, mN; adds to `forces` (N). Updates
+/// state.rotations. With `stiffness`: also adds the (positive semi-definite, rotation-frozen) tangent −∂f/∂x. Fixed
+/// order: same bits at any thread count.
+void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
+                          Workers& workers);
+/// Adds the push of the support planes (no pull) and, with `stiffness`, its tangent.
+void add_support_response(const TissueModel& model, const TissueState& state, std::span<Vec3> forces,
+                          BlockMatrix* stiffness);
+
+/// Energy stored by the support planes' push, µJ, and the depth of the vertex that lies deepest behind one, mm (0: none
+/// does).
+[[nodiscard]] double support_energy_uj(const TissueModel& model, const TissueState& state);
+[[nodiscard]] double support_penetration_mm(const TissueModel& model, const TissueState& state);
+
+/// Elastic energy of the live tets, µJ.
+[[nodiscard]] double elastic_energy_uj(const TissueModel& model, const TissueState& state);
+
+/// Replaces the rows and columns of constrained axes (and of vertices on whose diagonal block nothing was added) by
+/// identity rows, and the right side by zero there: the solution then keeps those still. Vertices to hold beside the
+/// model's own may be given (one flag per vertex).
+void hold_constrained(const TissueModel& model, BlockMatrix& matrix, std::span<Vec3> right_side,
+                      std::span<const std::uint8_t> also_held = {});
+
+}  // namespace incise

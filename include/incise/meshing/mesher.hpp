@@ -1,0 +1,90 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/geometry/volume.hpp>
+#include <incise/meshing/quality.hpp>
+#include <incise/meshing/sizing_field.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// How tetrahedra are made. Lengths in mm, angles in degrees; h is the local edge length that the sizing field asks
+/// for.
+struct MeshingSettings {
+  std::optional<int> target_tets;        ///< aim for this count by scaling fine and coarse edge lengths alike, >= 100
+  double target_tolerance = 0.10;        ///< relative; `meets_target` says whether the count is this near, (0, 1)
+  double facet_angle_deg = 25.0;         ///< smallest angle of a surface triangle, (0, 30]
+  double facet_size_factor = 0.9;        ///< circumradius of surface triangles / h, > 0
+  double facet_distance_factor = 0.25;   ///< distance of surface triangles from the surface / smallest h, > 0 ...
+  double facet_distance_floor_mm = 0.1;  ///< ... but never asked to be below this, > 0
+  double radius_edge_ratio = 2.0;        ///< circumradius / shortest edge of tets, >= 2 (theory's limit)
+  double cell_size_factor = 0.75;        ///< circumradius of tets / h, > 0
+  double sliver_bound_deg = 12.0;        ///< dihedral angle that perturbation and exudation work towards, (0, 30]
+  double min_dihedral_deg = 10.0;        ///< what `meets_quality` demands, [0, sliver_bound_deg]
+  double volume_tolerance = 0.01;        ///< relative; what `meets_volume` demands, (0, 1)
+  int max_refinements = 4;               ///< refinements tried to meet count and volume, [1, 20]
+  int max_improvements = 3;              ///< perturbed meshes tried to meet the angle, [1, 20]
+  std::size_t max_tets = 5'000'000;      ///< a prediction above this is refused
+};
+
+/// Everything that is wrong with the settings, a sentence each; empty: usable.
+[[nodiscard]] std::vector<std::string> validate(const MeshingSettings& settings);
+
+struct MeshingPhase {
+  std::string name;  ///< body, sizing, refine, perturb, exude, finish
+  double wall_s = 0.0;
+};
+
+/// A mesh and what is needed to believe it.
+struct [[nodiscard]] MeshingResult {
+  TetMesh mesh;  ///< mm, LPS; positively oriented, one face-connected component, every vertex used, vertices in Morton
+                 ///< order
+  MeshQuality quality;
+  bool meets_quality = false;  ///< smallest dihedral angle >= min_dihedral_deg
+  bool meets_volume = false;   ///< volume within volume_tolerance of the label's
+  bool meets_target = true;    ///< count within target_tolerance of target_tets, if there is one
+
+  double label_volume_mm3 = 0.0;       ///< of the body that was meshed, see each function
+  double relative_volume_error = 0.0;  ///< (mesh - label) / label
+  double iso = 0.5;                    ///< occupancy on the mesh's surface, chosen so that the volume matches
+  double fine_mm = 0.0;                ///< edge lengths asked for, after scaling towards target_tets
+  double coarse_mm = 0.0;
+  double predicted_tets = 0.0;  ///< before the first refinement
+  int refinements = 0;
+  int improvements = 0;
+
+  std::size_t dropped_bodies = 0;    ///< components of the occupancy other than the largest, left out
+  double dropped_volume_mm3 = 0.0;   ///< their volume, with that of specks too faint to count as bodies
+  std::size_t dropped_tets = 0;      ///< tets not face-connected with the rest, left out
+  std::vector<MeshingPhase> phases;  ///< time by phase, repeated phases added up
+  double wall_s = 0.0;
+};
+
+/// Tetrahedra that fill the tissue of an occupancy volume (values in [0, 1], the fraction of each voxel that is tissue;
+/// see occupancy.hpp), with edge lengths from the sizing field: the CT becomes a body that can be simulated. Delaunay
+/// refinement of the trilinearly interpolated occupancy, then perturbation and exudation of slivers (CGAL Mesh_3,
+/// sequential). Only the largest component (voxels of at least 0.5 that share faces) is meshed; what touches the border
+/// of the volume is closed half a voxel beyond it. The label's volume is what the surface of occupancy 0.5 encloses;
+/// the mesh is refined on the neighbouring iso surface that makes the volumes agree. Same input, same mesh, bit for
+/// bit.
+/// @throws InvalidArgument for broken volumes and settings (all violations at once), occupancy that never reaches 0.5,
+///   a body too small for the edge length, or a predicted count above max_tets (with the prediction).
+/// @throws Cancelled between phases and during refinement.
+/// @note About 3 s for 100 000 tets on one thread.  Source: [CGAL-Mesh3].
+MeshingResult mesh_labels(const GrayVolume& occupancy, const SizingField& sizing, const MeshingSettings& settings,
+                          Monitor& monitor);
+
+/// As above from labels: every label but 0 is tissue, blurred as `occupancy_of` does by default. The label's volume is
+/// that of its voxels. @throws InvalidArgument also for a body thinner than its voxels can carry once blurred.
+MeshingResult mesh_labels(const LabelVolume& labels, const SizingField& sizing, const MeshingSettings& settings,
+                          Monitor& monitor);
+
+/// As above from a closed surface, through voxels of half the fine edge length, or as given, > 0. The label's volume is
+/// what the surface encloses. @throws InvalidArgument also for what `occupancy_of` refuses.
+MeshingResult mesh_surface(const TriMesh& closed_surface, const SizingField& sizing, const MeshingSettings& settings,
+                           Monitor& monitor, std::optional<double> voxel_mm = std::nullopt);
+
+}  // namespace incise

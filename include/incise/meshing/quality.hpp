@@ -1,0 +1,50 @@
+#pragma once
+
+#include <incise/geometry/tet_mesh.hpp>
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+
+namespace incise {
+
+/// Lengths of a set of edges, each edge counted once.
+struct EdgeStatistics {
+  std::size_t count = 0;
+  double min_mm = 0.0;
+  double mean_mm = 0.0;
+  double max_mm = 0.0;
+};
+
+/// How good the tetrahedra are. The dihedral angle is the one between two faces of a tet: 70.5 degrees in a regular
+/// one, near 0 or 180 in a sliver. The radius ratio is 3 x inscribed / circumscribed radius: 1 in a regular tet, 0 in a
+/// flat one.
+struct MeshQuality {
+  static constexpr int kBinWidthDeg = 5;
+
+  std::size_t tets = 0;
+  std::size_t vertices = 0;
+  double volume_mm3 = 0.0;
+  double min_dihedral_deg = 0.0;
+  double max_dihedral_deg = 0.0;
+  std::array<std::size_t, 180 / kBinWidthDeg>
+      dihedral_histogram{};  ///< six angles per tet; bin b holds [5 b, 5 b + 5) degrees
+  double min_radius_ratio = 0.0;
+  double mean_radius_ratio = 0.0;
+  double smallest_tet_mm3 = 0.0;  ///< signed: negative when a tet is inverted
+  EdgeStatistics edges;
+};
+
+/// Measures every tet and edge. O(M log M). An empty mesh has zeros everywhere.
+/// @throws InvalidArgument for a vertex that is not finite or an index out of range, naming the first.
+[[nodiscard]] MeshQuality quality_of(const TetMesh& mesh);
+
+/// Lengths of the edges whose mid-point the predicate accepts, for example those in the band around the cut.
+[[nodiscard]] EdgeStatistics edges_where(const TetMesh& mesh, const std::function<bool(const Vec3&)>& accepts_midpoint);
+
+/// The report as a table and a histogram of dihedral angles drawn with characters, for a person; ends with a line
+/// break.
+[[nodiscard]] std::string to_text(const MeshQuality& quality);
+
+}  // namespace incise

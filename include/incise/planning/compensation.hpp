@@ -1,0 +1,54 @@
+#pragma once
+
+#include <incise/planning/plan_path.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace incise {
+
+struct CompensationSettings {
+  double target_mm = 5.0;        ///< intended distance of the measured contour from the edge, > 0: 5.0 for a mid-line
+  double relaxation = 1.0;       ///< share of the measured error that is corrected, (0, 1]; the paper: all of it
+  int smoothing_passes = 0;      ///< of [1 2 1]/4 over the waypoints' errors, >= 0; the paper: none
+  double close_margin_mm = 2.2;  ///< no waypoint is moved to where less tissue than this is left beside the edge, > 0
+  double electrode_radius_mm = 0.5;  ///< >= 0
+  Vec3 approach = -Vec3::UnitZ();
+  AxisMode axis_mode = AxisMode::Approach;
+  double step_mm = 0.25;          ///< spacing of the points at which the measured contour's error is taken, > 0
+  double rim_clearance_mm = 1.0;  ///< the corrected path keeps this far from the surface's rim, >= 0
+};
+
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const CompensationSettings& settings);
+
+/// A corrected path, and what was done to each waypoint.
+struct Compensation {
+  ToolPath path;
+  std::vector<double> error_mm;  ///< per waypoint: signed error measured there, after smoothing; negative = too close
+  std::vector<double> move_mm;   ///< per waypoint: distance moved, positive = away from the tumour
+  /// Per waypoint: 1 where the move was cut short by close_margin_mm or the surface's rim.
+  std::vector<std::uint8_t> is_limited;
+  /// Per waypoint: 1 where no measured point lay in its sector (its neighbours were used).
+  std::vector<std::uint8_t> is_interpolated;
+  std::size_t limited_waypoints = 0;
+  std::size_t interpolated_waypoints = 0;
+  double max_move_mm = 0.0;  ///< greatest |move|
+};
+
+/// The paper's correction: each waypoint moves away from, or towards, the tumour's centre by the error that was
+/// measured in its direction. Error of waypoint i: mean signed error (see contour_errors) of the measured points whose
+/// polar angle about the tumour's centre, seen along the approach, is nearer to the waypoint's than to its neighbours'.
+/// The waypoint moves radially in the picture and stays on the surface, so far that the straight distance between old
+/// and new place equals relaxation · |error|, sloping or not. Depth, speed, order and start stay as they are.
+/// @param current   closed path that was cut (in simulation), on the surface.
+/// @param measured  mid-line (or inner edge) that came out, mm, same frame; open is allowed, gaps are bridged by
+/// interpolation.
+/// @throws InvalidArgument listing every violation of the settings, for an open path or no measured point;
+/// CaseError if the path does not run once round the tumour's centre in order of angle (the rule is then undefined), or
+/// if the corrected path fails check_path. Source: [Paper, II-C.5]; departs from it: 5.0 mm for a mid-line in place
+/// of 4.5, see docs/models/compensation.md.
+[[nodiscard]] Compensation compensate_paper(const ToolPath& current, const Contour& measured, const Contour& tumor_edge,
+                                            const SurfaceQuery& surface, const CompensationSettings& settings = {});
+
+}  // namespace incise

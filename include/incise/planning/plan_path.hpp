@@ -1,0 +1,83 @@
+#pragma once
+
+#include <incise/geometry/surface_query.hpp>
+#include <incise/geometry/tool_path.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+enum class PlanKind {
+  Ring,  ///< closed, around a tumour edge
+  Line,  ///< open, along a drawn curve
+};
+[[nodiscard]] std::string_view to_string(PlanKind kind);  ///< ring, line
+
+/// How the tool is held at a waypoint.
+enum class AxisMode {
+  Approach,       ///< along the approach everywhere, as in the paper
+  SurfaceNormal,  ///< against the surface's normal, averaged over 2 mm
+};
+[[nodiscard]] std::string_view to_string(AxisMode mode);  ///< approach, surface_normal
+
+/// The intended incision. Defaults are the paper's (II-B.4).
+struct PlanSettings {
+  PlanKind kind = PlanKind::Ring;
+  double lateral_margin_mm = 5.0;  ///< from the tumour edge to the kerf's mid-line, > 0
+  double depth_mm = 5.0;           ///< of the tool's tip below the surface, along its axis, > 0
+  double speed_mm_s = 7.0;         ///< of the real tool, > 0
+  double power_w = 35.0;           ///< electrosurgical, > 0; carried into the program, no model uses it
+  Vec3 approach = -Vec3::UnitZ();  ///< into the tissue, as camera and surgeon look; non-zero
+  /// A ring starts at its waypoint farthest along this, a line at that end (anterior in LPS); not along the approach.
+  Vec3 start_direction = -Vec3::UnitY();
+  int waypoints = 48;  ///< evenly spaced by arc length; at least 8 for a ring, 2 for a line
+  AxisMode axis_mode = AxisMode::Approach;
+  double rim_clearance_mm = 1.0;  ///< the path keeps this far from where the surface ends in the picture, >= 0
+};
+
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const PlanSettings& settings);
+
+/// A drawn contour laid onto the surface along the approach. Points are kept in order; segments longer than 1 mm are
+/// subdivided so that the result hugs the surface.
+/// @param tolerance_mm  farthest that a point may lie above or below the surface.
+/// @throws CaseError naming the first point that misses the surface or lies farther off ("tumour edge off the
+/// surface"), or if the contour has too few points, coincides, is not finite or crosses itself.
+[[nodiscard]] Contour project_tumor_edge(const Contour& edge, const SurfaceQuery& surface, const Vec3& approach,
+                                         double tolerance_mm = 5.0);
+/// The same for the drawn curve of an open cut.
+[[nodiscard]] Contour project_line(const Contour& line, const SurfaceQuery& surface, const Vec3& approach,
+                                   double tolerance_mm = 5.0);
+
+/// The ring at one lateral margin outside the tumour edge, lying on the surface.
+/// Margin = straight distance in space to the edge's segments (the measure of every evaluation here); on a surface of
+/// curvature radius R it is shorter than the distance along the surface by about margin³ / (24 R²): 0.006 mm for 5 mm
+/// and R = 30 mm. Each waypoint keeps it within 0.01 mm; the tool runs straight between waypoints, which brings it
+/// closer by spacing² / (8 R_path): 0.03 mm for 2 mm and 15 mm.
+/// @param surface     closed skin of the tissue in the configuration that is cut, mm.
+/// @param tumor_edge  closed, on the surface (see project_tumor_edge), mm.
+/// @returns frame sim_stretched, counter-clockwise seen against the approach, started as the settings say, with the
+/// edge inside.
+/// @throws InvalidArgument listing every violation of the settings; CaseError for "a path outside the tissue" (beyond
+/// or within rim_clearance_mm of the surface's rim, or over a fold) and for "a depth through the tissue", naming
+/// waypoint and thickness. Source: [Paper, II-C.5], which does not say how it offsets; see docs/models/planning.md.
+[[nodiscard]] ToolPath plan_ring(const SurfaceQuery& surface, const Contour& tumor_edge, const PlanSettings& settings);
+
+/// The open cut along a curve on the surface, starting at its end farther along start_direction. @throws as plan_ring.
+[[nodiscard]] ToolPath plan_line(const SurfaceQuery& surface, const Contour& line, const PlanSettings& settings);
+
+/// Refuses a path that cannot be cut into this tissue, whoever made it.
+/// @throws CaseError for: fewer than 8 (open: 2) waypoints, numbers that are not finite, depth or speed
+/// not above 0, an axis that is not unit or does not point into the tissue, a waypoint more than 2 mm off the surface
+/// or within rim_clearance_mm of its rim, a depth that reaches through the tissue, a course that crosses itself. Names
+/// the first waypoint concerned.
+void check_path(const ToolPath& path, const SurfaceQuery& surface, const Vec3& approach, double rim_clearance_mm = 1.0);
+
+/// Tissue under a point of the surface, mm: along unit `axis` from there to the first exit. nullopt: no exit (surface
+/// not closed).
+[[nodiscard]] std::optional<double> thickness_mm(const SurfaceQuery& surface, const Vec3& point, const Vec3& axis);
+
+}  // namespace incise

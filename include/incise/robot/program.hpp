@@ -1,0 +1,84 @@
+#pragma once
+
+#include <incise/geometry/tool_path.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// What the tool does on its way *to* a pose.
+enum class ProgramPhase {
+  Approach,  ///< through the air, towards the entry
+  Plunge,    ///< along the axis into the tissue
+  Cut,       ///< along the path
+  Overlap,   ///< along the first part of a closed path once more
+  Dwell,     ///< rest at the end of the cut
+  Exit,      ///< back out along the axis
+  Retreat    ///< away through the air
+};
+[[nodiscard]] std::string_view to_string(ProgramPhase phase);  ///< approach, plunge, cut, overlap, dwell, exit, retreat
+
+/// How a path becomes a program.
+struct ProgramSettings {
+  double approach_height_mm = 30.0;   ///< of the first and the last pose's tip above the entry, against the tool's axis
+  double clearance_mm = 5.0;          ///< height at which the fast approach ends and the plunge begins
+  double approach_speed_mm_s = 50.0;  ///< through the air
+  double plunge_speed_mm_s = 7.0;     ///< into the tissue and out of it
+  double overlap_mm = 5.0;       ///< how far a closed path runs on beyond its start; without it the ring may stay open
+  double dwell_s = 0.0;          ///< rest at the end of the cut, before the exit
+  double chord_error_mm = 0.02;  ///< most that the straight moves between poses deviate from the smooth course
+  double max_spacing_mm = 2.0;   ///< of the poses along the cut
+  Vec3 tool_x_hint = Vec3::UnitX();  ///< the tool's x axis starts as close to this direction as its z axis allows
+};
+/// Every rule that the settings break, in words; empty: none.
+[[nodiscard]] std::vector<std::string> validate(const ProgramSettings& settings);
+
+/// One pose of the tool, in the robot's base frame.
+struct ProgramPose {
+  Vec3 tip_mm = Vec3::Zero();            ///< the tool's tip
+  Mat3 R_robot_tool = Mat3::Identity();  ///< columns: the tool's axes; z points along the tool, out of its tip
+  Vec3 rotation_vector = Vec3::Zero();   ///< the same rotation as axis times angle, rad; continuous along the program,
+                                         ///< so the angle may pass pi
+  double time_s = 0.0;                   ///< from the start of the program
+  double tip_speed_mm_s = 0.0;           ///< of the move that ends here; 0 for the first pose and the dwell
+  double depth_mm = 0.0;                 ///< of the tip below the surface along the axis; negative above it
+  ProgramPhase phase = ProgramPhase::Approach;
+
+  /// Where the tool's axis meets the tissue's surface.
+  [[nodiscard]] Vec3 entry_mm() const { return tip_mm - depth_mm * R_robot_tool.col(2); }
+};
+
+/// A timed list of tool poses. The times are those of constant tip speed without acceleration ramps: the controller
+/// adds its own.
+struct RobotProgram {
+  std::vector<ProgramPose> poses;
+  PathKind kind = PathKind::Incise;
+  bool is_closed = true;
+  double cut_length_mm = 0.0;   ///< of the tip's course once along the path, without overlap
+  double overlap_mm = 0.0;      ///< really run, equal to the setting for a closed path, else 0
+  double spacing_mm = 0.0;      ///< of the poses along the cut
+  double chord_error_mm = 0.0;  ///< largest distance found between the moves and the smooth course
+  [[nodiscard]] double duration_s() const { return poses.empty() ? 0.0 : poses.back().time_s; }
+};
+
+/// Refuses a path that is not given in the robot's base frame. @param file  names the path in the message.
+/// @throws DataError "<file>: frame: found sim_rest, expected robot. …"
+void require_robot_frame(const ToolPath& path, const std::filesystem::path& file);
+
+/// Turns a path into a program: above the entry, down to the clearance, along the axis to depth, along the path at its
+/// own speeds, over the overlap (closed paths), rest, out along the axis, away.
+///
+/// The tip follows a smooth curve (Catmull-Rom with the chord lengths as parameter) through the waypoints' tips; poses
+/// are evenly spaced along it, as far apart as `chord_error_mm` and `max_spacing_mm` allow, so that every move of the
+/// cut takes the time that its length and the waypoint's speed say. The tool turns about its own axis as little as
+/// possible (a needle is round).
+/// @param path  frame robot; at least 3 waypoints (2 if open), no two neighbours less than 1 µm apart, finite, unit
+/// axes.
+/// @throws InvalidArgument if the path or the settings break a rule.
+[[nodiscard]] RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings = {});
+
+}  // namespace incise

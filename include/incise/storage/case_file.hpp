@@ -1,0 +1,55 @@
+#pragma once
+
+#include <incise/io/volume_io.hpp>
+#include <incise/workflow/case.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// The files that a case names, as absolute paths; empty: not named.
+struct CaseInputs {
+  std::filesystem::path ct_volume;
+  std::filesystem::path specimen_mesh;
+  std::filesystem::path tumor_contour;
+  std::filesystem::path line_contour;     ///< the curve of an open cut
+  std::filesystem::path tool_path;        ///< a path to follow in place of the planned one
+};
+
+/// One setting in full, for manifests, reports and cache keys.
+struct SettingLine {
+  std::string key;    ///< dotted: plan.depth_mm
+  std::string value;  ///< as in the file
+  std::string unit;
+};
+
+/// A case file (incise.case/1) as read.
+struct CaseFile {
+  std::filesystem::path file;
+  std::filesystem::path folder;           ///< paths in the file are relative to it
+  Case settings;
+  CtReadSettings ct_reading;
+  CaseInputs inputs;
+};
+
+/// Reads `case.yaml` (YAML or JSON), or the file of that name in a folder. Unknown keys, wrong types and values out of range are refused.
+/// @throws CaseError with line, field, found, expected and the nearest valid key; DataError if the file is missing or not YAML.
+[[nodiscard]] CaseFile read_case(const std::filesystem::path& file_or_folder);
+
+/// Looks for the files that a case names, before a long computation needs them.
+/// @throws DataError naming the first file that is missing and the field that asks for it.
+void require_input_files(const CaseFile& file);
+
+/// All settings of a case, defaults included, in the file's order.
+[[nodiscard]] std::vector<SettingLine> settings_of(const CaseFile& file);
+/// The same as JSON text, groups as objects.
+[[nodiscard]] std::string settings_json(const CaseFile& file);
+
+/// JSON Schema (draft 2020-12) of the case file: type, default, range, unit and meaning of every field.
+[[nodiscard]] std::string case_schema_json();
+/// A case file with every default, each with unit and meaning as a comment.
+[[nodiscard]] std::string case_defaults_yaml();
+
+}  // namespace incise

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <incise/storage/case_file.hpp>
+#include <incise/workflow/store.hpp>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace incise {
+
+/// What every manifest of a study says beside settings and inputs.
+struct RunContext {
+  std::string command;      ///< the command line
+  std::uint64_t seed = 0;
+  int threads = 1;
+};
+
+/// The products of a study and the folders that hold them.
+enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Correction, Corrected };
+
+/// A Store on a folder. Each product has a folder of its own, written under a temporary name and renamed when it is complete:
+///
+///   labels/      labels.nrrd, occupancy.nrrd, segment.json
+///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
+///   stretched/   deformed.vtu, deform.json
+///   plan/        path.json, path.vtp, plan.json
+///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, removed.vtu, frames.pvd, frames/
+///   correction/  path.json, path.vtp, compensate.json
+///   corrected/   as as_planned/
+///
+/// and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that the product depends on: a product
+/// with another key is stale and counts as absent.
+class FolderStore : public Store {
+ public:
+  /// @param root  is made if missing. @throws DataError if that fails.
+  FolderStore(CaseFile file, std::filesystem::path root, RunContext context);
+
+  [[nodiscard]] const CaseFile& case_file() const { return file_; }
+  [[nodiscard]] const std::filesystem::path& root() const { return root_; }
+  [[nodiscard]] std::filesystem::path folder(Product product) const;
+  [[nodiscard]] bool is_current(Product product);
+
+  CtVolume read_ct(Monitor& monitor) override;
+  std::optional<TetMesh> read_specimen_mesh() override;
+  std::optional<Contour> read_tumor_edge() override;
+  std::optional<Contour> read_line() override;
+  std::optional<ToolPath> read_given_path() override;
+
+  std::optional<Segmentation> load_segmentation() override;
+  void save_segmentation(const Segmentation& segmentation, double wall_s) override;
+  std::optional<TetMesh> load_mesh() override;
+  void save_mesh(const MeshProduct& product, double wall_s) override;
+  std::optional<StaticResult> load_stretched(const TissueModel& model) override;
+  void save_stretched(const TissueModel& model, const StaticResult& result, double wall_s) override;
+  std::optional<ToolPath> load_plan() override;
+  void save_plan(const ToolPath& path, double wall_s) override;
+  std::optional<SimulatedCut> load_cut(CutRole role) override;
+  void save_cut(CutRole role, const TissueModel& model, const StaticResult& stretched, const SimulatedCut& cut,
+                double wall_s) override;
+  std::optional<Compensation> load_correction() override;
+  void save_correction(const Compensation& correction, double wall_s) override;
+
+  /// A manifest for an output folder of this study.
+  void write_manifest_to(const std::filesystem::path& folder, double wall_s);
+
+ private:
+  [[nodiscard]] const std::string& key(Product product);
+  [[nodiscard]] std::string settings_with(const std::vector<std::string>& prefixes) const;
+  [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
+  void save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write);
+
+  CaseFile file_;
+  std::filesystem::path root_;
+  RunContext context_;
+  std::array<std::string, 7> keys_;                      ///< empty: not computed yet
+  std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
+};
+
+/// The rest mesh with what a deformation did to it: point data `displacement_mm` and `position_mm`, cell data `von_mises_kpa`.
+[[nodiscard]] TetMesh deformed_mesh(const TissueModel& model, const TissueState& state);
+
+}  // namespace incise

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <incise/cutting/cut_settings.hpp>
+#include <incise/cutting/tool.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/imaging/segmentation.hpp>
+#include <incise/mechanics/constraints.hpp>
+#include <incise/mechanics/material.hpp>
+#include <incise/planning/plan_path.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// Edge lengths of the mesh that is made from a label.
+struct MeshingChoice {
+  double fine_mm = 0.8;      ///< in the band that the needle can reach
+  double coarse_mm = 4.0;    ///< far from the cut
+  int tets = 0;              ///< count to aim for by scaling both lengths; 0: as the lengths give
+  double survey_mm = 4.0;    ///< of the coarse mesh with which the planned cut is found in the unstretched body
+};
+
+enum class TumorConfiguration {
+  Stretched,  ///< the edge is marked on the clamped and stretched tissue, as in the paper
+  Rest,       ///< on the tissue as it was scanned
+};
+
+/// What a study asks for, whatever files it came from. Every default is written here or in the structs that it holds.
+struct Case {
+  std::string title = "Incision study";
+  bool is_virtual = false;                  ///< the specimen is synthetic; said on every page that is made of it
+  SegmentationSettings segmentation;
+  MeshingChoice meshing;
+  Material material;
+  std::optional<std::vector<Constraint>> constraints;  ///< absent: see default_constraints
+  Vec3 gravity_mm_s2{0.0, 0.0, -9810.0};
+  TumorConfiguration tumor_configuration = TumorConfiguration::Stretched;
+  double surface_tolerance_mm = 5.0;        ///< farthest that a tumour edge may lie off the surface, along the approach
+  PlanSettings plan;
+  Needle needle;
+  CutSettings cut;
+  double close_margin_mm = 2.2;             ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
+  int frames = 24;                          ///< moments of the cut that are kept for pictures
+  std::optional<Mat4> T_robot_sim;          ///< where the specimen lies under the robot, until registration finds it
+};
+
+/// The paper's set-up (II-A) for a tongue in LPS: posterior 15 mm clamped, anterior 10 mm pulled 20 mm forward, underside resting on a platform
+/// at the mesh's lowest point.
+[[nodiscard]] std::vector<Constraint> default_constraints(const TetMesh& mesh);
+
+}  // namespace incise

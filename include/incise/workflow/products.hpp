@@ -1,0 +1,29 @@
+#pragma once
+
+#include <incise/evaluation/evaluation.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/meshing/mesher.hpp>
+#include <incise/planning/compensation.hpp>
+#include <incise/procedure/incision.hpp>
+
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// The mesh of a specimen, made around the planned cut.
+struct MeshProduct {
+  MeshingResult meshing;
+  Contour planned_cut_rest;  ///< where the planned cut lies in the unstretched body, mm; empty when the mesh was given
+};
+
+/// One simulated incision and what it is worth.
+struct SimulatedCut {
+  IncisionResult incision;
+  Evaluation centerline;  ///< mid-line against the lateral margin, stretched tissue before the cut
+  Evaluation inner_edge;  ///< inner edge against margin less electrode radius, tool out
+  Outcome outcome = Outcome::NotConverged;  ///< of incision and margin together
+  std::size_t tets = 0;   ///< of the mesh before the cut
+};
+
+}  // namespace incise

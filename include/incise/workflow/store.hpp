@@ -1,0 +1,46 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/geometry/contour.hpp>
+#include <incise/geometry/tool_path.hpp>
+#include <incise/geometry/volume.hpp>
+#include <incise/imaging/segmentation.hpp>
+#include <incise/mechanics/statics.hpp>
+#include <incise/workflow/products.hpp>
+
+#include <optional>
+
+namespace incise {
+
+/// Which of the two simulated cuts of a study.
+enum class CutRole { AsPlanned, Corrected };
+
+/// Where a study finds what it was given and keeps what it makes. A load returns nothing when the product is absent or was made from other
+/// settings or inputs than today's: then the stage runs. `wall_s` is how long the stage took.
+class Store {
+ public:
+  virtual ~Store() = default;
+
+  virtual CtVolume read_ct(Monitor& monitor) = 0;
+  virtual std::optional<TetMesh> read_specimen_mesh() = 0;  ///< nothing: the mesh is made from the CT
+  virtual std::optional<Contour> read_tumor_edge() = 0;
+  virtual std::optional<Contour> read_line() = 0;           ///< the curve of an open cut
+  virtual std::optional<ToolPath> read_given_path() = 0;    ///< a path to follow in place of the planned one
+
+  virtual std::optional<Segmentation> load_segmentation() = 0;
+  virtual void save_segmentation(const Segmentation& segmentation, double wall_s) = 0;
+  virtual std::optional<TetMesh> load_mesh() = 0;
+  virtual void save_mesh(const MeshProduct& product, double wall_s) = 0;
+  /// @param model  whose mesh the positions belong to.
+  virtual std::optional<StaticResult> load_stretched(const TissueModel& model) = 0;
+  virtual void save_stretched(const TissueModel& model, const StaticResult& result, double wall_s) = 0;
+  virtual std::optional<ToolPath> load_plan() = 0;
+  virtual void save_plan(const ToolPath& path, double wall_s) = 0;
+  virtual std::optional<SimulatedCut> load_cut(CutRole role) = 0;
+  virtual void save_cut(CutRole role, const TissueModel& model, const StaticResult& stretched, const SimulatedCut& cut,
+                        double wall_s) = 0;
+  virtual std::optional<Compensation> load_correction() = 0;
+  virtual void save_correction(const Compensation& correction, double wall_s) = 0;
+};
+
+}  // namespace incise

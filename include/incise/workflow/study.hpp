@@ -1,0 +1,63 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/workflow/case.hpp>
+#include <incise/workflow/products.hpp>
+#include <incise/workflow/store.hpp>
+
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// The steps from a scan to a corrected path, in order; each needs those before it.
+enum class Stage { Segment, Mesh, Stretch, Plan, Simulate, Compensate, Verify };
+[[nodiscard]] std::string_view to_string(Stage stage);  ///< segment, mesh, stretch, plan, simulate, compensate, verify
+
+enum class StageState {
+  Computed,
+  Reused,    ///< the store had it, made from the same settings and inputs
+  Skipped,   ///< not needed: the product was given, or a later product was reused
+};
+[[nodiscard]] std::string_view to_string(StageState state);  ///< computed, reused, skipped
+
+struct StageReport {
+  Stage stage;
+  StageState state = StageState::Computed;
+  double wall_s = 0.0;
+};
+
+/// What a study has made so far; later parts are absent when it was asked to stop earlier or could not go on.
+struct Study {
+  std::vector<StageReport> stages;
+  std::optional<Segmentation> segmentation;   ///< absent when not needed
+  std::shared_ptr<const TissueModel> model;
+  std::optional<StaticResult> stretched;
+  std::optional<ToolPath> plan;               ///< the intended path
+  std::optional<SimulatedCut> as_planned;
+  std::optional<Compensation> correction;
+  std::optional<SimulatedCut> corrected;
+  /// How it ended: that of the last simulated cut, or NotConverged/Cancelled of the stage that could not go on.
+  Outcome outcome = Outcome::Success;
+};
+
+/// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch, plan, cut, correct
+/// the path by the measured error, cut again. Products that the store already has are used; new ones are saved as soon as they are made.
+/// @throws CaseError or DataError of the stage that cannot use what it was given; Cancelled when the monitor asks to stop between products.
+[[nodiscard]] Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor);
+
+/// The single stages, for those who have the inputs in memory.
+/// Evaluates a simulated incision: mid-line and, for a ring, inner edge. @param tets  of the mesh before the cut.
+[[nodiscard]] SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& intended, std::size_t tets);
+[[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy, Store& store, Workers& workers,
+                                                  Monitor& monitor);
+[[nodiscard]] StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor);
+[[nodiscard]] ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+                               const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line);
+[[nodiscard]] SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,
+                                         const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor);
+
+}  // namespace incise

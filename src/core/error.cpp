@@ -1,0 +1,41 @@
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace incise {
+namespace {
+
+std::string compose(const std::string& where, const std::string& place, const std::string& found,
+                    const std::string& expected, const std::string& hint) {
+  std::string text = where;
+  if (!place.empty()) text += fmt::format(": {}", place);
+  text += fmt::format(": found {}, expected {}", found, expected);
+  if (!hint.empty()) text += fmt::format(". {}", hint);
+  return text;
+}
+
+}  // namespace
+
+CaseError::CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint)
+    : Error(compose(where, field, found, expected, hint)), field_(std::move(field)) {}
+
+DataError::DataError(const std::filesystem::path& path, std::string place, std::string found, std::string expected,
+                     std::string hint)
+    : Error(compose(path.string(), place, found, expected, hint)), path_(path) {}
+
+namespace core_detail {
+
+void throw_invalid_argument(const char* function, const std::string& message) {
+  throw InvalidArgument(fmt::format("{}: {}", function, message));
+}
+
+void stop_on_broken_invariant(const char* file, int line, const char* condition) {
+  fmt::print(stderr, "{}:{}: broken invariant: {}\n", file, line, condition);
+  std::abort();
+}
+
+}  // namespace core_detail
+}  // namespace incise

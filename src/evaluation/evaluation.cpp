@@ -1,0 +1,134 @@
+#include "evaluation/coverage.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/evaluation/evaluation.hpp>
+#include <incise/evaluation/hu.hpp>
+#include <incise/evaluation/level_loop.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+void expect(bool is_valid, std::vector<std::string>& violations, const char* field, double found,
+            const char* expected) {
+  if (!is_valid || !std::isfinite(found)) {
+    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
+  }
+}
+
+std::vector<double> magnitudes(const std::vector<double>& values, double reference = 0.0) {
+  std::vector<double> result;
+  result.reserve(values.size());
+  for (const double value : values) result.push_back(std::abs(value - reference));
+  return result;
+}
+
+/// What the electrode's half width takes off the tissue that a measured contour leaves beside the tumour.
+double kerf_allowance_mm(const EvaluationSettings& settings) {
+  return settings.contour == ContourKind::Centerline ? settings.electrode_radius_mm : 0.0;
+}
+
+/// Least tissue between the contour and the tumour edge: between polylines that do not meet it is found at a corner of
+/// one of them.
+double least_distance_mm(const Contour& incision, const Contour& edge, const std::vector<double>& signed_distances) {
+  double least = *std::min_element(signed_distances.begin(), signed_distances.end());
+  for (const Vec3& p : incision.points) least = std::min(least, nearest_on(edge, p).distance_mm);
+  for (const Vec3& p : edge.points) least = std::min(least, nearest_on(incision, p).distance_mm);
+  return least;
+}
+
+void measure_errors(const EvaluationSettings& settings, Evaluation& result) {
+  const std::vector<double>& distances = result.errors.signed_distance_mm;
+  const double allowance = kerf_allowance_mm(settings);
+  CloseMargin close;
+  for (const double distance : distances) {
+    if (distance - allowance <= settings.close_margin_mm) ++close.points;
+  }
+  close.fraction = static_cast<double>(close.points) / static_cast<double>(distances.size());
+  result.close_margin = close;
+  result.n_points = distances.size();
+  result.signed_error_mm = summarize(result.errors.signed_error_mm);
+  result.abs_error_mm = summarize(magnitudes(result.errors.signed_error_mm));
+
+  const double paper_target = settings.lateral_margin_mm - settings.electrode_radius_mm;
+  const Summary paper = summarize(magnitudes(distances, paper_target));
+  result.paper_abs_error_mm = paper.mean;
+  result.paper_max_abs_error_mm = paper.max;
+  result.paper_success = result.closed_loop.value() && paper.max <= paper_target;
+}
+
+void measure_shape(const Contour& incision, const Contour& edge, const EvaluationSettings& settings,
+                   Evaluation& result) {
+  const FilledMoments edge_moments = filled_moments(edge, settings.approach);
+  const Contour ideal = outer_offset(edge, result.target_mm, settings.approach);
+  result.hu_score_ideal = hu_score(edge_moments.hu, filled_moments(ideal, settings.approach).hu).opencv;
+  if (!incision.is_closed || signed_area_mm2(incision, settings.approach) == 0.0) return;
+  const FilledMoments incision_moments = filled_moments(incision, settings.approach);
+  const HuScore score = hu_score(edge_moments.hu, incision_moments.hu);
+  result.hu_score = score.opencv;
+  result.hu_score_seven = score.seven;
+  result.hu_unstable = score.is_unstable;
+  result.centroid_shift_mm = (incision_moments.centroid_mm - edge_moments.centroid_mm).norm();
+}
+
+}  // namespace
+
+std::string_view to_string(ContourKind kind) {
+  return kind == ContourKind::Centerline ? "centerline" : "inner_edge";
+}
+
+double target_mm(const EvaluationSettings& settings) {
+  if (settings.target_mm) return *settings.target_mm;
+  const double allowance = settings.contour == ContourKind::InnerEdge ? settings.electrode_radius_mm : 0.0;
+  return settings.lateral_margin_mm - allowance;
+}
+
+std::vector<std::string> validate(const EvaluationSettings& s) {
+  std::vector<std::string> violations;
+  expect(s.electrode_radius_mm >= 0.0, violations, "electrode_radius_mm", s.electrode_radius_mm, "0 mm or more");
+  expect(s.lateral_margin_mm > s.electrode_radius_mm, violations, "lateral_margin_mm", s.lateral_margin_mm,
+         "more than the electrode's radius");
+  if (s.target_mm) expect(*s.target_mm > 0.0, violations, "target_mm", *s.target_mm, "a distance above 0 mm");
+  expect(s.close_margin_mm > 0.0, violations, "close_margin_mm", s.close_margin_mm, "a distance above 0 mm");
+  expect(s.approach.norm() > 0.0, violations, "approach", s.approach.norm(), "a vector of length above 0");
+  expect(s.step_mm > 0.0, violations, "step_mm", s.step_mm, "a distance above 0 mm");
+  expect(s.end_tolerance_mm >= 0.0, violations, "end_tolerance_mm", s.end_tolerance_mm, "0 mm or more");
+  return violations;
+}
+
+Evaluation evaluate(const std::optional<Contour>& incision, const Contour& tumor_edge,
+                    const EvaluationSettings& settings) {
+  const std::vector<std::string> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  Evaluation result;
+  result.contour = settings.contour;
+  result.target_mm = target_mm(settings);
+  result.closed_loop = incision.has_value() && incision->is_closed;
+  result.outcome = Outcome::OpenLoop;
+  if (!incision) {
+    // The edge alone still tells what a perfect cut would score.
+    measure_shape(Contour{.points = {}, .is_closed = false}, tumor_edge, settings, result);
+    return result;
+  }
+
+  result.errors = contour_errors(*incision, tumor_edge, result.target_mm, settings.approach, settings.step_mm);
+  measure_errors(settings, result);
+  measure_shape(*incision, tumor_edge, settings, result);
+  const Vec2 center = filled_moments(tumor_edge, settings.approach).centroid_mm;
+  result.coverage = angular_coverage(*incision, center, settings.approach);
+
+  const double least = least_distance_mm(*incision, tumor_edge, result.errors.signed_distance_mm);
+  const bool is_clear = least > kerf_allowance_mm(settings) && !meet_in_view(*incision, tumor_edge, settings.approach);
+  // A closed ring beside the tumour is clear of it, too, but leaves it in the patient. As the two do not meet, one
+  // point tells.
+  const bool is_around = !incision->is_closed || contains_in_view(*incision, tumor_edge.points[0], settings.approach);
+  result.negative_margin = is_clear && is_around;
+  if (*result.closed_loop) result.outcome = *result.negative_margin ? Outcome::Success : Outcome::PositiveMargin;
+  return result;
+}
+
+}  // namespace incise

@@ -1,0 +1,153 @@
+#include <incise/core/error.hpp>
+#include <incise/geometry/kerf_contours.hpp>
+#include <incise/geometry/morphology.hpp>
+#include <incise/geometry/tracing.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// Skin that is pictured around the kerf, so that the plug and the skin outside can be told apart.
+constexpr double kBorderMm = 2.0;
+
+/// Reach of the plane that is fitted to the plug's skin where a height is read, mm.
+constexpr double kHeightReachMm = 0.6;
+
+void require_valid(const CutSurface& surface, const InnerEdgeSettings& settings) {
+  INCISE_REQUIRE(surface.is_skin.size() == surface.triangles.size(),
+                 fmt::format("expected a flag for each of {} triangles, found {}", surface.triangles.size(),
+                             surface.is_skin.size()));
+  INCISE_REQUIRE(surface.inside_mm.allFinite(), "the point inside is not finite");
+  INCISE_REQUIRE(std::isfinite(settings.spacing_mm) && settings.spacing_mm > 0.0,
+                 fmt::format("expected a spacing above 0 mm, found {}", settings.spacing_mm));
+  for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+    INCISE_REQUIRE(surface.vertices[i].allFinite(), fmt::format("vertex {} is not finite", i));
+  }
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    for (const VertexId id : surface.triangles[t]) {
+      INCISE_REQUIRE(
+          id.is_valid() && id.index() < surface.vertices.size(),
+          fmt::format("triangle {} names vertex {}, expected one of {}", t, id.value, surface.vertices.size()));
+    }
+  }
+}
+
+/// The picture of the kerf and a strip of skin around it; nullopt without a kerf.
+std::optional<DepthBuffer> picture_of(const CutSurface& surface, const Points& in_view, double pixel_mm) {
+  Box3 walls;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    if (surface.is_skin[t] != 0) continue;
+    for (const VertexId id : surface.triangles[t]) walls.extend(vertex(in_view, id));
+  }
+  if (walls.isEmpty()) return std::nullopt;
+  const RasterGrid grid = grid_around(walls.min().head<2>(), walls.max().head<2>(), pixel_mm, kBorderMm);
+  return depth_buffer(grid, in_view, surface.triangles);
+}
+
+Raster visible_skin(const DepthBuffer& picture, const CutSurface& surface) {
+  Raster skin(picture, 0);
+  for (std::size_t p = 0; p < skin.pixels.size(); ++p) {
+    const std::int32_t triangle = picture.triangles[p];
+    if (triangle >= 0 && surface.is_skin[static_cast<std::size_t>(triangle)] != 0) skin.pixels[p] = 1;
+  }
+  return skin;
+}
+
+/// Whether the plug reaches past the body: borders on emptiness that goes on to the picture's border.
+bool borders_on_outside(const Raster& plug, const DepthBuffer& picture, double reach_mm) {
+  Raster empty(picture, 0);
+  for (std::size_t p = 0; p < empty.pixels.size(); ++p) empty.pixels[p] = picture.triangles[p] < 0 ? 1 : 0;
+  const Components parts = find_components(empty, 1, Connectivity::Eight);
+  const Raster around = dilated(plug, reach_mm);
+  for (std::size_t p = 0; p < around.pixels.size(); ++p) {
+    const std::int32_t part = parts.labels[p];
+    if (around.pixels[p] != 0 && part >= 0 && parts.parts[static_cast<std::size_t>(part)].touches_border) return true;
+  }
+  return false;
+}
+
+/// The connected skin around the point inside, without holes; nullopt if it hangs together with the skin outside.
+std::optional<Raster> plug_of(const DepthBuffer& picture, const CutSurface& surface, const Vec2& inside,
+                              const InnerEdgeSettings& settings) {
+  const Raster skin = visible_skin(picture, surface);
+  // Closing first mends slits in the skin, opening then cuts strips that would hold the plug to the outside.
+  const Raster mended = opened(closed(skin, settings.closing_mm), settings.opening_mm);
+  const Vec2 at = picture.index_of(inside);
+  if (!(at.x() > -0.5 && at.y() > -0.5 && at.x() < picture.width - 0.5 && at.y() < picture.height - 0.5))
+    return std::nullopt;
+  const Components parts = find_components(mended, 1, Connectivity::Four);
+  const std::int32_t part =
+      parts.labels[picture.offset(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())))];
+  if (part < 0 || parts.parts[static_cast<std::size_t>(part)].touches_border) return std::nullopt;
+  const Raster plug = holes_filled(part_of(mended, parts, part),
+                                   picture.pixel_mm * picture.pixel_mm * static_cast<double>(picture.pixel_count()));
+  if (borders_on_outside(plug, picture, settings.opening_mm + 2.0 * settings.pixel_mm)) return std::nullopt;
+  return plug;
+}
+
+/// Height of the plug's skin at a point of its edge: of a plane through the pixels around it, since they all lie on one
+/// side.
+std::optional<double> skin_height(const Raster& plug, const DepthBuffer& picture, const CutSurface& surface,
+                                  const Vec2& p) {
+  const Vec2 at = plug.index_of(p);
+  const int reach = static_cast<int>(std::ceil(kHeightReachMm / plug.pixel_mm));
+  const int ci = static_cast<int>(std::lround(at.x()));
+  const int cj = static_cast<int>(std::lround(at.y()));
+  Mat3 normal_matrix = Mat3::Zero();
+  Vec3 right_side = Vec3::Zero();
+  int count = 0;
+  for (int j = cj - reach; j <= cj + reach; ++j) {
+    for (int i = ci - reach; i <= ci + reach; ++i) {
+      if (!plug.contains(i, j) || plug.at(i, j) == 0) continue;
+      const std::int32_t triangle = picture.triangles[plug.offset(i, j)];
+      if (triangle < 0 || surface.is_skin[static_cast<std::size_t>(triangle)] == 0) continue;
+      const Vec2 offset = (plug.centre(i, j) - p) / kHeightReachMm;
+      if (offset.norm() > 1.0) continue;
+      const Vec3 row(offset.x(), offset.y(), 1.0);
+      normal_matrix += row * row.transpose();
+      right_side += picture.heights_mm[plug.offset(i, j)] * row;
+      ++count;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  // With few pixels the slope is unknown: a weak pull to zero slope then leaves their mean.
+  normal_matrix(0, 0) += 1e-3;
+  normal_matrix(1, 1) += 1e-3;
+  return normal_matrix.ldlt().solve(right_side).z();
+}
+
+}  // namespace
+
+std::optional<Contour> inner_edge_contour(const CutSurface& surface, const InnerEdgeSettings& settings) {
+  require_valid(surface, settings);
+  const ViewFrame view = view_along(surface.approach);
+  Points in_view;
+  in_view.reserve(surface.vertices.size());
+  for (const Vec3& p : surface.vertices) in_view.push_back(view.to_view(p));
+  const std::optional<DepthBuffer> picture = picture_of(surface, in_view, settings.pixel_mm);
+  if (!picture) return std::nullopt;
+  const std::optional<Raster> plug = plug_of(*picture, surface, view.to_view(surface.inside_mm).head<2>(), settings);
+  if (!plug) return std::nullopt;
+
+  std::optional<Contour> outline;
+  for (Contour& line : level_lines(blurred(*plug, settings.smoothing_mm), 0.5)) {
+    if (!outline || length_mm(line) > length_mm(*outline)) outline = std::move(line);
+  }
+  if (!outline) return std::nullopt;
+  Contour edge;
+  for (const Vec3& p : outline->points) {
+    const std::optional<double> height = skin_height(*plug, *picture, surface, p.head<2>());
+    if (height) edge.points.push_back(view.from_view({p.x(), p.y(), *height}));
+  }
+  const double length = length_mm(edge);
+  if (edge.points.size() < 3 || length == 0.0) return std::nullopt;
+  const auto count = static_cast<std::size_t>(std::max(8.0, std::round(length / settings.spacing_mm)));
+  return start_farthest_along(counter_clockwise(resample(edge, count), surface.approach), view.x);
+}
+
+}  // namespace incise

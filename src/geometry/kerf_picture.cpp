@@ -1,0 +1,187 @@
+#include "geometry/kerf_picture.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/geometry/morphology.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+/// Free border around the kerf, so that the way out of an open ring is not narrowed by the picture's frame.
+constexpr double kBorderMm = 3.0;
+
+/// Steps in which directions are sorted when a gap is looked for.
+constexpr int kDirections = 3600;
+
+/// Halvings of the interval in which the widest disc is searched: 0.001 mm for rings of any size that occurs.
+constexpr int kBisections = 20;
+
+/// A tet as the four half spaces a + b z >= 0 along each line of sight: its barycentric coordinates.
+class SightLines {
+ public:
+  explicit SightLines(const std::array<Vec3, 4>& corners) {
+    Eigen::Matrix4d homogeneous;
+    for (Eigen::Index c = 0; c < 4; ++c) homogeneous.col(c) << corners[static_cast<std::size_t>(c)], 1.0;
+    // The volume decides whether the inverse means anything; a flat tet hides nothing.
+    const double size = (homogeneous.topRows<3>().rightCols<3>().colwise() - homogeneous.col(0).head<3>()).norm();
+    is_flat_ = std::abs(homogeneous.determinant()) <= 1e-12 * size * size * size;
+    if (!is_flat_) barycentric_ = homogeneous.inverse();
+  }
+
+  /// Length of the line of sight through (x, y) that lies within the tet and between two heights.
+  [[nodiscard]] double length(const Vec2& p, double low, double high) const {
+    if (is_flat_) return 0.0;
+    for (Eigen::Index c = 0; c < 4; ++c) {
+      const double a = barycentric_(c, 0) * p.x() + barycentric_(c, 1) * p.y() + barycentric_(c, 3);
+      const double b = barycentric_(c, 2);
+      if (b > 0.0) {
+        low = std::max(low, -a / b);
+      } else if (b < 0.0) {
+        high = std::min(high, -a / b);
+      } else if (a < 0.0) {
+        return 0.0;
+      }
+    }
+    return std::max(0.0, high - low);
+  }
+
+ private:
+  Eigen::Matrix4d barycentric_ = Eigen::Matrix4d::Zero();
+  bool is_flat_ = false;
+};
+
+using ViewTets = std::vector<std::array<Vec3, 4>>;
+
+ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view) {
+  ViewTets tets = input.removed_tets;
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    for (Vec3& corner : tets[t]) {
+      INCISE_REQUIRE(corner.allFinite(), fmt::format("removed tet {} has a corner that is not finite", t));
+      corner = view.to_view(corner);
+    }
+  }
+  return tets;
+}
+
+ScalarRaster coverage_of(const ViewTets& tets, const DepthBuffer& surface, const KerfMidlineSettings& settings) {
+  ScalarRaster coverage(surface, 0.0);
+  const double thickness = settings.layer_bottom_mm - settings.layer_top_mm;
+  for (const std::array<Vec3, 4>& corners : tets) {
+    Box3 box;
+    for (const Vec3& corner : corners) box.extend(corner);
+    const SightLines tet(corners);
+    const Vec2 first = surface.index_of(box.min().head<2>());
+    const Vec2 last = surface.index_of(box.max().head<2>());
+    for (int j = static_cast<int>(std::ceil(first.y())); j <= static_cast<int>(std::floor(last.y())); ++j) {
+      for (int i = static_cast<int>(std::ceil(first.x())); i <= static_cast<int>(std::floor(last.x())); ++i) {
+        const std::size_t pixel = surface.offset(i, j);
+        if (surface.triangles[pixel] < 0) continue;
+        const double top = surface.heights_mm[pixel];
+        coverage.pixels[pixel] +=
+            tet.length(surface.centre(i, j), top - settings.layer_bottom_mm, top - settings.layer_top_mm) / thickness;
+      }
+    }
+  }
+  return coverage;
+}
+
+Raster mask_of(const ScalarRaster& coverage, const KerfMidlineSettings& settings) {
+  Raster mask(coverage, 0);
+  for (std::size_t p = 0; p < mask.pixels.size(); ++p)
+    mask.pixels[p] = coverage.pixels[p] >= settings.min_coverage ? 1 : 0;
+  return holes_filled(closed(mask, settings.closing_mm), settings.max_island_mm2);
+}
+
+std::array<int, 2> pixel_of(const RasterGrid& grid, const Vec2& p) {
+  const Vec2 at = grid.index_of(p);
+  // Far off the picture is as good as just off it.
+  const auto rounded = [](double x, int count) {
+    return static_cast<int>(std::lround(std::clamp(x, -1.0, static_cast<double>(count))));
+  };
+  return {rounded(at.x(), grid.width), rounded(at.y(), grid.height)};
+}
+
+}  // namespace
+
+std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
+                                        const KerfMidlineSettings& settings) {
+  const ViewTets tets = tets_in_view(input, view);
+  if (tets.empty()) return std::nullopt;
+  Box3 box;
+  for (const auto& corners : tets) {
+    for (const Vec3& corner : corners) box.extend(corner);
+  }
+  Points in_view;
+  in_view.reserve(input.surface.vertices.size());
+  for (const Vec3& p : input.surface.vertices) in_view.push_back(view.to_view(p));
+  const double border = kBorderMm + settings.closing_mm;
+  const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), settings.pixel_mm, border);
+  KerfPicture picture;
+  picture.coverage = coverage_of(tets, depth_buffer(grid, in_view, input.surface.triangles), settings);
+  picture.mask = mask_of(picture.coverage, settings);
+  if (area_mm2(picture.mask) == 0.0) return std::nullopt;
+  return picture;
+}
+
+std::optional<Raster> enclosed_tissue(const Raster& mask, const Vec2& inside) {
+  const auto [i, j] = pixel_of(mask, inside);
+  if (!mask.contains(i, j) || mask.at(i, j) != 0) return std::nullopt;
+  const Components tissue = find_components(mask, 0, Connectivity::Four);
+  const std::int32_t part = tissue.labels[mask.offset(i, j)];
+  if (tissue.parts[static_cast<std::size_t>(part)].touches_border) return std::nullopt;
+  return part_of(mask, tissue, part);
+}
+
+double widest_gap_deg(const Raster& mask, const Vec2& inside) {
+  std::vector<std::uint8_t> is_cut(kDirections, 0);
+  for (int j = 0; j < mask.height; ++j) {
+    for (int i = 0; i < mask.width; ++i) {
+      if (mask.at(i, j) == 0) continue;
+      const Vec2 offset = mask.centre(i, j) - inside;
+      if (offset.norm() <= mask.pixel_mm) return 0.0;  // the kerf runs over the point: it is seen in every direction
+      const double half = std::asin(0.5 * mask.pixel_mm / offset.norm());
+      const double angle = std::atan2(offset.y(), offset.x()) + 2.0 * units::kPi;
+      const double per_radian = kDirections / (2.0 * units::kPi);
+      for (int k = static_cast<int>((angle - half) * per_radian); k <= static_cast<int>((angle + half) * per_radian);
+           ++k) {
+        is_cut[static_cast<std::size_t>(k % kDirections)] = 1;
+      }
+    }
+  }
+  int longest = 0;
+  int run = 0;
+  for (int k = 0; k < 2 * kDirections; ++k) {  // twice round, for a gap across the first direction
+    run = is_cut[static_cast<std::size_t>(k % kDirections)] != 0 ? 0 : run + 1;
+    longest = std::max(longest, run);
+  }
+  return 360.0 * std::min(longest, kDirections) / kDirections;
+}
+
+double widest_gap_mm(const Raster& mask, const Vec2& inside) {
+  const auto [i, j] = pixel_of(mask, inside);
+  if (!mask.contains(i, j)) return std::numeric_limits<double>::infinity();
+  if (mask.at(i, j) != 0) return 0.0;
+  const ScalarRaster distance = distance_to(mask, 1);
+  const auto can_leave = [&](double radius) {
+    Raster free(mask, 0);
+    for (std::size_t p = 0; p < free.pixels.size(); ++p) free.pixels[p] = distance.pixels[p] > radius ? 1 : 0;
+    if (free.at(i, j) == 0) return false;
+    const Components parts = find_components(free, 1, Connectivity::Four);
+    return parts.parts[static_cast<std::size_t>(parts.labels[free.offset(i, j)])].touches_border;
+  };
+  double passes = 0.0;
+  double stuck = distance.at(i, j);
+  for (int k = 0; k < kBisections; ++k) {
+    const double radius = 0.5 * (passes + stuck);
+    (can_leave(radius) ? passes : stuck) = radius;
+  }
+  return std::max(0.0, 2.0 * passes - mask.pixel_mm);  // distances run to the centres of the kerf's outermost pixels
+}
+
+}  // namespace incise

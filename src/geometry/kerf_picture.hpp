@@ -1,0 +1,33 @@
+#pragma once
+
+#include <incise/geometry/contour.hpp>
+#include <incise/geometry/kerf_contours.hpp>
+#include <incise/geometry/raster.hpp>
+
+#include <optional>
+
+namespace incise {
+
+/// No kerf is searched for its border farther than this from its middle.
+inline constexpr double kMaxHalfWidthMm = 4.0;
+
+/// A kerf seen along the approach.
+struct KerfPicture {
+  ScalarRaster coverage;  ///< share of the layer, [0, 1], that is gone at each pixel
+  Raster mask;            ///< where enough is gone, with narrow bridges and small islands taken in
+};
+
+/// Projects the removed tets, cut to the layer below the surface. nullopt if nothing of the layer is gone.
+[[nodiscard]] std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
+                                                      const KerfMidlineSettings& settings);
+
+/// The uncut tissue around point `inside` if the kerf parts it from the picture's border, else nullopt.
+[[nodiscard]] std::optional<Raster> enclosed_tissue(const Raster& mask, const Vec2& inside);
+
+/// Largest angle at `inside`, degrees, within which no pixel of the mask lies.
+[[nodiscard]] double widest_gap_deg(const Raster& mask, const Vec2& inside);
+
+/// Width, mm, of the widest disc that can be rolled from `inside` to the picture's border without touching the kerf.
+[[nodiscard]] double widest_gap_mm(const Raster& mask, const Vec2& inside);
+
+}  // namespace incise

@@ -1,0 +1,177 @@
+#include <incise/core/error.hpp>
+#include <incise/geometry/morphology.hpp>
+#include <incise/geometry/tracing.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <queue>
+
+namespace incise {
+namespace {
+
+using Pixel = std::array<int, 2>;
+
+Vec3 centre_of(const RasterGrid& grid, const Pixel& pixel) {
+  const Vec2 centre = grid.centre(pixel[0], pixel[1]);
+  return {centre.x(), centre.y(), 0.0};
+}
+
+Pixel pixel_at(const RasterGrid& grid, std::size_t offset) {
+  const auto width = static_cast<std::size_t>(grid.width);
+  return {static_cast<int>(offset % width), static_cast<int>(offset / width)};
+}
+
+/// The pixels around a hole in order: walks along its border with the hole on the left.
+Contour border_of_hole(const Raster& raster, const Components& holes, std::int32_t hole, const Pixel& first) {
+  constexpr std::array<Pixel, 4> kHeadings{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+  const auto is_inside = [&](const Pixel& p) {
+    return raster.contains(p[0], p[1]) && holes.labels[raster.offset(p[0], p[1])] == hole;
+  };
+  const auto ahead = [&](const Pixel& p, std::size_t heading) -> Pixel {
+    return {p[0] + kHeadings[heading % 4][0], p[1] + kHeadings[heading % 4][1]};
+  };
+  //   | p | a |     p: where we are, in the hole. a: ahead. d: ahead and to the right.
+  //   |[w]| d |     w: the border pixel to our right, which is recorded.
+  std::vector<Pixel> border;
+  Pixel at = first;  // the hole's lowest pixel: below it there is none of the hole
+  std::size_t heading = 0;
+  do {
+    const Pixel wall = ahead(at, heading + 3);
+    if (border.empty() || border.back() != wall) border.push_back(wall);
+    const Pixel straight = ahead(at, heading);
+    const Pixel diagonal = ahead(straight, heading + 3);
+    if (!is_inside(straight)) {
+      heading = (heading + 1) % 4;
+    } else if (!is_inside(diagonal)) {
+      at = straight;
+    } else {
+      at = diagonal;
+      heading = (heading + 3) % 4;
+    }
+  } while (at != first || heading != 0);
+  if (border.size() > 1 && border.front() == border.back()) border.pop_back();
+  Contour loop;
+  for (const Pixel& pixel : border) loop.points.push_back(centre_of(raster, pixel));
+  return loop;
+}
+
+/// Path lengths from one pixel along a skeleton, and the pixel before each.
+struct Reach {
+  std::vector<double> lengths;
+  std::vector<std::size_t> previous;
+  std::size_t farthest = 0;
+};
+
+Reach reach_from(const Raster& skeleton, std::size_t start) {
+  Reach reach;
+  reach.lengths.assign(skeleton.pixels.size(), std::numeric_limits<double>::infinity());
+  reach.previous.assign(skeleton.pixels.size(), start);
+  reach.farthest = start;
+  using Entry = std::pair<double, std::size_t>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  reach.lengths[start] = 0.0;
+  queue.emplace(0.0, start);
+  while (!queue.empty()) {
+    const auto [length, offset] = queue.top();
+    queue.pop();
+    if (length > reach.lengths[offset]) continue;
+    if (length > reach.lengths[reach.farthest]) reach.farthest = offset;
+    const auto [i, j] = pixel_at(skeleton, offset);
+    for (int dj = -1; dj <= 1; ++dj) {
+      for (int di = -1; di <= 1; ++di) {
+        if ((di == 0 && dj == 0) || skeleton.at_or(i + di, j + dj, 0) == 0) continue;
+        const std::size_t next = skeleton.offset(i + di, j + dj);
+        const double candidate = length + (di != 0 && dj != 0 ? std::numbers::sqrt2 : 1.0);
+        if (candidate >= reach.lengths[next]) continue;
+        reach.lengths[next] = candidate;
+        reach.previous[next] = offset;
+        queue.emplace(candidate, next);
+      }
+    }
+  }
+  return reach;
+}
+
+/// `curve` filtered by a Gaussian over its points, `sigma` in points.
+Points filtered(const Points& points, bool is_closed, double sigma) {
+  const int n = static_cast<int>(points.size());
+  const int reach = static_cast<int>(std::ceil(4.0 * sigma));
+  const auto point = [&](int i) -> Vec3 {
+    if (is_closed) return points[static_cast<std::size_t>(((i % n) + n) % n)];
+    // Beyond an end the curve is continued by its own image through that end, which therefore stays where it is.
+    if (i < 0) return 2.0 * points.front() - points[static_cast<std::size_t>(std::min(-i, n - 1))];
+    if (i >= n) return 2.0 * points.back() - points[static_cast<std::size_t>(std::max(2 * (n - 1) - i, 0))];
+    return points[static_cast<std::size_t>(i)];
+  };
+  Points result;
+  result.reserve(points.size());
+  for (int i = 0; i < n; ++i) {
+    Vec3 sum = Vec3::Zero();
+    double weights = 0.0;
+    for (int k = -reach; k <= reach; ++k) {
+      const double weight = std::exp(-0.5 * k * k / (sigma * sigma));
+      sum += weight * point(i + k);
+      weights += weight;
+    }
+    result.push_back(sum / weights);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<Contour> longest_loop(const Raster& skeleton) {
+  const Components holes = find_components(skeleton, 0, Connectivity::Four);
+  std::vector<std::uint8_t> is_traced(holes.parts.size(), 0);
+  std::optional<Contour> longest;
+  for (std::size_t offset = 0; offset < skeleton.pixels.size(); ++offset) {
+    const std::int32_t label = holes.labels[offset];
+    if (label < 0 || holes.parts[static_cast<std::size_t>(label)].touches_border) continue;
+    if (is_traced[static_cast<std::size_t>(label)] != 0) continue;
+    is_traced[static_cast<std::size_t>(label)] = 1;
+    Contour loop = border_of_hole(skeleton, holes, label, pixel_at(skeleton, offset));
+    if (!longest || length_mm(loop) > length_mm(*longest)) longest = std::move(loop);
+  }
+  return longest;
+}
+
+std::optional<Contour> longest_path(const Raster& skeleton) {
+  const Components parts = find_components(skeleton, 1, Connectivity::Eight);
+  const std::optional<std::int32_t> largest = largest_part(parts);
+  if (!largest || parts.parts[static_cast<std::size_t>(*largest)].pixels < 2) return std::nullopt;
+  const Raster part = part_of(skeleton, parts, *largest);
+  const auto start =
+      static_cast<std::size_t>(std::find(part.pixels.begin(), part.pixels.end(), 1) - part.pixels.begin());
+  // In a tree the pixel farthest from any pixel is an end of the longest path.
+  const std::size_t one_end = reach_from(part, start).farthest;
+  const Reach reach = reach_from(part, one_end);
+  Contour path{.points = {}, .is_closed = false};
+  for (std::size_t at = reach.farthest; at != one_end; at = reach.previous[at]) {
+    path.points.push_back(centre_of(part, pixel_at(part, at)));
+  }
+  path.points.push_back(centre_of(part, pixel_at(part, one_end)));
+  if (one_end < reach.farthest) std::reverse(path.points.begin(), path.points.end());
+  return path;
+}
+
+Contour smoothed(const Contour& curve, double sigma_mm) {
+  INCISE_REQUIRE(std::isfinite(sigma_mm) && sigma_mm >= 0.0,
+                 fmt::format("expected a sigma of 0 mm or more, found {}", sigma_mm));
+  if (sigma_mm == 0.0 || curve.points.size() < 3) return curve;
+  const double spacing =
+      length_mm(curve) / static_cast<double>(curve.is_closed ? curve.points.size() : curve.points.size() - 1);
+  INCISE_REQUIRE(spacing > 0.0, "all points of the curve coincide, expected a positive length");
+  const double sigma = sigma_mm / spacing;
+  const Points once = filtered(curve.points, curve.is_closed, sigma);
+  const Points twice = filtered(once, curve.is_closed, sigma);
+  Contour result = curve;
+  for (std::size_t i = 0; i < once.size(); ++i) result.points[i] = 2.0 * once[i] - twice[i];
+  return result;
+}
+
+}  // namespace incise

@@ -1,0 +1,161 @@
+#include "imaging/occupancy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+// All lengths in this file are voxels: partial volume and point spread blur a border over a number of voxels, not of
+// millimetres.
+constexpr float kBand = 2.3F;           // border voxels lie at most this far from the other side
+constexpr float kPureFrom = 2.8F;       // at least so far from the other side, a voxel shows one material only
+constexpr float kPureTo = 6.0F;         // and farther away than this it says nothing about the border
+constexpr double kMeanRadius = 2.0;     // standard deviation of the local means
+constexpr float kLeastWeight = 0.002F;  // of pure voxels near by, for a mean to count
+constexpr float kLeastContrast =
+    40.0F;  // HU between inside and outside; below it gray values say nothing about the border
+
+VolumeGrid in_voxels(VolumeGrid grid) {
+  grid.spacing_mm = Vec3::Ones();
+  return grid;
+}
+
+// Mean HU of the chosen voxels near every voxel; NaN where there are none.
+std::vector<float> local_mean(const CtVolume& hu, const std::vector<std::uint8_t>& chosen) {
+  const VolumeGrid grid = in_voxels(hu.grid);
+  GrayVolume weight{grid, std::vector<float>(chosen.size())};
+  GrayVolume sum{grid, std::vector<float>(chosen.size())};
+  for (std::size_t v = 0; v < chosen.size(); ++v) {
+    weight.voxels[v] = chosen[v] != 0 ? 1.0F : 0.0F;
+    sum.voxels[v] = chosen[v] != 0 ? static_cast<float>(hu.voxels[v]) : 0.0F;
+  }
+  weight = gaussian(std::move(weight), kMeanRadius);
+  sum = gaussian(std::move(sum), kMeanRadius);
+  for (std::size_t v = 0; v < chosen.size(); ++v)
+    sum.voxels[v] =
+        weight.voxels[v] > kLeastWeight ? sum.voxels[v] / weight.voxels[v] : std::numeric_limits<float>::quiet_NaN();
+  return std::move(sum.voxels);
+}
+
+// A thin gap has no pure voxel, or its neighbours are of another kind: there, the most foreign HU within two voxels
+// stands for it.
+float most_foreign(const CtVolume& hu, const Mask& body, int i, int j, int k, bool low_side) {
+  float found = std::numeric_limits<float>::quiet_NaN();
+  for (int c = std::max(0, k - 2); c <= std::min(hu.grid.size[2] - 1, k + 2); ++c)
+    for (int b = std::max(0, j - 2); b <= std::min(hu.grid.size[1] - 1, j + 2); ++b)
+      for (int a = std::max(0, i - 2); a <= std::min(hu.grid.size[0] - 1, i + 2); ++a) {
+        if (body.at(a, b, c) != 0) continue;
+        const auto value = static_cast<float>(hu.at(a, b, c));
+        if (std::isnan(found) || (low_side ? value < found : value > found)) found = value;
+      }
+  return found;
+}
+
+// Whether no mixture of tissue and those surroundings has that gray value; also if there are none.
+bool is_odd(float hu, float outside, bool low_side) {
+  return std::isnan(outside) || (low_side ? hu < outside - kLeastContrast : hu > outside + kLeastContrast);
+}
+
+struct Surroundings {
+  std::vector<float> inside;  // local mean HU of pure tissue
+  std::vector<float> low;     // of pure surroundings below the window
+  std::vector<float> high;    // and above it
+};
+
+Surroundings find_surroundings(const CtVolume& hu, const Mask& body, const GrayVolume& to_body,
+                               const GrayVolume& to_outside, const SegmentationSettings& settings) {
+  const std::size_t count = hu.voxels.size();
+  std::vector<std::uint8_t> inside(count), low(count), high(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto value = static_cast<double>(hu.voxels[v]);
+    const bool in_window = value >= settings.window_low_hu && value <= settings.window_high_hu;
+    const float depth = to_outside.voxels[v];
+    const float distance = to_body.voxels[v];
+    inside[v] = body.voxels[v] != 0 && in_window && depth >= kPureFrom && depth <= kPureTo;
+    const bool around = body.voxels[v] == 0 && distance >= kPureFrom && distance <= kPureTo;
+    low[v] = around && value < settings.window_low_hu;
+    high[v] = around && value > settings.window_high_hu;
+  }
+  return {local_mean(hu, inside), local_mean(hu, low), local_mean(hu, high)};
+}
+
+// Share of tissue in a voxel of gray value `hu` between pure tissue and pure surroundings; `otherwise` if they look
+// alike.
+float share(float hu, float inside, float outside, float otherwise) {
+  if (!(std::abs(inside - outside) >= kLeastContrast)) return otherwise;
+  return std::clamp((hu - outside) / (inside - outside), 0.0F, 1.0F);
+}
+
+}  // namespace
+
+GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mask& body,
+                               const SegmentationSettings& settings) {
+  const Mask body_in_voxels{in_voxels(body.grid), body.voxels};
+  const GrayVolume to_body = distance_to(body_in_voxels);
+  const GrayVolume to_outside = distance_to(complement(body_in_voxels));
+  const Surroundings near = find_surroundings(hu, body, to_body, to_outside, settings);
+
+  GrayVolume occupancy{hu.grid, std::vector<float>(hu.voxels.size(), 0.0F)};
+  for (int k = 0; k < hu.grid.size[2]; ++k)
+    for (int j = 0; j < hu.grid.size[1]; ++j)
+      for (int i = 0; i < hu.grid.size[0]; ++i) {
+        const std::size_t v = hu.grid.offset(i, j, k);
+        const bool is_body = body.voxels[v] != 0;
+        const float label = is_body ? 1.0F : 0.0F;
+        occupancy.voxels[v] = label;
+        const auto value = static_cast<float>(hu.voxels[v]);
+        const bool is_below = value < settings.window_low_hu;
+        const bool is_above = value > settings.window_high_hu;
+        // Tissue that is not the body was cut off by the region or the opening, sharply; a filled cavity is the body,
+        // whatever it holds.
+        if (region.voxels[v] == 0 || is_body == (is_below || is_above)) continue;
+        if ((is_body ? to_outside : to_body).voxels[v] > kBand) continue;
+        if (std::isnan(near.inside[v])) continue;
+        const bool low_side = is_body ? value < near.inside[v] : is_below;
+        float outside = low_side ? near.low[v] : near.high[v];
+        if (!is_body && is_odd(value, outside, low_side)) outside = most_foreign(hu, body, i, j, k, low_side);
+        if (std::isnan(outside)) continue;
+        occupancy.voxels[v] = share(value, near.inside[v], outside, label);
+      }
+  return occupancy;
+}
+
+double iso_volume_mm3(const GrayVolume& values, double level) {
+  constexpr int kSamples = 6;  // along each edge of a cell that the surface crosses
+  const VolumeGrid& grid = values.grid;
+  std::size_t whole = 0;
+  std::size_t samples = 0;
+  for (int k = 0; k + 1 < grid.size[2]; ++k)
+    for (int j = 0; j + 1 < grid.size[1]; ++j)
+      for (int i = 0; i + 1 < grid.size[0]; ++i) {
+        std::array<double, 8> corner;
+        for (int c = 0; c < 8; ++c)
+          corner[static_cast<std::size_t>(c)] = values.at(i + (c & 1), j + ((c >> 1) & 1), k + ((c >> 2) & 1));
+        const auto [least, greatest] = std::minmax_element(corner.begin(), corner.end());
+        if (*greatest < level) continue;
+        if (*least >= level) {
+          ++whole;
+          continue;
+        }
+        for (int c = 0; c < kSamples; ++c)
+          for (int b = 0; b < kSamples; ++b) {
+            const double z = (c + 0.5) / kSamples;
+            const double y = (b + 0.5) / kSamples;
+            const auto at_x = [&](std::size_t x) {
+              return (1 - z) * ((1 - y) * corner[x] + y * corner[x + 2]) +
+                     z * ((1 - y) * corner[x + 4] + y * corner[x + 6]);
+            };
+            const double first = at_x(0);
+            const double last = at_x(1);
+            for (int a = 0; a < kSamples; ++a)
+              samples += first + (last - first) * (a + 0.5) / kSamples >= level ? 1 : 0;
+          }
+      }
+  return grid.voxel_volume_mm3() *
+         (static_cast<double>(whole) + static_cast<double>(samples) / (kSamples * kSamples * kSamples));
+}
+
+}  // namespace incise

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "imaging/segmentation_region.hpp"
+
+namespace incise {
+
+/// Share of every voxel that is tissue, [0, 1], from the CT's gray values near the body's border; see `segment`. All on
+/// one grid.
+[[nodiscard]] GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mask& body,
+                                             const SegmentationSettings& settings);
+
+/// Volume, mm³, where the trilinear interpolation of the values between voxel centres is at least `level`.
+[[nodiscard]] double iso_volume_mm3(const GrayVolume& values, double level);
+
+}  // namespace incise

@@ -1,0 +1,239 @@
+#include "imaging/phantom_tumor.hpp"
+#include "imaging/volume_filters.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
+#include <incise/core/units.hpp>
+#include <incise/imaging/phantom.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr const char* kStage = "making the phantom";
+constexpr double kScannerAirHu = -1000.0;
+constexpr double kGreatestHu = 3071.0;  // 12 bits from kAirHu
+constexpr double kAirAroundMm = 10.0;   // beside and above the specimen, and below the board
+constexpr double kBoardBeyondMm = 6.0;  // the board is so much larger than the specimen, on each side
+constexpr int kColumns = 5;             // sub-columns along each of i and j in a voxel
+constexpr std::size_t kTextureWaves = 8;
+
+Box3 board_of(const Phantom& phantom, const PhantomSettings& settings) {
+  const Box3& body = phantom.bounds_mm;
+  return {Vec3(body.min().x() - kBoardBeyondMm, body.min().y() - kBoardBeyondMm, -settings.holder_thickness_mm),
+          Vec3(body.max().x() + kBoardBeyondMm, body.max().y() + kBoardBeyondMm, 0.0)};
+}
+
+// A tight grid, or square slices for a round field of view; shifted by a random part of a voxel, as a specimen lies by
+// chance.
+VolumeGrid scan_grid(const Box3& board, const Box3& body, const PhantomSettings& settings, Random& random) {
+  Vec3 low = board.min() - Vec3::Constant(kAirAroundMm);
+  Vec3 high = board.max() + Vec3::Constant(kAirAroundMm);
+  high.z() = body.max().z() + kAirAroundMm;
+  if (settings.field_of_view_mm > 0.0) {
+    low.head<2>().setConstant(-0.5 * settings.field_of_view_mm);
+    high.head<2>().setConstant(0.5 * settings.field_of_view_mm);
+  }
+  VolumeGrid grid;
+  grid.spacing_mm = settings.spacing_mm;
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.size[static_cast<std::size_t>(axis)] =
+        static_cast<int>(std::ceil((high[axis] - low[axis]) / settings.spacing_mm[axis])) + 1;
+    grid.origin_mm[axis] = low[axis] - random.uniform() * settings.spacing_mm[axis];
+  }
+  return grid;
+}
+
+double overlap(double low, double high, double from, double to) {
+  return std::max(0.0, std::min(high, to) - std::max(low, from));
+}
+
+// Share of tissue in each voxel: exact along k, kColumns² columns across.
+GrayVolume tissue_share(const TongueShape& shape, const VolumeGrid& grid, Monitor& monitor) {
+  GrayVolume share{grid, std::vector<float>(grid.voxel_count(), 0.0F)};
+  const Vec3& h = grid.spacing_mm;
+  const double low_z = grid.origin_mm.z() - 0.5 * h.z();
+  std::vector<double> column(static_cast<std::size_t>(grid.size[2]));
+  for (int j = 0; j < grid.size[1]; ++j) {
+    throw_if_cancelled(monitor, kStage);
+    monitor.progress(kStage, 0.5 * j / grid.size[1]);
+    for (int i = 0; i < grid.size[0]; ++i) {
+      std::fill(column.begin(), column.end(), 0.0);
+      for (int s = 0; s < kColumns * kColumns; ++s) {
+        const double x = grid.origin_mm.x() + (i + (s % kColumns + 0.5) / kColumns - 0.5) * h.x();
+        const double y = grid.origin_mm.y() + (j + (s / kColumns + 0.5) / kColumns - 0.5) * h.y();
+        const std::optional<TissueSpan> span = span_at(shape, x, y);
+        if (!span) continue;
+        const int first = std::max(0, static_cast<int>(std::floor((span->low_mm - low_z) / h.z())));
+        const int last = std::min(grid.size[2] - 1, static_cast<int>(std::floor((span->high_mm - low_z) / h.z())));
+        for (int k = first; k <= last; ++k)
+          column[static_cast<std::size_t>(k)] +=
+              overlap(span->low_mm, span->high_mm, low_z + k * h.z(), low_z + (k + 1) * h.z());
+      }
+      for (int k = 0; k < grid.size[2]; ++k)
+        share.at(i, j, k) = static_cast<float>(column[static_cast<std::size_t>(k)] / (kColumns * kColumns * h.z()));
+    }
+  }
+  return share;
+}
+
+// Slow changes of HU within muscle: a sum of waves 6 to 20 mm long with the wanted standard deviation.
+struct Texture {
+  struct Wave {
+    Vec3 per_mm;
+    double phase;
+  };
+  std::array<Wave, kTextureWaves> waves;
+  double amplitude_hu = 0.0;
+
+  [[nodiscard]] double at(const Vec3& p) const {
+    double sum = 0.0;
+    for (const Wave& wave : waves) sum += std::cos(wave.per_mm.dot(p) + wave.phase);
+    return amplitude_hu * sum;
+  }
+};
+
+Texture draw_texture(double sd_hu, Random& random) {
+  Texture texture;
+  texture.amplitude_hu = sd_hu * std::sqrt(2.0 / kTextureWaves);
+  for (Texture::Wave& wave : texture.waves) {
+    Vec3 heading;
+    for (int axis = 0; axis < 3; ++axis) heading[axis] = random.normal();
+    wave.per_mm = 2.0 * units::kPi / random.uniform(6.0, 20.0) * heading.normalized();
+    wave.phase = random.uniform(0.0, 2.0 * units::kPi);
+  }
+  return texture;
+}
+
+// HU without blur and noise. Tissue lies above z = 0 and the board below, so their shares of a voxel add up to at
+// most 1.
+GrayVolume mix(GrayVolume share, const Box3& board, const Texture& texture, const PhantomSettings& settings) {
+  const VolumeGrid& grid = share.grid;
+  const Vec3 half = 0.5 * grid.spacing_mm;
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const Vec3 p = grid.world_from_index(Vec3(i, j, k));
+        double plastic = 1.0;
+        for (int axis = 0; axis < 3; ++axis)
+          plastic *= overlap(p[axis] - half[axis], p[axis] + half[axis], board.min()[axis], board.max()[axis]) /
+                     grid.spacing_mm[axis];
+        const double tissue = share.at(i, j, k);
+        const double muscle_hu = tissue > 0.0 ? settings.tissue_hu + texture.at(p) : 0.0;
+        share.at(i, j, k) = static_cast<float>(kScannerAirHu * (1.0 - tissue - plastic) + settings.holder_hu * plastic +
+                                               muscle_hu * tissue);
+      }
+  return share;
+}
+
+// White noise, averaged a little with its neighbours in the slice as a reconstruction kernel does, of unit standard
+// deviation.
+std::vector<float> noise_slice(int nx, int ny, Random& random) {
+  constexpr std::array<double, 3> kTaps{0.25, 0.5, 0.25};
+  const double gain = 1.0 / (0.25 * 0.25 + 0.5 * 0.5 + 0.25 * 0.25);  // of the two passes together
+  const auto wide = static_cast<std::size_t>(nx + 2);
+  std::vector<double> white(wide * static_cast<std::size_t>(ny + 2));
+  for (double& value : white) value = random.normal();
+  std::vector<float> noise;
+  noise.reserve(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
+  for (std::size_t j = 0; j < static_cast<std::size_t>(ny); ++j)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(nx); ++i) {
+      double sum = 0.0;
+      for (std::size_t b = 0; b < 3; ++b)
+        for (std::size_t a = 0; a < 3; ++a) sum += kTaps[a] * kTaps[b] * white[i + a + wide * (j + b)];
+      noise.push_back(static_cast<float>(gain * sum));
+    }
+  return noise;
+}
+
+CtVolume scan(const GrayVolume& ideal, const PhantomSettings& settings, Random& random) {
+  const VolumeGrid& grid = ideal.grid;
+  CtVolume ct{grid, {}};
+  ct.voxels.reserve(grid.voxel_count());
+  const double radius = 0.5 * settings.field_of_view_mm;
+  for (int k = 0; k < grid.size[2]; ++k) {
+    const std::vector<float> noise = noise_slice(grid.size[0], grid.size[1], random);
+    std::size_t n = 0;
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i, ++n) {
+        const double hu = ideal.at(i, j, k) + settings.noise_hu * noise[n];
+        const bool is_padding = radius > 0.0 && grid.world_from_index(Vec3(i, j, k)).head<2>().norm() > radius;
+        ct.voxels.push_back(
+            is_padding ? kAirHu : static_cast<std::int16_t>(std::lround(std::clamp(hu, double{kAirHu}, kGreatestHu))));
+      }
+  }
+  return ct;
+}
+
+Vec3 middle_of_body(const TongueShape& shape) {
+  const double x = midline_x_mm(shape, 0.0);
+  const std::optional<TissueSpan> span = span_at(shape, x, 0.0);
+  return {x, 0.0, 0.5 * (span->low_mm + span->high_mm)};
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const PhantomSettings& settings) {
+  std::vector<std::string> problems = validate(settings.shape);
+  const auto check = [&](const char* name, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+      problems.push_back(fmt::format("{}: found {}, expected a number in [{}, {}]", name, value, low, high));
+  };
+  for (int axis = 0; axis < 3; ++axis)
+    check(std::array{"spacing_mm[0]", "spacing_mm[1]", "spacing_mm[2]"}[static_cast<std::size_t>(axis)],
+          settings.spacing_mm[axis], 0.3, 3.0);
+  check("tissue_hu", settings.tissue_hu, 0.0, 120.0);
+  check("texture_hu", settings.texture_hu, 0.0, 30.0);
+  check("noise_hu", settings.noise_hu, 0.0, 60.0);
+  check("blur_mm", settings.blur_mm, 0.0, 2.0);
+  check("holder_hu", settings.holder_hu, -1000.0, 1500.0);
+  check("holder_thickness_mm", settings.holder_thickness_mm, 0.0, 30.0);
+  check("tumor_diameter_mm", settings.tumor_diameter_mm, 8.0, 24.0);
+  check("tumor_irregularity", settings.tumor_irregularity, 0.0, 0.25);
+  check("tumor_depth_mm", settings.tumor_depth_mm, 1.0, 8.0);
+  check("tumor_position", settings.tumor_position, 0.4, 0.6);
+  check("tumor_points", settings.tumor_points, 24, 1000);
+  if (settings.field_of_view_mm != 0.0) {
+    // The circle must hold the largest specimen that these settings can draw.
+    const TongueShapeSettings& shape = settings.shape;
+    const double diagonal =
+        std::hypot(shape.length_mm, shape.width_mm + 2.0 * shape.bend_mm) * (1.0 + shape.variation + shape.asymmetry);
+    check("field_of_view_mm", settings.field_of_view_mm, std::ceil(diagonal + kAirAroundMm), 600.0);
+  }
+  return problems;
+}
+
+Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor) {
+  const std::vector<std::string> problems = validate(settings);
+  if (!problems.empty())
+    throw CaseError("phantom", "settings",
+                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(problems, "; ")),
+                    "settings in their ranges");
+  Random random(settings.seed);
+  Phantom phantom;
+  phantom.shape = draw_tongue_shape(settings.shape, random);
+  phantom.true_volume_mm3 = volume_mm3(phantom.shape);
+  phantom.bounds_mm = bounds_mm(phantom.shape);
+  phantom.tip_end_mm = -0.5 * phantom.shape.length_mm;
+  phantom.posterior_end_mm = 0.5 * phantom.shape.length_mm;
+  phantom.seed_mm = middle_of_body(phantom.shape);
+  draw_tumor(settings, random, phantom);
+
+  const Texture texture = draw_texture(settings.texture_hu, random);
+  const Box3 board = board_of(phantom, settings);
+  const VolumeGrid grid = scan_grid(board, phantom.bounds_mm, settings, random);
+  GrayVolume ideal = mix(tissue_share(phantom.shape, grid, monitor), board, texture, settings);
+  monitor.progress(kStage, 0.7);
+  throw_if_cancelled(monitor, kStage);
+  ideal = gaussian(std::move(ideal), settings.blur_mm);
+  phantom.ct = scan(ideal, settings, random);
+  monitor.progress(kStage, 1.0);
+  return phantom;
+}
+
+}  // namespace incise

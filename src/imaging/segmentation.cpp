@@ -1,0 +1,293 @@
+#include "imaging/occupancy.hpp"
+#include "imaging/segmentation_region.hpp"
+#include "imaging/volume_filters.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/imaging/segmentation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+constexpr const char* kStage = "segmenting";
+constexpr int kGrowth = 3;  // voxels by which the occupancy can reach beyond the body that it is made from
+
+void require_sound_volume(const CtVolume& ct) {
+  const VolumeGrid& grid = ct.grid;
+  INCISE_REQUIRE(
+      grid.size[0] > 0 && grid.size[1] > 0 && grid.size[2] > 0,
+      fmt::format("expected a volume with voxels, found {} x {} x {}", grid.size[0], grid.size[1], grid.size[2]));
+  INCISE_REQUIRE(ct.voxels.size() == grid.voxel_count(),
+                 fmt::format("expected {} voxels for the grid, found {}", grid.voxel_count(), ct.voxels.size()));
+  INCISE_REQUIRE(grid.spacing_mm.allFinite() && (grid.spacing_mm.array() > 0.0).all(),
+                 "expected finite positive spacing");
+  INCISE_REQUIRE(grid.origin_mm.allFinite() && grid.direction.allFinite(), "expected a finite origin and direction");
+  INCISE_REQUIRE((grid.direction.transpose() * grid.direction).isIdentity(1e-3), "expected orthonormal axes");
+}
+
+// Voxels of a mask that a ball around them keeps inside the mask.
+Mask erode(const Mask& mask, double radius_mm) {
+  if (radius_mm == 0.0) return mask;
+  const GrayVolume depth = distance_to(complement(mask));
+  Mask core{mask.grid, std::vector<std::uint8_t>(mask.voxels.size())};
+  for (std::size_t v = 0; v < core.voxels.size(); ++v) core.voxels[v] = depth.voxels[v] > radius_mm ? 1 : 0;
+  return core;
+}
+
+// The balls around the voxels of an eroded set: they fill the opened set and, by its definition, stay inside the
+// original.
+Mask grow_back(Mask core, double radius_mm) {
+  if (radius_mm == 0.0) return core;
+  const GrayVolume distance = distance_to(core);
+  for (std::size_t v = 0; v < core.voxels.size(); ++v) core.voxels[v] = distance.voxels[v] <= radius_mm ? 1 : 0;
+  return core;
+}
+
+Mask piece_of(const Pieces& pieces, std::int32_t number) {
+  Mask piece{pieces.number.grid, std::vector<std::uint8_t>(pieces.number.voxels.size())};
+  std::transform(pieces.number.voxels.begin(), pieces.number.voxels.end(), piece.voxels.begin(),
+                 [number](std::int32_t n) { return static_cast<std::uint8_t>(n == number); });
+  return piece;
+}
+
+std::int32_t largest(const Pieces& pieces) {
+  std::vector<std::size_t> sizes(static_cast<std::size_t>(pieces.count) + 1, 0);
+  for (const std::int32_t number : pieces.number.voxels) ++sizes[static_cast<std::size_t>(number)];
+  return static_cast<std::int32_t>(std::max_element(sizes.begin() + 1, sizes.end()) - sizes.begin());
+}
+
+// The piece whose ball of the opening's radius covers the voxel, the nearest if there are several; 0: none.
+std::int32_t piece_at(const Pieces& pieces, std::size_t offset, double radius_mm) {
+  const VolumeGrid& grid = pieces.number.grid;
+  const auto nx = static_cast<std::size_t>(grid.size[0]);
+  const auto ny = static_cast<std::size_t>(grid.size[1]);
+  const std::array<int, 3> at{static_cast<int>(offset % nx), static_cast<int>(offset / nx % ny),
+                              static_cast<int>(offset / (nx * ny))};
+  const Eigen::Array3i reach = (radius_mm / grid.spacing_mm.array()).ceil().cast<int>();
+  std::int32_t piece = 0;
+  double nearest_mm = std::numeric_limits<double>::infinity();
+  for (int k = at[2] - reach[2]; k <= at[2] + reach[2]; ++k)
+    for (int j = at[1] - reach[1]; j <= at[1] + reach[1]; ++j)
+      for (int i = at[0] - reach[0]; i <= at[0] + reach[0]; ++i) {
+        if (!grid.contains(i, j, k) || pieces.number.at(i, j, k) == 0) continue;
+        const double distance = grid.spacing_mm.cwiseProduct(Vec3(i - at[0], j - at[1], k - at[2])).norm();
+        if (distance > radius_mm || distance >= nearest_mm) continue;
+        nearest_mm = distance;
+        piece = pieces.number.at(i, j, k);
+      }
+  return piece;
+}
+
+std::int32_t choose_piece(const Pieces& pieces, const std::vector<std::size_t>& seeds,
+                          const SegmentationSettings& settings) {
+  if (seeds.empty()) return largest(pieces);
+  std::int32_t chosen = 0;
+  for (std::size_t s = 0; s < seeds.size(); ++s) {
+    const std::string field = fmt::format("seed_mm[{}]", s);
+    const std::int32_t piece = piece_at(pieces, seeds[s], settings.opening_radius_mm);
+    if (piece == 0)
+      throw CaseError("segmentation", field,
+                      fmt::format("a seed in tissue thinner than opening_radius_mm {:g}", settings.opening_radius_mm),
+                      "a seed that the opening keeps");
+    if (chosen != 0 && piece != chosen)
+      throw CaseError("segmentation", field, "a seed in another piece of tissue than seed_mm[0]",
+                      "all seeds in one connected piece");
+    chosen = piece;
+  }
+  return chosen;
+}
+
+Mask find_body(const WorkingVolume& work, const std::vector<std::size_t>& seeds, const SegmentationSettings& settings,
+               Segmentation& result) {
+  const Pieces pieces = find_pieces(erode(work.in_window, settings.opening_radius_mm));
+  if (pieces.count == 0)
+    throw CaseError("segmentation", "opening_radius_mm",
+                    fmt::format("{:g}, which leaves nothing", settings.opening_radius_mm),
+                    "a radius smaller than half the specimen's thickness");
+  result.components = static_cast<std::size_t>(pieces.count);
+  return grow_back(piece_of(pieces, choose_piece(pieces, seeds, settings)), settings.opening_radius_mm);
+}
+
+// Background without a way to the grid's first voxel, which the margin keeps outside the body, becomes body.
+std::vector<std::size_t> cavities(const Mask& body, std::size_t& count) {
+  const Pieces outside = find_pieces(complement(body));
+  std::vector<std::size_t> voxels;
+  for (std::size_t v = 0; v < body.voxels.size(); ++v)
+    if (outside.number.voxels[v] > 1) voxels.push_back(v);
+  count = static_cast<std::size_t>(outside.count - 1);
+  return voxels;
+}
+
+void fill_holes(Mask& body, Segmentation& result) {
+  const std::vector<std::size_t> voxels = cavities(body, result.holes_filled);
+  for (const std::size_t v : voxels) body.voxels[v] = 1;
+  result.hole_voxels = voxels.size();
+}
+
+// Convolution with 2 G - G * G: it averages noise as a Gaussian G does, but shrinks what is round less than half as
+// much. It can overshoot beside a sharp step, hence the limits.
+GrayVolume smoothed(const GrayVolume& occupancy, double sigma_mm) {
+  GrayVolume once = gaussian(occupancy, sigma_mm);
+  const GrayVolume twice = gaussian(once, sigma_mm);
+  for (std::size_t v = 0; v < once.voxels.size(); ++v)
+    once.voxels[v] = std::clamp(2.0F * once.voxels[v] - twice.voxels[v], 0.0F, 1.0F);
+  return once;
+}
+
+Mask at_least_half(const GrayVolume& occupancy) {
+  Mask mask{occupancy.grid, std::vector<std::uint8_t>(occupancy.voxels.size())};
+  std::transform(occupancy.voxels.begin(), occupancy.voxels.end(), mask.voxels.begin(),
+                 [](float value) { return static_cast<std::uint8_t>(value >= 0.5F); });
+  return mask;
+}
+
+// Leaves one piece without cavities above 0.5: crumbs beside the body go, pinholes in it close.
+Mask make_one_piece(GrayVolume& occupancy, bool close_holes) {
+  const Mask all = at_least_half(occupancy);
+  const Pieces pieces = find_pieces(all);
+  INCISE_REQUIRE(pieces.count > 0, "expected a body that outlasts the smoothing, found none; reduce smoothing_mm");
+  Mask body = piece_of(pieces, largest(pieces));
+  for (std::size_t v = 0; v < body.voxels.size(); ++v)
+    if (all.voxels[v] != body.voxels[v]) occupancy.voxels[v] = 0.0F;
+  if (!close_holes) return body;
+  std::size_t ignored = 0;
+  for (const std::size_t v : cavities(body, ignored)) {
+    occupancy.voxels[v] = 1.0F;
+    body.voxels[v] = 1;
+  }
+  return body;
+}
+
+double median_hu(const CtVolume& hu, const Mask& body, const SegmentationSettings& settings) {
+  std::vector<std::int16_t> values;
+  for (std::size_t v = 0; v < body.voxels.size(); ++v)
+    if (body.voxels[v] != 0 && hu.voxels[v] >= settings.window_low_hu && hu.voxels[v] <= settings.window_high_hu)
+      values.push_back(hu.voxels[v]);
+  INCISE_REQUIRE(!values.empty(), "expected a body with voxels in the window, found none; reduce smoothing_mm");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+IndexBox grown(IndexBox box, int voxels) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.low[axis] -= voxels;
+    box.high[axis] += voxels;
+  }
+  return box;
+}
+
+void warn_of_cut_faces(const Segmentation& result, Monitor& monitor) {
+  if (result.cut_faces() == 0) return;
+  std::vector<std::string> faces;
+  for (std::size_t f = 0; f < 6; ++f)
+    if (result.cut_voxels[f] > 0)
+      faces.push_back(fmt::format("{} ({} voxels)", to_string(static_cast<RegionFace>(f)), result.cut_voxels[f]));
+  monitor.message(Severity::Warning, fmt::format("The specimen touches {} of 6 sides of the region of interest: {}. It "
+                                                 "is cut off there; if that is not meant, "
+                                                 "it leaks into its surroundings",
+                                                 faces.size(), fmt::join(faces, ", ")));
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const SegmentationSettings& settings) {
+  std::vector<std::string> problems;
+  const auto check = [&](const char* name, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+      problems.push_back(fmt::format("{}: found {}, expected a number in [{}, {}]", name, value, low, high));
+  };
+  if (!std::isfinite(settings.window_low_hu) || !std::isfinite(settings.window_high_hu) ||
+      settings.window_low_hu >= settings.window_high_hu)
+    problems.push_back(fmt::format("window_hu: found [{}, {}], expected two finite numbers, the first below the second",
+                                   settings.window_low_hu, settings.window_high_hu));
+  if (settings.roi_box_mm) {
+    const Box3& box = *settings.roi_box_mm;
+    if (!box.min().allFinite() || !box.max().allFinite() || !(box.min().array() < box.max().array()).all())
+      problems.push_back(
+          fmt::format("roi_box_mm: found [[{}, {}, {}], [{}, {}, {}]], expected finite corners, the first below the "
+                      "second on each axis",
+                      box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()));
+  }
+  for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s)
+    if (!settings.seeds_mm[s].allFinite())
+      problems.push_back(fmt::format("seed_mm[{}]: found [{}, {}, {}], expected finite numbers", s,
+                                     settings.seeds_mm[s].x(), settings.seeds_mm[s].y(), settings.seeds_mm[s].z()));
+  check("opening_radius_mm", settings.opening_radius_mm, 0.0, 20.0);
+  check("smoothing_mm", settings.smoothing_mm, 0.0, 5.0);
+  check("margin_voxels", settings.margin_voxels, 3, 50);
+  return problems;
+}
+
+std::string_view to_string(RegionFace face) {
+  switch (face) {
+    case RegionFace::Right:
+      return "right";
+    case RegionFace::Left:
+      return "left";
+    case RegionFace::Anterior:
+      return "anterior";
+    case RegionFace::Posterior:
+      return "posterior";
+    case RegionFace::Inferior:
+      return "inferior";
+    case RegionFace::Superior:
+      return "superior";
+  }
+  return "unknown";
+}
+
+int Segmentation::cut_faces() const {
+  return static_cast<int>(std::count_if(cut_voxels.begin(), cut_voxels.end(), [](std::size_t n) { return n > 0; }));
+}
+
+Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor) {
+  const std::vector<std::string> problems = validate(settings);
+  if (!problems.empty())
+    throw CaseError("segmentation", "settings",
+                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(problems, "; ")),
+                    "settings in their ranges");
+  require_sound_volume(ct);
+  const auto report = [&](double fraction) {
+    throw_if_cancelled(monitor, kStage);
+    monitor.progress(kStage, fraction);
+  };
+
+  report(0.0);
+  // The final box is the body's box plus the margin, and the body may grow a little: the pad has room for both.
+  const int pad = settings.margin_voxels + kGrowth;
+  const WorkingVolume whole = cut_out(ct, settings, pad);
+  const std::vector<std::size_t> seeds = locate_seeds(ct, whole, settings);
+  report(0.1);
+  Segmentation result;
+  Mask body = find_body(whole, seeds, settings, result);
+  report(0.4);
+  if (settings.fill_holes) fill_holes(body, result);
+  result.cut_voxels = count_cut_voxels(body, whole.region);
+  warn_of_cut_faces(result, monitor);
+
+  const IndexBox around = grown(box_of(body), pad);
+  const CtVolume hu = crop(whole.hu, around);
+  report(0.5);
+  GrayVolume occupancy = smoothed(occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings),
+                                  settings.smoothing_mm);
+  report(0.9);
+  const Mask label = make_one_piece(occupancy, settings.fill_holes);
+  result.tissue_hu = median_hu(hu, label, settings);
+
+  const IndexBox kept = grown(box_of(label), settings.margin_voxels);
+  result.labels = crop(label, kept);
+  result.occupancy = crop(occupancy, kept);
+  result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
+  result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
+  result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5);
+  report(1.0);
+  return result;
+}
+
+}  // namespace incise

@@ -1,0 +1,196 @@
+#include "imaging/segmentation_region.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+constexpr const char* kWhere = "segmentation";
+
+std::string text_of(const Vec3& p) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", p.x(), p.y(), p.z());
+}
+std::string text_of(const Box3& box) {
+  return fmt::format("[{}, {}]", text_of(box.min()), text_of(box.max()));
+}
+
+// The volume's voxel centres, as a box in world coordinates (larger than the volume when its axes are oblique).
+Box3 extent_of(const VolumeGrid& grid) {
+  Box3 box;
+  for (int corner = 0; corner < 8; ++corner)
+    box.extend(grid.world_from_index({(corner & 1) != 0 ? grid.size[0] - 1.0 : 0.0,
+                                      (corner & 2) != 0 ? grid.size[1] - 1.0 : 0.0,
+                                      (corner & 4) != 0 ? grid.size[2] - 1.0 : 0.0}));
+  return box;
+}
+
+// Indices of the voxels whose centres can lie in the box.
+IndexBox index_box(const VolumeGrid& grid, const std::optional<Box3>& roi_mm) {
+  IndexBox box{{0, 0, 0}, grid.size};
+  if (!roi_mm) return box;
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 index = grid.index_from_world(roi_mm->corner(static_cast<Box3::CornerType>(corner)));
+    low = low.cwiseMin(index);
+    high = high.cwiseMax(index);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<Eigen::Index>(axis);
+    const double last = grid.size[axis] - 1.0;
+    box.low[axis] = static_cast<int>(std::ceil(std::clamp(low[a] - 1e-9, 0.0, last + 1.0)));
+    box.high[axis] = static_cast<int>(std::floor(std::clamp(high[a] + 1e-9, -1.0, last))) + 1;
+  }
+  return box;
+}
+
+bool is_empty(const IndexBox& box) {
+  return box.low[0] >= box.high[0] || box.low[1] >= box.high[1] || box.low[2] >= box.high[2];
+}
+
+// Room for rounding: a box that ends on a voxel centre contains it.
+bool is_in_roi(const std::optional<Box3>& roi_mm, const Vec3& p) {
+  constexpr double kRoundingMm = 1e-6;
+  return !roi_mm || ((p.array() >= roi_mm->min().array() - kRoundingMm).all() &&
+                     (p.array() <= roi_mm->max().array() + kRoundingMm).all());
+}
+
+void fill_working_volume(const CtVolume& ct, const SegmentationSettings& settings, const IndexBox& box,
+                         const std::array<int, 3>& low, WorkingVolume& work) {
+  const VolumeGrid& grid = work.hu.grid;
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const std::array<int, 3> at{i + low[0], j + low[1], k + low[2]};
+        if (!ct.grid.contains(at[0], at[1], at[2])) continue;
+        const std::size_t v = grid.offset(i, j, k);
+        const std::int16_t hu = ct.at(at[0], at[1], at[2]);
+        work.hu.voxels[v] = hu;
+        bool inside = true;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          inside = inside && at[axis] >= box.low[axis] && at[axis] < box.high[axis];
+        inside = inside && is_in_roi(settings.roi_box_mm, grid.world_from_index(Vec3(i, j, k)));
+        work.region.voxels[v] = inside ? 1 : 0;
+        work.in_window.voxels[v] = inside && hu >= settings.window_low_hu && hu <= settings.window_high_hu ? 1 : 0;
+      }
+}
+
+void require_tissue(const WorkingVolume& work, const SegmentationSettings& settings) {
+  if (std::find(work.in_window.voxels.begin(), work.in_window.voxels.end(), 1) != work.in_window.voxels.end()) return;
+  std::int16_t least = std::numeric_limits<std::int16_t>::max();
+  std::int16_t greatest = std::numeric_limits<std::int16_t>::min();
+  for (std::size_t v = 0; v < work.region.voxels.size(); ++v) {
+    if (work.region.voxels[v] == 0) continue;
+    least = std::min(least, work.hu.voxels[v]);
+    greatest = std::max(greatest, work.hu.voxels[v]);
+  }
+  if (least > greatest)
+    throw CaseError(kWhere, "roi_box_mm", "a region between voxel centres, without a voxel",
+                    "a region of at least one voxel");
+  throw CaseError(kWhere, "window_hu",
+                  fmt::format("no voxel with HU in [{:g}, {:g}]", settings.window_low_hu, settings.window_high_hu),
+                  "tissue in the window", fmt::format("The region holds {} to {} HU", least, greatest));
+}
+
+}  // namespace
+
+VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low, const std::array<int, 3>& size) {
+  VolumeGrid part = grid;
+  part.size = size;
+  part.origin_mm = grid.world_from_index(Vec3(low[0], low[1], low[2]));
+  return part;
+}
+
+WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad) {
+  const IndexBox box = index_box(ct.grid, settings.roi_box_mm);
+  if (is_empty(box))
+    throw CaseError(kWhere, "roi_box_mm", text_of(*settings.roi_box_mm),
+                    fmt::format("a box that meets the volume, {} mm", text_of(extent_of(ct.grid))));
+  std::array<int, 3> low{};
+  std::array<int, 3> size{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    low[axis] = box.low[axis] - pad;
+    size[axis] = box.high[axis] - box.low[axis] + 2 * pad;
+  }
+  const VolumeGrid grid = sub_grid(ct.grid, low, size);
+  WorkingVolume work{{grid, std::vector<std::int16_t>(grid.voxel_count(), kAirHu)},
+                     {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
+                     {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)}};
+  fill_working_volume(ct, settings, box, low, work);
+  require_tissue(work, settings);
+  return work;
+}
+
+std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& work,
+                                      const SegmentationSettings& settings) {
+  std::vector<std::size_t> offsets;
+  for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s) {
+    const Vec3& seed = settings.seeds_mm[s];
+    const std::string field = fmt::format("seed_mm[{}]", s);
+    const Eigen::Array3d in_ct = ct.grid.index_from_world(seed).array().round();
+    const Eigen::Array3d count(ct.grid.size[0], ct.grid.size[1], ct.grid.size[2]);
+    if (!((in_ct >= 0.0).all() && (in_ct < count).all()))
+      throw CaseError(kWhere, field, text_of(seed),
+                      fmt::format("a point inside the volume, {} mm", text_of(extent_of(ct.grid))));
+    const Eigen::Array3i at = work.hu.grid.index_from_world(seed).array().round().cast<int>();
+    if (!work.region.grid.contains(at[0], at[1], at[2]) || work.region.at(at[0], at[1], at[2]) == 0)
+      throw CaseError(
+          kWhere, field, text_of(seed),
+          fmt::format("a point inside roi_box_mm {}", settings.roi_box_mm ? text_of(*settings.roi_box_mm) : ""));
+    if (work.in_window.at(at[0], at[1], at[2]) == 0)
+      throw CaseError(kWhere, field, fmt::format("{} with {} HU", text_of(seed), work.hu.at(at[0], at[1], at[2])),
+                      fmt::format("tissue in window_hu [{:g}, {:g}]", settings.window_low_hu, settings.window_high_hu));
+    offsets.push_back(work.hu.grid.offset(at[0], at[1], at[2]));
+  }
+  return offsets;
+}
+
+std::array<std::size_t, 6> count_cut_voxels(const Mask& body, const Mask& region) {
+  // Each of the six index directions belongs to the world side that it points at most.
+  std::array<std::size_t, 6> side{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Eigen::Index world = 0;
+    const Vec3 direction = body.grid.direction.col(static_cast<Eigen::Index>(axis));
+    direction.cwiseAbs().maxCoeff(&world);
+    const bool along = direction[world] > 0.0;
+    side[2 * axis] = 2 * static_cast<std::size_t>(world) + (along ? 0 : 1);
+    side[2 * axis + 1] = 2 * static_cast<std::size_t>(world) + (along ? 1 : 0);
+  }
+  const VolumeGrid& grid = body.grid;
+  std::array<std::size_t, 6> counts{};
+  const auto is_region = [&](int i, int j, int k) { return grid.contains(i, j, k) && region.at(i, j, k) != 0; };
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i) {
+        if (body.at(i, j, k) == 0) continue;
+        const std::array<bool, 6> goes_on{is_region(i - 1, j, k), is_region(i + 1, j, k), is_region(i, j - 1, k),
+                                          is_region(i, j + 1, k), is_region(i, j, k - 1), is_region(i, j, k + 1)};
+        for (std::size_t d = 0; d < 6; ++d)
+          if (!goes_on[d]) ++counts[side[d]];
+      }
+  return counts;
+}
+
+IndexBox box_of(const Mask& mask) {
+  IndexBox box{mask.grid.size, {0, 0, 0}};
+  for (int k = 0; k < mask.grid.size[2]; ++k)
+    for (int j = 0; j < mask.grid.size[1]; ++j)
+      for (int i = 0; i < mask.grid.size[0]; ++i) {
+        if (mask.at(i, j, k) == 0) continue;
+        const std::array<int, 3> at{i, j, k};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          box.low[axis] = std::min(box.low[axis], at[axis]);
+          box.high[axis] = std::max(box.high[axis], at[axis] + 1);
+        }
+      }
+  INCISE_REQUIRE(box.low[0] < box.high[0], "expected a mask with at least one voxel, found none");
+  return box;
+}
+
+}  // namespace incise

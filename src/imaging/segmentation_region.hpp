@@ -1,0 +1,55 @@
+#pragma once
+
+#include "imaging/volume_filters.hpp"
+
+#include <incise/imaging/segmentation.hpp>
+
+#include <array>
+
+namespace incise {
+
+/// The part of a CT that is looked at, with room around it: everything outside the region of interest is background.
+struct WorkingVolume {
+  CtVolume hu;     ///< air beyond the CT's own grid
+  Mask region;     ///< inside the CT's grid and the region of interest
+  Mask in_window;  ///< in the region, with HU in the window
+};
+
+/// A grid of `size` voxels whose first is voxel `low` (which may lie outside) of `grid`.
+[[nodiscard]] VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low,
+                                  const std::array<int, 3>& size);
+
+/// Cuts the region of interest out of the CT, `pad` voxels larger on every side. @throws CaseError: region outside the
+/// volume, nothing in the window.
+[[nodiscard]] WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad);
+
+/// The offsets, in the working volume, of the seeds' voxels. @throws CaseError: a seed outside volume, region or
+/// window.
+[[nodiscard]] std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& work,
+                                                    const SegmentationSettings& settings);
+
+/// How many voxels of the body have a face on each side of the region, in the order of RegionFace.
+[[nodiscard]] std::array<std::size_t, 6> count_cut_voxels(const Mask& body, const Mask& region);
+
+/// The smallest index box, from low to below high, that holds the mask's voxels. @pre at least one.
+struct IndexBox {
+  std::array<int, 3> low;
+  std::array<int, 3> high;
+};
+[[nodiscard]] IndexBox box_of(const Mask& mask);
+
+/// The voxels of the box; the box must lie inside the volume's grid.
+template <class Value>
+[[nodiscard]] Volume<Value> crop(const Volume<Value>& volume, const IndexBox& box) {
+  const std::array<int, 3> size{box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]};
+  Volume<Value> part{sub_grid(volume.grid, box.low, size), {}};
+  part.voxels.reserve(part.grid.voxel_count());
+  for (int k = box.low[2]; k < box.high[2]; ++k)
+    for (int j = box.low[1]; j < box.high[1]; ++j) {
+      const auto row = volume.voxels.begin() + static_cast<std::ptrdiff_t>(volume.grid.offset(box.low[0], j, k));
+      part.voxels.insert(part.voxels.end(), row, row + size[0]);
+    }
+  return part;
+}
+
+}  // namespace incise

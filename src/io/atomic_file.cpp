@@ -1,0 +1,105 @@
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace incise {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A name beside `path` that no other thread or process uses, hidden from listings.
+fs::path temporary_beside(const fs::path& path) {
+  static std::atomic<unsigned> count = 0;  // only makes names differ; never part of a result
+  return path.parent_path() / fmt::format(".{}.{}.{}.part", path.filename().string(), ::getpid(), count++);
+}
+
+/// "out/" means the folder "out".
+fs::path without_trailing_slash(const fs::path& path) {
+  return path.has_filename() ? path : path.parent_path();
+}
+
+void require_parent_folder(const fs::path& path) {
+  const fs::path parent = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  std::error_code error;
+  if (!fs::is_directory(parent, error)) {
+    throw DataError(path, "", fmt::format("no folder '{}'", parent.string()), "an existing folder to write into");
+  }
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  require_parent_folder(path);
+  std::error_code error;
+  if (fs::is_directory(path, error)) throw DataError(path, "", "a folder", "a file name to write to");
+  const fs::path temporary = temporary_beside(path);
+  try {
+    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+    if (!stream) throw DataError(path, "", std::strerror(errno), "a file that can be written");
+    write(stream);
+    stream.close();
+    if (!stream) throw DataError(path, "", "a failed write", "a complete file", "Is the disk full?");
+    fs::rename(temporary, path, error);
+    if (error) throw DataError(path, "", error.message(), "a file that can be written");
+  } catch (...) {
+    fs::remove(temporary, error);
+    throw;
+  }
+}
+
+std::string read_text(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw DataError(path, "", "no such file", "a readable file");
+  if (fs::is_directory(status)) throw DataError(path, "", "a folder", "a file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw DataError(path, "", std::strerror(errno), "a readable file");
+  std::string text;
+  char block[1 << 16];
+  while (stream.read(block, sizeof block) || stream.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(stream.gcount()));
+  }
+  if (stream.bad()) throw DataError(path, fmt::format("byte {}", text.size()), "a read error", "a readable file");
+  return text;
+}
+
+AtomicFolder::AtomicFolder(fs::path target)
+    : target_(without_trailing_slash(target)), temporary_(temporary_beside(target_)) {
+  require_parent_folder(target_);
+  std::error_code error;
+  if (fs::exists(target_, error) && !fs::is_directory(target_, error)) {
+    throw DataError(target_, "", "a file", "a folder, or a name that is free");
+  }
+  fs::create_directory(temporary_, error);
+  if (error) throw DataError(target_, "", error.message(), "a folder that can be written");
+}
+
+AtomicFolder::~AtomicFolder() {
+  std::error_code ignored;
+  if (!is_committed_) fs::remove_all(temporary_, ignored);
+}
+
+void AtomicFolder::commit() {
+  INCISE_REQUIRE(!is_committed_, "expected one commit, found a second");
+  std::error_code error;
+  const fs::path older = temporary_beside(target_);
+  const bool replaces = fs::exists(target_, error);
+  if (replaces) fs::rename(target_, older, error);
+  if (!error) {
+    fs::rename(temporary_, target_, error);
+    std::error_code ignored;
+    if (error && replaces) fs::rename(older, target_, ignored);
+  }
+  if (error) throw DataError(target_, "", error.message(), "a folder that can be replaced");
+  is_committed_ = true;
+  if (replaces) fs::remove_all(older, error);
+}
+
+}  // namespace incise

@@ -1,0 +1,222 @@
+#include "io/json_reading.hpp"
+#include "io/number_text.hpp"
+#include "io/vtk_xml_reader.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/surface_io.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ostream>
+
+namespace incise {
+namespace {
+
+using io_detail::JsonValue;
+
+constexpr std::array<std::string_view, 3> kColumns{"x_mm", "y_mm", "z_mm"};
+
+/// The fields of one row of a CSV file without quoting.
+std::vector<std::string_view> split(std::string_view row) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t comma = row.find(',');
+    fields.push_back(io_detail::trimmed(row.substr(0, comma)));
+    if (comma == std::string_view::npos) return fields;
+    row.remove_prefix(comma + 1);
+  }
+}
+
+std::string joined(const std::vector<std::string_view>& names) {
+  return fmt::format("{}", fmt::join(names, ",")).substr(0, 80);
+}
+
+/// Where x_mm, y_mm and z_mm are among the header's columns.
+std::array<std::size_t, 3> find_columns(const std::vector<std::string_view>& header, const std::filesystem::path& path,
+                                        std::size_t line) {
+  std::array<std::size_t, 3> columns{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto found = std::find(header.begin(), header.end(), kColumns[k]);
+    if (found == header.end()) {
+      throw DataError(path, fmt::format("line {}", line), fmt::format("the header '{}'", joined(header)),
+                      fmt::format("a header with the column {}", kColumns[k]), "The first line reads x_mm,y_mm,z_mm.");
+    }
+    columns[k] = static_cast<std::size_t>(found - header.begin());
+  }
+  return columns;
+}
+
+Contour read_csv(const std::filesystem::path& path, bool is_closed) {
+  const std::string text = read_text(path);
+  std::string_view rest = text;
+  if (rest.rfind("\xEF\xBB\xBF", 0) == 0) rest.remove_prefix(3);  // byte order mark
+  Contour contour{{}, is_closed};
+  std::array<std::size_t, 3> columns{};
+  std::size_t width = 0;
+  for (std::size_t line = 1; !rest.empty(); ++line) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    const std::string_view row = io_detail::trimmed(rest.substr(0, end));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (row.empty()) continue;
+    const auto fields = split(row);
+    if (width == 0) {
+      columns = find_columns(fields, path, line);
+      width = fields.size();
+      continue;
+    }
+    if (fields.size() != width) {
+      throw DataError(path, fmt::format("line {}", line), fmt::format("{} fields", fields.size()),
+                      fmt::format("{}", width));
+    }
+    Vec3 point;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto value = io_detail::to_number(fields[columns[k]]);
+      if (!value || !std::isfinite(*value)) {
+        throw DataError(path, fmt::format("line {}, column {}", line, kColumns[k]),
+                        fmt::format("'{}'", fields[columns[k]].substr(0, 40)), "a finite number");
+      }
+      point[static_cast<Eigen::Index>(k)] = *value;
+    }
+    contour.points.push_back(point);
+  }
+  if (width == 0) throw DataError(path, "", "an empty file", "a header x_mm,y_mm,z_mm and points");
+  return contour;
+}
+
+[[noreturn]] void refuse_kind(const std::filesystem::path& path, const std::string& place, bool found_closed) {
+  throw DataError(path, place, found_closed ? "a closed curve" : "an open curve",
+                  found_closed ? "an open curve" : "a closed curve");
+}
+
+Contour read_polyline(const std::filesystem::path& path, bool is_closed) {
+  const io_detail::VtkXmlFile file(path, "PolyData");
+  const Points points = file.points();
+  if (file.count("NumberOfLines") != 1) {
+    throw DataError(path, "<Lines>", fmt::format("{} polylines", file.count("NumberOfLines")), "one polyline");
+  }
+  std::vector<double> indices = file.array("Lines", "connectivity");
+  const bool repeats_first = indices.size() > 2 && indices.front() == indices.back();
+  if (repeats_first && !is_closed) refuse_kind(path, "<Lines>", true);
+  if (repeats_first) indices.pop_back();
+  Contour contour{{}, is_closed};
+  for (const double index : indices) {
+    if (!(index >= 0.0 && index < static_cast<double>(points.size()))) {
+      throw DataError(path, "<Lines>", fmt::format("point index {}", index),
+                      fmt::format("an index below {}", points.size()));
+    }
+    contour.points.push_back(points[static_cast<std::size_t>(index)]);
+  }
+  return contour;
+}
+
+/// Slicer's markups: "LPS" or "1", "RAS" or "0" (numbers in files of older versions).
+bool is_ras(const JsonValue& markup) {
+  const auto system = markup.find("coordinateSystem");
+  if (!system) return false;
+  const std::string name = system->is_text() ? system->text() : fmt::format("{}", system->number());
+  if (name == "RAS" || name == "0") return true;
+  if (name != "LPS" && name != "1") system->expected("LPS or RAS");
+  return false;
+}
+
+void require_mm(const JsonValue& markup) {
+  const auto units = markup.find("coordinateUnits");
+  if (!units) return;
+  if (units->is_text() && units->text() == "mm") return;
+  if (units->is_text()) units->expected("mm");
+  for (const JsonValue& unit : units->items()) {  // newer versions: [code, scheme, meaning]
+    if (unit.is_text() && unit.text() == "mm") return;
+  }
+  units->expected("mm");
+}
+
+Contour read_slicer_markup(const std::filesystem::path& path, bool is_closed) {
+  const auto document = read_json(path);
+  const auto markups = JsonValue(document, path).at("markups").items();
+  if (markups.size() != 1) {
+    throw DataError(path, "/markups", fmt::format("{} markups", markups.size()), "one curve");
+  }
+  const JsonValue& markup = markups.front();
+  const JsonValue type = markup.at("type");
+  const std::string kind = type.text();
+  if (kind != "ClosedCurve" && kind != "Curve") type.expected("ClosedCurve or Curve");
+  if ((kind == "ClosedCurve") != is_closed) refuse_kind(path, "/markups/0/type", !is_closed);
+  require_mm(markup);
+  Contour contour{{}, is_closed};
+  for (const JsonValue& control : markup.at("controlPoints").items()) {
+    if (const auto status = control.find("positionStatus"); status && status->text() != "defined")
+      status->expected("defined");
+    contour.points.push_back(control.at("position").point());
+  }
+  if (is_ras(markup)) io_detail::turn_over(contour.points);
+  return contour;
+}
+
+bool ends_with(const std::string& text, std::string_view ending) {
+  return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+}  // namespace
+
+Contour read_contour(const std::filesystem::path& path, bool is_closed) {
+  const std::string name = io_detail::lower_case(path.filename().string());
+  Contour contour;
+  if (ends_with(name, ".csv"))
+    contour = read_csv(path, is_closed);
+  else if (ends_with(name, ".vtp"))
+    contour = read_polyline(path, is_closed);
+  else if (ends_with(name, ".mrk.json"))
+    contour = read_slicer_markup(path, is_closed);
+  else
+    throw DataError(path, "", fmt::format("the ending '{}'", path.extension().string()), ".csv, .vtp or .mrk.json");
+  Points& points = contour.points;
+  if (is_closed && points.size() > 1 && points.front() == points.back()) points.pop_back();
+  const std::size_t least = is_closed ? 3 : 2;
+  if (points.size() < least) {
+    throw DataError(path, "", fmt::format("{} points", points.size()),
+                    fmt::format("at least {} for {} contour", least, is_closed ? "a closed" : "an open"));
+  }
+  return contour;
+}
+
+void write_contour_csv(const std::filesystem::path& path, const Contour& contour,
+                       const std::vector<NamedColumn>& columns) {
+  std::string text = "x_mm,y_mm,z_mm";
+  for (const auto& [name, values] : columns) {
+    INCISE_REQUIRE(!name.empty() && name.find_first_of(",\"\r\n") == std::string::npos,
+                   fmt::format("expected column names without comma, quote or line end, found '{}'", name));
+    INCISE_REQUIRE(values.size() == contour.points.size(),
+                   fmt::format("expected {} values in '{}', found {}", contour.points.size(), name, values.size()));
+    text += "," + name;
+  }
+  const auto add = [&](double value, std::string_view what, std::size_t i) {
+    INCISE_REQUIRE(std::isfinite(value),
+                   fmt::format("expected finite numbers, found {} in {} at point {}", value, what, i));
+    text += io_detail::number_text(value);
+  };
+  for (std::size_t i = 0; i < contour.points.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      text += k == 0 ? "\n" : ",";
+      add(contour.points[i][static_cast<Eigen::Index>(k)], kColumns[k], i);
+    }
+    for (const auto& [name, values] : columns) {
+      text += ",";
+      add(values[i], name, i);
+    }
+  }
+  text += "\n";
+  write_atomically(path, [&](std::ostream& stream) { stream << text; });
+}
+
+void write_contour_vtp(const std::filesystem::path& path, const Contour& contour,
+                       const std::map<std::string, DataArray>& point_data) {
+  write_vtp(path, std::span(&contour, 1), point_data);
+}
+
+}  // namespace incise

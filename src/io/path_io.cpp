@@ -1,0 +1,157 @@
+#include "io/json_reading.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/path_io.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <ostream>
+
+namespace incise {
+namespace {
+
+using io_detail::JsonValue;
+using nlohmann::ordered_json;
+
+constexpr const char* kSchema = "incise.path/1";
+constexpr double kUnitAxisTolerance = 1e-4;  // an axis typed with four digits passes; 0.5 µm at 5 mm depth
+
+/// The enumerator that `place` spells, among those given. @throws DataError
+template <class Enum>
+Enum enumerator(const JsonValue& place, std::initializer_list<Enum> all) {
+  std::vector<std::string> names;
+  const std::string word = place.text();
+  for (const Enum item : all) {
+    if (word == to_string(item)) return item;
+    names.emplace_back(to_string(item));
+  }
+  place.expected(fmt::format("one of: {}", fmt::join(names, ", ")));
+}
+
+Waypoint read_waypoint(const JsonValue& place) {
+  place.require_only({"position_mm", "axis", "depth_mm", "speed_mm_s"});
+  Waypoint waypoint;
+  waypoint.position_mm = place.at("position_mm").point();
+  const JsonValue axis = place.at("axis");
+  waypoint.axis = axis.point();
+  if (std::abs(waypoint.axis.norm() - 1.0) > kUnitAxisTolerance) {
+    axis.fail(fmt::format("a vector of length {:.6g}", waypoint.axis.norm()), "a unit vector");
+  }
+  const JsonValue depth = place.at("depth_mm");
+  waypoint.depth_mm = depth.number();
+  if (waypoint.depth_mm < 0.0) depth.expected("a depth of 0 mm or more");
+  const JsonValue speed = place.at("speed_mm_s");
+  waypoint.speed_mm_s = speed.number();
+  if (waypoint.speed_mm_s <= 0.0) speed.expected("a speed above 0 mm/s");
+  return waypoint;
+}
+
+Mat4 read_transform(const JsonValue& place) {
+  const auto rows = place.items();
+  if (rows.size() != 4) place.fail(fmt::format("{} rows", rows.size()), "4 rows of 4 numbers");
+  Mat4 matrix;
+  for (int i = 0; i < 4; ++i) {
+    const auto numbers = rows[static_cast<std::size_t>(i)].items();
+    if (numbers.size() != 4) rows[static_cast<std::size_t>(i)].expected("4 numbers");
+    for (int j = 0; j < 4; ++j) matrix(i, j) = numbers[static_cast<std::size_t>(j)].number();
+  }
+  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) rows[3].expected("[0, 0, 0, 1]");
+  const double determinant = matrix.topLeftCorner<3, 3>().determinant();
+  if (!(determinant > 0.0)) {
+    place.fail(fmt::format("a rotation part with determinant {:.6g}", determinant), "a positive determinant");
+  }
+  return matrix;
+}
+
+std::string read_hash(const JsonValue& place) {
+  const std::string text = place.text();
+  const bool is_hash = text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+  if (!is_hash) place.expected("64 lower-case hex digits");
+  return text;
+}
+
+ToolPath read_path(const JsonValue& root) {
+  root.require_only({"schema", "frame", "kind", "closed", "waypoints", "tumor_edge", "tumor_edge_closed", "T_robot_sim",
+                     "source_sha256"});
+  if (const auto schema = root.find("schema"); schema && schema->text() != kSchema) {
+    schema->expected(fmt::format("\"{}\"", kSchema));
+  }
+  ToolPath path;
+  path.frame = enumerator(root.at("frame"), {PathFrame::SimRest, PathFrame::SimStretched, PathFrame::Robot});
+  path.kind = enumerator(root.at("kind"), {PathKind::Incise, PathKind::Mark});
+  path.is_closed = root.at("closed").boolean();
+  for (const JsonValue& item : root.at("waypoints").items(path.is_closed ? 3 : 2)) {
+    path.waypoints.push_back(read_waypoint(item));
+  }
+  if (const auto edge = root.find("tumor_edge")) {
+    for (const JsonValue& item : edge->items()) path.tumor_edge.points.push_back(item.point());
+  }
+  if (const auto closed = root.find("tumor_edge_closed")) path.tumor_edge.is_closed = closed->boolean();
+  if (const auto transform = root.find("T_robot_sim")) path.T_robot_sim = read_transform(*transform);
+  if (const auto hash = root.find("source_sha256")) path.source_sha256 = read_hash(*hash);
+  return path;
+}
+
+ordered_json array_of(const Vec3& p) {
+  return ordered_json::array({p.x(), p.y(), p.z()});
+}
+
+ordered_json document_of(const ToolPath& path) {
+  ordered_json document;
+  document["schema"] = kSchema;
+  document["frame"] = to_string(path.frame);
+  document["kind"] = to_string(path.kind);
+  document["closed"] = path.is_closed;
+  document["waypoints"] = ordered_json::array();
+  for (const Waypoint& waypoint : path.waypoints) {
+    document["waypoints"].push_back({{"position_mm", array_of(waypoint.position_mm)},
+                                     {"axis", array_of(waypoint.axis)},
+                                     {"depth_mm", waypoint.depth_mm},
+                                     {"speed_mm_s", waypoint.speed_mm_s}});
+  }
+  document["tumor_edge"] = ordered_json::array();
+  for (const Vec3& point : path.tumor_edge.points) document["tumor_edge"].push_back(array_of(point));
+  if (!path.tumor_edge.is_closed) document["tumor_edge_closed"] = false;
+  if (path.T_robot_sim) {
+    for (int i = 0; i < 4; ++i) {
+      const auto row = path.T_robot_sim->row(i);
+      document["T_robot_sim"].push_back({row(0), row(1), row(2), row(3)});
+    }
+  }
+  if (!path.source_sha256.empty()) document["source_sha256"] = path.source_sha256;
+  return document;
+}
+
+}  // namespace
+
+ToolPath tool_path_from_json(std::string_view text, const std::filesystem::path& name) {
+  const ordered_json document = parse_json(text, name);
+  return read_path(JsonValue(document, name));
+}
+
+ToolPath read_tool_path(const std::filesystem::path& path) {
+  return tool_path_from_json(read_text(path), path);
+}
+
+std::string to_json(const ToolPath& path) {
+  const ordered_json document = document_of(path);
+  std::string text = json_text(document);
+  // What cannot be read back must not be written: the reader's rules are the rules.
+  const std::filesystem::path name = "tool path";
+  try {
+    static_cast<void>(read_path(JsonValue(document, name)));
+  } catch (const DataError& error) {
+    throw InvalidArgument(error.what());
+  }
+  return text;
+}
+
+void write_tool_path(const std::filesystem::path& file, const ToolPath& path) {
+  const std::string text = to_json(path);
+  write_atomically(file, [&](std::ostream& stream) { stream << text; });
+}
+
+}  // namespace incise

@@ -1,0 +1,251 @@
+#include "io/number_text.hpp"
+#include "io/surface_readers.hpp"
+#include "io/text_cursor.hpp"
+#include "io/vtk_bytes.hpp"
+#include "io/vtk_xml_reader.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/surface_io.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <ostream>
+
+namespace incise {
+namespace io_detail {
+namespace {
+
+struct Property {
+  std::string name;
+  std::string type;        ///< as VTK XML names it
+  std::string count_type;  ///< of a list; empty: one number
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+};
+
+class PlyReader {
+ public:
+  PlyReader(const std::filesystem::path& path, std::string_view text) : cursor_(path, text) {}
+
+  TriMesh read() {
+    read_header();
+    for (const Element& element : elements_) {
+      if (element.name == "vertex")
+        read_vertices(element);
+      else
+        read_others(element);
+    }
+    for (std::size_t i = 0; i < polygons_.size(); ++i) add_face(i);
+    if (is_ras_) {
+      turn_over(surface_.vertices);
+      turn_over(data_);
+    }
+    surface_.point_data = without_types(std::move(data_));
+    return std::move(surface_);
+  }
+
+ private:
+  void read_header() {
+    if (cursor_.line() != "ply") cursor_.fail("another first line", "'ply'");
+    while (true) {
+      const std::string keyword(cursor_.word("a header line"));
+      if (keyword == "end_header") break;
+      if (keyword == "format") {
+        const std::string format(cursor_.word("ascii or binary_little_endian"));
+        is_binary_ = format == "binary_little_endian";
+        if (!is_binary_ && format != "ascii") cursor_.fail(shown_word(format), "ascii or binary_little_endian");
+      } else if (keyword == "element") {
+        Element element;
+        element.name = cursor_.word("an element's name");
+        element.count = cursor_.count(element.name);
+        elements_.push_back(element);
+      } else if (keyword == "property") {
+        read_property();
+      } else if (keyword == "comment" || keyword == "obj_info") {
+        is_ras_ = is_ras_ || says_ras(cursor_.line());
+        continue;
+      } else {
+        cursor_.fail(shown_word(keyword), "a PLY header line");
+      }
+      cursor_.line();
+    }
+    cursor_.line();
+  }
+
+  void read_property() {
+    if (elements_.empty()) cursor_.fail("a property", "an element first");
+    Property property;
+    std::string_view type = cursor_.word("a number type");
+    if (type == "list") {
+      property.count_type = vtk_type(cursor_.word("a number type"));
+      type = cursor_.word("a number type");
+    }
+    property.type = vtk_type(type);
+    property.name = cursor_.word("a property's name");
+    elements_.back().properties.push_back(property);
+  }
+
+  [[nodiscard]] std::string vtk_type(std::string_view word) const {
+    if (word == "double" || word == "float64") return "Float64";
+    if (word == "float" || word == "float32") return "Float32";
+    if (word == "int" || word == "int32") return "Int32";
+    if (word == "uint" || word == "uint32") return "UInt32";
+    if (word == "short" || word == "int16") return "Int16";
+    if (word == "ushort" || word == "uint16") return "UInt16";
+    if (word == "char" || word == "int8") return "Int8";
+    if (word == "uchar" || word == "uint8") return "UInt8";
+    cursor_.fail(shown_word(word), "a PLY number type");
+  }
+
+  double number(const std::string& type, std::string_view what) {
+    if (!is_binary_) return cursor_.number(what);
+    return numbers_from_bytes(std::string(cursor_.bytes(size_of_vtk_type(type), what)), type, false).front();
+  }
+
+  void read_vertices(const Element& element) {
+    surface_.vertices.resize(element.count);
+    for (std::size_t i = 0; i < element.count; ++i) {
+      for (const Property& property : element.properties) {
+        if (!property.count_type.empty()) cursor_.fail("a list of the vertices", "plain numbers");
+        const double value = number(property.type, property.name);
+        if (!std::isfinite(value)) {
+          throw DataError(cursor_.path(), fmt::format("vertex {}", i), fmt::format("{} = {}", property.name, value),
+                          "a finite number");
+        }
+        store(i, element.count, property, value);
+      }
+    }
+    for (const char* axis : {"x", "y", "z"}) {
+      bool is_there = false;
+      for (const Property& property : element.properties) is_there = is_there || property.name == axis;
+      if (!is_there)
+        throw DataError(cursor_.path(), "header", fmt::format("no vertex property {}", axis), "x, y and z");
+    }
+  }
+
+  void store(std::size_t i, std::size_t count, const Property& property, double value) {
+    const std::string& name = property.name;
+    if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') {
+      surface_.vertices[i][name[0] - 'x'] = value;
+      return;
+    }
+    std::string array_name = name;
+    std::size_t component = 0;
+    int components = 1;
+    if (name.size() == 2 && name[0] == 'n' && name[1] >= 'x' && name[1] <= 'z') {
+      array_name = "normals";
+      component = static_cast<std::size_t>(name[1] - 'x');
+      components = 3;
+    }
+    VtkArray& array = data_[array_name];
+    if (array.data.values.empty()) {
+      array.data = {components, std::vector<double>(count * static_cast<std::size_t>(components), 0.0)};
+      array.is_floating = property.type.rfind("Float", 0) == 0;
+    }
+    array.data.values[i * static_cast<std::size_t>(components) + component] = value;
+  }
+
+  void read_others(const Element& element) {
+    for (std::size_t i = 0; i < element.count; ++i) {
+      for (const Property& property : element.properties) {
+        const bool is_list = !property.count_type.empty();
+        const double length = is_list ? number(property.count_type, "list length") : 1.0;
+        if (!(length >= 0.0 && length <= static_cast<double>(cursor_.bytes_left()))) {
+          throw DataError(cursor_.path(), fmt::format("{} {}", element.name, i), fmt::format("a list of {}", length),
+                          "a shorter list");
+        }
+        std::vector<double> values;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(length); ++k)
+          values.push_back(number(property.type, property.name));
+        const bool is_corners = property.name == "vertex_indices" || property.name == "vertex_index";
+        if (element.name == "face" && is_list && is_corners) polygons_.push_back(std::move(values));
+      }
+    }
+  }
+
+  void add_face(std::size_t face) {
+    std::vector<VertexId> corners;
+    const auto place = [&] { return fmt::format("face {}", face); };
+    for (const double index : polygons_[face]) {
+      if (!(index >= 0.0 && index < static_cast<double>(surface_.vertices.size()))) {
+        throw DataError(cursor_.path(), place(), fmt::format("vertex {}", index),
+                        fmt::format("a vertex below {}", surface_.vertices.size()));
+      }
+      corners.push_back(VertexId(static_cast<std::size_t>(index)));
+    }
+    if (corners.size() < 3)
+      throw DataError(cursor_.path(), place(), fmt::format("{} corners", corners.size()), "3 or more");
+    add_polygon(surface_, corners);
+  }
+
+  TextCursor cursor_;
+  bool is_binary_ = false;
+  bool is_ras_ = false;
+  std::vector<Element> elements_;
+  TriMesh surface_;
+  VtkArrays data_;
+  std::vector<std::vector<double>> polygons_;
+};
+
+/// The names of an array's columns as PLY properties.
+std::vector<std::string> column_names(const std::string& name, int components) {
+  if (name == "normals" && components == 3) return {"nx", "ny", "nz"};
+  if (components == 1) return {name};
+  std::vector<std::string> names;
+  for (int k = 0; k < components; ++k) names.push_back(fmt::format("{}_{}", name, k));
+  return names;
+}
+
+template <class Number>
+void put(std::ostream& stream, Number value) {
+  stream.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+}  // namespace
+
+TriMesh read_ply(const std::filesystem::path& path) {
+  const std::string text = read_text(path);
+  return PlyReader(path, text).read();
+}
+
+}  // namespace io_detail
+
+void write_ply(const std::filesystem::path& path, const TriMesh& surface) {
+  io_detail::require_writable(surface);
+  std::string header = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS\ncomment length unit mm\nelement vertex {}\n",
+      surface.vertices.size());
+  for (const char* axis : {"x", "y", "z"}) header += fmt::format("property double {}\n", axis);
+  for (const auto& [name, array] : surface.point_data) {
+    for (const auto& column : io_detail::column_names(name, array.components)) {
+      INCISE_REQUIRE(column.find_first_of(" \t\r\n") == std::string::npos && !column.empty(),
+                     fmt::format("expected array names without blanks, found '{}'", column));
+      header += fmt::format("property double {}\n", column);
+    }
+  }
+  header +=
+      fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", surface.triangles.size());
+  write_atomically(path, [&](std::ostream& stream) {
+    stream << header;
+    for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
+      for (int k = 0; k < 3; ++k) io_detail::put(stream, surface.vertices[i][k]);
+      for (const auto& [name, array] : surface.point_data) {
+        const std::size_t width = static_cast<std::size_t>(array.components);
+        for (std::size_t k = 0; k < width; ++k) io_detail::put(stream, array.values[i * width + k]);
+      }
+    }
+    for (const Triangle& triangle : surface.triangles) {
+      io_detail::put(stream, std::uint8_t{3});
+      for (const VertexId id : triangle) io_detail::put(stream, id.value);
+    }
+  });
+}
+
+}  // namespace incise

@@ -1,0 +1,28 @@
+# Files made of text or plain bytes: everything but volumes. XML is parsed by pugixml, compressed by zlib; both stay private.
+find_package(pugixml REQUIRED)
+find_package(ZLIB REQUIRED)
+set(text_sources
+  atomic_file.cpp
+  contour_io.cpp
+  gmsh_reader.cpp
+  json_reading.cpp
+  json_text.cpp
+  manifest.cpp
+  mesh_io.cpp
+  nearest_name.cpp
+  number_text.cpp
+  obj_reader.cpp
+  path_io.cpp
+  ply_format.cpp
+  pvd_io.cpp
+  sha256.cpp
+  stl_reader.cpp
+  surface_io.cpp
+  surface_problems.cpp
+  tetgen_reader.cpp
+  text_cursor.cpp
+  vtk_bytes.cpp
+  vtk_legacy_reader.cpp
+  vtk_xml_reader.cpp
+  vtk_xml_writer.cpp)
+set(text_libraries pugixml::pugixml ZLIB::ZLIB)

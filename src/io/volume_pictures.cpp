@@ -1,0 +1,195 @@
+#include "io/volume_pictures.hpp"
+
+#include "io/volume_itk.hpp"
+#include "io/volume_stack.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace incise {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "texture-12.png" is picture 12 of the stack "texture-*".
+struct Picture {
+  fs::path file;
+  std::string stack;
+  long long number = 0;
+};
+
+Picture parse_name(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::size_t end = stem.size();
+  while (end > 0 && !is_digit(stem[end - 1])) --end;
+  std::size_t begin = end;
+  while (begin > 0 && is_digit(stem[begin - 1])) --begin;
+  Picture picture{file, stem.substr(0, begin) + '*' + stem.substr(end)};
+  const auto [stop, problem] = std::from_chars(stem.data() + begin, stem.data() + end, picture.number);
+  if (begin == end || problem != std::errc() || stop != stem.data() + end) {
+    throw DataError(file, "name", fmt::format("'{}'", stem), "a name with the picture's number in the stack");
+  }
+  return picture;
+}
+
+/// In the order of their numbers; refuses mixed stacks, doubles and gaps in the numbering.
+std::vector<Picture> sorted_pictures(const fs::path& folder, int& other_files) {
+  std::vector<Picture> pictures;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    if (format_of_name(entry.path()) == VolumeFormat::PictureStack) {
+      pictures.push_back(parse_name(entry.path()));
+    } else {
+      ++other_files;
+    }
+  }
+  std::sort(pictures.begin(), pictures.end(), [](const Picture& a, const Picture& b) {
+    return std::pair(a.number, a.file) < std::pair(b.number, b.file);
+  });
+  if (pictures.size() < 2) throw DataError(folder, "pictures", "a single slice", "a stack of two pictures or more");
+  const long long step = pictures[1].number - pictures[0].number;
+  for (std::size_t p = 1; p < pictures.size(); ++p) {
+    const Picture& before = pictures[p - 1];
+    const Picture& here = pictures[p];
+    const auto both = [&] {
+      return fmt::format("'{}' and '{}'", before.file.filename().string(), here.file.filename().string());
+    };
+    if (before.stack != here.stack)
+      throw DataError(folder, "pictures", both(), "names that differ only by the picture's number");
+    if (before.number == here.number)
+      throw DataError(folder, "pictures", both() + " with one number", "one picture per number");
+    if (here.number - before.number != step) {
+      throw DataError(folder, "pictures", "a hole in the numbering between " + both(), "every slice of the stack");
+    }
+  }
+  return pictures;
+}
+
+/// A big-endian number of four bytes.
+std::uint32_t number_at(const std::string& bytes, std::size_t position) {
+  std::uint32_t number = 0;
+  for (std::size_t b = 0; b < 4; ++b) number = number << 8U | static_cast<unsigned char>(bytes[position + b]);
+  return number;
+}
+
+/// Follows the chunks of the file from the signature to its end mark and checks their sums: the PNG library behind ITK
+/// stops the whole process on a damaged picture. Then colour and depth, as the first chunk states them: the reader
+/// would turn palettes and grays of few bits into something else. Source: PNG specification (W3C), 5.2 to 5.5
+/// and 11.2.2.
+void require_gray_png(const fs::path& file) {
+  const std::string bytes = read_text(file);
+  const std::string signature = "\x89PNG\r\n\x1a\n";
+  if (bytes.compare(0, signature.size(), signature) != 0) {
+    throw DataError(file, "first bytes", "something else", "a PNG picture",
+                    "Is the file damaged, or its extension wrong?");
+  }
+  constexpr std::size_t around = 12;  // length, name and sum of a chunk
+  std::string name;
+  for (std::size_t position = signature.size(); name != "IEND";) {
+    const std::size_t length = position + around <= bytes.size() ? number_at(bytes, position) : bytes.size();
+    const bool is_whole = position + around + length <= bytes.size();
+    const auto* sum_begin = reinterpret_cast<const Bytef*>(bytes.data() + position + 4);
+    if (!is_whole || crc32(0, sum_begin, static_cast<uInt>(length + 4)) != number_at(bytes, position + 8 + length)) {
+      throw DataError(file, fmt::format("byte {} of {}", position, bytes.size()), "a damaged chunk",
+                      "a complete PNG picture", "Is the file cut short?");
+    }
+    name = bytes.substr(position + 4, 4);
+    if (position == signature.size() && (name != "IHDR" || length != 13)) throw DataError(file, "header", name, "IHDR");
+    position += around + length;
+  }
+  const int depth = bytes[24];
+  const int colour = bytes[25];
+  if (colour != 0) throw DataError(file, "colour type", colour == 4 ? "gray with transparency" : "colour", "gray only");
+  if (depth != 8 && depth != 16) throw DataError(file, "bit depth", fmt::format("{}", depth), "8 or 16");
+}
+
+void require_settings(const fs::path& folder, const CtReadSettings& settings) {
+  const std::string hint = "Pictures carry neither millimetres nor Hounsfield units.";
+  if (!settings.spacing_mm) {
+    throw CaseError(folder.string(), "ct.spacing_mm", "nothing", "column, row and slice spacing in mm", hint);
+  }
+  if (!settings.hu)
+    throw CaseError(folder.string(), "ct.hu", "nothing", "{slope, intercept} from gray level to HU", hint);
+  const Vec3& spacing = *settings.spacing_mm;
+  if (!spacing.allFinite() || spacing.minCoeff() <= 0) {
+    throw CaseError(folder.string(), "ct.spacing_mm", fmt::format("[{}, {}, {}]", spacing[0], spacing[1], spacing[2]),
+                    "three positive, finite lengths");
+  }
+  if (!std::isfinite(settings.hu->slope) || settings.hu->slope == 0 || !std::isfinite(settings.hu->intercept)) {
+    throw CaseError(folder.string(), "ct.hu",
+                    fmt::format("{{slope: {}, intercept: {}}}", settings.hu->slope, settings.hu->intercept),
+                    "finite numbers and a slope other than 0");
+  }
+}
+
+void to_hounsfield(const fs::path& file, const RawImage& image, const GrayToHu& hu, std::int16_t* out) {
+  for (std::size_t p = 0; p < image.grid.voxel_count(); ++p) {
+    std::uint16_t gray = 0;
+    if (image.component == Component::U8) {
+      gray = static_cast<unsigned char>(image.bytes[p]);
+    } else {
+      std::memcpy(&gray, image.bytes.data() + p * sizeof gray, sizeof gray);
+    }
+    const double value = hu.slope * gray + hu.intercept;
+    if (value < -32768.0 || value > 32767.0) {
+      throw DataError(file, fmt::format("pixel ({}, {})", p % image.grid.size[0], p / image.grid.size[0]),
+                      fmt::format("gray level {}, that is {:.6g} HU", gray, value), "a value of 16 bits",
+                      "Check ct.hu.");
+    }
+    out[p] = static_cast<std::int16_t>(std::lround(value));
+  }
+}
+
+}  // namespace
+
+ReadVolume read_picture_folder(const fs::path& folder, const CtReadSettings& settings, Monitor& monitor) {
+  require_settings(folder, settings);
+  int other_files = 0;
+  std::vector<Picture> pictures = sorted_pictures(folder, other_files);
+  if (settings.first_picture_is_head) std::reverse(pictures.begin(), pictures.end());
+
+  ReadVolume result;
+  CtReadDiagnostics& diagnostics = result.diagnostics;
+  diagnostics.format = VolumeFormat::PictureStack;
+  diagnostics.slices = static_cast<int>(pictures.size());
+  diagnostics.min_step_mm = diagnostics.max_step_mm = (*settings.spacing_mm)[2];
+  for (std::size_t k = 0; k < pictures.size(); ++k) {
+    throw_if_cancelled(monitor, "reading CT");
+    monitor.progress("reading CT", static_cast<double>(k) / static_cast<double>(pictures.size()));
+    require_gray_png(pictures[k].file);
+    const RawImage image = read_itk_image(pictures[k].file, VolumeFormat::PictureStack);
+    VolumeGrid& grid = result.volume.grid;
+    if (k == 0) {
+      grid.size = {image.grid.size[0], image.grid.size[1], diagnostics.slices};
+      grid.spacing_mm = *settings.spacing_mm;
+      result.volume.voxels.resize(grid.voxel_count());
+    }
+    if (image.grid.size[0] != grid.size[0] || image.grid.size[1] != grid.size[1]) {
+      throw DataError(
+          pictures[k].file, "size", fmt::format("{} x {}", image.grid.size[0], image.grid.size[1]),
+          fmt::format("{} x {} as in '{}'", grid.size[0], grid.size[1], pictures[0].file.filename().string()));
+    }
+    to_hounsfield(pictures[k].file, image, *settings.hu, result.volume.voxels.data() + k * image.grid.voxel_count());
+  }
+  monitor.progress("reading CT", 1.0);
+  if (other_files > 0)
+    notify(diagnostics, monitor,
+           fmt::format("files of the folder that are no PNG pictures and were passed over: {}", other_files));
+  const auto has_fraction = [](double v) { return v != std::round(v); };
+  if (has_fraction(settings.hu->slope) || has_fraction(settings.hu->intercept)) {
+    notify(diagnostics, monitor, "fractional Hounsfield units were rounded to whole ones");
+  }
+  return result;
+}
+
+}  // namespace incise

@@ -1,0 +1,135 @@
+#include "io/vtk_bytes.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+
+namespace incise::io_detail {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "written for little endian machines");
+
+constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr int kCompressionLevel = 3;  // fast; level 6 saves a further few percent on meshes
+
+constexpr std::array<int, 256> digit_values() {
+  std::array<int, 256> values{};
+  values.fill(-1);
+  for (std::size_t i = 0; i < kDigits.size(); ++i) values[static_cast<unsigned char>(kDigits[i])] = static_cast<int>(i);
+  return values;
+}
+
+template <class Number>
+std::vector<double> numbers_as(const std::string& bytes) {
+  std::vector<double> numbers(bytes.size() / sizeof(Number));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    Number value;
+    std::memcpy(&value, bytes.data() + i * sizeof(Number), sizeof(Number));
+    numbers[i] = static_cast<double>(value);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+bool ByteSource::decode_quad() {
+  static constexpr std::array<int, 256> kValues = digit_values();
+  std::uint32_t bits = 0;
+  int digits = 0;
+  int padding = 0;
+  while (digits + padding < 4) {
+    while (at_ < text_.size() && static_cast<unsigned char>(text_[at_]) <= ' ') ++at_;
+    if (at_ == text_.size()) return false;
+    const char c = text_[at_++];
+    const int value = c == '=' && digits >= 2 ? 0 : kValues[static_cast<unsigned char>(c)];
+    if (value < 0 || (padding > 0 && c != '=')) return false;
+    bits = bits << 6 | static_cast<std::uint32_t>(value);
+    ++(c == '=' ? padding : digits);
+  }
+  for (int i = 0; i < 3 - padding; ++i) pending_ += static_cast<char>(bits >> (16 - 8 * i) & 0xFF);
+  return true;
+}
+
+std::optional<std::string> ByteSource::take(std::size_t size) {
+  if (size > bytes_left()) return std::nullopt;
+  if (!is_base64_) {
+    at_ += size;
+    return std::string(text_.substr(at_ - size, size));
+  }
+  pending_.reserve(size + 3);
+  while (pending_.size() < size) {
+    if (!decode_quad()) return std::nullopt;
+  }
+  std::string result = pending_.substr(0, size);
+  pending_.erase(0, size);
+  return result;
+}
+
+std::string base64(std::string_view bytes) {
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      const bool is_padding = i + k > bytes.size();
+      text += is_padding ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
+    }
+  }
+  return text;
+}
+
+std::size_t size_of_vtk_type(std::string_view type) {
+  if (type == "Float64" || type == "Int64" || type == "UInt64") return 8;
+  if (type == "Float32" || type == "Int32" || type == "UInt32") return 4;
+  if (type == "Int16" || type == "UInt16") return 2;
+  if (type == "Int8" || type == "UInt8") return 1;
+  return 0;
+}
+
+std::vector<double> numbers_from_bytes(std::string bytes, std::string_view type, bool is_big_endian) {
+  const std::size_t size = size_of_vtk_type(type);
+  INCISE_REQUIRE(size > 0 && bytes.size() % size == 0, "expected whole numbers of a known type");
+  if (is_big_endian) {
+    for (std::size_t i = 0; i < bytes.size(); i += size) std::reverse(&bytes[i], &bytes[i] + size);
+  }
+  if (type == "Float64") return numbers_as<double>(bytes);
+  if (type == "Float32") return numbers_as<float>(bytes);
+  if (type == "Int64") return numbers_as<std::int64_t>(bytes);
+  if (type == "UInt64") return numbers_as<std::uint64_t>(bytes);
+  if (type == "Int32") return numbers_as<std::int32_t>(bytes);
+  if (type == "UInt32") return numbers_as<std::uint32_t>(bytes);
+  if (type == "Int16") return numbers_as<std::int16_t>(bytes);
+  if (type == "UInt16") return numbers_as<std::uint16_t>(bytes);
+  if (type == "Int8") return numbers_as<std::int8_t>(bytes);
+  return numbers_as<std::uint8_t>(bytes);
+}
+
+std::optional<std::string> inflated(std::string_view bytes, std::size_t size) {
+  std::string result(size, '\0');
+  uLongf length = static_cast<uLongf>(size);
+  const int status = uncompress(reinterpret_cast<Bytef*>(result.data()), &length,
+                                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()));
+  if (status != Z_OK || length != size) return std::nullopt;
+  return result;
+}
+
+std::string deflated(std::string_view bytes) {
+  uLongf length = compressBound(static_cast<uLong>(bytes.size()));
+  std::string result(length, '\0');
+  const int status =
+      compress2(reinterpret_cast<Bytef*>(result.data()), &length, reinterpret_cast<const Bytef*>(bytes.data()),
+                static_cast<uLong>(bytes.size()), kCompressionLevel);
+  if (status != Z_OK) throw Error("zlib could not compress");
+  result.resize(length);
+  return result;
+}
+
+}  // namespace incise::io_detail

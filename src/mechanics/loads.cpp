@@ -1,0 +1,209 @@
+#include "mechanics/loads.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr const char* kWhere = "case";
+/// A support pushes back with the pressure of the tissue's Young's modulus at this depth, so that pressures of up to E
+/// stay within it.
+constexpr double kPenetrationAtModulusMm = 0.05;
+/// Smallest share of the largest eigenvalue at which a rigid motion counts as stopped.
+constexpr double kLeastMotionShare = 1e-10;
+constexpr const char* kAxisNames = "xyz";
+
+std::string text_of(const Vec3& v) {
+  return fmt::format("[{:g}, {:g}, {:g}]", v[0], v[1], v[2]);
+}
+
+class ConstraintApplier {
+ public:
+  ConstraintApplier(TissueModel& model, std::vector<BoundaryFace> skin) : model_(model), skin_(std::move(skin)) {}
+
+  void apply(std::size_t index) {
+    index_ = index;
+    std::visit([this](const auto& constraint) { apply_one(constraint); }, model_.constraints[index]);
+  }
+
+ private:
+  [[nodiscard]] std::string field(const char* key) const {
+    return fmt::format("specimen.constraints[{}].{}", index_, key);
+  }
+
+  void require_finite(const char* key, const Vec3& value) const {
+    if (!value.allFinite()) throw CaseError(kWhere, field(key), text_of(value), "three finite numbers");
+  }
+
+  [[nodiscard]] std::vector<VertexId> selected(const Region& region) const {
+    std::vector<VertexId> vertices;
+    try {
+      vertices = select(model_.mesh, region);
+    } catch (const InvalidArgument& problem) {
+      throw CaseError(kWhere, field("where"), "an unusable region", "one that can be applied to this mesh",
+                      problem.what());
+    }
+    if (vertices.empty()) throw nothing_selected("vertex");
+    return vertices;
+  }
+
+  [[nodiscard]] CaseError nothing_selected(const char* what) const {
+    const Box3 box = bounding_box(model_.mesh.vertices);
+    return CaseError(kWhere, field("where"), fmt::format("a region without any {} of the mesh", what),
+                     fmt::format("one with at least one {}", what),
+                     fmt::format("The mesh fills the box {} to {} mm", text_of(box.min()), text_of(box.max())));
+  }
+
+  void hold(const std::vector<VertexId>& vertices, const std::array<bool, 3>& axes, const Vec3& displacement) {
+    for (const VertexId v : vertices) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        if (!axes[i]) continue;
+        const auto axis = static_cast<int>(i);
+        double& prescribed = model_.prescribed_displacement_mm[v.index()][axis];
+        if (!model_.is_fixed[v.index()][i]) {
+          model_.is_fixed[v.index()][i] = true;
+          model_.holder[v.index()][i] = static_cast<std::int32_t>(index_);
+          prescribed = displacement[axis];
+        } else if (prescribed != displacement[axis]) {
+          throw CaseError(
+              kWhere, field("where"),
+              fmt::format("vertex {} at {} mm to be moved by {:g} mm along {}", v.value,
+                          text_of(model_.mesh.vertices[v.index()]), displacement[axis], kAxisNames[i]),
+              fmt::format("{:g} mm, which specimen.constraints[{}] asks for", prescribed, model_.holder[v.index()][i]),
+              "Two constraints that overlap must agree; make one region smaller");
+        }
+      }
+    }
+  }
+
+  void apply_one(const FixedConstraint& fixed) {
+    if (!fixed.axes[0] && !fixed.axes[1] && !fixed.axes[2]) {
+      throw CaseError(kWhere, field("axes"), "no axis", "at least one of x, y, z");
+    }
+    hold(selected(fixed.where), fixed.axes, Vec3::Zero());
+  }
+
+  void apply_one(const DisplacedConstraint& displaced) {
+    require_finite("displacement_mm", displaced.displacement_mm);
+    hold(selected(displaced.where), {true, true, true}, displaced.displacement_mm);
+  }
+
+  void apply_one(const SupportConstraint& support) {
+    require_finite("plane.point_mm", support.point_mm);
+    const double length = support.normal.norm();
+    if (!std::isfinite(length) || length < 1e-12) {
+      throw CaseError(kWhere, field("plane.normal"), text_of(support.normal), "a direction");
+    }
+    SupportPlane plane;
+    plane.constraint = index_;
+    plane.point_mm = support.point_mm;
+    plane.normal = support.normal / length;
+    std::vector<double> area(model_.mesh.vertices.size(), 0.0);
+    for (const BoundaryFace& face : skin_) {
+      for (const VertexId v : face.corners) area[v.index()] += area_vector(face).norm() / 3.0;
+    }
+    for (std::size_t v = 0; v < area.size(); ++v) {
+      if (area[v] == 0.0 || !can_move_along(plane.normal, v)) continue;
+      plane.vertices.emplace_back(v);
+      plane.stiffness.push_back(model_.material.youngs_modulus_kpa / kPenetrationAtModulusMm * area[v]);
+    }
+    model_.supports.push_back(std::move(plane));
+  }
+
+  [[nodiscard]] bool can_move_along(const Vec3& direction, std::size_t v) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!model_.is_fixed[v][i] && direction[static_cast<int>(i)] != 0.0) return true;
+    }
+    return false;
+  }
+
+  void apply_one(const TractionConstraint& traction) {
+    require_finite("traction_kpa", traction.traction_kpa);
+    std::vector<std::uint8_t> is_inside(model_.mesh.vertices.size(), 0);
+    for (const VertexId v : selected(traction.where)) is_inside[v.index()] = 1;
+    bool is_loaded = false;
+    for (const BoundaryFace& face : skin_) {
+      if (!std::all_of(face.corners.begin(), face.corners.end(),
+                       [&](VertexId v) { return is_inside[v.index()] != 0; })) {
+        continue;
+      }
+      is_loaded = true;
+      const Vec3 load = area_vector(face).norm() * traction.traction_kpa;
+      for (const VertexId v : face.corners) model_.dead_load_mn[v.index()] += load / 3.0;
+      model_.applied_load_mn[index_] += load;
+    }
+    if (!is_loaded) throw nothing_selected("boundary face");
+  }
+
+  [[nodiscard]] Vec3 area_vector(const BoundaryFace& face) const {
+    const Vec3& a = vertex(model_.mesh.vertices, face.corners[0]);
+    const Vec3& b = vertex(model_.mesh.vertices, face.corners[1]);
+    const Vec3& c = vertex(model_.mesh.vertices, face.corners[2]);
+    return 0.5 * (b - a).cross(c - a);
+  }
+
+  TissueModel& model_;
+  std::vector<BoundaryFace> skin_;
+  std::size_t index_ = 0;
+};
+
+}  // namespace
+
+void apply_constraints(TissueModel& model, const Vec3& gravity_mm_s2) {
+  if (!gravity_mm_s2.allFinite()) {
+    throw CaseError(kWhere, "specimen.gravity_mm_s2", text_of(gravity_mm_s2), "three finite numbers");
+  }
+  const std::size_t count = model.mesh.vertices.size();
+  model.is_fixed.assign(count, {false, false, false});
+  model.holder.assign(count, {-1, -1, -1});
+  model.prescribed_displacement_mm.assign(count, Vec3::Zero());
+  model.dead_load_mn.resize(count);
+  for (std::size_t v = 0; v < count; ++v) model.dead_load_mn[v] = model.vertex_mass_kg[v] * gravity_mm_s2;
+  model.applied_load_mn.assign(model.constraints.size(), Vec3::Zero());
+
+  ConstraintApplier applier(model, boundary_faces(model.mesh));
+  // Supports last: a vertex that a clamp holds against the plane is the clamp's, not theirs.
+  for (const bool is_support_turn : {false, true}) {
+    for (std::size_t i = 0; i < model.constraints.size(); ++i) {
+      if (std::holds_alternative<SupportConstraint>(model.constraints[i]) == is_support_turn) applier.apply(i);
+    }
+  }
+}
+
+void require_no_rigid_motion(const TissueModel& model) {
+  using Mat6 = Eigen::Matrix<double, 6, 6>;
+  const Box3 box = bounding_box(model.mesh.vertices);
+  const double scale = std::max(box.diagonal().norm(), 1e-300);
+  Mat6 stopped = Mat6::Zero();  // sum over held axes of (row of the rigid modes)ᵀ (row)
+  for (std::size_t v = 0; v < model.is_fixed.size(); ++v) {
+    const Vec3 arm = (model.mesh.vertices[v] - box.center()) / scale;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!model.is_fixed[v][i]) continue;
+      const Vec3 axis = Vec3::Unit(static_cast<int>(i));
+      Eigen::Matrix<double, 6, 1> row;
+      row << axis, arm.cross(axis);
+      stopped += row * row.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Mat6> solver(stopped);
+  const double largest = solver.eigenvalues()[5];
+  int free_motions = 0;
+  for (int i = 0; i < 6; ++i) {
+    if (!(solver.eigenvalues()[i] > kLeastMotionShare * largest)) ++free_motions;
+  }
+  if (free_motions == 0) return;
+  throw CaseError(kWhere, "specimen.constraints",
+                  fmt::format("{} of 6 rigid motions of the body left free", free_motions),
+                  "fixed or displaced constraints that stop all six",
+                  model.supports.empty() ? "Fix a region that is not a single line of vertices along all three axes"
+                                         : "A support does not count: it only pushes, and tissue may lift off it");
+}
+
+}  // namespace incise

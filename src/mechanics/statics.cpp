@@ -1,0 +1,278 @@
+#include "mechanics/elastic_response.hpp"
+#include "mechanics/reactions.hpp"
+#include "mechanics/support.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/mechanics/solvers.hpp>
+#include <incise/mechanics/statics.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr int kMaxPerLoadStep = 20;
+constexpr int kMaxContactChanges =
+    8;  // steps per load step that may raise the energy because they change what touches a support
+constexpr int kMaxHalvings = 7;  // of a Newton step in the line search
+constexpr double kLeastLoadStep = 1.0 / 64.0;
+constexpr double kGoodDecrease = 0.7;  // of the residual: accepted without asking the energy
+constexpr double kArmijo = 1e-4;
+constexpr double kIntermediateTolerance = 1e-2;  // on the way, equilibrium need not be exact
+
+/// Newton's method for one model. The state moves; everything else is scratch.
+class Equilibrium {
+ public:
+  Equilibrium(const TissueModel& model, const StaticSettings& settings, Workers& workers, Monitor& monitor,
+              StaticResult& result)
+      : model_(model),
+        settings_(settings),
+        workers_(workers),
+        monitor_(monitor),
+        result_(result),
+        state_(result.state),
+        matrix_(model.pattern),
+        cholesky_(model.pattern),
+        free_(free_axes(model, result.state)),
+        forces_(free_.size()),
+        right_(free_.size()),
+        step_(free_.size()),
+        jump_(free_.size()),
+        load_(model.dead_load_mn),
+        out_of_balance_(free_.size(), Vec3::Zero()),
+        loose_(free_.size(), 0) {
+    for (std::size_t v = 0; v < loose_.size(); ++v) loose_[v] = free_[v].isZero(0.0) ? 1 : 0;
+  }
+
+  Outcome run() {
+    start_positions_ = state_.positions;
+    out_of_balance_ = assemble(nullptr);
+    double done = 0.0;
+    double size = settings_.first_load_fraction;
+    while (done < 1.0) {
+      const TissueState before = state_;
+      const double target = std::min(1.0, done + size);
+      const Outcome end = advance_to(target);
+      if (end == Outcome::Cancelled) return end;
+      if (end == Outcome::Success) {
+        done = target;
+        ++result_.load_steps;
+        size = std::min(2.0 * size, 1.0 - done);
+        monitor_.progress("stretching", done);
+        continue;
+      }
+      if (size <= kLeastLoadStep || result_.iterations >= settings_.max_newton_iterations) return Outcome::NotConverged;
+      state_ = before;
+      size *= 0.5;
+    }
+    // Smaller load steps would end in the same equilibrium: with this law it is the strain, not the way to it, that
+    // inverts a sliver.
+    return count_inverted() > 0 ? Outcome::ElementInverted : Outcome::Success;
+  }
+
+  [[nodiscard]] std::size_t count_inverted() const {
+    std::size_t count = 0;
+    for (std::size_t tet = 0; tet < model_.mesh.tets.size(); ++tet) {
+      if (state_.is_live[tet] != 0 && !(deformation_gradient(model_, state_.positions, tet).determinant() > 0.0))
+        ++count;
+    }
+    return count;
+  }
+  [[nodiscard]] int projected_factors() const { return projected_; }
+
+ private:
+  /// Loads at a fraction of the way: what was out of balance at the start is taken away at 0 and all there at 1.
+  void set_load(double fraction) {
+    for (std::size_t v = 0; v < load_.size(); ++v) {
+      load_[v] = model_.dead_load_mn[v] - (1.0 - fraction) * out_of_balance_[v];
+    }
+  }
+
+  /// Sum of all forces at the current positions; with `tangent` also fills matrix_.
+  const Points& assemble(const Tangent* tangent) {
+    forces_ = load_;
+    BlockMatrix* stiffness = tangent != nullptr ? &matrix_ : nullptr;
+    if (stiffness != nullptr) std::fill(matrix_.values.begin(), matrix_.values.end(), 0.0);
+    add_elastic_response(model_, state_, forces_, stiffness, tangent != nullptr ? *tangent : Tangent::FrozenRotations,
+                         turning_, workers_);
+    add_support_response(model_, state_, forces_, stiffness);
+    return forces_;
+  }
+
+  [[nodiscard]] double residual() const {
+    double squared = 0.0;
+    for (std::size_t v = 0; v < forces_.size(); ++v) squared += forces_[v].cwiseProduct(free_[v]).squaredNorm();
+    return std::sqrt(squared);
+  }
+
+  /// What the residual is compared with: the reactions, or the loads, or a force far below any that deforms the body.
+  [[nodiscard]] double scale() const {
+    double reactions = 0.0;
+    double loads = 0.0;
+    for (std::size_t v = 0; v < forces_.size(); ++v) {
+      for (int i = 0; i < 3; ++i) {
+        if (model_.is_fixed[v][static_cast<std::size_t>(i)]) reactions += forces_[v][i] * forces_[v][i];
+      }
+      loads += load_[v].cwiseProduct(free_[v]).squaredNorm();
+    }
+    const double size = bounding_box(model_.mesh.vertices).diagonal().norm();
+    const double floor = 1e-6 * model_.material.youngs_modulus_kpa * size * size;
+    return std::max({std::sqrt(reactions), std::sqrt(loads), floor});
+  }
+
+  [[nodiscard]] double potential() const {
+    double work = 0.0;
+    for (std::size_t v = 0; v < load_.size(); ++v) work += load_[v].dot(state_.positions[v] - start_positions_[v]);
+    return elastic_energy_uj(model_, state_) + support_energy_uj(model_, state_) - work;
+  }
+
+  /// Distance that held axes still have to go; zero elsewhere. @returns whether there is any.
+  bool find_jump(double fraction) {
+    bool is_any = false;
+    for (std::size_t v = 0; v < jump_.size(); ++v) {
+      for (int i = 0; i < 3; ++i) {
+        jump_[v][i] = 0.0;
+        if (!model_.is_fixed[v][static_cast<std::size_t>(i)]) continue;
+        const double last = model_.mesh.vertices[v][i] + model_.prescribed_displacement_mm[v][i];
+        const double first = start_positions_[v][i];
+        jump_[v][i] = (fraction < 1.0 ? first + fraction * (last - first) : last) - state_.positions[v][i];
+        is_any = is_any || jump_[v][i] != 0.0;
+      }
+    }
+    return is_any;
+  }
+
+  /// Newton at a fixed load fraction. The first step carries the held vertices to their places and the tissue with
+  /// them, by the linear response: moving the boundary alone would crush its first row of tets.
+  Outcome advance_to(double fraction) {
+    set_load(fraction);
+    const double tolerance =
+        fraction < 1.0 ? std::max(kIntermediateTolerance, settings_.relative_tolerance) : settings_.relative_tolerance;
+    bool must_jump = find_jump(fraction);
+    contact_changes_ = 0;
+    for (int i = 0; i < kMaxPerLoadStep; ++i) {
+      if (monitor_.is_cancelled()) return Outcome::Cancelled;
+      Tangent tangent = Tangent::Exact;
+      assemble(&tangent);
+      const double now = residual();
+      if (!std::isfinite(now)) return Outcome::NotConverged;
+      if (!must_jump) {
+        result_.relative_residual = now / scale();
+        result_.residual_history.push_back(result_.relative_residual);
+        if (result_.relative_residual <= tolerance) return Outcome::Success;
+      }
+      if (result_.iterations >= settings_.max_newton_iterations || !find_step(must_jump)) return Outcome::NotConverged;
+      ++result_.iterations;
+      if (must_jump) {
+        for (std::size_t v = 0; v < step_.size(); ++v) state_.positions[v] += step_[v] + jump_[v];
+        must_jump = false;
+      } else if (!search_along_step(now)) {
+        return Outcome::NotConverged;
+      }
+    }
+    return Outcome::NotConverged;
+  }
+
+  /// Solves for step_ with the exact tangent, or with the projected one where that is not positive definite.
+  bool find_step(bool must_jump) {
+    for (const Tangent tangent : {Tangent::Exact, Tangent::Projected}) {
+      if (tangent == Tangent::Projected) {
+        assemble(&tangent);
+        ++projected_;
+      }
+      right_ = forces_;
+      if (must_jump) {
+        multiply(matrix_, jump_, step_, workers_);
+        for (std::size_t v = 0; v < right_.size(); ++v) right_[v] -= step_[v];
+      }
+      hold_constrained(model_, matrix_, right_, loose_);
+      if (!cholesky_.factor(matrix_)) continue;
+      cholesky_.solve(right_, step_);
+      return true;
+    }
+    return false;
+  }
+
+  bool search_along_step(double before) {
+    const Points base = state_.positions;
+    const std::vector<Mat3> base_rotations = state_.rotations;
+    double slope = 0.0;  // of the potential along the step
+    for (std::size_t v = 0; v < step_.size(); ++v) slope -= right_[v].dot(step_[v]);
+    const double base_potential = potential();
+    const std::vector<std::uint8_t> base_contacts = support_contacts(model_, state_);
+    double length = 1.0;
+    for (int i = 0; i <= kMaxHalvings; ++i, length *= 0.5) {
+      for (std::size_t v = 0; v < base.size(); ++v) state_.positions[v] = base[v] + length * step_[v];
+      assemble(nullptr);
+      if (residual() <= kGoodDecrease * before) return true;
+      if (potential() <= base_potential + kArmijo * length * slope) return true;
+      // Tissue that falls onto a support overshoots and is put right by the next step, which knows what touches;
+      // creeping up to each new contact in turn would take far longer.
+      if (i == 0 && contact_changes_ < kMaxContactChanges && support_contacts(model_, state_) != base_contacts) {
+        ++contact_changes_;
+        return true;
+      }
+    }
+    state_.positions = base;
+    state_.rotations = base_rotations;
+    return false;
+  }
+
+  const TissueModel& model_;
+  const StaticSettings& settings_;
+  Workers& workers_;
+  Monitor& monitor_;
+  StaticResult& result_;
+  TissueState& state_;
+  BlockMatrix matrix_;
+  SparseCholesky cholesky_;
+  Points free_;  // 1 along axes that may move, 0 along held ones and at vertices without a live tet
+  Points forces_, right_, step_, jump_, load_, out_of_balance_, start_positions_;
+  std::vector<std::uint8_t> loose_;  // vertices without a free axis: those of carved tets are among them
+  std::vector<Mat3> turning_;
+  int projected_ = 0;
+  int contact_changes_ = 0;
+};
+
+void check(const StaticSettings& settings) {
+  INCISE_REQUIRE(settings.relative_tolerance > 0.0 && settings.relative_tolerance < 1.0,
+                 fmt::format("expected relative_tolerance in (0, 1), found {}", settings.relative_tolerance));
+  INCISE_REQUIRE(settings.max_newton_iterations > 0,
+                 fmt::format("expected at least 1 Newton iteration, found {}", settings.max_newton_iterations));
+  INCISE_REQUIRE(settings.first_load_fraction > 0.0 && settings.first_load_fraction <= 1.0,
+                 fmt::format("expected first_load_fraction in (0, 1], found {}", settings.first_load_fraction));
+}
+
+}  // namespace
+
+StaticResult solve_static(const TissueModel& model, const StaticSettings& settings, Workers& workers, Monitor& monitor,
+                          const TissueState* start) {
+  check(settings);
+  const auto began = std::chrono::steady_clock::now();
+  StaticResult result;
+  result.state = start != nullptr ? *start : rest_state(model);
+  Equilibrium equilibrium(model, settings, workers, monitor, result);
+  result.outcome = equilibrium.run();
+
+  result.inverted_tets = equilibrium.count_inverted();
+  result.reactions_mn = reactions(model, result.state, workers);
+  result.penetration_mm = support_penetration_mm(model, result.state);
+  for (std::size_t v = 0; v < result.state.positions.size(); ++v) {
+    const double length = (result.state.positions[v] - model.mesh.vertices[v]).norm();
+    result.max_displacement_mm = std::max(result.max_displacement_mm, length);
+  }
+  result.solver = fmt::format(
+      "Newton with the exact tangent and sparse Cholesky (CHOLMOD, supernodal, METIS): nearly incompressible tissue "
+      "makes "
+      "iterative solvers slow at a residual of {:g}. {} vertices, {} factorisations, {} of them projected to be "
+      "positive definite",
+      settings.relative_tolerance, model.mesh.vertices.size(), result.iterations, equilibrium.projected_factors());
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  return result;
+}
+
+}  // namespace incise

@@ -1,0 +1,79 @@
+#include "mechanics/loads.hpp"
+#include "mechanics/topology.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/mechanics/tissue.hpp>
+
+#include <Eigen/LU>
+
+namespace incise {
+namespace {
+
+void require_sound(const TetMesh& mesh) {
+  const std::vector<MeshProblem> problems = find_problems(mesh);
+  std::string text;
+  for (const MeshProblem& problem : problems) text += (text.empty() ? "" : "; ") + problem.text;
+  INCISE_REQUIRE(problems.empty(), "expected a sound mesh, but " + text);
+}
+
+void require_valid(const Material& material) {
+  const std::vector<std::string> violations = validate(material);
+  if (violations.empty()) return;
+  // "name: found …, expected …" of the first violation; the others follow as the hint.
+  const std::string& first = violations.front();
+  const std::size_t colon = first.find(": found ");
+  const std::size_t comma = first.find(", expected ");
+  std::string others;
+  for (std::size_t i = 1; i < violations.size(); ++i) others += (i > 1 ? "; also " : "Also ") + violations[i];
+  throw CaseError("case", "specimen.material." + first.substr(0, colon), first.substr(colon + 8, comma - colon - 8),
+                  first.substr(comma + 11), others);
+}
+
+void add_elements(TissueModel& model) {
+  const std::size_t count = model.mesh.tets.size();
+  model.gradients.resize(count);
+  model.volumes_mm3.resize(count);
+  model.lame.assign(count, lame_parameters(model.material.youngs_modulus_kpa, model.material.poissons_ratio));
+  model.vertex_mass_kg.assign(model.mesh.vertices.size(), 0.0);
+  const double density = units::kg_mm3_from_kg_m3(model.material.density_kg_m3);
+  for (std::size_t t = 0; t < count; ++t) {
+    const Tet& tet = model.mesh.tets[t];
+    Mat3 edges;
+    for (std::size_t c = 1; c < 4; ++c) {
+      edges.col(static_cast<int>(c) - 1) = vertex(model.mesh.vertices, tet[c]) - vertex(model.mesh.vertices, tet[0]);
+    }
+    const Mat3 inverse = edges.inverse();
+    for (std::size_t c = 1; c < 4; ++c) model.gradients[t][c] = inverse.row(static_cast<int>(c) - 1).transpose();
+    model.gradients[t][0] = -(model.gradients[t][1] + model.gradients[t][2] + model.gradients[t][3]);
+    model.volumes_mm3[t] = edges.determinant() / 6.0;
+    for (const VertexId v : tet) model.vertex_mass_kg[v.index()] += 0.25 * density * model.volumes_mm3[t];
+  }
+}
+
+}  // namespace
+
+TissueModel make_tissue_model(TetMesh mesh, const Material& material, std::vector<Constraint> constraints,
+                              const Vec3& gravity_mm_s2) {
+  require_sound(mesh);
+  require_valid(material);
+  TissueModel model;
+  model.mesh = std::move(mesh);
+  model.material = material;
+  model.constraints = std::move(constraints);
+  add_elements(model);
+  apply_constraints(model, gravity_mm_s2);
+  require_no_rigid_motion(model);
+  add_topology(model);
+  return model;
+}
+
+TissueState rest_state(const TissueModel& model) {
+  TissueState state;
+  state.positions = model.mesh.vertices;
+  state.rotations.assign(model.mesh.tets.size(), Mat3::Identity());
+  state.is_live.assign(model.mesh.tets.size(), 1);
+  return state;
+}
+
+}  // namespace incise

@@ -1,0 +1,66 @@
+#include "mechanics/topology.hpp"
+
+#include <algorithm>
+
+namespace incise {
+namespace {
+
+void list_tets_of_vertices(TissueModel& model) {
+  const std::size_t count = model.mesh.vertices.size();
+  model.vertex_tet_start.assign(count + 1, 0);
+  for (const Tet& tet : model.mesh.tets) {
+    for (const VertexId v : tet) ++model.vertex_tet_start[v.index() + 1];
+  }
+  for (std::size_t v = 0; v < count; ++v) model.vertex_tet_start[v + 1] += model.vertex_tet_start[v];
+  model.vertex_tets.resize(4 * model.mesh.tets.size());
+  std::vector<std::int32_t> next(model.vertex_tet_start.begin(), model.vertex_tet_start.end() - 1);
+  for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      auto& slot = next[model.mesh.tets[t][c].index()];
+      model.vertex_tets[static_cast<std::size_t>(slot++)] = static_cast<std::int32_t>(4 * t + c);
+    }
+  }
+}
+
+std::shared_ptr<const BlockPattern> make_pattern(const TissueModel& model) {
+  auto pattern = std::make_shared<BlockPattern>();
+  const std::size_t count = model.mesh.vertices.size();
+  pattern->row_start.push_back(0);
+  std::vector<std::int32_t> neighbours;
+  for (std::size_t v = 0; v < count; ++v) {
+    neighbours.assign(1, static_cast<std::int32_t>(v));  // the diagonal exists even for a vertex without a tet
+    for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
+      const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
+      for (const VertexId w : model.mesh.tets[tet]) neighbours.push_back(w.value);
+    }
+    std::sort(neighbours.begin(), neighbours.end());
+    neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
+    const auto self = std::lower_bound(neighbours.begin(), neighbours.end(), static_cast<std::int32_t>(v));
+    pattern->diagonal.push_back(pattern->row_start.back() + static_cast<std::int32_t>(self - neighbours.begin()));
+    pattern->column.insert(pattern->column.end(), neighbours.begin(), neighbours.end());
+    pattern->row_start.push_back(static_cast<std::int32_t>(pattern->column.size()));
+  }
+  return pattern;
+}
+
+}  // namespace
+
+void add_topology(TissueModel& model) {
+  list_tets_of_vertices(model);
+  model.pattern = make_pattern(model);
+  model.tet_slots.resize(model.mesh.tets.size());
+  const auto& column = model.pattern->column;
+  for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      const std::size_t row = model.mesh.tets[t][a].index();
+      const auto begin = column.begin() + model.pattern->row_start[row];
+      const auto end = column.begin() + model.pattern->row_start[row + 1];
+      for (std::size_t b = 0; b < 4; ++b) {
+        const auto at = std::lower_bound(begin, end, model.mesh.tets[t][b].value);
+        model.tet_slots[t][4 * a + b] = static_cast<std::int32_t>(at - column.begin());
+      }
+    }
+  }
+}
+
+}  // namespace incise

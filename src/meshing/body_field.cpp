@@ -1,0 +1,223 @@
+#include "meshing/body_field.hpp"
+
+#include "meshing/grid_checks.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise::meshing_detail {
+namespace {
+
+constexpr float kBodyThreshold = 0.5F;
+constexpr float kFaintest = 0.005F;  ///< fainter voxels are background: blurring leaves tails that never end
+constexpr float kRounding = 0.02F;   ///< recursive Gaussian filters leave [0, 1] by this much
+constexpr std::int32_t kNone = -1;
+
+/// Voxels joined by faces, as positions in the array.
+class Neighbours {
+ public:
+  explicit Neighbours(const VolumeGrid& grid) : grid_(grid) {}
+
+  template <class Visit>
+  void for_each(std::size_t at, const Visit& visit) const {
+    const auto nx = static_cast<std::size_t>(grid_.size[0]);
+    const auto ny = static_cast<std::size_t>(grid_.size[1]);
+    const auto nz = static_cast<std::size_t>(grid_.size[2]);
+    const std::size_t i = at % nx;
+    const std::size_t j = at / nx % ny;
+    const std::size_t k = at / (nx * ny);
+    if (i > 0) visit(at - 1);
+    if (i + 1 < nx) visit(at + 1);
+    if (j > 0) visit(at - nx);
+    if (j + 1 < ny) visit(at + nx);
+    if (k > 0) visit(at - nx * ny);
+    if (k + 1 < nz) visit(at + nx * ny);
+  }
+
+ private:
+  const VolumeGrid& grid_;
+};
+
+/// Component of each voxel, and the number of voxels of at least 0.5 in each component.
+struct Components {
+  std::vector<std::int32_t> of_voxel;
+  std::vector<std::size_t> sizes;
+};
+
+/// Spreads components over voxels brighter than `threshold`, breadth first from the voxels already in `queue`.
+void spread(const GrayVolume& occupancy, float threshold, std::vector<std::size_t>& queue, Components& found) {
+  const Neighbours neighbours(occupancy.grid);
+  for (std::size_t next = 0; next < queue.size(); ++next) {
+    const std::size_t at = queue[next];
+    neighbours.for_each(at, [&](std::size_t other) {
+      if (found.of_voxel[other] != kNone || occupancy.voxels[other] < threshold) return;
+      found.of_voxel[other] = found.of_voxel[at];
+      queue.push_back(other);
+    });
+  }
+}
+
+Components find_components(const GrayVolume& occupancy) {
+  Components found;
+  found.of_voxel.assign(occupancy.voxels.size(), kNone);
+  std::vector<std::size_t> bright;
+  std::vector<std::size_t> queue;
+  for (std::size_t at = 0; at < occupancy.voxels.size(); ++at) {
+    if (occupancy.voxels[at] < kBodyThreshold || found.of_voxel[at] != kNone) continue;
+    queue.assign(1, at);
+    found.of_voxel[at] = static_cast<std::int32_t>(found.sizes.size());
+    spread(occupancy, kBodyThreshold, queue, found);
+    found.sizes.push_back(queue.size());
+    bright.insert(bright.end(), queue.begin(), queue.end());
+  }
+  spread(occupancy, kFaintest, bright, found);
+  return found;
+}
+
+void require_fractions(const GrayVolume& occupancy) {
+  for (std::size_t at = 0; at < occupancy.voxels.size(); ++at) {
+    const float value = occupancy.voxels[at];
+    if (value >= -kRounding && value <= 1.0F + kRounding) continue;  // false for NaN
+    throw InvalidArgument(fmt::format("occupancy: found {} in voxel {}, expected a fraction in [0, 1]", value, at));
+  }
+}
+
+struct IndexRange {
+  std::array<int, 3> low{};
+  std::array<int, 3> size{};
+};
+
+/// The box of one component in voxels, with one voxel of margin (which may leave the volume).
+IndexRange range_of(const VolumeGrid& grid, const Components& components, std::int32_t wanted) {
+  std::array<int, 3> low = grid.size;
+  std::array<int, 3> high{-1, -1, -1};
+  std::size_t at = 0;
+  for (int k = 0; k < grid.size[2]; ++k) {
+    for (int j = 0; j < grid.size[1]; ++j) {
+      for (int i = 0; i < grid.size[0]; ++i, ++at) {
+        if (components.of_voxel[at] != wanted) continue;
+        low = {std::min(low[0], i), std::min(low[1], j), std::min(low[2], k)};
+        high = {std::max(high[0], i), std::max(high[1], j), std::max(high[2], k)};
+      }
+    }
+  }
+  IndexRange range;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    range.low[axis] = low[axis] - 1;
+    range.size[axis] = high[axis] - low[axis] + 3;
+  }
+  return range;
+}
+
+GrayVolume cut_out(const GrayVolume& occupancy, const Components& components, std::int32_t wanted) {
+  const IndexRange range = range_of(occupancy.grid, components, wanted);
+  GrayVolume result;
+  result.grid = occupancy.grid;
+  result.grid.size = range.size;
+  result.grid.origin_mm = occupancy.grid.world_from_index(Vec3(range.low[0], range.low[1], range.low[2]));
+  result.voxels.assign(result.grid.voxel_count(), 0.0F);
+  for (int k = 0; k < range.size[2]; ++k) {
+    for (int j = 0; j < range.size[1]; ++j) {
+      for (int i = 0; i < range.size[0]; ++i) {
+        const std::array<int, 3> from{i + range.low[0], j + range.low[1], k + range.low[2]};
+        if (!occupancy.grid.contains(from[0], from[1], from[2])) continue;
+        const std::size_t at = occupancy.grid.offset(from[0], from[1], from[2]);
+        if (components.of_voxel[at] == wanted) result.at(i, j, k) = std::min(occupancy.voxels[at], 1.0F);
+      }
+    }
+  }
+  return result;
+}
+
+double total(const GrayVolume& volume) {
+  double sum = 0.0;
+  for (const float value : volume.voxels) sum += static_cast<double>(value);
+  return sum * volume.grid.voxel_volume_mm3();
+}
+
+}  // namespace
+
+BodyField BodyField::largest_body(const GrayVolume& occupancy, BodyReport& report) {
+  require_sound(occupancy.grid, occupancy.voxels.size());
+  require_fractions(occupancy);
+  const Components components = find_components(occupancy);
+  if (components.sizes.empty()) {
+    throw InvalidArgument(fmt::format("occupancy: found no voxel of at least {} (largest {}), expected a body",
+                                      kBodyThreshold,
+                                      *std::max_element(occupancy.voxels.begin(), occupancy.voxels.end())));
+  }
+  const auto largest = std::max_element(components.sizes.begin(), components.sizes.end()) - components.sizes.begin();
+  BodyField body;
+  body.volume_ = cut_out(occupancy, components, static_cast<std::int32_t>(largest));
+  report.volume_mm3 = total(body.volume_);
+  report.dropped_bodies = components.sizes.size() - 1;
+  report.dropped_volume_mm3 = std::max(total(occupancy) - report.volume_mm3, 0.0);
+  return body;
+}
+
+double BodyField::value_at(const Vec3& local) const {
+  const VolumeGrid& g = grid();
+  std::array<std::size_t, 3> cell{};
+  Vec3 f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double index = local[axis] / g.spacing_mm[axis];
+    const int last = g.size[static_cast<std::size_t>(axis)] - 1;
+    if (!(index >= 0.0 && index < last)) return 0.0;  // the outermost voxels are 0
+    cell[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(index);
+    f[axis] = index - std::floor(index);
+  }
+  const auto row = static_cast<std::size_t>(g.size[0]);
+  const std::size_t slice = row * static_cast<std::size_t>(g.size[1]);
+  const float* const v = volume_.voxels.data() + cell[0] + row * cell[1] + slice * cell[2];
+  const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
+  const auto along_x = [&](const float* p) { return mix(static_cast<double>(p[0]), static_cast<double>(p[1]), f.x()); };
+  return mix(mix(along_x(v), along_x(v + row), f.y()), mix(along_x(v + slice), along_x(v + slice + row), f.y()), f.z());
+}
+
+Box3 BodyField::box() const {
+  const auto& n = grid().size;
+  return {Vec3::Zero(), local_from_index(Vec3(n[0] - 1, n[1] - 1, n[2] - 1))};
+}
+
+Points BodyField::spread_surface_points(double iso, std::size_t count, std::size_t least, double spacing_mm) const {
+  constexpr std::size_t kMostCandidates = 5000;
+  const VolumeGrid& g = grid();
+  Points crossings;
+  for (int k = 0; k + 1 < g.size[2]; ++k) {
+    for (int j = 0; j + 1 < g.size[1]; ++j) {
+      for (int i = 0; i + 1 < g.size[0]; ++i) {
+        const double here = static_cast<double>(voxel(i, j, k));
+        const std::array<double, 3> there{static_cast<double>(voxel(i + 1, j, k)),
+                                          static_cast<double>(voxel(i, j + 1, k)),
+                                          static_cast<double>(voxel(i, j, k + 1))};
+        for (int axis = 0; axis < 3; ++axis) {
+          const double other = there[static_cast<std::size_t>(axis)];
+          if ((here > iso) == (other > iso)) continue;
+          crossings.push_back(local_from_index(Vec3(i, j, k) + (iso - here) / (other - here) * Vec3::Unit(axis)));
+        }
+      }
+    }
+  }
+  Points candidates;
+  const std::size_t stride = crossings.size() / kMostCandidates + 1;
+  for (std::size_t c = 0; c < crossings.size(); c += stride) candidates.push_back(crossings[c]);
+
+  Points chosen;
+  std::vector<double> distance(candidates.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t next = 0; chosen.size() < std::min(count, candidates.size());) {
+    chosen.push_back(candidates[next]);
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      distance[c] = std::min(distance[c], (candidates[c] - candidates[next]).norm());
+    }
+    next = static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
+    if (distance[next] <= 0.0 || (chosen.size() >= least && distance[next] < spacing_mm)) break;
+  }
+  return chosen;
+}
+
+}  // namespace incise::meshing_detail

@@ -1,0 +1,291 @@
+#include "meshing/body_field.hpp"
+#include "meshing/delaunay_mesher.hpp"
+#include "meshing/mesh_order.hpp"
+#include "meshing/sampled_sizing.hpp"
+#include "meshing/volume_by_iso.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/meshing/mesher.hpp>
+#include <incise/meshing/occupancy.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace incise {
+namespace {
+
+using meshing_detail::BodyField;
+using meshing_detail::BodyReport;
+using meshing_detail::DelaunayCriteria;
+using meshing_detail::DelaunayDomain;
+using meshing_detail::DelaunayMesher;
+using meshing_detail::RefineEnd;
+using meshing_detail::SampledSizing;
+using meshing_detail::VolumeByIso;
+
+// Measured on a ball and a tongue-like body, 4k to 200k tets, at the default factors; shifts with the cube of
+// cell_size_factor.
+constexpr double kTetsPerCube = 10.3;
+constexpr double kCellSizeOfCalibration = 0.75;
+constexpr double kLeftAfterPerturbation = 0.99;  ///< perturbation and exudation lose about 1 % of the tets
+constexpr double kEnoughOfTolerance = 0.5;       ///< refinement stops correcting within half of what is tolerated
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Where refinement gives up: three times the vertices that max_tets usually has.
+std::size_t most_vertices(const MeshingSettings& settings) {
+  return settings.max_tets / 2 + 1000;
+}
+
+/// What the mesh's volume is held against.
+enum class TissueVolume {
+  InsideSkin,      ///< enclosed by the surface of occupancy 0.5: right for occupancy with a faint halo
+  SumOfOccupancy,  ///< what was there before a blur that keeps the sum
+};
+
+constexpr double kSkin = 0.5;
+
+/// Everything that lives through one call.
+class Meshing {
+ public:
+  Meshing(const GrayVolume& occupancy, TissueVolume meant, const SizingField& sizing, const MeshingSettings& settings,
+          Monitor& monitor)
+      : settings_(settings), monitor_(monitor), field_(sizing) {
+    in_phase("body", 0.0, [&] {
+      body_ = BodyField::largest_body(occupancy, report_);
+      enclosed_.emplace(body_);
+      label_mm3_ = meant == TissueVolume::SumOfOccupancy ? report_.volume_mm3 : enclosed_->volume_mm3(kSkin);
+      const std::optional<double> iso = enclosed_->iso_for(label_mm3_);
+      if (!iso) {
+        throw InvalidArgument(
+            fmt::format("labels: no surface of one occupancy encloses the {:.4g} mm3 of the tissue; the "
+                        "body is too thin for its voxels, use a finer volume or less blur",
+                        label_mm3_));
+      }
+      result_.iso = *iso;
+    });
+    in_phase("sizing", 0.05, [&] { sampled_.emplace(sizing, body_, result_.iso); });
+  }
+
+  MeshingResult run() {
+    predict();
+    refine_to_fit();
+    improve();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  template <class Work>
+  void in_phase(const std::string& name, double fraction, const Work& work) {
+    throw_if_cancelled(monitor_, "meshing");
+    progress_ = std::max(progress_, fraction);  // phases may come again
+    monitor_.progress("meshing", progress_);
+    const auto start = Clock::now();
+    work();
+    const double wall_s = seconds_since(start);
+    const auto known = std::find_if(result_.phases.begin(), result_.phases.end(),
+                                    [&](const MeshingPhase& phase) { return phase.name == name; });
+    if (known == result_.phases.end()) {
+      result_.phases.push_back({name, wall_s});
+    } else {
+      known->wall_s += wall_s;
+    }
+  }
+
+  [[nodiscard]] double predicted_tets(const SizingField& field) const {
+    return tets_per_cube_ * sampled_->cubes(field);
+  }
+
+  /// The scale of the sizing field for which the prediction is the target.
+  [[nodiscard]] double scale_for_target() const {
+    constexpr int kBisections = 60;
+    double low = 1.0e-2;
+    double high = 1.0e2;
+    for (int step = 0; step < kBisections; ++step) {
+      const double middle = std::sqrt(low * high);
+      (predicted_tets(field_.scaled(middle)) > *settings_.target_tets ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
+  }
+
+  void predict() {
+    tets_per_cube_ = kTetsPerCube * std::pow(kCellSizeOfCalibration / settings_.cell_size_factor, 3.0);
+    if (settings_.target_tets) scale_ = scale_for_target();
+    result_.predicted_tets = predicted_tets(field_.scaled(scale_));
+    if (result_.predicted_tets <= static_cast<double>(settings_.max_tets)) return;
+    throw InvalidArgument(
+        fmt::format("mesh sizing: fine_mm = {:.3g} and coarse_mm = {:.3g} predict {:.0f} tetrahedra, "
+                    "expected at most {}. Use longer edges or a smaller target count.",
+                    scale_ * field_.settings().fine_mm, scale_ * field_.settings().coarse_mm, result_.predicted_tets,
+                    settings_.max_tets));
+  }
+
+  DelaunayMesher start_mesher(double scale) {
+    constexpr std::size_t kMostStartPoints = 40;
+    constexpr std::size_t kLeastStartPoints = 12;
+    constexpr double kStartSpacing = 3.0;  // in longest edges: start points must not force finer triangles
+    const SizingField field = field_.scaled(scale);
+    const double longest_mm = field.settings().coarse_mm;
+    const double iso = result_.iso;
+    DelaunayCriteria criteria{.facet_angle_deg = settings_.facet_angle_deg,
+                              .facet_size_factor = settings_.facet_size_factor,
+                              .facet_distance_mm = std::max(settings_.facet_distance_floor_mm,
+                                                            settings_.facet_distance_factor * field.settings().fine_mm),
+                              .cell_radius_edge_ratio = settings_.radius_edge_ratio,
+                              .cell_size_factor = settings_.cell_size_factor,
+                              .max_vertices = most_vertices(settings_)};
+    DelaunayDomain domain{
+        .is_inside = [this, iso](const Vec3& p) { return body_.value_at(p) > iso; },
+        .edge_length_mm = [this, field](const Vec3& p) { return field.edge_length_at_mm(sampled_->distance_mm(p)); },
+        .is_cancelled = [this] { return monitor_.is_cancelled(); },
+        .box = body_.box(),
+        .surface_points =
+            body_.spread_surface_points(iso, kMostStartPoints, kLeastStartPoints, kStartSpacing * longest_mm)};
+    return {std::move(domain), criteria};
+  }
+
+  DelaunayMesher refined(double scale, double fraction) {
+    std::optional<DelaunayMesher> mesher;
+    RefineEnd end = RefineEnd::Done;
+    in_phase("refine", fraction, [&] {
+      mesher.emplace(start_mesher(scale));
+      end = mesher->refine();
+    });
+    throw_if_cancelled(monitor_, "meshing");
+    if (end == RefineEnd::TooManyVertices) {
+      throw InvalidArgument(
+          fmt::format("mesh sizing: refinement passed {} vertices; use longer edges", most_vertices(settings_)));
+    }
+    if (mesher->tet_count() == 0) {
+      throw InvalidArgument(fmt::format("mesh sizing: a body of {:.3g} mm3 is too small for edges of {:.3g} mm",
+                                        label_mm3_, scale * field_.settings().fine_mm));
+    }
+    return std::move(*mesher);
+  }
+
+  /// Refines until count and volume fit, correcting the prediction and the iso value by what came out.
+  void refine_to_fit() {
+    double aimed_mm3 = label_mm3_;
+    for (;;) {
+      mesher_.emplace(refined(scale_, 0.1 + 0.5 * result_.refinements / settings_.max_refinements));
+      ++result_.refinements;
+      const double tets = kLeftAfterPerturbation * static_cast<double>(mesher_->tet_count());
+      const double missing_mm3 = label_mm3_ - volume_mm3(mesher_->extract());
+      const bool count_fits = !settings_.target_tets || std::abs(tets / *settings_.target_tets - 1.0) <=
+                                                            kEnoughOfTolerance * settings_.target_tolerance;
+      const bool volume_fits = std::abs(missing_mm3) <= kEnoughOfTolerance * settings_.volume_tolerance * label_mm3_;
+      if ((count_fits && volume_fits) || result_.refinements >= settings_.max_refinements) return;
+      if (!count_fits) {
+        tets_per_cube_ *= tets / predicted_tets(field_.scaled(scale_));
+        scale_ = scale_for_target();
+      }
+      if (!volume_fits) {
+        aimed_mm3 += missing_mm3;
+        // A very coarse mesh of a round body cannot reach its volume: `meets_volume` tells.
+        result_.iso = enclosed_->iso_for(aimed_mm3).value_or(result_.iso);
+      }
+    }
+  }
+
+  /// Removes slivers; where some resist, starts again with slightly shorter edges, another mesh by chance, and keeps
+  /// the best.
+  void improve() {
+    constexpr double kShorter = 0.985;
+    double best_deg = -1.0;
+    for (double scale = scale_; result_.improvements < settings_.max_improvements; scale *= kShorter) {
+      if (result_.improvements > 0) mesher_.emplace(refined(scale, 0.9));
+      in_phase("perturb", 0.7, [&] { mesher_->perturb(settings_.sliver_bound_deg); });
+      in_phase("exude", 0.9, [&] { mesher_->exude(settings_.sliver_bound_deg); });
+      ++result_.improvements;
+      TetMesh mesh = mesher_->extract();
+      const double min_deg = quality_of(mesh).min_dihedral_deg;
+      if (min_deg > best_deg) {
+        best_deg = min_deg;
+        result_.mesh = std::move(mesh);
+        scale_ = scale;
+      }
+      if (best_deg >= settings_.min_dihedral_deg) return;
+    }
+  }
+
+  void finish() {
+    in_phase("finish", 0.95, [&] {
+      TetMesh mesh = meshing_detail::largest_component(std::move(result_.mesh), result_.dropped_tets);
+      mesh = meshing_detail::in_canonical_order(mesh);
+      const bool is_mirrored = body_.grid().direction.determinant() < 0.0;
+      for (Vec3& p : mesh.vertices) p = body_.world_from_local(p);
+      if (is_mirrored) {
+        for (Tet& tet : mesh.tets) std::swap(tet[2], tet[3]);
+      }
+      result_.quality = quality_of(mesh);
+      result_.mesh = std::move(mesh);
+    });
+    result_.label_volume_mm3 = label_mm3_;
+    result_.relative_volume_error = result_.quality.volume_mm3 / label_mm3_ - 1.0;
+    result_.dropped_bodies = report_.dropped_bodies;
+    result_.dropped_volume_mm3 = report_.dropped_volume_mm3;
+    result_.fine_mm = scale_ * field_.settings().fine_mm;
+    result_.coarse_mm = scale_ * field_.settings().coarse_mm;
+    result_.meets_quality = result_.quality.min_dihedral_deg >= settings_.min_dihedral_deg;
+    result_.meets_volume = std::abs(result_.relative_volume_error) <= settings_.volume_tolerance;
+    result_.meets_target =
+        !settings_.target_tets || std::abs(static_cast<double>(result_.quality.tets) / *settings_.target_tets - 1.0) <=
+                                      settings_.target_tolerance;
+    for (const MeshingPhase& phase : result_.phases) result_.wall_s += phase.wall_s;
+    monitor_.progress("meshing", 1.0);
+  }
+
+  const MeshingSettings& settings_;
+  Monitor& monitor_;
+  SizingField field_;
+  BodyField body_;
+  BodyReport report_;
+  double label_mm3_ = 0.0;
+  std::optional<VolumeByIso> enclosed_;
+  std::optional<SampledSizing> sampled_;
+  std::optional<DelaunayMesher> mesher_;
+  double scale_ = 1.0;
+  double progress_ = 0.0;
+  double tets_per_cube_ = kTetsPerCube;
+  MeshingResult result_;
+};
+
+void require_sound(const MeshingSettings& settings) {
+  const std::vector<std::string> violations = validate(settings);
+  if (!violations.empty()) throw InvalidArgument(fmt::format("meshing settings: {}", fmt::join(violations, "; ")));
+}
+
+}  // namespace
+
+MeshingResult mesh_labels(const GrayVolume& occupancy, const SizingField& sizing, const MeshingSettings& settings,
+                          Monitor& monitor) {
+  require_sound(settings);
+  return Meshing(occupancy, TissueVolume::InsideSkin, sizing, settings, monitor).run();
+}
+
+MeshingResult mesh_labels(const LabelVolume& labels, const SizingField& sizing, const MeshingSettings& settings,
+                          Monitor& monitor) {
+  require_sound(settings);
+  return Meshing(occupancy_of(labels), TissueVolume::SumOfOccupancy, sizing, settings, monitor).run();
+}
+
+MeshingResult mesh_surface(const TriMesh& closed_surface, const SizingField& sizing, const MeshingSettings& settings,
+                           Monitor& monitor, std::optional<double> voxel_mm) {
+  constexpr double kVoxelsPerFineEdge = 2.0;
+  require_sound(settings);
+  const double edge_mm = voxel_mm.value_or(sizing.settings().fine_mm / kVoxelsPerFineEdge);
+  const GrayVolume occupancy = occupancy_of(closed_surface, edge_mm);
+  return Meshing(occupancy, TissueVolume::SumOfOccupancy, sizing, settings, monitor).run();
+}
+
+}  // namespace incise

@@ -1,0 +1,80 @@
+#include "meshing/sampled_sizing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise::meshing_detail {
+namespace {
+
+constexpr double kStepMm = 1.0;
+constexpr double kMostNodes = 2.0e6;
+constexpr double kBinMm = 0.1;
+
+}  // namespace
+
+SampledSizing::SampledSizing(const SizingField& field, const BodyField& body, double iso) {
+  if (field.has_band()) {
+    const Vec3 extent = body.box().sizes();
+    step_mm_ = std::max(kStepMm, std::cbrt(extent.prod() / kMostNodes));
+    for (int axis = 0; axis < 3; ++axis) {
+      size_[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(extent[axis] / step_mm_) + 2;
+    }
+    distance_mm_.reserve(size_[0] * size_[1] * size_[2]);
+    for (std::size_t k = 0; k < size_[2]; ++k) {
+      for (std::size_t j = 0; j < size_[1]; ++j) {
+        for (std::size_t i = 0; i < size_[0]; ++i) {
+          const Vec3 index(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
+          const double exact_mm = field.distance_to_band_mm(body.world_from_local(step_mm_ * index));
+          distance_mm_.push_back(static_cast<float>(exact_mm));  // rounding hides the last bits of a moved frame
+        }
+      }
+    }
+  }
+  measure_body(body, iso);
+}
+
+double SampledSizing::distance_mm(const Vec3& local) const {
+  if (distance_mm_.empty()) return 0.0;
+  std::array<std::size_t, 3> cell{};
+  Vec3 f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    // Circumcentres may lie outside the box: they take the value of the border.
+    const double index = std::clamp(local[axis] / step_mm_, 0.0, static_cast<double>(size_[a] - 1));
+    cell[a] = std::min(static_cast<std::size_t>(index), size_[a] - 2);
+    f[axis] = index - static_cast<double>(cell[a]);
+  }
+  const std::size_t slice = size_[0] * size_[1];
+  const float* const v = distance_mm_.data() + cell[0] + size_[0] * cell[1] + slice * cell[2];
+  const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
+  const auto along_x = [&](const float* p) { return mix(static_cast<double>(p[0]), static_cast<double>(p[1]), f.x()); };
+  return mix(mix(along_x(v), along_x(v + size_[0]), f.y()),
+             mix(along_x(v + slice), along_x(v + slice + size_[0]), f.y()), f.z());
+}
+
+void SampledSizing::measure_body(const BodyField& body, double iso) {
+  const VolumeGrid& g = body.grid();
+  for (int k = 0; k < g.size[2]; ++k) {
+    for (int j = 0; j < g.size[1]; ++j) {
+      for (int i = 0; i < g.size[0]; ++i) {
+        if (static_cast<double>(body.voxel(i, j, k)) < iso) continue;
+        const auto bin = static_cast<std::size_t>(distance_mm(body.local_from_index(Vec3(i, j, k))) / kBinMm);
+        if (bin >= volume_mm3_.size()) volume_mm3_.resize(bin + 1, 0.0);
+        volume_mm3_[bin] += g.voxel_volume_mm3();
+      }
+    }
+  }
+}
+
+double SampledSizing::cubes(const SizingField& scaled) const {
+  double sum = 0.0;
+  for (std::size_t bin = 0; bin < volume_mm3_.size(); ++bin) {
+    // Points of the band itself have distance 0 exactly: the first bin stands for them.
+    const double d = bin == 0 ? 0.0 : (static_cast<double>(bin) + 0.5) * kBinMm;
+    const double h = scaled.edge_length_at_mm(d);
+    sum += volume_mm3_[bin] / (h * h * h);
+  }
+  return sum;
+}
+
+}  // namespace incise::meshing_detail

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "meshing/body_field.hpp"
+
+#include <incise/meshing/sizing_field.hpp>
+
+#include <vector>
+
+namespace incise::meshing_detail {
+
+/// The distance to the band, sampled once on a lattice of about 1 mm over a body's box and interpolated trilinearly:
+/// what refinement asks for millions of times. Serves every scaling of the same field. Coordinates are the body's local
+/// ones.
+class SampledSizing {
+ public:
+  SampledSizing(const SizingField& field, const BodyField& body, double iso);
+
+  [[nodiscard]] double distance_mm(const Vec3& local) const;
+
+  /// Σ over the body of volume / h³ for edge lengths h of a scaled version of the field: about the number of cubes of
+  /// edge h.
+  [[nodiscard]] double cubes(const SizingField& scaled) const;
+
+ private:
+  void measure_body(const BodyField& body, double iso);
+
+  std::array<std::size_t, 3> size_{};
+  double step_mm_ = 1.0;
+  std::vector<float> distance_mm_;  ///< empty for a uniform field
+  std::vector<double> volume_mm3_;  ///< of the body, by distance in bins of kBinMm
+};
+
+}  // namespace incise::meshing_detail

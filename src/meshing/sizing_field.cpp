@@ -1,0 +1,157 @@
+#include <incise/core/error.hpp>
+#include <incise/meshing/sizing_field.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+constexpr std::size_t kMaxPathPoints = 256;
+
+void require_positive(std::vector<std::string>& violations, const char* name, double value) {
+  if (!(value > 0.0) || !std::isfinite(value)) {
+    violations.push_back(fmt::format("{}: found {}, expected a finite number > 0", name, value));
+  }
+}
+
+void require_not_negative(std::vector<std::string>& violations, const char* name, double value) {
+  if (!(value >= 0.0) || !std::isfinite(value)) {
+    violations.push_back(fmt::format("{}: found {}, expected a finite number >= 0", name, value));
+  }
+}
+
+void append_violations(std::vector<std::string>& violations, const PlannedCut& cut) {
+  const std::size_t needed = cut.path.is_closed ? 3 : 2;
+  if (cut.path.points.size() < needed) {
+    violations.push_back(fmt::format("path: found {} points, expected at least {}", cut.path.points.size(), needed));
+  }
+  const auto bad =
+      std::find_if(cut.path.points.begin(), cut.path.points.end(), [](const Vec3& p) { return !p.allFinite(); });
+  if (bad != cut.path.points.end()) {
+    violations.push_back(fmt::format("path: point {} is not finite", bad - cut.path.points.begin()));
+  } else if (cut.path.points.size() >= needed && !(length_mm(cut.path) > 0.0)) {
+    violations.push_back("path: found length 0, expected > 0");
+  }
+  if (!cut.approach.allFinite() || !(cut.approach.norm() > 0.0)) {
+    violations.push_back("approach: found a zero or infinite vector, expected a direction");
+  }
+  require_positive(violations, "depth_mm", cut.depth_mm);
+}
+
+void throw_if_any(const std::vector<std::string>& violations) {
+  if (!violations.empty()) throw InvalidArgument(fmt::format("mesh sizing: {}", fmt::join(violations, "; ")));
+}
+
+/// How far value lies outside [low, high].
+double excess(double value, double low, double high) {
+  return std::max({low - value, value - high, 0.0});
+}
+
+/// Nearest point of the path in the picture plane, and on which side of a closed path q lies.
+struct PlaneDistance {
+  double squared = std::numeric_limits<double>::infinity();
+  double height = 0.0;  ///< of the path at its nearest point
+  bool is_inside = false;
+};
+
+PlaneDistance plane_distance(const Points& path, bool is_closed, const Vec3& q) {
+  PlaneDistance best;
+  const std::size_t count = path.size();
+  for (std::size_t i = is_closed ? 0 : 1; i < count; ++i) {
+    const Vec3& a = path[i == 0 ? count - 1 : i - 1];
+    const Vec3& b = path[i];
+    const Vec2 along = (b - a).head<2>();
+    const Vec2 from_a = (q - a).head<2>();
+    const double squared_length = along.squaredNorm();
+    const double t = squared_length > 0.0 ? std::clamp(along.dot(from_a) / squared_length, 0.0, 1.0) : 0.0;
+    const double squared = (from_a - t * along).squaredNorm();
+    if (squared < best.squared) {
+      best.squared = squared;
+      best.height = a.z() + t * (b.z() - a.z());
+    }
+    // Even-odd rule: count the edges crossed by the ray from q along +x.
+    if (is_closed && (a.y() > q.y()) != (b.y() > q.y()) &&
+        q.x() < a.x() + (b.x() - a.x()) * (q.y() - a.y()) / (b.y() - a.y())) {
+      best.is_inside = !best.is_inside;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const SizingSettings& settings) {
+  std::vector<std::string> violations;
+  require_positive(violations, "fine_mm", settings.fine_mm);
+  require_positive(violations, "coarse_mm", settings.coarse_mm);
+  require_positive(violations, "growth", settings.growth);
+  require_not_negative(violations, "band_inside_mm", settings.band_inside_mm);
+  require_not_negative(violations, "band_outside_mm", settings.band_outside_mm);
+  require_not_negative(violations, "band_below_mm", settings.band_below_mm);
+  if (settings.fine_mm > settings.coarse_mm) {
+    violations.push_back(
+        fmt::format("fine_mm: found {}, expected at most coarse_mm = {}", settings.fine_mm, settings.coarse_mm));
+  }
+  return violations;
+}
+
+SizingField SizingField::uniform(double edge_mm) {
+  SizingField field;
+  field.settings_.fine_mm = edge_mm;
+  field.settings_.coarse_mm = edge_mm;
+  throw_if_any(validate(field.settings_));
+  return field;
+}
+
+SizingField SizingField::around_cut(const PlannedCut& cut, const SizingSettings& settings) {
+  std::vector<std::string> violations = validate(settings);
+  append_violations(violations, cut);
+  throw_if_any(violations);
+
+  const double widest_mm = std::max(settings.band_inside_mm, settings.band_outside_mm);
+  Band band{.view = view_along(cut.approach),
+            .path = {},
+            .is_closed = cut.path.is_closed,
+            .inside_mm = settings.band_inside_mm,
+            .outside_mm = cut.path.is_closed ? settings.band_outside_mm : widest_mm,
+            // Above the path there is no tissue but where the surface bulges next to it.
+            .above_mm = widest_mm,
+            .below_mm = cut.depth_mm + settings.band_below_mm};
+  const bool is_long = cut.path.points.size() > kMaxPathPoints;
+  const Contour path = is_long ? resample(cut.path, kMaxPathPoints) : cut.path;
+  for (const Vec3& p : path.points) band.path.push_back(band.view.to_view(p));
+
+  SizingField field;
+  field.settings_ = settings;
+  field.band_ = std::move(band);
+  return field;
+}
+
+double SizingField::distance_to_band_mm(const Vec3& p) const {
+  if (!band_) return 0.0;
+  const Vec3 q = band_->view.to_view(p);
+  const PlaneDistance nearest = plane_distance(band_->path, band_->is_closed, q);
+  const double lateral_mm = (nearest.is_inside ? -1.0 : 1.0) * std::sqrt(nearest.squared);
+  const double inner_mm = band_->is_closed ? -band_->inside_mm : 0.0;
+  return std::hypot(excess(lateral_mm, inner_mm, band_->outside_mm),
+                    excess(nearest.height - q.z(), -band_->above_mm, band_->below_mm));
+}
+
+double SizingField::edge_length_at_mm(double distance_to_band_mm) const {
+  return std::min(settings_.fine_mm + settings_.growth * distance_to_band_mm, settings_.coarse_mm);
+}
+
+SizingField SizingField::scaled(double factor) const {
+  INCISE_REQUIRE(factor > 0.0 && std::isfinite(factor), fmt::format("factor: found {}, expected > 0", factor));
+  SizingField field = *this;
+  field.settings_.fine_mm *= factor;
+  field.settings_.coarse_mm *= factor;
+  return field;
+}
+
+}  // namespace incise

@@ -1,0 +1,214 @@
+#include "planning/surface_walk.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/evaluation/contour_errors.hpp>
+#include <incise/evaluation/hu.hpp>
+#include <incise/planning/compensation.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace incise {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr int kBisections = 60;
+constexpr double kMoveToleranceMm = 1e-6;
+/// By how much a move stays inside a limit that the finished path is then held to: beyond rounding.
+constexpr double kLimitSlackMm = 1e-6;
+
+double positive_angle(double angle) {
+  const double turned = std::fmod(angle, kTurn);
+  return turned < 0.0 ? turned + kTurn : turned;
+}
+
+double polar_angle(const Vec2& place, const Vec2& center) {
+  return std::atan2(place.y() - center.y(), place.x() - center.x());
+}
+
+/// Angle of each waypoint from the first one's, increasing in [0, 2π).
+std::vector<double> sector_angles(const ToolPath& path, const SurfaceView& view, const Vec2& center) {
+  std::vector<double> angles;
+  const double first = polar_angle(view.place_of(path.waypoints[0].position_mm), center);
+  double turned = 0.0;
+  for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
+    const Vec2 place = view.place_of(path.waypoints[i].position_mm);
+    const double angle = i == 0 ? 0.0 : positive_angle(polar_angle(place, center) - first);
+    if (i > 0 && angle <= turned) {
+      throw CaseError("compensation", "path", fmt::format("waypoint {} that goes back about the tumour's centre", i),
+                      "a path that runs once round the tumour's centre, counter-clockwise",
+                      "The paper's correction is not defined for this shape.");
+    }
+    turned = angle;
+    angles.push_back(angle);
+  }
+  return angles;
+}
+
+/// Position in `angles` of the one nearest to `angle`, round the circle.
+std::size_t nearest_sector(const std::vector<double>& angles, double angle) {
+  const auto above = std::upper_bound(angles.begin(), angles.end(), angle);
+  const auto next = static_cast<std::size_t>(above - angles.begin());
+  const std::size_t before = next == 0 ? angles.size() - 1 : next - 1;
+  const double gap_before = positive_angle(angle - angles[before]);
+  const double gap_after = positive_angle((next == angles.size() ? kTurn : angles[next]) - angle);
+  return gap_before <= gap_after ? before : next % angles.size();
+}
+
+/// Fills sectors without a measured point by linear interpolation over the angle between the nearest ones that have
+/// some.
+void bridge_gaps(const std::vector<double>& angles, Compensation& result) {
+  const std::size_t n = angles.size();
+  const std::vector<double> known = result.error_mm;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (result.is_interpolated[i] == 0) continue;
+    std::size_t before = i;
+    std::size_t after = i;
+    while (result.is_interpolated[before] != 0) before = (before + n - 1) % n;
+    while (result.is_interpolated[after] != 0) after = (after + 1) % n;
+    const double behind = positive_angle(angles[i] - angles[before]);
+    const double ahead = positive_angle(angles[after] - angles[i]);
+    result.error_mm[i] = (known[before] * ahead + known[after] * behind) / (behind + ahead);
+    ++result.interpolated_waypoints;
+  }
+}
+
+void measure_sectors(const ContourErrors& errors, const std::vector<double>& angles, double first_angle,
+                     const SurfaceView& view, const Vec2& center, Compensation& result) {
+  std::vector<double> sum(angles.size(), 0.0);
+  std::vector<std::size_t> count(angles.size(), 0);
+  for (std::size_t k = 0; k < errors.points.points.size(); ++k) {
+    const double angle = positive_angle(polar_angle(view.place_of(errors.points.points[k]), center) - first_angle);
+    const std::size_t sector = nearest_sector(angles, angle);
+    sum[sector] += errors.signed_error_mm[k];
+    ++count[sector];
+  }
+  result.error_mm.assign(angles.size(), 0.0);
+  result.is_interpolated.assign(angles.size(), 0);
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    if (count[i] == 0)
+      result.is_interpolated[i] = 1;
+    else
+      result.error_mm[i] = sum[i] / static_cast<double>(count[i]);
+  }
+  bridge_gaps(angles, result);
+}
+
+void smooth(std::vector<double>& values, int passes) {
+  const std::size_t n = values.size();
+  for (int pass = 0; pass < passes; ++pass) {
+    const std::vector<double> old = values;
+    for (std::size_t i = 0; i < n; ++i)
+      values[i] = 0.25 * old[(i + n - 1) % n] + 0.5 * old[i] + 0.25 * old[(i + 1) % n];
+  }
+}
+
+/// One waypoint's way across the surface.
+struct Move {
+  Vec3 position_mm;
+  double length_mm = 0.0;  ///< straight, >= 0
+};
+
+/// From `start`, `length_mm` far over the surface in direction `heading` of the picture, or as far as is allowed.
+Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is_inward, const SurfaceView& view,
+               const Contour& edge, const CompensationSettings& settings) {
+  const Vec3 origin = view.at(start)->position_mm;
+  const double least = settings.close_margin_mm + settings.electrode_radius_mm;
+  const double rim_clearance = settings.rim_clearance_mm > 0.0 ? settings.rim_clearance_mm + kLimitSlackMm : 0.0;
+  const auto reach = [&](double step) -> std::optional<Move> {
+    const Vec2 place = start + step * heading;
+    const std::optional<SurfacePoint> seen = view.at(place);
+    if (!seen || !view.is_clear_of_rim(place, rim_clearance)) return std::nullopt;
+    const double distance = nearest_on(edge, seen->position_mm).distance_mm;
+    if (is_inward && (distance < least || contains_in_view(edge, seen->position_mm, settings.approach)))
+      return std::nullopt;
+    return Move{seen->position_mm, (seen->position_mm - origin).norm()};
+  };
+  // Over a slope a step in the picture takes the waypoint farther in space, never less far.
+  double near = 0.0;
+  double far = length_mm;
+  Move best{origin, 0.0};
+  if (const std::optional<Move> full = reach(far); full && full->length_mm <= length_mm + 1e-12) return *full;
+  for (int n = 0; n < kBisections; ++n) {
+    const double middle = 0.5 * (near + far);
+    const std::optional<Move> there = reach(middle);
+    if (there && there->length_mm <= length_mm) {
+      near = middle;
+      best = *there;
+    } else {
+      far = middle;
+    }
+  }
+  return best;
+}
+
+void move_waypoints(const SurfaceView& view, const Vec2& center, const CompensationSettings& settings,
+                    Compensation& result) {
+  for (std::size_t i = 0; i < result.path.waypoints.size(); ++i) {
+    Waypoint& waypoint = result.path.waypoints[i];
+    const Vec2 start = view.place_of(waypoint.position_mm);
+    const double wanted =
+        -settings.relaxation * result.error_mm[i];  // too close (negative error): away from the tumour
+    const double sign = wanted < 0.0 ? -1.0 : 1.0;
+    const Vec2 heading = sign * (start - center).stableNormalized();
+    const Move move = move_over(start, heading, std::abs(wanted), wanted < 0.0, view, result.path.tumor_edge, settings);
+    waypoint.position_mm = move.position_mm;
+    if (settings.axis_mode == AxisMode::SurfaceNormal) {
+      waypoint.axis = view.tool_axis(view.place_of(move.position_mm), settings.axis_mode);
+    }
+    const bool is_limited = std::abs(wanted) - move.length_mm > kMoveToleranceMm;
+    result.move_mm.push_back(sign * move.length_mm);
+    result.is_limited.push_back(is_limited ? 1 : 0);
+    result.limited_waypoints += is_limited ? 1 : 0;
+    result.max_move_mm = std::max(result.max_move_mm, move.length_mm);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const CompensationSettings& s) {
+  std::vector<std::string> violations;
+  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
+    if (is_valid && std::isfinite(found)) return;
+    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
+  };
+  expect(s.target_mm > 0.0, "target_mm", s.target_mm, "a distance above 0 mm");
+  expect(s.relaxation > 0.0 && s.relaxation <= 1.0, "relaxation", s.relaxation, "a share in (0, 1]");
+  expect(s.smoothing_passes >= 0, "smoothing_passes", s.smoothing_passes, "0 or more");
+  expect(s.close_margin_mm > 0.0, "close_margin_mm", s.close_margin_mm, "a distance above 0 mm");
+  expect(s.electrode_radius_mm >= 0.0, "electrode_radius_mm", s.electrode_radius_mm, "0 mm or more");
+  expect(s.approach.norm() > 0.0, "approach", s.approach.norm(), "a vector of length above 0");
+  expect(s.step_mm > 0.0, "step_mm", s.step_mm, "a distance above 0 mm");
+  expect(s.rim_clearance_mm >= 0.0, "rim_clearance_mm", s.rim_clearance_mm, "0 mm or more");
+  return violations;
+}
+
+Compensation compensate_paper(const ToolPath& current, const Contour& measured, const Contour& tumor_edge,
+                              const SurfaceQuery& surface, const CompensationSettings& settings) {
+  const std::vector<std::string> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  INCISE_REQUIRE(current.is_closed, "expected a closed path, found an open one");
+  check_path_as({"compensation"}, current, surface, settings.approach, 0.0);
+
+  const SurfaceView view(surface, settings.approach);
+  const Vec2 center = filled_moments(tumor_edge, settings.approach).centroid_mm;
+  const ContourErrors errors =
+      contour_errors(measured, tumor_edge, settings.target_mm, settings.approach, settings.step_mm);
+  const std::vector<double> angles = sector_angles(current, view, center);
+  const double first_angle = polar_angle(view.place_of(current.waypoints[0].position_mm), center);
+
+  Compensation result;
+  result.path = current;
+  result.path.tumor_edge = tumor_edge;
+  result.path.source_sha256.clear();  // it is not what the file held any more
+  measure_sectors(errors, angles, first_angle, view, center, result);
+  smooth(result.error_mm, settings.smoothing_passes);
+  move_waypoints(view, center, settings, result);
+  check_path_as({"compensation"}, result.path, surface, settings.approach, settings.rim_clearance_mm);
+  return result;
+}
+
+}  // namespace incise

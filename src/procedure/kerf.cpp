@@ -1,0 +1,92 @@
+#include "kerf.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/geometry/kerf_contours.hpp>
+#include <incise/geometry/surface_query.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// The middle of what a ring runs round: the tumour if there is one, else the path.
+Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
+  return curve_centroid(tumor_edge.points.empty() ? entry_contour(path) : tumor_edge);
+}
+
+KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                     const IncisionSettings& settings, const CutRecord& record) {
+  KerfInput kerf;
+  for (const Removal& removal : record.removals) {
+    const Tet& t = model.mesh.tets[removal.tet.index()];
+    const Points& x = stretched.positions;
+    kerf.removed_tets.push_back({x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]});
+  }
+  kerf.surface = skin_of(model.mesh, stretched.positions);
+  kerf.approach = settings.approach;
+  kerf.inside_mm = inside_of(path.tumor_edge, path);
+  kerf.is_closed = path.is_closed;
+  return kerf;
+}
+
+/// Where material points of the stretched tissue lie after the cut.
+Contour carried(const Contour& curve, const TetMesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to) {
+  constexpr double kOnSkinMm = 0.5;  // points of a curve on the skin may lie this far outside the flat faces
+  const TetLocator locator(mesh, from);
+  Contour moved{{}, curve.is_closed};
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const auto point = locator.locate(curve.points[i], kOnSkinMm);
+    INCISE_REQUIRE(point.has_value(), fmt::format("point {} of the tumour edge lies farther than {} mm from the tissue", i, kOnSkinMm));
+    moved.points.push_back(position_of(*point, mesh, to));
+  }
+  return moved;
+}
+
+CutSurface cut_surface(const TetMesh& mesh, const TissueState& tissue, const IncisionSettings& settings, const Vec3& inside) {
+  CutSurface surface;
+  surface.vertices = tissue.positions;
+  surface.approach = settings.approach;
+  surface.inside_mm = inside;
+  // Both lists run by tet, then face: a face of the live skin is original where it stands in the uncut skin, too.
+  const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
+  auto original = uncut.begin();
+  for (const BoundaryFace& face : boundary_faces(mesh, tissue.is_live)) {
+    while (original != uncut.end() && original->tet < face.tet) ++original;
+    const bool is_skin = std::any_of(original, uncut.end() - original > 4 ? original + 4 : uncut.end(),
+                                     [&face](const BoundaryFace& o) { return o.tet == face.tet && o.corners == face.corners; });
+    surface.triangles.push_back(face.corners);
+    surface.is_skin.push_back(is_skin ? 1 : 0);
+  }
+  return surface;
+}
+
+}  // namespace
+
+void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path, const IncisionSettings& settings,
+                  IncisionResult& result) {
+  KerfMidlineSettings midline_settings;
+  midline_settings.layer_bottom_mm = settings.midline_layer_mm;
+  const KerfMidline midline = midline_contour(kerf_input(model, stretched, path, settings, result.record), midline_settings);
+  result.centerline = midline.contour;
+  result.kerf_width_mm = midline.mean_width_mm;
+  if (path.is_closed) {
+    result.is_closed_loop = midline.is_closed;
+    if (!midline.is_closed && std::isfinite(midline.gap_mm)) result.gap_mm = midline.gap_mm;
+    result.gap_deg = midline.gap_deg;
+  }
+  if (path.tumor_edge.points.size() < 3) return;
+  const TissueState& tissue = result.final_state.tissue;
+  result.final_tumor_edge = carried(path.tumor_edge, model.mesh, stretched.positions, tissue.positions);
+  if (path.is_closed) {
+    // A strip of tissue that the mid-line overlooks does not hold the plug either.
+    InnerEdgeSettings edge_settings;
+    edge_settings.opening_mm = midline_settings.closing_mm;
+    result.inner_edge = inner_edge_contour(cut_surface(model.mesh, tissue, settings, inside_of(result.final_tumor_edge, path)),
+                                           edge_settings);
+  }
+}
+
+}  // namespace incise

@@ -1,0 +1,197 @@
+#include "report/plot.hpp"
+#include "report/svg.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/report/figures.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kWidth = 560.0;
+constexpr double kHeight = 520.0;
+constexpr double kScaleBarMm = 5.0;
+constexpr std::string_view kTumorStroke = "stroke-width=\"2.6\" stroke-linejoin=\"round\"";
+constexpr std::string_view kIntendedStroke = "stroke-width=\"1.6\" stroke-linejoin=\"round\"";
+constexpr std::string_view kCorrectedStroke = "stroke-width=\"1.8\" stroke-dasharray=\"6 3\" stroke-linejoin=\"round\"";
+
+/// Where the picture plane, in mm, lies on the page, in px: y of the view points up.
+struct Picture {
+  ViewFrame view;
+  Vec2 center_mm = Vec2::Zero();
+  Vec2 center_px = Vec2::Zero();
+  double px_per_mm = 1.0;
+
+  [[nodiscard]] Vec2 at(const Vec3& p) const {
+    const Vec3 q = view.to_view(p);
+    return {center_px.x() + px_per_mm * (q.x() - center_mm.x()), center_px.y() - px_per_mm * (q.y() - center_mm.y())};
+  }
+  [[nodiscard]] std::vector<Vec2> at(const Contour& contour) const {
+    std::vector<Vec2> points;
+    for (const Vec3& p : contour.points) points.push_back(at(p));
+    return points;
+  }
+};
+
+Picture picture_of(const ReportIncision& incision, const Vec3& approach, const Vec2& corner, const Vec2& size) {
+  Picture picture{.view = view_along(approach)};
+  Eigen::AlignedBox2d box;
+  for (const Contour* contour :
+       {&incision.tumor_edge, &incision.intended_path, &incision.corrected_path, &incision.incision}) {
+    for (const Vec3& p : contour->points) box.extend(Vec2(picture.view.to_view(p).head<2>()));
+  }
+  const Vec2 extent = box.sizes().cwiseMax(1.0);
+  picture.center_mm = box.center();
+  picture.center_px = corner + 0.5 * size;
+  picture.px_per_mm = std::min(size.x() / extent.x(), size.y() / extent.y());
+  return picture;
+}
+
+void draw_path(SvgWriter& svg, const Picture& picture, const Contour& path, std::string_view color,
+               std::string_view more) {
+  if (path.points.size() < 2) return;
+  svg.polyline(picture.at(path), path.is_closed, fmt::format("fill=\"none\" stroke=\"{}\" {}", color, more));
+}
+
+/// Each point's half segments carry its colour; broad strokes below mark what is too close or has reached the edge.
+void draw_incision(SvgWriter& svg, const Picture& picture, const ReportIncision& incision, double limit_mm,
+                   ErrorColors colors) {
+  const std::vector<Vec2> points = picture.at(incision.incision);
+  const std::size_t n = points.size();
+  const bool is_closed = incision.incision.is_closed;
+  const auto part = [&](std::size_t i) {
+    std::vector<Vec2> line;
+    if (is_closed || i > 0) line.push_back(0.5 * (points[(i + n - 1) % n] + points[i]));
+    line.push_back(points[i]);
+    if (is_closed || i + 1 < n) line.push_back(0.5 * (points[i] + points[(i + 1) % n]));
+    return line;
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    const double error = incision.signed_error_mm[i];
+    if (error >= incision.close_margin_mm - incision.target_mm) continue;
+    const std::string_view color = error <= -incision.target_mm ? ink::kReached : ink::kTooClose;
+    svg.polyline(part(i), false, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"13\"", color));
+  }
+  svg.polyline(points, is_closed, "fill=\"none\" stroke=\"#333\" stroke-width=\"6\" stroke-linejoin=\"round\"");
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::string color = hex_color(error_color(incision.signed_error_mm[i] / limit_mm, colors));
+    svg.polyline(part(i), false,
+                 fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"4.4\" stroke-linejoin=\"round\"", color));
+  }
+}
+
+void draw_color_bar(SvgWriter& svg, const Vec2& corner, const Vec2& size, double limit_mm, ErrorColors colors) {
+  constexpr int kSteps = 60;
+  for (int k = 0; k < kSteps; ++k) {
+    const double share = 1.0 - 2.0 * (k + 0.5) / kSteps;
+    svg.rectangle(corner + Vec2(0.0, size.y() * k / kSteps), {size.x(), size.y() / kSteps + 0.6},
+                  fmt::format("fill=\"{}\"", hex_color(error_color(share, colors))));
+  }
+  svg.rectangle(corner, size, "fill=\"none\" stroke=\"#333\" stroke-width=\"0.8\"");
+  for (const double tick : round_ticks(-limit_mm, limit_mm, 6)) {
+    const double y = corner.y() + size.y() * 0.5 * (1.0 - tick / limit_mm);
+    svg.line({corner.x() + size.x(), y}, {corner.x() + size.x() + 4.0, y}, "stroke=\"#333\"");
+    svg.text({corner.x() + size.x() + 8.0, y + 4.0}, number_text(tick));
+  }
+  svg.text(corner + Vec2(-4.0, -26.0), "error, mm", "start", "font-weight=\"600\"");
+  svg.text(corner + Vec2(-4.0, -10.0), "farther", "start", "font-size=\"11\"");
+  svg.text(corner + Vec2(-4.0, size.y() + 16.0), "closer", "start", "font-size=\"11\"");
+}
+
+/// The name of the axis end that points along a picture direction, if one does nearly.
+std::string end_name(const Vec3& direction, const std::array<std::string, 6>& names) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<std::size_t>(2 * axis);
+    if (direction[axis] > 0.9) return names[k + 1];
+    if (direction[axis] < -0.9) return names[k];
+  }
+  return "";
+}
+
+void draw_orientation(SvgWriter& svg, const ViewFrame& view, const Vec2& at, const std::array<std::string, 6>& names) {
+  constexpr double kArm = 22.0;
+  constexpr std::string_view kStyle = "stroke=\"#777\" stroke-width=\"1.2\"";
+  constexpr std::string_view kText = "font-size=\"11\" fill=\"#555\"";
+  svg.line(at - Vec2(kArm, 0.0), at + Vec2(kArm, 0.0), kStyle);
+  svg.line(at - Vec2(0.0, kArm), at + Vec2(0.0, kArm), kStyle);
+  svg.text(at + Vec2(kArm + 4.0, 4.0), end_name(view.x, names), "start", kText);
+  svg.text(at - Vec2(kArm + 4.0, -4.0), end_name(-view.x, names), "end", kText);
+  svg.text(at - Vec2(0.0, kArm + 5.0), end_name(view.y, names), "middle", kText);
+  svg.text(at + Vec2(0.0, kArm + 13.0), end_name(-view.y, names), "middle", kText);
+}
+
+struct LegendEntry {
+  std::string style;
+  std::string label;
+};
+
+void draw_legend_row(SvgWriter& svg, const std::vector<LegendEntry>& entries, Vec2 at) {
+  for (const LegendEntry& entry : entries) {
+    svg.line(at, at + Vec2(20.0, 0.0), entry.style);
+    svg.text(at + Vec2(26.0, 4.0), entry.label, "start", "font-size=\"11\"");
+    at.x() += 50.0 + 6.6 * static_cast<double>(entry.label.size());  // wide enough for any sans-serif face
+  }
+}
+
+/// Paths in one row, marks in the next.
+void draw_legend(SvgWriter& svg, const ReportIncision& incision, const Vec2& corner) {
+  std::vector<LegendEntry> paths;
+  const auto add = [&](const Contour& path, std::string_view color, std::string_view more, const char* label) {
+    if (!path.points.empty()) paths.push_back({fmt::format("stroke=\"{}\" {}", color, more), label});
+  };
+  add(incision.tumor_edge, ink::kTumorEdge, kTumorStroke, "tumour edge");
+  add(incision.intended_path, ink::kIntended, kIntendedStroke, "intended path");
+  add(incision.corrected_path, ink::kCorrected, kCorrectedStroke, "corrected path");
+  draw_legend_row(svg, paths, corner);
+  const std::string close = fmt::format("closer than {} mm", number_text(incision.close_margin_mm));
+  draw_legend_row(svg,
+                  {{fmt::format("stroke=\"{}\" stroke-width=\"9\"", ink::kTooClose), close},
+                   {fmt::format("stroke=\"{}\" stroke-width=\"9\"", ink::kReached), "tumour edge reached"}},
+                  corner + Vec2(0.0, 20.0));
+}
+
+std::string description_of(const ReportIncision& incision) {
+  const auto [low, high] = std::minmax_element(incision.signed_error_mm.begin(), incision.signed_error_mm.end());
+  return fmt::format(
+      "{} points of the {}; mean absolute error {} mm; signed error from {} to {} mm against a target of {} mm.",
+      incision.signed_error_mm.size(), incision.measured_contour.empty() ? "incision" : incision.measured_contour,
+      number_text(incision.mean_abs_error_mm), number_text(*low), number_text(*high), number_text(incision.target_mm));
+}
+
+}  // namespace
+
+std::string contour_figure_svg(const ReportIncision& incision, const FigureStyle& style) {
+  require_drawable(incision);
+  const double limit_mm = error_limit_of(style, {&incision, 1});
+  SvgWriter svg(kWidth, kHeight, fmt::format("{}: contours seen along the approach", incision.name),
+                description_of(incision));
+  svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
+  svg.text({16.0, 26.0}, incision.name, "start", "font-size=\"15\" font-weight=\"600\"");
+  svg.text({16.0, 44.0}, fmt::format("mean |error| {:.2f} mm", incision.mean_abs_error_mm), "start", "fill=\"#555\"");
+
+  const Picture picture = picture_of(incision, style.approach, {36.0, 66.0}, {400.0, 366.0});
+  draw_path(svg, picture, incision.tumor_edge, ink::kTumorEdge, kTumorStroke);
+  draw_incision(svg, picture, incision, limit_mm, style.colors);
+  draw_path(svg, picture, incision.intended_path, ink::kIntended, kIntendedStroke);
+  draw_path(svg, picture, incision.corrected_path, ink::kCorrected, kCorrectedStroke);
+  if (!incision.intended_path.points.empty()) {
+    const Vec2 start = picture.at(incision.intended_path.points.front());
+    svg.circle(start, 4.5, "fill=\"#fff\" stroke=\"#111\" stroke-width=\"1.6\"");
+    svg.text(start + Vec2(0.0, -9.0), "start", "middle",
+             "font-size=\"11\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"");
+  }
+  draw_color_bar(svg, {476.0, 96.0}, {16.0, 240.0}, limit_mm, style.colors);
+  draw_orientation(svg, picture.view, {500.0, 412.0}, style.axis_names);
+
+  const double bar_px = kScaleBarMm * picture.px_per_mm;
+  svg.line({24.0, 448.0}, {24.0 + bar_px, 448.0}, "stroke=\"#111\" stroke-width=\"3\"");
+  svg.text({30.0 + bar_px, 452.0}, fmt::format("{} mm", number_text(kScaleBarMm)));
+  draw_legend(svg, incision, {16.0, 482.0});
+  return svg.finish();
+}
+
+}  // namespace incise

@@ -1,0 +1,15 @@
+# cmake -DOUTPUT=x.cpp "-DFILES=name=path;…" -P embed.cmake
+# Writes a C++ source that holds text files as string literals, so that the program needs none of them when it runs.
+set(text "#include \"report/page_files.hpp\"\n\nnamespace incise::page {\n\n")
+foreach(entry IN LISTS FILES)
+  string(REGEX MATCH "^([a-z_]+)=(.*)$" ignored "${entry}")
+  set(name ${CMAKE_MATCH_1})
+  file(READ "${CMAKE_MATCH_2}" content)
+  string(FIND "${content}" ")incise_page\"" clash)
+  if(NOT clash EQUAL -1)
+    message(FATAL_ERROR "${CMAKE_MATCH_2} holds the text that ends our string literals")
+  endif()
+  string(APPEND text "const std::string_view ${name} = R\"incise_page(${content})incise_page\";\n\n")
+endforeach()
+string(APPEND text "}  // namespace incise::page\n")
+file(WRITE "${OUTPUT}" "${text}")

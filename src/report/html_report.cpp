@@ -1,0 +1,112 @@
+#include "report/page_files.hpp"
+#include "report/scene.hpp"
+#include "report/sections.hpp"
+#include "report/svg.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/report/html_report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <ostream>
+
+namespace incise {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kFrameBudget = 9'000'000;  ///< bytes of text that the frames of all animations may take together
+constexpr std::size_t kMaxShownTets = 200'000;   ///< about 4 MB of text
+constexpr int kMaxAxialSlices = 40;
+
+/// Fills {{name}} places of a template. Every place has to have its text.
+std::string filled(std::string_view text, const std::map<std::string, std::string, std::less<>>& parts) {
+  std::string result;
+  while (true) {
+    const std::size_t open = text.find("{{");
+    result += text.substr(0, open);
+    if (open == std::string_view::npos) return result;
+    const std::size_t close = text.find("}}", open);
+    result += parts.at(std::string(text.substr(open + 2, close - open - 2)));
+    text.remove_prefix(close + 2);
+  }
+}
+
+Json json_of(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json view_json(const ReportData& data) {
+  const ViewFrame view = view_along(data.approach);
+  return {{"x", json_of(view.x)}, {"y", json_of(view.y)}, {"z", json_of(view.z)}, {"ends", data.axis_names}};
+}
+
+Json axial_json(const SlicePlane& plane) {
+  Json slices = Json::array();
+  for (const Slice& slice : plane.slices) {
+    slices.push_back({{"position_mm", slice.position_mm}, {"image", slice.image_uri}, {"outline", slice.outline}});
+  }
+  return {{"axis", plane.axis_name}, {"middle", plane.slices.size() / 2}, {"slices", slices}};
+}
+
+Json animations_json(const ReportData& data) {
+  std::vector<const ReportAnimation*> shown;
+  for (const ReportAnimation& animation : data.animations) {
+    if (!animation.frames.empty()) shown.push_back(&animation);
+  }
+  Json animations = Json::array();
+  for (const ReportAnimation* animation : shown) {
+    animations.push_back(animation_json(*animation, kFrameBudget / shown.size()));
+  }
+  return animations;
+}
+
+void require_reportable(const ReportData& data) {
+  const std::vector<std::string> problems = find_problems(data);
+  if (problems.empty()) return;
+  std::string list;
+  for (const std::string& problem : problems) list += "\n  " + problem;
+  INCISE_REQUIRE(problems.empty(), "these data cannot be reported:" + list);
+}
+
+}  // namespace
+
+std::string html_report(const ReportData& data) {
+  require_reportable(data);
+  Json scene{{"view", view_json(data)}};
+  std::array<SlicePlane, 3> planes;
+  if (!data.ct.ct.voxels.empty()) {
+    planes = slice_planes(data.ct, data.axis_names, kMaxAxialSlices);
+    scene["axial"] = axial_json(planes.front());
+  }
+  const bool mesh_is_shown = !data.mesh.mesh.tets.empty() && data.mesh.mesh.tets.size() <= kMaxShownTets;
+  if (mesh_is_shown) scene["mesh"] = mesh_json(data.mesh.mesh);
+  scene["animations"] = animations_json(data);
+
+  const std::string body = page_header(data) + "<main>\n" + result_section(data) + scan_section(data, planes) +
+                           mesh_section(data, mesh_is_shown) + cut_section(data) + error_section(data) +
+                           program_section(data) + record_section(data) + "</main>\n" + page_footer();
+  std::string script;
+  for (const std::string_view part :
+       {page::decode_js, page::viewer_js, page::cut_view_js, page::mesh_view_js, page::main_js}) {
+    script += part;
+    script += '\n';
+  }
+  return filled(page::page_html, {{"title", escaped(data.title)},
+                                  {"style", std::string(page::page_css)},
+                                  {"body", body},
+                                  {"data", script_json(scene)},
+                                  {"licence", std::string(page::three_licence)},
+                                  {"three", std::string(page::three_js)},
+                                  {"script", script}});
+}
+
+void write_report(const ReportData& data, const std::filesystem::path& path) {
+  const std::string page = html_report(data);
+  write_atomically(path, [&page](std::ostream& out) { out << page; });
+}
+
+}  // namespace incise

@@ -1,0 +1,207 @@
+#include "report/slices.hpp"
+
+#include "report/outline.hpp"
+#include "report/plot.hpp"
+#include "report/png.hpp"
+#include "report/svg.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr int kMaxPixels = 360;  ///< along the longer side of a slice
+
+/// The volume's index axis that runs nearest to a world axis, and whether it runs along (+1) or against it (-1).
+struct AxisMatch {
+  int index_axis = 0;
+  double sign = 1.0;
+};
+
+std::array<AxisMatch, 3> match_axes(const Mat3& direction) {
+  std::array<AxisMatch, 3> matches;
+  std::array<int, 3> order{0, 1, 2};
+  double best = -1.0;
+  do {  // the permutation with the largest sum of cosines
+    double sum = 0.0;
+    for (int world = 0; world < 3; ++world) sum += std::abs(direction(world, order[static_cast<std::size_t>(world)]));
+    if (sum <= best) continue;
+    best = sum;
+    for (int world = 0; world < 3; ++world) {
+      const int axis = order[static_cast<std::size_t>(world)];
+      matches[static_cast<std::size_t>(world)] = {axis, direction(world, axis) < 0.0 ? -1.0 : 1.0};
+    }
+  } while (std::next_permutation(order.begin(), order.end()));
+  return matches;
+}
+
+/// Value at a continuous index, linear between voxel centres; beyond the outer centres by up to half a voxel the
+/// border's value, farther out `outside`.
+template <class Value>
+double sampled(const Volume<Value>& volume, const Vec3& index, double outside) {
+  std::array<int, 3> low{};
+  Vec3 f;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = volume.grid.size[static_cast<std::size_t>(axis)] - 1;
+    if (index[axis] < -0.5 || index[axis] > last + 0.5) return outside;
+    const double inside = std::clamp(index[axis], 0.0, static_cast<double>(last));
+    low[static_cast<std::size_t>(axis)] = std::min(static_cast<int>(inside), std::max(0, last - 1));
+    f[axis] = inside - low[static_cast<std::size_t>(axis)];
+  }
+  double value = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::array<int, 3> step{corner & 1, corner >> 1 & 1, corner >> 2 & 1};
+    double weight = 1.0;
+    for (int axis = 0; axis < 3; ++axis) weight *= step[static_cast<std::size_t>(axis)] == 1 ? f[axis] : 1.0 - f[axis];
+    if (weight == 0.0) continue;
+    value += weight * static_cast<double>(volume.at(low[0] + step[0], low[1] + step[1], low[2] + step[2]));
+  }
+  return value;
+}
+
+/// Which way a slice is laid out: world axes that run right, down and through it, and whether they run in the positive
+/// sense.
+struct Layout {
+  const char* name;
+  int right, down, normal;
+  double right_sign, down_sign;
+};
+// Axial from the feet, coronal from the front, sagittal from the left: the patient's right is at the left, the head up.
+constexpr std::array<Layout, 3> kLayouts{
+    {{"axial", 0, 1, 2, 1.0, 1.0}, {"coronal", 0, 2, 1, 1.0, -1.0}, {"sagittal", 1, 2, 0, 1.0, -1.0}}};
+
+/// Makes the slices of one layout at the given positions along the normal's index axis.
+class Slicer {
+ public:
+  Slicer(const CtPicture& picture, const Layout& layout) : picture_(picture), layout_(layout) {
+    const VolumeGrid& grid = picture.ct.grid;
+    axes_ = match_axes(grid.direction);
+    const auto extent = [&](int world) {
+      const auto axis = static_cast<std::size_t>(axes_[static_cast<std::size_t>(world)].index_axis);
+      return grid.size[axis] * grid.spacing_mm[static_cast<int>(axis)];
+    };
+    width_mm_ = extent(layout.right);
+    height_mm_ = extent(layout.down);
+    const double finest = std::min(spacing_along(layout.right), spacing_along(layout.down));
+    const double pixel_mm = std::max(finest, std::max(width_mm_, height_mm_) / kMaxPixels);
+    columns_ = std::max(2, static_cast<int>(std::lround(width_mm_ / pixel_mm)));
+    rows_ = std::max(2, static_cast<int>(std::lround(height_mm_ / pixel_mm)));
+  }
+
+  [[nodiscard]] double width_mm() const { return width_mm_; }
+  [[nodiscard]] double height_mm() const { return height_mm_; }
+  [[nodiscard]] int count() const { return picture_.ct.grid.size[static_cast<std::size_t>(normal_axis())]; }
+
+  [[nodiscard]] Slice at(int normal_index) const {
+    std::vector<std::uint8_t> pixels;
+    std::vector<double> tissue;
+    const double window = picture_.window_high_hu - picture_.window_low_hu;
+    const bool has_outline = !picture_.occupancy.voxels.empty();
+    for (int row = 0; row < rows_; ++row) {
+      for (int column = 0; column < columns_; ++column) {
+        const Vec3 index = index_of(column, row, normal_index);
+        const double share = (sampled(picture_.ct, index, kAirHu) - picture_.window_low_hu) / window;
+        pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0))));
+        if (!has_outline) continue;
+        const Vec3 world = picture_.ct.grid.world_from_index(index);
+        tissue.push_back(sampled(picture_.occupancy, picture_.occupancy.grid.index_from_world(world), 0.0));
+      }
+    }
+    Slice slice;
+    const Vec3 middle = picture_.ct.grid.world_from_index(index_of(columns_ / 2, rows_ / 2, normal_index));
+    slice.position_mm = middle[layout_.normal];
+    slice.image_uri = png_data_uri(encoded_png(pixels, columns_, rows_, 1));
+    if (has_outline)
+      slice.outline = outline_path(tissue, columns_, rows_, 0.5, width_mm_ / columns_, height_mm_ / rows_);
+    return slice;
+  }
+
+ private:
+  [[nodiscard]] int normal_axis() const { return axes_[static_cast<std::size_t>(layout_.normal)].index_axis; }
+  [[nodiscard]] double spacing_along(int world) const {
+    return picture_.ct.grid.spacing_mm[axes_[static_cast<std::size_t>(world)].index_axis];
+  }
+  /// Continuous index of the centre of a picture element.
+  [[nodiscard]] Vec3 index_of(int column, int row, int normal_index) const {
+    Vec3 index;
+    const auto place = [&](int world, double sense, double share) {
+      const AxisMatch& match = axes_[static_cast<std::size_t>(world)];
+      const double along = match.sign * sense > 0.0 ? share : 1.0 - share;
+      index[match.index_axis] = along * picture_.ct.grid.size[static_cast<std::size_t>(match.index_axis)] - 0.5;
+    };
+    place(layout_.right, layout_.right_sign, (column + 0.5) / columns_);
+    place(layout_.down, layout_.down_sign, (row + 0.5) / rows_);
+    index[normal_axis()] = normal_index;
+    return index;
+  }
+
+  const CtPicture& picture_;
+  Layout layout_;
+  std::array<AxisMatch, 3> axes_;
+  double width_mm_ = 0.0, height_mm_ = 0.0;
+  int columns_ = 0, rows_ = 0;
+};
+
+}  // namespace
+
+std::array<SlicePlane, 3> slice_planes(const CtPicture& picture, const std::array<std::string, 6>& axis_names,
+                                       int max_axial) {
+  INCISE_REQUIRE(max_axial >= 1, "expected at least one axial slice");
+  std::array<SlicePlane, 3> planes;
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    const Layout& layout = kLayouts[p];
+    const Slicer slicer(picture, layout);
+    const auto end_of = [&](int world, double sense) {
+      return axis_names[static_cast<std::size_t>(2 * world + (sense > 0.0 ? 1 : 0))];
+    };
+    SlicePlane& plane = planes[p];
+    plane.name = layout.name;
+    plane.axis_name = std::string(1, "xyz"[layout.normal]);
+    plane.width_mm = slicer.width_mm();
+    plane.height_mm = slicer.height_mm();
+    plane.ends = {end_of(layout.right, -layout.right_sign), end_of(layout.right, layout.right_sign),
+                  end_of(layout.down, -layout.down_sign), end_of(layout.down, layout.down_sign)};
+    const int wanted = p == 0 ? std::min(max_axial, slicer.count()) : 1;
+    for (int k = 0; k < wanted; ++k) {
+      plane.slices.push_back(slicer.at(static_cast<int>((k + 0.5) * slicer.count() / wanted)));
+    }
+    std::sort(plane.slices.begin(), plane.slices.end(),
+              [](const Slice& a, const Slice& b) { return a.position_mm < b.position_mm; });
+  }
+  return planes;
+}
+
+std::string slice_svg(const SlicePlane& plane, const Slice& slice) {
+  const double w = plane.width_mm;
+  const double h = plane.height_mm;
+  const double unit = std::max(w, h) / 100.0;  // so that text and lines look the same on small and large scans
+  SvgWriter svg(w, h, fmt::format("{} CT slice", plane.name),
+                fmt::format("{} slice at {} = {} mm, {} by {} mm; the outline is the segmented tissue.", plane.name,
+                            plane.axis_name, number_text(std::round(10.0 * slice.position_mm) / 10.0),
+                            number_text(std::round(w)), number_text(std::round(h))));
+  svg.image({0.0, 0.0}, {w, h}, slice.image_uri);
+  svg.open_group(
+      fmt::format("fill=\"none\" stroke=\"#ffb000\" stroke-width=\"{:.3f}\" stroke-linejoin=\"round\"", 0.6 * unit));
+  svg.path(slice.outline, "class=\"outline\"");
+  svg.close_group();
+  svg.open_group(
+      fmt::format("font-size=\"{:.2f}\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"{:.3f}\" paint-order=\"stroke\"",
+                  4.6 * unit, 0.8 * unit));
+  svg.text({1.5 * unit, 0.5 * h + 1.6 * unit}, plane.ends[0]);
+  svg.text({w - 1.5 * unit, 0.5 * h + 1.6 * unit}, plane.ends[1], "end");
+  svg.text({0.5 * w, 5.0 * unit}, plane.ends[2], "middle");
+  svg.text({0.5 * w, h - 1.8 * unit}, plane.ends[3], "middle");
+  const double bar = rounded_up(0.12 * w);
+  svg.text({3.0 * unit, h - 4.5 * unit}, fmt::format("{} mm", number_text(bar)), "start", "class=\"scale\"");
+  svg.close_group();
+  svg.line({3.0 * unit, h - 2.6 * unit}, {3.0 * unit + bar, h - 2.6 * unit},
+           fmt::format("stroke=\"#fff\" stroke-width=\"{:.3f}\"", 0.9 * unit));
+  return svg.finish();
+}
+
+}  // namespace incise

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <incise/geometry/types.hpp>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace incise {
+
+/// Text made safe for HTML and SVG, in content and in double-quoted attributes.
+[[nodiscard]] std::string escaped(std::string_view text);
+
+/// A number as a person writes it: four significant digits, whole numbers in full, a true minus sign.
+[[nodiscard]] std::string number_text(double value);
+
+/// #rrggbb of components in [0, 1].
+[[nodiscard]] std::string hex_color(const Vec3& rgb);
+
+/// Writes one SVG document, y downwards. Every coordinate has to be finite (InvalidArgument). `style` is SVG attributes
+/// as text, such as `stroke="#111" fill="none"`.
+class SvgWriter {
+ public:
+  /// @param title, description  for screen readers; escaped here.
+  SvgWriter(double width, double height, std::string_view title, std::string_view description);
+
+  void line(const Vec2& a, const Vec2& b, std::string_view style);
+  void polyline(std::span<const Vec2> points, bool is_closed, std::string_view style);
+  void rectangle(const Vec2& corner, const Vec2& size, std::string_view style);
+  void circle(const Vec2& center, double radius, std::string_view style);
+  /// `anchor`: start, middle or end. `extra`: further attributes.
+  void text(const Vec2& at, std::string_view content, std::string_view anchor = "start", std::string_view extra = "");
+  void image(const Vec2& corner, const Vec2& size, std::string_view data_uri);
+  /// `data`: SVG path data.
+  void path(std::string_view data, std::string_view style);
+  void open_group(std::string_view attributes);
+  void close_group();
+
+  /// The finished document. The writer is empty afterwards.
+  [[nodiscard]] std::string finish();
+
+ private:
+  std::string text_;
+};
+
+}  // namespace incise

@@ -1,0 +1,166 @@
+#include "describe_case.hpp"
+#include "field_writers.hpp"
+#include "yaml_reader.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/storage/case_file.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <utility>
+
+namespace incise {
+namespace {
+
+YAML::Node parse(const std::filesystem::path& file) {
+  try {
+    return YAML::Load(read_text(file));
+  } catch (const YAML::Exception& error) {
+    throw DataError(file, fmt::format("line {}", error.mark.line + 1), error.msg, "YAML or JSON");
+  }
+}
+
+/// What a single range cannot say: values that have to fit each other.
+void require_consistent(const CaseFile& file, const std::string& name) {
+  const Case& c = file.settings;
+  const auto refuse = [&name](const char* field, const std::vector<std::string>& violations, const char* expected) {
+    if (!violations.empty()) throw CaseError(name, field, fmt::format("{}", fmt::join(violations, "; ")), expected);
+  };
+  refuse("ct", validate(c.segmentation), "a usable segmentation");
+  refuse("specimen.material", validate(c.material), "a usable material");
+  refuse("plan", validate(c.plan), "a usable plan");
+  refuse("tool", validate(c.needle), "a usable needle");
+  refuse("cut", validate(c.cut, c.needle.diameter_mm), "usable cut settings");
+  if (c.meshing.fine_mm > c.meshing.coarse_mm) {
+    throw CaseError(name, "meshing.fine_mm", fmt::format("{} mm", c.meshing.fine_mm),
+                    fmt::format("at most meshing.coarse_mm = {} mm", c.meshing.coarse_mm));
+  }
+  if (c.plan.depth_mm > c.needle.length_mm) {
+    throw CaseError(name, "plan.depth_mm", fmt::format("{} mm", c.plan.depth_mm),
+                    fmt::format("at most tool.length_mm = {} mm", c.needle.length_mm));
+  }
+  if (c.T_robot_sim) {
+    const Mat3 rotation = c.T_robot_sim->topLeftCorner<3, 3>();
+    const bool is_rigid = (rotation.transpose() * rotation - Mat3::Identity()).norm() < 1e-6 && rotation.determinant() > 0.0 &&
+                          (c.T_robot_sim->row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() < 1e-9;
+    if (!is_rigid) {
+      throw CaseError(name, "robot.T_robot_sim", "a matrix that is not rigid", "a rotation, a translation and the row 0 0 0 1");
+    }
+  }
+}
+
+void require_inputs(const CaseFile& file, const std::string& name) {
+  const CaseInputs& in = file.inputs;
+  if (in.ct_volume.empty() && in.specimen_mesh.empty()) {
+    throw CaseError(name, "ct.volume", "neither a CT nor a mesh", "ct.volume or specimen.mesh");
+  }
+  if (!in.ct_volume.empty() && !in.specimen_mesh.empty()) {
+    throw CaseError(name, "specimen.mesh", "a CT and a mesh", "only one of ct.volume and specimen.mesh");
+  }
+  if (file.settings.plan.kind == PlanKind::Ring && in.tumor_contour.empty()) {
+    throw CaseError(name, "tumor.contour", "nothing", "the tumour edge that the ring goes round");
+  }
+  if (file.settings.plan.kind == PlanKind::Line && in.line_contour.empty()) {
+    throw CaseError(name, "plan.line", "nothing", "the curve of the open cut");
+  }
+}
+
+/// The description is one walk for reading and writing, so writers need a file that they may walk.
+template <class Visitor>
+Visitor walk(CaseFile file) {
+  Visitor visitor;
+  describe_case(file, visitor);
+  return visitor;
+}
+
+}  // namespace
+
+CaseFile read_case(const std::filesystem::path& file_or_folder) {
+  CaseFile file;
+  file.file = std::filesystem::is_directory(file_or_folder) ? file_or_folder / "case.yaml" : file_or_folder;
+  if (!std::filesystem::exists(file.file)) {
+    throw DataError(file.file, "", "no such file", "a case file", "`incise schema case --defaults` prints one to start from");
+  }
+  file.folder = std::filesystem::absolute(file.file).parent_path();
+  const std::string name = file.file.string();
+  const YAML::Node root = parse(file.file);
+  if (root.IsMap() && !root["schema"].IsDefined()) {
+    throw CaseError(name, "schema", "nothing", fmt::format("schema: {}", kCaseSchemaName));
+  }
+  YamlReader reader(root, name);
+  describe_case(file, reader);
+  reader.finish();
+  for (std::filesystem::path* path : {&file.inputs.ct_volume, &file.inputs.specimen_mesh, &file.inputs.tumor_contour,
+                                      &file.inputs.line_contour, &file.inputs.tool_path}) {
+    if (!path->empty()) *path = (file.folder / *path).lexically_normal();
+  }
+  require_consistent(file, name);
+  require_inputs(file, name);
+  return file;
+}
+
+void require_input_files(const CaseFile& file) {
+  const CaseInputs& in = file.inputs;
+  const std::pair<const char*, const std::filesystem::path&> inputs[] = {{"ct.volume", in.ct_volume},
+                                                                        {"specimen.mesh", in.specimen_mesh},
+                                                                        {"tumor.contour", in.tumor_contour},
+                                                                        {"plan.line", in.line_contour},
+                                                                        {"path", in.tool_path}};
+  for (const auto& [field, path] : inputs) {
+    if (path.empty() || std::filesystem::exists(path)) continue;
+    throw DataError(path, "", "no such file or folder", fmt::format("what {} names as {}", file.file.string(), field));
+  }
+}
+
+std::vector<SettingLine> settings_of(const CaseFile& file) {
+  std::vector<SettingLine> settings;
+  const auto lister = walk<SettingLister>(file);
+  for (const auto& line : lister.lines()) {
+    if (line.is_group) continue;
+    settings.push_back({line.group.empty() ? line.name : line.group + "." + line.name, line.value, line.unit});
+  }
+  return settings;
+}
+
+std::string settings_json(const CaseFile& file) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const SettingLine& line : settings_of(file)) json[line.key] = line.value;
+  return json_text(json);
+}
+
+std::string case_schema_json() {
+  nlohmann::ordered_json schema;
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = kCaseSchemaName;
+  schema["description"] = "A case for incise: what to cut, where, and with what. Lengths in mm, coordinates in LPS.";
+  schema["type"] = "object";
+  schema["properties"] = walk<SchemaWriter>(CaseFile{}).properties();
+  schema["required"] = {"schema"};
+  schema["additionalProperties"] = false;
+  return json_text(schema);
+}
+
+std::string case_defaults_yaml() {
+  std::string text;
+  const auto depth_of = [](const std::string& group) {
+    return group.empty() ? 0 : 1 + std::count(group.begin(), group.end(), '.');
+  };
+  const auto lister = walk<SettingLister>(CaseFile{});
+  for (const auto& line : lister.lines()) {
+    const std::string indent(static_cast<std::size_t>(2 * depth_of(line.group)), ' ');
+    const std::string unit = line.unit.empty() ? "" : fmt::format(" [{}]", line.unit);
+    if (line.is_group) {
+      text += fmt::format("{}{}:  # {}\n", indent, line.name, line.meaning);
+    } else if (line.value.empty()) {  // optional and absent
+      text += fmt::format("{}# {}:  # {}{}\n", indent, line.name, line.meaning, unit);
+    } else {
+      text += fmt::format("{}{}: {}  # {}{}\n", indent, line.name, line.value, line.meaning, unit);
+    }
+  }
+  return text;
+}
+
+}  // namespace incise

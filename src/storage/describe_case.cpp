@@ -1,0 +1,203 @@
+#include "describe_case.hpp"
+
+#include <array>
+
+namespace incise {
+namespace {
+
+constexpr Range kHu{-1024.0, 32767.0, false, false};
+
+/// Visits an optional vector, box or matrix through plain numbers; `load` and `store` translate.
+template <std::size_t N, class Value, class Load, class Store>
+void optional_numbers(FieldVisitor& v, const FieldInfo& info, std::optional<Value>& value, const Range& range, Load load, Store store) {
+  std::array<double, N> numbers{};
+  bool is_given = value.has_value();
+  if (is_given) load(*value, numbers);
+  v.numbers(info, numbers, is_given, range);
+  if (is_given) value = store(numbers);
+}
+
+template <class Enum>
+void choice(FieldVisitor& v, const FieldInfo& info, Enum& value, std::span<const char* const> names) {
+  auto position = static_cast<std::size_t>(value);
+  v.choice(info, position, names);
+  value = static_cast<Enum>(position);
+}
+
+void vector(FieldVisitor& v, const FieldInfo& info, Vec3& value, const Range& range = kAny) {
+  bool is_given = true;
+  v.numbers(info, {value.data(), 3}, is_given, range);
+}
+
+void optional_vector(FieldVisitor& v, const FieldInfo& info, std::optional<Vec3>& value, const Range& range) {
+  optional_numbers<3>(
+      v, info, value, range,
+      [](const Vec3& from, auto& to) { to = {from.x(), from.y(), from.z()}; },
+      [](const auto& from) { return Vec3(from[0], from[1], from[2]); });
+}
+
+void describe_ct(CaseFile& file, FieldVisitor& v) {
+  SegmentationSettings& s = file.settings.segmentation;
+  v.begin_group({"ct", "", "The scan of the specimen and which part of it is tissue."});
+  v.path({"volume", "", "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha or a folder of PNG slices."}, file.inputs.ct_volume);
+  std::array<double, 2> window{s.window_low_hu, s.window_high_hu};
+  bool is_given = true;
+  v.numbers({"window_hu", "HU", "Least and greatest value of tissue."}, window, is_given, kHu);
+  s.window_low_hu = window[0];
+  s.window_high_hu = window[1];
+  optional_numbers<6>(
+      v, {"roi_box_mm", "mm", "Low and high corner (LPS) of the box that holds the specimen; absent: the whole volume."},
+      s.roi_box_mm, kAny,
+      [](const Box3& from, auto& to) {
+        for (int i = 0; i < 3; ++i) {
+          to[static_cast<std::size_t>(i)] = from.min()[i];
+          to[static_cast<std::size_t>(i) + 3] = from.max()[i];
+        }
+      },
+      [](const auto& from) { return Box3(Vec3(from[0], from[1], from[2]), Vec3(from[3], from[4], from[5])); });
+  std::optional<Vec3> seed;
+  if (!s.seeds_mm.empty()) seed = s.seeds_mm.front();
+  optional_vector(v, {"seed_mm", "mm", "A point inside the specimen (LPS); absent: the largest piece is taken."}, seed, kAny);
+  s.seeds_mm.clear();
+  if (seed) s.seeds_mm.push_back(*seed);
+  v.number({"opening_radius_mm", "mm", "Pieces joined only by bridges thinner than twice this are separated."},
+           s.opening_radius_mm, {0.0, 20.0});
+  v.number({"smoothing_mm", "mm", "Standard deviation of the Gaussian that smooths the tissue's surface."}, s.smoothing_mm, {0.0, 5.0});
+  v.text({"series_uid", "", "DICOM: which series to read, where a folder holds several."}, file.ct_reading.series_uid);
+  static constexpr std::array<const char*, 2> kIrregular{"resample", "refuse"};
+  choice(v, {"irregular_slices", "", "What to do with a tilted or unevenly spaced series."}, file.ct_reading.irregular, kIrregular);
+  static constexpr std::array<const char*, 2> kMissing{"refuse", "interpolate"};
+  choice(v, {"missing_slices", "", "What to do with holes in a series."}, file.ct_reading.missing, kMissing);
+  optional_vector(v, {"spacing_mm", "mm", "PNG slices only: column, row and slice spacing."}, file.ct_reading.spacing_mm, kPositive);
+  // The group `hu` belongs to pictures only, so it is absent unless both numbers are given.
+  std::optional<GrayToHu>& hu = file.ct_reading.hu;
+  std::optional<std::array<double, 2>> slope_intercept;
+  if (hu) slope_intercept = {hu->slope, hu->intercept};
+  optional_numbers<2>(
+      v, {"hu", "HU", "PNG slices only: [slope, intercept] with HU = slope * gray + intercept."}, slope_intercept, kAny,
+      [](const auto& from, auto& to) { to = from; }, [](const auto& from) { return from; });
+  if (slope_intercept) hu = GrayToHu{(*slope_intercept)[0], (*slope_intercept)[1]};
+  v.end_group();
+}
+
+void describe_meshing(MeshingChoice& m, FieldVisitor& v) {
+  v.begin_group({"meshing", "", "The tetrahedral mesh made from the tissue."});
+  v.number({"fine_mm", "mm", "Edge length where the needle and its neighbourhood pass."}, m.fine_mm, {0.1, 20.0});
+  v.number({"coarse_mm", "mm", "Longest edge length, far from the cut."}, m.coarse_mm, {0.1, 50.0});
+  v.integer({"tets", "", "Count to aim for by scaling both lengths; 0: as the lengths give."}, m.tets, {0.0, 5e6});
+  v.number({"survey_mm", "mm", "Edge length of the coarse mesh with which the planned cut is found in the unstretched body."},
+           m.survey_mm, {0.5, 20.0});
+  v.end_group();
+}
+
+void describe_specimen(CaseFile& file, FieldVisitor& v) {
+  Case& c = file.settings;
+  v.begin_group({"specimen", "", "What the tissue is and how it is held."});
+  v.path({"mesh", "", "A tetrahedral mesh (mm, LPS) to use in place of a CT."}, file.inputs.specimen_mesh);
+  v.begin_group({"material", "", "The tissue's law."});
+  static constexpr std::array<const char*, 1> kModels{"corotational"};
+  choice(v, {"model", "", "Corotational linear tetrahedra, as in the paper."}, c.material.model, kModels);
+  v.number({"youngs_modulus_kpa", "kPa", "Young's modulus; the paper's 70 is about ten times published tongue stiffness."},
+           c.material.youngs_modulus_kpa, kPositive);
+  v.number({"poissons_ratio", "", "Poisson's ratio."}, c.material.poissons_ratio, {0.0, 0.5, false, true});
+  v.number({"density_kg_m3", "kg/m3", "Density."}, c.material.density_kg_m3, kPositive);
+  v.end_group();
+  v.constraints({"constraints", "mm",
+                 "List of fixed, displaced, support and traction; absent: posterior 15 mm clamped, anterior 10 mm pulled 20 mm "
+                 "forward, underside on a platform."}, c.constraints);
+  vector(v, {"gravity_mm_s2", "mm/s2", "Acceleration of gravity."}, c.gravity_mm_s2);
+  v.end_group();
+}
+
+void describe_tumor(CaseFile& file, FieldVisitor& v) {
+  v.begin_group({"tumor", "", "The edge that a ring keeps clear of."});
+  v.path({"contour", "", ".csv (x_mm,y_mm,z_mm), .vtp or Slicer .mrk.json closed curve."}, file.inputs.tumor_contour);
+  static constexpr std::array<const char*, 2> kConfigurations{"stretched", "rest"};
+  choice(v, {"configuration", "", "Whether the edge was marked on the stretched tissue or on the tissue as scanned."},
+         file.settings.tumor_configuration, kConfigurations);
+  v.number({"surface_tolerance_mm", "mm", "Farthest that the edge may lie off the surface along the approach."},
+           file.settings.surface_tolerance_mm, kPositive);
+  v.end_group();
+}
+
+void describe_plan(CaseFile& file, FieldVisitor& v) {
+  PlanSettings& p = file.settings.plan;
+  v.begin_group({"plan", "", "The intended incision."});
+  static constexpr std::array<const char*, 2> kKinds{"ring", "line"};
+  choice(v, {"kind", "", "A ring around the tumour edge, or an open cut along a drawn curve."}, p.kind, kKinds);
+  v.path({"line", "", "The curve of an open cut, on the stretched tissue: .csv, .vtp or Slicer .mrk.json."}, file.inputs.line_contour);
+  v.number({"lateral_margin_mm", "mm", "From the tumour edge to the kerf's mid-line."}, p.lateral_margin_mm, {0.5, 50.0});
+  v.number({"depth_mm", "mm", "Of the tool's tip below the surface."}, p.depth_mm, {0.5, 50.0});
+  v.number({"speed_mm_s", "mm/s", "Of the real tool."}, p.speed_mm_s, {0.1, 50.0});
+  v.number({"power_w", "W", "Electrosurgical power; carried into the program."}, p.power_w, {0.0, 120.0, true, false});
+  v.direction({"approach", "", "Into the tissue, as camera and surgeon look."}, p.approach);
+  v.direction({"start_direction", "", "A ring starts at its waypoint farthest along this; the start decides where the error falls."},
+              p.start_direction);
+  v.integer({"waypoints", "", "Evenly spaced along the path."}, p.waypoints, {2.0, 2000.0});
+  static constexpr std::array<const char*, 2> kAxes{"approach", "surface_normal"};
+  choice(v, {"tool_axis", "", "How the tool is held at a waypoint."}, p.axis_mode, kAxes);
+  v.number({"close_margin_mm", "mm", "Clinical cut-off below which a negative margin is too close."}, file.settings.close_margin_mm,
+           {0.0, 20.0, true, false});
+  v.end_group();
+}
+
+void describe_tool_and_cut(Case& c, FieldVisitor& v) {
+  v.begin_group({"tool", "", "The instrument."});
+  static constexpr std::array<const char*, 1> kTools{"needle"};
+  std::size_t tool = 0;
+  v.choice({"kind", "", "A needle electrode."}, tool, kTools);
+  v.number({"diameter_mm", "mm", "Of the needle."}, c.needle.diameter_mm, {0.0, 10.0, true, false});
+  v.number({"length_mm", "mm", "Of the needle, from its tip."}, c.needle.length_mm, {0.0, 200.0, true, false});
+  v.end_group();
+  v.begin_group({"cut", "", "How the simulated tool cuts; speed and dullness come from calibration."});
+  v.number({"speed_mm_s", "mm/s", "Of the simulated tool."}, c.cut.speed_mm_s, {0.01, 100.0});
+  v.number({"dullness", "steps", "Contact needed before a tetrahedron goes, in reference steps."}, c.cut.dullness, {0.0, 1000.0, true, false});
+  v.number({"reference_step_s", "s", "The time that one unit of dullness stands for."}, c.cut.reference_step_s, {0.0, 1.0, true, false});
+  v.number({"advance_per_step_mm", "mm", "Tool travel in one simulation step, at most the needle's diameter."}, c.cut.advance_per_step_mm,
+           {0.0, 10.0, true, false});
+  v.number({"reach_mm", "mm", "Tissue is in contact within needle radius plus this of the axis."}, c.cut.reach_mm, {0.0, 5.0});
+  v.number({"bond_stiffness_kpa_mm2", "kPa/mm2", "Pull of the tool on tissue that it holds, per volume and offset; 0: no drag."},
+           c.cut.bond_stiffness_kpa_mm2, kNotNegative);
+  v.number({"overlap_mm", "mm", "A ring is cut this far beyond its start."}, c.cut.overlap_mm, {0.0, 50.0});
+  v.number({"residual_tolerance", "", "Of each step's linear solve, relative to the contact force."}, c.cut.residual_tolerance,
+           {0.0, 1.0, true, true});
+  v.integer({"frames", "", "Moments of the cut that are kept for pictures."}, c.frames, {0.0, 500.0});
+  v.end_group();
+}
+
+void describe_robot(CaseFile& file, FieldVisitor& v) {
+  v.path({"path", "", "A path.json (frame sim_stretched) to follow in place of the planned one."}, file.inputs.tool_path);
+  v.begin_group({"robot", "", "Where the specimen lies under the robot."});
+  static constexpr std::array<const char*, 1> kModels{"ur10e"};
+  std::size_t model = 0;
+  v.choice({"model", "", "The arm."}, model, kModels);
+  optional_numbers<16>(
+      v, {"T_robot_sim", "mm", "Rigid 4 x 4 transform, rows, from simulation to robot coordinates; absent: no program is made."},
+      file.settings.T_robot_sim, kAny,
+      [](const Mat4& from, auto& to) { Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(to.data()) = from; },
+      [](const auto& from) { return Mat4(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(from.data())); });
+  v.end_group();
+}
+
+}  // namespace
+
+void describe_case(CaseFile& file, FieldVisitor& v) {
+  static constexpr std::array<const char*, 1> kSchemas{kCaseSchemaName};
+  std::size_t schema = 0;
+  v.choice({"schema", "", "Format and version of this file."}, schema, kSchemas);
+  v.text({"title", "", "Shown on the report."}, file.settings.title);
+  static constexpr std::array<const char*, 2> kOrigins{"real", "virtual"};
+  std::size_t origin = file.settings.is_virtual ? 1 : 0;
+  v.choice({"specimen_is", "", "Whether the scan is of real tissue; a virtual one is said to be virtual wherever it appears."}, origin,
+           kOrigins);
+  file.settings.is_virtual = origin == 1;
+  describe_ct(file, v);
+  describe_meshing(file.settings.meshing, v);
+  describe_specimen(file, v);
+  describe_tumor(file, v);
+  describe_plan(file, v);
+  describe_tool_and_cut(file.settings, v);
+  describe_robot(file, v);
+}
+
+}  // namespace incise

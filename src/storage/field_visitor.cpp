@@ -1,0 +1,30 @@
+#include "field_visitor.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace incise {
+
+bool contains(const Range& range, double value) {
+  if (!std::isfinite(value)) return false;
+  const bool is_above = range.is_least_open ? value > range.least : value >= range.least;
+  const bool is_below = range.is_most_open ? value < range.most : value <= range.most;
+  return is_above && is_below;
+}
+
+std::string describe(const Range& range) {
+  const bool has_least = std::isfinite(range.least);
+  const bool has_most = std::isfinite(range.most);
+  if (!has_least && !has_most) return "a number";
+  if (!has_most) {
+    return range.is_least_open ? fmt::format("a number above {}", range.least) : fmt::format("a number of {} or more", range.least);
+  }
+  if (!has_least) {
+    return range.is_most_open ? fmt::format("a number below {}", range.most) : fmt::format("a number of {} or less", range.most);
+  }
+  return fmt::format("a number in {}{}, {}{}", range.is_least_open ? '(' : '[', range.least, range.most,
+                     range.is_most_open ? ')' : ']');
+}
+
+}  // namespace incise

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <incise/geometry/types.hpp>
+#include <incise/mechanics/constraints.hpp>
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// The numbers that a field may hold.
+struct Range {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool is_least_open = false;  ///< `least` itself is not allowed
+  bool is_most_open = false;
+};
+inline constexpr Range kAny{};
+inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true, false};
+inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity(), false, false};
+
+[[nodiscard]] bool contains(const Range& range, double value);
+/// "a number above 0", "a number in [0, 0.5)".
+[[nodiscard]] std::string describe(const Range& range);
+
+/// What a field is called and means; each field of the case file is described once, where describe_case visits it.
+struct FieldInfo {
+  const char* name;
+  const char* unit;     ///< "" for none
+  const char* meaning;  ///< one sentence
+};
+
+/// One walk over every field of a tree of settings: reading a file, writing the schema and printing the defaults are three visitors
+/// of the same description, so that they cannot disagree. The values' state before the walk are the defaults.
+class FieldVisitor {
+ public:
+  virtual ~FieldVisitor() = default;
+  virtual void begin_group(const FieldInfo& info) = 0;
+  virtual void end_group() = 0;
+  virtual void number(const FieldInfo& info, double& value, const Range& range) = 0;
+  virtual void integer(const FieldInfo& info, int& value, const Range& range) = 0;
+  virtual void text(const FieldInfo& info, std::string& value) = 0;
+  /// A file or folder, relative to the case file's folder; empty when absent.
+  virtual void path(const FieldInfo& info, std::filesystem::path& value) = 0;
+  /// One of `names`; `value` is its position.
+  virtual void choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) = 0;
+  /// A fixed count of numbers; `is_given` tells whether an optional one is there.
+  virtual void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) = 0;
+  /// A direction: a vector, or one of anterior, posterior, left, right, superior, inferior (LPS).
+  virtual void direction(const FieldInfo& info, Vec3& value) = 0;
+  /// The list of constraints; nullopt: the default ones.
+  virtual void constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) = 0;
+};
+
+}  // namespace incise

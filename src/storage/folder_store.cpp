@@ -1,0 +1,272 @@
+#include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/io/mesh_io.hpp>
+#include <incise/io/path_io.hpp>
+#include <incise/io/surface_io.hpp>
+#include <incise/storage/folder_store.hpp>
+#include <incise/storage/result_json.hpp>
+
+#include <fmt/format.h>
+
+namespace incise {
+namespace {
+
+constexpr const char* kStageFile = "stage.json";
+
+struct ProductInfo {
+  const char* folder;
+  std::vector<std::string> settings;  ///< prefixes of the settings that it depends on, beside those of what it is made from
+};
+
+const ProductInfo& info(Product product) {
+  static const std::array<ProductInfo, 7> kInfo{{
+      {"labels", {"ct."}},
+      {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}},
+      {"stretched", {"specimen."}},
+      {"plan", {"tumor.", "plan."}},
+      {"as_planned", {"tool.", "cut.", "path"}},
+      {"correction", {}},
+      {"corrected", {}},
+  }};
+  return kInfo[static_cast<std::size_t>(product)];
+}
+
+Vec3 vector_from(const nlohmann::ordered_json& json) {
+  return Vec3(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>());
+}
+
+}  // namespace
+
+FolderStore::FolderStore(CaseFile file, std::filesystem::path root, RunContext context)
+    : file_(std::move(file)), root_(std::move(root)), context_(std::move(context)) {
+  std::error_code error;
+  std::filesystem::create_directories(root_, error);
+  if (error || !std::filesystem::is_directory(root_)) {
+    throw DataError(root_, "", error ? error.message() : "something that is not a folder", "a folder that can be written");
+  }
+}
+
+std::filesystem::path FolderStore::folder(Product product) const { return root_ / info(product).folder; }
+
+std::string FolderStore::settings_with(const std::vector<std::string>& prefixes) const {
+  std::string text;
+  for (const SettingLine& line : settings_of(file_)) {
+    for (const std::string& prefix : prefixes) {
+      if (line.key.starts_with(prefix)) text += fmt::format("{}={}\n", line.key, line.value);
+    }
+  }
+  return text;
+}
+
+std::string FolderStore::input_hash(const std::filesystem::path& path) {
+  if (path.empty()) return "none";
+  std::string& hash = hashes_[path];
+  if (hash.empty()) hash = std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path);
+  return hash;
+}
+
+const std::string& FolderStore::key(Product product) {
+  std::string& key = keys_[static_cast<std::size_t>(product)];
+  if (!key.empty()) return key;
+  // Each product depends on the one before it; the code's own version is part of the first key, and so of all.
+  std::string text = info(product).folder + settings_with(info(product).settings);
+  if (product == Product::Labels) {
+    text += fmt::format("{} {} ct={} mesh={}", version(), source_commit(), input_hash(file_.inputs.ct_volume),
+                        input_hash(file_.inputs.specimen_mesh));
+  } else {
+    text += this->key(static_cast<Product>(static_cast<int>(product) - 1));
+  }
+  if (product == Product::Mesh || product == Product::Plan) {
+    text += fmt::format(" tumor={} line={}", input_hash(file_.inputs.tumor_contour), input_hash(file_.inputs.line_contour));
+  }
+  if (product == Product::AsPlanned) text += fmt::format(" path={}", input_hash(file_.inputs.tool_path));
+  key = sha256_of_text(text);
+  return key;
+}
+
+bool FolderStore::is_current(Product product) {
+  const std::filesystem::path stage = folder(product) / kStageFile;
+  if (!std::filesystem::exists(stage)) return false;
+  const nlohmann::ordered_json json = read_json(stage);
+  return json.is_object() && json.value("key", "") == key(product);
+}
+
+void FolderStore::write_manifest_to(const std::filesystem::path& folder, double wall_s) {
+  Manifest manifest;
+  manifest.version = version();
+  manifest.commit = source_commit();
+  manifest.command = context_.command;
+  manifest.settings_json = settings_json(file_);
+  manifest.seed = context_.seed;
+  manifest.threads = context_.threads;
+  manifest.instruction_set = "portable";
+  manifest.wall_s = wall_s;
+  manifest.machine = machine_description();
+  const CaseInputs& in = file_.inputs;
+  for (const std::filesystem::path& path : {file_.file, in.ct_volume, in.specimen_mesh, in.tumor_contour, in.line_contour, in.tool_path}) {
+    if (!path.empty()) manifest.inputs.push_back({std::filesystem::absolute(path).lexically_proximate(file_.folder).string(), input_hash(path)});
+  }
+  write_manifest(folder, manifest);
+}
+
+void FolderStore::save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write) {
+  AtomicFolder target(folder(product));
+  write(target.path());
+  write_manifest_to(target.path(), wall_s);
+  write_json(target.path() / kStageFile, {{"key", key(product)}, {"wall_s", wall_s}});
+  target.commit();
+}
+
+CtVolume FolderStore::read_ct(Monitor& monitor) {
+  return incise::read_ct(file_.inputs.ct_volume, file_.ct_reading, monitor).volume;
+}
+
+std::optional<TetMesh> FolderStore::read_specimen_mesh() {
+  if (file_.inputs.specimen_mesh.empty()) return std::nullopt;
+  return read_tet_mesh(file_.inputs.specimen_mesh);
+}
+
+std::optional<Contour> FolderStore::read_tumor_edge() {
+  if (file_.inputs.tumor_contour.empty()) return std::nullopt;
+  return read_contour(file_.inputs.tumor_contour, true);
+}
+
+std::optional<Contour> FolderStore::read_line() {
+  if (file_.inputs.line_contour.empty()) return std::nullopt;
+  return read_contour(file_.inputs.line_contour, false);
+}
+
+std::optional<ToolPath> FolderStore::read_given_path() {
+  if (file_.inputs.tool_path.empty()) return std::nullopt;
+  ToolPath path = read_tool_path(file_.inputs.tool_path);
+  if (path.frame != PathFrame::SimStretched) {
+    throw DataError(file_.inputs.tool_path, "frame", std::string(to_string(path.frame)), "sim_stretched");
+  }
+  return path;
+}
+
+std::optional<Segmentation> FolderStore::load_segmentation() {
+  if (!is_current(Product::Labels)) return std::nullopt;
+  const nlohmann::ordered_json json = read_json(folder(Product::Labels) / "segment.json");
+  Segmentation segmentation;
+  segmentation.labels = read_labels(folder(Product::Labels) / "labels.nrrd");
+  segmentation.occupancy = read_gray(folder(Product::Labels) / "occupancy.nrrd");
+  segmentation.voxels = json.at("voxels");
+  segmentation.volume_mm3 = json.at("volume_mm3");
+  segmentation.occupancy_volume_mm3 = json.at("occupancy_volume_mm3");
+  segmentation.tissue_hu = json.at("tissue_hu");
+  segmentation.components = json.at("components");
+  segmentation.holes_filled = json.at("holes_filled");
+  return segmentation;
+}
+
+void FolderStore::save_segmentation(const Segmentation& segmentation, double wall_s) {
+  save(Product::Labels, wall_s, [&](const std::filesystem::path& to) {
+    write_labels(to / "labels.nrrd", segmentation.labels);
+    write_gray(to / "occupancy.nrrd", segmentation.occupancy);
+    write_json(to / "segment.json", to_json(segmentation));
+  });
+}
+
+std::optional<TetMesh> FolderStore::load_mesh() {
+  if (!is_current(Product::Mesh)) return std::nullopt;
+  return read_tet_mesh(folder(Product::Mesh) / "mesh.vtu");
+}
+
+void FolderStore::save_mesh(const MeshProduct& product, double wall_s) {
+  save(Product::Mesh, wall_s, [&](const std::filesystem::path& to) {
+    write_vtu(to / "mesh.vtu", product.meshing.mesh);
+    write_contour_csv(to / "planned_cut_rest.csv", product.planned_cut_rest);
+    write_json(to / "quality.json", to_json(product.meshing));
+  });
+}
+
+std::optional<StaticResult> FolderStore::load_stretched(const TissueModel& model) {
+  if (!is_current(Product::Stretched)) return std::nullopt;
+  const std::filesystem::path file = folder(Product::Stretched) / "deformed.vtu";
+  const TetMesh mesh = read_tet_mesh(file);
+  const auto array = mesh.point_data.find("position_mm");
+  if (array == mesh.point_data.end() || array->second.values.size() != 3 * model.mesh.vertices.size()) {
+    throw DataError(file, "point array position_mm", "none that fits the mesh", "3 numbers for each vertex",
+                    "Remove the folder to compute it anew");
+  }
+  const nlohmann::ordered_json json = read_json(folder(Product::Stretched) / "deform.json");
+  StaticResult result;
+  result.outcome = json.at("converged") ? Outcome::Success : Outcome::NotConverged;
+  result.state = rest_state(model);
+  for (std::size_t v = 0; v < result.state.positions.size(); ++v) {
+    result.state.positions[v] = Eigen::Map<const Vec3>(array->second.values.data() + 3 * v);
+  }
+  result.iterations = json.at("iterations");
+  result.load_steps = json.at("load_steps");
+  result.relative_residual = json.at("relative_residual");
+  result.max_displacement_mm = json.at("max_displacement_mm");
+  result.inverted_tets = json.at("inverted_tets");
+  result.solver = json.at("solver");
+  result.wall_s = json.at("wall_s");
+  for (const auto& reaction : json.at("reaction_mn")) result.reactions_mn.push_back(vector_from(reaction));
+  return result;
+}
+
+void FolderStore::save_stretched(const TissueModel& model, const StaticResult& result, double wall_s) {
+  save(Product::Stretched, wall_s, [&](const std::filesystem::path& to) {
+    write_vtu(to / "deformed.vtu", deformed_mesh(model, result.state));
+    write_json(to / "deform.json", to_json(result));
+  });
+}
+
+TetMesh deformed_mesh(const TissueModel& model, const TissueState& state) {
+  TetMesh mesh = model.mesh;
+  DataArray displacement{3, {}};
+  DataArray position{3, {}};
+  for (std::size_t v = 0; v < state.positions.size(); ++v) {
+    const Vec3 moved = state.positions[v] - model.mesh.vertices[v];
+    displacement.values.insert(displacement.values.end(), {moved.x(), moved.y(), moved.z()});
+    const Vec3& p = state.positions[v];
+    position.values.insert(position.values.end(), {p.x(), p.y(), p.z()});
+  }
+  mesh.point_data["displacement_mm"] = std::move(displacement);
+  mesh.point_data["position_mm"] = std::move(position);
+  mesh.cell_data["von_mises_kpa"] = {1, von_mises_kpa(model, state)};
+  return mesh;
+}
+
+std::optional<ToolPath> FolderStore::load_plan() {
+  if (!is_current(Product::Plan)) return std::nullopt;
+  return read_tool_path(folder(Product::Plan) / "path.json");
+}
+
+void FolderStore::save_plan(const ToolPath& path, double wall_s) {
+  save(Product::Plan, wall_s, [&](const std::filesystem::path& to) {
+    write_tool_path(to / "path.json", path);
+    write_contour_vtp(to / "path.vtp", entry_contour(path));
+    write_json(to / "plan.json", plan_summary_json(path));
+  });
+}
+
+std::optional<Compensation> FolderStore::load_correction() {
+  if (!is_current(Product::Correction)) return std::nullopt;
+  const nlohmann::ordered_json json = read_json(folder(Product::Correction) / "compensate.json");
+  Compensation correction;
+  correction.path = read_tool_path(folder(Product::Correction) / "path.json");
+  correction.error_mm = json.at("error_mm").get<std::vector<double>>();
+  correction.move_mm = json.at("move_mm").get<std::vector<double>>();
+  correction.max_move_mm = json.at("max_move_mm");
+  correction.limited_waypoints = json.at("limited_waypoints");
+  correction.interpolated_waypoints = json.at("interpolated_waypoints");
+  return correction;
+}
+
+void FolderStore::save_correction(const Compensation& correction, double wall_s) {
+  save(Product::Correction, wall_s, [&](const std::filesystem::path& to) {
+    write_tool_path(to / "path.json", correction.path);
+    write_contour_vtp(to / "path.vtp", entry_contour(correction.path));
+    write_json(to / "compensate.json", to_json(correction));
+  });
+}
+
+}  // namespace incise

@@ -1,0 +1,149 @@
+#include <incise/core/error.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/mesh_io.hpp>
+#include <incise/io/path_io.hpp>
+#include <incise/io/pvd_io.hpp>
+#include <incise/storage/folder_store.hpp>
+#include <incise/storage/result_json.hpp>
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace incise {
+namespace {
+
+Product product_of(CutRole role) { return role == CutRole::AsPlanned ? Product::AsPlanned : Product::Corrected; }
+
+/// The live tets at one moment; the cell array `tet` keeps their place in the uncut mesh.
+TetMesh live_mesh(const TetMesh& mesh, const Points& positions, std::span<const std::uint8_t> is_live) {
+  TetMesh live;
+  live.vertices = positions;
+  DataArray place{1, {}};
+  for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
+    if (is_live[tet] == 0) continue;
+    live.tets.push_back(mesh.tets[tet]);
+    place.values.push_back(static_cast<double>(tet));
+  }
+  live.cell_data["tet"] = std::move(place);
+  return live;
+}
+
+/// The removed tets where they lay before the cut, with when and why they went.
+TetMesh removed_mesh(const TetMesh& mesh, const Points& stretched, const CutRecord& record) {
+  TetMesh removed;
+  std::vector<std::int32_t> place(mesh.vertices.size(), -1);
+  DataArray time{1, {}};
+  DataArray step{1, {}};
+  DataArray loose{1, {}};
+  for (const Removal& removal : record.removals) {
+    Tet tet = mesh.tets[removal.tet.index()];
+    for (VertexId& corner : tet) {
+      std::int32_t& position = place[corner.index()];
+      if (position < 0) {
+        position = static_cast<std::int32_t>(removed.vertices.size());
+        removed.vertices.push_back(stretched[corner.index()]);
+      }
+      corner = VertexId(static_cast<std::size_t>(position));
+    }
+    removed.tets.push_back(tet);
+    time.values.push_back(removal.time_s);
+    step.values.push_back(removal.step);
+    loose.values.push_back(removal.cause == RemovalCause::LooseFragment ? 1.0 : 0.0);
+  }
+  removed.cell_data["removed_at_s"] = std::move(time);
+  removed.cell_data["step"] = std::move(step);
+  removed.cell_data["is_loose_fragment"] = std::move(loose);
+  return removed;
+}
+
+/// Frames as a ParaView time series, the tool beside them as columns of a table.
+void write_frames(const std::filesystem::path& folder, const TetMesh& mesh, const std::vector<CutFrame>& frames) {
+  if (frames.empty()) return;
+  std::filesystem::create_directories(folder / "frames");
+  std::vector<PvdFrame> series;
+  nlohmann::ordered_json tools = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const CutFrame& frame = frames[i];
+    const std::string name = fmt::format("frames/frame_{:04}.vtu", i);
+    write_vtu(folder / name, live_mesh(mesh, frame.positions, frame.is_live));
+    series.push_back({frame.time_s, name});
+    const Vec3& tip = frame.tool.tip_mm;
+    const Vec3& axis = frame.tool.axis;
+    tools.push_back({{"time_s", frame.time_s},
+                     {"is_tool_in", frame.is_tool_in},
+                     {"tip_mm", {tip.x(), tip.y(), tip.z()}},
+                     {"axis", {axis.x(), axis.y(), axis.z()}}});
+  }
+  write_pvd(folder / "frames.pvd", series);
+  write_json(folder / "frames" / "tool.json", {{"frames", tools}});
+}
+
+}  // namespace
+
+std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
+  const Product product = product_of(role);
+  if (!is_current(product)) return std::nullopt;
+  const std::filesystem::path from = folder(product);
+  const nlohmann::ordered_json json = read_json(from / "incision.json");
+  IncisionResult incision;
+  const std::string ended = json.at("program_outcome");
+  for (const Outcome outcome : {Outcome::Success, Outcome::OpenLoop, Outcome::NotConverged, Outcome::ElementInverted}) {
+    if (ended == to_string(outcome)) incision.outcome = outcome;
+  }
+  if (!json.at("closed_loop").is_null()) incision.is_closed_loop = json.at("closed_loop").get<bool>();
+  if (!json.at("gap_mm").is_null()) incision.gap_mm = json.at("gap_mm").get<double>();
+  incision.gap_deg = json.at("gap_deg");
+  incision.kerf_width_mm = json.at("kerf_width_mm");
+  incision.solver_iterations = json.at("solver_iterations");
+  incision.unconverged_steps = json.at("unconverged_steps");
+  incision.held_back_vertices = json.at("held_back_vertices");
+  incision.inverted_tets = json.at("inverted_tets");
+  incision.peak_tool_force_mn = json.at("peak_tool_force_mn");
+  incision.wall_s = json.at("wall_s");
+  incision.steps.resize(json.at("steps").get<std::size_t>());
+  const bool is_ring = !json.at("closed_loop").is_null();
+  const auto contour = [&from](const char* name, bool is_closed) -> std::optional<Contour> {
+    if (!std::filesystem::exists(from / name)) return std::nullopt;
+    return read_contour(from / name, is_closed);
+  };
+  incision.centerline = contour("centerline.csv", is_ring);
+  incision.inner_edge = contour("inner_edge.csv", true);
+  if (auto edge = contour("tumor_edge_final.csv", true)) incision.final_tumor_edge = std::move(*edge);
+  for (const auto& removal : json.at("removals")) {
+    Removal r;
+    r.tet = TetId(removal.at(0).get<std::size_t>());
+    r.step = removal.at(1);
+    r.time_s = removal.at(2);
+    r.cause = removal.at(3).get<int>() == 0 ? RemovalCause::Dwell : RemovalCause::LooseFragment;
+    r.rest_volume_mm3 = removal.at(4);
+    incision.record.removals.push_back(r);
+  }
+  const ToolPath intended = read_tool_path(folder(Product::Plan) / "path.json");
+  return judge(file_.settings, std::move(incision), intended, json.at("tets").get<std::size_t>());
+}
+
+void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticResult& stretched, const SimulatedCut& cut,
+                           double wall_s) {
+  save(product_of(role), wall_s, [&](const std::filesystem::path& to) {
+    const IncisionResult& incision = cut.incision;
+    nlohmann::ordered_json json = to_json(cut);
+    json["program_outcome"] = to_string(incision.outcome);
+    json["removal_columns"] = {"tet", "step", "time_s", "is_loose_fragment", "rest_volume_mm3"};
+    json["removals"] = nlohmann::ordered_json::array();
+    for (const Removal& r : incision.record.removals) {
+      json["removals"].push_back({r.tet.value, r.step, r.time_s, r.cause == RemovalCause::Dwell ? 0 : 1, r.rest_volume_mm3});
+    }
+    write_json(to / "incision.json", json);
+    if (incision.centerline) write_contour_csv(to / "centerline.csv", *incision.centerline);
+    if (incision.inner_edge) write_contour_csv(to / "inner_edge.csv", *incision.inner_edge);
+    if (!incision.final_tumor_edge.points.empty()) write_contour_csv(to / "tumor_edge_final.csv", incision.final_tumor_edge);
+    if (!incision.record.removals.empty()) {
+      write_vtu(to / "removed.vtu", removed_mesh(model.mesh, stretched.state.positions, incision.record));
+    }
+    write_frames(to, model.mesh, incision.frames);
+  });
+}
+
+}  // namespace incise

@@ -1,0 +1,195 @@
+#include <incise/core/error.hpp>
+#include <incise/geometry/surface_query.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace incise {
+
+std::string_view to_string(Stage stage) {
+  switch (stage) {
+    case Stage::Segment: return "segment";
+    case Stage::Mesh: return "mesh";
+    case Stage::Stretch: return "stretch";
+    case Stage::Plan: return "plan";
+    case Stage::Simulate: return "simulate";
+    case Stage::Compensate: return "compensate";
+    case Stage::Verify: return "verify";
+  }
+  return "unknown";
+}
+
+std::string_view to_string(StageState state) {
+  switch (state) {
+    case StageState::Computed: return "computed";
+    case StageState::Reused: return "reused";
+    case StageState::Skipped: return "skipped";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// One study on its way through the stages.
+class Runner {
+ public:
+  Runner(const Case& settings, Store& store, Workers& workers, Monitor& monitor)
+      : settings_(settings), store_(store), workers_(workers), monitor_(monitor) {}
+
+  Study run(Stage until) {
+    using Step = bool (Runner::*)();
+    static constexpr std::array<Step, 7> kSteps{&Runner::segment,  &Runner::mesh,       &Runner::stretch_tissue, &Runner::plan,
+                                                &Runner::simulate, &Runner::compensate, &Runner::verify};
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(until); ++i) {
+      throw_if_cancelled(monitor_, "the study");
+      if (!(this->*kSteps[i])()) break;
+    }
+    return std::move(study_);
+  }
+
+ private:
+  /// Takes a product from the store, or makes and saves it; notes which, and how long it took.
+  template <class Load, class Make, class Save>
+  auto load_or_make(Stage stage, Load load, Make make, Save save) {
+    const auto start = std::chrono::steady_clock::now();
+    const auto elapsed = [&start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+    auto product = load();
+    if (product) {
+      study_.stages.push_back({stage, StageState::Reused, elapsed()});
+      return std::move(*product);
+    }
+    auto made = make();
+    const double wall_s = elapsed();
+    save(made, wall_s);
+    study_.stages.push_back({stage, StageState::Computed, wall_s});
+    monitor_.message(Severity::Notice, fmt::format("{}: done in {:.1f} s", to_string(stage), wall_s));
+    return made;
+  }
+
+  bool segment() {
+    given_mesh_ = store_.read_specimen_mesh();
+    if (given_mesh_) {
+      study_.stages.push_back({Stage::Segment, StageState::Skipped, 0.0});
+      return true;
+    }
+    study_.segmentation = load_or_make(
+        Stage::Segment, [&] { return store_.load_segmentation(); },
+        [&] { return incise::segment(store_.read_ct(monitor_), settings_.segmentation, monitor_); },
+        [&](const Segmentation& s, double wall_s) { store_.save_segmentation(s, wall_s); });
+    return true;
+  }
+
+  bool mesh() {
+    TetMesh mesh;
+    if (given_mesh_) {
+      mesh = std::move(*given_mesh_);
+      study_.stages.push_back({Stage::Mesh, StageState::Skipped, 0.0});
+    } else {
+      const auto make = [&]() -> TetMesh {
+        MeshProduct product = mesh_around_planned_cut(settings_, study_.segmentation->occupancy, store_, workers_, monitor_);
+        store_.save_mesh(product, product.meshing.wall_s);
+        return std::move(product.meshing.mesh);
+      };
+      mesh = load_or_make(Stage::Mesh, [&] { return store_.load_mesh(); }, make, [](const TetMesh&, double) {});
+    }
+    const std::vector<Constraint> constraints = settings_.constraints ? *settings_.constraints : default_constraints(mesh);
+    study_.model = std::make_shared<TissueModel>(
+        make_tissue_model(std::move(mesh), settings_.material, constraints, settings_.gravity_mm_s2));
+    return true;
+  }
+
+  bool stretch_tissue() {
+    const TissueModel& model = *study_.model;
+    study_.stretched = load_or_make(
+        Stage::Stretch, [&] { return store_.load_stretched(model); }, [&] { return stretch(model, workers_, monitor_); },
+        [&](const StaticResult& result, double wall_s) {
+          if (result.outcome != Outcome::Cancelled) store_.save_stretched(model, result, wall_s);
+        });
+    study_.outcome = study_.stretched->outcome;
+    return study_.outcome == Outcome::Success;
+  }
+
+  bool plan() {
+    study_.plan = load_or_make(
+        Stage::Plan, [&] { return store_.load_plan(); },
+        [&] {
+          return plan_on(settings_, *study_.model, study_.stretched->state.positions, store_.read_tumor_edge(),
+                         store_.read_line());
+        },
+        [&](const ToolPath& path, double wall_s) { store_.save_plan(path, wall_s); });
+    return true;
+  }
+
+  SimulatedCut cut(Stage stage, CutRole role, const ToolPath& path) {
+    return load_or_make(
+        stage, [&] { return store_.load_cut(role); },
+        [&] {
+          SimulatedCut made =
+              cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_);
+          if (made.outcome == Outcome::Cancelled) throw Cancelled("the cut was interrupted");
+          return made;
+        },
+        [&](const SimulatedCut& made, double wall_s) {
+          store_.save_cut(role, *study_.model, *study_.stretched, made, wall_s);
+        });
+  }
+
+  bool simulate() {
+    const std::optional<ToolPath> given = store_.read_given_path();
+    if (given) {
+      check_path(*given, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
+    }
+    followed_ = given ? *given : *study_.plan;
+    study_.as_planned = cut(Stage::Simulate, CutRole::AsPlanned, followed_);
+    study_.outcome = study_.as_planned->outcome;
+    return true;
+  }
+
+  bool compensate() {
+    const bool is_correctable = settings_.plan.kind == PlanKind::Ring && study_.as_planned->incision.centerline.has_value();
+    if (!is_correctable) {
+      study_.stages.push_back({Stage::Compensate, StageState::Skipped, 0.0});
+      monitor_.message(Severity::Warning, "no correction: it needs a ring whose mid-line could be measured");
+      return false;
+    }
+    study_.correction = load_or_make(
+        Stage::Compensate, [&] { return store_.load_correction(); },
+        [&] {
+          CompensationSettings compensation;
+          compensation.target_mm = settings_.plan.lateral_margin_mm;
+          compensation.close_margin_mm = settings_.close_margin_mm;
+          compensation.electrode_radius_mm = settings_.needle.radius_mm();
+          compensation.approach = settings_.plan.approach;
+          compensation.axis_mode = settings_.plan.axis_mode;
+          const SurfaceQuery surface(skin_of(study_.model->mesh, study_.stretched->state.positions));
+          return compensate_paper(followed_, *study_.as_planned->incision.centerline, study_.plan->tumor_edge, surface,
+                                  compensation);
+        },
+        [&](const Compensation& correction, double wall_s) { store_.save_correction(correction, wall_s); });
+    return true;
+  }
+
+  bool verify() {
+    study_.corrected = cut(Stage::Verify, CutRole::Corrected, study_.correction->path);
+    study_.outcome = study_.corrected->outcome;
+    return true;
+  }
+
+  const Case& settings_;
+  Store& store_;
+  Workers& workers_;
+  Monitor& monitor_;
+  std::optional<TetMesh> given_mesh_;
+  ToolPath followed_;  // by the first cut: the planned path, or the one that was given
+  Study study_;
+};
+
+}  // namespace
+
+Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor) {
+  return Runner(settings, store, workers, monitor).run(until);
+}
+
+}  // namespace incise

@@ -1,0 +1,94 @@
+#include <incise/core/error.hpp>
+#include <incise/geometry/surface_query.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <fmt/format.h>
+
+namespace incise {
+namespace {
+
+/// Where a curve on the stretched surface lies in the unstretched body.
+Contour carried_to_rest(const Contour& curve, const TetMesh& mesh, std::span<const Vec3> stretched, double tolerance_mm) {
+  const TetLocator locator(mesh, stretched);
+  Contour rest{{}, curve.is_closed};
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const auto point = locator.locate(curve.points[i], tolerance_mm);
+    if (!point) {
+      throw CaseError("planned cut", fmt::format("point {}", i), "a place outside the surveyed tissue",
+                      "a path on the stretched tissue");
+    }
+    rest.points.push_back(position_of(*point, mesh, mesh.vertices));
+  }
+  return rest;
+}
+
+void require_equilibrium(const StaticResult& result, const char* which) {
+  if (result.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted");
+  if (result.outcome != Outcome::Success) {
+    throw CaseError("case", "specimen.constraints",
+                    fmt::format("no equilibrium of the {} ({} after {} iterations, residual {:.1e})", which,
+                                to_string(result.outcome), result.iterations, result.relative_residual),
+                    "constraints that the tissue can follow", "Try a smaller displacement or a smaller Poisson's ratio");
+  }
+}
+
+}  // namespace
+
+StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor) {
+  StaticResult result = solve_static(model, StaticSettings{}, workers, monitor);
+  // The rotations are a warm start; from the identity, a state that was read from a file is the same as a fresh one.
+  result.state.rotations.assign(model.mesh.tets.size(), Mat3::Identity());
+  return result;
+}
+
+MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy, Store& store, Workers& workers,
+                                    Monitor& monitor) {
+  // The cut is planned on the stretched tissue, but the mesh is made of the unstretched body: a coarse mesh is stretched first to
+  // find where the planned cut lies at rest.
+  const auto constraints_for = [&settings](const TetMesh& mesh) {
+    return settings.constraints ? *settings.constraints : default_constraints(mesh);
+  };
+  MeshingResult survey = mesh_labels(occupancy, SizingField::uniform(settings.meshing.survey_mm), MeshingSettings{}, monitor);
+  const std::vector<Constraint> constraints = constraints_for(survey.mesh);
+  const TissueModel coarse = make_tissue_model(std::move(survey.mesh), settings.material, constraints, settings.gravity_mm_s2);
+  const StaticResult stretched = stretch(coarse, workers, monitor);
+  require_equilibrium(stretched, "coarse survey mesh");
+  const ToolPath plan = plan_on(settings, coarse, stretched.state.positions, store.read_tumor_edge(), store.read_line());
+
+  MeshProduct product;
+  product.planned_cut_rest =
+      carried_to_rest(entry_contour(plan), coarse.mesh, stretched.state.positions, settings.surface_tolerance_mm);
+  SizingSettings sizing;
+  sizing.fine_mm = settings.meshing.fine_mm;
+  sizing.coarse_mm = settings.meshing.coarse_mm;
+  MeshingSettings meshing;
+  if (settings.meshing.tets > 0) meshing.target_tets = settings.meshing.tets;
+  product.meshing = mesh_labels(
+      occupancy, SizingField::around_cut({product.planned_cut_rest, settings.plan.approach, settings.plan.depth_mm}, sizing), meshing,
+      monitor);
+  return product;
+}
+
+ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+                 const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line) {
+  const SurfaceQuery surface(skin_of(model.mesh, stretched));
+  if (settings.plan.kind == PlanKind::Line) {
+    INCISE_REQUIRE(line.has_value(), "expected the curve of the open cut");
+    return plan_line(surface, project_line(*line, surface, settings.plan.approach, settings.surface_tolerance_mm), settings.plan);
+  }
+  INCISE_REQUIRE(tumor_edge.has_value(), "expected a tumour edge");
+  Contour edge = *tumor_edge;
+  if (settings.tumor_configuration == TumorConfiguration::Rest) {
+    const SurfaceQuery at_rest(skin_of(model.mesh, model.mesh.vertices));
+    edge = project_tumor_edge(edge, at_rest, settings.plan.approach, settings.surface_tolerance_mm);
+    const TetLocator locator(model.mesh, model.mesh.vertices);
+    for (Vec3& p : edge.points) {
+      const auto point = locator.locate(p, 1.0);
+      INCISE_REQUIRE(point.has_value(), "a point projected on the skin lies outside every tet");
+      p = position_of(*point, model.mesh, stretched);
+    }
+  }
+  return plan_ring(surface, project_tumor_edge(edge, surface, settings.plan.approach, settings.surface_tolerance_mm), settings.plan);
+}
+
+}  // namespace incise

@@ -1,0 +1,367 @@
+"""Bad input: one clear message, the right exit status, and no output."""
+
+import json
+import math
+import os
+import pathlib
+import unittest
+
+import small_case
+import small_dicom
+from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, files_below
+
+
+class CtTest(CommandTest):
+    def segment(self, volume):
+        return self.incise("segment", volume, "-o", self.folder / "out.nrrd")
+
+    def assert_segment_refused(self, volume, *says):
+        self.assert_refused(self.segment(volume), BAD_DATA, *says)
+        self.assert_nothing_written(self.folder / "out.nrrd")
+
+    def test_a_regular_series_is_read_without_complaint(self):
+        done = self.segment(small_dicom.write_series(self.folder / "ct", small_dicom.regular()))
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertTrue((self.folder / "out.nrrd").is_file())
+
+    def test_a_missing_file_is_named(self):
+        self.assert_segment_refused("nowhere.nrrd", "nowhere.nrrd", "no such file", "expected a volume")
+
+    def test_a_truncated_dicom_file_is_named_with_the_byte_where_it_ends(self):
+        ct = small_dicom.write_series(self.folder / "ct", small_dicom.regular())
+        broken = ct / "IM0003.dcm"
+        broken.write_bytes(broken.read_bytes()[:700])
+        self.assert_segment_refused("ct", "IM0003.dcm", "byte 700", "end of the file", "expected a complete DICOM file")
+
+    def test_text_in_place_of_nrrd_is_told(self):
+        (self.folder / "ct.nrrd").write_text("This is a letter, not a volume.\n")
+        self.assert_segment_refused("ct.nrrd", "ct.nrrd", "expected a NRRD file")
+
+    def test_a_truncated_nrrd_is_told(self):
+        (self.folder / "ct.nrrd").write_bytes(
+            b"NRRD0004\ntype: short\ndimension: 3\nsizes: 8 8 8\nspace: left-posterior-superior\n"
+            b"space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\nendian: little\n\n" + b"\0" * 100
+        )
+        self.assert_segment_refused("ct.nrrd", "ct.nrrd", "expected a complete NRRD file", "cut short")
+
+    def test_a_hole_in_a_series_is_told(self):
+        small_dicom.write_series(self.folder / "ct", small_dicom.with_hole())
+        self.assert_segment_refused("ct", "missing", "IM0004.dcm", "IM0005.dcm", "expected every slice")
+
+    def test_a_tilted_series_is_resampled_with_a_notice(self):
+        done = self.segment(small_dicom.write_series(self.folder / "ct", small_dicom.tilted()))
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("gantry tilt of 16.7 deg removed by linear resampling", done.stderr)
+
+    def test_an_unevenly_spaced_series_is_resampled_with_a_notice(self):
+        done = self.segment(small_dicom.write_series(self.folder / "ct", small_dicom.uneven()))
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("uneven slice steps of 2 to 3.5 mm removed by linear resampling", done.stderr)
+
+    def assert_irregular_case_refused(self, positions, *says):
+        case = self.folder / "case"
+        small_dicom.write_series(case / "ct", positions)
+        small_case.write_contour(case / "tumor.csv", small_case.ring())
+        (case / "case.yaml").write_text(
+            "schema: incise.case/1\nct: {volume: ct, irregular_slices: refuse}\ntumor: {contour: tumor.csv}\n"
+        )
+        self.assert_refused(self.incise("deform", "case", "-o", self.out), BAD_DATA, "case/ct", *says)
+        self.assert_nothing_written()
+
+    def test_a_tilted_series_is_refused_where_the_case_says_so(self):
+        self.assert_irregular_case_refused(small_dicom.tilted(), "gantry tilt of 16.7 deg", "expected slices that stack straight")
+
+    def test_an_unevenly_spaced_series_is_refused_where_the_case_says_so(self):
+        self.assert_irregular_case_refused(small_dicom.uneven(), "uneven slice steps of 2 to 3.5 mm", "at even steps")
+
+    @unittest.skipUnless(os.environ.get("INCISE_DATA_DIR"), "INCISE_DATA_DIR does not name the folder of shared test data")
+    def test_a_real_head_with_tilt_and_uneven_steps_is_refused_or_resampled_as_asked(self):
+        series = pathlib.Path(os.environ["INCISE_DATA_DIR"]) / "ct" / "ge_head_dicom"
+        case = self.folder / "case"
+        case.mkdir()
+        small_case.write_contour(case / "tumor.csv", small_case.ring())
+        (case / "case.yaml").write_text(
+            f"schema: incise.case/1\nct: {{volume: {series}, irregular_slices: refuse}}\ntumor: {{contour: tumor.csv}}\n"
+        )
+        self.assert_refused(self.incise("deform", "case", "-o", self.out), BAD_DATA, "ge_head_dicom", "18.5 deg")
+        self.assert_nothing_written()
+        done = self.segment(series)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("resampling", done.stderr)
+
+
+class SurfaceTest(CommandTest):
+    CORNERS = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (0, 0, 10), (10, 0, 10), (10, 10, 10), (0, 10, 10)]
+    BOX = [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4), (1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7)]
+
+    def write_stl(self, triangles, corners=CORNERS):
+        lines = ["solid box"]
+        for triangle in triangles:
+            lines += ["facet normal 0 0 0", "outer loop"]
+            lines += ["vertex {} {} {}".format(*corners[corner]) for corner in triangle]
+            lines += ["endloop", "endfacet"]
+        (self.folder / "box.stl").write_text("\n".join([*lines, "endsolid box", ""]))
+
+    def mesh(self):
+        return self.incise("mesh", "box.stl", "--coarse-mm", "4", "-o", self.folder / "out.vtu")
+
+    def assert_mesh_refused(self, *says):
+        self.assert_refused(self.mesh(), BAD_DATA, "box.stl", *says)
+        self.assert_nothing_written(self.folder / "out.vtu")
+
+    def test_a_closed_box_is_meshed(self):
+        self.write_stl(self.BOX)
+        self.mesh()
+        self.assertTrue((self.folder / "out.vtu").is_file())
+
+    def test_a_surface_with_a_hole_is_refused(self):
+        self.write_stl(self.BOX[:-1])
+        self.assert_mesh_refused("expected a closed")
+
+    def test_a_surface_with_three_triangles_on_an_edge_is_refused(self):
+        fin = [*self.CORNERS, (20, 20, 5)]
+        self.write_stl([*self.BOX, (0, 1, 8)], fin)
+        self.assert_mesh_refused("expected a closed")
+
+    def test_a_number_that_is_none_is_named_with_its_line(self):
+        self.write_stl(self.BOX, [(math.nan, 0, 0), *self.CORNERS[1:]])
+        self.assert_mesh_refused("line 4", "nan")
+
+
+class CaseTest(CommandTest):
+    """A case that cannot be run: the message names the file and the field; whole stages may stay, nothing half-made does."""
+
+    def setUp(self):
+        super().setUp()
+        self.case = small_case.write_case(self.folder / "case")
+
+    def change(self, **changes):
+        small_case.write_case(self.case, changes)
+
+    def assert_case_refused(self, verb, status, *says, stages=()):
+        self.assert_refused(self.incise(verb, "case", "-o", self.out, "--quiet"), status, *says)
+        if not stages:
+            self.assert_nothing_written()
+            return
+        made = {name.split("/")[0] for name in files_below(self.out)}
+        self.assertEqual(made, {"study.json", *stages})
+        for stage in stages:
+            self.assertTrue((self.out / stage / "stage.json").is_file(), f"{stage} is not complete")
+
+    def test_a_missing_case_file_is_named(self):
+        self.assert_refused(self.incise("run", "nowhere", "-o", self.out), BAD_DATA, "nowhere", "no such file", "schema case --defaults")
+        self.assert_nothing_written()
+
+    def test_a_missing_mesh_is_named_with_the_field_that_asks_for_it(self):
+        (self.case / "block.msh").unlink()
+        self.assert_case_refused("deform", BAD_DATA, "block.msh", "no such file", "specimen.mesh")
+
+    def test_a_missing_tumor_edge_is_told_before_anything_is_computed(self):
+        (self.case / "tumor.csv").unlink()
+        self.assert_case_refused("simulate", BAD_DATA, "tumor.csv", "no such file", "tumor.contour")
+
+    def test_an_unknown_key_is_named_with_its_line_and_the_nearest_valid_one(self):
+        self.change(plan={"latral_margin_mm": 4})
+        self.assert_case_refused("plan", BAD_CASE, "case.yaml line ", "plan.latral_margin_mm", "unknown key", "'lateral_margin_mm'")
+
+    def test_a_negative_modulus_is_refused(self):
+        self.change(specimen={"material": {"youngs_modulus_kpa": -70}})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml line ", "specimen.material.youngs_modulus_kpa", "-70", "expected a number above 0")
+
+    def test_a_case_that_is_not_yaml_is_told(self):
+        (self.case / "case.yaml").write_text("schema: [unfinished\n")
+        self.assert_case_refused("plan", BAD_DATA, "case.yaml", "line ", "expected YAML or JSON")
+
+    def test_a_nan_in_a_mesh_is_named_with_its_line(self):
+        vertices, tets = small_case.block()
+        vertices[2] = (math.nan, 0.0, 0.0)
+        small_case.write_msh(self.case / "block.msh", vertices, tets)
+        self.assert_case_refused("deform", BAD_DATA, "block.msh", "line 8", "nan")
+
+    def test_a_truncated_mesh_is_told(self):
+        text = (self.case / "block.msh").read_text()
+        (self.case / "block.msh").write_text(text[: len(text) // 2])
+        self.assert_case_refused("deform", BAD_DATA, "block.msh", "line ")
+
+    def test_a_tet_turned_inside_out_is_told(self):
+        vertices, tets = small_case.block()
+        tets[7] = (tets[7][1], tets[7][0], *tets[7][2:])
+        small_case.write_msh(self.case / "block.msh", vertices, tets)
+        self.assert_case_refused("deform", BAD_DATA, "block.msh")
+
+    def test_a_region_that_holds_nothing_is_told(self):
+        self.change(specimen={"constraints": [{"kind": "fixed", "where": {"box_mm": [[500, 500, 500], [501, 501, 501]]}}]})
+        self.assert_case_refused("deform", BAD_CASE, "specimen.constraints")
+
+    def test_a_tumor_edge_off_the_surface_is_refused(self):
+        small_case.write_contour(self.case / "tumor.csv", small_case.ring(z=40.0))
+        self.assert_case_refused("plan", BAD_CASE, "tumour edge", "point 0", stages=["stretched"])
+
+    def test_a_tumor_edge_beside_the_tissue_is_refused(self):
+        small_case.write_contour(self.case / "tumor.csv", small_case.ring(center=(200.0, 20.0)))
+        self.assert_case_refused("plan", BAD_CASE, "tumour edge", stages=["stretched"])
+
+    def test_a_damaged_tumor_edge_is_named_with_its_line(self):
+        (self.case / "tumor.csv").write_text("x_mm,y_mm,z_mm\n0,0,14\n1,two,14\n0,2,14\n")
+        self.assert_case_refused("plan", BAD_DATA, "tumor.csv", "line 3", "two", stages=["stretched"])
+
+    def test_a_ring_that_leaves_the_tissue_is_refused(self):
+        small_case.write_contour(self.case / "tumor.csv", small_case.ring(center=(13.0, 20.0)))
+        self.assert_case_refused("simulate", BAD_CASE, "a path outside the tissue", stages=["stretched"])
+
+    def test_a_depth_through_the_tissue_is_refused(self):
+        self.change(plan={"depth_mm": 20})
+        self.assert_case_refused("simulate", BAD_CASE, "depth", "20", stages=["stretched"])
+
+    def test_a_given_path_outside_the_tissue_is_refused(self):
+        path = {
+            "frame": "sim_stretched",
+            "kind": "incise",
+            "closed": True,
+            "waypoints": [
+                {"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7}
+                for p in small_case.ring(center=(300.0, 20.0), radius=10.0, corners=24)
+            ],
+        }
+        (self.case / "path.json").write_text(json.dumps(path))
+        self.change(path="path.json")
+        self.assert_case_refused("simulate", BAD_CASE, "waypoint 0", stages=["stretched", "plan"])
+
+    def test_a_given_path_in_the_wrong_frame_is_refused(self):
+        path = {"frame": "robot", "kind": "incise", "closed": True,
+                "waypoints": [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in small_case.ring()]}
+        (self.case / "path.json").write_text(json.dumps(path))
+        self.change(path="path.json")
+        self.assert_case_refused("simulate", BAD_DATA, "path.json", "frame", "robot", "sim_stretched", stages=["stretched", "plan"])
+
+    def test_an_output_below_a_file_cannot_be_written(self):
+        (self.folder / "occupied").write_text("a file")
+        for output in ("occupied", "occupied/out"):
+            with self.subTest(output=output):
+                self.assert_refused(self.incise("run", "case", "-o", output), BAD_DATA, output, "expected a folder that can be written")
+        self.assertEqual((self.folder / "occupied").read_text(), "a file")
+
+
+class ExportTest(CommandTest):
+    """A ring of 20 mm across, 5 mm outside its tumour edge, under the robot."""
+
+    def write_path(self, frame="robot", **changes):
+        path = {
+            "schema": "incise.path/1",
+            "frame": frame,
+            "kind": "incise",
+            "closed": True,
+            "waypoints": [
+                {"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7}
+                for p in small_case.ring(center=(600.0, 0.0), radius=10.0, z=200.0, corners=48)
+            ],
+            "tumor_edge": small_case.ring(center=(600.0, 0.0), radius=5.0, z=200.0),
+        }
+        path.update(changes)
+        (self.folder / "path.json").write_text(json.dumps(path))
+
+    def export(self, *options):
+        return self.incise("export", "path.json", "-o", self.folder / "out.script", *options)
+
+    def test_a_path_that_passes_the_checks_becomes_a_program(self):
+        self.write_path()
+        result = self.json_of("export", "path.json", "-o", self.folder / "out.script")
+        self.assertTrue(all(check["passed"] for check in result["checks"]))
+        self.assertIn("def ", (self.folder / "out.script").read_text())
+
+    def test_a_path_in_another_frame_is_refused(self):
+        for frame in ("sim_rest", "sim_stretched"):
+            with self.subTest(frame=frame):
+                self.write_path(frame)
+                self.assert_refused(self.export(), BAD_DATA, "path.json", "frame", frame, "expected robot")
+                self.assert_nothing_written(self.folder / "out.script")
+
+    def assert_unsafe(self, done, name):
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        self.assertIn(f"not exported: {name}", done.stderr)
+        self.assert_nothing_written(self.folder / "out.script")
+
+    def test_a_depth_other_than_planned_is_not_exported(self):
+        self.write_path()
+        self.assert_unsafe(self.export("--depth-mm", "9"), "depth")
+
+    def test_a_path_through_the_tumor_is_not_exported(self):
+        self.write_path(tumor_edge=small_case.ring(center=(600.0, 0.0), radius=9.0, z=200.0))
+        self.assert_unsafe(self.export(), "margin")
+
+    def test_a_path_beyond_the_arm_is_not_exported(self):
+        far = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7}
+               for p in small_case.ring(center=(2600.0, 0.0), radius=10.0, z=200.0, corners=48)]
+        self.write_path(waypoints=far, tumor_edge=small_case.ring(center=(2600.0, 0.0), radius=5.0, z=200.0))
+        self.assert_unsafe(self.export(), "reach")
+
+    def test_an_unknown_key_of_a_path_is_named(self):
+        self.write_path(frme="robot")
+        self.assert_refused(self.export(), BAD_DATA, "path.json", "frme", "frame")
+        self.assert_nothing_written(self.folder / "out.script")
+
+
+class EvaluateTest(CommandTest):
+    def assert_evaluate_refused(self, text, *says):
+        small_case.write_contour(self.folder / "good.csv", small_case.ring())
+        (self.folder / "bad.csv").write_text("x_mm,y_mm,z_mm\n" + text)
+        for incision, tumor in (("bad.csv", "good.csv"), ("good.csv", "bad.csv")):
+            with self.subTest(incision=incision):
+                done = self.incise("evaluate", "--incision", incision, "--tumor", tumor, "-o", "out.json")
+                self.assert_refused(done, BAD_DATA, "bad.csv", *says)
+                self.assert_nothing_written(self.folder / "out.json")
+
+    def test_contours_of_two_points_are_refused(self):
+        self.assert_evaluate_refused("0,0,0\n1,0,0\n", "2 points", "expected at least 3")
+
+    def test_numbers_that_are_none_are_refused(self):
+        self.assert_evaluate_refused("0,0,0\n1,nan,0\n1,1,0\n", "line 3", "y_mm", "nan")
+
+    def test_a_header_without_the_columns_is_refused(self):
+        (self.folder / "bad.csv").write_text("a,b,c\n1,2,3\n")
+        done = self.incise("evaluate", "--incision", "bad.csv", "--tumor", "bad.csv")
+        self.assert_refused(done, BAD_DATA, "bad.csv", "line 1", "x_mm")
+
+    def test_a_tumor_edge_without_area_is_refused(self):
+        small_case.write_contour(self.folder / "good.csv", small_case.ring())
+        small_case.write_contour(self.folder / "flat.csv", [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0)])
+        done = self.incise("evaluate", "--incision", "good.csv", "--tumor", "flat.csv", "-o", "out.json")
+        self.assert_refused(done, BAD_DATA, "flat.csv", "no area")
+        self.assert_nothing_written(self.folder / "out.json")
+
+    def test_settings_out_of_range_are_the_command_lines_fault(self):
+        small_case.write_contour(self.folder / "good.csv", small_case.ring())
+        done = self.incise("evaluate", "--incision", "good.csv", "--tumor", "good.csv", "--approach", "0", "0", "0")
+        self.assert_refused(done, BAD_CASE, "approach")
+
+
+class CommandLineTest(CommandTest):
+    def assert_misuse(self, *arguments, says):
+        done = self.incise(*arguments)
+        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertIn(says, done.stderr)
+        self.assertEqual(files_below(self.folder), [])
+
+    def test_an_unknown_verb_is_named_with_the_nearest_one(self):
+        self.assert_misuse("simulte", "case", says="'simulte'")
+        self.assert_misuse("simulte", "case", says="'simulate'")
+
+    def test_an_unknown_option_is_named(self):
+        self.assert_misuse("plan", "case", "--frobnicate", says="--frobnicate")
+
+    def test_no_verb_at_all_is_told(self):
+        self.assert_misuse(says="required")
+
+    def test_a_value_out_of_range_is_told(self):
+        self.assert_misuse("plan", "case", "--threads", "-3", says="--threads")
+
+    def test_a_verb_that_writes_a_file_asks_where(self):
+        self.assert_misuse("segment", "ct", says="-o: found nothing")
+
+    def test_a_fine_length_above_the_coarse_one_is_told(self):
+        self.assert_misuse("mesh", "box.stl", "--around", "cut.csv", "--fine-mm", "5", "--coarse-mm", "3", "-o", "out.vtu", says="--fine-mm")
+
+
+if __name__ == "__main__":
+    unittest.main()

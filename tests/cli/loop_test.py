@@ -1,0 +1,122 @@
+"""The whole loop on a small block: its files, its summary, resuming, stopping, and the same bits at any thread count."""
+
+import json
+import signal
+import subprocess
+import time
+import unittest
+
+import small_case
+from command import COMMAND, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+
+CUT_FILES = {"incision.json", "centerline.csv", "inner_edge.csv", "frames.pvd", "removed.vtu", "manifest.json"}
+
+
+def states(result):
+    return {stage["name"]: stage["state"] for stage in result["stages"]}
+
+
+class LoopTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        small_case.write_case(self.folder / "case")
+
+    def read(self, name):
+        return json.loads((self.out / name).read_text())
+
+    def test_run_goes_from_mesh_to_report_and_a_second_run_reuses_every_stage(self):
+        first = self.json_of("run", "case", "-o", self.out)
+        self.assertEqual(first["outcome"], "success")
+        self.assertEqual(states(first), {"segment": "skipped", "mesh": "skipped", "stretch": "computed", "plan": "computed",
+                                         "simulate": "computed", "compensate": "computed", "verify": "computed"})
+        for when, folder in (("before", "as_planned"), ("after", "corrected")):
+            self.assertTrue(first[when]["closed_loop"])
+            self.assertTrue(first[when]["negative_margin"])
+            self.assertTrue(CUT_FILES <= set(files_below(self.out / folder)), files_below(self.out / folder))
+        self.assertLess(first["after"]["abs_error_mm"]["mean"], first["before"]["abs_error_mm"]["mean"])
+        self.assertTrue(first["program"]["written"])
+        self.assertIn("</html>", (self.out / "report.html").read_text()[-200:])
+        self.assertEqual([name for name in files_below(self.out) if ".tmp" in name or "/." in name], [])
+
+        second = self.json_of("run", "case", "-o", self.out)
+        self.assertEqual({state for name, state in states(second).items() if name not in ("segment", "mesh")}, {"reused"})
+        for when in ("before", "after"):
+            for measure in ("abs_error_mm", "signed_error_mm", "hu_score", "close_margin", "inner_edge"):
+                self.assertEqual(first[when][measure], second[when][measure], f"{when} {measure}")
+
+        # A report can be drawn anew, and the program's path exported once more.
+        self.json_of("report", self.out, "-o", self.folder / "again.html")
+        self.json_of("export", self.out / "program" / "path.json", "-o", self.folder / "again.script")
+
+    def test_a_changed_setting_runs_its_stage_and_those_after_it_again(self):
+        self.json_of("plan", "case", "-o", self.out)
+        small_case.write_case(self.folder / "case", {"plan": {"waypoints": 32}})
+        again = self.json_of("plan", "case", "-o", self.out)
+        self.assertEqual(again["waypoints"], 32)
+        self.assertEqual(states(again)["plan"], "computed")
+
+    def test_every_manifest_says_how_to_repeat_the_run(self):
+        self.json_of("plan", "case", "-o", self.out, "--seed", "5", "--threads", "1")
+        for folder in ("stretched", "plan"):
+            manifest = self.read(f"{folder}/manifest.json")
+            self.assertEqual(manifest["seed"], 5)
+            self.assertEqual(manifest["threads"], 1)
+            self.assertIn("plan case", manifest["command"])
+            self.assertEqual({entry["path"] for entry in manifest["inputs"]}, {"case.yaml", "block.msh", "tumor.csv"})
+            self.assertTrue(all(len(entry["sha256"]) == 64 for entry in manifest["inputs"]))
+            self.assertEqual(manifest["settings"]["plan.depth_mm"], "5")
+
+    def test_deform_tells_what_the_contract_promises(self):
+        result = self.json_of("deform", "case", "-o", self.out)
+        self.assertTrue(result["converged"])
+        self.assertAlmostEqual(result["max_displacement_mm"], 20.0, delta=1.0)
+        for key in ("iterations", "relative_residual", "reaction_mn", "wall_s"):
+            self.assertIn(key, result)
+
+    def test_one_and_two_threads_cut_the_same_tets_at_the_same_times(self):
+        removals = []
+        for threads in (1, 2):
+            out = self.folder / f"out{threads}"
+            self.json_of("simulate", "case", "-o", out, "--threads", threads)
+            removals.append(json.loads((out / "as_planned" / "incision.json").read_text())["removals"])
+        self.assertGreater(len(removals[0]), 100)
+        self.assertEqual(removals[0], removals[1])
+
+    def test_a_cut_that_does_not_succeed_is_a_complete_result_with_status_4(self):
+        small_case.write_case(self.folder / "case", {"cut": {"dullness": 900}})  # so blunt that next to nothing goes
+        result = self.json_of("simulate", "case", "-o", self.out, status=NOT_ACCEPTABLE)
+        self.assertEqual(result["outcome"], "open_loop")
+        self.assertFalse(result["closed_loop"])
+        self.assertEqual(self.read("as_planned/incision.json")["outcome"], "open_loop")
+        self.assertTrue((self.out / "as_planned" / "manifest.json").is_file())
+
+
+class InterruptTest(CommandTest):
+    def test_ctrl_c_keeps_finished_stages_and_leaves_no_half_cut(self):
+        small_case.write_case(self.folder / "case", {"cut": {"advance_per_step_mm": 0.2}})
+        command = [COMMAND, "simulate", "case", "-o", str(self.out)]
+        running = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 120
+        while not (self.out / "plan").exists() and running.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.02)
+        time.sleep(0.2)
+        self.assertIsNone(running.poll(), "the cut was over before it could be interrupted")
+        running.send_signal(signal.SIGINT)
+        stdout, stderr = running.communicate(timeout=120)
+        self.assertEqual(running.returncode, INTERRUPTED, stderr)
+        self.assertEqual(stdout, "")
+        self.assertIn("run the same command to go on", stderr)
+        self.assertEqual({name.split("/")[0] for name in files_below(self.out)}, {"study.json", "stretched", "plan"})
+
+        resumed = self.json_of("simulate", "case", "-o", self.out)
+        self.assertEqual(states(resumed), {"segment": "skipped", "mesh": "skipped", "stretch": "reused", "plan": "reused",
+                                           "simulate": "computed"})
+        self.assertEqual(resumed["outcome"], "success")
+
+        # Going on gives what an uninterrupted run gives.
+        straight = self.json_of("simulate", "case", "-o", self.folder / "straight")
+        self.assertEqual(resumed["abs_error_mm"], straight["abs_error_mm"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,33 @@
+# Installs incise below a temporary folder, then configures, builds and runs the consumer against it, and configures it a second time with
+# incise as a subproject. Called as: cmake -DINCISE_BUILD=… -DINCISE_SOURCE=… -DWORK=… -DGENERATOR=… -DCXX=… -DFLAGS=… -DBUILD_TYPE=… -P run.cmake
+function(step what)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "${what} ended with ${status}:\n${text}")
+  endif()
+  set(step_text "${text}" PARENT_SCOPE)
+  message(STATUS "${what}: done")
+endfunction()
+
+set(consumer ${INCISE_SOURCE}/tests/consumer)
+set(settings -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_BUILD_TYPE=${BUILD_TYPE} "-DCMAKE_CXX_FLAGS=${FLAGS}")
+file(REMOVE_RECURSE ${WORK})
+step("install" ${CMAKE_COMMAND} --install ${INCISE_BUILD} --prefix ${WORK}/prefix)
+step("configure" ${CMAKE_COMMAND} -S ${consumer} -B ${WORK}/build ${settings} -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+step("build" ${CMAKE_COMMAND} --build ${WORK}/build)
+step("run" ${WORK}/build/consumer)
+if(NOT step_text MATCHES "^success: greatest displacement 5")
+  message(FATAL_ERROR "the consumer printed: ${step_text}")
+endif()
+step("configure with incise as a subproject" ${CMAKE_COMMAND} -S ${consumer} -B ${WORK}/subproject ${settings}
+     -DINCISE_SOURCE_DIR=${INCISE_SOURCE})
+# Nothing of the sources' or the build's place may be left in what was installed.
+file(GLOB_RECURSE texts ${WORK}/prefix/*.cmake ${WORK}/prefix/*.hpp)
+foreach(file IN LISTS texts)
+  file(READ ${file} text)
+  string(FIND "${text}" "${INCISE_SOURCE}" at)
+  if(NOT at EQUAL -1)
+    message(FATAL_ERROR "${file} names the source folder ${INCISE_SOURCE}")
+  endif()
+endforeach()
+file(REMOVE_RECURSE ${WORK})

@@ -1,0 +1,46 @@
+#include <incise/core/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace incise {
+namespace {
+
+void need_positive(double value) {
+  INCISE_REQUIRE(value > 0.0, "expected a value above 0, found -1");
+}
+
+TEST(CaseError, NamesPlaceFieldFoundExpectedAndHintInThatOrder) {
+  const CaseError error("case.yaml", "cut.speed_mm_s", "-3", "a number above 0", "Try 13");
+  EXPECT_STREQ(error.what(), "case.yaml: cut.speed_mm_s: found -3, expected a number above 0. Try 13");
+  EXPECT_EQ(error.field(), "cut.speed_mm_s");
+}
+
+TEST(CaseError, LeavesOutWhatIsEmpty) {
+  EXPECT_STREQ(CaseError("case.yaml", "", "a list", "a table").what(), "case.yaml: found a list, expected a table");
+}
+
+TEST(DataError, NamesPathPlaceFoundAndExpected) {
+  const DataError error("ct/slice.dcm", "byte 128", "'ABCD'", "'DICM'");
+  EXPECT_STREQ(error.what(), "ct/slice.dcm: byte 128: found 'ABCD', expected 'DICM'");
+  EXPECT_EQ(error.path(), std::filesystem::path("ct/slice.dcm"));
+}
+
+TEST(Require, ThrowsInvalidArgumentThatNamesTheFunction) {
+  EXPECT_NO_THROW(need_positive(1.0));
+  try {
+    need_positive(-1.0);
+    FAIL() << "expected InvalidArgument";
+  } catch (const InvalidArgument& error) {
+    EXPECT_STREQ(error.what(), "need_positive: expected a value above 0, found -1");
+  }
+}
+
+TEST(Errors, AreAllCaughtAsTheBase) {
+  EXPECT_THROW(throw CaseError("a", "b", "c", "d"), Error);
+  EXPECT_THROW(throw DataError("a", "b", "c", "d"), Error);
+  EXPECT_THROW(throw InvalidArgument("a"), Error);
+  EXPECT_THROW(throw Cancelled("a"), Error);
+}
+
+}  // namespace
+}  // namespace incise

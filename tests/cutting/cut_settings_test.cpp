@@ -1,0 +1,51 @@
+#include <incise/cutting/cut_settings.hpp>
+#include <incise/cutting/tool.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace incise {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kNeedleDiameterMm = 1.0;
+
+TEST(CutSettings, DefaultsAreThePapersPairAndValid) {
+  const CutSettings settings;
+  EXPECT_DOUBLE_EQ(settings.speed_mm_s, 13.0);
+  EXPECT_DOUBLE_EQ(settings.dullness, 9.0);
+  EXPECT_NEAR(settings.dwell_s(), 0.18, 1e-12);
+  EXPECT_NEAR(settings.step_s(), 0.02, 1e-12);
+  EXPECT_THAT(validate(settings, kNeedleDiameterMm), IsEmpty());
+}
+
+TEST(CutSettings, EveryViolationIsListedWithItsField) {
+  CutSettings settings;
+  settings.speed_mm_s = 0.0;
+  settings.dullness = -1.0;
+  settings.bond_stiffness_kpa_mm2 = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(validate(settings, kNeedleDiameterMm),
+              ElementsAre(HasSubstr("speed_mm_s: found 0"), HasSubstr("dullness: found -1"),
+                          HasSubstr("bond_stiffness_kpa_mm2: found nan")));
+}
+
+TEST(CutSettings, AStepLongerThanTheNeedleIsWideIsRefused) {
+  CutSettings settings;
+  settings.advance_per_step_mm = 1.01;
+  EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("advance_per_step_mm: found 1.01")));
+}
+
+TEST(Needle, ADiameterOfZeroIsRefused) {
+  Needle needle;
+  EXPECT_THAT(validate(needle), IsEmpty());
+  needle.diameter_mm = 0.0;
+  EXPECT_THAT(validate(needle), ElementsAre(HasSubstr("diameter_mm: found 0")));
+}
+
+}  // namespace
+}  // namespace incise

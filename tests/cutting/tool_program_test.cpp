@@ -1,0 +1,87 @@
+#include <incise/core/error.hpp>
+#include <incise/cutting/tool_program.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// A square of side 10 mm on the plane z = 0, 5 mm deep.
+ToolPath square(bool is_closed) {
+  ToolPath path;
+  path.is_closed = is_closed;
+  for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(10, 10, 0), Vec3(0, 10, 0)}) {
+    Waypoint waypoint;
+    waypoint.position_mm = corner;
+    path.waypoints.push_back(waypoint);
+  }
+  return path;
+}
+
+CutSettings ten_mm_per_second() {
+  CutSettings settings;
+  settings.speed_mm_s = 10.0;
+  settings.overlap_mm = 5.0;
+  return settings;
+}
+
+TEST(ToolProgram, ARingTakesPlungePerimeterOverlapAndDwell) {
+  const ToolProgram program(square(true), ten_mm_per_second());
+  EXPECT_NEAR(program.duration_s(), 0.5 + 4.0 + 0.5 + 0.18, 1e-12);
+}
+
+TEST(ToolProgram, AnOpenCutHasNoOverlap) {
+  const ToolProgram program(square(false), ten_mm_per_second());
+  EXPECT_NEAR(program.duration_s(), 0.5 + 3.0 + 0.18, 1e-12);
+}
+
+TEST(ToolProgram, TheTipStartsOnTheSurfaceAndPlungesAlongTheAxis) {
+  const ToolProgram program(square(true), ten_mm_per_second());
+  EXPECT_TRUE(program.pose_at(0.0).tip_mm.isApprox(Vec3(0, 0, 0)));
+  EXPECT_NEAR((program.pose_at(0.25).tip_mm - Vec3(0, 0, -2.5)).norm(), 0.0, 1e-12);
+  EXPECT_EQ(program.phase_at(0.25), ToolProgram::Phase::Plunge);
+  EXPECT_NEAR((program.pose_at(1.0).tip_mm - Vec3(5, 0, -5)).norm(), 0.0, 1e-12);
+  EXPECT_EQ(program.phase_at(1.0), ToolProgram::Phase::Follow);
+}
+
+TEST(ToolProgram, TheOverlapRunsOnAlongTheStart) {
+  const ToolProgram program(square(true), ten_mm_per_second());
+  EXPECT_EQ(program.phase_at(4.6), ToolProgram::Phase::Overlap);
+  EXPECT_NEAR((program.pose_at(5.0).tip_mm - Vec3(5, 0, -5)).norm(), 0.0, 1e-12);
+  EXPECT_EQ(program.phase_at(5.1), ToolProgram::Phase::Dwell);
+  EXPECT_NEAR((program.pose_at(99.0).tip_mm - Vec3(5, 0, -5)).norm(), 0.0, 1e-12);
+}
+
+TEST(ToolProgram, ItMovesAtTheSimulatedSpeedEverywhereButInTheDwell) {
+  const ToolProgram program(square(true), ten_mm_per_second());
+  for (double t = 0.005; t < 4.99; t += 0.01) {
+    if (std::abs(std::fmod(t - 0.5, 1.0)) < 0.011) continue;  // corners
+    const double distance = (program.pose_at(t + 0.001).tip_mm - program.pose_at(t).tip_mm).norm();
+    EXPECT_NEAR(distance, 0.01, 1e-9) << "at " << t << " s";
+  }
+}
+
+TEST(ToolProgram, APathThatIsNotInTheStretchedTissueIsRefused) {
+  ToolPath path = square(true);
+  path.frame = PathFrame::Robot;
+  EXPECT_THROW(ToolProgram(path, CutSettings{}), InvalidArgument);
+}
+
+TEST(ToolProgram, AnAxisThatIsNoUnitVectorIsRefused) {
+  ToolPath path = square(true);
+  path.waypoints[2].axis = Vec3(0, 0, -2);
+  EXPECT_THROW(ToolProgram(path, CutSettings{}), InvalidArgument);
+}
+
+TEST(ToolPose, HalfWayBetweenTwoPosesTheAxisIsAUnitVector) {
+  const ToolPose a{{0, 0, 0}, {0, 0, -1}};
+  const ToolPose b{{2, 0, 0}, {0, 1, 0}};
+  const ToolPose middle = between(a, b, 0.5);
+  EXPECT_TRUE(middle.tip_mm.isApprox(Vec3(1, 0, 0)));
+  EXPECT_TRUE(middle.axis.isApprox(Vec3(0, std::sqrt(0.5), -std::sqrt(0.5))));
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,341 @@
+#include <incise/core/error.hpp>
+#include <incise/imaging/phantom.hpp>
+#include <incise/imaging/segmentation.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace incise {
+namespace {
+
+using testing::HasSubstr;
+
+// A CT whose voxels show, without noise, the mean of `hu` over 4³ points each.
+CtVolume scan_of(const VolumeGrid& grid, const std::function<double(const Vec3&)>& hu) {
+  constexpr int kSamples = 4;
+  CtVolume ct{grid, std::vector<std::int16_t>(grid.voxel_count())};
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i) {
+        double sum = 0.0;
+        for (int s = 0; s < kSamples * kSamples * kSamples; ++s) {
+          const Vec3 part(s % kSamples, s / kSamples % kSamples, s / (kSamples * kSamples));
+          sum +=
+              hu(grid.world_from_index(Vec3(i, j, k) + (part.array() + 0.5).matrix() / kSamples - Vec3::Constant(0.5)));
+        }
+        ct.at(i, j, k) = static_cast<std::int16_t>(std::lround(sum / (kSamples * kSamples * kSamples)));
+      }
+  return ct;
+}
+
+VolumeGrid grid_of(int nx, int ny, int nz, const Vec3& spacing = Vec3::Ones()) {
+  VolumeGrid grid;
+  grid.size = {nx, ny, nz};
+  grid.spacing_mm = spacing;
+  return grid;
+}
+
+double ball(const Vec3& p, const Vec3& center, double radius) {
+  return (p - center).norm() <= radius ? 1.0 : 0.0;
+}
+
+Segmentation run(const CtVolume& ct, const SegmentationSettings& settings = {}) {
+  Monitor monitor;
+  return segment(ct, settings, monitor);
+}
+
+std::string message_of(const CtVolume& ct, const SegmentationSettings& settings) {
+  try {
+    static_cast<void>(run(ct, settings));
+  } catch (const CaseError& error) {
+    return error.what();
+  }
+  return "no CaseError";
+}
+
+constexpr double kBallVolume = 4.0 / 3.0 * 3.14159265358979 * 1000.0;  // radius 10 mm
+
+CtVolume ball_of_tissue() {
+  return scan_of(grid_of(31, 31, 31),
+                 [](const Vec3& p) { return ball(p, Vec3(15.2, 14.9, 15.4), 10.0) > 0 ? 50.0 : -1000.0; });
+}
+
+TEST(Segmentation, FindsTheVolumeOfABallWithinAPercent) {
+  SegmentationSettings settings;
+  settings.smoothing_mm = 0.0;
+  const Segmentation result = run(ball_of_tissue(), settings);
+  EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.01);
+  EXPECT_NEAR(result.volume_mm3 / kBallVolume, 1.0, 0.01);
+  EXPECT_EQ(result.components, 1U);
+  EXPECT_EQ(result.holes_filled, 0U);
+  EXPECT_EQ(result.cut_faces(), 0);
+  EXPECT_DOUBLE_EQ(result.tissue_hu, 50.0);
+}
+
+TEST(Segmentation, ShrinksABallLessThanHalfAsMuchAsAGaussianWould) {
+  SegmentationSettings settings;
+  settings.smoothing_mm = 0.0;
+  const double sharp = run(ball_of_tissue(), settings).occupancy_volume_mm3;
+  settings.smoothing_mm = 1.2;
+  const double smooth = run(ball_of_tissue(), settings).occupancy_volume_mm3;
+  // A Gaussian takes 3 σ²/R² = 4.3 % of the volume; 2 G - G * G the share (2 - √2)/(2 - 1/√2) = 0.45 of it, in the
+  // first order of σ/R.
+  EXPECT_NEAR(smooth / sharp - 1.0, -0.45 * 3.0 * 1.44 / 100.0, 0.005);
+}
+
+TEST(Segmentation, LeavesAMarginOfAirAllAroundEvenWhereTheRegionCutsThroughTissue) {
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
+  const Segmentation result = run(ball_of_tissue(), settings);
+  const VolumeGrid& grid = result.labels.grid;
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i) {
+        const int to_border = std::min({i, j, k, grid.size[0] - 1 - i, grid.size[1] - 1 - j, grid.size[2] - 1 - k});
+        if (to_border >= 3) continue;
+        EXPECT_EQ(result.labels.at(i, j, k), 0);
+        EXPECT_LT(result.occupancy.at(i, j, k), 0.5F);
+      }
+  EXPECT_EQ(result.cut_faces(), 1);
+  EXPECT_GT(result.cut_voxels[static_cast<std::size_t>(RegionFace::Superior)], 250U);  // a disc of radius 10 mm
+  EXPECT_EQ(grid.origin_mm, (grid.world_from_index(Vec3::Zero())));
+}
+
+TEST(Segmentation, CutsHalfABallAtTheFaceOfTheLastVoxelInTheRegion) {
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
+  settings.smoothing_mm = 0.0;
+  // The cut lies at z = 15.5, 0.1 mm above the centre: half a ball and a slice of 0.1 mm.
+  EXPECT_NEAR(run(ball_of_tissue(), settings).occupancy_volume_mm3 / (0.5 * kBallVolume + 31.4), 1.0, 0.015);
+}
+
+TEST(Segmentation, KeepsOneGridForLabelAndOccupancyInWorldCoordinates) {
+  CtVolume ct = ball_of_tissue();
+  ct.grid.origin_mm = Vec3(100, -50, 7);
+  ct.grid.direction << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // a quarter turn
+  const Segmentation result = run(ct);
+  ASSERT_EQ(result.labels.grid.size, result.occupancy.grid.size);
+  Vec3 centroid = Vec3::Zero();
+  const VolumeGrid& grid = result.labels.grid;
+  for (int k = 0; k < grid.size[2]; ++k)
+    for (int j = 0; j < grid.size[1]; ++j)
+      for (int i = 0; i < grid.size[0]; ++i)
+        if (result.labels.at(i, j, k) != 0)
+          centroid += grid.world_from_index(Vec3(i, j, k)) / static_cast<double>(result.voxels);
+  EXPECT_LT((centroid - Vec3(100 - 14.9, -50 + 15.2, 7 + 15.4)).norm(), 0.05);
+}
+
+TEST(Segmentation, NamesTheWorldSideThatIsCutWhenTheGridIsTurned) {
+  CtVolume ct = ball_of_tissue();
+  ct.grid.direction << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // j points to the right (-x), i to posterior (+y)
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(-15, -100, -100), Vec3(100, 100, 100));
+  const Segmentation result = run(ct, settings);
+  EXPECT_EQ(result.cut_faces(), 1);
+  EXPECT_GT(result.cut_voxels[static_cast<std::size_t>(RegionFace::Right)], 0U);
+}
+
+// Two balls, the larger at x = 15, the smaller at x = 45, and a bridge of 4 mm across between them.
+CtVolume two_balls(bool with_bridge) {
+  return scan_of(grid_of(60, 31, 31), [=](const Vec3& p) {
+    const bool bridge = with_bridge && p.x() > 15 && p.x() < 45 && (p - Vec3(p.x(), 15, 15)).norm() < 2.0;
+    return ball(p, Vec3(15, 15, 15), 10.0) > 0 || ball(p, Vec3(45, 15, 15), 8.0) > 0 || bridge ? 50.0 : -1000.0;
+  });
+}
+
+TEST(Segmentation, TakesTheLargestPieceWithoutASeedAndTheSeedsPieceWithOne) {
+  SegmentationSettings settings;
+  const Segmentation largest = run(two_balls(false), settings);
+  settings.seeds_mm = {Vec3(45, 15, 15), Vec3(47, 14, 15)};
+  const Segmentation seeded = run(two_balls(false), settings);
+  EXPECT_EQ(largest.components, 2U);
+  EXPECT_NEAR(largest.occupancy_volume_mm3 / kBallVolume, 1.0, 0.02);
+  EXPECT_NEAR(seeded.occupancy_volume_mm3 / (kBallVolume * 0.512), 1.0, 0.02);
+}
+
+TEST(Segmentation, SeparatesPiecesThatABridgeThinnerThanTheOpeningJoins) {
+  SegmentationSettings settings;
+  EXPECT_EQ(run(two_balls(true), settings).components, 1U);
+  settings.opening_radius_mm = 3.0;
+  const Segmentation result = run(two_balls(true), settings);
+  EXPECT_EQ(result.components, 2U);
+  EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.03);
+}
+
+TEST(Segmentation, FillsClosedCavitiesAndLeavesThoseWithAWayOut) {
+  const auto with_cavity = [](bool open) {
+    return scan_of(grid_of(31, 31, 31), [=](const Vec3& p) {
+      const bool channel = open && p.z() > 15 && (p - Vec3(15, 15, p.z())).norm() < 2.0;
+      return ball(p, Vec3(15, 15, 15), 10) > 0 && ball(p, Vec3(15, 15, 15), 3.5) == 0 && !channel ? 50.0 : -1000.0;
+    });
+  };
+  const Segmentation closed = run(with_cavity(false));
+  EXPECT_EQ(closed.holes_filled, 1U);
+  EXPECT_NEAR(closed.occupancy_volume_mm3 / kBallVolume, 1.0, 0.015);
+  const Segmentation open = run(with_cavity(true));
+  EXPECT_EQ(open.holes_filled, 0U);
+  EXPECT_LT(open.occupancy_volume_mm3 / kBallVolume, 0.95);
+  SegmentationSettings settings;
+  settings.fill_holes = false;
+  EXPECT_LT(run(with_cavity(false), settings).occupancy_volume_mm3 / kBallVolume, 0.97);
+}
+
+TEST(Segmentation, PlacesTheSurfaceBetweenTissueAndFatOrBoneAsRightAsAgainstAir) {
+  for (const double around : {-1000.0, -100.0, 1200.0}) {
+    const CtVolume ct = scan_of(
+        grid_of(31, 31, 31), [=](const Vec3& p) { return ball(p, Vec3(15.2, 14.9, 15.4), 10.0) > 0 ? 50.0 : around; });
+    SegmentationSettings settings;
+    settings.smoothing_mm = 0.0;
+    EXPECT_NEAR(run(ct, settings).occupancy_volume_mm3 / kBallVolume, 1.0, 0.012)
+        << "surroundings of " << around << " HU";
+  }
+}
+
+TEST(Segmentation, LeavesOutTheThinShellBetweenBoneAndAirThatLooksLikeTissue) {
+  // A block of bone beside the ball: where bone meets air, partial volume passes through the tissue's window.
+  const CtVolume ct = scan_of(grid_of(45, 31, 31), [](const Vec3& p) {
+    if (ball(p, Vec3(15, 15, 15), 10.0) > 0) return 50.0;
+    return p.x() > 23.3 && p.x() < 40.3 && p.y() > 4.3 && p.y() < 26.3 && p.z() > 4.3 && p.z() < 26.3 ? 1000.0
+                                                                                                      : -1000.0;
+  });
+  SegmentationSettings settings;
+  settings.opening_radius_mm = 1.5;
+  const Segmentation result = run(ct, settings);
+  EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.03);
+}
+
+TEST(Segmentation, WarnsWithTheSidesThatTheSpecimenRunsInto) {
+  struct : Monitor {
+    std::vector<std::string> warnings;
+    double last = -1.0;
+    bool is_monotone = true;
+    void message(Severity severity, std::string_view text) override {
+      if (severity == Severity::Warning) warnings.emplace_back(text);
+    }
+    void progress(std::string_view, double fraction) override {
+      is_monotone = is_monotone && fraction >= last;
+      last = fraction;
+    }
+  } monitor;
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(10, 0, 0), Vec3(30, 30, 20));
+  static_cast<void>(segment(ball_of_tissue(), settings, monitor));
+  ASSERT_EQ(monitor.warnings.size(), 1U);
+  EXPECT_THAT(monitor.warnings[0],
+              testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
+  EXPECT_TRUE(monitor.is_monotone);
+  EXPECT_EQ(monitor.last, 1.0);
+}
+
+TEST(Segmentation, RefusesSeedsAndRegionsThatDoNotFitTheVolume) {
+  const CtVolume ct = two_balls(false);
+  SegmentationSettings settings;
+  settings.seeds_mm = {Vec3(15, 15, 99)};
+  EXPECT_THAT(message_of(ct, settings),
+              testing::AllOf(HasSubstr("seed_mm[0]: found [15, 15, 99]"),
+                             HasSubstr("a point inside the volume, [[0, 0, 0], [59, 30, 30]] mm")));
+  settings.seeds_mm = {Vec3(15, 15, 15), Vec3(1, 1, 1)};
+  EXPECT_THAT(message_of(ct, settings), testing::AllOf(HasSubstr("seed_mm[1]: found [1, 1, 1] with -1000 HU"),
+                                                       HasSubstr("window_hu [-20, 180]")));
+  settings.seeds_mm = {Vec3(15, 15, 15), Vec3(45, 15, 15)};
+  EXPECT_THAT(message_of(ct, settings), HasSubstr("another piece"));
+  settings.seeds_mm = {Vec3(45, 15, 15)};
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 30));
+  EXPECT_THAT(message_of(ct, settings), HasSubstr("a point inside roi_box_mm [[0, 0, 0], [30, 30, 30]]"));
+  settings.seeds_mm = {};
+  settings.roi_box_mm = Box3(Vec3(100, 0, 0), Vec3(130, 30, 30));
+  EXPECT_THAT(message_of(ct, settings), HasSubstr("a box that meets the volume"));
+  settings.roi_box_mm = Box3(Vec3(10.2, 10.2, 10.2), Vec3(10.8, 10.8, 10.8));
+  EXPECT_THAT(message_of(ct, settings), HasSubstr("roi_box_mm"));
+}
+
+TEST(Segmentation, RefusesAWindowWithoutTissueAndAnOpeningThatLeavesNone) {
+  SegmentationSettings settings;
+  settings.window_low_hu = 300.0;
+  settings.window_high_hu = 400.0;
+  EXPECT_THAT(message_of(ball_of_tissue(), settings),
+              testing::AllOf(HasSubstr("no voxel with HU in [300, 400]"), HasSubstr("-1000 to 50 HU")));
+  settings = {};
+  settings.opening_radius_mm = 12.0;
+  EXPECT_THAT(message_of(ball_of_tissue(), settings), HasSubstr("opening_radius_mm: found 12, which leaves nothing"));
+  settings.opening_radius_mm = 3.0;
+  settings.seeds_mm = {Vec3(30, 15, 15)};  // in the bridge
+  EXPECT_THAT(message_of(two_balls(true), settings), HasSubstr("tissue thinner than opening_radius_mm 3"));
+}
+
+TEST(Segmentation, ListsEverySettingThatIsWrong) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  SegmentationSettings settings;
+  settings.window_low_hu = 200.0;
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(1, kNan, 1));
+  settings.seeds_mm = {Vec3(kNan, 0, 0)};
+  settings.opening_radius_mm = -1.0;
+  settings.smoothing_mm = 9.0;
+  settings.margin_voxels = 1;
+  EXPECT_EQ(validate(settings).size(), 6U);
+  EXPECT_THAT(message_of(ball_of_tissue(), settings),
+              testing::AllOf(HasSubstr("6 violation(s)"), HasSubstr("window_hu: found [200, 180]"),
+                             HasSubstr("margin_voxels: found 1")));
+}
+
+TEST(Segmentation, RefusesAVolumeThatContradictsItself) {
+  CtVolume ct = ball_of_tissue();
+  ct.voxels.pop_back();
+  EXPECT_THROW(static_cast<void>(run(ct)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(run(CtVolume{})), InvalidArgument);
+  ct = ball_of_tissue();
+  ct.grid.spacing_mm.z() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(static_cast<void>(run(ct)), InvalidArgument);
+}
+
+struct PhantomCase {
+  std::uint64_t seed;
+  Vec3 spacing_mm;
+};
+
+class SegmentationOfPhantoms : public testing::TestWithParam<PhantomCase> {};
+
+TEST_P(SegmentationOfPhantoms, FindsTheTrueVolumeAndTheTrueSkin) {
+  Monitor monitor;
+  PhantomSettings settings;
+  settings.seed = GetParam().seed;
+  settings.spacing_mm = GetParam().spacing_mm;
+  const Phantom phantom = make_phantom(settings, monitor);
+  const Segmentation result = segment(phantom.ct, {}, monitor);
+  RecordProperty("occupancy_error_percent",
+                 std::to_string(100.0 * (result.occupancy_volume_mm3 / phantom.true_volume_mm3 - 1.0)));
+  RecordProperty("label_error_percent", std::to_string(100.0 * (result.volume_mm3 / phantom.true_volume_mm3 - 1.0)));
+  EXPECT_NEAR(result.occupancy_volume_mm3 / phantom.true_volume_mm3, 1.0, 0.0075);
+  // Whole voxels cannot follow the flat sole, which lies anywhere between two layers of centres.
+  EXPECT_NEAR(result.volume_mm3 / phantom.true_volume_mm3, 1.0, 0.02);
+  EXPECT_EQ(result.cut_faces(), 0);
+
+  // Down the mid-line: where the occupancy passes 0.5 on the way in, against the exact back and sole.
+  const VolumeGrid& grid = result.occupancy.grid;
+  for (double y = phantom.tip_end_mm + 15.0; y < phantom.posterior_end_mm - 10.0; y += 5.0) {
+    const Eigen::Array3i at = grid.index_from_world(Vec3(0, y, 0)).array().round().cast<int>();
+    const Vec3 column = grid.world_from_index(at.cast<double>().matrix());
+    const auto span = span_at(phantom.shape, column.x(), column.y());
+    int k = 0;
+    while (result.occupancy.at(at[0], at[1], k) < 0.5F) ++k;
+    const auto crossing = [&](int below) {
+      const double a = result.occupancy.at(at[0], at[1], below);
+      const double b = result.occupancy.at(at[0], at[1], below + 1);
+      return grid.origin_mm.z() + (below + (0.5 - a) / (b - a)) * grid.spacing_mm.z();
+    };
+    EXPECT_NEAR(crossing(k - 1), span->low_mm, 0.5 * grid.spacing_mm.z()) << "sole at y = " << y;
+    while (result.occupancy.at(at[0], at[1], k) >= 0.5F) ++k;
+    EXPECT_NEAR(crossing(k - 1), span->high_mm, 0.2) << "back at y = " << y;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SeedsAndVoxels, SegmentationOfPhantoms,
+                         testing::Values(PhantomCase{1, Vec3::Constant(0.8)}, PhantomCase{2, Vec3(0.7, 0.7, 1.0)},
+                                         PhantomCase{3, Vec3(1.0, 1.0, 1.0)}, PhantomCase{17, Vec3(0.9, 0.9, 1.5)}));
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,102 @@
+#include "support/temporary_folder.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <ostream>
+#include <stdexcept>
+
+namespace incise {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+std::size_t entries_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(WriteAtomically, WritesTheBytesAndLeavesNothingElse) {
+  const incise::testing::TemporaryFolder folder;
+  write_atomically(folder / "a.bin", [](std::ostream& stream) { stream << std::string("1\n\0\r2", 5); });
+  EXPECT_EQ(read_text(folder / "a.bin"), std::string("1\n\0\r2", 5));
+  EXPECT_EQ(entries_in(folder.path()), 1u);
+}
+
+TEST(WriteAtomically, KeepsTheOlderFileWhenTheWriterFails) {
+  const incise::testing::TemporaryFolder folder;
+  write_atomically(folder / "a.txt", [](std::ostream& stream) { stream << "old"; });
+  EXPECT_THROW(write_atomically(folder / "a.txt",
+                                [](std::ostream& stream) {
+                                  stream << "half";
+                                  throw std::runtime_error("stopped");
+                                }),
+               std::runtime_error);
+  EXPECT_EQ(read_text(folder / "a.txt"), "old");
+  EXPECT_EQ(entries_in(folder.path()), 1u);
+}
+
+TEST(WriteAtomically, RefusesAFailedStream) {
+  const incise::testing::TemporaryFolder folder;
+  EXPECT_THROW(write_atomically(folder / "a.txt", [](std::ostream& stream) { stream.setstate(std::ios::badbit); }),
+               DataError);
+  EXPECT_EQ(entries_in(folder.path()), 0u);
+}
+
+TEST(WriteAtomically, MakesNoFolders) {
+  const incise::testing::TemporaryFolder folder;
+  EXPECT_THAT([&] { write_atomically(folder / "missing" / "a.txt", [](std::ostream&) {}); },
+              ThrowsMessage<DataError>(HasSubstr("expected an existing folder")));
+  EXPECT_EQ(entries_in(folder.path()), 0u);
+}
+
+TEST(WriteAtomically, RefusesAFolderAsTheFileToWrite) {
+  const incise::testing::TemporaryFolder folder;
+  EXPECT_THROW(write_atomically(folder.path(), [](std::ostream&) {}), DataError);
+}
+
+TEST(ReadText, NamesAMissingFileAndAFolder) {
+  const incise::testing::TemporaryFolder folder;
+  EXPECT_THAT([&] { static_cast<void>(read_text(folder / "none.txt")); },
+              ThrowsMessage<DataError>(HasSubstr("none.txt: found no such file")));
+  EXPECT_THAT([&] { static_cast<void>(read_text(folder.path())); },
+              ThrowsMessage<DataError>(HasSubstr("found a folder, expected a file")));
+}
+
+TEST(AtomicFolder, AppearsOnlyWithCommitAndReplacesTheOlderOne) {
+  const incise::testing::TemporaryFolder folder;
+  for (const char* text : {"old", "new"}) {
+    AtomicFolder output(folder / "out/");
+    std::ofstream(output.path() / text) << text;
+    output.commit();
+  }
+  EXPECT_TRUE(fs::exists(folder / "out" / "new"));
+  EXPECT_FALSE(fs::exists(folder / "out" / "old"));
+  EXPECT_EQ(entries_in(folder.path()), 1u);
+}
+
+TEST(AtomicFolder, IsGoneWithoutCommitAndTheOlderOneStays) {
+  const incise::testing::TemporaryFolder folder;
+  fs::create_directory(folder / "out");
+  std::ofstream(folder / "out" / "old") << "old";
+  {
+    const AtomicFolder output(folder / "out");
+    std::ofstream(output.path() / "new") << "new";
+  }
+  EXPECT_TRUE(fs::exists(folder / "out" / "old"));
+  EXPECT_EQ(entries_in(folder.path()), 1u);
+}
+
+TEST(AtomicFolder, DoesNotReplaceAFile) {
+  const incise::testing::TemporaryFolder folder;
+  std::ofstream(folder / "out") << "a file";
+  EXPECT_THROW(AtomicFolder(folder / "out"), DataError);
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "support/data_dir.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace incise::testing {
+
+inline std::filesystem::path write_file(const std::filesystem::path& path, std::string_view content) {
+  std::ofstream(path, std::ios::binary) << content;
+  return path;
+}
+
+/// The message of the DataError that `action` ends in, or "accepted".
+template <class Action>
+std::string data_error_of(Action action) {
+  try {
+    action();
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace incise::testing

@@ -1,0 +1,58 @@
+#include "io/io_test_support.hpp"
+
+#include <incise/io/json_text.hpp>
+#include <incise/io/nearest_name.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <limits>
+
+namespace incise {
+namespace {
+
+using incise::testing::data_error_of;
+using incise::testing::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+TEST(JsonText, KeepsTheOrderOfKeysAndReadsBackTheSameDoubles) {
+  const nlohmann::ordered_json value{{"z", 0.1}, {"a", {1e-300, -0.0, 1.0 / 3.0}}};
+  const TemporaryFolder folder;
+  write_json(folder / "a.json", value);
+  const auto back = read_json(folder / "a.json");
+  EXPECT_EQ(back, value);
+  EXPECT_EQ(back.begin().key(), "z");
+}
+
+TEST(JsonText, RefusesANumberThatIsNotFiniteAndSaysWhereItIs) {
+  const nlohmann::ordered_json value{{"a", {1.0, {{"b", std::numeric_limits<double>::quiet_NaN()}}}}};
+  EXPECT_THAT([&] { static_cast<void>(json_text(value)); }, ThrowsMessage<InvalidArgument>(HasSubstr("/a/1/b")));
+}
+
+TEST(ParseJson, NamesLineAndColumn) {
+  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("{\n  \"a\": 1,\n  \"b\": nan\n}", "x.json")); }),
+              HasSubstr("x.json: line 3, column"));
+  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("{\"a\": [1, 2", "x.json")); }),
+              HasSubstr("found the end of the text"));
+  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("", "x.json")); }), HasSubstr("expected JSON"));
+}
+
+TEST(ParseJson, RefusesAKeyGivenTwice) {
+  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json(R"({"a": {"b": 1, "b": 2}})", "x.json")); }),
+              HasSubstr("the key 'b' twice"));
+  EXPECT_NO_THROW(static_cast<void>(parse_json(R"([{"a": {"b": 1}}, {"a": {"b": 2}}])", "x.json")));
+}
+
+TEST(ParseJson, RefusesANumberThatNoDoubleHolds) {
+  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("[1e999]", "x.json")); }), HasSubstr("x.json"));
+}
+
+TEST(NearestName, FindsWhatWasMeant) {
+  const std::vector<std::string> names{"waypoints", "frame", "kind", "closed"};
+  EXPECT_EQ(nearest_name("waypionts", names), "waypoints");
+  EXPECT_EQ(nearest_name("Frame", names), "frame");
+  EXPECT_EQ(nearest_name("x", {}), "");
+}
+
+}  // namespace
+}  // namespace incise

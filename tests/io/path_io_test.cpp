@@ -1,0 +1,131 @@
+#include "io/io_test_support.hpp"
+
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/path_io.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <limits>
+
+namespace incise {
+namespace {
+
+using incise::testing::data_error_of;
+using incise::testing::TemporaryFolder;
+using nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+ToolPath sample_path() {
+  ToolPath path;
+  path.frame = PathFrame::Robot;
+  path.waypoints = {{Vec3(1.0 / 3.0, -0.1, 1e-17), -Vec3::UnitZ(), 5.0, 7.0},
+                    {Vec3(10.0, 0.0, 0.0), Vec3(0.6, 0.0, -0.8), 4.75, 7.0},
+                    {Vec3(0.0, 10.0, 0.0), -Vec3::UnitZ(), 5.0, 3.3}};
+  path.tumor_edge.points = {Vec3(1, 1, 0), Vec3(2, 1, 0), Vec3(1, 2, 0.7)};
+  path.T_robot_sim = Mat4::Identity();
+  (*path.T_robot_sim)(0, 3) = 512.123456789;
+  path.source_sha256 = std::string(64, 'a');
+  return path;
+}
+
+/// The message for the sample's JSON after a change.
+template <class Change>
+std::string message_after(Change change) {
+  json document = json::parse(to_json(sample_path()));
+  change(document);
+  return data_error_of([&] { static_cast<void>(tool_path_from_json(document.dump(), "path.json")); });
+}
+
+TEST(ToolPathFile, ReadsBackTheSameDoubles) {
+  const TemporaryFolder folder;
+  const ToolPath path = sample_path();
+  write_tool_path(folder / "path.json", path);
+  const ToolPath back = read_tool_path(folder / "path.json");
+  EXPECT_EQ(back.frame, PathFrame::Robot);
+  EXPECT_EQ(back.kind, PathKind::Incise);
+  EXPECT_TRUE(back.is_closed);
+  ASSERT_EQ(back.waypoints.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(back.waypoints[i].position_mm, path.waypoints[i].position_mm);
+    EXPECT_EQ(back.waypoints[i].axis, path.waypoints[i].axis);
+    EXPECT_EQ(back.waypoints[i].depth_mm, path.waypoints[i].depth_mm);
+    EXPECT_EQ(back.waypoints[i].speed_mm_s, path.waypoints[i].speed_mm_s);
+    EXPECT_EQ(back.tumor_edge.points[i], path.tumor_edge.points[i]);
+  }
+  EXPECT_EQ(*back.T_robot_sim, *path.T_robot_sim);
+  EXPECT_EQ(back.source_sha256, path.source_sha256);
+}
+
+TEST(ToolPathFile, KeepsAnOpenPathWithoutOptionalParts) {
+  ToolPath path = sample_path();
+  path.is_closed = false;
+  path.kind = PathKind::Mark;
+  path.frame = PathFrame::SimRest;
+  path.tumor_edge = {{}, false};
+  path.T_robot_sim.reset();
+  path.source_sha256.clear();
+  const ToolPath back = tool_path_from_json(to_json(path), "x");
+  EXPECT_FALSE(back.is_closed);
+  EXPECT_FALSE(back.tumor_edge.is_closed);
+  EXPECT_EQ(back.kind, PathKind::Mark);
+  EXPECT_EQ(back.frame, PathFrame::SimRest);
+  EXPECT_FALSE(back.T_robot_sim.has_value());
+  EXPECT_TRUE(back.source_sha256.empty());
+}
+
+TEST(ToolPathFile, NamesTheNearestKeyForAnUnknownOne) {
+  EXPECT_THAT(message_after([](json& d) { d["fame"] = "robot"; }),
+              AllOf(HasSubstr("path.json: /: found unknown key 'fame'"), HasSubstr("'frame'?")));
+  EXPECT_THAT(message_after([](json& d) { d["waypoints"][1]["speed_mm"] = 1; }),
+              AllOf(HasSubstr("/waypoints/1: "), HasSubstr("'speed_mm_s'?")));
+}
+
+TEST(ToolPathFile, NamesThePlaceOfWhatIsMissingOrOfTheWrongType) {
+  EXPECT_THAT(message_after([](json& d) { d.erase("frame"); }), HasSubstr("no key 'frame'"));
+  EXPECT_THAT(message_after([](json& d) { d["waypoints"][2].erase("axis"); }),
+              HasSubstr("/waypoints/2: found no key 'axis'"));
+  EXPECT_THAT(message_after([](json& d) { d["frame"] = "world"; }),
+              HasSubstr("/frame: found \"world\", expected one of: sim_rest, sim_stretched, robot"));
+  EXPECT_THAT(message_after([](json& d) { d["closed"] = 1; }), HasSubstr("/closed: found 1, expected true or false"));
+  EXPECT_THAT(message_after([](json& d) {
+                d["waypoints"][0]["position_mm"] = {1, 2};
+              }),
+              HasSubstr("/waypoints/0/position_mm: found [1,2], expected three numbers"));
+  EXPECT_THAT(message_after([](json& d) { d["waypoints"][0]["position_mm"][1] = nullptr; }),
+              HasSubstr("/waypoints/0/position_mm/1: found null, expected a number"));
+  EXPECT_THAT(message_after([](json& d) { d["waypoints"].erase(0); }), HasSubstr("found 2 items, expected at least 3"));
+  EXPECT_THAT(message_after([](json& d) { d["schema"] = "incise.path/2"; }), HasSubstr("/schema"));
+}
+
+TEST(ToolPathFile, RefusesValuesOutOfRange) {
+  EXPECT_THAT(message_after([](json& d) {
+                d["waypoints"][1]["axis"] = {0, 0, -2};
+              }),
+              HasSubstr("/waypoints/1/axis: found a vector of length 2, expected a unit vector"));
+  EXPECT_THAT(message_after([](json& d) { d["waypoints"][1]["depth_mm"] = -1; }), HasSubstr("/waypoints/1/depth_mm"));
+  EXPECT_THAT(message_after([](json& d) { d["waypoints"][1]["speed_mm_s"] = 0; }),
+              HasSubstr("/waypoints/1/speed_mm_s"));
+  EXPECT_THAT(message_after([](json& d) { d["T_robot_sim"][3][0] = 1; }), HasSubstr("/T_robot_sim/3"));
+  EXPECT_THAT(message_after([](json& d) { d["T_robot_sim"][0][0] = -1; }), HasSubstr("determinant -1"));
+  EXPECT_THAT(message_after([](json& d) { d["source_sha256"] = "abc"; }), HasSubstr("64 lower-case hex digits"));
+}
+
+TEST(ToolPathFile, RefusesTextThatIsNotJson) {
+  EXPECT_THAT(data_error_of([] { static_cast<void>(tool_path_from_json("{\"frame\": NaN}", "path.json")); }),
+              HasSubstr("path.json: line 1, column"));
+}
+
+TEST(ToolPathFile, IsNotWrittenWhenItCouldNotBeReadBack) {
+  const TemporaryFolder folder;
+  ToolPath path = sample_path();
+  path.waypoints[0].position_mm.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(write_tool_path(folder / "path.json", path), InvalidArgument);
+  path = sample_path();
+  path.waypoints[1].axis *= 1.1;
+  EXPECT_THROW(write_tool_path(folder / "path.json", path), InvalidArgument);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace incise

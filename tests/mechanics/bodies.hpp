@@ -1,0 +1,94 @@
+#pragma once
+
+#include <incise/core/random.hpp>
+#include <incise/mechanics/tissue.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise::testing {
+
+/// The plane x = at of a block, as a region.
+inline Region plane_x(double at) {
+  return BoxRegion{Box3(Vec3(at - 1e-6, -1e3, -1e3), Vec3(at + 1e-6, 1e3, 1e3))};
+}
+inline Region plane_y(double at) {
+  return BoxRegion{Box3(Vec3(-1e3, at - 1e-6, -1e3), Vec3(1e3, at + 1e-6, 1e3))};
+}
+inline Region plane_z(double at) {
+  return BoxRegion{Box3(Vec3(-1e3, -1e3, at - 1e-6), Vec3(1e3, 1e3, at + 1e-6))};
+}
+
+/// A block whose inner vertices are moved at random by up to `share` of a cell: no two tets alike, boundary and volume
+/// kept.
+inline TetMesh irregular_block(const Vec3& size, std::array<int, 3> cells, double share, std::uint64_t seed) {
+  TetMesh mesh = make_block(size, cells);
+  Random random(seed);
+  const double edge = std::min({size[0] / cells[0], size[1] / cells[1], size[2] / cells[2]});
+  for (Vec3& p : mesh.vertices) {
+    const bool is_inner = (p.array() > 1e-9).all() && ((size - p).array() > 1e-9).all();
+    const Vec3 shift(random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+    if (is_inner) p += share * edge * shift;
+  }
+  return mesh;
+}
+
+/// An irregular block clamped at x = 0: the usual specimen of these tests.
+inline TissueModel clamped_block(std::array<int, 3> cells = {4, 3, 3}, double nu = 0.45) {
+  Material material;
+  material.poissons_ratio = nu;
+  return make_tissue_model(irregular_block(Vec3(20, 12, 9), cells, 0.2, 7), material, {FixedConstraint{plane_x(0.0)}});
+}
+
+inline Mat3 some_rotation(double angle = 2.0) {
+  return Eigen::AngleAxisd(angle, Vec3(1.0, 2.0, -2.0) / 3.0).toRotationMatrix();
+}
+
+/// The rest state with every vertex moved at random by up to `amount` mm along each axis.
+inline TissueState shaken(const TissueModel& model, double amount, std::uint64_t seed) {
+  TissueState state = rest_state(model);
+  Random random(seed);
+  for (Vec3& p : state.positions) {
+    for (int i = 0; i < 3; ++i) p[i] += random.uniform(-amount, amount);
+  }
+  return state;
+}
+
+inline Points elastic_forces(const TissueModel& model, TissueState& state, BlockMatrix* stiffness = nullptr,
+                             int threads = 1) {
+  Workers workers(threads);
+  Points forces(model.mesh.vertices.size(), Vec3::Zero());
+  add_elastic_response(model, state, forces, stiffness, workers);
+  return forces;
+}
+
+inline double norm(std::span<const Vec3> vectors) {
+  double squared = 0.0;
+  for (const Vec3& v : vectors) squared += v.squaredNorm();
+  return std::sqrt(squared);
+}
+
+inline double largest(std::span<const Vec3> vectors) {
+  double length = 0.0;
+  for (const Vec3& v : vectors) length = std::max(length, v.norm());
+  return length;
+}
+
+inline Mat3 block_of(const BlockMatrix& matrix, std::size_t slot) {
+  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.block(static_cast<std::int32_t>(slot)));
+}
+
+/// All entries, for small bodies.
+inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
+  const auto n = static_cast<Eigen::Index>(3 * matrix.pattern->rows());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t row = 0; row < matrix.pattern->rows(); ++row) {
+    for (auto slot = matrix.pattern->row_start[row]; slot < matrix.pattern->row_start[row + 1]; ++slot) {
+      const auto at = static_cast<std::size_t>(slot);
+      result.block<3, 3>(static_cast<Eigen::Index>(3 * row), 3 * matrix.pattern->column[at]) = block_of(matrix, at);
+    }
+  }
+  return result;
+}
+
+}  // namespace incise::testing

@@ -1,0 +1,59 @@
+#include "mechanics/bodies.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/mechanics/constraints.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace incise {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// 3 x 2 x 2 vertices at x = 0, 10, 20, y and z = 0, 10; x fastest.
+TetMesh small_block() {
+  return make_block(Vec3(20, 10, 10), {2, 1, 1});
+}
+
+TEST(Select, BoxTakesVerticesInsideAndOnItsFaces) {
+  const Box3 box(Vec3(10, 0, 0), Vec3(15, 5, 10));
+  EXPECT_THAT(select(small_block(), BoxRegion{box}), ElementsAre(VertexId{1}, VertexId{7}));
+}
+
+TEST(Select, SphereTakesVerticesWithinItsRadius) {
+  EXPECT_THAT(select(small_block(), SphereRegion{Vec3::Zero(), 10.0}),
+              ElementsAre(VertexId{0}, VertexId{1}, VertexId{3}, VertexId{6}));
+}
+
+TEST(Select, EndIsMeasuredFromTheExtremePointOfTheBody) {
+  EXPECT_THAT(select(small_block(), EndRegion{-Vec3::UnitX(), 1.0}), SizeIs(4));
+  EXPECT_THAT(select(small_block(), EndRegion{Vec3::UnitX(), 10.0}), SizeIs(8));
+}
+
+TEST(Select, PointArrayTakesItsValue) {
+  TetMesh mesh = small_block();
+  mesh.point_data["part"] = {1, {0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 0}};
+  EXPECT_THAT(select(mesh, PointArrayRegion{"part", 3.0}), ElementsAre(VertexId{2}, VertexId{7}));
+}
+
+TEST(Select, AnUnknownArrayIsToldWithTheKnownOnes) {
+  TetMesh mesh = small_block();
+  mesh.point_data["part"] = {1, std::vector<double>(12, 0.0)};
+  try {
+    static_cast<void>(select(mesh, PointArrayRegion{"prat", 3.0}));
+    FAIL() << "expected InvalidArgument";
+  } catch (const InvalidArgument& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("expected a point array named 'prat', found 'part'"));
+  }
+}
+
+TEST(Select, ARegionOutsideTheBodyIsEmpty) {
+  EXPECT_THAT(select(small_block(), SphereRegion{Vec3(0, 0, 99), 1.0}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,283 @@
+#include "mechanics/bodies.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/mechanics/tissue.hpp>
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+
+namespace incise {
+namespace {
+
+using testing::block_of;
+using testing::clamped_block;
+using testing::dense;
+using testing::elastic_forces;
+using testing::largest;
+using testing::norm;
+using testing::shaken;
+using testing::some_rotation;
+
+// Central differences of a smooth function at a step of 1e-5 mm: truncation ~ 1e-10, cancellation ~ 1e-11 of its size.
+constexpr double kStep = 1e-5;
+constexpr double kDifferenceTolerance = 1e-6;
+constexpr double kRounding = 1e-12;
+
+TissueModel one_tet(double nu = 0.45) {
+  TetMesh mesh;
+  mesh.vertices = {Vec3(0, 0, 0), Vec3(2, 0.1, 0.2), Vec3(0.3, 1.5, -0.1), Vec3(0.2, 0.4, 1.8)};
+  mesh.tets = {{VertexId{0}, VertexId{1}, VertexId{2}, VertexId{3}}};
+  Material material;
+  material.poissons_ratio = nu;
+  return make_tissue_model(mesh, material, {FixedConstraint{SphereRegion{Vec3::Zero(), 10.0}}});
+}
+
+/// Forces by central differences of the energy.
+Points energy_gradient(const TissueModel& model, TissueState state) {
+  Points gradient(state.positions.size());
+  for (std::size_t v = 0; v < gradient.size(); ++v) {
+    for (int i = 0; i < 3; ++i) {
+      const double at = state.positions[v][i];
+      state.positions[v][i] = at + kStep;
+      const double above = elastic_energy_uj(model, state);
+      state.positions[v][i] = at - kStep;
+      const double below = elastic_energy_uj(model, state);
+      state.positions[v][i] = at;
+      gradient[v][i] = (above - below) / (2.0 * kStep);
+    }
+  }
+  return gradient;
+}
+
+/// Stiffness by central differences of the forces.
+Eigen::MatrixXd force_differences(const TissueModel& model, const TissueState& start) {
+  const auto n = static_cast<Eigen::Index>(3 * start.positions.size());
+  Eigen::MatrixXd result(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    TissueState state = start;
+    double& x = state.positions[static_cast<std::size_t>(j / 3)][j % 3];
+    const double at = x;
+    x = at + kStep;
+    const Points above = elastic_forces(model, state);
+    x = at - kStep;
+    const Points below = elastic_forces(model, state);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto v = static_cast<std::size_t>(i / 3);
+      result(i, j) = -(above[v][i % 3] - below[v][i % 3]) / (2.0 * kStep);
+    }
+  }
+  return result;
+}
+
+TEST(ElasticForce, IsMinusTheEnergyGradient) {
+  const TissueModel model = clamped_block();
+  for (const double amount : {0.05, 0.5, 1.5}) {
+    TissueState state = shaken(model, amount, 11);
+    const Points gradient = energy_gradient(model, state);
+    const Points forces = elastic_forces(model, state);
+    double difference = 0.0;
+    for (std::size_t v = 0; v < forces.size(); ++v) difference = std::max(difference, (forces[v] + gradient[v]).norm());
+    EXPECT_LT(difference, kDifferenceTolerance * largest(forces)) << "shaken by " << amount << " mm";
+    EXPECT_GT(difference, 0.0) << "the two are meant to be computed independently";
+  }
+}
+
+TEST(ElasticForce, IsMinusTheEnergyGradientOfTurnedAndInvertedTets) {
+  const TissueModel model = one_tet();
+  Random random(5);
+  int inverted = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    TissueState state = rest_state(model);
+    for (Vec3& p : state.positions) p = Vec3(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
+    const auto& p = state.positions;
+    if (signed_volume(p[0], p[1], p[2], p[3]) < 0.0) ++inverted;
+    const Points gradient = energy_gradient(model, state);
+    const Points forces = elastic_forces(model, state);
+    for (std::size_t v = 0; v < 4; ++v) {
+      EXPECT_LT((forces[v] + gradient[v]).norm(), 1e-4 * largest(forces)) << "trial " << trial << ", vertex " << v;
+    }
+  }
+  EXPECT_GT(inverted, 50);
+}
+
+TEST(ElasticForce, IsFiniteForFlatCollapsedAndMirroredTets) {
+  const TissueModel model = one_tet();
+  const auto transformed = [&](const Mat3& f) {
+    TissueState state = rest_state(model);
+    for (Vec3& p : state.positions) p = f * p;
+    BlockMatrix stiffness(model.pattern);
+    const Points forces = elastic_forces(model, state, &stiffness);
+    return std::isfinite(norm(forces)) && dense(stiffness).allFinite();
+  };
+  EXPECT_TRUE(transformed(Mat3::Zero()));
+  EXPECT_TRUE(transformed(Vec3(1, 1, 0).asDiagonal()));
+  EXPECT_TRUE(transformed(Vec3(1, 0, 0).asDiagonal()));
+  EXPECT_TRUE(transformed(Vec3(1, 1, -1).asDiagonal()));
+  EXPECT_TRUE(transformed(-Mat3::Identity()));
+  EXPECT_TRUE(transformed(1e8 * Mat3::Identity()));
+}
+
+TEST(ElasticForce, PushesAMirroredTetBackThroughItsThinnestDirection) {
+  const TissueModel model = one_tet();
+  TissueState state = rest_state(model);
+  for (Vec3& p : state.positions) p[2] *= -0.5;  // mirrored in z, and thinner there than across
+  const Points forces = elastic_forces(model, state);
+  double power = 0.0;  // of the forces in the motion that mirrors it back
+  for (std::size_t v = 0; v < 4; ++v) power += forces[v].dot(Vec3(0, 0, model.mesh.vertices[v][2]));
+  EXPECT_GT(power, 0.0);
+  EXPECT_NEAR(state.rotations[0].determinant(), 1.0, kRounding);
+}
+
+TEST(ElasticForce, VanishesUnderARigidMotion) {
+  const TissueModel model = clamped_block();
+  for (const double angle : {0.1, 1.0, 3.1}) {
+    TissueState state = rest_state(model);
+    for (Vec3& p : state.positions) p = some_rotation(angle) * p + Vec3(100, -50, 30);
+    // Stress from rounding: λ times the relative rounding of positions near 120 mm in tets of 3 mm.
+    EXPECT_LT(largest(elastic_forces(model, state)), 1e-8) << "turned by " << angle;
+    EXPECT_LT(elastic_energy_uj(model, state), 1e-15);
+  }
+}
+
+TEST(ElasticForce, TurnsWithTheBody) {
+  const TissueModel model = clamped_block();
+  TissueState state = shaken(model, 0.8, 2);
+  const Points forces = elastic_forces(model, state);
+  TissueState turned = shaken(model, 0.8, 2);
+  for (Vec3& p : turned.positions) p = some_rotation() * p;
+  const Points turned_forces = elastic_forces(model, turned);
+  for (std::size_t v = 0; v < forces.size(); ++v) {
+    EXPECT_LT((turned_forces[v] - some_rotation() * forces[v]).norm(), 1e-11 * largest(forces)) << "vertex " << v;
+  }
+  EXPECT_NEAR(elastic_energy_uj(model, turned), elastic_energy_uj(model, state),
+              1e-11 * elastic_energy_uj(model, state));
+}
+
+TEST(ElasticForce, AddsUpToNothing) {
+  const TissueModel model = clamped_block();
+  TissueState state = shaken(model, 0.8, 2);
+  const Points forces = elastic_forces(model, state);
+  Vec3 sum = Vec3::Zero();
+  Vec3 moment = Vec3::Zero();
+  for (std::size_t v = 0; v < forces.size(); ++v) {
+    sum += forces[v];
+    moment += state.positions[v].cross(forces[v]);
+  }
+  EXPECT_LT(sum.norm(), 1e-11 * norm(forces));
+  EXPECT_LT(moment.norm(), 1e-10 * norm(forces));
+}
+
+TEST(ElasticForce, OfALinearFieldVanishesAtInnerVerticesOfAnIrregularMesh) {
+  const TissueModel model = clamped_block({5, 4, 4});
+  Mat3 f;
+  f << 1.2, 0.1, -0.05, 0.02, 0.9, 0.15, -0.1, 0.05, 1.1;
+  f = some_rotation(0.7) * f;
+  TissueState state = rest_state(model);
+  for (Vec3& p : state.positions) p = f * p;
+  const Points forces = elastic_forces(model, state);
+  int inner = 0;
+  for (std::size_t v = 0; v < forces.size(); ++v) {
+    const Vec3& rest = model.mesh.vertices[v];
+    if ((rest.array() < 1e-9).any() || ((Vec3(20, 12, 9) - rest).array() < 1e-9).any()) continue;
+    ++inner;
+    EXPECT_LT(forces[v].norm(), kRounding * largest(forces)) << "vertex " << v;
+  }
+  EXPECT_EQ(inner, 4 * 3 * 3);
+}
+
+TEST(ElasticForce, OfCarvedTetsIsGone) {
+  const TissueModel model = one_tet();
+  TissueState state = shaken(model, 0.3, 4);
+  state.is_live[0] = 0;
+  EXPECT_EQ(largest(elastic_forces(model, state)), 0.0);
+  EXPECT_EQ(elastic_energy_uj(model, state), 0.0);
+}
+
+TEST(ElasticStiffness, IsSymmetricBitForBit) {
+  const TissueModel model = clamped_block();
+  TissueState state = shaken(model, 0.8, 2);
+  BlockMatrix stiffness(model.pattern);
+  elastic_forces(model, state, &stiffness);
+  const Eigen::MatrixXd k = dense(stiffness);
+  EXPECT_EQ((k - k.transpose()).norm(), 0.0);
+}
+
+TEST(ElasticStiffness, IsPositiveSemidefiniteEvenFarFromRest) {
+  const TissueModel model = clamped_block({2, 2, 2});
+  TissueState state = shaken(model, 4.0, 2);
+  BlockMatrix stiffness(model.pattern);
+  elastic_forces(model, state, &stiffness);
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(stiffness)).eigenvalues();
+  EXPECT_GT(values.minCoeff(), -kRounding * values.maxCoeff());
+}
+
+TEST(ElasticStiffness, IsTheForceDerivativeAtZeroStrainInAnyOrientation) {
+  const TissueModel model = clamped_block({2, 2, 2});
+  TissueState state = rest_state(model);
+  for (Vec3& p : state.positions) p = some_rotation() * p;
+  BlockMatrix stiffness(model.pattern);
+  elastic_forces(model, state, &stiffness);
+  const Eigen::MatrixXd expected = force_differences(model, state);
+  EXPECT_LT((dense(stiffness) - expected).norm(), kDifferenceTolerance * expected.norm());
+}
+
+/// What the frozen tangent leaves out is the turn of the rotations under stress: proportional to the strain.
+TEST(ElasticStiffness, DiffersFromTheForceDerivativeInProportionToTheStrain) {
+  const TissueModel model = clamped_block({2, 2, 2});
+  const auto remainder = [&](double strain) {
+    TissueState state = rest_state(model);
+    for (Vec3& p : state.positions) p[0] *= 1.0 + strain;
+    BlockMatrix stiffness(model.pattern);
+    elastic_forces(model, state, &stiffness);
+    const Eigen::MatrixXd exact = force_differences(model, state);
+    return (dense(stiffness) - exact).norm() / exact.norm();
+  };
+  const double at_two_percent = remainder(0.02);
+  EXPECT_GT(at_two_percent, 1e-3);
+  EXPECT_LT(at_two_percent, 0.05);
+  EXPECT_NEAR(remainder(0.01) / at_two_percent, 0.5, 0.05);
+}
+
+TEST(ElasticResponse, GivesTheSameBitsAtAnyThreadCount) {
+  const TissueModel model = clamped_block({10, 8, 8});
+  TissueState one = shaken(model, 0.3, 9);
+  BlockMatrix one_stiffness(model.pattern);
+  const Points one_forces = elastic_forces(model, one, &one_stiffness, 1);
+  for (const int threads : {2, 4}) {
+    TissueState many = shaken(model, 0.3, 9);
+    BlockMatrix many_stiffness(model.pattern);
+    EXPECT_EQ(elastic_forces(model, many, &many_stiffness, threads), one_forces) << threads << " threads";
+    EXPECT_EQ(many_stiffness.values, one_stiffness.values) << threads << " threads";
+    EXPECT_EQ(many.rotations, one.rotations) << threads << " threads";
+  }
+}
+
+TEST(ElasticResponse, GivesTheSameForcesWithAndWithoutStiffness) {
+  const TissueModel model = clamped_block();
+  TissueState a = shaken(model, 0.3, 9);
+  TissueState b = a;
+  BlockMatrix stiffness(model.pattern);
+  EXPECT_EQ(elastic_forces(model, a, &stiffness), elastic_forces(model, b));
+}
+
+TEST(ElasticResponse, KeepsItsRotationsOrthonormalOverThousandsOfUpdates) {
+  const TissueModel model = one_tet();
+  TissueState state = rest_state(model);
+  Random random(8);
+  for (int step = 0; step < 5000; ++step) {
+    const Mat3 turn = Eigen::AngleAxisd(0.1, Vec3(1, 0.3 * std::sin(step), 0.2).normalized()).toRotationMatrix();
+    for (Vec3& p : state.positions) p = turn * p;
+    elastic_forces(model, state);
+  }
+  EXPECT_LT((state.rotations[0].transpose() * state.rotations[0] - Mat3::Identity()).norm(), 1e-11);
+}
+
+TEST(ElasticResponse, RefusesAStateOfAnotherMesh) {
+  const TissueModel model = clamped_block();
+  TissueState state = rest_state(one_tet());
+  EXPECT_THROW(elastic_forces(model, state), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise

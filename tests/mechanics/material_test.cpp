@@ -1,0 +1,41 @@
+#include <incise/core/error.hpp>
+#include <incise/mechanics/material.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace incise {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(LameParameters, FollowFromYoungsModulusAndPoissonsRatio) {
+  const LameParameters lame = lame_parameters(70.0, 0.25);
+  EXPECT_NEAR(lame.mu_kpa, 28.0, 1e-12);
+  EXPECT_NEAR(lame.lambda_kpa, 28.0, 1e-12);
+}
+
+TEST(LameParameters, RefuseAnIncompressibleMaterial) {
+  EXPECT_THROW(static_cast<void>(lame_parameters(70.0, 0.5)), InvalidArgument);
+}
+
+TEST(Material, DefaultsAreValid) {
+  EXPECT_THAT(validate(Material{}), IsEmpty());
+}
+
+TEST(Material, NamesEveryViolation) {
+  Material material;
+  material.youngs_modulus_kpa = -70.0;
+  material.poissons_ratio = 0.5;
+  material.density_kg_m3 = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(validate(material),
+              ElementsAre(HasSubstr("youngs_modulus_kpa: found -70"), HasSubstr("poissons_ratio: found 0.5"),
+                          HasSubstr("density_kg_m3: found nan")));
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,203 @@
+#include "mechanics/bodies.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/mechanics/solvers.hpp>
+
+#include <gtest/gtest.h>
+
+namespace incise {
+namespace {
+
+using testing::clamped_block;
+using testing::elastic_forces;
+using testing::norm;
+using testing::plane_x;
+
+/// Stiffness of a clamped body at rest and a load at its free end.
+struct System {
+  TissueModel model;
+  BlockMatrix matrix;
+  Points right;
+
+  explicit System(TissueModel m)
+      : model(std::move(m)), matrix(model.pattern), right(model.mesh.vertices.size(), Vec3::Zero()) {
+    TissueState state = rest_state(model);
+    elastic_forces(model, state, &matrix);
+    for (const VertexId v : select(model.mesh, EndRegion{Vec3::UnitX(), 4.0})) right[v.index()] = Vec3(3, -1, 2);
+    hold_constrained(model, matrix, right);
+  }
+  [[nodiscard]] double residual(const Points& x) const {
+    Workers workers(1);
+    Points product(x.size());
+    multiply(matrix, x, product, workers);
+    for (std::size_t v = 0; v < x.size(); ++v) product[v] -= right[v];
+    return norm(product);
+  }
+};
+
+PcgReport solve_pcg(const System& system, Points& x, const PcgSettings& settings, int per_aggregate = 20,
+                    int threads = 1) {
+  Workers workers(threads);
+  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, per_aggregate);
+  solver.update(system.matrix, true, workers);
+  x.assign(system.right.size(), Vec3::Ones());
+  return solver.solve(system.matrix, system.right, x, settings, workers);
+}
+
+double difference(const Points& a, const Points& b) {
+  Points d = a;
+  for (std::size_t v = 0; v < d.size(); ++v) d[v] -= b[v];
+  return norm(d);
+}
+
+TEST(SparseCholesky, SolvesToRounding) {
+  const System system(clamped_block({6, 4, 4}, 0.49));
+  SparseCholesky cholesky(system.model.pattern);
+  ASSERT_TRUE(cholesky.factor(system.matrix));
+  Points x(system.right.size());
+  cholesky.solve(system.right, x);
+  EXPECT_LT(system.residual(x), 1e-10 * norm(system.right));
+}
+
+TEST(SparseCholesky, SaysWhenTheMatrixIsNotPositiveDefinite) {
+  System system(clamped_block({3, 2, 2}));
+  SparseCholesky cholesky(system.model.pattern);
+  system.matrix.block(system.model.pattern->diagonal[1])[0] = -1.0;
+  EXPECT_FALSE(cholesky.factor(system.matrix));
+}
+
+TEST(SparseCholesky, RefusesToSolveWithoutAFactor) {
+  const System system(clamped_block({3, 2, 2}));
+  const SparseCholesky cholesky(system.model.pattern);
+  Points x(system.right.size());
+  EXPECT_THROW(cholesky.solve(system.right, x), InvalidArgument);
+}
+
+TEST(TwoLevelPcg, FindsTheSolutionOfCholesky) {
+  const System system(clamped_block({6, 4, 4}, 0.49));
+  SparseCholesky cholesky(system.model.pattern);
+  ASSERT_TRUE(cholesky.factor(system.matrix));
+  Points direct(system.right.size());
+  cholesky.solve(system.right, direct);
+  Points iterated;
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-11;
+  const PcgReport report = solve_pcg(system, iterated, settings);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LT(difference(iterated, direct), 1e-8 * norm(direct));
+}
+
+TEST(TwoLevelPcg, StopsAtTheResidualThatWasAskedFor) {
+  const System system(clamped_block({6, 4, 4}));
+  for (const double tolerance : {1e-1, 1e-3, 1e-6}) {
+    PcgSettings settings;
+    settings.relative_tolerance = tolerance;
+    Points x;
+    const PcgReport report = solve_pcg(system, x, settings);
+    EXPECT_TRUE(report.converged);
+    EXPECT_LE(report.residual_mn, tolerance * norm(system.right));
+    EXPECT_NEAR(system.residual(x), report.residual_mn, 1e-9 * norm(system.right));
+  }
+}
+
+TEST(TwoLevelPcg, MeasuresAgainstTheReferenceOrItsFloor) {
+  const System system(clamped_block({6, 4, 4}));
+  Points x;
+  PcgSettings settings;
+  settings.relative_tolerance = 0.1;
+  settings.reference_mn = 1e-3;
+  EXPECT_LE(solve_pcg(system, x, settings).residual_mn, 1e-4);
+  settings.floor_mn = 1e6;
+  EXPECT_EQ(solve_pcg(system, x, settings).iterations, 0);
+  EXPECT_EQ(norm(x), 0.0);
+}
+
+TEST(TwoLevelPcg, SaysWhenItRanOutOfIterations) {
+  const System system(clamped_block({6, 4, 4}));
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-10;
+  settings.max_iterations = 3;
+  Points x;
+  const PcgReport report = solve_pcg(system, x, settings);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.iterations, 3);
+}
+
+TEST(TwoLevelPcg, NeedsFewerIterationsWithMoreAggregates) {
+  const System system(clamped_block({24, 8, 6}));
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-6;
+  Points x;
+  const int without = solve_pcg(system, x, settings, 1000000).iterations;
+  const int with = solve_pcg(system, x, settings, 60).iterations;
+  EXPECT_LT(with, 0.7 * without) << "one aggregate: " << without;
+}
+
+TEST(TwoLevelPcg, CopesWithAggregatesThatAreHeldAltogetherOrInPart) {
+  const Region half = BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(7.6, 13, 10))};
+  const Region edge = BoxRegion{Box3(Vec3(7.6, -1, -1), Vec3(21, 0.1, 10))};
+  const System system(make_tissue_model(make_block(Vec3(20, 12, 9), {8, 4, 3}), {},
+                                        {FixedConstraint{half}, FixedConstraint{edge, {false, true, false}}}));
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-10;
+  for (const int per_aggregate : {1, 3, 10, 40}) {
+    Points x;
+    EXPECT_TRUE(solve_pcg(system, x, settings, per_aggregate).converged) << per_aggregate;
+    EXPECT_LT(system.residual(x), 1e-9 * norm(system.right)) << per_aggregate;
+  }
+}
+
+TEST(TwoLevelPcg, StaysRightWhileItsCoarsePartIsStale) {
+  System system(clamped_block({8, 5, 5}));
+  Workers workers(1);
+  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, 20);
+  solver.update(system.matrix, true, workers);
+  // A quarter of the tets are carved, among them all around some vertices.
+  TissueState state = rest_state(system.model);
+  for (std::size_t t = 0; t < state.is_live.size(); ++t) {
+    const Vec3& p = vertex(system.model.mesh.vertices, system.model.mesh.tets[t][0]);
+    if (p[0] > 6.0 && p[0] < 12.0 && p[2] > 3.0) state.is_live[t] = 0;
+  }
+  System carved = system;
+  std::fill(carved.matrix.values.begin(), carved.matrix.values.end(), 0.0);
+  elastic_forces(carved.model, state, &carved.matrix);
+  hold_constrained(carved.model, carved.matrix, carved.right);
+  solver.update(carved.matrix, false, workers);
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-8;
+  Points x(carved.right.size());
+  EXPECT_TRUE(solver.solve(carved.matrix, carved.right, x, settings, workers).converged);
+  EXPECT_LT(carved.residual(x), 1e-7 * norm(carved.right));
+}
+
+TEST(TwoLevelPcg, GivesTheSameBitsAtAnyThreadCount) {
+  const System system(clamped_block({14, 10, 8}));
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-4;
+  Points one;
+  const PcgReport report = solve_pcg(system, one, settings, 40, 1);
+  for (const int threads : {2, 4}) {
+    Points many;
+    EXPECT_EQ(solve_pcg(system, many, settings, 40, threads).iterations, report.iterations);
+    EXPECT_EQ(many, one) << threads << " threads";
+  }
+}
+
+TEST(TwoLevelPcg, RefusesAMatrixWithANegativeDiagonal) {
+  System system(clamped_block({3, 2, 2}));
+  Workers workers(1);
+  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices);
+  system.matrix.block(system.model.pattern->diagonal[1])[0] = -1.0;
+  EXPECT_THROW(solver.update(system.matrix, true, workers), InvalidArgument);
+}
+
+TEST(TwoLevelPcg, RefusesToSolveBeforeItsFirstUpdate) {
+  const System system(clamped_block({3, 2, 2}));
+  Workers workers(1);
+  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices);
+  Points x(system.right.size());
+  EXPECT_THROW(solver.solve(system.matrix, system.right, x, {}, workers), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,185 @@
+#include "mechanics/bodies.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/mechanics/statics.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace incise {
+namespace {
+
+using testing::largest;
+using testing::plane_x;
+using testing::plane_z;
+
+/// The paper's specimen as a block: one end clamped, the other pulled, the underside on a platform.
+TissueModel pulled_block(double pull_mm, std::array<int, 3> cells = {10, 5, 4}, const Vec3& gravity = Vec3::Zero()) {
+  return make_tissue_model(make_block(Vec3(100, 50, 25), cells), {},
+                           {FixedConstraint{plane_x(0.0)}, DisplacedConstraint{plane_x(100.0), Vec3(pull_mm, 0, 0)},
+                            SupportConstraint{Vec3::Zero(), Vec3::UnitZ()}},
+                           gravity);
+}
+
+StaticResult solve(const TissueModel& model, const StaticSettings& settings = {}, int threads = 1,
+                   const TissueState* start = nullptr) {
+  Workers workers(threads);
+  Monitor monitor;
+  return solve_static(model, settings, workers, monitor, start);
+}
+
+TEST(SolveStatic, StretchesBy20MmFromRestInOneLoadStep) {
+  const StaticResult result = solve(pulled_block(20.0));
+  EXPECT_EQ(result.outcome, Outcome::Success);
+  EXPECT_EQ(result.load_steps, 1);
+  EXPECT_LE(result.iterations, 6) << "the exact tangent converges quadratically";
+  EXPECT_LE(result.relative_residual, 1e-6);
+  EXPECT_EQ(result.inverted_tets, 0U);
+  EXPECT_GE(result.max_displacement_mm, 20.0);
+}
+
+TEST(SolveStatic, ConvergesQuadraticallyNearTheSolution) {
+  StaticSettings settings;
+  settings.relative_tolerance = 1e-10;
+  const StaticResult result = solve(pulled_block(20.0), settings);
+  ASSERT_EQ(result.outcome, Outcome::Success);
+  const auto& history = result.residual_history;
+  ASSERT_GE(history.size(), 3U);
+  EXPECT_LT(history.back(), 0.01 * history[history.size() - 2]);
+}
+
+TEST(SolveStatic, ReactionsBalanceTheLoads) {
+  const TissueModel model = pulled_block(10.0, {10, 5, 4}, Vec3(0, 0, -9810));
+  const StaticResult result = solve(model);
+  ASSERT_EQ(result.outcome, Outcome::Success);
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& reaction : result.reactions_mn) sum += reaction;
+  for (const Vec3& load : model.dead_load_mn) sum += load;
+  EXPECT_LT(sum.norm(), 1e-5 * result.reactions_mn[0].norm());
+  EXPECT_GT(result.reactions_mn[1][0], 0.0) << "the end is pulled towards +x";
+}
+
+TEST(SolveStatic, SupportCarriesTheBodyWithoutPenetration) {
+  const TissueModel model = pulled_block(0.0, {10, 5, 4}, Vec3(0, 0, -9810));
+  const StaticResult result = solve(model);
+  ASSERT_EQ(result.outcome, Outcome::Success);
+  EXPECT_GT(result.reactions_mn[2][2], 100.0);
+  EXPECT_LT(result.reactions_mn[2].head<2>().norm(), 1e-9) << "frictionless";
+  EXPECT_GT(result.penetration_mm, 0.0);
+  EXPECT_LT(result.penetration_mm, 0.05);
+}
+
+TEST(SolveStatic, SupportHoldsAgainstAFirmPress) {
+  const TissueModel model =
+      make_tissue_model(make_block(Vec3(40, 40, 20), {6, 6, 4}), {},
+                        {FixedConstraint{plane_x(0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
+                         TractionConstraint{plane_z(20.0), Vec3(0, 0, -10)}});
+  const StaticResult result = solve(model);
+  ASSERT_EQ(result.outcome, Outcome::Success);
+  EXPECT_LT(result.penetration_mm, 0.05);
+  EXPECT_GT(result.reactions_mn[1][2], 0.5 * 10.0 * 1600.0);
+}
+
+TEST(SolveStatic, SupportLetsTissueLiftOff) {
+  const TissueModel model =
+      make_tissue_model(make_block(Vec3(40, 20, 20), {6, 3, 3}), {},
+                        {FixedConstraint{plane_x(0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
+                         TractionConstraint{plane_x(40.0), Vec3(0, 0, 0.5)}});
+  const StaticResult result = solve(model);
+  ASSERT_EQ(result.outcome, Outcome::Success);
+  EXPECT_GE(result.reactions_mn[1][2], 0.0) << "a support never pulls";
+  EXPECT_LT(result.reactions_mn[1][2], 0.2 * result.reactions_mn[2][2]);
+  EXPECT_GT(result.state.positions.back()[2], 20.1);
+}
+
+TEST(SolveStatic, AnUnloadedBodyStaysAtRest) {
+  const TissueModel model = pulled_block(0.0);
+  const StaticResult result = solve(model);
+  EXPECT_EQ(result.outcome, Outcome::Success);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_EQ(result.state.positions, model.mesh.vertices);
+}
+
+TEST(SolveStatic, SmallerLoadStepsEndInTheSamePlace) {
+  const TissueModel model = pulled_block(20.0, {10, 5, 4}, Vec3(0, 0, -9810));
+  StaticSettings small;
+  small.first_load_fraction = 0.25;
+  const StaticResult one = solve(model);
+  const StaticResult many = solve(model, small);
+  ASSERT_EQ(many.outcome, Outcome::Success);
+  EXPECT_GT(many.load_steps, one.load_steps);
+  for (std::size_t v = 0; v < model.mesh.vertices.size(); ++v) {
+    ASSERT_LT((one.state.positions[v] - many.state.positions[v]).norm(), 1e-4);
+  }
+}
+
+TEST(SolveStatic, ContinuesFromAGivenState) {
+  const StaticResult first = solve(pulled_block(10.0));
+  const StaticResult second = solve(pulled_block(20.0), {}, 1, &first.state);
+  const StaticResult direct = solve(pulled_block(20.0));
+  ASSERT_EQ(second.outcome, Outcome::Success);
+  for (std::size_t v = 0; v < direct.state.positions.size(); ++v) {
+    ASSERT_LT((second.state.positions[v] - direct.state.positions[v]).norm(), 1e-4);
+  }
+}
+
+TEST(SolveStatic, GivesTheSameBitsAtAnyThreadCount) {
+  const TissueModel model = pulled_block(20.0, {12, 7, 5});
+  const StaticResult one = solve(model, {}, 1);
+  EXPECT_EQ(solve(model, {}, 2).state.positions, one.state.positions);
+  EXPECT_EQ(solve(model, {}, 4).state.positions, one.state.positions);
+}
+
+TEST(SolveStatic, SaysWhenItDidNotConverge) {
+  StaticSettings settings;
+  settings.max_newton_iterations = 2;
+  const StaticResult result = solve(pulled_block(20.0), settings);
+  EXPECT_EQ(result.outcome, Outcome::NotConverged);
+  EXPECT_EQ(result.iterations, 2);
+}
+
+TEST(SolveStatic, SaysWhenTetsWereTurnedInsideOut) {
+  // A cube whose end is pushed through the clamp.
+  const TissueModel model =
+      make_tissue_model(make_block(Vec3(10, 10, 10), {2, 2, 2}), {},
+                        {FixedConstraint{plane_x(0.0)}, DisplacedConstraint{plane_x(10.0), Vec3(-14, 0, 0)}});
+  const StaticResult result = solve(model);
+  EXPECT_NE(result.outcome, Outcome::Success);
+  EXPECT_GT(result.inverted_tets, 0U);
+  for (const Vec3& p : result.state.positions) EXPECT_TRUE(p.allFinite());
+}
+
+TEST(SolveStatic, StopsWhenAsked) {
+  class Impatient : public Monitor {
+   public:
+    [[nodiscard]] bool is_cancelled() const override { return true; }
+  };
+  Impatient monitor;
+  Workers workers(1);
+  EXPECT_EQ(solve_static(pulled_block(20.0), {}, workers, monitor).outcome, Outcome::Cancelled);
+}
+
+TEST(SolveStatic, RefusesSettingsOutOfRange) {
+  StaticSettings settings;
+  settings.first_load_fraction = 0.0;
+  EXPECT_THROW(solve(pulled_block(1.0), settings), InvalidArgument);
+  settings = {};
+  settings.relative_tolerance = -1.0;
+  EXPECT_THROW(solve(pulled_block(1.0), settings), InvalidArgument);
+}
+
+TEST(VonMises, IsTheStressOfAUniaxialPull) {
+  Material material;
+  material.poissons_ratio = 0.3;
+  const TissueModel model = make_tissue_model(
+      make_block(Vec3(20, 10, 10), {4, 2, 2}), material,
+      {FixedConstraint{plane_x(0.0), {true, false, false}},
+       FixedConstraint{testing::plane_y(0.0), {false, true, false}},
+       FixedConstraint{plane_z(0.0), {false, false, true}}, TractionConstraint{plane_x(20.0), Vec3(7, 0, 0)}});
+  const StaticResult result = solve(model);
+  ASSERT_EQ(result.outcome, Outcome::Success);
+  EXPECT_THAT(von_mises_kpa(model, result.state), ::testing::Each(::testing::DoubleNear(7.0, 1e-4)));
+}
+
+}  // namespace
+}  // namespace incise

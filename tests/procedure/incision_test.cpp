@@ -1,0 +1,151 @@
+#include <incise/core/error.hpp>
+#include <incise/procedure/incision.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kRadiusMm = 9.0;
+const Vec3 kMiddle(16.0, 16.0, 8.0);
+
+/// A 32 x 32 x 8 mm block of cells of 1.33 mm, held at its underside, and a thick needle that suits such a coarse mesh.
+class Incision : public ::testing::Test {
+ protected:
+  Incision()
+      : model_(make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), Material{},
+                                 {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}})) {
+    settings_.needle.diameter_mm = 1.6;
+    settings_.cut.reach_mm = 0.4;
+    settings_.cut.advance_per_step_mm = 0.8;
+    settings_.cut.dullness = 2.0;
+  }
+
+  static ToolPath ring(double depth_mm) {
+    ToolPath path;
+    for (int i = 0; i < 32; ++i) {
+      const double angle = 2.0 * M_PI * i / 32.0;
+      const Vec3 outward(std::cos(angle), std::sin(angle), 0.0);
+      Waypoint waypoint;
+      waypoint.position_mm = kMiddle + kRadiusMm * outward;
+      waypoint.depth_mm = depth_mm;
+      path.waypoints.push_back(waypoint);
+      path.tumor_edge.points.push_back(kMiddle + (kRadiusMm - 5.0) * outward);
+    }
+    return path;
+  }
+
+  IncisionResult cut(const ToolPath& path) {
+    Workers workers(1);
+    Monitor silent;
+    return simulate_incision(model_, rest_state(model_), path, settings_, workers, silent);
+  }
+
+  static double mean_radius(const Contour& contour) {
+    double sum = 0.0;
+    for (const Vec3& p : contour.points) sum += std::hypot(p.x() - kMiddle.x(), p.y() - kMiddle.y());
+    return sum / static_cast<double>(contour.points.size());
+  }
+
+  TissueModel model_;
+  IncisionSettings settings_;
+};
+
+TEST_F(Incision, ARingInFrozenTissueClosesOnThePath) {
+  settings_.cut.bond_stiffness_kpa_mm2 = 0.0;
+  const IncisionResult result = cut(ring(4.0));
+  EXPECT_EQ(result.outcome, Outcome::Success);
+  ASSERT_TRUE(result.centerline.has_value());
+  EXPECT_TRUE(*result.is_closed_loop);
+  EXPECT_NEAR(mean_radius(*result.centerline), kRadiusMm, 0.1);  // a tenth of the cells' edge
+  for (const Vec3& p : result.centerline->points) EXPECT_NEAR(p.z(), 8.0, 1e-6) << "the mid-line lies on the surface";
+  ASSERT_TRUE(result.inner_edge.has_value());
+  EXPECT_LT(mean_radius(*result.inner_edge), kRadiusMm - 0.8);
+}
+
+TEST_F(Incision, HeldTissueDriftsInwards) {
+  settings_.cut.bond_stiffness_kpa_mm2 = 300.0;
+  settings_.cut.dullness = 6.0;
+  const IncisionResult result = cut(ring(4.0));
+  ASSERT_TRUE(result.centerline.has_value());
+  EXPECT_LT(mean_radius(*result.centerline), kRadiusMm - 0.1);
+  EXPECT_GT(result.peak_tool_force_mn, 50.0);
+}
+
+TEST_F(Incision, AnArcThatDoesNotGoRoundIsAnOpenLoop) {
+  ToolPath path = ring(4.0);
+  path.waypoints.resize(20);  // the way back from the last waypoint to the first is straight and misses the middle
+  path.waypoints.back().position_mm = path.waypoints.front().position_mm + Vec3(0.0, 0.5, 0.0);
+  for (std::size_t i = 10; i < 20; ++i) path.waypoints[i].position_mm = path.waypoints[19 - i].position_mm + Vec3(0.3, 0.3, 0.0);
+  const IncisionResult result = cut(path);
+  EXPECT_EQ(result.outcome, Outcome::OpenLoop);
+  EXPECT_FALSE(*result.is_closed_loop);
+  EXPECT_FALSE(result.inner_edge.has_value());
+}
+
+TEST_F(Incision, AToolAboveTheSurfaceCutsNothingAndSaysSo) {
+  ToolPath path = ring(1.0);
+  for (Waypoint& waypoint : path.waypoints) waypoint.position_mm.z() += 5.0;
+  const IncisionResult result = cut(path);
+  EXPECT_TRUE(result.record.removals.empty());
+  EXPECT_EQ(result.outcome, Outcome::OpenLoop);
+}
+
+TEST_F(Incision, AnOpenCutHasNoLoopToClose) {
+  ToolPath path;
+  path.is_closed = false;
+  for (int i = 0; i < 8; ++i) {
+    Waypoint waypoint;
+    waypoint.position_mm = Vec3(8.0 + 2.0 * i, 16.0, 8.0);
+    waypoint.depth_mm = 4.0;
+    path.waypoints.push_back(waypoint);
+  }
+  settings_.cut.bond_stiffness_kpa_mm2 = 0.0;
+  const IncisionResult result = cut(path);
+  EXPECT_EQ(result.outcome, Outcome::Success);
+  EXPECT_FALSE(result.is_closed_loop.has_value());
+  ASSERT_TRUE(result.centerline.has_value());
+  EXPECT_FALSE(result.centerline->is_closed);
+  for (const Vec3& p : result.centerline->points) EXPECT_NEAR(p.y(), 16.0, 0.5);
+}
+
+TEST_F(Incision, KeepsTheFramesThatWereAskedForFromFirstToLast) {
+  settings_.frames = 5;
+  const IncisionResult result = cut(ring(4.0));
+  ASSERT_EQ(result.frames.size(), 5U);
+  EXPECT_EQ(result.frames.front().time_s, 0.0);
+  EXPECT_FALSE(result.frames.back().is_tool_in);
+  EXPECT_EQ(result.frames.back().is_live, result.final_state.tissue.is_live);
+}
+
+TEST_F(Incision, StopsWhereItIsWhenAskedTo) {
+  class StopAtHalf : public Monitor {
+   public:
+    void progress(std::string_view, double fraction) override { fraction_ = fraction; }
+    [[nodiscard]] bool is_cancelled() const override { return fraction_ > 0.5; }
+
+   private:
+    double fraction_ = 0.0;
+  };
+  StopAtHalf monitor;
+  Workers workers(1);
+  const IncisionResult result = simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, monitor);
+  EXPECT_EQ(result.outcome, Outcome::Cancelled);
+}
+
+TEST_F(Incision, SettingsThatCannotBeUsedAreListed) {
+  settings_.cut.speed_mm_s = 0.0;
+  settings_.frames = -1;
+  try {
+    static_cast<void>(cut(ring(4.0)));
+    FAIL() << "expected InvalidArgument";
+  } catch (const InvalidArgument& error) {
+    EXPECT_NE(std::string(error.what()).find("speed_mm_s"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("frames"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,409 @@
+#include "support/temporary_folder.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/storage/case_file.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+namespace incise {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Json = nlohmann::ordered_json;
+
+/// The least that a case has to say.
+constexpr const char* kLeast = "schema: incise.case/1\nspecimen: {mesh: block.msh}\ntumor: {contour: tumor.csv}\n";
+
+class CaseFileTest : public ::testing::Test {
+ protected:
+  CaseFile read(const std::string& text) {
+    std::ofstream(folder_ / "case.yaml") << text;
+    return read_case(folder_.path());
+  }
+
+  /// What read_case says against a text; "" when it accepts it.
+  template <class ErrorType = CaseError>
+  std::string refusal(const std::string& text) {
+    try {
+      static_cast<void>(read(text));
+    } catch (const ErrorType& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  /// As refusal, for one group added to the least case (which must not hold that group).
+  std::string refusal_with(const std::string& lines) { return refusal(kLeast + lines); }
+
+  testing::TemporaryFolder folder_;
+};
+
+std::map<std::string, std::string> settings_by_key(const CaseFile& file) {
+  std::map<std::string, std::string> settings;
+  for (const SettingLine& line : settings_of(file)) settings[line.key] = line.value;
+  return settings;
+}
+
+TEST_F(CaseFileTest, TheLeastCaseHasTheDefaultsOfTheStructs) {
+  const CaseFile file = read(kLeast);
+  EXPECT_EQ(file.settings.material.youngs_modulus_kpa, 70.0);
+  EXPECT_EQ(file.settings.material.poissons_ratio, 0.49);
+  EXPECT_EQ(file.settings.plan.lateral_margin_mm, PlanSettings{}.lateral_margin_mm);
+  EXPECT_EQ(file.settings.cut.dullness, CutSettings{}.dullness);
+  EXPECT_EQ(file.settings.meshing.fine_mm, MeshingChoice{}.fine_mm);
+  EXPECT_FALSE(file.settings.constraints.has_value());
+  EXPECT_FALSE(file.settings.T_robot_sim.has_value());
+  EXPECT_FALSE(file.settings.is_virtual);
+}
+
+TEST_F(CaseFileTest, InputsAreRelativeToTheCaseFile) {
+  const CaseFile file = read("schema: incise.case/1\nct: {volume: scans/../ct}\ntumor: {contour: /data/tumor.csv}\n");
+  EXPECT_EQ(file.inputs.ct_volume, folder_ / "ct");
+  EXPECT_EQ(file.inputs.tumor_contour, "/data/tumor.csv");
+}
+
+TEST_F(CaseFileTest, MissingInputFilesAreNamedWithTheFieldThatAsksForThem) {
+  const CaseFile file = read(kLeast);
+  std::ofstream(folder_ / "block.msh") << "present";
+  try {
+    require_input_files(file);
+    FAIL() << "tumor.csv is not there";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("tumor.csv"), HasSubstr("tumor.contour"), HasSubstr("case.yaml")));
+  }
+  std::ofstream(folder_ / "tumor.csv") << "present";
+  EXPECT_NO_THROW(require_input_files(file));
+}
+
+TEST_F(CaseFileTest, ThePrintedDefaultsReadBackAsTheSameSettings) {
+  std::string text = case_defaults_yaml();
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, from.size(), to);
+  };
+  replace("  # mesh:", "  mesh: block.msh");
+  replace("  # contour:", "  contour: tumor.csv");
+  EXPECT_EQ(settings_by_key(read(text)), settings_by_key(read(kLeast)));
+}
+
+TEST_F(CaseFileTest, SettingsJsonReadsBackAsTheSettings) {
+  const CaseFile file = read(std::string(kLeast) + "plan: {depth_mm: 4.25}\n");
+  const Json json = Json::parse(settings_json(file));
+  EXPECT_EQ(json.at("plan.depth_mm"), "4.25");
+  EXPECT_EQ(json.size(), settings_of(file).size());
+}
+
+TEST_F(CaseFileTest, JsonIsReadLikeYaml) {
+  const CaseFile file =
+      read(R"({"schema": "incise.case/1", "specimen": {"mesh": "block.msh"}, "tumor": {"contour": "tumor.csv"},
+    "cut": {"dullness": 4}})");
+  EXPECT_EQ(file.settings.cut.dullness, 4.0);
+}
+
+// --- what is refused
+// ---------------------------------------------------------------------------------------------------
+
+TEST_F(CaseFileTest, AMissingFileIsADataError) {
+  EXPECT_THROW(static_cast<void>(read_case(folder_ / "nowhere")), DataError);
+}
+
+TEST_F(CaseFileTest, TextThatIsNotYamlIsADataErrorWithItsLine) {
+  EXPECT_THAT(refusal<DataError>("schema: incise.case/1\nplan: [1, 2\n"), AllOf(HasSubstr("line "), HasSubstr("YAML")));
+}
+
+TEST_F(CaseFileTest, AnEmptyFileIsRefused) {
+  EXPECT_NE(refusal(""), "");
+}
+
+TEST_F(CaseFileTest, AFileThatIsNoGroupIsRefused) {
+  EXPECT_NE(refusal("- schema\n- incise.case/1\n"), "");
+}
+
+TEST_F(CaseFileTest, AnUnknownKeyIsNamedWithItsLineAndTheNearestValidKey) {
+  EXPECT_THAT(refusal_with("plan:\n  depht_mm: 5\n"), AllOf(HasSubstr("case.yaml line 5"), HasSubstr("plan.depht_mm"),
+                                                            HasSubstr("unknown key"), HasSubstr("'depth_mm'")));
+}
+
+TEST_F(CaseFileTest, AnUnknownGroupIsNamedWithTheNearestValidOne) {
+  EXPECT_THAT(refusal_with("tol: {diameter_mm: 1}\n"), AllOf(HasSubstr("line 4"), HasSubstr("'tool'")));
+}
+
+TEST_F(CaseFileTest, AKeyGivenTwiceIsRefused) {
+  EXPECT_THAT(refusal_with("plan:\n  depth_mm: 5\n  depth_mm: 6\n"),
+              AllOf(HasSubstr("line 6"), HasSubstr("'depth_mm' twice")));
+  EXPECT_THAT(refusal_with("plan: {depth_mm: 5}\nplan: {depth_mm: 6}\n"),
+              AllOf(HasSubstr("line 5"), HasSubstr("'plan' twice")));
+}
+
+TEST_F(CaseFileTest, AMissingSchemaIsRefused) {
+  EXPECT_THAT(refusal("specimen: {mesh: block.msh}\ntumor: {contour: tumor.csv}\n"),
+              AllOf(HasSubstr("schema"), HasSubstr("expected schema: incise.case/1")));
+}
+
+TEST_F(CaseFileTest, AnotherSchemaIsRefused) {
+  EXPECT_THAT(refusal("schema: incise.case/9\nspecimen: {mesh: block.msh}\ntumor: {contour: tumor.csv}\n"),
+              AllOf(HasSubstr("incise.case/9"), HasSubstr("incise.case/1")));
+}
+
+TEST_F(CaseFileTest, AValueOfTheWrongTypeIsToldWithWhatWasFoundAndExpected) {
+  EXPECT_THAT(refusal_with("plan: {depth_mm: deep}\n"),
+              AllOf(HasSubstr("plan.depth_mm"), HasSubstr("deep"), HasSubstr("expected a number")));
+  EXPECT_THAT(refusal_with("plan: {depth_mm: [5]}\n"),
+              AllOf(HasSubstr("plan.depth_mm"), HasSubstr("expected a number")));
+  EXPECT_THAT(refusal_with("plan: {waypoints: 12.5}\n"),
+              AllOf(HasSubstr("plan.waypoints"), HasSubstr("expected a whole number")));
+  EXPECT_THAT(refusal_with("plan: 5\n"), AllOf(HasSubstr("plan"), HasSubstr("group")));
+  EXPECT_THAT(refusal_with("title: [a, b]\n"), AllOf(HasSubstr("title"), HasSubstr("expected a text")));
+  EXPECT_THAT(refusal_with("ct: {window_hu: [1, 2, 3]}\n"),
+              AllOf(HasSubstr("ct.window_hu"), HasSubstr("3 numbers"), HasSubstr("2 numbers")));
+  EXPECT_THAT(refusal_with("ct: {window_hu: 7}\n"), AllOf(HasSubstr("ct.window_hu"), HasSubstr("a list of 2 numbers")));
+}
+
+TEST_F(CaseFileTest, AChoiceThatThereIsNotIsToldWithTheNearestOne) {
+  EXPECT_THAT(refusal_with("plan: {kind: rign}\n"),
+              AllOf(HasSubstr("plan.kind"), HasSubstr("ring, line"), HasSubstr("'ring'")));
+}
+
+struct BadValue {
+  const char* lines;
+  const char* field;
+};
+
+class OutOfRange : public CaseFileTest, public ::testing::WithParamInterface<BadValue> {};
+
+TEST_P(OutOfRange, IsRefusedNamingTheField) {
+  const std::string text = GetParam().lines;
+  const std::string least = text.find("specimen") == std::string::npos
+                                ? kLeast
+                                : "schema: incise.case/1\nct: {volume: ct}\ntumor: {contour: tumor.csv}\n";
+  EXPECT_THAT(refusal(least + text), AllOf(HasSubstr("case.yaml"), HasSubstr(GetParam().field)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Values, OutOfRange,
+    ::testing::Values(
+        BadValue{"specimen: {material: {youngs_modulus_kpa: -70}}", "specimen.material.youngs_modulus_kpa"},
+        BadValue{"specimen: {material: {youngs_modulus_kpa: 0}}", "specimen.material.youngs_modulus_kpa"},
+        BadValue{"specimen: {material: {youngs_modulus_kpa: .nan}}", "specimen.material.youngs_modulus_kpa"},
+        BadValue{"specimen: {material: {youngs_modulus_kpa: .inf}}", "specimen.material"},
+        BadValue{"specimen: {material: {poissons_ratio: 0.5}}", "specimen.material.poissons_ratio"},
+        BadValue{"specimen: {material: {poissons_ratio: -0.1}}", "specimen.material.poissons_ratio"},
+        BadValue{"specimen: {material: {density_kg_m3: 0}}", "specimen.material.density_kg_m3"},
+        BadValue{"specimen: {gravity_mm_s2: [0, 0, .nan]}", "specimen.gravity_mm_s2"},
+        BadValue{"cut: {speed_mm_s: 0}", "cut.speed_mm_s"}, BadValue{"cut: {dullness: -1}", "cut.dullness"},
+        BadValue{"cut: {dullness: 0}", "cut.dullness"},
+        BadValue{"cut: {advance_per_step_mm: 1.5}", "advance_per_step_mm"},
+        BadValue{"cut: {residual_tolerance: 1}", "cut.residual_tolerance"},
+        BadValue{"plan: {speed_mm_s: 0}", "plan.speed_mm_s"}, BadValue{"plan: {depth_mm: 30}", "plan.depth_mm"},
+        BadValue{"plan: {waypoints: 4}", "waypoints"}, BadValue{"plan: {approach: [0, 0, 0]}", "plan.approach"},
+        BadValue{"plan: {start_direction: superior}", "start_direction"},
+        BadValue{"tool: {diameter_mm: 0}", "tool.diameter_mm"},
+        BadValue{"meshing: {fine_mm: 5, coarse_mm: 3}", "meshing.fine_mm"},
+        BadValue{"meshing: {tets: -5}", "meshing.tets"}, BadValue{"ct: {window_hu: [180, -20]}", "window_hu"},
+        BadValue{"robot: {T_robot_sim: [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}", "robot.T_robot_sim"},
+        BadValue{"robot: {T_robot_sim: [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}", "robot.T_robot_sim"}));
+
+TEST_F(CaseFileTest, ACtAndAMeshTogetherAreRefusedAndSoIsNeither) {
+  EXPECT_THAT(refusal_with("ct: {volume: ct}\n"), AllOf(HasSubstr("specimen.mesh"), HasSubstr("only one of")));
+  EXPECT_THAT(refusal("schema: incise.case/1\ntumor: {contour: tumor.csv}\n"), HasSubstr("neither a CT nor a mesh"));
+}
+
+TEST_F(CaseFileTest, ARingNeedsATumorEdgeAndALineItsCurve) {
+  EXPECT_THAT(refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\n"), HasSubstr("tumor.contour"));
+  EXPECT_THAT(refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\nplan: {kind: line}\n"),
+              HasSubstr("plan.line"));
+  EXPECT_EQ(refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\nplan: {kind: line, line: line.csv}\n"), "");
+}
+
+// --- directions and constraints
+// ----------------------------------------------------------------------------------------
+
+TEST_F(CaseFileTest, DirectionsMayBeGivenByTheirAnatomicalNamesInLps) {
+  const std::pair<const char*, Vec3> named[] = {{"anterior", -Vec3::UnitY()}, {"posterior", Vec3::UnitY()},
+                                                {"left", Vec3::UnitX()},      {"right", -Vec3::UnitX()},
+                                                {"superior", Vec3::UnitZ()},  {"inferior", -Vec3::UnitZ()}};
+  for (const auto& [name, expected] : named) {
+    // The start may not lie along the approach, so look from the side for those two.
+    const bool is_upright = expected.z() != 0.0;
+    const CaseFile file =
+        read(std::string(kLeast) + "plan: {start_direction: " + name + (is_upright ? ", approach: right}\n" : "}\n"));
+    EXPECT_EQ(file.settings.plan.start_direction, expected) << name;
+  }
+}
+
+TEST_F(CaseFileTest, ADirectionGivenAsAVectorIsMadeUnit) {
+  const CaseFile file = read(std::string(kLeast) + "plan: {approach: [0, 3, -4]}\n");
+  EXPECT_LT((file.settings.plan.approach - Vec3(0.0, 0.6, -0.8)).norm(), 1e-15);
+}
+
+TEST_F(CaseFileTest, AWordThatIsNoDirectionIsRefused) {
+  EXPECT_THAT(refusal_with("plan: {approach: down}\n"),
+              AllOf(HasSubstr("plan.approach"), HasSubstr("superior, inferior")));
+}
+
+class ConstraintTest : public CaseFileTest {
+ protected:
+  static std::string with(const std::string& constraints) {
+    return "schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen:\n  mesh: block.msh\n  constraints:\n" +
+           constraints;
+  }
+};
+
+TEST_F(ConstraintTest, EveryKindAndEveryRegionIsRead) {
+  const CaseFile file = read(with(R"(
+    - {kind: fixed, where: {box_mm: [[-5, -40, -30], [5, 40, 30]]}, axes: xz}
+    - {kind: fixed, where: {point_array: clamp=2}}
+    - {kind: displaced, where: {sphere: {center_mm: [1, 2, 3], radius_mm: 4}}, displacement_mm: [20, 0, 0]}
+    - {kind: support, plane: {point_mm: [0, 0, -12], normal: superior}}
+    - {kind: traction, where: {end: {direction: anterior, within_mm: 7}}, traction_kpa: [0, 0, 1]}
+)"));
+  ASSERT_TRUE(file.settings.constraints);
+  const std::vector<Constraint>& all = *file.settings.constraints;
+  ASSERT_EQ(all.size(), 5U);
+  const auto& clamp = std::get<FixedConstraint>(all[0]);
+  EXPECT_EQ(std::get<BoxRegion>(clamp.where).box_mm.min(), Vec3(-5, -40, -30));
+  EXPECT_EQ(std::get<BoxRegion>(clamp.where).box_mm.max(), Vec3(5, 40, 30));
+  EXPECT_EQ(clamp.axes, (std::array<bool, 3>{true, false, true}));
+  const auto& named = std::get<FixedConstraint>(all[1]);
+  EXPECT_EQ(std::get<PointArrayRegion>(named.where).name, "clamp");
+  EXPECT_EQ(std::get<PointArrayRegion>(named.where).value, 2.0);
+  EXPECT_EQ(named.axes, (std::array<bool, 3>{true, true, true}));
+  const auto& pull = std::get<DisplacedConstraint>(all[2]);
+  EXPECT_EQ(std::get<SphereRegion>(pull.where).center_mm, Vec3(1, 2, 3));
+  EXPECT_EQ(std::get<SphereRegion>(pull.where).radius_mm, 4.0);
+  EXPECT_EQ(pull.displacement_mm, Vec3(20, 0, 0));
+  const auto& platform = std::get<SupportConstraint>(all[3]);
+  EXPECT_EQ(platform.point_mm, Vec3(0, 0, -12));
+  EXPECT_EQ(platform.normal, Vec3(0, 0, 1));
+  const auto& push = std::get<TractionConstraint>(all[4]);
+  EXPECT_EQ(std::get<EndRegion>(push.where).direction, Vec3(0, -1, 0));
+  EXPECT_EQ(std::get<EndRegion>(push.where).within_mm, 7.0);
+  EXPECT_EQ(push.traction_kpa, Vec3(0, 0, 1));
+}
+
+TEST_F(ConstraintTest, ConstraintsAppearInTheSettingsAndReadBack) {
+  const std::string text =
+      with("    - {kind: displaced, where: {box_mm: [[0, 0, 0], [1, 2, 3]]}, displacement_mm: [20, 0, 0]}\n");
+  const std::string shown = settings_by_key(read(text)).at("specimen.constraints");
+  const std::string again =
+      "schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen: {mesh: block.msh, constraints: " + shown + "}\n";
+  EXPECT_EQ(settings_by_key(read(again)).at("specimen.constraints"), shown);
+}
+
+TEST_F(ConstraintTest, WhatDoesNotMakeAConstraintIsRefusedNamingItsPlace) {
+  const BadValue bad[] = {
+      {"    []\n", "specimen.constraints"},
+      {"    - {kind: glued, where: {box_mm: [[0,0,0],[1,1,1]]}}\n", "specimen.constraints[0].kind"},
+      {"    - {where: {box_mm: [[0,0,0],[1,1,1]]}}\n", "no `kind`"},
+      {"    - {kind: fixed}\n", "no `where`"},
+      {"    - {kind: fixed, where: {}}\n", "specimen.constraints[0].where"},
+      {"    - {kind: fixed, where: {box: [[0,0,0],[1,1,1]]}}\n", "'box_mm'"},
+      {"    - {kind: fixed, where: {box_mm: [[2,0,0],[1,1,1]]}}\n", "low corner above the high corner"},
+      {"    - {kind: fixed, where: {box_mm: [[0,0,0],[1,1]]}}\n", "5 numbers"},
+      {"    - {kind: fixed, where: {box_mm: [[0,0,0],[1,1,1]], sphere: {center_mm: [0,0,0], radius_mm: 1}}}\n",
+       "2 regions"},
+      {"    - {kind: fixed, where: {sphere: {center_mm: [0,0,0], radius_mm: 0}}}\n", "radius_mm"},
+      {"    - {kind: fixed, where: {sphere: {center_mm: [0,0,0]}}}\n", "no `radius_mm`"},
+      {"    - {kind: fixed, where: {end: {direction: up, within_mm: 3}}}\n",
+       "specimen.constraints[0].where.end.direction"},
+      {"    - {kind: fixed, where: {point_array: clamp}}\n", "NAME=VALUE"},
+      {"    - {kind: fixed, where: {box_mm: [[0,0,0],[1,1,1]]}, axes: xw}\n", "specimen.constraints[0].axes"},
+      {"    - {kind: fixed, where: {box_mm: [[0,0,0],[1,1,1]]}, axis: x}\n", "'axes'"},
+      {"    - {kind: displaced, where: {box_mm: [[0,0,0],[1,1,1]]}}\n", "no `displacement_mm`"},
+      {"    - {kind: displaced, where: {box_mm: [[0,0,0],[1,1,1]]}, displacement_mm: [1, .nan, 0]}\n",
+       "displacement_mm[1]"},
+      {"    - {kind: support, where: {box_mm: [[0,0,0],[1,1,1]]}}\n", "unknown key"},
+      {"    - {kind: support, plane: {point_mm: [0,0,0], normal: [0,0,0]}}\n", "plane.normal"},
+      {"    - {kind: traction, where: {box_mm: [[0,0,0],[1,1,1]]}}\n", "no `traction_kpa`"},
+  };
+  for (const BadValue& value : bad) {
+    EXPECT_THAT(refusal(with(value.lines)), AllOf(HasSubstr("case.yaml line "), HasSubstr(value.field))) << value.lines;
+  }
+}
+
+// --- the schema
+// --------------------------------------------------------------------------------------------------------
+
+/// Schema of a dotted key, or nullptr.
+const Json* schema_of(const Json& root, const std::string& key) {
+  const Json* at = &root;
+  for (std::size_t start = 0; start <= key.size();) {
+    const std::size_t end = std::min(key.find('.', start), key.size());
+    const std::string name = key.substr(start, end - start);
+    if (!at->contains("properties") || !at->at("properties").contains(name)) return nullptr;
+    at = &at->at("properties").at(name);
+    start = end + 1;
+  }
+  return at;
+}
+
+TEST(CaseSchema, HoldsEverySettingWithTheSameUnitAndAMeaning) {
+  const Json schema = Json::parse(case_schema_json());
+  EXPECT_EQ(schema.at("title"), "incise.case/1");
+  EXPECT_FALSE(schema.at("additionalProperties").get<bool>());
+  for (const SettingLine& line : settings_of(CaseFile{})) {
+    const Json* field = schema_of(schema, line.key);
+    ASSERT_NE(field, nullptr) << line.key;
+    EXPECT_GE(field->at("description").get<std::string>().size(), 5U) << line.key;
+    EXPECT_EQ(field->value("x-unit", ""), line.unit) << line.key;
+    EXPECT_TRUE(field->contains("type") || field->contains("enum") || field->contains("oneOf")) << line.key;
+  }
+}
+
+TEST(CaseSchema, AKeyThatNamesAUnitHasOne) {
+  const std::pair<const char*, const char*> endings[] = {
+      {"_mm", "mm"}, {"_mm_s", "mm/s"}, {"_kpa", "kPa"}, {"_hu", "HU"}, {"_s", "s"}};
+  for (const SettingLine& line : settings_of(CaseFile{})) {
+    for (const auto& [ending, unit] : endings) {
+      if (line.key.ends_with(ending) &&
+          !(std::string(ending) == "_s" && (line.key.ends_with("_mm_s") || line.key.ends_with("_slices")))) {
+        EXPECT_EQ(line.unit, unit) << line.key;
+      }
+    }
+  }
+}
+
+TEST(CaseSchema, DefaultsLieInTheirRanges) {
+  const Json schema = Json::parse(case_schema_json());
+  for (const SettingLine& line : settings_of(CaseFile{})) {
+    const Json& field = *schema_of(schema, line.key);
+    if (!field.contains("default") || !field.at("default").is_number()) continue;
+    const double value = field.at("default");
+    EXPECT_GE(value, field.value("minimum", value)) << line.key;
+    EXPECT_LE(value, field.value("maximum", value)) << line.key;
+    EXPECT_GT(value, field.value("exclusiveMinimum", value - 1.0)) << line.key;
+    EXPECT_LT(value, field.value("exclusiveMaximum", value + 1.0)) << line.key;
+  }
+}
+
+TEST(CaseSchema, DefaultsHaveTheShapeThatTheSchemaAsksFor) {
+  const Json schema = Json::parse(case_schema_json());
+  for (const SettingLine& line : settings_of(CaseFile{})) {
+    const Json& field = *schema_of(schema, line.key);
+    if (!field.contains("default") || !field.contains("type")) continue;
+    const std::string type = field.at("type");
+    const Json& value = field.at("default");
+    if (type == "array") {
+      EXPECT_TRUE(value.is_array()) << line.key;
+      EXPECT_EQ(value.size(), field.at("minItems").get<std::size_t>()) << line.key;
+    }
+    if (type == "number") {
+      EXPECT_TRUE(value.is_number()) << line.key;
+    }
+    if (type == "integer") {
+      EXPECT_TRUE(value.is_number_integer()) << line.key;
+    }
+    if (type == "string") {
+      EXPECT_TRUE(value.is_string()) << line.key;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,257 @@
+#include "support/contour_shapes.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/io/mesh_io.hpp>
+#include <incise/storage/folder_store.hpp>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <numbers>
+
+namespace incise {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// A case of a block with 10 x 20 x 5 mm, and a store for its results.
+class FolderStoreTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write_vtu(folder_ / "block.vtu", make_block(Vec3(10, 20, 5), {2, 4, 1}));
+    write_contour_csv(folder_ / "tumor.csv", testing::circle(2.0, 12, Vec3(5, 10, 5)));
+  }
+
+  CaseFile read(const std::string& more = "") {
+    std::ofstream(folder_ / "case.yaml")
+        << "schema: incise.case/1\nspecimen:\n  mesh: block.vtu\n  material: {poissons_ratio: 0.4}\n"
+           "  constraints: [{kind: fixed, where: {box_mm: [[-1, -1, -1], [11, 1, 6]]}}]\n"
+           "tumor: {contour: tumor.csv}\n"
+        << more;
+    return read_case(folder_.path());
+  }
+
+  /// A new store, as the next run of the program would make it.
+  FolderStore open(const std::string& more = "") { return {read(more), folder_ / "out", {"incise test", 7, 2}}; }
+
+  static ToolPath small_ring() {
+    ToolPath path;
+    for (int i = 0; i < 12; ++i) {
+      const double angle = 2.0 * kPi * i / 12.0;
+      path.waypoints.push_back(
+          {Vec3(5.0 + 3.1 * std::cos(angle), 10.0 + 3.1 * std::sin(angle), 5.0), -Vec3::UnitZ(), 2.5, 7.0 + i});
+    }
+    path.tumor_edge = testing::circle(2.0, 12, Vec3(5, 10, 5));
+    return path;
+  }
+
+  std::vector<std::string> entries() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
+      names.push_back(entry.path().filename());
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(FolderStoreTest, AnEmptyFolderHoldsNoProduct) {
+  FolderStore store = open();
+  EXPECT_FALSE(store.load_segmentation());
+  EXPECT_FALSE(store.load_mesh());
+  EXPECT_FALSE(store.load_plan());
+  EXPECT_FALSE(store.load_cut(CutRole::AsPlanned));
+  EXPECT_FALSE(store.load_correction());
+}
+
+TEST_F(FolderStoreTest, ReadsWhatTheCaseNames) {
+  FolderStore store = open();
+  const auto mesh = store.read_specimen_mesh();
+  ASSERT_TRUE(mesh);
+  EXPECT_EQ(mesh->tets.size(), 48U);
+  EXPECT_EQ(store.read_tumor_edge()->points.size(), 12U);
+  EXPECT_FALSE(store.read_line());
+  EXPECT_FALSE(store.read_given_path());
+}
+
+TEST_F(FolderStoreTest, APlanComesBackExactly) {
+  const ToolPath path = small_ring();
+  open().save_plan(path, 0.5);
+  const auto loaded = open().load_plan();
+  ASSERT_TRUE(loaded);
+  ASSERT_EQ(loaded->waypoints.size(), path.waypoints.size());
+  for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
+    EXPECT_EQ(loaded->waypoints[i].position_mm, path.waypoints[i].position_mm);
+    EXPECT_EQ(loaded->waypoints[i].axis, path.waypoints[i].axis);
+    EXPECT_EQ(loaded->waypoints[i].depth_mm, path.waypoints[i].depth_mm);
+    EXPECT_EQ(loaded->waypoints[i].speed_mm_s, path.waypoints[i].speed_mm_s);
+  }
+  EXPECT_EQ(loaded->tumor_edge.points, path.tumor_edge.points);
+  EXPECT_EQ(loaded->frame, PathFrame::SimStretched);
+}
+
+TEST_F(FolderStoreTest, ASegmentationComesBackExactly) {
+  Segmentation made;
+  made.labels.grid.size = made.occupancy.grid.size = {3, 2, 2};
+  made.labels.grid.spacing_mm = made.occupancy.grid.spacing_mm = Vec3(0.5, 0.75, 1.25);
+  made.labels.grid.origin_mm = made.occupancy.grid.origin_mm = Vec3(-3.5, 2.0, 11.0);
+  made.labels.voxels = {0, 1, 0, 1, 1, 1, 0, 0, 0, 0, 1, 0};
+  for (int i = 0; i < 12; ++i) made.occupancy.voxels.push_back(static_cast<float>(i) / 11.0F);
+  made.voxels = 5;
+  made.volume_mm3 = 2.34375;
+  made.occupancy_volume_mm3 = 2.2;
+  made.tissue_hu = 41.0;
+  made.components = 3;
+  made.holes_filled = 1;
+  open().save_segmentation(made, 0.1);
+  const auto loaded = open().load_segmentation();
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->labels.voxels, made.labels.voxels);
+  EXPECT_EQ(loaded->occupancy.voxels, made.occupancy.voxels);
+  EXPECT_EQ(loaded->occupancy.grid.spacing_mm, made.occupancy.grid.spacing_mm);
+  EXPECT_EQ(loaded->occupancy.grid.origin_mm, made.occupancy.grid.origin_mm);
+  EXPECT_EQ(loaded->voxels, 5U);
+  EXPECT_EQ(loaded->volume_mm3, 2.34375);
+  EXPECT_EQ(loaded->components, 3U);
+}
+
+TEST_F(FolderStoreTest, AMeshComesBackExactly) {
+  MeshProduct product;
+  product.meshing.mesh = make_block(Vec3(1, 2, 3), {1, 1, 1});
+  product.planned_cut_rest = testing::circle(1.0, 8);
+  open().save_mesh(product, 0.1);
+  const auto loaded = open().load_mesh();
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->vertices, product.meshing.mesh.vertices);
+  EXPECT_EQ(loaded->tets, product.meshing.mesh.tets);
+}
+
+TEST_F(FolderStoreTest, AStretchedStateComesBackExactly) {
+  FolderStore store = open();
+  const CaseFile file = store.case_file();
+  const TissueModel model =
+      make_tissue_model(*store.read_specimen_mesh(), file.settings.material, *file.settings.constraints);
+  StaticResult result;
+  result.outcome = Outcome::Success;
+  result.state = rest_state(model);
+  for (std::size_t v = 0; v < result.state.positions.size(); ++v)
+    result.state.positions[v] += Vec3(1.0 / 3.0, 0.1 * double(v), -1e-9);
+  result.reactions_mn = {Vec3(1, 2, 3)};
+  result.iterations = 4;
+  store.save_stretched(model, result, 0.2);
+  const auto loaded = open().load_stretched(model);
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->outcome, Outcome::Success);
+  EXPECT_EQ(loaded->state.positions, result.state.positions);
+  EXPECT_EQ(loaded->iterations, 4);
+  ASSERT_EQ(loaded->reactions_mn.size(), 1U);
+  EXPECT_EQ(loaded->reactions_mn[0], Vec3(1, 2, 3));
+}
+
+TEST_F(FolderStoreTest, ACorrectionComesBackExactly) {
+  Compensation correction;
+  correction.path = small_ring();
+  for (std::size_t i = 0; i < correction.path.waypoints.size(); ++i) {
+    correction.error_mm.push_back(0.1 * double(i));
+    correction.move_mm.push_back(-0.1 * double(i));
+  }
+  correction.is_limited.assign(12, 0);
+  correction.is_interpolated.assign(12, 0);
+  correction.max_move_mm = 1.1;
+  open().save_correction(correction, 0.0);
+  const auto loaded = open().load_correction();
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->error_mm, correction.error_mm);
+  EXPECT_EQ(loaded->move_mm, correction.move_mm);
+  EXPECT_EQ(loaded->max_move_mm, 1.1);
+}
+
+// --- what a product depends on
+// -----------------------------------------------------------------------------------------
+
+TEST_F(FolderStoreTest, AChangedSettingMakesItsProductStale) {
+  open().save_plan(small_ring(), 0.0);
+  EXPECT_TRUE(open().is_current(Product::Plan));
+  EXPECT_FALSE(open("plan: {depth_mm: 4}\n").load_plan()) << "its own group";
+  EXPECT_FALSE(open("meshing: {fine_mm: 0.5}\n").load_plan()) << "what it is made from";
+  EXPECT_TRUE(open("plan: {depth_mm: 5}\n").load_plan()) << "the default, spelt out";
+  EXPECT_TRUE(open("title: Another name\n").load_plan()) << "a setting that no product depends on";
+}
+
+TEST_F(FolderStoreTest, ASettingOfALaterStageLeavesAProductCurrent) {
+  open().save_plan(small_ring(), 0.0);
+  EXPECT_TRUE(open("cut: {dullness: 4}\n").load_plan());
+  EXPECT_TRUE(open("tool: {diameter_mm: 0.8}\n").load_plan());
+}
+
+TEST_F(FolderStoreTest, AChangedInputFileMakesItsProductsStale) {
+  open().save_plan(small_ring(), 0.0);
+  write_contour_csv(folder_ / "tumor.csv", testing::circle(2.5, 12, Vec3(5, 10, 5)));
+  EXPECT_FALSE(open().load_plan());
+  write_contour_csv(folder_ / "tumor.csv", testing::circle(2.0, 12, Vec3(5, 10, 5)));
+  EXPECT_TRUE(open().load_plan()) << "as it was";
+  write_vtu(folder_ / "block.vtu", make_block(Vec3(10, 20, 5), {2, 5, 1}));
+  EXPECT_FALSE(open().load_plan());
+}
+
+TEST_F(FolderStoreTest, ANewProductTakesThePlaceOfAStaleOneAsAWhole) {
+  open().save_plan(small_ring(), 0.0);
+  std::ofstream(folder_ / "out/plan/leftover.txt") << "of the older product";
+  open("plan: {depth_mm: 4}\n").save_plan(small_ring(), 0.0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/plan/leftover.txt"));
+  EXPECT_TRUE(open("plan: {depth_mm: 4}\n").load_plan());
+  EXPECT_EQ(entries(), std::vector<std::string>{"plan"});
+}
+
+TEST_F(FolderStoreTest, AProductWithoutItsStageFileCountsAsAbsent) {
+  open().save_plan(small_ring(), 0.0);
+  std::filesystem::remove(folder_ / "out/plan/stage.json");
+  EXPECT_FALSE(open().load_plan());
+}
+
+TEST_F(FolderStoreTest, AProductThatCannotBeWrittenLeavesNothing) {
+  FolderStore store = open();
+  ToolPath broken = small_ring();
+  broken.waypoints[3].axis = Vec3::Zero();
+  EXPECT_ANY_THROW(store.save_plan(broken, 0.0));
+  EXPECT_EQ(entries(), std::vector<std::string>{});
+}
+
+TEST_F(FolderStoreTest, ADamagedProductIsRefusedNamingItsFile) {
+  open().save_plan(small_ring(), 0.0);
+  std::ofstream(folder_ / "out/plan/path.json") << "{ not json";
+  try {
+    static_cast<void>(open().load_plan());
+    FAIL() << "the path is damaged";
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.path(), folder_ / "out/plan/path.json");
+  }
+}
+
+TEST_F(FolderStoreTest, EveryProductHasAManifestWithSettingsInputsSeedAndThreads) {
+  open("plan: {depth_mm: 4}\n").save_plan(small_ring(), 1.5);
+  const Manifest manifest = read_manifest(folder_ / "out/plan");
+  EXPECT_EQ(manifest.command, "incise test");
+  EXPECT_EQ(manifest.seed, 7U);
+  EXPECT_EQ(manifest.threads, 2);
+  EXPECT_EQ(manifest.wall_s, 1.5);
+  EXPECT_NE(manifest.settings_json.find("plan.depth_mm"), std::string::npos);
+  ASSERT_EQ(manifest.inputs.size(), 3U);
+  EXPECT_EQ(manifest.inputs[0].path, "case.yaml");
+  EXPECT_EQ(manifest.inputs[1].path, "block.vtu");
+  EXPECT_EQ(manifest.inputs[1].sha256, sha256_of_file(folder_ / "block.vtu"));
+  EXPECT_EQ(manifest.inputs[2].path, "tumor.csv");
+}
+
+TEST_F(FolderStoreTest, AnOutputThatIsAFileIsRefused) {
+  std::ofstream(folder_ / "occupied") << "a file";
+  EXPECT_THROW(FolderStore(read(), folder_ / "occupied", {}), DataError);
+  EXPECT_THROW(FolderStore(read(), folder_ / "occupied" / "below", {}), DataError);
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,113 @@
+#include <incise/workflow/study.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace incise {
+namespace {
+
+/// A store in memory: a block of tissue, a round tumour edge on it, and whatever a study saves.
+class MemoryStore : public Store {
+ public:
+  CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
+  std::optional<TetMesh> read_specimen_mesh() override { return make_block({44, 50, 10}, {30, 34, 7}); }
+  std::optional<Contour> read_tumor_edge() override {
+    Contour edge;
+    for (int i = 0; i < 60; ++i) {
+      const double angle = 2.0 * M_PI * i / 60.0;
+      edge.points.emplace_back(22.0 + 5.0 * std::cos(angle), 24.0 + 5.0 * std::sin(angle), 10.0);
+    }
+    return edge;
+  }
+  std::optional<Contour> read_line() override { return std::nullopt; }
+  std::optional<ToolPath> read_given_path() override { return std::nullopt; }
+
+  std::optional<Segmentation> load_segmentation() override { return std::nullopt; }
+  void save_segmentation(const Segmentation&, double) override { ++saved["segmentation"]; }
+  std::optional<TetMesh> load_mesh() override { return std::nullopt; }
+  void save_mesh(const MeshProduct&, double) override { ++saved["mesh"]; }
+  std::optional<StaticResult> load_stretched(const TissueModel&) override { return stretched; }
+  void save_stretched(const TissueModel&, const StaticResult& result, double) override { stretched = result; }
+  std::optional<ToolPath> load_plan() override { return plan; }
+  void save_plan(const ToolPath& path, double) override { plan = path; }
+  std::optional<SimulatedCut> load_cut(CutRole role) override {
+    const auto found = cuts.find(role);
+    return found == cuts.end() ? std::nullopt : std::optional(found->second);
+  }
+  void save_cut(CutRole role, const TissueModel&, const StaticResult&, const SimulatedCut& cut, double) override { cuts[role] = cut; }
+  std::optional<Compensation> load_correction() override { return correction; }
+  void save_correction(const Compensation& made, double) override { correction = made; }
+
+  std::map<std::string, int> saved;
+  std::optional<StaticResult> stretched;
+  std::optional<ToolPath> plan;
+  std::map<CutRole, SimulatedCut> cuts;
+  std::optional<Compensation> correction;
+};
+
+/// The paper's loop on a coarse block: a thick needle, so that a quarter of a minute is enough.
+Case coarse_case() {
+  Case settings;
+  settings.gravity_mm_s2 = Vec3::Zero();
+  settings.constraints = std::vector<Constraint>{
+      FixedConstraint{EndRegion{Vec3::UnitY(), 4.0}},
+      DisplacedConstraint{EndRegion{-Vec3::UnitY(), 4.0}, Vec3(0.0, -5.0, 0.0)},
+      FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(45, 51, 0.1))}, {false, false, true}}};
+  settings.needle.diameter_mm = 1.6;
+  settings.cut.reach_mm = 0.4;
+  settings.cut.advance_per_step_mm = 0.8;
+  settings.cut.dullness = 9.0;
+  settings.cut.bond_stiffness_kpa_mm2 = 100.0;
+  settings.frames = 0;
+  return settings;
+}
+
+TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
+  MemoryStore store;
+  Workers workers(2);
+  Monitor silent;
+  const Study study = run_study(coarse_case(), store, Stage::Verify, workers, silent);
+  ASSERT_TRUE(study.as_planned && study.corrected);
+  EXPECT_EQ(study.as_planned->outcome, Outcome::Success);
+  EXPECT_EQ(study.corrected->outcome, Outcome::Success);
+  const double before = study.as_planned->centerline.abs_error_mm->mean;
+  const double after = study.corrected->centerline.abs_error_mm->mean;
+  EXPECT_GT(before, 0.3) << "nothing to correct";
+  EXPECT_LT(after, 0.5 * before);
+}
+
+TEST(RunStudy, ASecondRunTakesEveryProductFromTheStore) {
+  MemoryStore store;
+  Workers workers(2);
+  Monitor silent;
+  static_cast<void>(run_study(coarse_case(), store, Stage::Plan, workers, silent));
+  const Study again = run_study(coarse_case(), store, Stage::Plan, workers, silent);
+  ASSERT_EQ(again.stages.size(), 4U);
+  EXPECT_EQ(again.stages[0].state, StageState::Skipped);
+  EXPECT_EQ(again.stages[1].state, StageState::Skipped);
+  EXPECT_EQ(again.stages[2].state, StageState::Reused);
+  EXPECT_EQ(again.stages[3].state, StageState::Reused);
+}
+
+TEST(RunStudy, StopsAfterTheStageThatWasAskedFor) {
+  MemoryStore store;
+  Workers workers(2);
+  Monitor silent;
+  const Study study = run_study(coarse_case(), store, Stage::Stretch, workers, silent);
+  EXPECT_TRUE(study.stretched.has_value());
+  EXPECT_FALSE(study.plan.has_value());
+  EXPECT_NEAR(study.stretched->max_displacement_mm, 5.0, 0.5);
+}
+
+TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {
+  const TetMesh tongue = make_block({50, 100, 30}, {5, 10, 3});
+  const std::vector<Constraint> constraints = default_constraints(tongue);
+  ASSERT_EQ(constraints.size(), 3U);
+  EXPECT_EQ(std::get<DisplacedConstraint>(constraints[1]).displacement_mm, Vec3(0.0, -20.0, 0.0));
+  EXPECT_EQ(std::get<SupportConstraint>(constraints[2]).point_mm.z(), 0.0);
+}
+
+}  // namespace
+}  // namespace incise
