@@ -11,10 +11,14 @@
 #include <incise/io/pvd_io.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/meshing/quality.hpp>
+#include <incise/report/figures.hpp>
+#include <incise/report/html_report.hpp>
 #include <incise/storage/case_file.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <ostream>
 
 namespace incise::cli {
 namespace {
@@ -256,6 +260,31 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
 }
 
 }  // namespace
+
+void write_report_and_figures(const ReportData& data, const fs::path& page) {
+  write_report(data, page);
+  const fs::path folder = page.parent_path() / "figures";
+  if (data.incisions.empty()) return;
+  AtomicFolder figures(folder);
+  const auto write = [&figures](const char* name, const std::string& content) {
+    write_atomically(figures.path() / name, [&content](std::ostream& out) { out << content; });
+  };
+  FigureStyle style;
+  style.approach = data.approach;
+  style.axis_names = data.axis_names;
+  style.error_limit_mm = common_error_limit_mm(data.incisions);
+  write("contours.svg", contour_figure_svg(data.incisions.front(), style));
+  if (data.incisions.size() > 1) write("contours_corrected.svg", contour_figure_svg(data.incisions.back(), style));
+  write("error_by_angle.svg", error_by_angle_svg(data.incisions, style));
+  write("box_plot.svg", box_plot_svg(data.incisions, style));
+  if (!data.animations.empty() && !data.animations.back().frames.empty()) {
+    constexpr int kWidthPx = 900;
+    constexpr int kHeightPx = 560;
+    const ReportAnimation& last = data.animations.back();
+    write("cut.png", frame_png(last, last.frames.size() - 1, data.approach, kWidthPx, kHeightPx));
+  }
+  figures.commit();
+}
 
 ReportData study_report(const fs::path& root, Monitor& monitor) {
   if (!fs::exists(root / "study.json")) {

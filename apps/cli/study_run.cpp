@@ -7,7 +7,6 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
-#include <incise/report/html_report.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/workflow/robot_frame.hpp>
@@ -123,6 +122,9 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monit
   result["before"] = done.as_planned ? headline(to_json(*done.as_planned)) : nlohmann::ordered_json(nullptr);
   result["after"] = done.corrected ? headline(to_json(*done.corrected)) : nlohmann::ordered_json(nullptr);
   result["specimen_is"] = study.store.case_file().settings.is_virtual ? "virtual" : "real";
+  if (done.corrected && done.corrected->outcome == Outcome::Success && done.corrected->inner_edge.outcome == Outcome::PositiveMargin) {
+    monitor.message(Severity::Warning, "the kerf's mid-line keeps its distance, but its inner edge reaches the tumour edge once the tool is out");
+  }
   bool has_program = true;
   if (done.plan) {
     result["program"] = write_program(study, done, monitor);
@@ -135,7 +137,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monit
   write_json(root / "study.json", record);
   study.store.write_manifest_to(root, elapsed());
   monitor.message(Severity::Notice, "report: drawing");
-  write_report(study_report(root, monitor), root / "report.html");
+  write_report_and_figures(study_report(root, monitor), root / "report.html");
   result["report"] = (root / "report.html").string();
   result["wall_s"] = elapsed();
   return has_program ? status_of(done.outcome) : kNotAcceptable;

@@ -1,8 +1,6 @@
 #include "options.hpp"
 #include "study_report.hpp"
 
-#include <incise/report/html_report.hpp>
-
 #include <memory>
 
 namespace incise::cli {
@@ -13,7 +11,7 @@ void add_report(Application& application) {
       "report", "Draw the report of a study's folder anew", "incise report demo -o demo/report.html", [folder](const CommonOptions& options) {
         Console console(options.level());
         const std::filesystem::path output = options.output.empty() ? *folder / "report.html" : options.output;
-        write_report(study_report(*folder, console), output);
+        write_report_and_figures(study_report(*folder, console), output);
         print_result(options, {{"report", output.string()}});
         return kDone;
       });

@@ -7,7 +7,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <cctype>
 #include <fstream>
+#include <map>
+#include <string_view>
 
 namespace incise {
 namespace {
@@ -174,6 +177,14 @@ struct BadValue {
   const char* lines;
   const char* field;
 };
+
+/// Names the test by its lines, without the signs that CTest would stumble over.
+void PrintTo(const BadValue& value, std::ostream* out) {
+  for (const char c : std::string_view(value.lines)) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '-' || c == '_') *out << c;
+    if (c == ':' || c == ',') *out << '_';
+  }
+}
 
 class OutOfRange : public CaseFileTest, public ::testing::WithParamInterface<BadValue> {};
 

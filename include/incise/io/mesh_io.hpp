@@ -27,7 +27,8 @@ namespace incise {
 ///         no tets, mixed orientation, an unsupported variant (binary Gmsh, LZ4 or LZMA compression).
 [[nodiscard]] TetMesh read_tet_mesh(const std::filesystem::path& path);
 
-/// As read_tet_mesh, but a moment of a simulation is taken as it is: tets may be flat or turned inside out there, and none is turned over.
+/// As read_tet_mesh, but a moment of a simulation is taken as it is: tets may be flat or turned inside out there, and
+/// none is turned over.
 [[nodiscard]] TetMesh read_deformed_tet_mesh(const std::filesystem::path& path);
 
 /// Writes a `.vtu` that ParaView opens and read_tet_mesh returns exactly: little endian, 64-bit floats, zlib-compressed

@@ -1,0 +1,45 @@
+"""Runs the incise command and reads its summary."""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+COMMAND = sys.argv[1]
+EXAMPLES = Path(sys.argv[2])
+
+
+def run(*arguments):
+    """The JSON summary of a run that has to end with exit status 0."""
+    done = subprocess.run([COMMAND, *map(str, arguments), "--json", "--threads", "1"], capture_output=True, text=True)
+    assert done.returncode == 0, f"exit status {done.returncode}:\n{done.stderr}"
+    return json.loads(done.stdout)
+
+
+def require_paper_promise(summary):
+    """The cut closes with a negative margin, and one pass of the correction lowers the mean absolute error by half or more."""
+    before, after = summary["before"], summary["after"]
+    for name, cut in (("before", before), ("after", after)):
+        assert cut["closed_loop"] and cut["negative_margin"], f"{name}: {cut['outcome']}"
+        assert cut["contour"] == "centerline" and cut["target_mm"] == 5.0
+        assert cut["tets"] >= 30000, f"{cut['tets']} tetrahedra"
+    error_before, error_after = before["abs_error_mm"]["mean"], after["abs_error_mm"]["mean"]
+    print(f"mean |error| against 5.0 mm: {error_before:.3f} -> {error_after:.3f} mm")
+    assert error_before > 0.4, "nothing to correct"
+    assert error_after <= 0.5 * error_before
+    assert after["inner_edge"]["abs_error_mm"]["mean"] < before["inner_edge"]["abs_error_mm"]["mean"]
+
+
+def require_products(folder):
+    """Every stage left its files, each folder its manifest."""
+    for name in ("report.html", "mesh/mesh.vtu", "stretched/deformed.vtu", "plan/path.json", "as_planned/frames.pvd",
+                 "as_planned/incision.json", "corrected/centerline.csv", "program/program.script", "program/program.json"):
+        assert (folder / name).stat().st_size > 0, name
+    for stage in ("labels", "mesh", "stretched", "plan", "as_planned", "correction", "corrected", "program"):
+        manifest = json.loads((folder / stage / "manifest.json").read_text())
+        assert manifest["inputs"] and all(len(entry["sha256"]) == 64 for entry in manifest["inputs"]), stage
+
+
+def temporary_folder():
+    return tempfile.TemporaryDirectory(prefix="incise_test_")
