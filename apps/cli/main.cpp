@@ -8,6 +8,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
 #include <exception>
 #include <new>
 #include <vector>
@@ -32,6 +35,19 @@ void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
                   fmt::format("Did you mean '{}'?", nearest_name(word, verbs)));
 }
 
+/// strtod and CLI11 take "nan" and "inf" for numbers, and no range check stops a NaN.
+void refuse_numbers_that_are_not_finite(int argc, char** argv) {
+  for (int i = 2; i < argc; ++i) {
+    std::string word = argv[i];
+    if (word.rfind("--", 0) == 0 && word.find('=') != std::string::npos) word = word.substr(word.find('=') + 1);
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    if (end != word.c_str() && *end == '\0' && !std::isfinite(value)) {
+      throw CaseError("command line", argv[i], word, "a finite number", "A file of that name can be given as ./" + word);
+    }
+  }
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Plans robotic soft-tissue incisions by simulating them first.", "incise");
   app.set_version_flag("--version", fmt::format("incise {} ({})", version(), source_commit()));
@@ -49,6 +65,7 @@ int run(int argc, char** argv) {
   add_report(application);
   add_schema(application);
   if (argc > 1 && argv[1][0] != '-') refuse_unknown_verb(app, argv[1]);
+  refuse_numbers_that_are_not_finite(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -72,6 +89,13 @@ int main(int argc, char** argv) {
   } catch (const Cancelled& error) {
     fmt::print(stderr, "incise: {}; what was finished is kept, run the same command to go on\n", error.what());
     return kInterrupted;
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message());
+    return kBadData;
+  } catch (const nlohmann::json::exception& error) {
+    fmt::print(stderr, "incise: a file of the results: found {}, expected what an earlier run wrote. Remove the result folder to make it anew\n",
+               error.what());
+    return kBadData;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "incise: out of memory\n");
     return kBadData;

@@ -30,7 +30,7 @@ CLI::App* Application::add_verb(const std::string& name, const std::string& what
   verb->add_flag("--quiet", options->quiet, "Warnings only");
   verb->add_flag("--verbose", options->verbose, "More detail");
   verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
-  verb->add_option("--seed", options->seed, "Seed of everything random");
+  verb->add_option("--seed", options->seed, "Seed of everything random")->check(CLI::NonNegativeNumber);
   verb->add_option("--isa", options->isa, "Instruction set; this build has portable kernels only")->check(CLI::IsMember({"portable"}));
   verb->callback([this, options, run = std::move(run)] { status_ = run(*options); });
   return verb;

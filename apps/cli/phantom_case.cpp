@@ -1,10 +1,12 @@
 #include "phantom_case.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
 #include <incise/imaging/phantom.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/volume_io.hpp>
 
@@ -86,12 +88,21 @@ nlohmann::ordered_json write_phantom_case(const std::filesystem::path& folder, s
     std::filesystem::create_directories(parent, error);
     if (error) throw DataError(parent, "", error.message(), "a folder that can be made");
   }
+  require_replaceable(folder);
   AtomicFolder target(folder);
   write_volume(target.path(), format, phantom, seed);
   write_contour_csv(target.path() / "tumor.csv", phantom.tumor_edge);
   write_ply(target.path() / "tumor.ply", phantom.tumor);
   write_json(target.path() / "truth.json", truth_json(phantom, seed));
   write_atomically(target.path() / "case.yaml", [&](std::ostream& out) { out << case_text(phantom, format, seed); });
+  Manifest manifest;
+  manifest.version = version();
+  manifest.commit = source_commit();
+  manifest.command = fmt::format("incise phantom --seed {} --format {}", seed, format);
+  manifest.seed = seed;
+  manifest.instruction_set = "portable";
+  manifest.machine = machine_description();
+  write_manifest(target.path(), manifest);
   target.commit();
 
   const VolumeGrid& grid = phantom.ct.grid;

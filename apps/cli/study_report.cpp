@@ -238,6 +238,9 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
   }
   if (fs::exists(root / "manifest.json")) {
     const Manifest manifest = read_manifest(root);
+    if (nlohmann::ordered_json::parse(manifest.settings_json) != nlohmann::ordered_json::parse(settings_json(file))) {
+      data.notices.push_back({Severity::Warning, "The case file was changed since these results were made: the settings shown are of today, the results are older."});
+    }
     data.provenance = {{"incise", manifest.version, ""},       {"commit", manifest.commit, ""},
                        {"command", manifest.command, ""},      {"seed", std::to_string(manifest.seed), ""},
                        {"threads", std::to_string(manifest.threads), ""}, {"instruction set", manifest.instruction_set, ""},
@@ -265,9 +268,9 @@ void write_report_and_figures(const ReportData& data, const fs::path& page) {
   write_report(data, page);
   const fs::path folder = page.parent_path() / "figures";
   if (data.incisions.empty()) return;
-  AtomicFolder figures(folder);
-  const auto write = [&figures](const char* name, const std::string& content) {
-    write_atomically(figures.path() / name, [&content](std::ostream& out) { out << content; });
+  std::filesystem::create_directories(folder);
+  const auto write = [&folder](const char* name, const std::string& content) {
+    write_atomically(folder / name, [&content](std::ostream& out) { out << content; });
   };
   FigureStyle style;
   style.approach = data.approach;
@@ -283,7 +286,6 @@ void write_report_and_figures(const ReportData& data, const fs::path& page) {
     const ReportAnimation& last = data.animations.back();
     write("cut.png", frame_png(last, last.frames.size() - 1, data.approach, kWidthPx, kHeightPx));
   }
-  figures.commit();
 }
 
 ReportData study_report(const fs::path& root, Monitor& monitor) {

@@ -38,7 +38,12 @@ StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem
     : is_new_folder(!std::filesystem::exists(output)), store(case_with_inputs(case_path), output, options.context()) {
   // Kept apart from the products: which case they are of, for `incise report`.
   const auto relative = std::filesystem::absolute(store.case_file().file).lexically_proximate(std::filesystem::absolute(output));
-  write_json(output / "study.json", {{"case_file", relative.string()}});
+  const std::filesystem::path record = output / "study.json";
+  if (std::filesystem::exists(record)) {
+    const nlohmann::ordered_json older = read_json(record);
+    if (older.is_object() && older.contains("case_file") && older.at("case_file") == relative.string()) return;
+  }
+  write_json(record, {{"case_file", relative.string()}});
 }
 
 Study StudyRun::run(Stage until, const CommonOptions& options, Monitor& monitor) {
@@ -67,6 +72,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
   const CaseFile& file = study.store.case_file();
   const std::filesystem::path folder = study.store.root() / "program";
   nlohmann::ordered_json json;
+  require_replaceable(folder);
   std::filesystem::remove_all(folder);
   if (!file.settings.T_robot_sim) {
     monitor.message(Severity::Warning, "no program: the case does not say where the specimen lies (robot.T_robot_sim)");
@@ -74,7 +80,16 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
     json["reason"] = "robot.T_robot_sim is not given";
     return json;
   }
-  const ToolPath path = in_robot_frame(done.correction ? done.correction->path : *done.plan, *file.settings.T_robot_sim);
+  // A program is made of the path whose simulated cut was good: the corrected one where the correction is accepted, else the first.
+  const bool is_first_good = done.as_planned && done.as_planned->outcome == Outcome::Success;
+  if (!done.is_accepted && !is_first_good) {
+    json["written"] = false;
+    json["reason"] = "no simulated cut of this study ended in success";
+    monitor.message(Severity::Warning, "no program: no simulated cut of this study ended in success");
+    return json;
+  }
+  if (!done.is_accepted) monitor.message(Severity::Warning, "the correction is not accepted: the program follows the uncorrected path");
+  const ToolPath path = in_robot_frame(done.is_accepted ? done.correction->path : *done.followed, *file.settings.T_robot_sim);
   const ToolPath intended = in_robot_frame(*done.plan, *file.settings.T_robot_sim);
   ProgramSettings motion;
   motion.overlap_mm = file.settings.cut.overlap_mm;
@@ -86,6 +101,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
   const ProgramChecks checks = check_program(program, path, settings, &intended);
   json = nlohmann::ordered_json::parse(to_json(program, &checks));
   json.erase("poses");
+  json["follows"] = done.is_accepted ? "corrected path" : "uncorrected path";
   json["written"] = checks.all_passed();
   if (!checks.all_passed()) {
     for (const ProgramCheck& check : checks.checks) {
@@ -121,6 +137,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monit
   result["outcome"] = to_string(done.outcome);
   result["before"] = done.as_planned ? headline(to_json(*done.as_planned)) : nlohmann::ordered_json(nullptr);
   result["after"] = done.corrected ? headline(to_json(*done.corrected)) : nlohmann::ordered_json(nullptr);
+  result["accepted"] = done.is_accepted;
   result["specimen_is"] = study.store.case_file().settings.is_virtual ? "virtual" : "real";
   if (done.corrected && done.corrected->outcome == Outcome::Success && done.corrected->inner_edge.outcome == Outcome::PositiveMargin) {
     monitor.message(Severity::Warning, "the kerf's mid-line keeps its distance, but its inner edge reaches the tumour edge once the tool is out");

@@ -14,8 +14,12 @@ constexpr const char* kFormat = "dicom";
 /// The virtual specimen of this seed, made unless a complete one is there.
 std::filesystem::path specimen_for(const std::filesystem::path& folder, std::uint64_t seed, Monitor& monitor) {
   const std::filesystem::path truth = folder / "truth.json";
-  const bool is_there = std::filesystem::exists(truth) && read_json(truth).value("seed", std::uint64_t{0}) == seed;
-  if (!is_there) write_phantom_case(folder, seed, kFormat, monitor);
+  if (!std::filesystem::exists(truth)) {
+    write_phantom_case(folder, seed, kFormat, monitor);
+  } else if (const auto found = read_json(truth).value("seed", std::uint64_t{0}); found != seed) {
+    throw CaseError("command line", "--seed", fmt::format("{}", seed), fmt::format("{}, the specimen that is in {}", found, folder.string()),
+                    "Choose another folder with -o for another specimen");
+  }
   return folder;
 }
 

@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
+#include <incise/cutting/cut_settings.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/robot/program_text.hpp>
@@ -20,6 +21,7 @@ void add_export(Application& application) {
     std::string robot = "ur10e";
     std::string format = "urscript";
     CheckSettings checks;
+    ProgramSettings motion{.overlap_mm = CutSettings{}.overlap_mm};
     bool is_open = false;
   };
   auto arguments = std::make_shared<Arguments>();
@@ -37,7 +39,7 @@ void add_export(Application& application) {
         }
         CheckSettings settings = arguments->checks;
         settings.must_be_ring = !arguments->is_open;
-        const RobotProgram program = make_program(path);
+        const RobotProgram program = make_program(path, arguments->motion);
         const ProgramChecks checks = check_program(program, path, settings, intended ? &*intended : nullptr);
         nlohmann::ordered_json result = nlohmann::ordered_json::parse(to_json(program, &checks));
         result.erase("poses");
@@ -63,6 +65,7 @@ void add_export(Application& application) {
   verb->add_option("--intended", arguments->intended, "The path before correction, to check the deviation");
   verb->add_option("--depth-mm", arguments->checks.planned_depth_mm, "Planned depth")->check(CLI::PositiveNumber);
   verb->add_option("--close-margin-mm", arguments->checks.close_margin_mm, "Least distance from the tumour edge")->check(CLI::PositiveNumber);
+  verb->add_option("--overlap-mm", arguments->motion.overlap_mm, "How far a ring runs on beyond its start")->check(CLI::NonNegativeNumber);
   verb->add_flag("--open", arguments->is_open, "The path is an open cut");
 }
 

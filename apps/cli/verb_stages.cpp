@@ -14,6 +14,12 @@ nlohmann::ordered_json result_of(Stage stage, const Study& study) {
     case Stage::Plan: return plan_summary_json(*study.plan);
     case Stage::Simulate: return to_json(*study.as_planned);
     case Stage::Verify:
+      json["passes"] = study.correction ? 1 : 0;
+      json["accepted"] = study.is_accepted;
+      json["contraction"] = nullptr;
+      if (study.corrected && study.corrected->centerline.abs_error_mm) {
+        json["contraction"] = study.corrected->centerline.abs_error_mm->mean / study.as_planned->centerline.abs_error_mm->mean;
+      }
       json["before"] = to_json(*study.as_planned);
       json["after"] = study.corrected ? to_json(*study.corrected) : nlohmann::ordered_json(nullptr);
       json["correction"] = study.correction ? to_json(*study.correction) : nlohmann::ordered_json(nullptr);

@@ -62,10 +62,11 @@ Vec3 shaft_end(const ToolPose& tool, const Needle& needle) { return tool.tip_mm 
 Vec3 centroid(const std::array<Vec3, 4>& corners) { return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]); }
 
 /// Adds the pull of the tool on bonded tets, as if it were at `next` already, and its exact (constant) tangent.
-/// @returns the sum of the pulls on the tissue, mN, and their norm over all vertices in `scale`.
-Vec3 add_bonds(const TissueModel& model, const CutSettings& settings, const Needle& needle, const CutState& state,
+/// The share of a tet that is held is that of the last pose, so the pull is linear in the step.
+/// @returns the stiffness of each bond, mN/mm, in their order; `scale` receives the norm of the pulls over all vertices, mN.
+std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Needle& needle, const CutState& state,
                const ToolPose& next, std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
-  Vec3 sum = Vec3::Zero();
+  std::vector<double> stiffnesses;
   double squared = 0.0;
   const double limit = needle.radius_mm() + settings.reach_mm;
   // Drag acts across the needle's axis; tissue may slide along it.
@@ -75,7 +76,7 @@ Vec3 add_bonds(const TissueModel& model, const CutSettings& settings, const Need
     const double share = share_within(corners, state.tool.tip_mm, shaft_end(state.tool, needle), limit);
     const double stiffness = settings.bond_stiffness_kpa_mm2 * model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
     const Vec3 pull = -stiffness * (across * (centroid(corners) - next.tip_mm - bond.offset_mm));
-    sum += pull;
+    stiffnesses.push_back(stiffness);
     squared += pull.squaredNorm() / 4.0;
     const Mat3 block = stiffness / 16.0 * across;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -87,7 +88,19 @@ Vec3 add_bonds(const TissueModel& model, const CutSettings& settings, const Need
     }
   }
   scale = std::sqrt(squared);
-  return sum;
+  return stiffnesses;
+}
+
+/// What the held tissue, where it came to lie, does to the tool, mN.
+Vec3 force_on_tool(const TissueModel& model, const CutState& state, const ToolPose& tool, std::span<const double> stiffnesses) {
+  const Mat3 across = Mat3::Identity() - tool.axis * tool.axis.transpose();
+  Vec3 force = Vec3::Zero();
+  for (std::size_t b = 0; b < state.bonds.size(); ++b) {
+    const Bond& bond = state.bonds[b];
+    const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, bond.tet.index()));
+    force += stiffnesses[b] * (across * (middle - tool.tip_mm - bond.offset_mm));
+  }
+  return force;
 }
 
 /// Vertices without a live tet: nothing holds them, so they stay where they are.
@@ -109,9 +122,8 @@ void move_tissue(const TissueModel& model, const CutSettings& settings, const Ne
   add_elastic_response(model, state.tissue, scratch.right_side, &scratch.matrix, workers);
   add_support_response(model, state.tissue, scratch.right_side, &scratch.matrix);
   double bond_scale = 0.0;
-  if (next) {
-    report.tool_force_mn = -add_bonds(model, settings, needle, state, *next, scratch.right_side, scratch.matrix, bond_scale);
-  }
+  std::vector<double> stiffnesses;
+  if (next) stiffnesses = add_bonds(model, settings, needle, state, *next, scratch.right_side, scratch.matrix, bond_scale);
   for (std::size_t v = 0; v < model.vertex_mass_kg.size(); ++v) {
     double* diagonal = scratch.matrix.block(model.pattern->diagonal[v]);
     const double inertia = model.vertex_mass_kg[v] / (step_s * step_s);
@@ -139,6 +151,7 @@ void move_tissue(const TissueModel& model, const CutSettings& settings, const Ne
   }
   if (!report.is_finite) return;
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) state.tissue.positions[v] += scratch.increment[v];
+  if (next) report.tool_force_mn = force_on_tool(model, state, *next, stiffnesses);
 }
 
 /// Follows the contact of the tissue with the tool through the step: adds contact time, makes bonds where contact begins and drops

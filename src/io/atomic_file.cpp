@@ -35,10 +35,15 @@ void require_parent_folder(const fs::path& path) {
 
 }  // namespace
 
-void write_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-  require_parent_folder(path);
+void write_atomically(const fs::path& name, const std::function<void(std::ostream&)>& write) {
+  require_parent_folder(name);
   std::error_code error;
+  // What a link points to is replaced, not the link; a device or a pipe must never be replaced by a file.
+  const fs::path path = fs::is_symlink(name, error) && fs::exists(name, error) ? fs::canonical(name) : name;
   if (fs::is_directory(path, error)) throw DataError(path, "", "a folder", "a file name to write to");
+  if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
+    throw DataError(path, "", "a device or pipe", "a file name to write to");
+  }
   const fs::path temporary = temporary_beside(path);
   try {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
@@ -68,6 +73,14 @@ std::string read_text(const fs::path& path) {
   }
   if (stream.bad()) throw DataError(path, fmt::format("byte {}", text.size()), "a read error", "a readable file");
   return text;
+}
+
+void require_replaceable(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::exists(folder, error) || !fs::is_directory(folder, error) || fs::is_empty(folder, error)) return;
+  if (fs::exists(folder / "manifest.json", error)) return;
+  throw DataError(folder, "", "a folder with files of another origin (no manifest.json)", "a free name, an empty folder, or a result to replace",
+                  "Choose another place for the output");
 }
 
 AtomicFolder::AtomicFolder(fs::path target)

@@ -38,6 +38,9 @@ void require_consistent(const CaseFile& file, const std::string& name) {
     throw CaseError(name, "meshing.fine_mm", fmt::format("{} mm", c.meshing.fine_mm),
                     fmt::format("at most meshing.coarse_mm = {} mm", c.meshing.coarse_mm));
   }
+  if (c.meshing.tets > 0 && c.meshing.tets < 100) {
+    throw CaseError(name, "meshing.tets", fmt::format("{}", c.meshing.tets), "0 (as the lengths give) or at least 100");
+  }
   if (c.plan.depth_mm > c.needle.length_mm) {
     throw CaseError(name, "plan.depth_mm", fmt::format("{} mm", c.plan.depth_mm),
                     fmt::format("at most tool.length_mm = {} mm", c.needle.length_mm));

@@ -146,7 +146,7 @@ void describe_tool_and_cut(Case& c, FieldVisitor& v) {
   static constexpr std::array<const char*, 1> kTools{"needle"};
   std::size_t tool = 0;
   v.choice({"kind", "", "A needle electrode."}, tool, kTools);
-  v.number({"diameter_mm", "mm", "Of the needle."}, c.needle.diameter_mm, {0.0, 10.0, true, false});
+  v.number({"diameter_mm", "mm", "Of the needle."}, c.needle.diameter_mm, {0.05, 10.0});
   v.number({"length_mm", "mm", "Of the needle, from its tip."}, c.needle.length_mm, {0.0, 200.0, true, false});
   v.end_group();
   v.begin_group({"cut", "", "How the simulated tool cuts; speed and dullness come from calibration."});
@@ -154,7 +154,7 @@ void describe_tool_and_cut(Case& c, FieldVisitor& v) {
   v.number({"dullness", "steps", "Contact needed before a tetrahedron goes, in reference steps."}, c.cut.dullness, {0.0, 1000.0, true, false});
   v.number({"reference_step_s", "s", "The time that one unit of dullness stands for."}, c.cut.reference_step_s, {0.0, 1.0, true, false});
   v.number({"advance_per_step_mm", "mm", "Tool travel in one simulation step, at most the needle's diameter."}, c.cut.advance_per_step_mm,
-           {0.0, 10.0, true, false});
+           {0.01, 10.0});
   v.number({"reach_mm", "mm", "Tissue is in contact within needle radius plus this of the axis."}, c.cut.reach_mm, {0.0, 5.0});
   v.number({"bond_stiffness_kpa_mm2", "kPa/mm2", "Pull of the tool on tissue that it holds, per volume and offset; 0: no drag."},
            c.cut.bond_stiffness_kpa_mm2, kNotNegative);

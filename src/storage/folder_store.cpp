@@ -92,7 +92,7 @@ bool FolderStore::is_current(Product product) {
   const std::filesystem::path stage = folder(product) / kStageFile;
   if (!std::filesystem::exists(stage)) return false;
   const nlohmann::ordered_json json = read_json(stage);
-  return json.is_object() && json.value("key", "") == key(product);
+  return json.is_object() && json.contains("key") && json.at("key").is_string() && json.at("key") == key(product);
 }
 
 void FolderStore::write_manifest_to(const std::filesystem::path& folder, double wall_s) {
@@ -114,11 +114,21 @@ void FolderStore::write_manifest_to(const std::filesystem::path& folder, double 
 }
 
 void FolderStore::save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write) {
+  require_replaceable(folder(product));
   AtomicFolder target(folder(product));
   write(target.path());
   write_manifest_to(target.path(), wall_s);
   write_json(target.path() / kStageFile, {{"key", key(product)}, {"wall_s", wall_s}});
   target.commit();
+  // What was made from the older product is of no use any more, and a report must not mix the two.
+  for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
+    remove_if_stale(static_cast<Product>(later));
+  }
+  std::filesystem::remove_all(root_ / "program");
+}
+
+void FolderStore::remove_if_stale(Product product) {
+  if (std::filesystem::exists(folder(product) / kStageFile) && !is_current(product)) std::filesystem::remove_all(folder(product));
 }
 
 CtVolume FolderStore::read_ct(Monitor& monitor) {

@@ -42,6 +42,7 @@ class Runner {
     using Step = bool (Runner::*)();
     static constexpr std::array<Step, 7> kSteps{&Runner::segment,  &Runner::mesh,       &Runner::stretch_tissue, &Runner::plan,
                                                 &Runner::simulate, &Runner::compensate, &Runner::verify};
+    read_inputs();
     for (std::size_t i = 0; i <= static_cast<std::size_t>(until); ++i) {
       throw_if_cancelled(monitor_, "the study");
       if (!(this->*kSteps[i])()) break;
@@ -50,6 +51,18 @@ class Runner {
   }
 
  private:
+  /// What is quickly read is read first: a damaged contour shows before anything long has run.
+  void read_inputs() {
+    tumor_edge_ = store_.read_tumor_edge();
+    line_ = store_.read_line();
+    given_path_ = store_.read_given_path();
+    const bool is_ring = settings_.plan.kind == PlanKind::Ring;
+    if (given_path_ && given_path_->is_closed != is_ring) {
+      throw CaseError("case", "path", given_path_->is_closed ? "a closed path" : "an open path",
+                      is_ring ? "a closed path for plan.kind: ring" : "an open path for plan.kind: line");
+    }
+  }
+
   /// Takes a product from the store, or makes and saves it; notes which, and how long it took.
   template <class Load, class Make, class Save>
   auto load_or_make(Stage stage, Load load, Make make, Save save) {
@@ -88,7 +101,7 @@ class Runner {
       study_.stages.push_back({Stage::Mesh, StageState::Skipped, 0.0});
     } else {
       const auto make = [&]() -> TetMesh {
-        MeshProduct product = mesh_around_planned_cut(settings_, study_.segmentation->occupancy, store_, workers_, monitor_);
+        MeshProduct product = make_mesh();
         store_.save_mesh(product, product.meshing.wall_s);
         return std::move(product.meshing.mesh);
       };
@@ -100,13 +113,25 @@ class Runner {
     return true;
   }
 
+  /// The mesher tells what it cannot do with the lengths or the count as a broken precondition; here they came from the case.
+  MeshProduct make_mesh() {
+    try {
+      return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, store_, workers_, monitor_);
+    } catch (const InvalidArgument& error) {
+      throw CaseError("case", "meshing", error.what(), "edge lengths and a count that the tissue can be meshed with");
+    }
+  }
+
   bool stretch_tissue() {
     const TissueModel& model = *study_.model;
     study_.stretched = load_or_make(
-        Stage::Stretch, [&] { return store_.load_stretched(model); }, [&] { return stretch(model, workers_, monitor_); },
-        [&](const StaticResult& result, double wall_s) {
-          if (result.outcome != Outcome::Cancelled) store_.save_stretched(model, result, wall_s);
-        });
+        Stage::Stretch, [&] { return store_.load_stretched(model); },
+        [&] {
+          StaticResult made = stretch(model, workers_, monitor_);
+          if (made.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted");
+          return made;
+        },
+        [&](const StaticResult& result, double wall_s) { store_.save_stretched(model, result, wall_s); });
     study_.outcome = study_.stretched->outcome;
     return study_.outcome == Outcome::Success;
   }
@@ -115,8 +140,7 @@ class Runner {
     study_.plan = load_or_make(
         Stage::Plan, [&] { return store_.load_plan(); },
         [&] {
-          return plan_on(settings_, *study_.model, study_.stretched->state.positions, store_.read_tumor_edge(),
-                         store_.read_line());
+          return plan_on(settings_, *study_.model, study_.stretched->state.positions, tumor_edge_, line_);
         },
         [&](const ToolPath& path, double wall_s) { store_.save_plan(path, wall_s); });
     return true;
@@ -137,12 +161,11 @@ class Runner {
   }
 
   bool simulate() {
-    const std::optional<ToolPath> given = store_.read_given_path();
-    if (given) {
-      check_path(*given, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
+    if (given_path_) {
+      check_path(*given_path_, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
     }
-    followed_ = given ? *given : *study_.plan;
-    study_.as_planned = cut(Stage::Simulate, CutRole::AsPlanned, followed_);
+    study_.followed = given_path_ ? *given_path_ : *study_.plan;
+    study_.as_planned = cut(Stage::Simulate, CutRole::AsPlanned, *study_.followed);
     study_.outcome = study_.as_planned->outcome;
     return true;
   }
@@ -164,7 +187,7 @@ class Runner {
           compensation.approach = settings_.plan.approach;
           compensation.axis_mode = settings_.plan.axis_mode;
           const SurfaceQuery surface(skin_of(study_.model->mesh, study_.stretched->state.positions));
-          return compensate_paper(followed_, *study_.as_planned->incision.centerline, study_.plan->tumor_edge, surface,
+          return compensate_paper(*study_.followed, *study_.as_planned->incision.centerline, study_.plan->tumor_edge, surface,
                                   compensation);
         },
         [&](const Compensation& correction, double wall_s) { store_.save_correction(correction, wall_s); });
@@ -174,6 +197,10 @@ class Runner {
   bool verify() {
     study_.corrected = cut(Stage::Verify, CutRole::Corrected, study_.correction->path);
     study_.outcome = study_.corrected->outcome;
+    const auto& before = study_.as_planned->centerline.abs_error_mm;
+    const auto& after = study_.corrected->centerline.abs_error_mm;
+    study_.is_accepted = study_.outcome == Outcome::Success && before && after && after->mean < settings_.needle.radius_mm() &&
+                         after->mean < before->mean;
     return true;
   }
 
@@ -182,7 +209,9 @@ class Runner {
   Workers& workers_;
   Monitor& monitor_;
   std::optional<TetMesh> given_mesh_;
-  ToolPath followed_;  // by the first cut: the planned path, or the one that was given
+  std::optional<Contour> tumor_edge_;
+  std::optional<Contour> line_;
+  std::optional<ToolPath> given_path_;
   Study study_;
 };
 

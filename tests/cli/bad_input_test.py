@@ -203,7 +203,7 @@ class CaseTest(CommandTest):
 
     def test_a_damaged_tumor_edge_is_named_with_its_line(self):
         (self.case / "tumor.csv").write_text("x_mm,y_mm,z_mm\n0,0,14\n1,two,14\n0,2,14\n")
-        self.assert_case_refused("plan", BAD_DATA, "tumor.csv", "line 3", "two", stages=["stretched"])
+        self.assert_case_refused("plan", BAD_DATA, "tumor.csv", "line 3", "two")
 
     def test_a_ring_that_leaves_the_tissue_is_refused(self):
         small_case.write_contour(self.case / "tumor.csv", small_case.ring(center=(13.0, 20.0)))
@@ -232,7 +232,43 @@ class CaseTest(CommandTest):
                 "waypoints": [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in small_case.ring()]}
         (self.case / "path.json").write_text(json.dumps(path))
         self.change(path="path.json")
-        self.assert_case_refused("simulate", BAD_DATA, "path.json", "frame", "robot", "sim_stretched", stages=["stretched", "plan"])
+        self.assert_case_refused("simulate", BAD_DATA, "path.json", "frame", "robot", "sim_stretched")
+
+    def test_an_open_path_for_a_ring_is_refused_before_anything_runs(self):
+        path = {"frame": "sim_stretched", "kind": "incise", "closed": False,
+                "waypoints": [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in small_case.ring()]}
+        (self.case / "path.json").write_text(json.dumps(path))
+        self.change(path="path.json")
+        self.assert_case_refused("simulate", BAD_CASE, "an open path", "plan.kind: ring")
+
+    def test_a_count_of_tets_that_is_no_mesh_is_refused(self):
+        self.change(meshing={"tets": 50})
+        self.assert_case_refused("plan", BAD_CASE, "meshing.tets", "50", "at least 100")
+
+    def test_a_folder_of_somebody_else_is_never_replaced(self):
+        precious = self.folder / "mydata"
+        precious.mkdir()
+        (precious / "thesis.txt").write_text("years of work")
+        self.assert_refused(self.incise("phantom", "-o", precious, "--quiet"), BAD_DATA, "mydata", "another origin")
+        self.assertEqual((precious / "thesis.txt").read_text(), "years of work")
+
+    def test_a_product_folder_with_the_users_own_files_is_never_replaced(self):
+        plan = self.folder / "work" / "plan"
+        plan.mkdir(parents=True)
+        (plan / "mine.csv").write_text("mine")
+        done = self.incise("plan", "case", "-o", self.folder / "work", "--quiet")
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        self.assertEqual((plan / "mine.csv").read_text(), "mine")
+
+    def test_a_device_is_not_replaced_by_a_file(self):
+        self.assert_refused(self.incise("schema", "case", "-o", "/dev/full"), BAD_DATA, "/dev/full", "a device")
+        self.assertTrue(pathlib.Path("/dev/full").is_char_device())
+
+    def test_numbers_that_are_not_finite_are_refused_on_the_command_line(self):
+        for word in ("nan", "inf", "-inf"):
+            with self.subTest(word=word):
+                done = self.incise("evaluate", "--incision", "a.csv", "--tumor", "b.csv", "--target-mm", word)
+                self.assert_refused(done, BAD_CASE, word, "a finite number")
 
     def test_an_output_below_a_file_cannot_be_written(self):
         (self.folder / "occupied").write_text("a file")

@@ -32,7 +32,7 @@ TEST(SolveStatic, StretchesBy20MmFromRestInOneLoadStep) {
   const StaticResult result = solve(pulled_block(20.0));
   EXPECT_EQ(result.outcome, Outcome::Success);
   EXPECT_EQ(result.load_steps, 1);
-  EXPECT_LE(result.iterations, 6) << "the exact tangent converges quadratically";
+  EXPECT_LE(result.iterations, 8) << "a few steps find which vertices rest on the platform, then the exact tangent converges quadratically";
   EXPECT_LE(result.relative_residual, 1e-6);
   EXPECT_EQ(result.inverted_tets, 0U);
   EXPECT_GE(result.max_displacement_mm, 20.0);

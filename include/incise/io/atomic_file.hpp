@@ -18,6 +18,10 @@ void write_atomically(const std::filesystem::path& path, const std::function<voi
 /// @throws DataError if it is missing, is a folder, or cannot be read.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
+/// Refuses a folder that results must not replace: one that is not empty and holds no manifest.json, as every result folder does.
+/// @throws DataError
+void require_replaceable(const std::filesystem::path& folder);
+
 /// A folder that appears all or nothing: fill `path()`, then `commit()`.
 /// Without commit the destructor removes what was written and an older folder of that name stays as it was.
 class AtomicFolder {

@@ -71,6 +71,7 @@ class FolderStore : public Store {
   [[nodiscard]] const std::string& key(Product product);
   [[nodiscard]] std::string settings_with(const std::vector<std::string>& prefixes) const;
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
+  void remove_if_stale(Product product);
   void save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write);
 
   CaseFile file_;

@@ -37,9 +37,12 @@ struct Study {
   std::shared_ptr<const TissueModel> model;
   std::optional<StaticResult> stretched;
   std::optional<ToolPath> plan;               ///< the intended path
+  std::optional<ToolPath> followed;           ///< by the first cut: the planned path, or the one that was given
   std::optional<SimulatedCut> as_planned;
   std::optional<Compensation> correction;
   std::optional<SimulatedCut> corrected;
+  /// The corrected cut succeeded, its mean error is below the electrode's radius (the paper's rule, II-C.5) and below that of the first cut.
+  bool is_accepted = false;
   /// How it ended: that of the last simulated cut, or NotConverged/Cancelled of the stage that could not go on.
   Outcome outcome = Outcome::Success;
 };
