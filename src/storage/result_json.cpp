@@ -52,7 +52,7 @@ Json to_json(const SimulatedCut& cut) {
   Json json = to_json(cut.centerline);
   json["outcome"] = to_string(cut.outcome);
   json["closed_loop"] = or_null(incision.is_closed_loop);
-  json["inner_edge"] = to_json(cut.inner_edge);
+  json["inner_edge"] = incision.is_closed_loop ? to_json(cut.inner_edge) : Json(nullptr);  // null: an open cut has none
   json["gap_mm"] = or_null(incision.gap_mm);
   json["gap_deg"] = incision.gap_deg;
   json["kerf_width_mm"] = incision.kerf_width_mm;
