@@ -3,9 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace incise {
+
+namespace {
+
+bool is_direction(const Vec3& v) { return v.allFinite() && v.norm() > 1e-12; }
+std::string text_of(const Vec3& v) { return fmt::format("[{:g}, {:g}, {:g}]", v[0], v[1], v[2]); }
+
+}  // namespace
 
 std::vector<std::string> validate(const Material& material) {
   std::vector<std::string> violations;
@@ -19,7 +27,62 @@ std::vector<std::string> validate(const Material& material) {
     violations.push_back(fmt::format("poissons_ratio: found {}, expected a number in [0, 0.5)", nu));
   }
   check_positive("density_kg_m3", material.density_kg_m3);
+  const auto check_not_negative = [&](const char* name, double value) {
+    if (std::isfinite(value) && value >= 0.0) return;
+    violations.push_back(fmt::format("{}: found {}, expected a finite number of at least 0", name, value));
+  };
+  check_not_negative("fibre_modulus_kpa", material.fibre_modulus_kpa);
+  check_not_negative("kelvin_voigt_time_s", material.kelvin_voigt_time_s);
+  if (!is_direction(material.fibre_direction)) {
+    violations.push_back(fmt::format("fibre_direction: found {}, expected a finite direction", text_of(material.fibre_direction)));
+  }
+  for (std::size_t i = 0; i < material.prony.size(); ++i) {
+    check_positive(fmt::format("prony[{}].shear_share", i).c_str(), material.prony[i].shear_share);
+    check_positive(fmt::format("prony[{}].time_s", i).c_str(), material.prony[i].time_s);
+  }
   return violations;
+}
+
+std::vector<std::string> validate(const MaterialField& field, std::size_t tets) {
+  std::vector<std::string> violations;
+  const auto check = [&](const char* name, const auto& values, const auto& is_good, const auto& text, const char* expected) {
+    if (values.empty()) return;
+    if (values.size() != tets) {
+      violations.push_back(fmt::format("{}: found {} items, expected one for each of {} tets", name, values.size(), tets));
+      return;
+    }
+    const auto bad = std::find_if_not(values.begin(), values.end(), is_good);
+    if (bad == values.end()) return;
+    violations.push_back(
+        fmt::format("{}: found {} at tet {}, expected {}", name, text(*bad), bad - values.begin(), expected));
+  };
+  const auto number = [](double value) { return fmt::format("{}", value); };
+  check("youngs_modulus_kpa", field.youngs_modulus_kpa, [](double e) { return std::isfinite(e) && e > 0.0; }, number,
+        "a finite number above 0");
+  check("poissons_ratio", field.poissons_ratio, [](double nu) { return nu >= 0.0 && nu < 0.5; }, number,
+        "a number in [0, 0.5)");
+  check("fibre_direction", field.fibre_directions, is_direction, text_of, "a finite direction");
+  return violations;
+}
+
+MaterialField material_field_of(const TetMesh& mesh) {
+  MaterialField field;
+  const auto find = [&](const char* name, int components) -> const DataArray* {
+    const auto found = mesh.cell_data.find(name);
+    if (found == mesh.cell_data.end()) return nullptr;
+    INCISE_REQUIRE(found->second.components == components,
+                   fmt::format("expected cell data \"{}\" with {} components, found {}", name, components,
+                               found->second.components));
+    return &found->second;
+  };
+  if (const DataArray* values = find("youngs_modulus_kpa", 1)) field.youngs_modulus_kpa = values->values;
+  if (const DataArray* values = find("poissons_ratio", 1)) field.poissons_ratio = values->values;
+  if (const DataArray* values = find("fibre_direction", 3)) {
+    for (std::size_t i = 0; i + 2 < values->values.size(); i += 3) {
+      field.fibre_directions.emplace_back(values->values[i], values->values[i + 1], values->values[i + 2]);
+    }
+  }
+  return field;
 }
 
 LameParameters lame_parameters(double youngs_modulus_kpa, double poissons_ratio) {

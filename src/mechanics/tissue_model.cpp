@@ -30,14 +30,26 @@ void require_valid(const Material& material) {
                   first.substr(comma + 11), others);
 }
 
-void add_elements(TissueModel& model) {
+void require_valid(const MaterialField& field, std::size_t tets) {
+  const std::vector<std::string> violations = validate(field, tets);
+  std::string text;
+  for (const std::string& violation : violations) text += (text.empty() ? "" : "; ") + violation;
+  INCISE_REQUIRE(violations.empty(), "expected sound values for every tet, but " + text);
+}
+
+void add_elements(TissueModel& model, const MaterialField& field) {
   const std::size_t count = model.mesh.tets.size();
   model.gradients.resize(count);
   model.volumes_mm3.resize(count);
-  model.lame.assign(count, lame_parameters(model.material.youngs_modulus_kpa, model.material.poissons_ratio));
+  model.lame.resize(count);
+  if (model.material.fibre_modulus_kpa > 0.0) model.fibres.assign(count, model.material.fibre_direction.normalized());
   model.vertex_mass_kg.assign(model.mesh.vertices.size(), 0.0);
   const double density = units::kg_mm3_from_kg_m3(model.material.density_kg_m3);
   for (std::size_t t = 0; t < count; ++t) {
+    model.lame[t] = lame_parameters(
+        field.youngs_modulus_kpa.empty() ? model.material.youngs_modulus_kpa : field.youngs_modulus_kpa[t],
+        field.poissons_ratio.empty() ? model.material.poissons_ratio : field.poissons_ratio[t]);
+    if (!model.fibres.empty() && !field.fibre_directions.empty()) model.fibres[t] = field.fibre_directions[t].normalized();
     const Tet& tet = model.mesh.tets[t];
     Mat3 edges;
     for (std::size_t c = 1; c < 4; ++c) {
@@ -54,14 +66,15 @@ void add_elements(TissueModel& model) {
 }  // namespace
 
 TissueModel make_tissue_model(TetMesh mesh, const Material& material, std::vector<Constraint> constraints,
-                              const Vec3& gravity_mm_s2) {
+                              const Vec3& gravity_mm_s2, const MaterialField& field) {
   require_sound(mesh);
   require_valid(material);
+  require_valid(field, mesh.tets.size());
   TissueModel model;
   model.mesh = std::move(mesh);
   model.material = material;
   model.constraints = std::move(constraints);
-  add_elements(model);
+  add_elements(model, field);
   apply_constraints(model, gravity_mm_s2);
   require_no_rigid_motion(model);
   add_topology(model);

@@ -1,25 +1,58 @@
 #pragma once
 
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/geometry/types.hpp>
+
 #include <string>
 #include <vector>
 
 namespace incise {
 
 enum class MaterialModel {
-  Corotational,  ///< linear elasticity in a frame that turns with each tet (polar rotation), as in the paper
+  Corotational,      ///< linear elasticity in a frame that turns with each tet (polar rotation), as in the paper
+  StableNeoHookean,  ///< Smith, de Goes and Kim (2018): hyperelastic, defined for inverted tets too
+};
+
+/// How the change of volume enters the energy.
+enum class VolumeTreatment {
+  PerTet,    ///< each tet resists its own: the standard linear tet, which locks as Poisson's ratio nears 0.5
+  Averaged,  ///< each vertex resists the mean over its tets (Bonet and Burton 1998): free of volumetric locking
+};
+
+/// One Maxwell branch beside the elastic law: a shear spring that lets go with time.
+struct PronyTerm {
+  double shear_share = 0.0;  ///< its shear modulus over the long-time one, > 0
+  double time_s = 1.0;       ///< relaxation time, > 0
 };
 
 /// What tissue is made of. Defaults are the paper's (II-C.3); 70 kPa is an effective value, ~10 x published tongue
 /// stiffness.
 struct Material {
   MaterialModel model = MaterialModel::Corotational;
-  double youngs_modulus_kpa = 70.0;  ///< > 0
-  double poissons_ratio = 0.49;      ///< [0, 0.5)
-  double density_kg_m3 = 1040.0;     ///< > 0
+  VolumeTreatment volume = VolumeTreatment::PerTet;
+  double youngs_modulus_kpa = 70.0;       ///< > 0; of the long-time response where there are Prony terms
+  double poissons_ratio = 0.49;           ///< [0, 0.5)
+  double density_kg_m3 = 1040.0;          ///< > 0
+  double fibre_modulus_kpa = 0.0;         ///< >= 0; stiffness added along the fibres, 0: isotropic
+  Vec3 fibre_direction = Vec3::UnitY();   ///< at rest, any length but 0; where no field gives another
+  std::vector<PronyTerm> prony;           ///< viscosity acts only in steps of time: statics are its long-time limit
+  double kelvin_voigt_time_s = 0.0;       ///< >= 0; shear viscosity over long-time shear modulus, 0: none
 };
+
+/// What differs from tet to tet, one item per tet each; an empty list takes the material's own value everywhere.
+struct MaterialField {
+  std::vector<double> youngs_modulus_kpa;
+  std::vector<double> poissons_ratio;
+  std::vector<Vec3> fibre_directions;
+};
+
+/// The fields that a mesh carries as cell data: `youngs_modulus_kpa`, `poissons_ratio` (1 component), `fibre_direction` (3).
+[[nodiscard]] MaterialField material_field_of(const TetMesh& mesh);
 
 /// Every violation, one sentence each; empty: valid.
 [[nodiscard]] std::vector<std::string> validate(const Material& material);
+/// The same for a field of `tets` items.
+[[nodiscard]] std::vector<std::string> validate(const MaterialField& field, std::size_t tets);
 
 struct LameParameters {
   double lambda_kpa = 0.0;

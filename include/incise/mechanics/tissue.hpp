@@ -32,6 +32,7 @@ struct TissueModel {
   std::vector<std::array<Vec3, 4>> gradients;    ///< per tet: gradient of each corner's shape function at rest, 1/mm
   std::vector<double> volumes_mm3;               ///< per tet, at rest
   std::vector<LameParameters> lame;              ///< per tet
+  std::vector<Vec3> fibres;                      ///< per tet: unit direction at rest; empty without fibres
   std::vector<double> vertex_mass_kg;            ///< lumped: a quarter of each adjacent tet
   std::vector<std::array<bool, 3>> is_fixed;     ///< per vertex and axis
   std::vector<Vec3> prescribed_displacement_mm;  ///< per vertex; used where is_fixed
@@ -50,7 +51,8 @@ struct TissueModel {
 /// contradictory constraints on one vertex, too few constraints to stop rigid motion; InvalidArgument when
 /// find_problems(mesh) finds any.
 [[nodiscard]] TissueModel make_tissue_model(TetMesh mesh, const Material& material, std::vector<Constraint> constraints,
-                                            const Vec3& gravity_mm_s2 = Vec3::Zero());
+                                            const Vec3& gravity_mm_s2 = Vec3::Zero(),
+                                            const MaterialField& field = {});
 
 /// What a simulation changes: a value that can be saved, compared and restored.
 struct TissueState {

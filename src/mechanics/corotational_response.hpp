@@ -1,0 +1,15 @@
+#pragma once
+
+#include "mechanics/elastic_response.hpp"
+
+namespace incise {
+
+/// add_elastic_response for the plain corotational law (no fibres, no viscosity, each tet its own volume): the fast path that a cut takes.
+/// Sizes are the caller's to check.
+void add_corotational_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces,
+                               BlockMatrix* stiffness, Tangent tangent, std::vector<Mat3>& turning, Workers& workers);
+
+/// Its energy, µJ.
+[[nodiscard]] double corotational_energy_uj(const TissueModel& model, const TissueState& state);
+
+}  // namespace incise
