@@ -31,15 +31,14 @@ Mat3 deformation_gradient(const TissueModel& model, std::span<const Vec3> positi
 }
 
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Tangent tangent, std::vector<Mat3>& turning, Workers& workers) {
+                          Tangent tangent, Workers& workers) {
   check_sizes(model, state, forces.size());
-  add_corotational_response(model, state, forces, stiffness, tangent, turning, workers);
+  add_corotational_response(model, state, forces, stiffness, tangent, workers);
 }
 
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
                           Workers& workers) {
-  std::vector<Mat3> unused;
-  add_elastic_response(model, state, forces, stiffness, Tangent::FrozenRotations, unused, workers);
+  add_elastic_response(model, state, forces, stiffness, Tangent::FrozenRotations, workers);
 }
 
 double elastic_energy_uj(const TissueModel& model, const TissueState& state) {

@@ -14,8 +14,8 @@ enum class Tangent {
   Projected,        ///< as Exact, each tet's negative curvatures set to zero: positive semi-definite
 };
 
-/// As add_elastic_response, with a choice of tangent. `turning` is scratch, one matrix per tet.
+/// As add_elastic_response, with a choice of tangent.
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Tangent tangent, std::vector<Mat3>& turning, Workers& workers);
+                          Tangent tangent, Workers& workers);
 
 }  // namespace incise
