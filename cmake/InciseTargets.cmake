@@ -47,6 +47,9 @@ function(incise_test name)
   set(target ${name}_test)
   add_executable(${target} ${ARG_SOURCES})
   list(TRANSFORM ARG_USES PREPEND incise_)
+  # A test's own code need not be fast; what it calls is the library, built as ever. The headers all tests share are compiled once.
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_precompile_headers(${target} REUSE_FROM incise_test_headers)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${target} PRIVATE ${ARG_USES} ${ARG_LINK} incise_test_support GTest::gtest_main GTest::gmock incise_warnings)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. 
