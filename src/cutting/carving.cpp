@@ -11,6 +11,7 @@ namespace incise {
 namespace {
 
 constexpr int kCoarseRefreshSteps = 20;        // the coarse matrix of the preconditioner may be this stale
+constexpr int kVerticesPerAggregate = 140;
 constexpr double kForceFloorMn = 5.0;          // scale of the stopping test when hardly anything is held
 constexpr double kLeastShare = 0.02;           // of a touched tet's volume that the tool holds: a corner is still held
 constexpr double kFragmentShare = 0.01;        // of the live tets: smaller loose parts are cut away with the kerf
@@ -32,7 +33,7 @@ struct CutWorkspace::Data {
       : neighbours(face_neighbours(model.mesh)),
         is_anchored(model.mesh.vertices.size(), 0),
         matrix(model.pattern),
-        solver(model.pattern, positions),
+        solver(model.pattern, positions, kVerticesPerAggregate, Precision::Single),
         right_side(model.mesh.vertices.size()),
         increment(model.mesh.vertices.size()) {
     for (std::size_t v = 0; v < is_anchored.size(); ++v) {

@@ -28,6 +28,11 @@ class CoarseSpace {
   [[nodiscard]] const Aggregates& aggregates() const { return aggregates_; }
   [[nodiscard]] std::size_t size() const { return 6 * aggregates_.count(); }
 
+  [[nodiscard]] const Vec3& arm(std::size_t v) const { return arm_[v]; }
+  [[nodiscard]] const Vec3& is_free(std::size_t v) const { return free_[v]; }
+  /// C, size() x size(), after the last refresh.
+  [[nodiscard]] std::span<const double> inverse() const { return dense_; }
+
   /// Share of vertex v in Pᵀ r.
   void add_restricted(std::size_t v, const Vec3& r, Vec6& sum) const {
     const Vec3 f = r.cwiseProduct(free_[v]);

@@ -1,5 +1,6 @@
 #include "mechanics/block_product.hpp"
 #include "mechanics/coarse_space.hpp"
+#include "mechanics/single_pcg.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/mechanics/solvers.hpp>
@@ -41,20 +42,24 @@ struct TwoLevelPcg::Data {
   std::vector<Mat3> inverse_diagonal;
   std::vector<std::uint8_t> held;
 
-  // Vectors of one solve, and one partial sum per chunk.
+  std::unique_ptr<SinglePcg> single;  // does the iterations in single precision
+
+  // Vectors of one solve, and one partial sum per chunk; empty in single precision.
   Points r, z, p, q;
   std::vector<double> restricted, corrected;
   std::vector<double> partial_rr, partial_rz, partial_pq;
 
-  Data(std::shared_ptr<const BlockPattern> given, std::span<const Vec3> positions, std::size_t per_aggregate)
+  Data(std::shared_ptr<const BlockPattern> given, std::span<const Vec3> positions, std::size_t per_aggregate,
+       Precision precision)
       : pattern(std::move(given)),
         coarse(positions, per_aggregate),
         inverse_diagonal(pattern->rows()),
         held(pattern->rows()),
-        r(pattern->rows()),
-        z(pattern->rows()),
-        p(pattern->rows()),
-        q(pattern->rows()),
+        single(precision == Precision::Single ? std::make_unique<SinglePcg>(pattern, coarse) : nullptr),
+        r(single ? 0 : pattern->rows()),
+        z(r.size()),
+        p(r.size()),
+        q(r.size()),
         restricted(coarse.size()),
         corrected(coarse.size()),
         partial_rr(Workers::chunk_count(coarse.aggregates().count(), kAggregatesPerChunk)),
@@ -122,14 +127,15 @@ struct TwoLevelPcg::Data {
 };
 
 TwoLevelPcg::TwoLevelPcg(std::shared_ptr<const BlockPattern> pattern, std::span<const Vec3> positions,
-                         int vertices_per_aggregate) {
+                         int vertices_per_aggregate, Precision precision) {
   INCISE_REQUIRE(pattern != nullptr && positions.size() == pattern->rows(),
                  fmt::format("expected one position per row, found {}", positions.size()));
   INCISE_REQUIRE(vertices_per_aggregate > 0,
                  fmt::format("expected at least 1 vertex per aggregate, found {}", vertices_per_aggregate));
   INCISE_REQUIRE(std::all_of(positions.begin(), positions.end(), [](const Vec3& p) { return p.allFinite(); }),
                  "expected finite positions");
-  data_ = std::make_unique<Data>(std::move(pattern), positions, static_cast<std::size_t>(vertices_per_aggregate));
+  data_ = std::make_unique<Data>(std::move(pattern), positions, static_cast<std::size_t>(vertices_per_aggregate),
+                                 precision);
 }
 TwoLevelPcg::~TwoLevelPcg() = default;
 TwoLevelPcg::TwoLevelPcg(TwoLevelPcg&&) noexcept = default;
@@ -150,10 +156,12 @@ void TwoLevelPcg::update(const BlockMatrix& matrix, bool refresh_coarse, Workers
     d.held[v] = identity_axes(block);
   });
   d.coarse.set_held(d.held);
-  if (refresh_coarse || !d.has_coarse) {
+  const bool has_new_coarse = refresh_coarse || !d.has_coarse;
+  if (has_new_coarse) {
     d.coarse.refresh(matrix, workers);
     d.has_coarse = true;
   }
+  if (d.single) d.single->update(matrix, d.inverse_diagonal, d.coarse, has_new_coarse, workers);
 }
 
 PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b, std::span<Vec3> x,
@@ -165,8 +173,10 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
       fmt::format("expected a tolerance above 0 and finite scales, found {}, {} and {}", settings.relative_tolerance,
                   settings.reference_mn, settings.floor_mn));
   INCISE_REQUIRE(matrix.pattern == d.pattern, "expected a matrix of the pattern that the solver was made for");
-  INCISE_REQUIRE(b.size() == d.r.size() && x.size() == d.r.size(),
-                 fmt::format("expected vectors of {} vertices, found {} and {}", d.r.size(), b.size(), x.size()));
+  INCISE_REQUIRE(
+      b.size() == d.pattern->rows() && x.size() == d.pattern->rows(),
+      fmt::format("expected vectors of {} vertices, found {} and {}", d.pattern->rows(), b.size(), x.size()));
+  if (d.single) return d.single->solve(b, x, settings, workers);
   std::copy(b.begin(), b.end(), d.r.begin());
   std::fill(x.begin(), x.end(), Vec3::Zero());
   std::fill(d.p.begin(), d.p.end(), Vec3::Zero());

@@ -30,6 +30,12 @@ struct PcgReport {
   bool is_indefinite = false;  ///< a direction of no or negative stiffness was met
 };
 
+/// The numbers that an iteration works with.
+enum class Precision {
+  Double,
+  Single,  ///< half the bytes and half the time; reaches relative residuals down to about 1e-5
+};
+
 /// Two-level preconditioned conjugate gradients: block-Jacobi plus an additive coarse space of rigid-body modes, one
 /// set of six per aggregate of ~`vertices_per_aggregate` neighbouring vertices (physics of the strategy:
 /// docs/models/solvers.md). Made once per topology and rest positions; `update` refreshes it after the matrix changed
@@ -37,15 +43,16 @@ struct PcgReport {
 class TwoLevelPcg {
  public:
   TwoLevelPcg(std::shared_ptr<const BlockPattern> pattern, std::span<const Vec3> positions,
-              int vertices_per_aggregate = 140);
+              int vertices_per_aggregate = 140, Precision precision = Precision::Double);
   ~TwoLevelPcg();
   TwoLevelPcg(TwoLevelPcg&&) noexcept;
   TwoLevelPcg& operator=(TwoLevelPcg&&) noexcept;
 
-  /// Takes the diagonal blocks of `matrix`, and with `refresh_coarse` its coarse matrix too. Throws InvalidArgument if
+  /// Takes the diagonal blocks of `matrix` (in single precision: all of it), and with `refresh_coarse` its coarse matrix too. Throws InvalidArgument if
   /// not positive definite.
   void update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers);
-  /// Solves matrix * x = b from x = 0. Deterministic for any thread count.
+  /// Solves matrix * x = b from x = 0. Deterministic for any thread count. In single precision `matrix` has to be that
+  /// of the last update().
   PcgReport solve(const BlockMatrix& matrix, std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings,
                   Workers& workers);
 

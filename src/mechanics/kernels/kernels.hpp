@@ -48,6 +48,18 @@ struct BlockRows {
   const Real* values;
 };
 
+/// The vectors of conjugate gradients in single precision, four numbers per vertex, the last one 0.
+struct PcgVectors {
+  float* x;
+  float* r;
+  float* z;
+  float* p;
+  float* q;
+  const float* inverse_diagonal;  ///< 12 per vertex: three columns of four
+  const float* arm;               ///< from the aggregate's centre, over its radius
+  const float* is_free;           ///< 1 along free axes, 0 along held ones
+};
+
 /// One entry per kernel. All work on [begin, end) of their rows and nothing else.
 struct KernelTable {
   double (*sweep_tets)(const TetSweep&);  ///< returns the elastic energy, µJ
@@ -56,6 +68,16 @@ struct KernelTable {
   /// y_i = sum over j of column_j[i] c_j, for a dense n x n matrix stored by columns.
   void (*multiply_dense)(const double* matrix, std::size_t n, const double* c, double* y, std::size_t begin,
                          std::size_t end);
+  /// q = A p; returns p · q. The matrix needs room for 4 numbers beyond its last.
+  double (*multiply_four)(const BlockRows<float>&, const float* p, float* q, std::size_t begin, std::size_t end);
+  /// x += alpha p, r -= alpha q, z = D⁻¹ r; the six numbers of Pᵀ r; adds to |r|² and r · z.
+  void (*move_four)(const PcgVectors&, float alpha, std::size_t begin, std::size_t end, float* restricted, double* rr,
+                    double* rz);
+  /// p = z + (t + ω x arm) on free axes + beta p, with the six numbers (t, ω).
+  void (*turn_four)(const PcgVectors&, float beta, const float* motion, std::size_t begin, std::size_t end);
+  /// y = C c for a dense n x n matrix stored by rows.
+  void (*multiply_dense_rows)(const float* matrix, std::size_t n, const float* c, float* y, std::size_t begin,
+                              std::size_t end);
 };
 
 /// The kernels of active_isa().

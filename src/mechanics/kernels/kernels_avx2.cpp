@@ -1,9 +1,11 @@
 #define INCISE_LANES 4
 #include "mechanics/kernels/block_kernels.inc"
+#include "mechanics/kernels/pcg_kernels.inc"
 #include "mechanics/kernels/tet_kernel.inc"
 
 namespace incise {
 
-const KernelTable kAvx2Kernels{sweep_tets, multiply_double, multiply_float, multiply_dense};
+const KernelTable kAvx2Kernels{sweep_tets,   multiply_double, multiply_float, multiply_dense,
+                                  multiply_four, move_four,       turn_four,      multiply_dense_rows};
 
 }  // namespace incise

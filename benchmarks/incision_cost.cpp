@@ -1,0 +1,196 @@
+// What a whole incision costs: a virtual tongue from CT to stretched tissue, then the same ring cut with several settings.
+//   incise_incision_cost [--tets N] [--threads N] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE]
+// Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4).
+#include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+#include <incise/geometry/contour.hpp>
+#include <incise/imaging/phantom.hpp>
+#include <incise/procedure/incision.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <string_view>
+#include <sys/resource.h>
+
+namespace incise::bench {
+namespace {
+
+double seconds_of(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double peak_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+double load_average() {
+  double loads[1] = {0.0};
+  return getloadavg(loads, 1) == 1 ? loads[0] : -1.0;
+}
+
+/// Gives a study the phantom and keeps nothing.
+class PhantomStore final : public Store {
+ public:
+  explicit PhantomStore(const Phantom& phantom) : phantom_(phantom) {}
+  CtVolume read_ct(Monitor&) override { return phantom_.ct; }
+  std::optional<TetMesh> read_specimen_mesh() override { return {}; }
+  std::optional<Contour> read_tumor_edge() override { return phantom_.tumor_edge; }
+  std::optional<Contour> read_line() override { return {}; }
+  std::optional<ToolPath> read_given_path() override { return {}; }
+  std::optional<Segmentation> load_segmentation() override { return {}; }
+  void save_segmentation(const Segmentation&, double) override {}
+  std::optional<TetMesh> load_mesh() override { return {}; }
+  void save_mesh(const MeshProduct&, double) override {}
+  std::optional<StaticResult> load_stretched(const TissueModel&) override { return {}; }
+  void save_stretched(const TissueModel&, const StaticResult&, double) override {}
+  std::optional<ToolPath> load_plan() override { return {}; }
+  void save_plan(const ToolPath&, double) override {}
+  std::optional<SimulatedCut> load_cut(CutRole) override { return {}; }
+  void save_cut(CutRole, const TissueModel&, const StaticResult&, const SimulatedCut&, double) override {}
+  std::optional<Compensation> load_correction() override { return {}; }
+  void save_correction(const Compensation&, double) override {}
+
+ private:
+  const Phantom& phantom_;
+};
+
+struct Options {
+  int tets = 100000;
+  int threads = 2;
+  int runs = 1;
+  double advance_mm = 0.26;
+  double tolerance = 0.0;  // 0: the default
+  bool is_tight = false;
+  std::string csv;
+};
+
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view name = argv[i];
+    if (name == "--tight") {
+      options.is_tight = true;
+      continue;
+    }
+    INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a value after {}", name));
+    const char* value = argv[++i];
+    if (name == "--tets") {
+      options.tets = std::atoi(value);
+    } else if (name == "--threads") {
+      options.threads = std::atoi(value);
+    } else if (name == "--runs") {
+      options.runs = std::atoi(value);
+    } else if (name == "--advance") {
+      options.advance_mm = std::atof(value);
+    } else if (name == "--tolerance") {
+      options.tolerance = std::atof(value);
+    } else if (name == "--csv") {
+      options.csv = value;
+    } else {
+      throw InvalidArgument(fmt::format("expected --tets, --threads, --runs, --advance, --tolerance, --tight or --csv, found {}", name));
+    }
+  }
+  return options;
+}
+
+/// Mean distance of a contour's points from another contour, mm.
+double mean_distance(const Contour& from, const Contour& to) {
+  double sum = 0.0;
+  for (const Vec3& p : from.points) sum += nearest_on(to, p).distance_mm;
+  return sum / static_cast<double>(from.points.size());
+}
+
+struct Run {
+  IncisionResult result;
+  double wall_s = 0.0;
+  double processor_s = 0.0;
+};
+
+Run cut(const Study& study, const IncisionSettings& settings, int threads) {
+  Workers workers(threads);
+  Monitor silent;
+  Run run;
+  const double processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+  const double wall = seconds_of(CLOCK_MONOTONIC);
+  run.result = simulate_incision(*study.model, study.stretched->state, *study.plan, settings, workers, silent);
+  run.wall_s = seconds_of(CLOCK_MONOTONIC) - wall;
+  run.processor_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor;
+  return run;
+}
+
+int run(const Options& options) {
+  Monitor silent;
+  Workers workers(options.threads);
+  PhantomSettings specimen;
+  const Phantom phantom = make_phantom(specimen, silent);
+  Case settings;
+  settings.is_virtual = true;
+  settings.meshing.tets = options.tets;
+  PhantomStore store(phantom);
+  const Study study = run_study(settings, store, Stage::Plan, workers, silent);
+  fmt::print("{} tets, {} vertices; mesh and stretch ready, {:.0f} MB held at most so far; instruction set {}; path {:.1f} mm\n",
+             study.model->mesh.tets.size(), study.model->mesh.vertices.size(), peak_mb(), to_string(active_isa()),
+             length_mm(entry_contour(*study.plan)));
+
+  IncisionSettings incision;
+  incision.needle = settings.needle;
+  incision.approach = settings.plan.approach;
+  incision.cut = settings.cut;
+  incision.cut.advance_per_step_mm = options.advance_mm;
+  if (options.tolerance > 0.0) incision.cut.residual_tolerance = options.tolerance;
+
+  std::optional<Contour> reference;
+  if (options.is_tight) {
+    IncisionSettings tight = incision;
+    tight.cut.residual_tolerance = 1e-4;
+    Run run = cut(study, tight, options.threads);
+    reference = run.result.centerline;
+    fmt::print("tight run: residual 1e-4, {:.1f} s, {}\n", run.wall_s, to_string(run.result.outcome));
+  }
+  fmt::print("{:>7} {:>6} {:>9} {:>8} {:>9} {:>9} {:>7} {:>8} {:>9} {:>8} {:>10} {:>6}\n", "threads", "steps", "its/step", "wall s",
+             "CPU s", "ms/step", "removed", "signed", "to tight", "MB", "outcome", "load");
+  std::vector<double> walls;
+  for (int i = 0; i < options.runs; ++i) {
+    const Run run = cut(study, incision, options.threads);
+    const IncisionResult& r = run.result;
+    walls.push_back(run.wall_s);
+    double signed_mm = std::nan("");
+    double to_tight = std::nan("");
+    if (r.centerline) {
+      signed_mm = 0.0;
+      for (const Vec3& p : r.centerline->points) signed_mm += nearest_on(study.plan->tumor_edge, p).distance_mm;
+      signed_mm = signed_mm / static_cast<double>(r.centerline->points.size()) - settings.plan.lateral_margin_mm;
+      if (reference) to_tight = mean_distance(*r.centerline, *reference);
+    }
+    const double steps = static_cast<double>(r.steps.size());
+    fmt::print("{:>7} {:>6} {:>9.1f} {:>8.2f} {:>9.2f} {:>9.2f} {:>7} {:>8.3f} {:>9.4f} {:>8.0f} {:>10} {:>6.2f}\n", options.threads,
+               r.steps.size(), static_cast<double>(r.solver_iterations) / steps, run.wall_s, run.processor_s, 1000.0 * run.wall_s / steps,
+               r.record.removals.size(), signed_mm, to_tight, peak_mb(), to_string(r.outcome), load_average());
+    std::fflush(stdout);
+  }
+  std::sort(walls.begin(), walls.end());
+  fmt::print("median wall: {:.2f} s\n", walls[walls.size() / 2]);
+  return 0;
+}
+
+}  // namespace
+}  // namespace incise::bench
+
+int main(int argc, char** argv) {
+  try {
+    return incise::bench::run(incise::bench::parse(argc, argv));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "incise_incision_cost: {}\n", error.what());
+    return 2;
+  }
+}
