@@ -12,8 +12,8 @@ using testing::plane_x;
 
 constexpr double kTraction = 1e-3;  // kPa: small strain
 
-/// Cook's membrane (48 x 44 to 16 mm, plane strain, n x n x 1 cells) at ν = 0.49: rise of its upper right corner, mm per kPa of shear
-/// on the right edge.
+/// Cook's membrane (48 x 44 to 16 mm, plane strain, n x n x 1 cells) at ν = 0.49: rise of its upper right corner, mm
+/// per kPa of shear on the right edge.
 double rise_of_cooks_membrane(MaterialModel law, VolumeTreatment volume, int n) {
   TetMesh mesh = make_block(Vec3::Ones(), {n, n, 1});
   for (Vec3& p : mesh.vertices) p = Vec3(48.0 * p[0], 44.0 * p[0] + p[1] * (44.0 - 28.0 * p[0]), 48.0 / n * p[2]);
@@ -21,9 +21,10 @@ double rise_of_cooks_membrane(MaterialModel law, VolumeTreatment volume, int n) 
   material.model = law;
   material.volume = volume;
   const Region everywhere = BoxRegion{bounding_box(mesh.vertices)};
-  const TissueModel model = make_tissue_model(std::move(mesh), material,
-                                              {FixedConstraint{plane_x(0.0)}, FixedConstraint{everywhere, {false, false, true}},
-                                               TractionConstraint{plane_x(48.0), Vec3(0, kTraction, 0)}});
+  const TissueModel model =
+      make_tissue_model(std::move(mesh), material,
+                        {FixedConstraint{plane_x(0.0)}, FixedConstraint{everywhere, {false, false, true}},
+                         TractionConstraint{plane_x(48.0), Vec3(0, kTraction, 0)}});
   Workers workers(1);
   Monitor monitor;
   const StaticResult result = solve_static(model, StaticSettings{}, workers, monitor);
