@@ -1,6 +1,7 @@
 #include "mechanics/coarse_space.hpp"
 
 #include "mechanics/blas.hpp"
+#include "mechanics/kernels/kernels.hpp"
 
 #include <incise/core/error.hpp>
 
@@ -166,12 +167,7 @@ void CoarseSpace::refresh(const BlockMatrix& matrix, Workers& workers) {
 void CoarseSpace::apply(std::span<const double> c, std::span<double> y, Workers& workers) const {
   const std::size_t n = size();
   workers.for_chunks(n, kCoarseRowsPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::fill(y.begin() + static_cast<std::ptrdiff_t>(begin), y.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-    for (std::size_t j = 0; j < n; ++j) {
-      const double* column = dense_.data() + j * n;
-      const double factor = c[j];
-      for (std::size_t i = begin; i < end; ++i) y[i] += factor * column[i];
-    }
+    kernels().multiply_dense(dense_.data(), n, c.data(), y.data(), begin, end);
   });
 }
 

@@ -32,19 +32,13 @@ Mat3 deformation_gradient(const TissueModel& model, std::span<const Vec3> positi
 }
 
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Tangent tangent, std::vector<Mat3>& turning, Workers& workers) {
+                          Tangent tangent, Workers& workers) {
   check_sizes(model, state, forces.size());
   if (is_plain_corotational(model)) {
-    add_corotational_response(model, state, forces, stiffness, tangent, turning, workers);
+    add_corotational_response(model, state, forces, stiffness, tangent, workers);
   } else {
     add_law_response(model, state, forces, stiffness, tangent, workers);
   }
-}
-
-void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Tangent tangent, Workers& workers) {
-  std::vector<Mat3> turning;
-  add_elastic_response(model, state, forces, stiffness, tangent, turning, workers);
 }
 
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,

@@ -1,4 +1,5 @@
 #include "mechanics/loads.hpp"
+#include "mechanics/tet_batches.hpp"
 #include "mechanics/topology.hpp"
 #include "mechanics/viscous_response.hpp"
 
@@ -79,6 +80,7 @@ TissueModel make_tissue_model(TetMesh mesh, const Material& material, std::vecto
   apply_constraints(model, gravity_mm_s2);
   require_no_rigid_motion(model);
   add_topology(model);
+  model.batches = make_tet_batches(model);
   return model;
 }
 

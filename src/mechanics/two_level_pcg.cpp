@@ -182,8 +182,10 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
     const double rz = d.finish_preconditioning(workers);
     d.turn_direction(report.iterations == 0 ? 0.0 : rz / rz_before, workers);
     const double pq = d.apply_matrix(matrix, workers);
-    if (!(pq > 0.0) || !std::isfinite(rz))
-      return report;  // not positive definite, or not finite: x is the last good iterate
+    if (!(pq > 0.0) || !std::isfinite(rz)) {  // x is the last good iterate
+      report.is_indefinite = true;
+      return report;
+    }
     d.move_and_precondition(rz / pq, x, workers);
     rz_before = rz;
     ++report.iterations;

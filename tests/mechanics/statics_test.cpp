@@ -32,7 +32,8 @@ TEST(SolveStatic, StretchesBy20MmFromRestInOneLoadStep) {
   const StaticResult result = solve(pulled_block(20.0));
   EXPECT_EQ(result.outcome, Outcome::Success);
   EXPECT_EQ(result.load_steps, 1);
-  EXPECT_LE(result.iterations, 8) << "a few steps find which vertices rest on the platform, then the exact tangent converges quadratically";
+  EXPECT_LE(result.iterations, 8)
+      << "a few steps find which vertices rest on the platform, then the exact tangent converges quadratically";
   EXPECT_LE(result.relative_residual, 1e-6);
   EXPECT_EQ(result.inverted_tets, 0U);
   EXPECT_GE(result.max_displacement_mm, 20.0);
@@ -128,6 +129,59 @@ TEST(SolveStatic, GivesTheSameBitsAtAnyThreadCount) {
   const StaticResult one = solve(model, {}, 1);
   EXPECT_EQ(solve(model, {}, 2).state.positions, one.state.positions);
   EXPECT_EQ(solve(model, {}, 4).state.positions, one.state.positions);
+}
+
+TEST(SolveStatic, ConjugateGradientsEndInTheSamePlaceAsCholesky) {
+  const TissueModel model = pulled_block(20.0, {10, 5, 4}, Vec3(0, 0, -9810));
+  StaticSettings settings;
+  settings.relative_tolerance = 1e-8;
+  settings.solver = LinearSolver::Cholesky;
+  const StaticResult direct = solve(model, settings);
+  settings.solver = LinearSolver::ConjugateGradients;
+  const StaticResult iterated = solve(model, settings);
+  ASSERT_EQ(iterated.outcome, Outcome::Success);
+  EXPECT_LE(iterated.relative_residual, 1e-8);
+  EXPECT_GT(iterated.linear_iterations, 0);
+  EXPECT_EQ(direct.linear_iterations, 0);
+  EXPECT_LE(iterated.iterations, direct.iterations + 4) << "inexact steps cost a few more";
+  for (std::size_t v = 0; v < model.mesh.vertices.size(); ++v) {
+    ASSERT_LT((iterated.state.positions[v] - direct.state.positions[v]).norm(), 1e-5);
+  }
+}
+
+TEST(SolveStatic, ChoosesTheSolverByTheSizeOfTheBodyAndSaysSo) {
+  const StaticResult small = solve(pulled_block(20.0));
+  EXPECT_NE(small.solver.find("sparse Cholesky"), std::string::npos) << small.solver;
+  const StaticResult large = solve(pulled_block(5.0, {30, 15, 8}));
+  ASSERT_EQ(large.outcome, Outcome::Success);
+  EXPECT_NE(large.solver.find("conjugate gradients"), std::string::npos) << large.solver;
+}
+
+TEST(SolveStatic, ConjugateGradientsGiveTheSameBitsAtAnyThreadCount) {
+  const TissueModel model = pulled_block(20.0, {12, 7, 5});
+  StaticSettings settings;
+  settings.solver = LinearSolver::ConjugateGradients;
+  const StaticResult one = solve(model, settings, 1);
+  EXPECT_EQ(solve(model, settings, 2).state.positions, one.state.positions);
+}
+
+TEST(SolveStatic, ReportsEveryIterationAndNeverTakesProgressBack) {
+  class Listener : public Monitor {
+   public:
+    void message(Severity, std::string_view text) override { texts.emplace_back(text); }
+    void progress(std::string_view, double fraction) override { fractions.push_back(fraction); }
+    std::vector<std::string> texts;
+    std::vector<double> fractions;
+  };
+  Listener listener;
+  Workers workers(1);
+  StaticSettings settings;
+  settings.first_load_fraction = 0.5;
+  const StaticResult result = solve_static(pulled_block(20.0), settings, workers, listener);
+  ASSERT_EQ(result.outcome, Outcome::Success);
+  EXPECT_EQ(listener.texts.size(), result.residual_history.size());
+  EXPECT_TRUE(std::is_sorted(listener.fractions.begin(), listener.fractions.end()));
+  EXPECT_EQ(listener.fractions.back(), 1.0);
 }
 
 TEST(SolveStatic, SaysWhenItDidNotConverge) {

@@ -8,6 +8,14 @@
 
 namespace incise {
 
+/// Which solver takes the linear systems of Newton's method.
+enum class LinearSolver {
+  Automatic,  ///< by the size of the body; conjugate gradients give way to Cholesky where they fail
+  Cholesky,   ///< sparse factorisation: its cost does not depend on the material, but grows faster than the body
+  ConjugateGradients,  ///< two-level preconditioned: hardly any memory, and cost near that of reading the matrix some
+                       ///< hundred times
+};
+
 struct PcgSettings {
   double relative_tolerance = 1e-2;  ///< stops at |r| <= relative_tolerance * max(reference, floor)
   double reference_mn = 0.0;         ///< scale of the stopping test; 0: |b|
@@ -18,7 +26,8 @@ struct PcgSettings {
 struct PcgReport {
   bool converged = false;
   int iterations = 0;
-  double residual_mn = 0.0;  ///< |r| at the end
+  double residual_mn = 0.0;    ///< |r| at the end
+  bool is_indefinite = false;  ///< a direction of no or negative stiffness was met
 };
 
 /// Two-level preconditioned conjugate gradients: block-Jacobi plus an additive coarse space of rigid-body modes, one

@@ -3,6 +3,7 @@
 #include <incise/core/monitor.hpp>
 #include <incise/core/outcome.hpp>
 #include <incise/core/workers.hpp>
+#include <incise/mechanics/solvers.hpp>
 #include <incise/mechanics/tissue.hpp>
 
 #include <string>
@@ -14,6 +15,7 @@ struct StaticSettings {
   double relative_tolerance = 1e-6;  ///< |free residual| / max(|reactions|, floor)
   int max_newton_iterations = 60;    ///< in all
   double first_load_fraction = 1.0;  ///< of the prescribed displacements; halved by itself when Newton stalls
+  LinearSolver solver = LinearSolver::Automatic;
 };
 
 /// Static equilibrium under the model's constraints.
@@ -22,6 +24,7 @@ struct StaticResult {
   TissueState state;
   int iterations = 0;
   int load_steps = 0;
+  int linear_iterations = 0;  ///< of conjugate gradients, in all
   double relative_residual = 0.0;
   std::vector<double> residual_history;
   std::vector<Vec3> reactions_mn;  ///< one per entry of model.constraints: the force of the constraint on the tissue
@@ -33,7 +36,8 @@ struct StaticResult {
 };
 
 /// Newton with line search on the energy/residual, from `start` (default: rest): the prescribed displacements are
-/// spread over load steps that adapt by themselves. Every failure is an outcome. Cost: one sparse factorisation per
+/// spread over load steps that adapt by themselves. Every failure is an outcome. Cost: one linear system per iteration,
+/// solved exactly by Cholesky or as well as the iteration deserves by conjugate gradients. `monitor` hears of every
 /// iteration.
 [[nodiscard]] StaticResult solve_static(const TissueModel& model, const StaticSettings& settings, Workers& workers,
                                         Monitor& monitor, const TissueState* start = nullptr);

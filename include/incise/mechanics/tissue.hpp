@@ -24,6 +24,8 @@ struct SupportPlane {
   std::vector<double> stiffness;   ///< mN/mm, one per vertex
 };
 
+struct TetBatches;  // the tets in the order and layout of the vectorised kernels: src/mechanics/tet_batches.hpp
+
 /// Everything about the tissue that a simulation does not change. Built once, shared between runs.
 struct TissueModel {
   TetMesh mesh;  ///< rest positions, mm
@@ -48,6 +50,7 @@ struct TissueModel {
   std::vector<std::array<std::int32_t, 16>> tet_slots;  ///< per tet: slot of block (corner a, corner b) at 4 a + b
   std::vector<std::int32_t> vertex_tet_start;           ///< N + 1, into vertex_tets
   std::vector<std::int32_t> vertex_tets;                ///< 4 * tet + corner, ascending: for gathering in fixed order
+  std::shared_ptr<const TetBatches> batches;            ///< a copy of the above for the kernels: to be made anew if that changes
 };
 
 /// Builds the model. Throws CaseError (field "specimen.…") for a material out of range, a region that selects nothing,

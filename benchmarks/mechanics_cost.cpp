@@ -1,0 +1,168 @@
+// Cost of a static stretch against the size of the body, and SOFA's beam: accuracy beside time, as a table and as CSV.
+//   incise_mechanics_cost [--csv FILE] [--large] [--million] [--threads N]
+#include "test_body.hpp"
+
+#include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
+#include <incise/mechanics/motion.hpp>
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <string_view>
+
+namespace incise::bench {
+namespace {
+
+double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Most memory that this process has held so far.
+double peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+struct Row {
+  std::string name;
+  std::size_t tets = 0;
+  std::size_t vertices = 0;
+  double processor_s = 0.0;
+  double wall_s = 0.0;
+  int newton = 0;
+  int linear_iterations = 0;
+  double accuracy = 0.0;       // relative residual of the last equation
+  double bytes_per_tet = 0.0;  // of all that the process holds, at most; 0: not measured
+};
+
+Row stretch(double tets, Workers& workers) {
+  const double before = peak_bytes();
+  const TissueModel model = pulled_block(tets);
+  Monitor silent;
+  const double start = processor_seconds();
+  const StaticResult result = solve_static(model, StaticSettings{}, workers, silent);
+  Row row{"static_stretch", model.mesh.tets.size(), model.mesh.vertices.size()};
+  row.processor_s = processor_seconds() - start;
+  row.wall_s = result.wall_s;
+  row.newton = result.iterations;
+  row.linear_iterations = result.linear_iterations;
+  row.accuracy = result.relative_residual;
+  row.bytes_per_tet = (peak_bytes() - before) / static_cast<double>(row.tets);
+  if (result.outcome != Outcome::Success) row.name += fmt::format(" ({})", to_string(result.outcome));
+  return row;
+}
+
+/// 8 x 26 x 8 vertices, 1000 implicit steps, as in SOFA's pull request 2842, which gives 13.97 s for
+/// TetrahedralCorotational and 5.77 s for FastTetrahedralCorotational but neither material nor step nor machine: a
+/// horizontal beam of 10 x 40 x 10 fixed at one end that falls in gravity, with the material, step and damping of
+/// SOFA's corotational example (data/fem/sofa_corotational_beam), cells in six tets. Each system is solved to 1e-6,
+/// where SOFA stops after 25 iterations wherever it is.
+Row beam(Workers& workers) {
+  constexpr int kSteps = 1000;
+  Material material;
+  material.youngs_modulus_kpa = 1000.0;
+  material.poissons_ratio = 0.3;
+  material.density_kg_m3 = 0.2e9;  // 0.2 per unit of volume
+  const TissueModel model = make_tissue_model(make_block({10, 40, 10}, {7, 25, 7}), material,
+                                              {FixedConstraint{EndRegion{-Vec3::UnitY(), 0.1}}}, Vec3(0, 0, -9));
+  MotionSettings settings;
+  settings.step_s = 0.05;
+  settings.rayleigh_alpha = 0.1;
+  settings.rayleigh_beta = 0.1;
+  settings.solver = LinearSolver::ConjugateGradients;
+  Motion motion = motion_at_rest(model, rest_state(model));
+  MotionWorkspace workspace(model, settings);
+  Row row{"beam_8x26x8_1000_steps", model.mesh.tets.size(), model.mesh.vertices.size()};
+  const double start = processor_seconds();
+  timespec from{};
+  timespec to{};
+  clock_gettime(CLOCK_MONOTONIC, &from);
+  for (int i = 0; i < kSteps; ++i) {
+    const StepReport report = advance_motion(model, motion, settings, workspace, workers);
+    row.newton += report.newton_iterations;
+    row.linear_iterations += report.linear_iterations;
+    row.accuracy = std::max(row.accuracy, report.relative_residual);
+    if (report.outcome != Outcome::Success) row.name = fmt::format("beam: step {} did not converge", i);
+  }
+  clock_gettime(CLOCK_MONOTONIC, &to);
+  row.processor_s = processor_seconds() - start;
+  row.wall_s = static_cast<double>(to.tv_sec - from.tv_sec) + 1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec);
+  return row;
+}
+
+/// Slope of log(time) over log(tets), by least squares.
+double exponent(const std::vector<Row>& rows) {
+  double n = 0.0;
+  double x = 0.0;
+  double y = 0.0;
+  double xx = 0.0;
+  double xy = 0.0;
+  for (const Row& row : rows) {
+    const double a = std::log(static_cast<double>(row.tets));
+    const double b = std::log(row.processor_s);
+    n += 1.0;
+    x += a;
+    y += b;
+    xx += a * a;
+    xy += a * b;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+int run(int argc, char** argv) {
+  std::string csv;
+  std::vector<double> sizes{10e3, 30e3, 100e3};
+  int threads = 1;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--large") {
+      sizes.push_back(300e3);
+    } else if (argument == "--million") {
+      sizes.push_back(1e6);
+    } else if (argument == "--csv" && i + 1 < argc) {
+      csv = argv[++i];
+    } else if (argument == "--threads" && i + 1 < argc) {
+      threads = std::atoi(argv[++i]);
+    } else {
+      fmt::print(stderr, "expected [--csv FILE] [--large] [--million] [--threads N], found {}\n", argument);
+      return 2;
+    }
+  }
+  Workers workers(threads);
+  std::vector<Row> rows;
+  for (const double size : sizes) rows.push_back(stretch(size, workers));
+  const double slope = exponent(rows);
+  rows.push_back(beam(workers));
+  std::string table =
+      "name,tets,vertices,threads,processor_s,wall_s,newton,linear_iterations,relative_residual,bytes_per_tet,isa,"
+      "commit\n";
+  for (const Row& row : rows) {
+    table += fmt::format("{},{},{},{},{:.3f},{:.3f},{},{},{:.1e},{:.0f},{},{}\n", row.name, row.tets, row.vertices,
+                         threads, row.processor_s, row.wall_s, row.newton, row.linear_iterations, row.accuracy,
+                         row.bytes_per_tet, to_string(active_isa()), source_commit());
+  }
+  fmt::print("{}processor time of the stretch grows as tets^{:.2f}\n", table, slope);
+  if (!csv.empty()) {
+    std::ofstream file(csv);
+    file << table;
+    if (!file.flush()) {
+      fmt::print(stderr, "cannot write {}\n", csv);
+      return 3;
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace incise::bench
+
+int main(int argc, char** argv) {
+  return incise::bench::run(argc, argv);
+}

@@ -1,0 +1,59 @@
+#include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <atomic>
+
+namespace incise {
+namespace {
+
+constexpr std::array kAll{Isa::Portable, Isa::Avx2, Isa::Avx512};
+
+std::atomic<Isa>& chosen() {
+  static std::atomic<Isa> isa{best_isa()};
+  return isa;
+}
+
+}  // namespace
+
+Isa parse_isa(std::string_view name) {
+  for (const Isa isa : kAll) {
+    if (name == to_string(isa)) return isa;
+  }
+  INCISE_REQUIRE(false, fmt::format("expected portable, avx2 or avx512, found \"{}\"", name));
+  return Isa::Portable;
+}
+
+bool is_supported(Isa isa) {
+#if defined(__x86_64__)
+  const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (isa == Isa::Avx2) return has_avx2;
+  if (isa == Isa::Avx512) {
+    return has_avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+  }
+#endif
+  return isa == Isa::Portable;
+}
+
+Isa best_isa() {
+  Isa best = Isa::Portable;
+  for (const Isa isa : kAll) {
+    if (is_supported(isa)) best = isa;
+  }
+  return best;
+}
+
+Isa active_isa() {
+  return chosen().load();
+}
+
+void set_isa(Isa isa) {
+  INCISE_REQUIRE(is_supported(isa), fmt::format("expected an instruction set of this machine, up to {}, found {}",
+                                                to_string(best_isa()), to_string(isa)));
+  chosen() = isa;
+}
+
+}  // namespace incise

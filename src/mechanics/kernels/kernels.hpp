@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// What the vectorised kernels see: plain arrays only. Each kernel source is compiled once per instruction set; a
+// template or inline function of Eigen or std in it could be picked by the linker for code that must run on any
+// machine.
+
+namespace incise {
+
+inline constexpr int kBatchTets = 8;  ///< tets stored side by side; a multiple of every kernel's number of lanes
+
+/// Eight tets, structure of arrays. Corners are sorted by vertex number, so that block (a, b) with a < b lies above the
+/// diagonal.
+struct alignas(64) TetBatch {
+  double gradients[3][3][kBatchTets];  ///< of the shape functions of corners 1 to 3, per axis, 1/mm; corner 0 is minus
+                                       ///< their sum
+  double lambda[kBatchTets];           ///< volume times λ, µJ; 0 in places without a tet
+  double mu[kBatchTets];               ///< volume times μ, µJ
+  std::int32_t vertices[4][kBatchTets];
+  std::int32_t slots[10][kBatchTets];  ///< of the blocks 00 01 02 03 11 12 13 22 23 33
+  std::int32_t tets[kBatchTets];       ///< -1: no tet here
+};
+
+enum class SweepTangent { None, FrozenRotations, Exact, Projected };
+
+/// One pass over some batches: rotations, and what is asked for of forces, tangent and energy.
+struct TetSweep {
+  const TetBatch* batches;
+  std::size_t count;
+  const double* positions;      ///< 3 per vertex, mm
+  const std::uint8_t* is_live;  ///< per tet
+  const double* rotations;      ///< 9 per tet, by columns: where Newton's method starts
+  double* new_rotations;        ///< the same array, or null: not kept
+  double* forces;               ///< 3 per vertex, added to, mN; null: not wanted
+  double* values;  ///< 9 per block, by rows, those on and above the diagonal added to, mN/mm; null: not wanted
+  SweepTangent tangent;
+  /// Rotation of one tet (f and r by rows, r holds the guess) where Newton's method is not sure to find the maximum.
+  void (*robust_rotation)(const double* f, double* r);
+};
+
+/// Rows of a matrix of 3 x 3 blocks.
+template <class Real>
+struct BlockRows {
+  const std::int32_t* row_start;
+  const std::int32_t* column;
+  const Real* values;
+};
+
+/// One entry per kernel. All work on [begin, end) of their rows and nothing else.
+struct KernelTable {
+  double (*sweep_tets)(const TetSweep&);  ///< returns the elastic energy, µJ
+  void (*multiply_double)(const BlockRows<double>&, const double* x, double* y, std::size_t begin, std::size_t end);
+  void (*multiply_float)(const BlockRows<float>&, const float* x, float* y, std::size_t begin, std::size_t end);
+  /// y_i = sum over j of column_j[i] c_j, for a dense n x n matrix stored by columns.
+  void (*multiply_dense)(const double* matrix, std::size_t n, const double* c, double* y, std::size_t begin,
+                         std::size_t end);
+};
+
+/// The kernels of active_isa().
+[[nodiscard]] const KernelTable& kernels();
+
+extern const KernelTable kPortableKernels;
+#if defined(INCISE_X86_KERNELS)
+extern const KernelTable kAvx2Kernels;
+extern const KernelTable kAvx512Kernels;
+#endif
+
+}  // namespace incise

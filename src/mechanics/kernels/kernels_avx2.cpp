@@ -1,0 +1,9 @@
+#define INCISE_LANES 4
+#include "mechanics/kernels/block_kernels.inc"
+#include "mechanics/kernels/tet_kernel.inc"
+
+namespace incise {
+
+const KernelTable kAvx2Kernels{sweep_tets, multiply_double, multiply_float, multiply_dense};
+
+}  // namespace incise

@@ -1,0 +1,137 @@
+#include "mechanics/tet_batches.hpp"
+
+#include "mechanics/aggregates.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace incise {
+namespace {
+
+constexpr std::size_t kTetsPerRun = 504;  // 63 batches: work for some 50 µs, and few vertices shared with other runs
+constexpr std::size_t kRowsPerChunk = 512;
+
+/// Tets in runs of nearly kTetsPerRun that lie close together.
+Aggregates group_tets(const TissueModel& model) {
+  Points centroids(model.mesh.tets.size());
+  for (std::size_t t = 0; t < centroids.size(); ++t) {
+    Vec3 sum = Vec3::Zero();
+    for (const VertexId v : model.mesh.tets[t]) sum += model.mesh.vertices[v.index()];
+    centroids[t] = 0.25 * sum;
+  }
+  return bisect(centroids, kTetsPerRun);
+}
+
+/// The first colour that no run with a common vertex has, run by run.
+std::vector<int> color_runs(const TissueModel& model, const Aggregates& runs) {
+  std::vector<int> color(runs.count(), -1);
+  std::vector<char> is_taken;
+  for (std::size_t run = 0; run < runs.count(); ++run) {
+    is_taken.assign(is_taken.size(), 0);
+    for (auto i = runs.start[run]; i < runs.start[run + 1]; ++i) {
+      const auto tet = static_cast<std::size_t>(runs.vertices[static_cast<std::size_t>(i)]);
+      for (const VertexId v : model.mesh.tets[tet]) {
+        for (auto k = model.vertex_tet_start[v.index()]; k < model.vertex_tet_start[v.index() + 1]; ++k) {
+          const std::int32_t other = model.vertex_tets[static_cast<std::size_t>(k)] / 4;
+          const int taken = color[static_cast<std::size_t>(runs.of_vertex[static_cast<std::size_t>(other)])];
+          if (taken >= 0) is_taken[static_cast<std::size_t>(taken)] = 1;
+        }
+      }
+    }
+    const auto free = std::find(is_taken.begin(), is_taken.end(), 0);
+    color[run] = static_cast<int>(free - is_taken.begin());
+    if (free == is_taken.end()) is_taken.push_back(0);
+  }
+  return color;
+}
+
+void put_tet(const TissueModel& model, std::size_t tet, TetBatch& batch, std::size_t lane) {
+  const Tet& corners = model.mesh.tets[tet];
+  std::array<std::size_t, 4> order{0, 1, 2, 3};
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return corners[a].index() < corners[b].index(); });
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      batch.gradients[c][i][lane] = model.gradients[tet][order[c + 1]][static_cast<Eigen::Index>(i)];
+    }
+  }
+  batch.lambda[lane] = model.volumes_mm3[tet] * model.lame[tet].lambda_kpa;
+  batch.mu[lane] = model.volumes_mm3[tet] * model.lame[tet].mu_kpa;
+  std::size_t pair = 0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    batch.vertices[a][lane] = corners[order[a]].value;
+    for (std::size_t b = a; b < 4; ++b) batch.slots[pair++][lane] = model.tet_slots[tet][4 * order[a] + order[b]];
+  }
+  batch.tets[lane] = static_cast<std::int32_t>(tet);
+}
+
+/// Neighbours in the run go to one lane of successive batches, not to the lanes of one batch: those would add to the
+/// same blocks one right after the other, and each would wait for the store before it.
+void add_run(const TissueModel& model, std::span<const std::int32_t> tets, TetBatches& result) {
+  const std::size_t first = result.batches.size();
+  const std::size_t count = (tets.size() + kBatchTets - 1) / kBatchTets;
+  TetBatch empty{};
+  std::fill(std::begin(empty.tets), std::end(empty.tets), -1);
+  result.batches.resize(first + count, empty);
+  for (std::size_t i = 0; i < tets.size(); ++i) {
+    put_tet(model, static_cast<std::size_t>(tets[i]), result.batches[first + i % count], i / count);
+  }
+  result.run_start.push_back(static_cast<std::int32_t>(result.batches.size()));
+}
+
+}  // namespace
+
+std::vector<std::int32_t> transposed_slots(const BlockPattern& pattern) {
+  std::vector<std::int32_t> mirror(pattern.blocks());
+  std::vector<std::int32_t> next(pattern.row_start.begin(), pattern.row_start.end() - 1);
+  // Rows ascend, so the blocks of one column are met in the order in which its row lists them.
+  for (std::size_t row = 0; row < pattern.rows(); ++row) {
+    for (auto slot = pattern.row_start[row]; slot < pattern.row_start[row + 1]; ++slot) {
+      const std::int32_t column = pattern.column[static_cast<std::size_t>(slot)];
+      mirror[static_cast<std::size_t>(slot)] = next[static_cast<std::size_t>(column)]++;
+    }
+  }
+  return mirror;
+}
+
+std::shared_ptr<const TetBatches> make_tet_batches(const TissueModel& model) {
+  auto result = std::make_shared<TetBatches>();
+  const Aggregates runs = group_tets(model);
+  const std::vector<int> color = color_runs(model, runs);
+  std::vector<std::size_t> order(runs.count());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return color[a] < color[b]; });
+  result->batches.reserve(model.mesh.tets.size() / kBatchTets + runs.count());
+  result->run_start.push_back(0);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || color[order[i]] != color[order[i - 1]]) result->color_start.push_back(static_cast<std::int32_t>(i));
+    const auto begin = static_cast<std::size_t>(runs.start[order[i]]);
+    const auto end = static_cast<std::size_t>(runs.start[order[i] + 1]);
+    add_run(model, std::span(runs.vertices).subspan(begin, end - begin), *result);
+  }
+  result->color_start.push_back(static_cast<std::int32_t>(runs.count()));
+  result->mirror = transposed_slots(*model.pattern);
+  return result;
+}
+
+void mirror_upper(BlockMatrix& matrix, std::span<const std::int32_t> mirror, Workers& workers) {
+  const BlockPattern& pattern = *matrix.pattern;
+  workers.for_each(pattern.rows(), kRowsPerChunk, [&](std::size_t row) {
+    for (auto slot = pattern.row_start[row]; slot < pattern.diagonal[row]; ++slot) {
+      const double* from = matrix.block(mirror[static_cast<std::size_t>(slot)]);
+      double* to = matrix.block(slot);
+      to[0] = from[0];
+      to[1] = from[3];
+      to[2] = from[6];
+      to[3] = from[1];
+      to[4] = from[4];
+      to[5] = from[7];
+      to[6] = from[2];
+      to[7] = from[5];
+      to[8] = from[8];
+    }
+  });
+}
+
+}  // namespace incise

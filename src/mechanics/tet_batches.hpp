@@ -1,0 +1,36 @@
+#pragma once
+
+#include "mechanics/kernels/kernels.hpp"
+
+#include <incise/mechanics/tissue.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace incise {
+
+/// The tets of a model in runs of batches that lie close together. Runs of one colour share no vertex, so threads can
+/// add to forces and matrix at once; colours follow each other, and a run's batches too: every sum has one order,
+/// whatever the number of threads.
+struct TetBatches {
+  std::vector<TetBatch> batches;
+  std::vector<std::int32_t> run_start;    ///< runs + 1, into `batches`; runs of one colour stand together
+  std::vector<std::int32_t> color_start;  ///< colours + 1, into the runs
+  std::vector<std::int32_t> mirror;       ///< per block of the matrix: where its transpose stands
+
+  [[nodiscard]] std::size_t runs() const { return run_start.size() - 1; }
+  [[nodiscard]] std::size_t colors() const { return color_start.size() - 1; }
+};
+
+/// Built from the model's mesh, gradients, volumes, Lamé parameters, pattern and slots.
+[[nodiscard]] std::shared_ptr<const TetBatches> make_tet_batches(const TissueModel& model);
+
+/// For each block of a symmetric pattern the slot of its transpose.
+[[nodiscard]] std::vector<std::int32_t> transposed_slots(const BlockPattern& pattern);
+
+/// Copies the transposes of the blocks above the diagonal to those below it.
+void mirror_upper(BlockMatrix& matrix, std::span<const std::int32_t> mirror, Workers& workers);
+
+}  // namespace incise
