@@ -14,12 +14,16 @@
 
 namespace incise {
 
-/// A support plane and the stiffness with which it pushes a vertex back, mN/mm per vertex (penalty, chosen from the
-/// material and the vertex's surface area so that penetration stays below 0.05 mm under the loads of a clamped tongue).
+class HolderContact;
+
+/// A support plane, or a holder's surface in its place, and the stiffness with which it pushes a vertex back, mN/mm per
+/// vertex (penalty, chosen from the material and the vertex's surface area so that penetration stays below 0.05 mm under
+/// the loads of a clamped tongue).
 struct SupportPlane {
   std::size_t constraint = 0;  ///< index into TissueModel::constraints
   Vec3 point_mm = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();     ///< unit
+  std::shared_ptr<const HolderContact> holder;  ///< null: the plane; shared, because the model is copied
   std::vector<VertexId> vertices;  ///< boundary vertices that can move along the normal
   std::vector<double> stiffness;   ///< mN/mm, one per vertex
 };
@@ -106,11 +110,12 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
 /// static solution.
 void end_viscous_step(const TissueModel& model, TissueState& state, double step_s, Workers& workers);
 
-/// Adds the push of the support planes (no pull) and, with `stiffness`, its tangent.
+/// Adds the push of the supports (no pull) and, with `stiffness`, its tangent k n nᵀ: exact on a plane and on the flat
+/// parts of a holder, without the turn of the normal where the nearest place is an edge or a corner.
 void add_support_response(const TissueModel& model, const TissueState& state, std::span<Vec3> forces,
                           BlockMatrix* stiffness);
 
-/// Energy stored by the support planes' push, µJ, and the depth of the vertex that lies deepest behind one, mm (0: none
+/// Energy stored by the supports' push, µJ, and the depth of the vertex that lies deepest behind one, mm (0: none
 /// does).
 [[nodiscard]] double support_energy_uj(const TissueModel& model, const TissueState& state);
 [[nodiscard]] double support_penetration_mm(const TissueModel& model, const TissueState& state);
