@@ -91,6 +91,7 @@ py::dict simulate(const CaseFile& file, const std::filesystem::path& output, int
   Study study;
   try {
     const py::gil_scoped_release release;
+    require_plan_inputs(file);
     require_input_files(file);
     Workers workers(threads);
     FolderStore store(file, output, {"incise.simulate (Python)", 1, workers.thread_count()});

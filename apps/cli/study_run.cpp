@@ -23,16 +23,11 @@ std::filesystem::path output_of(const std::filesystem::path& case_path, const Co
   return (std::filesystem::is_directory(case_path) ? case_path : case_path.parent_path()) / "out";
 }
 
-namespace {
-
-/// Before anything is written: the files that the case names.
 CaseFile case_with_inputs(const std::filesystem::path& case_path) {
   CaseFile file = read_case(case_path);
   require_input_files(file);
   return file;
 }
-
-}  // namespace
 
 StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options)
     : is_new_folder(!std::filesystem::exists(output)), store(case_with_inputs(case_path), output, options.context()) {
@@ -48,8 +43,13 @@ StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem
 
 Study StudyRun::run(Stage until, const CommonOptions& options, Monitor& monitor) {
   Workers workers(options.threads);
+  const CaseFile& file = store.case_file();
   try {
-    return run_study(store.case_file().settings, store, until, workers, monitor);
+    if (until >= Stage::Plan || file.inputs.specimen_mesh.empty()) require_plan_inputs(file);
+    return run_study(file.settings, store, until, workers, monitor);
+  } catch (const CaseError& error) {
+    remove_if_nothing_was_made();
+    throw error.in_file(file.file.string());
   } catch (...) {
     remove_if_nothing_was_made();
     throw;

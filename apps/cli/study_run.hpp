@@ -20,6 +20,9 @@ struct StudyRun {
   void remove_if_nothing_was_made() const;
 };
 
+/// The case, and the files that it names looked for, before anything is written. @throws CaseError, DataError
+[[nodiscard]] CaseFile case_with_inputs(const std::filesystem::path& case_path);
+
 /// Where the results of a case go when -o is not given: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
 

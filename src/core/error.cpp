@@ -22,6 +22,17 @@ std::string compose(const std::string& where, const std::string& place, const st
 CaseError::CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint)
     : Error(compose(where, field, found, expected, hint)), field_(std::move(field)) {}
 
+CaseError CaseError::in_file(const std::string& file) const {
+  // The message is "<where>: <field>: found …"; what stands before the field, or before "found" where there is none, is the place.
+  const std::string text = what();
+  const std::size_t end = text.find(field_.empty() ? ": found " : fmt::format(": {}: found ", field_));
+  const std::string where = text.substr(0, end);
+  if (where.starts_with(file)) return *this;
+  CaseError named = *this;
+  static_cast<Error&>(named) = Error((where == "case" ? file : fmt::format("{}: {}", file, where)) + text.substr(end));
+  return named;
+}
+
 DataError::DataError(const std::filesystem::path& path, std::string place, std::string found, std::string expected,
                      std::string hint)
     : Error(compose(path.string(), place, found, expected, hint)), path_(path) {}

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -14,7 +15,7 @@ constexpr int kCoarseRefreshSteps = 20;        // the coarse matrix of the preco
 constexpr int kVerticesPerAggregate = 140;
 constexpr double kForceFloorMn = 5.0;          // scale of the stopping test when hardly anything is held
 constexpr double kLeastShare = 0.02;           // of a touched tet's volume that the tool holds: a corner is still held
-constexpr double kFragmentShare = 0.01;        // of the live tets: smaller loose parts are cut away with the kerf
+constexpr double kFragmentShare = 0.01;        // of the body's volume at rest: smaller loose parts are cut away with the kerf
 constexpr int kMomentsPerStep = 4;             // intervals in which the distance to the tool is followed within a step
 
 }  // namespace
@@ -27,6 +28,7 @@ struct CutWorkspace::Data {
   Points right_side;
   Points increment;
   Points before;
+  double body_volume_mm3 = 0.0;            // at rest, uncut
   int steps_since_refresh = kCoarseRefreshSteps;
 
   Data(const TissueModel& model, std::span<const Vec3> positions)
@@ -35,7 +37,8 @@ struct CutWorkspace::Data {
         matrix(model.pattern),
         solver(model.pattern, positions, kVerticesPerAggregate, Precision::Single),
         right_side(model.mesh.vertices.size()),
-        increment(model.mesh.vertices.size()) {
+        increment(model.mesh.vertices.size()),
+        body_volume_mm3(std::accumulate(model.volumes_mm3.begin(), model.volumes_mm3.end(), 0.0)) {
     for (std::size_t v = 0; v < is_anchored.size(); ++v) {
       const auto& fixed = model.is_fixed[v];
       is_anchored[v] = fixed[0] || fixed[1] || fixed[2] ? 1 : 0;
@@ -62,13 +65,27 @@ Vec3 shaft_end(const ToolPose& tool, const Needle& needle) { return tool.tip_mm 
 
 Vec3 centroid(const std::array<Vec3, 4>& corners) { return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]); }
 
+/// Norm over all vertices of what each is given in all, mN.
+double norm_of_sums(std::vector<std::pair<VertexId, Vec3>> pulls) {
+  std::stable_sort(pulls.begin(), pulls.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  double squared = 0.0;
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < pulls.size(); ++i) {
+    sum += pulls[i].second;
+    if (i + 1 < pulls.size() && pulls[i + 1].first == pulls[i].first) continue;
+    squared += sum.squaredNorm();
+    sum.setZero();
+  }
+  return std::sqrt(squared);
+}
+
 /// Adds the pull of the tool on bonded tets, as if it were at `next` already, and its exact (constant) tangent.
 /// The share of a tet that is held is that of the last pose, so the pull is linear in the step.
 /// @returns the stiffness of each bond, mN/mm, in their order; `scale` receives the norm of the pulls over all vertices, mN.
 std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Needle& needle, const CutState& state,
                const ToolPose& next, std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
   std::vector<double> stiffnesses;
-  double squared = 0.0;
+  std::vector<std::pair<VertexId, Vec3>> pulls;  // on vertices, one entry per tet that shares the vertex
   const double limit = needle.radius_mm() + settings.reach_mm;
   // Drag acts across the needle's axis; tissue may slide along it.
   const Mat3 across = Mat3::Identity() - next.axis * next.axis.transpose();
@@ -78,17 +95,18 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
     const double stiffness = settings.bond_stiffness_kpa_mm2 * model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
     const Vec3 pull = -stiffness * (across * (centroid(corners) - next.tip_mm - bond.offset_mm));
     stiffnesses.push_back(stiffness);
-    squared += pull.squaredNorm() / 4.0;
     const Mat3 block = stiffness / 16.0 * across;
     for (std::size_t a = 0; a < 4; ++a) {
-      forces[model.mesh.tets[bond.tet.index()][a].index()] += 0.25 * pull;
+      const VertexId v = model.mesh.tets[bond.tet.index()][a];
+      forces[v.index()] += 0.25 * pull;
+      pulls.emplace_back(v, 0.25 * pull);
       for (std::size_t b = 0; b < 4; ++b) {
         Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
             matrix.block(model.tet_slots[bond.tet.index()][4 * a + b])) += block;
       }
     }
   }
-  scale = std::sqrt(squared);
+  scale = norm_of_sums(std::move(pulls));
   return stiffnesses;
 }
 
@@ -226,7 +244,8 @@ void carve(const TissueModel& model, const CutSettings& settings, CutState& stat
   if (due.empty()) return;
   for (const TetId tet : due) remove(model, state, tet, RemovalCause::Dwell);
   const std::vector<TetId> loose =
-      loose_fragments(model.mesh, scratch.neighbours, state.tissue.is_live, scratch.is_anchored, kFragmentShare);
+      loose_fragments(model.mesh, model.volumes_mm3, scratch.neighbours, state.tissue.is_live, scratch.is_anchored, due,
+                      kFragmentShare * scratch.body_volume_mm3);
   for (const TetId tet : loose) remove(model, state, tet, RemovalCause::LooseFragment);
   std::erase_if(state.bonds, [&](const Bond& bond) { return state.tissue.is_live[bond.tet.index()] == 0; });
   report.removed = due.size();
@@ -241,7 +260,13 @@ CutStepReport advance(const TissueModel& model, const CutSettings& settings, con
   CutWorkspace::Data& scratch = workspace.data();
   CutStepReport report;
   scratch.before = state.tissue.positions;
-  if (!next) state.bonds.clear();
+  if (!next) {
+    state.bonds.clear();
+  } else if (next->axis != state.tool.axis) {
+    // What the tool holds turns with it.
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(state.tool.axis, next->axis);
+    for (Bond& bond : state.bonds) bond.offset_mm = turn * bond.offset_mm;
+  }
   move_tissue(model, settings, needle, state, scratch, next, step_s, workers, report);
   state.time_s += step_s;
   ++state.step;

@@ -1,6 +1,7 @@
 #include "fragments.hpp"
 
 #include <algorithm>
+#include <unordered_map>
 
 namespace incise {
 
@@ -34,33 +35,44 @@ std::vector<std::array<std::int32_t, 4>> face_neighbours(const TetMesh& mesh) {
   return neighbours;
 }
 
-std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const std::array<std::int32_t, 4>> neighbours,
+std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> volumes_mm3,
+                                   std::span<const std::array<std::int32_t, 4>> neighbours,
                                    std::span<const std::uint8_t> is_live, std::span<const std::uint8_t> is_anchored,
-                                   double share) {
-  const std::size_t count = mesh.tets.size();
-  std::vector<std::uint8_t> is_seen(count, 0);
+                                   std::span<const TetId> removed, double least_mm3) {
+  enum class Part : std::uint8_t { Unknown, Visited, Held };
+  std::unordered_map<std::int32_t, Part> parts;
   std::vector<std::int32_t> part;
   std::vector<TetId> loose;
-  std::size_t live = 0;
-  for (const std::uint8_t flag : is_live) live += flag;
 
-  for (std::size_t seed = 0; seed < count; ++seed) {
-    if (is_live[seed] == 0 || is_seen[seed] != 0) continue;
-    part.assign(1, static_cast<std::int32_t>(seed));
-    is_seen[seed] = 1;
-    bool touches_anchor = false;
-    for (std::size_t next = 0; next < part.size(); ++next) {
+  // A part that became loose touches what was removed. The search in it ends as soon as it is known to be large or held.
+  const auto search = [&](std::int32_t seed) {
+    part.assign(1, seed);
+    parts[seed] = Part::Visited;
+    double volume = 0.0;
+    bool is_held = false;
+    for (std::size_t next = 0; next < part.size() && !is_held; ++next) {
       const auto tet = static_cast<std::size_t>(part[next]);
-      for (const VertexId v : mesh.tets[tet]) touches_anchor = touches_anchor || is_anchored[v.index()] != 0;
+      volume += volumes_mm3[tet];
+      is_held = volume >= least_mm3;
+      for (const VertexId v : mesh.tets[tet]) is_held = is_held || is_anchored[v.index()] != 0;
       for (const std::int32_t neighbour : neighbours[tet]) {
         if (neighbour < 0 || is_live[static_cast<std::size_t>(neighbour)] == 0) continue;
-        if (is_seen[static_cast<std::size_t>(neighbour)] != 0) continue;
-        is_seen[static_cast<std::size_t>(neighbour)] = 1;
+        Part& known = parts[neighbour];
+        is_held = is_held || known == Part::Held;
+        if (known != Part::Unknown) continue;
+        known = Part::Visited;
         part.push_back(neighbour);
       }
     }
-    if (touches_anchor || static_cast<double>(part.size()) >= share * static_cast<double>(live)) continue;
-    for (const std::int32_t tet : part) loose.emplace_back(static_cast<std::size_t>(tet));
+    for (const std::int32_t tet : part) {
+      parts[tet] = Part::Held;  // of a loose part, too: it is dealt with
+      if (!is_held) loose.emplace_back(static_cast<std::size_t>(tet));
+    }
+  };
+  for (const TetId gone : removed) {
+    for (const std::int32_t seed : neighbours[gone.index()]) {
+      if (seed >= 0 && is_live[static_cast<std::size_t>(seed)] != 0 && parts[seed] == Part::Unknown) search(seed);
+    }
   }
   std::sort(loose.begin(), loose.end());
   return loose;

@@ -13,6 +13,12 @@ ToolPose pose_of(const Waypoint& waypoint) {
   return {waypoint.position_mm + waypoint.depth_mm * waypoint.axis, waypoint.axis};
 }
 
+/// How far a tool goes from one pose to another: the way of its tip or, where it only turns, that of the point `depth_mm` behind the tip.
+double travel_mm(const ToolPose& from, const ToolPose& to, double depth_mm) {
+  const double tip = (to.tip_mm - from.tip_mm).norm();
+  return tip > 0.0 ? tip : depth_mm * (to.axis - from.axis).norm();
+}
+
 void require_usable(const ToolPath& path) {
   const std::size_t least = path.is_closed ? 3 : 2;
   INCISE_REQUIRE(path.frame == PathFrame::SimStretched,
@@ -41,7 +47,7 @@ ToolProgram::ToolProgram(const ToolPath& path, const CutSettings& settings) {
   keys_.push_back({0.0, {first.position_mm, first.axis}, Phase::Plunge});
 
   const auto move_to = [&](const ToolPose& pose, Phase phase) {
-    const double distance = (pose.tip_mm - keys_.back().pose.tip_mm).norm();
+    const double distance = travel_mm(keys_.back().pose, pose, first.depth_mm);
     if (distance > 0.0) keys_.push_back({keys_.back().time_s + distance / speed, pose, phase});
   };
   move_to(pose_of(first), Phase::Plunge);

@@ -1,5 +1,7 @@
 #include "mechanics/loads.hpp"
 
+#include "mechanics/holder_contact.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 
@@ -16,6 +18,9 @@ constexpr const char* kWhere = "case";
 /// A support pushes back with the pressure of the tissue's Young's modulus at this depth, so that pressures of up to E
 /// stay within it.
 constexpr double kPenetrationAtModulusMm = 0.05;
+/// Deepest that a vertex may lie inside a holder at rest, as a mesh and a scan of the same contact differ; from deeper,
+/// the nearest way out need not be the one that the tissue came by.
+constexpr double kDeepestStartMm = 2.0;
 /// Smallest share of the largest eigenvalue at which a rigid motion counts as stopped.
 constexpr double kLeastMotionShare = 1e-10;
 constexpr const char* kAxisNames = "xyz";
@@ -96,25 +101,60 @@ class ConstraintApplier {
   }
 
   void apply_one(const SupportConstraint& support) {
+    SupportPlane plane = support.holder ? holder_of(*support.holder) : plane_of(support);
+    plane.constraint = index_;
+    std::vector<double> stiffness(model_.mesh.vertices.size(), 0.0);
+    for (const BoundaryFace& face : skin_) {
+      const double share = youngs_modulus(face.tet) / kPenetrationAtModulusMm * area_vector(face).norm() / 3.0;
+      for (const VertexId v : face.corners) stiffness[v.index()] += share;
+    }
+    for (std::size_t v = 0; v < stiffness.size(); ++v) {
+      // A holder's normal may point anywhere, a plane's only one way.
+      const Vec3 push = plane.holder ? Vec3::Ones().eval() : plane.normal;
+      if (stiffness[v] == 0.0 || !can_move_along(push, v)) continue;
+      if (plane.holder) require_outside(*plane.holder, v);
+      plane.vertices.emplace_back(v);
+      plane.stiffness.push_back(stiffness[v]);
+    }
+    model_.supports.push_back(std::move(plane));
+  }
+
+  [[nodiscard]] SupportPlane plane_of(const SupportConstraint& support) const {
     require_finite("plane.point_mm", support.point_mm);
     const double length = support.normal.norm();
     if (!std::isfinite(length) || length < 1e-12) {
       throw CaseError(kWhere, field("plane.normal"), text_of(support.normal), "a direction");
     }
     SupportPlane plane;
-    plane.constraint = index_;
     plane.point_mm = support.point_mm;
     plane.normal = support.normal / length;
-    std::vector<double> area(model_.mesh.vertices.size(), 0.0);
-    for (const BoundaryFace& face : skin_) {
-      for (const VertexId v : face.corners) area[v.index()] += area_vector(face).norm() / 3.0;
+    return plane;
+  }
+
+  [[nodiscard]] SupportPlane holder_of(const HolderSurface& holder) const {
+    SupportPlane plane;
+    try {
+      plane.holder = std::make_shared<HolderContact>(holder.surface);
+    } catch (const InvalidArgument& problem) {
+      throw CaseError(kWhere, field("surface"), fmt::format("an unusable surface, '{}'", holder.name),
+                      "triangles, oriented alike, with normals towards the tissue", problem.what());
     }
-    for (std::size_t v = 0; v < area.size(); ++v) {
-      if (area[v] == 0.0 || !can_move_along(plane.normal, v)) continue;
-      plane.vertices.emplace_back(v);
-      plane.stiffness.push_back(model_.material.youngs_modulus_kpa / kPenetrationAtModulusMm * area[v]);
-    }
-    model_.supports.push_back(std::move(plane));
+    return plane;
+  }
+
+  void require_outside(const HolderContact& holder, std::size_t v) const {
+    const SupportGap start = holder.gap(model_.mesh.vertices[v]);
+    if (start.gap_mm >= -kDeepestStartMm) return;
+    throw CaseError(kWhere, field("surface"),
+                    fmt::format("vertex {} at {} mm, {:.3g} mm inside the holder before anything moves", v,
+                                text_of(model_.mesh.vertices[v]), -start.gap_mm),
+                    fmt::format("at most {:g} mm", kDeepestStartMm),
+                    "The holder must lie in the specimen's frame (mm, LPS), with normals towards the tissue");
+  }
+
+  [[nodiscard]] double youngs_modulus(TetId tet) const {
+    const LameParameters& lame = model_.lame[tet.index()];
+    return lame.mu_kpa * (3.0 * lame.lambda_kpa + 2.0 * lame.mu_kpa) / (lame.lambda_kpa + lame.mu_kpa);
   }
 
   [[nodiscard]] bool can_move_along(const Vec3& direction, std::size_t v) const {
@@ -126,20 +166,13 @@ class ConstraintApplier {
 
   void apply_one(const TractionConstraint& traction) {
     require_finite("traction_kpa", traction.traction_kpa);
-    std::vector<std::uint8_t> is_inside(model_.mesh.vertices.size(), 0);
-    for (const VertexId v : selected(traction.where)) is_inside[v.index()] = 1;
-    bool is_loaded = false;
-    for (const BoundaryFace& face : skin_) {
-      if (!std::all_of(face.corners.begin(), face.corners.end(),
-                       [&](VertexId v) { return is_inside[v.index()] != 0; })) {
-        continue;
-      }
-      is_loaded = true;
-      const Vec3 load = area_vector(face).norm() * traction.traction_kpa;
-      for (const VertexId v : face.corners) model_.dead_load_mn[v.index()] += load / 3.0;
-      model_.applied_load_mn[index_] += load;
+    static_cast<void>(selected(traction.where));  // says what is wrong with the region
+    const std::vector<VertexLoad> loads = vertex_loads(model_.mesh, skin_, traction);
+    if (loads.empty()) throw nothing_selected("boundary face");
+    for (const VertexLoad& load : loads) {
+      model_.dead_load_mn[load.vertex.index()] += load.force_mn;
+      model_.applied_load_mn[index_] += load.force_mn;
     }
-    if (!is_loaded) throw nothing_selected("boundary face");
   }
 
   [[nodiscard]] Vec3 area_vector(const BoundaryFace& face) const {

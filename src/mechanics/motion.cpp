@@ -113,14 +113,14 @@ class Step {
       }
       find_forces(is_first ? Tangent::FrozenRotations : Tangent::Exact, is_first);
       const double size = norm(scratch_.right, free_);
-      if (is_first) scale = size;
+      if (is_first) scale = std::max(size, least_scale());
       if (!std::isfinite(size)) break;
-      report.relative_residual = scale > 0.0 ? size / scale : 0.0;
-      if (scale == 0.0 || (!is_first && report.relative_residual <= settings_.relative_tolerance)) {
+      report.relative_residual = size / scale;
+      if (is_first ? size == 0.0 && !is_carried_ : report.relative_residual <= settings_.relative_tolerance) {
         report.outcome = Outcome::Success;
         break;
       }
-      if (i == settings_.max_newton_iterations || !find_increment(is_first, scale / size)) break;
+      if (i == settings_.max_newton_iterations || !find_increment(is_first, size > 0.0 ? scale / size : 1.0)) break;
       for (std::size_t v = 0; v < free_.size(); ++v) {
         tissue_.positions[v] += scratch_.increment[v];
         if (is_first) tissue_.positions[v] += scratch_.moved[v];
@@ -136,6 +136,7 @@ class Step {
     for (std::size_t v = 0; v < free_.size(); ++v) {
       motion.velocities_mm_s[v] = (tissue_.positions[v] - motion.tissue.positions[v]) / settings_.step_s;
     }
+    end_viscous_step(model_, tissue_, settings_.step_s, workers_);
     motion.tissue = std::move(tissue_);
     motion.time_s += settings_.step_s;
   }
@@ -150,8 +151,8 @@ class Step {
     std::fill(values.begin(), values.end(), 0.0);
     add_elastic_response(model_, tissue_, right, &scratch_.matrix, tangent, workers_);
     add_damping(is_first);
+    add_viscous_response(model_, tissue_, settings_.step_s, right, &scratch_.matrix, tangent, workers_);
     add_support_response(model_, tissue_, right, &scratch_.matrix);
-    // Viscous materials: their forces over this step and tangent belong here.
     if (settings_.has_inertia) add_inertia();
     if (is_first && is_carried_) {  // held vertices take the tissue with them, by the linear response
       multiply(scratch_.matrix, scratch_.moved, scratch_.product, workers_);
@@ -188,9 +189,17 @@ class Step {
     }
   }
 
+  /// A force far below any that deforms the body but above rounding: what a step's residual is compared with when
+  /// hardly anything moves.
+  [[nodiscard]] double least_scale() const {
+    const double size = bounding_box(model_.mesh.vertices).diagonal().norm();
+    return 1e-6 * model_.material.youngs_modulus_kpa * size * size;
+  }
+
   /// Solves for the increment; where the exact tangent is not positive definite, with the projected one.
   bool find_increment(bool is_first, double scale_over_size) {
-    const double tolerance = std::min(0.5, 0.5 * settings_.relative_tolerance * scale_over_size);
+    const double tolerance = is_first ? 0.5 * settings_.relative_tolerance
+                                      : std::min(0.5, 0.5 * settings_.relative_tolerance * scale_over_size);
     hold_constrained(model_, scratch_.matrix, scratch_.right, scratch_.loose);
     TangentSolver::End end =
         scratch_.solver.solve(scratch_.matrix, scratch_.right, scratch_.increment, tolerance, workers_);

@@ -1,5 +1,7 @@
 #include "mechanics/reactions.hpp"
 
+#include "mechanics/support.hpp"
+
 namespace incise {
 
 Points free_axes(const TissueModel& model, const TissueState& state) {
@@ -30,8 +32,8 @@ std::vector<Vec3> reactions(const TissueModel& model, const TissueState& state, 
   }
   for (const SupportPlane& plane : model.supports) {
     for (std::size_t i = 0; i < plane.vertices.size(); ++i) {
-      const double gap = (state.positions[plane.vertices[i].index()] - plane.point_mm).dot(plane.normal);
-      if (gap < 0.0) result[plane.constraint] -= plane.stiffness[i] * gap * plane.normal;
+      const SupportGap at = support_gap(plane, state.positions[plane.vertices[i].index()]);
+      if (at.gap_mm < 0.0) result[plane.constraint] -= plane.stiffness[i] * at.gap_mm * at.normal;
     }
   }
   return result;

@@ -5,6 +5,8 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/mesh_io.hpp>
+#include <incise/io/surface_io.hpp>
 #include <incise/storage/case_file.hpp>
 
 #include <fmt/format.h>
@@ -63,11 +65,35 @@ void require_inputs(const CaseFile& file, const std::string& name) {
   if (!in.ct_volume.empty() && !in.specimen_mesh.empty()) {
     throw CaseError(name, "specimen.mesh", "a CT and a mesh", "only one of ct.volume and specimen.mesh");
   }
-  if (file.settings.plan.kind == PlanKind::Ring && in.tumor_contour.empty()) {
-    throw CaseError(name, "tumor.contour", "nothing", "the tumour edge that the ring goes round");
+}
+
+/// Labels that are listed twice, or without anything that sets them apart.
+void require_consistent_labels(const std::vector<LabelMaterial>& labels, const std::string& name) {
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const std::string field = fmt::format("specimen.material.labels[{}]", i);
+    if (!labels[i].youngs_modulus_kpa && !labels[i].poissons_ratio) {
+      throw CaseError(name, field, fmt::format("label {} without a value", labels[i].label), "youngs_modulus_kpa, poissons_ratio or both");
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (labels[j].label == labels[i].label) {
+        throw CaseError(name, field, fmt::format("label {} again", labels[i].label), "each label once");
+      }
+    }
   }
-  if (file.settings.plan.kind == PlanKind::Line && in.line_contour.empty()) {
-    throw CaseError(name, "plan.line", "nothing", "the curve of the open cut");
+}
+
+/// Reads the surfaces that supports name.
+void read_holders(CaseFile& file, const std::string& name) {
+  if (!file.settings.constraints) return;
+  for (std::size_t i = 0; i < file.settings.constraints->size(); ++i) {
+    auto* support = std::get_if<SupportConstraint>(&(*file.settings.constraints)[i]);
+    if (support == nullptr || !support->holder) continue;
+    const std::filesystem::path path = (file.folder / support->holder->name).lexically_normal();
+    if (!std::filesystem::exists(path)) {
+      throw DataError(path, "", "no such file", fmt::format("what {} names as specimen.constraints[{}].surface", name, i));
+    }
+    support->holder = std::make_shared<HolderSurface>(HolderSurface{support->holder->name, read_surface(path)});
+    file.inputs.holders.push_back(path);
   }
 }
 
@@ -101,8 +127,31 @@ CaseFile read_case(const std::filesystem::path& file_or_folder) {
     if (!path->empty()) *path = (file.folder / *path).lexically_normal();
   }
   require_consistent(file, name);
+  require_consistent_labels(file.settings.variation.labels, name);
   require_inputs(file, name);
+  read_holders(file, name);
   return file;
+}
+
+void require_plan_inputs(const CaseFile& file) {
+  const std::string name = file.file.string();
+  if (file.settings.plan.kind == PlanKind::Ring && file.inputs.tumor_contour.empty()) {
+    throw CaseError(name, "tumor.contour", "nothing", "the tumour edge that the ring goes round");
+  }
+  if (file.settings.plan.kind == PlanKind::Line && file.inputs.line_contour.empty()) {
+    throw CaseError(name, "plan.line", "nothing", "the curve of the open cut");
+  }
+}
+
+TetMesh read_specimen_mesh(const CaseFile& file) {
+  const std::filesystem::path& path = file.inputs.specimen_mesh;
+  INCISE_REQUIRE(!path.empty(), "expected a case that names a mesh");
+  TetMesh mesh = read_tet_mesh(path);
+  const std::vector<MeshProblem> problems = find_problems(mesh);
+  if (problems.empty()) return mesh;
+  std::string others;
+  for (std::size_t i = 1; i < problems.size(); ++i) others += (i > 1 ? "; also " : "Also ") + problems[i].text;
+  throw DataError(path, "", problems.front().text, "one body of sound tets", others);
 }
 
 void require_input_files(const CaseFile& file) {

@@ -90,17 +90,54 @@ void describe_meshing(MeshingChoice& m, FieldVisitor& v) {
   v.end_group();
 }
 
+void describe_viscosity(Material& m, FieldVisitor& v) {
+  static constexpr std::array<Column, 2> kColumns{{
+      {{"shear_share", "", "Shear modulus of the branch over the long-time one."}, kPositive},
+      {{"time_s", "s", "Relaxation time."}, kPositive},
+  }};
+  std::vector<Row> rows;
+  for (const PronyTerm& term : m.prony) rows.push_back({term.shear_share, term.time_s});
+  v.table({"prony", "", "Branches that relax with time, in steps of time only; absent: none."}, kColumns, rows);
+  m.prony.clear();
+  for (const Row& row : rows) m.prony.push_back({*row[0], *row[1]});
+  v.number({"kelvin_voigt_time_s", "s", "Shear viscosity over long-time shear modulus, in steps of time only; 0: none."},
+           m.kelvin_voigt_time_s, kNotNegative);
+}
+
+void describe_labels(std::vector<LabelMaterial>& labels, FieldVisitor& v) {
+  static constexpr std::array<Column, 3> kColumns{{
+      {{"label", "", "Value of the mesh's cell array 'label'."}, {-1e9, 1e9}, true, true},
+      {{"youngs_modulus_kpa", "kPa", "Young's modulus there; absent: as elsewhere."}, kPositive, false},
+      {{"poissons_ratio", "", "Poisson's ratio there; absent: as elsewhere."}, {0.0, 0.5, false, true}, false},
+  }};
+  std::vector<Row> rows;
+  for (const LabelMaterial& l : labels) rows.push_back({static_cast<double>(l.label), l.youngs_modulus_kpa, l.poissons_ratio});
+  v.table({"labels", "", "Parts of the mesh with another stiffness, by the cell array 'label'; absent: none."}, kColumns, rows);
+  labels.clear();
+  for (const Row& row : rows) labels.push_back({static_cast<int>(*row[0]), row[1], row[2]});
+}
+
 void describe_specimen(CaseFile& file, FieldVisitor& v) {
   Case& c = file.settings;
   v.begin_group({"specimen", "", "What the tissue is and how it is held."});
   v.path({"mesh", "", "A tetrahedral mesh (mm, LPS) to use in place of a CT."}, file.inputs.specimen_mesh);
   v.begin_group({"material", "", "The tissue's law."});
-  static constexpr std::array<const char*, 1> kModels{"corotational"};
-  choice(v, {"model", "", "Corotational linear tetrahedra, as in the paper."}, c.material.model, kModels);
+  static constexpr std::array<const char*, 2> kModels{"corotational", "stable_neo_hookean"};
+  choice(v, {"model", "", "Linear elasticity in a frame that turns with each tet, as in the paper; or a hyperelastic law."},
+         c.material.model, kModels);
+  static constexpr std::array<const char*, 2> kVolumes{"per_tet", "averaged"};
+  choice(v, {"volume", "", "How volume change is resisted: tet by tet (locks as Poisson's ratio nears 0.5), or as a mean about each vertex."},
+         c.material.volume, kVolumes);
   v.number({"youngs_modulus_kpa", "kPa", "Young's modulus; the paper's 70 is about ten times published tongue stiffness."},
            c.material.youngs_modulus_kpa, kPositive);
   v.number({"poissons_ratio", "", "Poisson's ratio."}, c.material.poissons_ratio, {0.0, 0.5, false, true});
   v.number({"density_kg_m3", "kg/m3", "Density."}, c.material.density_kg_m3, kPositive);
+  v.number({"fibre_modulus_kpa", "kPa", "Stiffness added along the fibres; 0: none."}, c.material.fibre_modulus_kpa, kNotNegative);
+  v.direction({"fibre_direction", "", "Of the fibres at rest, where the mesh gives none."}, c.material.fibre_direction);
+  describe_viscosity(c.material, v);
+  v.flag({"from_mesh", "", "Whether the mesh's cell data youngs_modulus_kpa, poissons_ratio and fibre_direction hold, as far as they are there."},
+         c.variation.from_mesh);
+  describe_labels(c.variation.labels, v);
   v.end_group();
   v.constraints({"constraints", "mm",
                  "List of fixed, displaced, support and traction; absent: posterior 15 mm clamped, anterior 10 mm pulled 20 mm "

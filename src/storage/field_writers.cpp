@@ -32,6 +32,13 @@ nlohmann::ordered_json region_schema() {
   properties["end"] = {{"type", "object"}, {"properties", {{"direction", direction_schema()}, {"within_mm", positive}}},
                        {"required", {"direction", "within_mm"}}, {"additionalProperties", false},
                        {"description", "vertices at most within_mm from the body's extreme point along direction"}};
+  properties["plane"] = {{"type", "object"},
+                         {"properties", {{"point_mm", vector_schema()}, {"normal", direction_schema()},
+                                         {"within_mm", {{"type", "number"}, {"minimum", 0}}}}},
+                         {"required", {"point_mm", "normal"}}, {"additionalProperties", false},
+                         {"description", "vertices on the plane or on its normal's side; with within_mm: at most that far from "
+                                         "the plane, on either side"}};
+  properties["cell_array"] = {{"type", "string"}, {"description", "NAME=VALUE of a cell array of the mesh: the corners of those tets"}};
   properties["point_array"] = {{"type", "string"}, {"description", "NAME=VALUE of a point array of the mesh"}};
   return {{"type", "object"}, {"properties", properties}, {"minProperties", 1}, {"maxProperties", 1},
           {"additionalProperties", false}};
@@ -78,6 +85,23 @@ void SchemaWriter::integer(const FieldInfo& info, int& value, const Range& range
   add(info, std::move(schema));
 }
 
+void SchemaWriter::flag(const FieldInfo& info, bool& value) { add(info, {{"type", "boolean"}, {"default", value}}); }
+
+void SchemaWriter::table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>&) {
+  nlohmann::ordered_json properties = nlohmann::ordered_json::object();
+  std::vector<std::string> required;
+  for (const Column& column : columns) {
+    nlohmann::ordered_json schema = number_schema(column.range, column.is_whole ? "integer" : "number");
+    schema["description"] = column.info.meaning;
+    if (*column.info.unit != '\0') schema["x-unit"] = column.info.unit;
+    properties[column.info.name] = std::move(schema);
+    if (column.is_required) required.emplace_back(column.info.name);
+  }
+  add(info, {{"type", "array"},
+             {"items", {{"type", "object"}, {"properties", std::move(properties)}, {"required", required},
+                        {"additionalProperties", false}}}});
+}
+
 void SchemaWriter::text(const FieldInfo& info, std::string& value) { add(info, {{"type", "string"}, {"default", value}}); }
 
 void SchemaWriter::path(const FieldInfo& info, std::filesystem::path&) { add(info, {{"type", "string"}}); }
@@ -113,6 +137,10 @@ void SchemaWriter::constraints(const FieldInfo& info, std::optional<std::vector<
                                     {"default", "xyz"}}}}, {"where"}));
   kinds.push_back(constraint_schema("displaced", {{"where", region_schema()}, {"displacement_mm", vector_schema()}},
                                     {"where", "displacement_mm"}));
+  nlohmann::ordered_json holder = constraint_schema(
+      "support", {{"surface", {{"type", "string"}, {"description", "triangles of a holder, normals towards the tissue (mm, LPS)"}}}},
+      {"surface"});
+  kinds.push_back(std::move(holder));
   kinds.push_back(constraint_schema("support",
                                     {{"plane", {{"type", "object"}, {"properties", {{"point_mm", vector_schema()},
                                      {"normal", direction_schema()}}}, {"required", {"point_mm", "normal"}},
@@ -136,6 +164,20 @@ void SettingLister::end_group() { groups_.pop_back(); }
 void SettingLister::number(const FieldInfo& info, double& value, const Range&) { add(info, fmt::format("{}", value)); }
 
 void SettingLister::integer(const FieldInfo& info, int& value, const Range&) { add(info, fmt::format("{}", value)); }
+
+void SettingLister::flag(const FieldInfo& info, bool& value) { add(info, value ? "true" : "false"); }
+
+void SettingLister::table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) {
+  std::vector<std::string> lines;
+  for (const Row& row : rows) {
+    std::vector<std::string> cells;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (row[c]) cells.push_back(fmt::format("{}: {}", columns[c].info.name, *row[c]));
+    }
+    lines.push_back(fmt::format("{{{}}}", fmt::join(cells, ", ")));
+  }
+  add(info, rows.empty() ? std::string() : fmt::format("[{}]", fmt::join(lines, ", ")));
+}
 
 void SettingLister::text(const FieldInfo& info, std::string& value) { add(info, value); }
 
@@ -170,7 +212,13 @@ std::string shown(const Region& region) {
       return fmt::format("{{end: {{direction: [{}, {}, {}], within_mm: {}}}}}", r.direction.x(), r.direction.y(),
                          r.direction.z(), r.within_mm);
     }
+    std::string operator()(const PlaneRegion& r) const {
+      return fmt::format("{{plane: {{point_mm: [{}, {}, {}], normal: [{}, {}, {}]{}}}}}", r.point_mm.x(), r.point_mm.y(),
+                         r.point_mm.z(), r.normal.x(), r.normal.y(), r.normal.z(),
+                         r.within_mm ? fmt::format(", within_mm: {}", *r.within_mm) : std::string());
+    }
     std::string operator()(const PointArrayRegion& r) const { return fmt::format("{{point_array: {}={}}}", r.name, r.value); }
+    std::string operator()(const CellArrayRegion& r) const { return fmt::format("{{cell_array: {}={}}}", r.name, r.value); }
   };
   return std::visit(Show{}, region);
 }
@@ -186,6 +234,7 @@ std::string shown(const Constraint& constraint) {
                          c.displacement_mm.y(), c.displacement_mm.z());
     }
     std::string operator()(const SupportConstraint& c) const {
+      if (c.holder) return fmt::format("{{kind: support, surface: \"{}\"}}", c.holder->name);
       return fmt::format("{{kind: support, plane: {{point_mm: [{}, {}, {}], normal: [{}, {}, {}]}}}}", c.point_mm.x(),
                          c.point_mm.y(), c.point_mm.z(), c.normal.x(), c.normal.y(), c.normal.z());
     }

@@ -19,11 +19,13 @@ class SchemaWriter : public FieldVisitor {
   void end_group() override;
   void number(const FieldInfo& info, double& value, const Range& range) override;
   void integer(const FieldInfo& info, int& value, const Range& range) override;
+  void flag(const FieldInfo& info, bool& value) override;
   void text(const FieldInfo& info, std::string& value) override;
   void path(const FieldInfo& info, std::filesystem::path& value) override;
   void choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) override;
   void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) override;
   void direction(const FieldInfo& info, Vec3& value) override;
+  void table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) override;
   void constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) override;
   /// Properties of the outermost level.
   [[nodiscard]] nlohmann::ordered_json properties() const { return levels_.front(); }
@@ -49,11 +51,13 @@ class SettingLister : public FieldVisitor {
   void end_group() override;
   void number(const FieldInfo& info, double& value, const Range& range) override;
   void integer(const FieldInfo& info, int& value, const Range& range) override;
+  void flag(const FieldInfo& info, bool& value) override;
   void text(const FieldInfo& info, std::string& value) override;
   void path(const FieldInfo& info, std::filesystem::path& value) override;
   void choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) override;
   void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) override;
   void direction(const FieldInfo& info, Vec3& value) override;
+  void table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) override;
   void constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) override;
   [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
 

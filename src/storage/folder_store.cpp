@@ -83,6 +83,9 @@ const std::string& FolderStore::key(Product product) {
   if (product == Product::Mesh || product == Product::Plan) {
     text += fmt::format(" tumor={} line={}", input_hash(file_.inputs.tumor_contour), input_hash(file_.inputs.line_contour));
   }
+  if (product == Product::Mesh) {
+    for (const std::filesystem::path& holder : file_.inputs.holders) text += fmt::format(" holder={}", input_hash(holder));
+  }
   if (product == Product::AsPlanned) text += fmt::format(" path={}", input_hash(file_.inputs.tool_path));
   key = sha256_of_text(text);
   return key;
@@ -107,7 +110,9 @@ void FolderStore::write_manifest_to(const std::filesystem::path& folder, double 
   manifest.wall_s = wall_s;
   manifest.machine = machine_description();
   const CaseInputs& in = file_.inputs;
-  for (const std::filesystem::path& path : {file_.file, in.ct_volume, in.specimen_mesh, in.tumor_contour, in.line_contour, in.tool_path}) {
+  std::vector<std::filesystem::path> inputs{file_.file, in.ct_volume, in.specimen_mesh, in.tumor_contour, in.line_contour, in.tool_path};
+  inputs.insert(inputs.end(), in.holders.begin(), in.holders.end());
+  for (const std::filesystem::path& path : inputs) {
     if (!path.empty()) manifest.inputs.push_back({std::filesystem::absolute(path).lexically_proximate(file_.folder).string(), input_hash(path)});
   }
   write_manifest(folder, manifest);
@@ -137,7 +142,7 @@ CtVolume FolderStore::read_ct(Monitor& monitor) {
 
 std::optional<TetMesh> FolderStore::read_specimen_mesh() {
   if (file_.inputs.specimen_mesh.empty()) return std::nullopt;
-  return read_tet_mesh(file_.inputs.specimen_mesh);
+  return incise::read_specimen_mesh(file_);
 }
 
 std::optional<Contour> FolderStore::read_tumor_edge() {

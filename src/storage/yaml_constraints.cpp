@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace incise {
 
 YAML::Node YamlReader::required(const YAML::Node& map, const char* key, const std::string& field, const char* expected) const {
@@ -12,9 +14,11 @@ YAML::Node YamlReader::required(const YAML::Node& map, const char* key, const st
 
 Region YamlReader::read_region(const YAML::Node& node, const std::string& field) const {
   require_map(node, field);
-  if (node.size() == 0) refuse(node, field, "an empty group", "box_mm, sphere, end or point_array");
-  refuse_unknown_keys(node, field, {"box_mm", "sphere", "end", "point_array"});
-  if (node.size() != 1) refuse(node, field, fmt::format("{} regions", node.size()), "one of box_mm, sphere, end, point_array");
+  if (node.size() == 0) refuse(node, field, "an empty group", "box_mm, sphere, end, plane, point_array or cell_array");
+  refuse_unknown_keys(node, field, {"box_mm", "sphere", "end", "plane", "point_array", "cell_array"});
+  if (node.size() != 1) {
+    refuse(node, field, fmt::format("{} regions", node.size()), "one of box_mm, sphere, end, plane, point_array, cell_array");
+  }
   if (const YAML::Node box = node["box_mm"]; box.IsDefined()) {
     std::array<double, 6> v{};
     read_numbers(box, field + ".box_mm", v, kAny);
@@ -41,14 +45,56 @@ Region YamlReader::read_region(const YAML::Node& node, const std::string& field)
                                    field + ".end.within_mm", kPositive);
     return region;
   }
-  const YAML::Node array = node["point_array"];
-  const std::string text = array.IsScalar() ? array.Scalar() : std::string();
+  if (const YAML::Node plane = node["plane"]; plane.IsDefined()) return read_plane_region(plane, field + ".plane");
+  if (const YAML::Node cells = node["cell_array"]; cells.IsDefined()) {
+    const auto [name, value] = read_name_and_value(cells, field + ".cell_array");
+    return CellArrayRegion{name, value};
+  }
+  const auto [name, value] = read_name_and_value(node["point_array"], field + ".point_array");
+  return PointArrayRegion{name, value};
+}
+
+PlaneRegion YamlReader::read_plane_region(const YAML::Node& node, const std::string& field) const {
+  require_map(node, field);
+  refuse_unknown_keys(node, field, {"point_mm", "normal", "within_mm"});
+  PlaneRegion region;
+  read_numbers(required(node, "point_mm", field, "point_mm and normal"), field + ".point_mm", {region.point_mm.data(), 3}, kAny);
+  region.normal = read_direction(required(node, "normal", field, "point_mm and normal"), field + ".normal");
+  if (const YAML::Node within = node["within_mm"]; within.IsDefined()) {
+    region.within_mm = read_number(within, field + ".within_mm", kNotNegative);
+  }
+  return region;
+}
+
+std::pair<std::string, double> YamlReader::read_name_and_value(const YAML::Node& node, const std::string& field) const {
+  const std::string text = node.IsScalar() ? node.Scalar() : std::string();
   const std::size_t equals = text.find('=');
   double value = 0.0;
-  if (equals == std::string::npos || equals == 0 || !YAML::convert<double>::decode(YAML::Node(text.substr(equals + 1)), value)) {
-    refuse(array, field + ".point_array", "'" + text + "'", "NAME=VALUE, such as clamp=1");
+  if (equals == std::string::npos || equals == 0 || !YAML::convert<double>::decode(YAML::Node(text.substr(equals + 1)), value) ||
+      !std::isfinite(value)) {
+    refuse(node, field, "'" + text + "'", "NAME=VALUE, such as clamp=1");
   }
-  return PointArrayRegion{text.substr(0, equals), value};
+  return {text.substr(0, equals), value};
+}
+
+SupportConstraint YamlReader::read_support(const YAML::Node& node, const std::string& field) const {
+  refuse_unknown_keys(node, field, {"kind", "plane", "surface"});
+  SupportConstraint constraint;
+  if (const YAML::Node surface = node["surface"]; surface.IsDefined()) {
+    if (node["plane"].IsDefined()) refuse(node, field, "a plane and a surface", "only one of plane and surface");
+    if (!surface.IsScalar() || surface.Scalar().empty()) {
+      refuse(surface, field + ".surface", "no name", "a file with triangles: .stl, .ply, .obj or .vtp");
+    }
+    constraint.holder = std::make_shared<HolderSurface>(HolderSurface{surface.Scalar(), {}});  // read_case fills it
+    return constraint;
+  }
+  const YAML::Node plane = required(node, "plane", field, "plane: {point_mm, normal}, or surface: FILE");
+  require_map(plane, field + ".plane");
+  refuse_unknown_keys(plane, field + ".plane", {"point_mm", "normal"});
+  read_numbers(required(plane, "point_mm", field + ".plane", "point_mm and normal"), field + ".plane.point_mm",
+               {constraint.point_mm.data(), 3}, kAny);
+  constraint.normal = read_direction(required(plane, "normal", field + ".plane", "point_mm and normal"), field + ".plane.normal");
+  return constraint;
 }
 
 Constraint YamlReader::read_constraint(const YAML::Node& node, const std::string& field) const {
@@ -76,18 +122,7 @@ Constraint YamlReader::read_constraint(const YAML::Node& node, const std::string
                  {constraint.displacement_mm.data(), 3}, kAny);
     return constraint;
   }
-  if (kind == "support") {
-    refuse_unknown_keys(node, field, {"kind", "plane"});
-    const YAML::Node plane = required(node, "plane", field, "plane: {point_mm, normal}");
-    require_map(plane, field + ".plane");
-    refuse_unknown_keys(plane, field + ".plane", {"point_mm", "normal"});
-    SupportConstraint constraint;
-    read_numbers(required(plane, "point_mm", field + ".plane", "point_mm and normal"), field + ".plane.point_mm",
-                 {constraint.point_mm.data(), 3}, kAny);
-    constraint.normal =
-        read_direction(required(plane, "normal", field + ".plane", "point_mm and normal"), field + ".plane.normal");
-    return constraint;
-  }
+  if (kind == "support") return read_support(node, field);
   if (kind == "traction") {
     refuse_unknown_keys(node, field, {"kind", "where", "traction_kpa"});
     TractionConstraint constraint{read_region(required(node, "where", field, "where it acts"), field + ".where"), Vec3::Zero()};

@@ -131,6 +131,12 @@ void YamlReader::integer(const FieldInfo& info, int& value, const Range& range) 
   value = static_cast<int>(number);
 }
 
+void YamlReader::flag(const FieldInfo& info, bool& value) {
+  const YAML::Node node = take(info.name);
+  if (!node.IsDefined()) return;
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) refuse(node, field(info.name), shown(node), "true or false");
+}
+
 void YamlReader::text(const FieldInfo& info, std::string& value) {
   const YAML::Node node = take(info.name);
   if (!node.IsDefined()) return;
@@ -163,6 +169,35 @@ void YamlReader::numbers(const FieldInfo& info, std::span<double> values, bool& 
   if (!node.IsDefined()) return;
   read_numbers(node, field(info.name), values, range);
   is_given = true;
+}
+
+void YamlReader::table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) {
+  const YAML::Node list = take(info.name);
+  if (!list.IsDefined()) return;
+  if (!list.IsSequence()) refuse(list, field(info.name), shown(list), "a list of groups");
+  std::vector<std::string> known;
+  for (const Column& column : columns) known.emplace_back(column.info.name);
+  rows.clear();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const YAML::Node entry = list[i];
+    const std::string place = fmt::format("{}[{}]", field(info.name), i);
+    require_map(entry, place);
+    refuse_unknown_keys(entry, place, known);
+    Row row;
+    for (const Column& column : columns) {
+      const YAML::Node value = entry[column.info.name];
+      const std::string cell = fmt::format("{}.{}", place, column.info.name);
+      if (!value.IsDefined()) {
+        if (column.is_required) refuse(entry, place, fmt::format("no `{}`", column.info.name), column.info.meaning);
+        row.emplace_back();
+        continue;
+      }
+      const double number = read_number(value, cell, column.range);
+      if (column.is_whole && number != std::floor(number)) refuse(value, cell, value.Scalar(), "a whole number");
+      row.emplace_back(number);
+    }
+    rows.push_back(std::move(row));
+  }
 }
 
 Vec3 YamlReader::read_direction(const YAML::Node& node, const std::string& field) const {

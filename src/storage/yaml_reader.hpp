@@ -21,11 +21,13 @@ class YamlReader : public FieldVisitor {
   void end_group() override;
   void number(const FieldInfo& info, double& value, const Range& range) override;
   void integer(const FieldInfo& info, int& value, const Range& range) override;
+  void flag(const FieldInfo& info, bool& value) override;
   void text(const FieldInfo& info, std::string& value) override;
   void path(const FieldInfo& info, std::filesystem::path& value) override;
   void choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) override;
   void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) override;
   void direction(const FieldInfo& info, Vec3& value) override;
+  void table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) override;
   void constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) override;
 
   /// Refuses keys of the outermost level that no field asked for. Call once, after the walk.
@@ -47,6 +49,9 @@ class YamlReader : public FieldVisitor {
   void refuse_unknown_keys(const YAML::Node& node, const std::string& field, const std::vector<std::string>& known) const;
   [[nodiscard]] Vec3 read_direction(const YAML::Node& node, const std::string& field) const;
   [[nodiscard]] Region read_region(const YAML::Node& node, const std::string& field) const;
+  [[nodiscard]] PlaneRegion read_plane_region(const YAML::Node& node, const std::string& field) const;
+  [[nodiscard]] std::pair<std::string, double> read_name_and_value(const YAML::Node& node, const std::string& field) const;
+  [[nodiscard]] SupportConstraint read_support(const YAML::Node& node, const std::string& field) const;
   [[nodiscard]] Constraint read_constraint(const YAML::Node& node, const std::string& field) const;
   [[nodiscard]] YAML::Node required(const YAML::Node& map, const char* key, const std::string& field, const char* expected) const;
 

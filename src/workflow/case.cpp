@@ -1,6 +1,85 @@
+#include <incise/core/error.hpp>
 #include <incise/workflow/case.hpp>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace incise {
+namespace {
+
+constexpr const char* kWhere = "case";
+constexpr const char* kLabelArray = "label";
+
+/// "'a', 'b'" of the mesh's cell arrays.
+std::string cell_arrays(const TetMesh& mesh) {
+  std::string names;
+  for (const auto& [name, data] : mesh.cell_data) names += (names.empty() ? "'" : ", '") + name + "'";
+  return names.empty() ? "a mesh without cell data" : "a mesh with cell data " + names;
+}
+
+MaterialField field_from(const TetMesh& mesh) {
+  const char* field_name = "specimen.material.from_mesh";
+  MaterialField field;
+  try {
+    field = material_field_of(mesh);
+  } catch (const InvalidArgument& problem) {
+    throw CaseError(kWhere, field_name, problem.what(), "cell data of that shape");
+  }
+  if (field.youngs_modulus_kpa.empty() && field.poissons_ratio.empty() && field.fibre_directions.empty()) {
+    throw CaseError(kWhere, field_name, cell_arrays(mesh),
+                    "at least one of the cell arrays youngs_modulus_kpa, poissons_ratio, fibre_direction",
+                    "A mesh that is made from a CT carries none");
+  }
+  const std::vector<std::string> violations = validate(field, mesh.tets.size());
+  if (violations.empty()) return field;
+  // "name: found …, expected …" of the first violation; there is one at most for each array.
+  const std::string& first = violations.front();
+  const std::size_t comma = first.find(", expected ");
+  throw CaseError(kWhere, field_name, first.substr(0, comma), first.substr(comma + 11));
+}
+
+const std::vector<double>& labels_of(const TetMesh& mesh) {
+  const auto found = mesh.cell_data.find(kLabelArray);
+  if (found != mesh.cell_data.end() && found->second.components == 1 && found->second.values.size() == mesh.tets.size()) {
+    return found->second.values;
+  }
+  throw CaseError(kWhere, "specimen.material.labels", cell_arrays(mesh), "the cell array 'label', one number for each tet",
+                  "A mesh that is made from a CT carries none: give specimen.mesh");
+}
+
+/// `values` with the tets of one label changed; they start as `common` everywhere.
+void lay_over(std::vector<double>& values, const std::vector<double>& labels, int label, double value, double common) {
+  if (values.empty()) values.assign(labels.size(), common);
+  for (std::size_t t = 0; t < labels.size(); ++t) {
+    if (labels[t] == label) values[t] = value;
+  }
+}
+
+}  // namespace
+
+MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation) {
+  MaterialField field;
+  if (variation.from_mesh) field = field_from(mesh);
+  if (variation.labels.empty()) return field;
+  const std::vector<double>& labels = labels_of(mesh);
+  for (std::size_t i = 0; i < variation.labels.size(); ++i) {
+    const LabelMaterial& entry = variation.labels[i];
+    if (std::find(labels.begin(), labels.end(), static_cast<double>(entry.label)) == labels.end()) {
+      const auto [least, most] = std::minmax_element(labels.begin(), labels.end());
+      throw CaseError(kWhere, fmt::format("specimen.material.labels[{}].label", i), fmt::format("{}, which no tet has", entry.label),
+                      fmt::format("a label of the mesh; they lie between {:g} and {:g}", *least, *most));
+    }
+    if (entry.youngs_modulus_kpa) {
+      lay_over(field.youngs_modulus_kpa, labels, entry.label, *entry.youngs_modulus_kpa, material.youngs_modulus_kpa);
+    }
+    if (entry.poissons_ratio) {
+      lay_over(field.poissons_ratio, labels, entry.label, *entry.poissons_ratio, material.poissons_ratio);
+    }
+  }
+  return field;
+}
+
 
 std::vector<Constraint> default_constraints(const TetMesh& mesh) {
   constexpr double kClampMm = 15.0;    // what the posterior clamp of a specimen holder takes hold of

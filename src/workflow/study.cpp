@@ -107,9 +107,7 @@ class Runner {
       };
       mesh = load_or_make(Stage::Mesh, [&] { return store_.load_mesh(); }, make, [](const TetMesh&, double) {});
     }
-    const std::vector<Constraint> constraints = settings_.constraints ? *settings_.constraints : default_constraints(mesh);
-    study_.model = std::make_shared<TissueModel>(
-        make_tissue_model(std::move(mesh), settings_.material, constraints, settings_.gravity_mm_s2));
+    study_.model = std::make_shared<TissueModel>(tissue_of(settings_, std::move(mesh)));
     return true;
   }
 

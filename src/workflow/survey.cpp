@@ -34,6 +34,12 @@ void require_equilibrium(const StaticResult& result, const char* which) {
 
 }  // namespace
 
+TissueModel tissue_of(const Case& settings, TetMesh mesh) {
+  std::vector<Constraint> constraints = settings.constraints ? *settings.constraints : default_constraints(mesh);
+  const MaterialField field = material_field(mesh, settings.material, settings.variation);
+  return make_tissue_model(std::move(mesh), settings.material, std::move(constraints), settings.gravity_mm_s2, field);
+}
+
 StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor) {
   StaticResult result = solve_static(model, StaticSettings{}, workers, monitor);
   // The rotations are a warm start; from the identity, a state that was read from a file is the same as a fresh one.
@@ -45,12 +51,8 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
                                     Monitor& monitor) {
   // The cut is planned on the stretched tissue, but the mesh is made of the unstretched body: a coarse mesh is stretched first to
   // find where the planned cut lies at rest.
-  const auto constraints_for = [&settings](const TetMesh& mesh) {
-    return settings.constraints ? *settings.constraints : default_constraints(mesh);
-  };
   MeshingResult survey = mesh_labels(occupancy, SizingField::uniform(settings.meshing.survey_mm), MeshingSettings{}, monitor);
-  const std::vector<Constraint> constraints = constraints_for(survey.mesh);
-  const TissueModel coarse = make_tissue_model(std::move(survey.mesh), settings.material, constraints, settings.gravity_mm_s2);
+  const TissueModel coarse = tissue_of(settings, std::move(survey.mesh));
   const StaticResult stretched = stretch(coarse, workers, monitor);
   require_equilibrium(stretched, "coarse survey mesh");
   const ToolPath plan = plan_on(settings, coarse, stretched.state.positions, store.read_tumor_edge(), store.read_line());

@@ -187,11 +187,76 @@ class CaseTest(CommandTest):
         vertices, tets = small_case.block()
         tets[7] = (tets[7][1], tets[7][0], *tets[7][2:])
         small_case.write_msh(self.case / "block.msh", vertices, tets)
-        self.assert_case_refused("deform", BAD_DATA, "block.msh")
+        self.assert_case_refused("deform", BAD_DATA, "block.msh", "7")
+
+    def test_a_flat_tet_is_told(self):
+        vertices, tets = small_case.block()
+        a, b, c, _ = tets[7]
+        vertices.append(tuple((vertices[a][i] + vertices[b][i] + vertices[c][i]) / 3 for i in range(3)))
+        tets[7] = (a, b, c, len(vertices) - 1)
+        small_case.write_msh(self.case / "block.msh", vertices, tets)
+        self.assert_case_refused("deform", BAD_DATA, "block.msh", "volume", "7")
+
+    def test_a_tet_that_is_there_twice_is_told(self):
+        vertices, tets = small_case.block()
+        small_case.write_msh(self.case / "block.msh", vertices, [*tets, tets[7]])
+        self.assert_case_refused("deform", BAD_DATA, "block.msh", "repeat the corners", f"tet {len(tets)}")
+
+    def test_a_body_in_two_pieces_is_told(self):
+        vertices, tets = small_case.block()
+        count = len(vertices)
+        more = [(x + 100.0, y, z) for x, y, z in vertices]
+        apart = [tuple(corner + count for corner in tet) for tet in tets]
+        small_case.write_msh(self.case / "block.msh", [*vertices, *more], [*tets, *apart])
+        self.assert_case_refused("deform", BAD_DATA, "block.msh", "2 bodies", f"tet {len(tets)}")
+
+    CLAMP = {"kind": "fixed", "where": {"end": {"direction": "posterior", "within_mm": 5}}}
 
     def test_a_region_that_holds_nothing_is_told(self):
-        self.change(specimen={"constraints": [{"kind": "fixed", "where": {"box_mm": [[500, 500, 500], [501, 501, 501]]}}]})
-        self.assert_case_refused("deform", BAD_CASE, "specimen.constraints")
+        self.change(specimen={"constraints": [self.CLAMP, {"kind": "fixed", "where": {"box_mm": [[500, 500, 500], [501, 501, 501]]}}]})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml: specimen.constraints[1].where", "without any vertex")
+
+    def test_a_body_that_can_still_move_as_a_whole_is_told(self):
+        self.change(specimen={"constraints": [{"kind": "fixed", "where": {"box_mm": [[-1, -1, -1], [41, 0.5, 0.5]]}}]})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml: specimen.constraints", "1 of 6 rigid motions")
+
+    def test_constraints_that_contradict_each_other_are_told(self):
+        pull = {"kind": "displaced", "where": {"box_mm": [[-1, 50, -1], [41, 61, 20]]}, "displacement_mm": [0, 3, 0]}
+        self.change(specimen={"constraints": [self.CLAMP, pull]})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml: specimen.constraints[1].where", "3 mm along y", "specimen.constraints[0]")
+
+    def test_an_incompressible_material_is_refused(self):
+        self.change(specimen={"material": {"poissons_ratio": 0.5}})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml line ", "specimen.material.poissons_ratio", "0.5", "[0, 0.5)")
+
+    def test_a_displacement_that_is_no_number_is_refused(self):
+        pull = {"kind": "displaced", "where": {"end": {"direction": "anterior", "within_mm": 5}}, "displacement_mm": [0, ".nan", 0]}
+        self.change(specimen={"constraints": [self.CLAMP, pull]})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml line ", "specimen.constraints[1].displacement_mm", "number")
+
+    def test_a_material_from_a_mesh_that_carries_none_is_refused(self):
+        self.change(specimen={"material": {"from_mesh": True}})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml: specimen.material.from_mesh", "youngs_modulus_kpa")
+        self.change(specimen={"material": {"labels": [{"label": 2, "youngs_modulus_kpa": 700}]}})
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml: specimen.material.labels", "'label'")
+
+    def test_a_missing_or_damaged_holder_is_named(self):
+        self.change(specimen={"constraints": [self.CLAMP, {"kind": "support", "surface": "holder.stl"}]})
+        self.assert_case_refused("deform", BAD_DATA, "holder.stl", "no such file", "specimen.constraints[1].surface")
+        (self.case / "holder.stl").write_text("solid holder\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n")
+        self.assert_case_refused("deform", BAD_DATA, "holder.stl", "line 4")
+
+    def test_a_tumor_is_needed_to_cut_and_not_to_deform(self):
+        self.change(tumor=None)
+        self.assert_case_refused("plan", BAD_CASE, "case.yaml: tumor.contour")
+        self.assertEqual(self.incise("deform", "case", "-o", self.out, "--quiet").returncode, DONE)
+
+    def test_an_export_that_the_format_cannot_hold_is_refused(self):
+        self.change(specimen={"material": {"fibre_modulus_kpa": 30}})
+        for program in ("sofa", "febio"):
+            done = self.incise("interchange", "case", "--format", program, "-o", self.out, "--quiet")
+            self.assert_refused(done, BAD_CASE, "case.yaml: specimen.material.fibre_modulus_kpa", "30 kPa")
+            self.assert_nothing_written()
 
     def test_a_tumor_edge_off_the_surface_is_refused(self):
         small_case.write_contour(self.case / "tumor.csv", small_case.ring(z=40.0))

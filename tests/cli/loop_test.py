@@ -5,6 +5,7 @@ import signal
 import subprocess
 import time
 import unittest
+from xml.etree import ElementTree
 
 import small_case
 from command import COMMAND, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
@@ -70,8 +71,24 @@ class LoopTest(CommandTest):
         result = self.json_of("deform", "case", "-o", self.out)
         self.assertTrue(result["converged"])
         self.assertAlmostEqual(result["max_displacement_mm"], 20.0, delta=1.0)
-        for key in ("iterations", "relative_residual", "reaction_mn", "wall_s"):
+        for key in ("iterations", "relative_residual", "reaction_mn", "solver", "wall_s"):
             self.assertIn(key, result)
+        # Clamp, pull, support: at rest their forces carry the weight.
+        self.assertEqual(len(result["reaction_mn"]), 3)
+        weight = 1040e-9 * 40 * 60 * 14 * 9810
+        sums = [sum(reaction[axis] for reaction in result["reaction_mn"]) for axis in range(3)]
+        pull = abs(result["reaction_mn"][1][1])
+        for found, expected in zip(sums, (0.0, 0.0, weight)):
+            self.assertAlmostEqual(found, expected, delta=1e-4 * pull)
+
+    def test_interchange_writes_the_case_for_two_other_solvers(self):
+        for program, name in (("sofa", "case.scn"), ("febio", "case.feb")):
+            result = self.json_of("interchange", "case", "--format", program, "-o", self.folder / program)
+            self.assertEqual(result["files"], [str(self.folder / program / name)])
+            self.assertEqual(files_below(self.folder / program), [name, "manifest.json"])
+            root = ElementTree.parse(self.folder / program / name).getroot()
+            self.assertEqual(root.tag, "Node" if program == "sofa" else "febio_spec")
+        self.assertFalse((self.folder / "case" / "out").exists())
 
     def test_one_and_two_threads_cut_the_same_tets_at_the_same_times(self):
         removals = []
@@ -89,6 +106,32 @@ class LoopTest(CommandTest):
         self.assertFalse(result["closed_loop"])
         self.assertEqual(self.read("as_planned/incision.json")["outcome"], "open_loop")
         self.assertTrue((self.out / "as_planned" / "manifest.json").is_file())
+
+
+class SameBitsTest(CommandTest):
+    """A deformation is the same to the last bit however it was run."""
+
+    def deformed(self, out, *options):
+        self.json_of("deform", "case", "-o", out, *options)
+        return (out / "stretched" / "deformed.vtu").read_bytes()  # positions, displacement_mm and stresses, losslessly
+
+    def test_at_any_thread_count_repeated_and_after_an_interruption(self):
+        case = small_case.write_case(self.folder / "case")
+        small_case.write_msh(case / "block.msh", *small_case.block(cells=(16, 24, 6)))
+        straight = self.deformed(self.folder / "one", "--threads", 1)
+        self.assertEqual(self.deformed(self.folder / "two", "--threads", 2), straight)
+        self.assertEqual(self.deformed(self.folder / "again", "--threads", 1), straight)
+
+        running = subprocess.Popen([COMMAND, "deform", "case", "-o", str(self.out)], cwd=self.folder, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not (self.out / "study.json").exists() and running.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.005)
+        running.send_signal(signal.SIGINT)
+        _, stderr = running.communicate(timeout=120)
+        self.assertEqual(running.returncode, INTERRUPTED, stderr)
+        self.assertFalse((self.out / "stretched").exists())
+        self.assertEqual(self.deformed(self.out), straight)
 
 
 class InterruptTest(CommandTest):

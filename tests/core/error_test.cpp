@@ -19,6 +19,19 @@ TEST(CaseError, LeavesOutWhatIsEmpty) {
   EXPECT_STREQ(CaseError("case.yaml", "", "a list", "a table").what(), "case.yaml: found a list, expected a table");
 }
 
+TEST(CaseError, NamesTheFileThatItsThrowerDidNotKnow) {
+  const CaseError unknown("case", "specimen.constraints[0].where", "nothing", "a vertex", "Try: a box");
+  EXPECT_STREQ(unknown.in_file("a/case.yaml").what(),
+               "a/case.yaml: specimen.constraints[0].where: found nothing, expected a vertex. Try: a box");
+  EXPECT_EQ(unknown.in_file("a/case.yaml").field(), "specimen.constraints[0].where");
+  EXPECT_STREQ(CaseError("tumour edge", "point 3", "x", "y").in_file("case.yaml").what(),
+               "case.yaml: tumour edge: point 3: found x, expected y");
+  EXPECT_STREQ(CaseError("case", "", "a list", "a table").in_file("case.yaml").what(),
+               "case.yaml: found a list, expected a table");
+  const CaseError known("case.yaml line 7", "plan.depth_mm", "0", "more");
+  EXPECT_STREQ(known.in_file("case.yaml").what(), known.what());
+}
+
 TEST(DataError, NamesPathPlaceFoundAndExpected) {
   const DataError error("ct/slice.dcm", "byte 128", "'ABCD'", "'DICM'");
   EXPECT_STREQ(error.what(), "ct/slice.dcm: byte 128: found 'ABCD', expected 'DICM'");

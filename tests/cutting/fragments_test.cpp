@@ -26,31 +26,55 @@ TEST(FaceNeighbours, AreMutualAndShareThreeVertices) {
   EXPECT_EQ(joined, 96U - 36U);
 }
 
+/// The bar without some of its tets.
+struct CutBar {
+  std::vector<double> volumes = std::vector<double>(kBar.tets.size(), 1.0 / 6.0);
+  std::vector<std::uint8_t> is_live = std::vector<std::uint8_t>(kBar.tets.size(), 1);
+  std::vector<std::uint8_t> is_anchored = std::vector<std::uint8_t>(kBar.vertices.size(), 0);
+  std::vector<TetId> removed;
+
+  void remove_cell(std::size_t cell) {
+    for (std::size_t tet = 6 * cell; tet < 6 * cell + 6; ++tet) {
+      is_live[tet] = 0;
+      removed.emplace_back(tet);
+    }
+  }
+  [[nodiscard]] std::vector<TetId> loose(double least_mm3) const {
+    return loose_fragments(kBar, volumes, face_neighbours(kBar), is_live, is_anchored, removed, least_mm3);
+  }
+};
+
 TEST(LooseFragments, APartCutOffFromTheBodyIsFound) {
-  const auto neighbours = face_neighbours(kBar);
-  std::vector<std::uint8_t> is_live(kBar.tets.size(), 1);
-  for (std::size_t tet = 12; tet < 18; ++tet) is_live[tet] = 0;  // the third cell goes, the fourth hangs by nothing
-  const std::vector<std::uint8_t> is_anchored(kBar.vertices.size(), 0);
-  const std::vector<TetId> loose = loose_fragments(kBar, neighbours, is_live, is_anchored, 0.4);
+  CutBar bar;
+  bar.remove_cell(2);  // the fourth hangs by nothing; the first two together are large enough to stay
+  const std::vector<TetId> loose = bar.loose(1.5);
   ASSERT_EQ(loose.size(), 6U);
   EXPECT_EQ(loose.front().index(), 18U);
   EXPECT_EQ(loose.back().index(), 23U);
 }
 
-TEST(LooseFragments, AnAnchoredPartStays) {
-  const auto neighbours = face_neighbours(kBar);
-  std::vector<std::uint8_t> is_live(kBar.tets.size(), 1);
-  for (std::size_t tet = 12; tet < 18; ++tet) is_live[tet] = 0;
-  std::vector<std::uint8_t> is_anchored(kBar.vertices.size(), 0);
-  for (std::size_t v = 0; v < kBar.vertices.size(); ++v) is_anchored[v] = kBar.vertices[v].x() > 3.5 ? 1 : 0;
-  EXPECT_TRUE(loose_fragments(kBar, neighbours, is_live, is_anchored, 0.4).empty());
+TEST(LooseFragments, VolumeCountsNotTheNumberOfTets) {
+  CutBar bar;
+  bar.remove_cell(2);
+  for (std::size_t tet = 18; tet < 24; ++tet) bar.volumes[tet] = 1.0;  // as many tets, six times the tissue
+  EXPECT_TRUE(bar.loose(1.5).empty());
 }
 
-TEST(LooseFragments, AnUncutBodyHasNone) {
-  const std::vector<std::uint8_t> is_live(kBar.tets.size(), 1);
-  const std::vector<std::uint8_t> is_anchored(kBar.vertices.size(), 0);
-  EXPECT_TRUE(loose_fragments(kBar, face_neighbours(kBar), is_live, is_anchored, 0.4).empty());
+TEST(LooseFragments, EveryPartBesideTheCutIsLookedAt) {
+  CutBar bar;
+  bar.remove_cell(1);
+  bar.remove_cell(2);
+  EXPECT_EQ(bar.loose(1.5).size(), 12U) << "the first cell and the last, each loose";
 }
+
+TEST(LooseFragments, AnAnchoredPartStays) {
+  CutBar bar;
+  bar.remove_cell(2);
+  for (std::size_t v = 0; v < kBar.vertices.size(); ++v) bar.is_anchored[v] = kBar.vertices[v].x() > 3.5 ? 1 : 0;
+  EXPECT_TRUE(bar.loose(1.5).empty());
+}
+
+TEST(LooseFragments, AnUncutBodyHasNone) { EXPECT_TRUE(CutBar().loose(1.5).empty()); }
 
 }  // namespace
 }  // namespace incise

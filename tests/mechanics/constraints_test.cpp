@@ -6,6 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
 namespace incise {
 namespace {
 
@@ -32,6 +36,47 @@ TEST(Select, SphereTakesVerticesWithinItsRadius) {
 TEST(Select, EndIsMeasuredFromTheExtremePointOfTheBody) {
   EXPECT_THAT(select(small_block(), EndRegion{-Vec3::UnitX(), 1.0}), SizeIs(4));
   EXPECT_THAT(select(small_block(), EndRegion{Vec3::UnitX(), 10.0}), SizeIs(8));
+}
+
+TEST(Select, PlaneWithADistanceIsABandOnBothItsSides) {
+  PlaneRegion region{Vec3(10, 0, 0), Vec3(3, 0, 0), 0.5};
+  EXPECT_THAT(select(small_block(), region), ElementsAre(VertexId{1}, VertexId{4}, VertexId{7}, VertexId{10}));
+  region.within_mm = 10.0;
+  EXPECT_THAT(select(small_block(), region), SizeIs(12));
+}
+
+TEST(Select, PlaneWithoutADistanceTakesTheNormalsSide) {
+  EXPECT_THAT(select(small_block(), PlaneRegion{Vec3(10, 0, 0), Vec3(1, 0, 0), {}}), SizeIs(8));
+  EXPECT_THAT(select(small_block(), PlaneRegion{Vec3(10, 0, 0), Vec3(-1, -1, 0), {}}),
+              ElementsAre(VertexId{0}, VertexId{1}, VertexId{3}, VertexId{6}, VertexId{7}, VertexId{9}));
+}
+
+TEST(Select, CellArrayTakesTheCornersOfItsTets) {
+  TetMesh mesh = small_block();
+  mesh.cell_data["label"] = {1, std::vector<double>(12, 1.0)};
+  mesh.cell_data["label"].values[0] = 2.0;
+  std::vector<VertexId> corners(mesh.tets[0].begin(), mesh.tets[0].end());
+  std::sort(corners.begin(), corners.end());
+  EXPECT_EQ(select(mesh, CellArrayRegion{"label", 2.0}), corners);
+  EXPECT_THAT(select(mesh, CellArrayRegion{"label", 1.0}), SizeIs(12));
+  EXPECT_THROW(static_cast<void>(select(mesh, CellArrayRegion{"labels", 2.0})), InvalidArgument);
+}
+
+TEST(Select, RegionsThatAreNotOneAreRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Region bad[] = {BoxRegion{Box3(Vec3(0, nan, 0), Vec3(1, 1, 1))},
+                        BoxRegion{Box3(Vec3(2, 0, 0), Vec3(1, 1, 1))},
+                        SphereRegion{Vec3(0, 0, 0), -1.0},
+                        SphereRegion{Vec3(0, 0, 0), nan},
+                        EndRegion{Vec3(2, 0, 0), 1.0},
+                        EndRegion{Vec3::UnitX(), nan},
+                        PlaneRegion{Vec3(nan, 0, 0), Vec3::UnitX(), {}},
+                        PlaneRegion{Vec3::Zero(), Vec3::Zero(), {}},
+                        PlaneRegion{Vec3::Zero(), Vec3::UnitX(), -1.0},
+                        PlaneRegion{Vec3::Zero(), Vec3::UnitX(), nan}};
+  for (std::size_t i = 0; i < std::size(bad); ++i) {
+    EXPECT_THROW(static_cast<void>(select(small_block(), bad[i])), InvalidArgument) << "region " << i;
+  }
 }
 
 TEST(Select, PointArrayTakesItsValue) {

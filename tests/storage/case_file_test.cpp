@@ -225,11 +225,82 @@ TEST_F(CaseFileTest, ACtAndAMeshTogetherAreRefusedAndSoIsNeither) {
   EXPECT_THAT(refusal("schema: incise.case/1\ntumor: {contour: tumor.csv}\n"), HasSubstr("neither a CT nor a mesh"));
 }
 
-TEST_F(CaseFileTest, ARingNeedsATumorEdgeAndALineItsCurve) {
-  EXPECT_THAT(refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\n"), HasSubstr("tumor.contour"));
-  EXPECT_THAT(refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\nplan: {kind: line}\n"),
+TEST_F(CaseFileTest, AnIncisionNeedsATumorEdgeOrACurveAndADeformationDoesNot) {
+  const auto plan_refusal = [this](const std::string& text) -> std::string {
+    const CaseFile file = read(text);  // good enough to deform
+    try {
+      require_plan_inputs(file);
+    } catch (const CaseError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(plan_refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\n"),
+              AllOf(HasSubstr("case.yaml"), HasSubstr("tumor.contour")));
+  EXPECT_THAT(plan_refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\nplan: {kind: line}\n"),
               HasSubstr("plan.line"));
-  EXPECT_EQ(refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\nplan: {kind: line, line: line.csv}\n"), "");
+  EXPECT_EQ(plan_refusal("schema: incise.case/1\nspecimen: {mesh: block.msh}\nplan: {kind: line, line: line.csv}\n"), "");
+  EXPECT_EQ(plan_refusal(kLeast), "");
+}
+
+TEST_F(CaseFileTest, EveryKeyOfTheMaterialIsRead) {
+  const CaseFile file = read("schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen:\n  mesh: block.msh\n  material:" + std::string(R"(
+    model: stable_neo_hookean
+    volume: averaged
+    fibre_modulus_kpa: 30
+    fibre_direction: [0, 3, 4]
+    prony: [{shear_share: 0.5, time_s: 2}, {shear_share: 0.25, time_s: 20}]
+    kelvin_voigt_time_s: 0.01
+    from_mesh: true
+    labels: [{label: 2, youngs_modulus_kpa: 700, poissons_ratio: 0.45}, {label: -3, youngs_modulus_kpa: 7}]
+)"));
+  const Material& m = file.settings.material;
+  EXPECT_EQ(m.model, MaterialModel::StableNeoHookean);
+  EXPECT_EQ(m.volume, VolumeTreatment::Averaged);
+  EXPECT_EQ(m.fibre_modulus_kpa, 30.0);
+  EXPECT_LT((m.fibre_direction - Vec3(0.0, 0.6, 0.8)).norm(), 1e-15);
+  ASSERT_EQ(m.prony.size(), 2U);
+  EXPECT_EQ(m.prony[1].shear_share, 0.25);
+  EXPECT_EQ(m.prony[1].time_s, 20.0);
+  EXPECT_EQ(m.kelvin_voigt_time_s, 0.01);
+  EXPECT_TRUE(file.settings.variation.from_mesh);
+  const std::vector<LabelMaterial>& labels = file.settings.variation.labels;
+  ASSERT_EQ(labels.size(), 2U);
+  EXPECT_EQ(labels[0].label, 2);
+  EXPECT_EQ(labels[0].youngs_modulus_kpa, 700.0);
+  EXPECT_EQ(labels[0].poissons_ratio, 0.45);
+  EXPECT_EQ(labels[1].label, -3);
+  EXPECT_FALSE(labels[1].poissons_ratio.has_value());
+  // What was read is listed, and reads back as the same.
+  const auto settings = settings_by_key(file);
+  EXPECT_EQ(settings.at("specimen.material.labels"),
+            "[{label: 2, youngs_modulus_kpa: 700, poissons_ratio: 0.45}, {label: -3, youngs_modulus_kpa: 7}]");
+  EXPECT_EQ(settings.at("specimen.material.prony"), "[{shear_share: 0.5, time_s: 2}, {shear_share: 0.25, time_s: 20}]");
+  EXPECT_EQ(settings.at("specimen.material.from_mesh"), "true");
+}
+
+TEST_F(CaseFileTest, AMaterialThatIsNoneIsRefusedNamingItsField) {
+  const auto with = [](const std::string& material) {
+    return "schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen: {mesh: block.msh, material: {" + material + "}}\n";
+  };
+  const BadValue bad[] = {
+      {"model: neo_hookean", "'stable_neo_hookean'"},
+      {"volume: mean", "specimen.material.volume"},
+      {"fibre_modulus_kpa: -1", "specimen.material.fibre_modulus_kpa"},
+      {"fibre_direction: [0, 0, 0]", "specimen.material.fibre_direction"},
+      {"prony: {shear_share: 1, time_s: 1}", "specimen.material.prony"},
+      {"prony: [{shear_share: 1}]", "no `time_s`"},
+      {"prony: [{shear_share: 0, time_s: 1}]", "specimen.material.prony[0].shear_share"},
+      {"prony: [{share: 1, time_s: 1}]", "'shear_share'"},
+      {"kelvin_voigt_time_s: -1", "specimen.material.kelvin_voigt_time_s"},
+      {"from_mesh: perhaps", "true or false"},
+      {"labels: [{youngs_modulus_kpa: 7}]", "no `label`"},
+      {"labels: [{label: 1.5, youngs_modulus_kpa: 7}]", "a whole number"},
+      {"labels: [{label: 1, poissons_ratio: 0.5}]", "specimen.material.labels[0].poissons_ratio"},
+      {"labels: [{label: 1}]", "label 1 without a value"},
+      {"labels: [{label: 1, youngs_modulus_kpa: 7}, {label: 1, youngs_modulus_kpa: 8}]", "specimen.material.labels[1]"},
+  };
+  for (const auto& [text, words] : bad) EXPECT_THAT(refusal(with(text)), HasSubstr(words)) << text;
 }
 
 // --- directions and constraints
@@ -296,6 +367,48 @@ TEST_F(ConstraintTest, EveryKindAndEveryRegionIsRead) {
   EXPECT_EQ(std::get<EndRegion>(push.where).direction, Vec3(0, -1, 0));
   EXPECT_EQ(std::get<EndRegion>(push.where).within_mm, 7.0);
   EXPECT_EQ(push.traction_kpa, Vec3(0, 0, 1));
+}
+
+TEST_F(ConstraintTest, PlanesAndCellArraysAreRegionsToo) {
+  const std::string constraints = R"(
+    - {kind: fixed, where: {plane: {point_mm: [1, 2, 3], normal: [0, 0, 2], within_mm: 0.5}}}
+    - {kind: fixed, where: {plane: {point_mm: [1, 2, 3], normal: posterior}}}
+    - {kind: fixed, where: {cell_array: label=7}}
+)";
+  const CaseFile file = read(with(constraints));
+  const std::vector<Constraint>& all = *file.settings.constraints;
+  const auto& band = std::get<PlaneRegion>(std::get<FixedConstraint>(all[0]).where);
+  EXPECT_EQ(band.point_mm, Vec3(1, 2, 3));
+  EXPECT_EQ(band.normal, Vec3::UnitZ());
+  EXPECT_EQ(band.within_mm, 0.5);
+  EXPECT_FALSE(std::get<PlaneRegion>(std::get<FixedConstraint>(all[1]).where).within_mm.has_value());
+  EXPECT_EQ(std::get<CellArrayRegion>(std::get<FixedConstraint>(all[2]).where).value, 7.0);
+  const std::string shown = settings_by_key(file).at("specimen.constraints");
+  EXPECT_EQ(settings_by_key(read("schema: incise.case/1\nspecimen: {mesh: block.msh, constraints: " + shown + "}\n"))
+                .at("specimen.constraints"),
+            shown);
+  EXPECT_THAT(refusal(with("    - {kind: fixed, where: {plane: {point_mm: [0, 0, 0], normal: up}}}\n")),
+              HasSubstr("specimen.constraints[0].where.plane.normal"));
+  EXPECT_THAT(refusal(with("    - {kind: fixed, where: {plane: {point_mm: [0, 0, 0], normal: left, within_mm: -1}}}\n")),
+              HasSubstr("specimen.constraints[0].where.plane.within_mm"));
+}
+
+TEST_F(ConstraintTest, ASupportMayBeTheSurfaceOfAHolder) {
+  const std::string text = with("    - {kind: support, surface: parts/holder.stl}\n");
+  EXPECT_THAT(refusal<DataError>(text), AllOf(HasSubstr("parts/holder.stl"), HasSubstr("no such file"),
+                                              HasSubstr("specimen.constraints[0].surface")));
+  std::filesystem::create_directories(folder_ / "parts");
+  std::ofstream(folder_ / "parts" / "holder.stl") << "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 9 0 0\n"
+                                                     "vertex 0 9 0\nendloop\nendfacet\nendsolid s\n";
+  const CaseFile file = read(text);
+  const auto& support = std::get<SupportConstraint>(file.settings.constraints->front());
+  ASSERT_TRUE(support.holder);
+  EXPECT_EQ(support.holder->surface.triangles.size(), 1U);
+  EXPECT_EQ(file.inputs.holders, std::vector<std::filesystem::path>{folder_ / "parts" / "holder.stl"});
+  EXPECT_EQ(settings_by_key(file).at("specimen.constraints"), "[{kind: support, surface: \"parts/holder.stl\"}]");
+  EXPECT_THAT(refusal(with("    - {kind: support, surface: h.stl, plane: {point_mm: [0, 0, 0], normal: superior}}\n")),
+              HasSubstr("only one of plane and surface"));
+  EXPECT_THAT(refusal(with("    - {kind: support}\n")), HasSubstr("or surface: FILE"));
 }
 
 TEST_F(ConstraintTest, ConstraintsAppearInTheSettingsAndReadBack) {

@@ -2,10 +2,12 @@
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/storage/folder_store.hpp>
+#include <incise/workflow/study.hpp>
 
 #include <gtest/gtest.h>
 
@@ -196,6 +198,43 @@ TEST_F(FolderStoreTest, AChangedInputFileMakesItsProductsStale) {
   EXPECT_TRUE(open().load_plan()) << "as it was";
   write_vtu(folder_ / "block.vtu", make_block(Vec3(10, 20, 5), {2, 5, 1}));
   EXPECT_FALSE(open().load_plan());
+}
+
+TEST_F(FolderStoreTest, AChangedHolderMakesTheStretchStale) {
+  const auto write_holder = [this](double z) {
+    std::ofstream(folder_ / "holder.stl") << "solid s\nfacet normal 0 0 1\nouter loop\nvertex -90 -90 " << z << "\nvertex 90 -90 " << z
+                                          << "\nvertex 0 90 " << z << "\nendloop\nendfacet\nendsolid s\n";
+  };
+  const auto open_held = [this]() -> FolderStore {
+    std::ofstream(folder_ / "case.yaml")
+        << "schema: incise.case/1\nspecimen:\n  mesh: block.vtu\n  constraints:\n"
+           "    - {kind: fixed, where: {box_mm: [[-1, -1, -1], [11, 1, 6]]}}\n    - {kind: support, surface: holder.stl}\n";
+    return {read_case(folder_.path()), folder_ / "out", {"incise test", 7, 2}};
+  };
+  write_holder(-1.0);
+  FolderStore store = open_held();
+  const TissueModel model = tissue_of(store.case_file().settings, *store.read_specimen_mesh());
+  StaticResult result;
+  result.state = rest_state(model);
+  store.save_stretched(model, result, 0.1);
+  EXPECT_TRUE(open_held().is_current(Product::Stretched));
+  write_holder(-2.0);
+  EXPECT_FALSE(open_held().is_current(Product::Stretched));
+  const auto inputs = read_text(folder_ / "out" / "stretched" / "manifest.json");
+  EXPECT_NE(inputs.find("holder.stl"), std::string::npos);
+}
+
+TEST_F(FolderStoreTest, AMeshThatIsNotOneSoundBodyIsRefusedNamingTheFile) {
+  TetMesh mesh = make_block(Vec3(10, 20, 5), {2, 4, 1});
+  mesh.tets.push_back(mesh.tets[5]);
+  write_vtu(folder_ / "block.vtu", mesh);
+  try {
+    static_cast<void>(open().read_specimen_mesh());
+    FAIL() << "expected DataError";
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.path().filename(), "block.vtu");
+    EXPECT_NE(std::string(error.what()).find("the first is tet 48"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(FolderStoreTest, ANewProductTakesThePlaceOfAStaleOneAsAWhole) {

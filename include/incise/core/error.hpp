@@ -24,6 +24,9 @@ class CaseError : public Error {
  public:
   CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint = "");
   [[nodiscard]] const std::string& field() const { return field_; }
+  /// The same error with the case file named, for a thrower that did not know it: "case" gives way to `file`, a file that
+  /// is named already stays, any other place follows the file's name.
+  [[nodiscard]] CaseError in_file(const std::string& file) const;
 
  private:
   std::string field_;

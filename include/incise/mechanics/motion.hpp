@@ -25,13 +25,12 @@ struct MotionSettings {
   double rayleigh_alpha = 0.0;  ///< 1/s, >= 0: damping force alpha M v
   double rayleigh_beta = 0.0;  ///< s, >= 0: damping force beta K v, K the rotation-frozen stiffness at the step's start
   int max_newton_iterations = 1;  ///< 1: linearly implicit, one linear system a step as SOFA's EulerImplicitSolver does
-  double relative_tolerance =
-      1e-6;  ///< of the step's first right side, in (0, 1): for Newton and for the linear systems
+  double relative_tolerance = 1e-6;  ///< of the step's first right side or 1e-6 E L² (L: the body's box), in (0, 1)
   LinearSolver solver = LinearSolver::Automatic;
   int max_cg_iterations = 4000;  ///< per system
 };
 
-struct [[nodiscard]] StepReport {
+struct StepReport {
   Outcome outcome = Outcome::NotConverged;  ///< Success or NotConverged
   int newton_iterations = 0;
   int linear_iterations = 0;       ///< of conjugate gradients
@@ -55,13 +54,14 @@ class MotionWorkspace {
 };
 
 /// One step of implicit Euler with lumped mass: x₁ = x₀ + h v₁, M (v₁ − v₀)/h = f(x₁) + loads − (α M + β K₀) v₁, solved
-/// by Newton's method from x₀. Forces: elastic, support planes, gravity and tractions of the model, and `applied_mn` (N
-/// x 3, or empty). A step that does not converge leaves `motion` as it was. Order 1 in the step; damps fast vibration
-/// (a mode of angular frequency ω loses the factor 1/√(1 + ω² h²) per step). Settings and model must be those that the
-/// workspace was made for. Throws InvalidArgument. Source: Baraff and Witkin (1998), eq. 6, for one iteration; SOFA's
-/// form of Rayleigh damping.
-StepReport advance_motion(const TissueModel& model, Motion& motion, const MotionSettings& settings,
-                          MotionWorkspace& workspace, Workers& workers, std::span<const Vec3> applied_mn = {});
+/// by Newton's method from x₀. Forces: elastic, viscous, support planes, gravity and tractions of the model, and
+/// `applied_mn` (N x 3, or empty). A step that does not converge leaves `motion` as it was. Order 1 in the step; damps
+/// fast vibration (a mode of angular frequency ω loses the factor 1/√(1 + ω² h²) per step). Settings and model must be
+/// those that the workspace was made for. Throws InvalidArgument. Source: Baraff and Witkin (1998), eq. 6, for one
+/// iteration; SOFA's form of Rayleigh damping.
+[[nodiscard]] StepReport advance_motion(const TissueModel& model, Motion& motion, const MotionSettings& settings,
+                                        MotionWorkspace& workspace, Workers& workers,
+                                        std::span<const Vec3> applied_mn = {});
 
 /// ½ Σ m v², µJ.
 [[nodiscard]] double kinetic_energy_uj(const TissueModel& model, const Motion& motion);

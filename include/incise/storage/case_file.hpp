@@ -16,6 +16,7 @@ struct CaseInputs {
   std::filesystem::path tumor_contour;
   std::filesystem::path line_contour;     ///< the curve of an open cut
   std::filesystem::path tool_path;        ///< a path to follow in place of the planned one
+  std::vector<std::filesystem::path> holders;  ///< surfaces of supports, in the order of the constraints that name them
 };
 
 /// One setting in full, for manifests, reports and cache keys.
@@ -35,12 +36,21 @@ struct CaseFile {
 };
 
 /// Reads `case.yaml` (YAML or JSON), or the file of that name in a folder. Unknown keys, wrong types and values out of range are refused.
-/// @throws CaseError with line, field, found, expected and the nearest valid key; DataError if the file is missing or not YAML.
+/// @throws CaseError with line, field, found, expected and the nearest valid key; DataError if the file is missing or not YAML, or the
+///         surface of a holder cannot be read.
 [[nodiscard]] CaseFile read_case(const std::filesystem::path& file_or_folder);
+
+/// What laying a path needs, and so what meshing around it does; a mere deformation of a given mesh goes without.
+/// @throws CaseError when neither a tumour edge (ring) nor a curve (line) is named.
+void require_plan_inputs(const CaseFile& file);
 
 /// Looks for the files that a case names, before a long computation needs them.
 /// @throws DataError naming the first file that is missing and the field that asks for it.
 void require_input_files(const CaseFile& file);
+
+/// The tetrahedra that a case names, sound and in one piece. @pre a mesh is named.
+/// @throws DataError naming the file and its first problem: an inverted, flat or duplicate tet, more than one body, and the like.
+[[nodiscard]] TetMesh read_specimen_mesh(const CaseFile& file);
 
 /// All settings of a case, defaults included, in the file's order.
 [[nodiscard]] std::vector<SettingLine> settings_of(const CaseFile& file);

@@ -22,6 +22,19 @@ struct MeshingChoice {
   double survey_mm = 4.0;    ///< of the coarse mesh with which the planned cut is found in the unstretched body
 };
 
+/// What the tets with one value of the mesh's cell array `label` are made of, where they differ from the rest.
+struct LabelMaterial {
+  int label = 0;
+  std::optional<double> youngs_modulus_kpa;
+  std::optional<double> poissons_ratio;
+};
+
+/// Which differences of material within the specimen a study takes from its mesh.
+struct MaterialVariation {
+  bool from_mesh = false;             ///< cell data youngs_modulus_kpa, poissons_ratio, fibre_direction (those that are there)
+  std::vector<LabelMaterial> labels;  ///< laid over `from_mesh`; tets with a label that is not listed keep what they have
+};
+
 enum class TumorConfiguration {
   Stretched,  ///< the edge is marked on the clamped and stretched tissue, as in the paper
   Rest,       ///< on the tissue as it was scanned
@@ -34,6 +47,7 @@ struct Case {
   SegmentationSettings segmentation;
   MeshingChoice meshing;
   Material material;
+  MaterialVariation variation;
   std::optional<std::vector<Constraint>> constraints;  ///< absent: see default_constraints
   Vec3 gravity_mm_s2{0.0, 0.0, -9810.0};
   TumorConfiguration tumor_configuration = TumorConfiguration::Stretched;
@@ -45,6 +59,10 @@ struct Case {
   int frames = 24;                          ///< moments of the cut that are kept for pictures
   std::optional<Mat4> T_robot_sim;          ///< where the specimen lies under the robot, until registration finds it
 };
+
+/// The material of each tet, as far as the study lets it vary; nothing does: empty lists.
+/// @throws CaseError (field specimen.material.from_mesh or .labels[i]) when the mesh does not carry what the study asks for.
+[[nodiscard]] MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation);
 
 /// The paper's set-up (II-A) for a tongue in LPS: posterior 15 mm clamped, anterior 10 mm pulled 20 mm forward, underside resting on a platform
 /// at the mesh's lowest point.

@@ -57,6 +57,9 @@ struct Study {
 [[nodiscard]] SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& intended, std::size_t tets);
 [[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy, Store& store, Workers& workers,
                                                   Monitor& monitor);
+/// The specimen as the case holds it: material (label by label, where it varies), constraints (the default ones, where none are given)
+/// and gravity on a mesh. @throws CaseError as make_tissue_model and material_field.
+[[nodiscard]] TissueModel tissue_of(const Case& settings, TetMesh mesh);
 [[nodiscard]] StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor);
 [[nodiscard]] ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line);

@@ -1,0 +1,105 @@
+#include <incise/core/error.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace incise {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// 12 tets; labels 1 and, for the last three, 2.
+TetMesh labelled_block() {
+  TetMesh mesh = make_block(Vec3(20, 10, 10), {2, 1, 1});
+  DataArray label{1, std::vector<double>(12, 1.0)};
+  label.values[9] = label.values[10] = label.values[11] = 2.0;
+  mesh.cell_data["label"] = label;
+  return mesh;
+}
+
+std::string refusal(const TetMesh& mesh, const MaterialVariation& variation) {
+  try {
+    static_cast<void>(material_field(mesh, {}, variation));
+  } catch (const CaseError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(MaterialField, IsEmptyWhereNothingVaries) {
+  const MaterialField field = material_field(labelled_block(), {}, {});
+  EXPECT_THAT(field.youngs_modulus_kpa, IsEmpty());
+  EXPECT_THAT(field.poissons_ratio, IsEmpty());
+  EXPECT_THAT(field.fibre_directions, IsEmpty());
+}
+
+TEST(MaterialField, ALabelledPartIsTenTimesStiffer) {
+  MaterialVariation variation;
+  variation.labels = {{2, 700.0, std::nullopt}};
+  const MaterialField field = material_field(labelled_block(), {}, variation);
+  ASSERT_EQ(field.youngs_modulus_kpa.size(), 12U);
+  EXPECT_EQ(field.youngs_modulus_kpa[8], 70.0);
+  EXPECT_EQ(field.youngs_modulus_kpa[9], 700.0);
+  EXPECT_THAT(field.poissons_ratio, IsEmpty());
+}
+
+TEST(MaterialField, CellDataOfTheMeshHoldAndLabelsAreLaidOverThem) {
+  TetMesh mesh = labelled_block();
+  mesh.cell_data["youngs_modulus_kpa"] = {1, std::vector<double>(12, 30.0)};
+  mesh.cell_data["fibre_direction"] = {3, std::vector<double>(36, 1.0)};
+  MaterialVariation variation;
+  variation.from_mesh = true;
+  variation.labels = {{2, std::nullopt, 0.4}, {1, 50.0, std::nullopt}};
+  const MaterialField field = material_field(mesh, {}, variation);
+  EXPECT_EQ(field.youngs_modulus_kpa[0], 50.0);
+  EXPECT_EQ(field.youngs_modulus_kpa[11], 30.0);
+  EXPECT_EQ(field.poissons_ratio[0], Material{}.poissons_ratio);
+  EXPECT_EQ(field.poissons_ratio[11], 0.4);
+  EXPECT_THAT(field.fibre_directions, Each(Vec3(1, 1, 1)));
+}
+
+TEST(MaterialField, SaysWhatTheMeshDoesNotCarry) {
+  MaterialVariation from_mesh;
+  from_mesh.from_mesh = true;
+  EXPECT_THAT(refusal(labelled_block(), from_mesh),
+              AllOf(HasSubstr("specimen.material.from_mesh"), HasSubstr("'label'"), HasSubstr("fibre_direction")));
+  MaterialVariation labels;
+  labels.labels = {{2, 700.0, std::nullopt}};
+  EXPECT_THAT(refusal(make_block(Vec3(1, 1, 1), {1, 1, 1}), labels),
+              AllOf(HasSubstr("specimen.material.labels"), HasSubstr("a mesh without cell data")));
+  labels.labels = {{2, 700.0, std::nullopt}, {5, 7.0, std::nullopt}};
+  EXPECT_THAT(refusal(labelled_block(), labels),
+              AllOf(HasSubstr("specimen.material.labels[1].label"), HasSubstr("between 1 and 2")));
+}
+
+TEST(MaterialField, RefusesCellDataThatAreNoMaterial) {
+  MaterialVariation from_mesh;
+  from_mesh.from_mesh = true;
+  TetMesh mesh = labelled_block();
+  mesh.cell_data["poissons_ratio"] = {1, std::vector<double>(12, 0.3)};
+  mesh.cell_data["poissons_ratio"].values[4] = 0.5;
+  EXPECT_THAT(refusal(mesh, from_mesh), AllOf(HasSubstr("poissons_ratio: found 0.5 at tet 4"), HasSubstr("[0, 0.5)")));
+  mesh.cell_data["poissons_ratio"].values[4] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal(mesh, from_mesh), HasSubstr("found nan at tet 4"));
+  mesh.cell_data["poissons_ratio"] = {2, std::vector<double>(24, 0.3)};
+  EXPECT_THAT(refusal(mesh, from_mesh), HasSubstr("with 1 components, found 2"));
+}
+
+TEST(TissueOf, TakesTheFieldAndTheConstraintsOfTheCase) {
+  Case settings;
+  settings.constraints = std::vector<Constraint>{FixedConstraint{EndRegion{Vec3::UnitX(), 1.0}}};
+  settings.variation.labels = {{2, 700.0, std::nullopt}};
+  const TissueModel model = tissue_of(settings, labelled_block());
+  EXPECT_NEAR(model.lame[11].mu_kpa, 10.0 * model.lame[0].mu_kpa, 1e-9);
+  EXPECT_EQ(model.constraints.size(), 1U);
+  EXPECT_LT(model.dead_load_mn[0][2], 0.0) << "gravity";
+}
+
+}  // namespace
+}  // namespace incise
