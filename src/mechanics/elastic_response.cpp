@@ -1,6 +1,7 @@
 #include "mechanics/elastic_response.hpp"
 
 #include "mechanics/corotational_response.hpp"
+#include "mechanics/law_response.hpp"
 
 #include <incise/core/error.hpp>
 
@@ -33,18 +34,22 @@ Mat3 deformation_gradient(const TissueModel& model, std::span<const Vec3> positi
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
                           Tangent tangent, std::vector<Mat3>& turning, Workers& workers) {
   check_sizes(model, state, forces.size());
-  add_corotational_response(model, state, forces, stiffness, tangent, turning, workers);
+  if (is_plain_corotational(model)) {
+    add_corotational_response(model, state, forces, stiffness, tangent, turning, workers);
+  } else {
+    add_law_response(model, state, forces, stiffness, tangent, workers);
+  }
 }
 
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Workers& workers) {
-  std::vector<Mat3> unused;
-  add_elastic_response(model, state, forces, stiffness, Tangent::FrozenRotations, unused, workers);
+                          Workers& workers, Tangent tangent) {
+  std::vector<Mat3> turning;
+  add_elastic_response(model, state, forces, stiffness, tangent, turning, workers);
 }
 
 double elastic_energy_uj(const TissueModel& model, const TissueState& state) {
   check_sizes(model, state, model.mesh.vertices.size());
-  return corotational_energy_uj(model, state);
+  return is_plain_corotational(model) ? corotational_energy_uj(model, state) : law_energy_uj(model, state);
 }
 
 }  // namespace incise

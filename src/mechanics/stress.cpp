@@ -1,4 +1,4 @@
-#include "mechanics/elastic_response.hpp"
+#include "mechanics/law_response.hpp"
 #include "mechanics/rotation.hpp"
 
 #include <incise/mechanics/statics.hpp>
@@ -6,19 +6,30 @@
 #include <cmath>
 
 namespace incise {
+namespace {
+
+/// P Fᵀ / J, Cauchy's stress; or P Rᵀ, the corotational law's own stress in the turned frame, which takes strains as
+/// small and areas as unchanged. An inverted tet has no Cauchy stress: P Rᵀ stands in.
+Mat3 stress_of(MaterialModel model, const Mat3& piola, const Mat3& f, const Mat3& guess) {
+  const double j = f.determinant();
+  if (model == MaterialModel::StableNeoHookean && j > 0.0) return piola * f.transpose() / j;
+  return piola * nearest_rotation(f, guess).transpose();
+}
+
+}  // namespace
 
 std::vector<double> von_mises_kpa(const TissueModel& model, const TissueState& state) {
-  std::vector<double> stress(model.mesh.tets.size(), 0.0);
-  for (std::size_t tet = 0; tet < stress.size(); ++tet) {
+  const std::vector<Mat3> piola = law_stresses_kpa(model, state);
+  std::vector<double> result(model.mesh.tets.size(), 0.0);
+  for (std::size_t tet = 0; tet < result.size(); ++tet) {
     if (state.is_live[tet] == 0) continue;
     const Mat3 f = deformation_gradient(model, state.positions, tet);
-    const Mat3 s = nearest_rotation(f, state.rotations[tet]).transpose() * f;
-    // The deviator of σ = 2μ ε + λ tr ε I is 2μ dev ε, whatever frame it is seen in.
-    const Mat3 strain = 0.5 * (s + s.transpose()) - Mat3::Identity();
-    const Mat3 deviator = strain - strain.trace() / 3.0 * Mat3::Identity();
-    stress[tet] = std::sqrt(1.5) * 2.0 * model.lame[tet].mu_kpa * deviator.norm();
+    const Mat3 stress = stress_of(model.material.model, piola[tet], f, state.rotations[tet]);
+    const Mat3 symmetric = 0.5 * (stress + stress.transpose());
+    const Mat3 deviator = symmetric - symmetric.trace() / 3.0 * Mat3::Identity();
+    result[tet] = std::sqrt(1.5) * deviator.norm();
   }
-  return stress;
+  return result;
 }
 
 }  // namespace incise

@@ -1,5 +1,6 @@
 #include "mechanics/loads.hpp"
 #include "mechanics/topology.hpp"
+#include "mechanics/viscous_response.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
@@ -86,6 +87,7 @@ TissueState rest_state(const TissueModel& model) {
   state.positions = model.mesh.vertices;
   state.rotations.assign(model.mesh.tets.size(), Mat3::Identity());
   state.is_live.assign(model.mesh.tets.size(), 1);
+  state.memory = rest_memory(model.material, model.mesh.tets.size());
   return state;
 }
 

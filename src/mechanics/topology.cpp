@@ -22,17 +22,15 @@ void list_tets_of_vertices(TissueModel& model) {
   }
 }
 
-std::shared_ptr<const BlockPattern> make_pattern(const TissueModel& model) {
+/// The pattern whose row v holds what `list_neighbours(v, list)` appends, in any order, and v itself.
+template <class ListNeighbours>
+std::shared_ptr<const BlockPattern> make_pattern(std::size_t count, const ListNeighbours& list_neighbours) {
   auto pattern = std::make_shared<BlockPattern>();
-  const std::size_t count = model.mesh.vertices.size();
   pattern->row_start.push_back(0);
   std::vector<std::int32_t> neighbours;
   for (std::size_t v = 0; v < count; ++v) {
     neighbours.assign(1, static_cast<std::int32_t>(v));  // the diagonal exists even for a vertex without a tet
-    for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
-      const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
-      for (const VertexId w : model.mesh.tets[tet]) neighbours.push_back(w.value);
-    }
+    list_neighbours(v, neighbours);
     std::sort(neighbours.begin(), neighbours.end());
     neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
     const auto self = std::lower_bound(neighbours.begin(), neighbours.end(), static_cast<std::int32_t>(v));
@@ -43,11 +41,32 @@ std::shared_ptr<const BlockPattern> make_pattern(const TissueModel& model) {
   return pattern;
 }
 
+std::shared_ptr<const BlockPattern> make_stars(const TissueModel& model) {
+  return make_pattern(model.mesh.vertices.size(), [&](std::size_t v, std::vector<std::int32_t>& neighbours) {
+    for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
+      const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
+      for (const VertexId w : model.mesh.tets[tet]) neighbours.push_back(w.value);
+    }
+  });
+}
+
+std::shared_ptr<const BlockPattern> make_stars_of_stars(const BlockPattern& stars) {
+  const auto append_star = [&](std::size_t v, std::vector<std::int32_t>& list) {
+    list.insert(list.end(), stars.column.begin() + stars.row_start[v], stars.column.begin() + stars.row_start[v + 1]);
+  };
+  return make_pattern(stars.rows(), [&](std::size_t v, std::vector<std::int32_t>& neighbours) {
+    for (auto i = stars.row_start[v]; i < stars.row_start[v + 1]; ++i) {
+      append_star(static_cast<std::size_t>(stars.column[static_cast<std::size_t>(i)]), neighbours);
+    }
+  });
+}
+
 }  // namespace
 
 void add_topology(TissueModel& model) {
   list_tets_of_vertices(model);
-  model.pattern = make_pattern(model);
+  model.stars = make_stars(model);
+  model.pattern = model.material.volume == VolumeTreatment::Averaged ? make_stars_of_stars(*model.stars) : model.stars;
   model.tet_slots.resize(model.mesh.tets.size());
   const auto& column = model.pattern->column;
   for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) {

@@ -4,7 +4,7 @@
 
 namespace incise {
 
-/// Fills the arrays of `model` that follow from its tets alone: vertex_tets, pattern and tet_slots.
+/// Fills the arrays of `model` that follow from its tets alone: vertex_tets, stars, pattern and tet_slots.
 void add_topology(TissueModel& model);
 
 }  // namespace incise

@@ -41,6 +41,9 @@ struct TissueModel {
   std::vector<Vec3> dead_load_mn;     ///< per vertex: gravity and tractions
   std::vector<Vec3> applied_load_mn;  ///< per constraint: sum of its tractions (0 for other kinds)
   std::vector<SupportPlane> supports;
+  std::shared_ptr<const BlockPattern> stars;    ///< per vertex: the vertices of its tets, itself among them
+  /// Of the stiffness: `stars`, or with averaged volume, where tets also feel the neighbours of their corners, stars of
+  /// stars.
   std::shared_ptr<const BlockPattern> pattern;
   std::vector<std::array<std::int32_t, 16>> tet_slots;  ///< per tet: slot of block (corner a, corner b) at 4 a + b
   std::vector<std::int32_t> vertex_tet_start;           ///< N + 1, into vertex_tets
@@ -54,19 +57,46 @@ struct TissueModel {
                                             const Vec3& gravity_mm_s2 = Vec3::Zero(),
                                             const MaterialField& field = {});
 
+/// What viscous tissue remembers: strains of Green and Lagrange without their volumetric part. Empty without viscosity.
+struct ViscousMemory {
+  std::vector<Mat3> strains;   ///< per tet: at the end of the last step
+  std::vector<Mat3> branches;  ///< per tet and Prony term (tet * terms + term): strain of the branch's spring
+  [[nodiscard]] bool operator==(const ViscousMemory&) const = default;
+};
+
 /// What a simulation changes: a value that can be saved, compared and restored.
 struct TissueState {
   Points positions;                   ///< N x 3, mm
   std::vector<Mat3> rotations;        ///< per tet, warm start of the polar decomposition; proper
   std::vector<std::uint8_t> is_live;  ///< per tet: 1 until it is carved
+  ViscousMemory memory;               ///< of viscous tissue; changed by end_viscous_step alone
 };
 [[nodiscard]] TissueState rest_state(const TissueModel& model);
 
+/// Which derivative of the forces is wanted.
+enum class Tangent {
+  FrozenRotations,  ///< positive semi-definite and cheap: rotations held (corotational), else as Projected
+  Exact,            ///< the Hessian of the energy
+  Projected,        ///< as Exact, each tet's negative curvatures set to zero: positive semi-definite
+};
+
 /// Elastic forces (minus the energy gradient) of the live tets at state.positions, mN; adds to `forces` (N). Updates
-/// state.rotations. With `stiffness`: also adds the (positive semi-definite, rotation-frozen) tangent −∂f/∂x. Fixed
-/// order: same bits at any thread count.
+/// state.rotations. With `stiffness`: also adds the tangent −∂f/∂x. The long-time response of viscous tissue. Finite for
+/// inverted and collapsed tets. Fixed order: same bits at any thread count.
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Workers& workers);
+                          Workers& workers, Tangent tangent = Tangent::FrozenRotations);
+
+/// Adds the viscous forces, mN, at the end of a step of `step_s` (> 0) that ends at state.positions and began with
+/// state.memory; with `stiffness` their tangent. They are minus the gradient of viscous_potential_uj. Nothing without
+/// viscosity. @throws InvalidArgument when the memory is not that of this model (rest_state gives one).
+void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
+                          BlockMatrix* stiffness, Workers& workers, Tangent tangent = Tangent::FrozenRotations);
+/// What a step's viscous forces are the gradient of, µJ, up to a constant over the step.
+[[nodiscard]] double viscous_potential_uj(const TissueModel& model, const TissueState& state, double step_s);
+/// Ends a step at state.positions: carries the memory over. An infinite `step_s` lets every branch relax, as after a
+/// static solution.
+void end_viscous_step(const TissueModel& model, TissueState& state, double step_s, Workers& workers);
+
 /// Adds the push of the support planes (no pull) and, with `stiffness`, its tangent.
 void add_support_response(const TissueModel& model, const TissueState& state, std::span<Vec3> forces,
                           BlockMatrix* stiffness);

@@ -1,0 +1,155 @@
+#include "mechanics/laws.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// Sums of two principal stretches below this make the polar rotation ambiguous; its turn is held to this curvature.
+constexpr double kLeastStretchSum = 1e-6;
+/// A fibre shortened below this share has lost its direction.
+constexpr double kLeastFibreStretch = 1e-6;
+
+Mat3 cofactors(const Mat3& f) {
+  Mat3 c;
+  c.col(0) = f.col(1).cross(f.col(2));
+  c.col(1) = f.col(2).cross(f.col(0));
+  c.col(2) = f.col(0).cross(f.col(1));
+  return c;
+}
+
+double determinant(const Mat3& f) { return f.col(0).dot(f.col(1).cross(f.col(2))); }
+
+/// The stable Neo-Hookean shape energy as f(I) + h(J), I = |F|², J = det F, and its derivatives.
+struct NeoHookean {
+  double f1, f2;  // f', f''
+  double h1, h2;  // h', h''
+  NeoHookean(double mu, double i, double j)
+      : f1(2.0 / 3.0 * mu * (i / (i + 1.0))),
+        f2(2.0 / 3.0 * mu / ((i + 1.0) * (i + 1.0))),
+        h1(mu * (5.0 / 6.0 * (j - 1.0) - 1.0)),
+        h2(5.0 / 6.0 * mu) {}
+};
+
+/// Without its negative eigenvalues.
+Mat3 projected(const Mat3& symmetric) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(symmetric);
+  const Vec3 values = solver.eigenvalues().cwiseMax(0.0);
+  const Mat3 result = solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+  return 0.5 * (result + result.transpose());
+}
+
+/// Curvatures of the symmetric and of the skew change of each pair of directions, listed under the third.
+struct PairCurvatures {
+  Vec3 symmetric;
+  Vec3 skew;
+};
+
+PairCurvatures corotational_pairs(double mu, double p, const Vec3& sigma, bool is_frozen) {
+  PairCurvatures pairs{Vec3::Constant(2.0 * mu), Vec3::Zero()};
+  if (is_frozen) return pairs;
+  const double least = kLeastStretchSum * std::max(1.0, sigma.cwiseAbs().maxCoeff());
+  for (int k = 0; k < 3; ++k) {
+    pairs.skew[k] = 2.0 * mu + (2.0 * p - 4.0 * mu) / std::max(sigma[(k + 1) % 3] + sigma[(k + 2) % 3], least);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+double dilation(MaterialModel model, const Deformation& d) {
+  return model == MaterialModel::Corotational ? d.r.cwiseProduct(d.f).sum() - 3.0 : determinant(d.f) - 1.0;
+}
+
+Mat3 dilation_gradient(MaterialModel model, const Deformation& d) {
+  return model == MaterialModel::Corotational ? d.r : cofactors(d.f);
+}
+
+double shape_energy_kpa(MaterialModel model, double mu_kpa, const Deformation& d) {
+  if (model == MaterialModel::Corotational) return mu_kpa * (d.f - d.r).squaredNorm();
+  const double stretch = d.f.squaredNorm() - 3.0;
+  const double dilation = determinant(d.f) - 1.0;
+  return mu_kpa * (2.0 / 3.0 * (stretch - std::log1p(0.25 * stretch)) - dilation + 5.0 / 12.0 * dilation * dilation);
+}
+
+Mat3 shape_stress_kpa(MaterialModel model, double mu_kpa, const Deformation& d) {
+  if (model == MaterialModel::Corotational) return 2.0 * mu_kpa * (d.f - d.r);
+  const NeoHookean law(mu_kpa, d.f.squaredNorm(), determinant(d.f));
+  return 2.0 * law.f1 * d.f + law.h1 * cofactors(d.f);
+}
+
+PrincipalTangent principal_tangent(MaterialModel model, double mu_kpa, double p_kpa, double k_kpa,
+                                   const Deformation& d, Tangent tangent) {
+  const Mat3 s = d.r.transpose() * d.f;
+  const Eigen::SelfAdjointEigenSolver<Mat3> stretches(0.5 * (s + s.transpose()));
+  const Vec3& sigma = stretches.eigenvalues();
+  PrincipalTangent result;
+  result.v = stretches.eigenvectors();
+  result.u = d.r * result.v;
+
+  PairCurvatures pairs;
+  if (model == MaterialModel::Corotational) {
+    result.stretch = Mat3::Constant(k_kpa);
+    result.stretch.diagonal().array() += 2.0 * mu_kpa;
+    pairs = corotational_pairs(mu_kpa, p_kpa, sigma, tangent == Tangent::FrozenRotations);
+  } else {
+    NeoHookean law(mu_kpa, sigma.squaredNorm(), sigma.prod());
+    law.h1 += p_kpa;
+    law.h2 += k_kpa;
+    const Vec3 dj(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        result.stretch(i, j) = 4.0 * law.f2 * (sigma[i] * sigma[j]) + law.h2 * (dj[i] * dj[j]) +
+                               (i == j ? 2.0 * law.f1 : law.h1 * sigma[3 - i - j]);
+      }
+    }
+    pairs.symmetric = Vec3::Constant(2.0 * law.f1) - law.h1 * sigma;
+    pairs.skew = Vec3::Constant(2.0 * law.f1) + law.h1 * sigma;
+  }
+  if (tangent != Tangent::Exact) {
+    if (model != MaterialModel::Corotational) result.stretch = projected(result.stretch);  // else 2μ I + k 11ᵀ
+    pairs.symmetric = pairs.symmetric.cwiseMax(0.0);
+    pairs.skew = pairs.skew.cwiseMax(0.0);
+  }
+  result.straight = 0.5 * (pairs.symmetric + pairs.skew);
+  result.crossed = 0.5 * (pairs.symmetric - pairs.skew);
+  return result;
+}
+
+Mat3 stiffness_block(const PrincipalTangent& t, const Vec3& a, const Vec3& b) {
+  Mat3 block;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    const int k = (i + 2) % 3;
+    block(i, i) = t.stretch(i, i) * (a[i] * b[i]) + (t.straight[k] * (a[j] * b[j]) + t.straight[j] * (a[k] * b[k]));
+    block(i, j) = t.stretch(i, j) * (a[i] * b[j]) + t.crossed[k] * (a[j] * b[i]);
+    block(j, i) = t.stretch(j, i) * (a[j] * b[i]) + t.crossed[k] * (a[i] * b[j]);
+  }
+  return t.u * block * t.u.transpose();
+}
+
+double fibre_energy_kpa(double modulus_kpa, const Vec3& fibre, const Mat3& f) {
+  const double strain = (f * fibre).norm() - 1.0;
+  return 0.5 * modulus_kpa * strain * strain;
+}
+
+Mat3 fibre_stress_kpa(double modulus_kpa, const Vec3& fibre, const Mat3& f) {
+  const Vec3 along = f * fibre;
+  const double length = along.norm();
+  return modulus_kpa * (1.0 - 1.0 / std::max(length, kLeastFibreStretch)) * along * fibre.transpose();
+}
+
+Mat3 fibre_tangent_kpa(double modulus_kpa, const Vec3& fibre, const Mat3& f, Tangent tangent) {
+  const Vec3 along = f * fibre;
+  const double length = std::max(along.norm(), kLeastFibreStretch);
+  double across = 1.0 - 1.0 / length;
+  if (tangent != Tangent::Exact) across = std::max(across, 0.0);
+  const Vec3 n = along / length;
+  Mat3 h = (modulus_kpa * (1.0 - across)) * (n * n.transpose());
+  h.diagonal().array() += modulus_kpa * across;
+  return h;
+}
+
+}  // namespace incise

@@ -1,0 +1,204 @@
+#include "mechanics/viscous_response.hpp"
+
+#include "mechanics/elastic_response.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr std::size_t kTetsPerChunk = 256;
+constexpr std::size_t kVerticesPerChunk = 128;
+
+using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/// Deviator of Green and Lagrange's strain (Fᵀ F − I)/2.
+Mat3 strain_deviator(const Mat3& f) {
+  const Mat3 c = f.transpose() * f;
+  return 0.5 * (c - c.trace() / 3.0 * Mat3::Identity());
+}
+
+/// What one step does to a Maxwell branch: q ← decay q + uptake (D − D_old).
+struct BranchStep {
+  double share, decay, uptake;
+};
+
+struct ViscousStep {
+  std::vector<BranchStep> branches;
+  double damper = 0.0;   ///< η / (μ dt)
+  double stiffness = 0;  ///< tangent of the stress to D, over 2 μ
+
+  ViscousStep(const Material& material, double step_s) {
+    for (const PronyTerm& term : material.prony) {
+      const double half = std::exp(-0.5 * step_s / term.time_s);
+      branches.push_back({term.shear_share, half * half, half});
+      stiffness += term.shear_share * half;
+    }
+    damper = material.kelvin_voigt_time_s / step_s;
+    stiffness += damper;
+  }
+};
+
+/// The viscous law of one model, one step and the memory of the step's start.
+class ViscousTets {
+ public:
+  ViscousTets(const TissueModel& model, const TissueState& state, double step_s)
+      : model_(model), state_(state), step_(model.material, step_s) {}
+
+  [[nodiscard]] Mat3 deformation(std::size_t tet) const { return deformation_gradient(model_, state_.positions, tet); }
+
+  /// q of branch i at the end of the step.
+  [[nodiscard]] Mat3 branch(std::size_t tet, std::size_t i, const Mat3& change) const {
+    const BranchStep& b = step_.branches[i];
+    return b.decay * state_.memory.branches[tet * step_.branches.size() + i] + b.uptake * change;
+  }
+
+  [[nodiscard]] Mat3 change(std::size_t tet, const Mat3& f) const {
+    return strain_deviator(f) - state_.memory.strains[tet];
+  }
+
+  /// Second Piola stress; traceless.
+  [[nodiscard]] Mat3 stress(std::size_t tet, const Mat3& f) const {
+    const Mat3 d = change(tet, f);
+    Mat3 sum = step_.damper * d;
+    for (std::size_t i = 0; i < step_.branches.size(); ++i) sum += step_.branches[i].share * branch(tet, i, d);
+    return 2.0 * model_.lame[tet].mu_kpa * sum;
+  }
+
+  /// Energy density whose derivative by the end's strain is the stress.
+  [[nodiscard]] double potential(std::size_t tet) const {
+    const Mat3 d = change(tet, deformation(tet));
+    double sum = step_.damper * d.squaredNorm();
+    for (std::size_t i = 0; i < step_.branches.size(); ++i) {
+      // |decay q + uptake d|² / uptake without what is constant over the step: safe where uptake underflows to 0.
+      const BranchStep& b = step_.branches[i];
+      const Mat3& q = state_.memory.branches[tet * step_.branches.size() + i];
+      sum += b.share * (b.uptake * d.squaredNorm() + 2.0 * b.decay * q.cwiseProduct(d).sum());
+    }
+    return model_.lame[tet].mu_kpa * sum;
+  }
+
+  /// Tangent of the stress to the strain's deviator: dS = 2 m dev dE.
+  [[nodiscard]] double modulus(std::size_t tet) const { return model_.lame[tet].mu_kpa * step_.stiffness; }
+  [[nodiscard]] std::size_t branch_count() const { return step_.branches.size(); }
+
+ private:
+  const TissueModel& model_;
+  const TissueState& state_;
+  ViscousStep step_;
+};
+
+/// Without its negative eigenvalues: stress that shortens would otherwise make the tangent indefinite.
+Mat3 without_compression(const Mat3& stress) {
+  const Eigen::SelfAdjointEigenSolver<Mat3> solver(stress);
+  const Vec3 values = solver.eigenvalues().cwiseMax(0.0);
+  return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
+}
+
+/// Block (a, b) of the tangent per volume: with Fa = F g_a,
+/// (g_a · S g_b) I + m (g_a · g_b) F Fᵀ + m Fb Faᵀ − 2m/3 Fa Fbᵀ.
+Mat3 viscous_block(const Mat3& f, const Mat3& geometric_stress, double m, const Vec3& a, const Vec3& b) {
+  const Vec3 fa = f * a;
+  const Vec3 fb = f * b;
+  Mat3 block = m * a.dot(b) * (f * f.transpose()) + m * (fb * fa.transpose()) - 2.0 / 3.0 * m * (fa * fb.transpose());
+  block.diagonal().array() += a.dot(geometric_stress * b);
+  return block;
+}
+
+void check(const TissueModel& model, const TissueState& state, double step_s) {
+  const std::size_t tets = model.mesh.tets.size();
+  INCISE_REQUIRE(step_s > 0.0, fmt::format("expected a step above 0 s, found {}", step_s));
+  INCISE_REQUIRE(state.positions.size() == model.mesh.vertices.size() && state.is_live.size() == tets,
+                 fmt::format("expected {} vertices and {} tets, found {} and {}", model.mesh.vertices.size(), tets,
+                             state.positions.size(), state.is_live.size()));
+  INCISE_REQUIRE(
+      state.memory.strains.size() == tets && state.memory.branches.size() == tets * model.material.prony.size(),
+      fmt::format("expected the viscous memory of {} tets with {} branches each, found {} and {} in all", tets,
+                  model.material.prony.size(), state.memory.strains.size(), state.memory.branches.size()));
+}
+
+}  // namespace
+
+bool is_viscous(const Material& material) { return !material.prony.empty() || material.kelvin_voigt_time_s > 0.0; }
+
+ViscousMemory rest_memory(const Material& material, std::size_t tets) {
+  ViscousMemory memory;
+  if (!is_viscous(material)) return memory;
+  memory.strains.assign(tets, Mat3::Zero());
+  memory.branches.assign(tets * material.prony.size(), Mat3::Zero());
+  return memory;
+}
+
+void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
+                          BlockMatrix* stiffness, Workers& workers, Tangent tangent) {
+  if (!is_viscous(model.material)) return;
+  check(model, state, step_s);
+  INCISE_REQUIRE(forces.size() == model.mesh.vertices.size(),
+                 fmt::format("expected {} forces, found {}", model.mesh.vertices.size(), forces.size()));
+  const ViscousTets tets(model, state, step_s);
+  struct Response {
+    Mat3 f, stress, geometric;
+  };
+  std::vector<Response> responses(model.mesh.tets.size());
+  workers.for_each(responses.size(), kTetsPerChunk, [&](std::size_t tet) {
+    if (state.is_live[tet] == 0) return;
+    Response& r = responses[tet];
+    r.f = tets.deformation(tet);
+    r.stress = tets.stress(tet, r.f);
+    if (stiffness != nullptr) r.geometric = tangent == Tangent::Exact ? r.stress : without_compression(r.stress);
+  });
+  workers.for_each(forces.size(), kVerticesPerChunk, [&](std::size_t v) {
+    Vec3 force = Vec3::Zero();
+    for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
+      const auto entry = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)]);
+      const std::size_t tet = entry / 4;
+      const std::size_t corner = entry % 4;
+      if (state.is_live[tet] == 0) continue;
+      const Response& r = responses[tet];
+      const auto& g = model.gradients[tet];
+      force -= model.volumes_mm3[tet] * (r.f * (r.stress * g[corner]));
+      if (stiffness == nullptr) continue;
+      for (std::size_t b = 0; b < 4; ++b) {  // (b, a) as the transpose of (a, b): symmetric bit for bit
+        const std::size_t low = std::min(corner, b);
+        const std::size_t high = std::max(corner, b);
+        Mat3 block = viscous_block(r.f, r.geometric, tets.modulus(tet), g[low], g[high]);
+        if (low == high) block = (0.5 * (block + block.transpose())).eval();
+        if (low != corner) block.transposeInPlace();
+        Eigen::Map<RowMajor>(stiffness->block(model.tet_slots[tet][4 * corner + b])) += model.volumes_mm3[tet] * block;
+      }
+    }
+    forces[v] += force;
+  });
+}
+
+double viscous_potential_uj(const TissueModel& model, const TissueState& state, double step_s) {
+  if (!is_viscous(model.material)) return 0.0;
+  check(model, state, step_s);
+  const ViscousTets tets(model, state, step_s);
+  double sum = 0.0;
+  for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
+    if (state.is_live[tet] != 0) sum += model.volumes_mm3[tet] * tets.potential(tet);
+  }
+  return sum;
+}
+
+void end_viscous_step(const TissueModel& model, TissueState& state, double step_s, Workers& workers) {
+  if (!is_viscous(model.material)) return;
+  check(model, state, step_s);
+  const ViscousTets tets(model, state, step_s);
+  workers.for_each(model.mesh.tets.size(), kTetsPerChunk, [&](std::size_t tet) {
+    if (state.is_live[tet] == 0) return;
+    const Mat3 f = tets.deformation(tet);
+    const Mat3 change = tets.change(tet, f);
+    const std::size_t count = tets.branch_count();
+    for (std::size_t i = 0; i < count; ++i) state.memory.branches[tet * count + i] = tets.branch(tet, i, change);
+    state.memory.strains[tet] = strain_deviator(f);
+  });
+}
+
+}  // namespace incise
