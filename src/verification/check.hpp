@@ -48,6 +48,8 @@ VerificationCheck cooks_membrane_rate(const CheckContext& context);
 VerificationCheck thick_sphere_rate(const CheckContext& context);
 VerificationCheck thick_sphere_displacement(const CheckContext& context);
 VerificationCheck elastica_tip(const CheckContext& context);
+VerificationCheck locking_of_the_standard_tet(const CheckContext& context, MaterialModel model);
+VerificationCheck no_locking_when_averaged(const CheckContext& context, MaterialModel model);
 VerificationCheck vertex_order(const CheckContext& context);
 VerificationCheck support_penetration(const CheckContext& context);
 VerificationCheck support_balance(const CheckContext& context);

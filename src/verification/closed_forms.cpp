@@ -32,9 +32,7 @@ NeoHookean neo_hookean(const Material& material) {
   return law;
 }
 
-}  // namespace
-
-Vec3 principal_stress_kpa(const Material& material, const Vec3& s) {
+Vec3 isotropic_stress_kpa(const Material& material, const Vec3& s) {
   if (material.model == MaterialModel::Corotational) {
     const LameParameters lame = lame_parameters(material.youngs_modulus_kpa, material.poissons_ratio);
     return 2.0 * lame.mu_kpa * (s - Vec3::Ones()) + Vec3::Constant(lame.lambda_kpa * (s.sum() - 3.0));
@@ -42,6 +40,14 @@ Vec3 principal_stress_kpa(const Material& material, const Vec3& s) {
   const NeoHookean law = neo_hookean(material);
   const double volume = s.prod();
   return law.mu * (1.0 - 1.0 / (s.squaredNorm() + 1.0)) * s + law.lambda * (volume - law.alpha) * volume * s.cwiseInverse();
+}
+
+}  // namespace
+
+Vec3 principal_stress_kpa(const Material& material, const Vec3& s) {
+  INCISE_REQUIRE(material.fibre_modulus_kpa == 0.0 || material.fibre_direction.normalized() == Vec3::UnitX(),
+                 "expected fibres along the first principal direction");
+  return isotropic_stress_kpa(material, s) + material.fibre_modulus_kpa * (s[0] - 1.0) * Vec3::UnitX();
 }
 
 double free_stretch_of_bar(const Material& material, double along) {

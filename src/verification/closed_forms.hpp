@@ -6,8 +6,8 @@
 namespace incise {
 
 /// Principal first Piola stresses, kPa, of a homogeneous state with these principal stretches (> 0), from the law's
-/// energy written in the stretches; no fibres. Corotational: 2μ(s_i − 1) + λ(Σ s − 3). Stable Neo-Hookean [Smith, de
-/// Goes and Kim 2018, eq. 14 with the parameters of its section 3.4]: μ' s_i (1 − 1/(Σ s² + 1)) + λ'(J − α) J / s_i,
+/// energy written in the stretches; fibres, if any, lie along the first and add E_f(s_1 − 1). Corotational: 2μ(s_i − 1) + λ(Σ s − 3). Stable Neo-Hookean [Smith, de
+/// Goes and Kim 2018, eq. 14, its parameters matched to small strains]: μ' s_i (1 − 1/(Σ s² + 1)) + λ'(J − α) J / s_i,
 /// μ' = 4μ/3, λ' = λ + 5μ/6, α = 1 + μ'/λ' − μ'/(4λ').
 [[nodiscard]] Vec3 principal_stress_kpa(const Material& material, const Vec3& stretches);
 

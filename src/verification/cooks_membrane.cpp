@@ -3,6 +3,7 @@
 #include "verification/check.hpp"
 #include "verification/closed_forms.hpp"
 #include "verification/convergence.hpp"
+#include "verification/cooks_panel_tip.hpp"
 #include "verification/plane_reference.hpp"
 
 #include <incise/core/units.hpp>
@@ -19,7 +20,9 @@ constexpr double kRateTolerance = 0.1;
 const std::vector<int> kCells{16, 32, 64};
 constexpr int kReferenceCells = 32;  // quadratic elements each way; the coarser two of its meshes have 8 and 16
 
-double computed_tip_mm(const CheckContext& context, const Material& material, int n) {
+}  // namespace
+
+double panel_tip_of_tets_mm(const CheckContext& context, const Material& material, int n) {
   const TissueModel model = make_tissue_model(
       cooks_panel(n), material,
       {FixedConstraint{plane_across(0, 0.0), {true, true, false}}, symmetry_across(2), symmetry_across(2, 1.0),
@@ -28,7 +31,7 @@ double computed_tip_mm(const CheckContext& context, const Material& material, in
   return mean_displacement(model, solved(context, model, nullptr, kSmallStrainTolerance).state, tip)[1];
 }
 
-double reference_tip_mm(const Material& material) {
+double panel_reference_tip_mm(const Material& material) {
   PanelProblem problem;
   problem.youngs_modulus_kpa = material.youngs_modulus_kpa;
   problem.poissons_ratio = material.poissons_ratio;
@@ -36,8 +39,6 @@ double reference_tip_mm(const Material& material) {
   return extrapolated(panel_tip_mm(problem, kReferenceCells / 4), panel_tip_mm(problem, kReferenceCells / 2),
                       panel_tip_mm(problem, kReferenceCells));
 }
-
-}  // namespace
 
 VerificationCheck cooks_membrane_rate(const CheckContext& context) {
   Material material;
@@ -51,12 +52,12 @@ VerificationCheck cooks_membrane_rate(const CheckContext& context) {
       2.0 * exponent, kRateTolerance);
   // On meshes as coarse as these the smooth part of the error, of order 2, still outweighs the corner's.
   check.criterion = Criterion::AtLeast;
-  const double expected = reference_tip_mm(material);
+  const double expected = panel_reference_tip_mm(material);
   CheckCurve marks{"tip displacement", {}, {}, false};
   CheckCurve slope{fmt::format("order {:.2f}", 2.0 * exponent), {}, {}, true};
   for (const int n : kCells) {
     marks.x.push_back(n);
-    marks.y.push_back(std::abs(1.0 - computed_tip_mm(context, material, n) / expected));
+    marks.y.push_back(std::abs(1.0 - panel_tip_of_tets_mm(context, material, n) / expected));
     slope.x.push_back(n);
     slope.y.push_back(marks.y[0] * std::pow(static_cast<double>(kCells[0]) / n, 2.0 * exponent));
     check.note += fmt::format("{}{} cells: {:.2f} % off", n == kCells[0] ? "" : ", ", n, 100.0 * marks.y.back());

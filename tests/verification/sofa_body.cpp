@@ -207,10 +207,14 @@ Points sofa_steps(SofaBody& body, const SofaCase& load, const SofaStepping& step
   const double of_stiffness = h * h + h * stepping.damping_stiffness;
   Points positions = body.rest();
   Vector velocity = Vector::Zero(dead.size());
+  Eigen::SparseMatrix<double> stiffness;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
   for (int step = 0; step < stepping.steps; ++step) {
-    body.turn(positions);
-    Eigen::SparseMatrix<double> matrix = body.stiffness();
+    if (step == 0 || !body.is_linear()) {
+      body.turn(positions);
+      stiffness = body.stiffness();
+    }
+    Eigen::SparseMatrix<double> matrix = stiffness;
     Vector right = h * (body.forces(positions) + dead - (h + stepping.damping_stiffness) * (matrix * velocity) -
                         stepping.damping_mass * mass.cwiseProduct(velocity));
     clear_held(right, is_held);
@@ -222,7 +226,7 @@ Points sofa_steps(SofaBody& body, const SofaCase& load, const SofaStepping& step
       change = conjugate_gradients(matrix, right, stepping.cg_iterations);
     } else {
       if (step == 0) solver.analyzePattern(matrix);
-      solver.factorize(matrix);
+      if (step == 0 || !body.is_linear()) solver.factorize(matrix);
       change = solver.solve(right);
     }
     velocity += change;

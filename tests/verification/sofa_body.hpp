@@ -30,6 +30,7 @@ class SofaBody {
   [[nodiscard]] Eigen::VectorXd forces(const Points& positions) const;
   /// K = Σ R K_e Rᵀ, rotations frozen.
   [[nodiscard]] Eigen::SparseMatrix<double> stiffness() const;
+  [[nodiscard]] bool is_linear() const { return rotation_ == SofaRotation::Small; }
 
  private:
   TetMesh mesh_;
