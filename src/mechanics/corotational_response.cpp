@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kTetsPerChunk = 512;
 constexpr std::size_t kVerticesPerChunk = 128;
-constexpr double kLeastTurningCurvature = 1e-6;  // relative to the stretches: below it the rotation is not unique
+constexpr double kLeastTurningCurvature = 1e-6;  // relative to the stretches, or to 1: below it the rotation is not unique
 
 /// Curvature of one tet's energy density in the turn of F against R, in the current frame. With A = Rᵀ dF and a the
 /// axial vector of A - Aᵀ, d²Ψ = 2μ |sym A|² + λ tr² A + aᵀ (μ I + (λ tr(S - I) - 2μ) G⁻¹) a, where S = Rᵀ F and G = tr
@@ -20,7 +20,7 @@ Mat3 turning_curvature(const Mat3& f, const Mat3& r, const LameParameters& lame,
   const Eigen::SelfAdjointEigenSolver<Mat3> stretches(0.5 * (s + s.transpose()));
   const double trace = stretches.eigenvalues().sum();
   const double factor = lame.lambda_kpa * (trace - 3.0) - 2.0 * lame.mu_kpa;
-  const double least = kLeastTurningCurvature * stretches.eigenvalues().cwiseAbs().maxCoeff();
+  const double least = kLeastTurningCurvature * std::max(1.0, stretches.eigenvalues().cwiseAbs().maxCoeff());
   Vec3 curvature;
   for (int i = 0; i < 3; ++i) {
     const double g = std::max(trace - stretches.eigenvalues()[i], least);

@@ -42,9 +42,14 @@ void add_elastic_response(const TissueModel& model, TissueState& state, std::spa
 }
 
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Workers& workers, Tangent tangent) {
+                          Tangent tangent, Workers& workers) {
   std::vector<Mat3> turning;
   add_elastic_response(model, state, forces, stiffness, tangent, turning, workers);
+}
+
+void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
+                          Workers& workers) {
+  add_elastic_response(model, state, forces, stiffness, Tangent::FrozenRotations, workers);
 }
 
 double elastic_energy_uj(const TissueModel& model, const TissueState& state) {

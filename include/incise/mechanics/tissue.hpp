@@ -84,13 +84,19 @@ enum class Tangent {
 /// state.rotations. With `stiffness`: also adds the tangent −∂f/∂x. The long-time response of viscous tissue. Finite for
 /// inverted and collapsed tets. Fixed order: same bits at any thread count.
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Workers& workers, Tangent tangent = Tangent::FrozenRotations);
+                          Tangent tangent, Workers& workers);
+/// The same with the tangent of frozen rotations.
+void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
+                          Workers& workers);
 
 /// Adds the viscous forces, mN, at the end of a step of `step_s` (> 0) that ends at state.positions and began with
 /// state.memory; with `stiffness` their tangent. They are minus the gradient of viscous_potential_uj. Nothing without
 /// viscosity. @throws InvalidArgument when the memory is not that of this model (rest_state gives one).
 void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
-                          BlockMatrix* stiffness, Workers& workers, Tangent tangent = Tangent::FrozenRotations);
+                          BlockMatrix* stiffness, Tangent tangent, Workers& workers);
+/// The same with the tangent of frozen rotations (projected).
+void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
+                          BlockMatrix* stiffness, Workers& workers);
 /// What a step's viscous forces are the gradient of, µJ, up to a constant over the step.
 [[nodiscard]] double viscous_potential_uj(const TissueModel& model, const TissueState& state, double step_s);
 /// Ends a step at state.positions: carries the memory over. An infinite `step_s` lets every branch relax, as after a
