@@ -1,5 +1,6 @@
 #include "verification/bodies.hpp"
 
+#include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
 #include <incise/core/units.hpp>
 
@@ -104,6 +105,7 @@ TetMesh cooks_panel(int n) {
 Vec3 mean_displacement(const TissueModel& model, const TissueState& state, const Region& where) {
   Vec3 sum = Vec3::Zero();
   const std::vector<VertexId> chosen = select(model.mesh, where);
+  INCISE_REQUIRE(!chosen.empty(), "expected a region with vertices in it");
   for (const VertexId v : chosen) sum += state.positions[v.index()] - model.mesh.vertices[v.index()];
   return sum / static_cast<double>(chosen.size());
 }

@@ -50,6 +50,8 @@ VerificationCheck thick_sphere_displacement(const CheckContext& context);
 VerificationCheck elastica_tip(const CheckContext& context);
 VerificationCheck locking_of_the_standard_tet(const CheckContext& context, MaterialModel model);
 VerificationCheck no_locking_when_averaged(const CheckContext& context, MaterialModel model);
+VerificationCheck vibration_period(const CheckContext& context);
+VerificationCheck relaxation_of_one_prony_term(const CheckContext& context);
 VerificationCheck vertex_order(const CheckContext& context);
 VerificationCheck support_penetration(const CheckContext& context);
 VerificationCheck support_balance(const CheckContext& context);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kPoissonsRatio = 0.49;
 constexpr double kLockedPercent = 15.0;
 constexpr double kFreeShare = 0.03;  // of the reference
-const std::vector<int> kMeshes{9, 18, 27, 36};  // cells each way; both are judged on the last
+const std::vector<int> kMeshes{8, 16, 24, 36};  // cells each way; both are judged on the last
 
 Material nearly_incompressible(MaterialModel model, VolumeTreatment volume) {
   Material material;

@@ -61,6 +61,8 @@ std::vector<CheckEntry> make_table() {
   table.push_back({"thick_sphere_rate", thick_sphere_rate});
   table.push_back({"thick_sphere_displacement", thick_sphere_displacement});
   table.push_back({"elastica_tip", elastica_tip});
+  table.push_back({"vibration_period", vibration_period});
+  table.push_back({"relaxation_prony", relaxation_of_one_prony_term});
   table.push_back({"vertex_order", vertex_order});
   table.push_back({"support_penetration", support_penetration});
   table.push_back({"support_balance", support_balance});
