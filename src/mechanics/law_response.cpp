@@ -51,7 +51,8 @@ class TetResponses {
 
   [[nodiscard]] const std::vector<Mat3>& stresses() const { return stresses_; }
 
-  /// The four blocks of the row of `corner`. Block (b, a) is computed as the transpose of (a, b): symmetric bit for bit.
+  /// The four blocks of the row of `corner`. Block (b, a) is computed as the transpose of (a, b): symmetric bit for
+  /// bit.
   void add_stiffness(std::size_t tet, std::size_t corner, BlockMatrix& matrix) const {
     const auto& gradients = model_.gradients[tet];
     const Mat3 to_principal = tangents_[tet].v.transpose();
@@ -74,9 +75,8 @@ class TetResponses {
   void add_averaged_stiffness(BlockMatrix& matrix) const {
     if (!averages_) return;
     std::vector<Mat3> gradients(deformations_.size());
-    for_live_tets([&](std::size_t tet) {
-      gradients[tet] = dilation_gradient(model_.material.model, deformations_[tet]);
-    });
+    for_live_tets(
+        [&](std::size_t tet) { gradients[tet] = dilation_gradient(model_.material.model, deformations_[tet]); });
     averages_->add_stiffness(state_, gradients, matrix, workers_);
   }
 

@@ -20,7 +20,9 @@ Mat3 cofactors(const Mat3& f) {
   return c;
 }
 
-double determinant(const Mat3& f) { return f.col(0).dot(f.col(1).cross(f.col(2))); }
+double determinant(const Mat3& f) {
+  return f.col(0).dot(f.col(1).cross(f.col(2)));
+}
 
 /// The stable Neo-Hookean shape energy as f(I) + h(J), I = |F|², J = det F, and its derivatives.
 struct NeoHookean {
@@ -80,8 +82,8 @@ Mat3 shape_stress_kpa(MaterialModel model, double mu_kpa, const Deformation& d) 
   return 2.0 * law.f1 * d.f + law.h1 * cofactors(d.f);
 }
 
-PrincipalTangent principal_tangent(MaterialModel model, double mu_kpa, double p_kpa, double k_kpa,
-                                   const Deformation& d, Tangent tangent) {
+PrincipalTangent principal_tangent(MaterialModel model, double mu_kpa, double p_kpa, double k_kpa, const Deformation& d,
+                                   Tangent tangent) {
   const Mat3 s = d.r.transpose() * d.f;
   const Eigen::SelfAdjointEigenSolver<Mat3> stretches(0.5 * (s + s.transpose()));
   const Vec3& sigma = stretches.eigenvalues();

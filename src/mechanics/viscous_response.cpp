@@ -124,7 +124,9 @@ void check(const TissueModel& model, const TissueState& state, double step_s) {
 
 }  // namespace
 
-bool is_viscous(const Material& material) { return !material.prony.empty() || material.kelvin_voigt_time_s > 0.0; }
+bool is_viscous(const Material& material) {
+  return !material.prony.empty() || material.kelvin_voigt_time_s > 0.0;
+}
 
 ViscousMemory rest_memory(const Material& material, std::size_t tets) {
   ViscousMemory memory;

@@ -57,7 +57,8 @@ double VolumeAverages::pressure_kpa(const Tet& tet) const {
 
 double VolumeAverages::energy_uj() const {
   double energy = 0.0;
-  for (std::size_t n = 0; n < volume_.size(); ++n) energy += 0.5 * modulus_[n] * volume_[n] * dilation_[n] * dilation_[n];
+  for (std::size_t n = 0; n < volume_.size(); ++n)
+    energy += 0.5 * modulus_[n] * volume_[n] * dilation_[n] * dilation_[n];
   return energy;
 }
 
@@ -75,7 +76,8 @@ void VolumeAverages::add_stiffness(const TissueState& state, std::span<const Mat
     const auto row = std::span(gradient).subspan(static_cast<std::size_t>(stars.row_start[n]), star.size());
     gather_gradient(model_, state, gradients, n, star, row);
   });
-  // Row v: every vertex n of its star couples v to the whole star of n. Ascending n: K_wv is the exact transpose of K_vw.
+  // Row v: every vertex n of its star couples v to the whole star of n. Ascending n: K_wv is the exact transpose of
+  // K_vw.
   workers.for_each(volume_.size(), kVerticesPerChunk, [&](std::size_t v) {
     for (const std::int32_t neighbour : star_of(v)) {
       const auto n = static_cast<std::size_t>(neighbour);

@@ -5,8 +5,8 @@
 namespace incise {
 
 /// Change of volume averaged to the vertices over live tets (Bonet and Burton 1998): θ_n = Σ V_t/4 θ_t / V_n with
-/// V_n = Σ V_t/4, energy U = Σ k_n V_n θ_n² / 2, where 1/k_n is the V-weighted mean of 1/λ_t: tets round a vertex share one
-/// pressure, as springs in a row share one force.
+/// V_n = Σ V_t/4, energy U = Σ k_n V_n θ_n² / 2, where 1/k_n is the V-weighted mean of 1/λ_t: tets round a vertex share
+/// one pressure, as springs in a row share one force.
 class VolumeAverages {
  public:
   /// From θ of every live tet.
@@ -23,9 +23,9 @@ class VolumeAverages {
 
  private:
   const TissueModel& model_;
-  std::vector<double> volume_;     // V_n, mm³; 0 without live tets
-  std::vector<double> modulus_;    // k_n, kPa
-  std::vector<double> dilation_;   // θ_n
+  std::vector<double> volume_;    // V_n, mm³; 0 without live tets
+  std::vector<double> modulus_;   // k_n, kPa
+  std::vector<double> dilation_;  // θ_n
 };
 
 }  // namespace incise

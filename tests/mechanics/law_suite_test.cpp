@@ -230,7 +230,7 @@ TEST_P(EveryLaw, HasNoForceAndNoEnergyAtRest) {
 
 TEST_P(EveryLaw, IsFiniteForFlatCollapsedAndMirroredTets) {
   const TissueModel model = one_tet();
-  const Vec3 diagonals[] = {Vec3::Zero(),      Vec3(1, 1, 0),  Vec3(1, 0, 0),      Vec3(1, 1, -1),
+  const Vec3 diagonals[] = {Vec3::Zero(),     Vec3(1, 1, 0),   Vec3(1, 0, 0),        Vec3(1, 1, -1),
                             Vec3(-1, -1, -1), Vec3(1, -1, -1), Vec3(1, 1e-9, -1e-9), Vec3::Constant(1e8)};
   for (const Vec3& stretch : diagonals) {
     TissueState state = mapped(model, some_rotation() * stretch.asDiagonal());
@@ -340,19 +340,19 @@ constexpr auto kNeoHookean = MaterialModel::StableNeoHookean;
 constexpr auto kPerTet = VolumeTreatment::PerTet;
 constexpr auto kAveraged = VolumeTreatment::Averaged;
 
-INSTANTIATE_TEST_SUITE_P(
-    Laws, EveryLaw,
-    ::testing::Values(LawCase{"Corotational", kCorotational, kPerTet, false, false},
-                      LawCase{"CorotationalFibres", kCorotational, kPerTet, true, false},
-                      LawCase{"CorotationalAveraged", kCorotational, kAveraged, false, false},
-                      LawCase{"CorotationalAveragedFibres", kCorotational, kAveraged, true, false},
-                      LawCase{"CorotationalViscous", kCorotational, kPerTet, false, true},
-                      LawCase{"NeoHookean", kNeoHookean, kPerTet, false, false},
-                      LawCase{"NeoHookeanFibres", kNeoHookean, kPerTet, true, false},
-                      LawCase{"NeoHookeanAveraged", kNeoHookean, kAveraged, false, false},
-                      LawCase{"NeoHookeanAveragedFibres", kNeoHookean, kAveraged, true, false},
-                      LawCase{"NeoHookeanAveragedFibresViscous", kNeoHookean, kAveraged, true, true}),
-    [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(Laws, EveryLaw,
+                         ::testing::Values(LawCase{"Corotational", kCorotational, kPerTet, false, false},
+                                           LawCase{"CorotationalFibres", kCorotational, kPerTet, true, false},
+                                           LawCase{"CorotationalAveraged", kCorotational, kAveraged, false, false},
+                                           LawCase{"CorotationalAveragedFibres", kCorotational, kAveraged, true, false},
+                                           LawCase{"CorotationalViscous", kCorotational, kPerTet, false, true},
+                                           LawCase{"NeoHookean", kNeoHookean, kPerTet, false, false},
+                                           LawCase{"NeoHookeanFibres", kNeoHookean, kPerTet, true, false},
+                                           LawCase{"NeoHookeanAveraged", kNeoHookean, kAveraged, false, false},
+                                           LawCase{"NeoHookeanAveragedFibres", kNeoHookean, kAveraged, true, false},
+                                           LawCase{"NeoHookeanAveragedFibresViscous", kNeoHookean, kAveraged, true,
+                                                   true}),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
 }  // namespace incise

@@ -15,8 +15,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using testing::irregular_block;
+using ::testing::IsEmpty;
 using testing::plane_x;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -81,7 +81,8 @@ TEST(MaterialField, GivesEveryTetItsOwnFibres) {
   Material material;
   material.fibre_modulus_kpa = 100.0;
   MaterialField field;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) field.fibre_directions.push_back(t % 2 == 0 ? Vec3(5, 0, 0) : Vec3(0, 0, 0.1));
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    field.fibre_directions.push_back(t % 2 == 0 ? Vec3(5, 0, 0) : Vec3(0, 0, 0.1));
   const TissueModel model = make_tissue_model(mesh, material, {FixedConstraint{plane_x(0.0)}}, Vec3::Zero(), field);
   TissueState state = rest_state(model);
   for (Vec3& p : state.positions) p[0] *= 1.1;

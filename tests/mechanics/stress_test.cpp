@@ -36,8 +36,8 @@ double by_energy(const TissueModel& model, const Vec3& stretch) {
     sigma[i] = (density(1e-5) - density(-1e-5)) / 2e-5;
     if (model.material.model == MaterialModel::StableNeoHookean) sigma[i] *= stretch[i] / stretch.prod();
   }
-  return std::sqrt(0.5 * (std::pow(sigma[0] - sigma[1], 2) + std::pow(sigma[1] - sigma[2], 2) +
-                          std::pow(sigma[2] - sigma[0], 2)));
+  return std::sqrt(
+      0.5 * (std::pow(sigma[0] - sigma[1], 2) + std::pow(sigma[1] - sigma[2], 2) + std::pow(sigma[2] - sigma[0], 2)));
 }
 
 TEST(VonMises, FollowsFromTheEnergyForEveryLaw) {
