@@ -28,8 +28,9 @@ Range range_of(const LinePlot& plot, bool is_x) {
   for (const LineSeries& series : plot.series) {
     for (const double value : is_x ? series.x : series.y) {
       const double place = is_log ? std::log10(value) : value;
-      INCISE_REQUIRE(std::isfinite(place), fmt::format("series \"{}\": expected numbers that the axis can show, found {}",
-                                                       series.name, value));
+      INCISE_REQUIRE(
+          std::isfinite(place),
+          fmt::format("series \"{}\": expected numbers that the axis can show, found {}", series.name, value));
       range.low = std::min(range.low, place);
       range.high = std::max(range.high, place);
     }
@@ -54,7 +55,8 @@ std::vector<double> log_ticks(const Range& range) {
   return ticks;
 }
 
-void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, bool is_log, bool is_x, std::string_view name) {
+void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, bool is_log, bool is_x,
+               std::string_view name) {
   const std::vector<double> ticks = is_log ? log_ticks(range) : round_ticks(range.low, range.high, 6);
   if (!is_log) {
     is_x ? draw_x_axis(svg, area, ticks, name) : draw_y_axis(svg, area, ticks, name);
@@ -98,7 +100,8 @@ void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<std::st
     if (plot.series[i].is_line) {
       svg.line({x, 42.0}, {x + 16.0, 42.0}, fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", colors[i]));
     } else {
-      svg.circle({x + 8.0, 42.0}, kMarkRadius, fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.6\"", colors[i]));
+      svg.circle({x + 8.0, 42.0}, kMarkRadius,
+                 fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.6\"", colors[i]));
     }
     svg.text({x + 21.0, 46.0}, plot.series[i].name);
     x += 40.0 + 6.4 * static_cast<double>(plot.series[i].name.size());

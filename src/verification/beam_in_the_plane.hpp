@@ -16,8 +16,8 @@ struct PlaneBeam {
   double force_mn = 0.0;           ///< at the tip, downwards
 };
 
-/// Points (x, z) of the bent centre line at `steps` + 1 equal arc lengths: Reissner's beam (1972), moment balance m' = F
-/// x' integrated by Runge-Kutta from the clamp, whose moment is found by bisection so that the tip has none.
+/// Points (x, z) of the bent centre line at `steps` + 1 equal arc lengths: Reissner's beam (1972), moment balance m' =
+/// F x' integrated by Runge-Kutta from the clamp, whose moment is found by bisection so that the tip has none.
 [[nodiscard]] std::vector<Vec2> bent_line(const PlaneBeam& beam, int steps = 400);
 
 }  // namespace incise

@@ -45,8 +45,7 @@ void prescribe_boundary(TissueModel& model, const Mat3& f) {
   for (const BoundaryFace& face : boundary_faces(model.mesh)) {
     for (const VertexId v : face.corners) {
       model.is_fixed[v.index()] = {true, true, true};
-      model.prescribed_displacement_mm[v.index()] =
-          f * vertex(model.mesh.vertices, v) - vertex(model.mesh.vertices, v);
+      model.prescribed_displacement_mm[v.index()] = f * vertex(model.mesh.vertices, v) - vertex(model.mesh.vertices, v);
     }
   }
 }

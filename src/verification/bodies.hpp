@@ -18,11 +18,12 @@ namespace incise {
 /// Moves the whole boundary of a model by x = F X, and holds it there.
 void prescribe_boundary(TissueModel& model, const Mat3& f);
 
-/// The eighth x, y, z >= 0 of a hollow sphere of radii a and 2a: the cells of a block [0, 2n]³ that lie outside [0, n]³,
-/// pushed out along rays so that max(x, y, z) becomes the radius. 42 n³ tets.
+/// The eighth x, y, z >= 0 of a hollow sphere of radii a and 2a: the cells of a block [0, 2n]³ that lie outside [0,
+/// n]³, pushed out along rays so that max(x, y, z) becomes the radius. 42 n³ tets.
 [[nodiscard]] TetMesh eighth_of_a_sphere(double inner_radius_mm, int n);
 
-/// Adds the pressure (kPa) on the boundary faces whose corners all lie within 1e-6 mm of radius `at_mm`, as dead loads outwards.
+/// Adds the pressure (kPa) on the boundary faces whose corners all lie within 1e-6 mm of radius `at_mm`, as dead loads
+/// outwards.
 void add_pressure_outwards(TissueModel& model, double at_mm, double pressure_kpa);
 
 /// Cook's panel, corners (0, 0), (48, 44), (48, 60), (0, 44) mm, as a slice of one layer of n x n cells.

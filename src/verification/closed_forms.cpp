@@ -39,7 +39,8 @@ Vec3 isotropic_stress_kpa(const Material& material, const Vec3& s) {
   }
   const NeoHookean law = neo_hookean(material);
   const double volume = s.prod();
-  return law.mu * (1.0 - 1.0 / (s.squaredNorm() + 1.0)) * s + law.lambda * (volume - law.alpha) * volume * s.cwiseInverse();
+  return law.mu * (1.0 - 1.0 / (s.squaredNorm() + 1.0)) * s +
+         law.lambda * (volume - law.alpha) * volume * s.cwiseInverse();
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace incise {
   return std::log2(std::abs(coarse_error / fine_error));
 }
 
-/// Limit of two values whose errors shrink with the square of the mesh size, the second mesh twice as fine (Richardson).
+/// Limit of two values whose errors shrink with the square of the mesh size, the second mesh twice as fine
+/// (Richardson).
 [[nodiscard]] inline double second_order_limit(double coarse, double fine) {
   return fine + (fine - coarse) / 3.0;
 }

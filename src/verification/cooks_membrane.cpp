@@ -1,4 +1,5 @@
-// Cook's membrane: a tapered panel, clamped on the left and sheared on the right; it bends, shears and has a singular corner.
+// Cook's membrane: a tapered panel, clamped on the left and sheared on the right; it bends, shears and has a singular
+// corner.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 #include "verification/closed_forms.hpp"
@@ -23,10 +24,10 @@ constexpr int kReferenceCells = 32;  // quadratic elements each way; the coarser
 }  // namespace
 
 double panel_tip_of_tets_mm(const CheckContext& context, const Material& material, int n) {
-  const TissueModel model = make_tissue_model(
-      cooks_panel(n), material,
-      {FixedConstraint{plane_across(0, 0.0), {true, true, false}}, symmetry_across(2), symmetry_across(2, 1.0),
-       TractionConstraint{plane_across(0, 48.0), Vec3(0, kTraction, 0)}});
+  const TissueModel model =
+      make_tissue_model(cooks_panel(n), material,
+                        {FixedConstraint{plane_across(0, 0.0), {true, true, false}}, symmetry_across(2),
+                         symmetry_across(2, 1.0), TractionConstraint{plane_across(0, 48.0), Vec3(0, kTraction, 0)}});
   const Region tip = BoxRegion{Box3(Vec3(48.0 - 1e-6, 52.0 - 1e-6, -1.0), Vec3(48.0 + 1e-6, 52.0 + 1e-6, 2.0))};
   return mean_displacement(model, solved(context, model, nullptr, kSmallStrainTolerance).state, tip)[1];
 }

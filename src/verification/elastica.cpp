@@ -35,8 +35,8 @@ struct Bent {
   CheckCurve line;  // centre line, in lengths
 };
 
-/// The rest state laid along the beam's line, sections across it: Newton starts there, since a slender body finds its way
-/// from rest only in many small steps. Where it ends is decided by the balance of forces alone.
+/// The rest state laid along the beam's line, sections across it: Newton starts there, since a slender body finds its
+/// way from rest only in many small steps. Where it ends is decided by the balance of forces alone.
 TissueState bent_as_the_beam(const TissueModel& model, int n) {
   const int cells = kCellsAlongPerCell * n;
   const std::vector<Vec2> line = bent_line(beam_per_width(), cells);
@@ -50,18 +50,20 @@ TissueState bent_as_the_beam(const TissueModel& model, int n) {
   return state;
 }
 
-/// At ν = 0 nothing happens across the width: one layer of cells is the whole beam. Cells are 12.5/8 times as long as high.
+/// At ν = 0 nothing happens across the width: one layer of cells is the whole beam. Cells are 12.5/8 times as long as
+/// high.
 Bent bend(const CheckContext& context, int n) {
   Material material;
   material.poissons_ratio = 0.0;
   const double width = kHeight / n;
-  const TissueModel model =
-      make_tissue_model(make_block(Vec3(kLength, width, kHeight), {kCellsAlongPerCell * n, 1, n}), material,
-                        {FixedConstraint{plane_across(0, 0.0)}, symmetry_across(1), symmetry_across(1, width),
-                         TractionConstraint{plane_across(0, kLength), Vec3(0, 0, -beam_per_width().force_mn / kHeight)}});
+  const TissueModel model = make_tissue_model(
+      make_block(Vec3(kLength, width, kHeight), {kCellsAlongPerCell * n, 1, n}), material,
+      {FixedConstraint{plane_across(0, 0.0)}, symmetry_across(1), symmetry_across(1, width),
+       TractionConstraint{plane_across(0, kLength), Vec3(0, 0, -beam_per_width().force_mn / kHeight)}});
   const TissueState start = bent_as_the_beam(model, n);
   const TissueState state = solved(context, model, &start, 1e-8).state;
-  Bent bent{mean_displacement(model, state, plane_across(0, kLength)), {fmt::format("tets, {} over the height", n), {}, {}, false}};
+  Bent bent{mean_displacement(model, state, plane_across(0, kLength)),
+            {fmt::format("tets, {} over the height", n), {}, {}, false}};
   for (int i = 0; i <= 16; ++i) {
     const Region section = plane_across(0, kLength * i / 16.0);
     const Vec3 moved = mean_displacement(model, state, section) / kLength;
@@ -77,8 +79,8 @@ VerificationCheck elastica_tip(const CheckContext& context) {
   const std::vector<Vec2> line = bent_line(beam_per_width());
   VerificationCheck check = described(
       "Slender beam bent far by a tip force, F L²/EI = 3, ν = 0: drop of the tip, extrapolated at second order",
-      "elastica (Bisshopp and Drucker 1945) with shear and stretch (Reissner 1972), integrated along the arc", "of the length",
-      -line.back()[1] / kLength, kTolerance);
+      "elastica (Bisshopp and Drucker 1945) with shear and stretch (Reissner 1972), integrated along the arc",
+      "of the length", -line.back()[1] / kLength, kTolerance);
   CheckCurve reference{"elastica", {}, {}, true};
   for (std::size_t i = 0; i < line.size(); i += 8) {
     reference.x.push_back(line[i][0] / kLength);

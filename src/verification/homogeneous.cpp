@@ -35,7 +35,8 @@ CheckCurve closed_form_curve(const std::function<double(double)>& stress) {
   return curve;
 }
 
-/// Pulls a block with dead tractions of the closed form's stress along `axes`, and compares every vertex with its place.
+/// Pulls a block with dead tractions of the closed form's stress along `axes`, and compares every vertex with its
+/// place.
 VerificationCheck pulled(const CheckContext& context, const Material& material, int axes, const char* name,
                          const std::function<Vec3(double)>& stretches_at) {
   VerificationCheck check = described(
@@ -61,8 +62,10 @@ VerificationCheck pulled(const CheckContext& context, const Material& material, 
     marks.x.push_back(mean_displacement(model, state, plane_across(0, kSize[0]))[0] / kSize[0]);
     marks.y.push_back(stress);
   }
-  const CheckCurve line = closed_form_curve([&](double e) { return principal_stress_kpa(material, stretches_at(e))[0]; });
-  check.plot = {fmt::format("{}: {}", name, law_text(material)), "strain", "traction, kPa", false, false, {line, marks}};
+  const CheckCurve line =
+      closed_form_curve([&](double e) { return principal_stress_kpa(material, stretches_at(e))[0]; });
+  check.plot = {
+      fmt::format("{}: {}", name, law_text(material)), "strain", "traction, kPa", false, false, {line, marks}};
   return check;
 }
 

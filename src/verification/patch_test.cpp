@@ -47,11 +47,12 @@ double position_error(const CheckContext& context, TissueModel& model, const Mat
 }  // namespace
 
 VerificationCheck patch_test(const CheckContext& context, const Material& material) {
-  VerificationCheck check = described(
-      fmt::format("Patch test on an irregular mesh, {}: forces inside and distance from the linear field", law_text(material)),
-      "Irons and Razzaque 1972: exact to rounding", "-", 0.0, kTolerance);
-  TissueModel model = make_tissue_model(irregular_block(kSize, {6, 4, 3}, 0.2, 5), material,
-                                        {FixedConstraint{plane_across(0, 0.0)}});
+  VerificationCheck check =
+      described(fmt::format("Patch test on an irregular mesh, {}: forces inside and distance from the linear field",
+                            law_text(material)),
+                "Irons and Razzaque 1972: exact to rounding", "-", 0.0, kTolerance);
+  TissueModel model =
+      make_tissue_model(irregular_block(kSize, {6, 4, 3}, 0.2, 5), material, {FixedConstraint{plane_across(0, 0.0)}});
   prescribe_boundary(model, gradient(1.0));
   CheckCurve curve{"largest inner force / largest boundary force", {}, {}, false};
   for (const double share : {0.01, 0.03, 0.1, 0.3, 1.0, 2.0}) {
@@ -60,9 +61,14 @@ VerificationCheck patch_test(const CheckContext& context, const Material& materi
   }
   const double positions = position_error(context, model, gradient(1.0));
   check.found = std::max(positions, *std::max_element(curve.y.begin(), curve.y.end()));
-  check.note = fmt::format("{} tets; positions off by {:.1e} of the length after Newton", model.mesh.tets.size(), positions);
-  check.plot = {"Patch test: " + law_text(material), "share of the displacement gradient", "inner force / boundary force", true,
-                false, {curve, {"tolerance", {0.01, 2.0}, {kTolerance, kTolerance}, true}}};
+  check.note =
+      fmt::format("{} tets; positions off by {:.1e} of the length after Newton", model.mesh.tets.size(), positions);
+  check.plot = {"Patch test: " + law_text(material),
+                "share of the displacement gradient",
+                "inner force / boundary force",
+                true,
+                false,
+                {curve, {"tolerance", {0.01, 2.0}, {kTolerance, kTolerance}, true}}};
   return check;
 }
 

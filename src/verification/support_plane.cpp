@@ -1,4 +1,5 @@
-// A block on a rigid platform: it may not sink in, the platform carries what presses on it, and it never holds tissue back.
+// A block on a rigid platform: it may not sink in, the platform carries what presses on it, and it never holds tissue
+// back.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 
@@ -12,8 +13,8 @@
 namespace incise {
 namespace {
 
-const Vec3 kSize(40, 30, 15);              // mm
-constexpr double kPenetration = 0.05;      // mm, promised by SupportPlane
+const Vec3 kSize(40, 30, 15);               // mm
+constexpr double kPenetration = 0.05;       // mm, promised by SupportPlane
 constexpr double kBalanceTolerance = 1e-6;  // of the load: Newton stops at 1e-10
 const Vec3 kGravity(0, 0, -units::kStandardGravityMmS2);
 const std::vector<double> kPressures{1.0, 5.0, 10.0, 20.0};  // kPa, dead loads; near 35 the clamped edge is crushed
@@ -44,8 +45,9 @@ TissueModel lifted_block() {
 }  // namespace
 
 VerificationCheck support_penetration(const CheckContext& context) {
-  VerificationCheck check = described("Block pressed onto a support plane with up to 20 kPa: deepest vertex behind the plane",
-                                      "promise of SupportPlane: at most 0.05 mm", "mm", 0.0, kPenetration);
+  VerificationCheck check =
+      described("Block pressed onto a support plane with up to 20 kPa: deepest vertex behind the plane",
+                "promise of SupportPlane: at most 0.05 mm", "mm", 0.0, kPenetration);
   CheckCurve marks{"deepest vertex", {}, {}, false};
   for (const double pressure : kPressures) {
     const StaticResult result = solved(context, pressed_block(pressure));
@@ -53,15 +55,19 @@ VerificationCheck support_penetration(const CheckContext& context) {
     marks.x.push_back(pressure);
     marks.y.push_back(result.penetration_mm);
   }
-  check.plot = {"Support: penetration", "pressure on top, kPa", "deepest vertex, mm", false, false,
+  check.plot = {"Support: penetration",
+                "pressure on top, kPa",
+                "deepest vertex, mm",
+                false,
+                false,
                 {{"promised", {0.0, kPressures.back()}, {kPenetration, kPenetration}, true}, marks}};
   return check;
 }
 
 VerificationCheck support_balance(const CheckContext& context) {
-  VerificationCheck check = described("Block clamped at one end, pressed onto a support plane: what clamp and plane carry over weight and load",
-                                      "balance of forces", "-", 1.0,
-                                      kBalanceTolerance);
+  VerificationCheck check = described(
+      "Block clamped at one end, pressed onto a support plane: what clamp and plane carry over weight and load",
+      "balance of forces", "-", 1.0, kBalanceTolerance);
   check.found = 1.0;
   CheckCurve line{"weight and load", {}, {}, true};
   CheckCurve marks{"plane and clamp", {}, {}, false};
@@ -83,8 +89,9 @@ VerificationCheck support_balance(const CheckContext& context) {
 }
 
 VerificationCheck support_pull(const CheckContext& context) {
-  VerificationCheck check = described("Block lifted off a support plane at one end: strongest pull of the plane on any vertex",
-                                      "a platform pushes or does nothing", "mN", 0.0, 0.0);
+  VerificationCheck check =
+      described("Block lifted off a support plane at one end: strongest pull of the plane on any vertex",
+                "a platform pushes or does nothing", "mN", 0.0, 0.0);
   const TissueModel model = lifted_block();
   const TissueState state = solved(context, model).state;
   Points pushes(state.positions.size(), Vec3::Zero());
@@ -98,9 +105,14 @@ VerificationCheck support_pull(const CheckContext& context) {
     marks.y.push_back(state.positions[v.index()][2]);
   }
   // A test of lifting needs tissue that lifts.
-  if (!(highest > 1.0)) throw NotSolved(fmt::format("the block should rise by more than 1 mm, found {:.3g} mm", highest));
+  if (!(highest > 1.0))
+    throw NotSolved(fmt::format("the block should rise by more than 1 mm, found {:.3g} mm", highest));
   check.note = fmt::format("the underside rises by up to {:.2f} mm", highest);
-  check.plot = {"Support: a block lifted at one end", "x at rest, mm", "height of the underside, mm", false, false,
+  check.plot = {"Support: a block lifted at one end",
+                "x at rest, mm",
+                "height of the underside, mm",
+                false,
+                false,
                 {{"plane", {0.0, kSize[0]}, {0.0, 0.0}, true}, marks}};
   return check;
 }

@@ -46,7 +46,8 @@ std::vector<CheckEntry> make_table() {
   add_for_each_law(table, "uniaxial", 0.49, uniaxial_stretch);
   add_for_each_law(table, "equibiaxial", 0.3, equibiaxial_stretch);
   add_for_each_law(table, "shear", 0.49, simple_shear);
-  table.push_back({"fibres_uniaxial", [](const CheckContext& context) { return uniaxial_stretch(context, with_fibres()); }});
+  table.push_back(
+      {"fibres_uniaxial", [](const CheckContext& context) { return uniaxial_stretch(context, with_fibres()); }});
   table.push_back({"cantilever_rate", cantilever_rate});
   table.push_back({"cantilever_tip", cantilever_tip});
   table.push_back({"cooks_membrane_rate", cooks_membrane_rate});

@@ -9,9 +9,9 @@
 namespace incise {
 namespace {
 
-constexpr double kInner = 10.0;      // mm
-constexpr double kOuter = 20.0;      // mm
-constexpr double kPressure = 1e-2;   // kPa: strains near 1e-4
+constexpr double kInner = 10.0;     // mm
+constexpr double kOuter = 20.0;     // mm
+constexpr double kPressure = 1e-2;  // kPa: strains near 1e-4
 constexpr double kRateTolerance = 0.3;
 constexpr double kShareTolerance = 0.005;  // of the displacement: what is left after extrapolation
 const std::vector<int> kLayers{2, 4, 8};
@@ -52,8 +52,9 @@ constexpr const char* kSource = "Lamé 1852: u = p a³ / (E (b³ − a³)) ((1 �
 }  // namespace
 
 VerificationCheck thick_sphere_rate(const CheckContext& context) {
-  VerificationCheck check = described("Thick sphere under inner pressure, ν = 0.3: observed order of convergence of the inner displacement",
-                                      std::string(kSource) + "; order 2 of linear tets", "-", 2.0, kRateTolerance);
+  VerificationCheck check =
+      described("Thick sphere under inner pressure, ν = 0.3: observed order of convergence of the inner displacement",
+                std::string(kSource) + "; order 2 of linear tets", "-", 2.0, kRateTolerance);
   CheckCurve marks{"inner displacement", {}, {}, false};
   CheckCurve slope{"second order", {}, {}, true};
   for (const int n : kLayers) {
@@ -64,14 +65,19 @@ VerificationCheck thick_sphere_rate(const CheckContext& context) {
     check.note += fmt::format("{}{} layers: {:.2f} % off", n == kLayers[0] ? "" : ", ", n, 100.0 * marks.y.back());
   }
   check.found = observed_rate(marks.y[1], marks.y[2]);
-  check.plot = {"Thick sphere: convergence", "layers of cells", "relative error of the inner displacement", true, true, {slope, marks}};
+  check.plot = {"Thick sphere: convergence",
+                "layers of cells",
+                "relative error of the inner displacement",
+                true,
+                true,
+                {slope, marks}};
   return check;
 }
 
 VerificationCheck thick_sphere_displacement(const CheckContext& context) {
   VerificationCheck check =
-      described("Thick sphere under inner pressure, ν = 0.3: inner displacement, extrapolated at second order", kSource, "µm",
-                closed_form_um(kInner), kShareTolerance * closed_form_um(kInner));
+      described("Thick sphere under inner pressure, ν = 0.3: inner displacement, extrapolated at second order", kSource,
+                "µm", closed_form_um(kInner), kShareTolerance * closed_form_um(kInner));
   std::vector<double> found;
   Sphere finest;
   for (const int n : kLayers) {
@@ -92,7 +98,8 @@ VerificationCheck thick_sphere_displacement(const CheckContext& context) {
     line.y.push_back(closed_form_um(line.x.back()));
   }
   check.note = fmt::format("finest mesh: {} tets, {:.4f} µm", finest.model.mesh.tets.size(), found.back());
-  check.plot = {"Thick sphere: radial displacement", "radius, mm", "radial displacement, µm", false, false, {line, marks}};
+  check.plot = {
+      "Thick sphere: radial displacement", "radius, mm", "radial displacement, µm", false, false, {line, marks}};
   return check;
 }
 

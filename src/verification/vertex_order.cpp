@@ -1,4 +1,5 @@
-// A tet is the same whichever corner is named first. Rotations taken from a tet's edges know the difference; ours may not.
+// A tet is the same whichever corner is named first. Rotations taken from a tet's edges know the difference; ours may
+// not.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 
@@ -22,9 +23,9 @@ TissueModel cantilever(const std::array<std::size_t, 4>& order) {
 }  // namespace
 
 VerificationCheck vertex_order(const CheckContext& context) {
-  VerificationCheck check = described(
-      "Cantilever under its weight, corners of every tet named in another order: largest change of a vertex", "no physics in names",
-      "mm", 0.0, kTolerance);
+  VerificationCheck check =
+      described("Cantilever under its weight, corners of every tet named in another order: largest change of a vertex",
+                "no physics in names", "mm", 0.0, kTolerance);
   const TissueModel model = cantilever({0, 1, 2, 3});
   const TissueState state = solved(context, model).state;
   CheckCurve line{"order as made", {}, {}, true};

@@ -12,9 +12,9 @@
 namespace incise {
 namespace {
 
-const Vec3 kSize(100, 5, 5);              // mm
-constexpr double kAmplitude = 0.1;        // mm
-constexpr int kStepsPerPeriod = 1600;     // explicit steps: no longer than sound takes through a cell
+const Vec3 kSize(100, 5, 5);               // mm
+constexpr double kAmplitude = 0.1;         // mm
+constexpr int kStepsPerPeriod = 1600;      // explicit steps: no longer than sound takes through a cell
 constexpr double kShareTolerance = 0.005;  // of the period
 
 TissueModel bar() {
@@ -30,8 +30,9 @@ double period_s() {
   return 4.0 * kSize[0] / wave_speed;
 }
 
-/// Tip displacement over time, from the mode's shape at rest: leapfrog steps with the library's forces and lumped masses. It
-/// neither damps nor, at this step, changes the period by more than a millionth: what is judged is forces and mass.
+/// Tip displacement over time, from the mode's shape at rest: leapfrog steps with the library's forces and lumped
+/// masses. It neither damps nor, at this step, changes the period by more than a millionth: what is judged is forces
+/// and mass.
 CheckCurve swing(const CheckContext& context, const TissueModel& model) {
   const double step = period_s() / kStepsPerPeriod;
   TissueState state = rest_state(model);
@@ -69,16 +70,17 @@ std::vector<double> crossings(const CheckCurve& curve) {
 }  // namespace
 
 VerificationCheck vibration_period(const CheckContext& context) {
-  VerificationCheck check = described("Bar swinging along its axis, clamped at one end, ν = 0: period of the first mode",
-                                      "4 L √(ρ/E): a quarter wave in a uniform bar (Rayleigh, Theory of Sound, § 150)", "s", period_s(),
-                                      kShareTolerance * period_s());
+  VerificationCheck check =
+      described("Bar swinging along its axis, clamped at one end, ν = 0: period of the first mode",
+                "4 L √(ρ/E): a quarter wave in a uniform bar (Rayleigh, Theory of Sound, § 150)", "s", period_s(),
+                kShareTolerance * period_s());
   const TissueModel model = bar();
   const CheckCurve curve = swing(context, model);
   const std::vector<double> times = crossings(curve);
   if (times.size() < 2) throw NotSolved("the bar does not swing through its place of rest twice");
   check.found = 2.0 * (times[1] - times[0]);
-  check.note = fmt::format("{} tets, 40 along the bar; after one period the tip is at {:.4f} of its amplitude", model.mesh.tets.size(),
-                           curve.y.back() / kAmplitude);
+  check.note = fmt::format("{} tets, 40 along the bar; after one period the tip is at {:.4f} of its amplitude",
+                           model.mesh.tets.size(), curve.y.back() / kAmplitude);
   CheckCurve line{"undamped closed form", {}, {}, true};
   for (int i = 0; i <= 100; ++i) {
     line.x.push_back(period_s() * i / 100.0);

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -23,19 +24,26 @@ TEST_P(Check, FindsWhatIsExpected) {
   Monitor monitor;
   for (const VerificationCheck& check : run_checks({GetParam(), 1.0}, workers, monitor)) {
     if (check.name != GetParam()) continue;
-    EXPECT_TRUE(check.passed) << check.what << "\nexpected " << check.expected << " " << check.unit << ", found " << check.found
-                              << ", tolerance " << check.tolerance << "\nsource: " << check.source << "\n" << check.note;
+    EXPECT_TRUE(check.passed) << check.what << "\nexpected " << check.expected << " " << check.unit << ", found "
+                              << check.found << ", tolerance " << check.tolerance << "\nsource: " << check.source
+                              << "\n"
+                              << check.note;
     RecordProperty("found", std::to_string(check.found));
     EXPECT_FALSE(check.source.empty());
     EXPECT_FALSE(check.plot.curves.empty());
     for (const CheckCurve& curve : check.plot.curves) {
       EXPECT_EQ(curve.x.size(), curve.y.size());
       EXPECT_FALSE(curve.x.empty());
+      for (const std::vector<double>* values : {&curve.x, &curve.y}) {
+        EXPECT_TRUE(std::all_of(values->begin(), values->end(), [](double value) { return std::isfinite(value); }))
+            << curve.name;
+      }
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, Check, ::testing::ValuesIn(check_names()), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Physics, Check, ::testing::ValuesIn(check_names()),
+                         [](const auto& test) { return test.param; });
 
 TEST(Checks, HaveNamesOfTheirOwn) {
   const std::vector<std::string> names = check_names();
@@ -93,7 +101,8 @@ TEST(Reference, BentLineIsTheElasticaOfTheTables) {
   struct Row {
     double load, along, across;
   };
-  for (const Row row : {Row{1.0, 0.05643, 0.30172}, Row{2.0, 0.16064, 0.49346}, Row{5.0, 0.38763, 0.71379}, Row{10.0, 0.55500, 0.81061}}) {
+  for (const Row row : {Row{1.0, 0.05643, 0.30172}, Row{2.0, 0.16064, 0.49346}, Row{5.0, 0.38763, 0.71379},
+                        Row{10.0, 0.55500, 0.81061}}) {
     PlaneBeam beam;
     beam.force_mn = row.load;
     const Vec2 tip = bent_line(beam).back();

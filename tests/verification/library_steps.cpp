@@ -27,7 +27,8 @@ Points library_steps(const TissueModel& model, const SofaStepping& stepping) {
     }
     for (double& value : matrix.values) value *= h * h + h * b;
     for (std::size_t v = 0; v < count; ++v) {
-      for (const int i : {0, 4, 8}) matrix.block(model.pattern->diagonal[v])[i] += (1.0 + h * a) * model.vertex_mass_kg[v];
+      for (const int i : {0, 4, 8})
+        matrix.block(model.pattern->diagonal[v])[i] += (1.0 + h * a) * model.vertex_mass_kg[v];
     }
     hold_constrained(model, matrix, right);
     if (!cholesky.factor(matrix)) throw std::runtime_error("the matrix of a step is not positive definite");

@@ -1,4 +1,5 @@
-// SOFA's regression beams: 299 steps of implicit Euler with rotations small, large and polar, and two cantilevers in SI units.
+// SOFA's regression beams: 299 steps of implicit Euler with rotations small, large and polar, and two cantilevers in SI
+// units.
 #include "mechanics/bodies.hpp"
 #include "support/data_dir.hpp"
 #include "verification/library_steps.hpp"
@@ -70,7 +71,8 @@ class SofaBeam : public ::testing::TestWithParam<Beam> {
     stepping.cg_iterations = cg_iterations;
     const Points found = sofa_steps(body, held_at_z0(mesh, Vec3(0, -9, 0)), stepping);
     double worst = 0.0;  // of a coordinate, as SOFA's own regression test counts
-    for (std::size_t v = 0; v < found.size(); ++v) worst = std::max(worst, (found[v] - state.last[v]).cwiseAbs().maxCoeff());
+    for (std::size_t v = 0; v < found.size(); ++v)
+      worst = std::max(worst, (found[v] - state.last[v]).cwiseAbs().maxCoeff());
     std::printf("[ figure   ] largest difference of a coordinate %.3g\n", worst);
     return worst;
   }
@@ -79,7 +81,8 @@ class SofaBeam : public ::testing::TestWithParam<Beam> {
 TEST_P(SofaBeam, IsMetWithTheSame25IterationsOfConjugateGradients) {
   INCISE_NEEDS_DATA_DIR();
   // Twenty-five iterations do not converge, and 299 steps of them amplify rounding: the reference holds its own draw of
-  // that. So the density is varied in its last bits; each run has to come close, and one as close as the reference's digits.
+  // that. So the density is varied in its last bits; each run has to come close, and one as close as the reference's
+  // digits.
   double closest = std::numeric_limits<double>::infinity();
   for (int bits = 0; bits < GetParam().draws; ++bits) {
     const double found = difference(25, kDensity * (1.0 + 2.0 * bits * std::numeric_limits<double>::epsilon()));
@@ -106,7 +109,8 @@ TEST(SofaBeamByTheLibrary, PolarIsMetWithinOnePerCent) {
   material.youngs_modulus_kpa = kYoungsModulus;
   material.poissons_ratio = kPoissonsRatio;
   material.density_kg_m3 = 1e9 * kDensity;
-  const TissueModel model = make_tissue_model(beam_mesh(2), material, {FixedConstraint{testing::plane_z(0.0)}}, Vec3(0, -9, 0));
+  const TissueModel model =
+      make_tissue_model(beam_mesh(2), material, {FixedConstraint{testing::plane_z(0.0)}}, Vec3(0, -9, 0));
   const double worst = testing::largest_distance(testing::library_steps(model, kStepping), beam_state(2).last);
   RecordProperty("largest_difference", std::to_string(worst));
   EXPECT_LT(worst, 0.5);
@@ -125,7 +129,9 @@ SofaState si_state(const char* name) {
   return state;
 }
 
-TetMesh si_mesh() { return testing::sofa_beam(Vec3(-10, -10, 0), Vec3(10, 10, 200), {5, 5, 30}); }
+TetMesh si_mesh() {
+  return testing::sofa_beam(Vec3(-10, -10, 0), Vec3(10, 10, 200), {5, 5, 30});
+}
 
 TEST(SofaCantilever, LinearIsMetWithin50Micrometres) {
   INCISE_NEEDS_DATA_DIR();
@@ -133,7 +139,8 @@ TEST(SofaCantilever, LinearIsMetWithin50Micrometres) {
   const TetMesh mesh = si_mesh();
   ASSERT_LT(testing::largest_distance(mesh.vertices, state.first), 1e-3);
   SofaBody body(mesh, lame_parameters(2000.0, 0.45), 1.1e-6, SofaRotation::Small);
-  const double worst = testing::largest_distance(sofa_steps(body, held_at_z0(mesh, Vec3(0, -9810, 0)), kSiStepping), state.last);
+  const double worst =
+      testing::largest_distance(sofa_steps(body, held_at_z0(mesh, Vec3(0, -9810, 0)), kSiStepping), state.last);
   RecordProperty("largest_difference_mm", std::to_string(worst));
   EXPECT_LT(worst, kSiToleranceMm);
 }
@@ -145,7 +152,8 @@ TEST(SofaCantilever, CorotationalIsMetWithin50MicrometresByTheLibrary) {
   material.youngs_modulus_kpa = 2000.0;
   material.poissons_ratio = 0.45;
   material.density_kg_m3 = 1100.0;
-  const TissueModel model = make_tissue_model(si_mesh(), material, {FixedConstraint{testing::plane_z(0.0)}}, Vec3(0, -9810, 0));
+  const TissueModel model =
+      make_tissue_model(si_mesh(), material, {FixedConstraint{testing::plane_z(0.0)}}, Vec3(0, -9810, 0));
   const double worst = testing::largest_distance(testing::library_steps(model, kSiStepping), state.last);
   RecordProperty("largest_difference_mm", std::to_string(worst));
   EXPECT_LT(worst, kSiToleranceMm);

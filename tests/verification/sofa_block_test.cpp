@@ -1,5 +1,5 @@
-// SOFA's fields on a block of 702 vertices and 2880 tets, nu 0.49. The library is held against the textbook corotational
-// element (true polar rotations); SOFA's three other rotations are met by code of this folder.
+// SOFA's fields on a block of 702 vertices and 2880 tets, nu 0.49. The library is held against the textbook
+// corotational element (true polar rotations); SOFA's three other rotations are met by code of this folder.
 #include "mechanics/bodies.hpp"
 #include "support/data_dir.hpp"
 #include "verification/library_steps.hpp"
@@ -143,7 +143,8 @@ SofaCase stretch(const TetMesh& mesh) {
     const bool is_pulled = p[0] > 99.999;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const bool is_end = p[0] < 0.001 || is_pulled;
-      if (is_end || (axis == 2 && p[2] < 1e-6)) load.held.emplace_back(3 * v + axis, is_pulled && axis == 0 ? 20.0 : 0.0);
+      if (is_end || (axis == 2 && p[2] < 1e-6))
+        load.held.emplace_back(3 * v + axis, is_pulled && axis == 0 ? 20.0 : 0.0);
     }
   }
   return load;
@@ -219,7 +220,8 @@ TEST(SofaBlock, SofasLargeRotationDependsOnTheOrderOfCornersAndOursDoesNot) {
   EXPECT_LT(change(SofaRotation::PolarF), 1e-8);
 
   const auto ours = [](const TetMesh& body) {
-    return solve(make_tissue_model(body, sofa_material(), {FixedConstraint{plane_x(0.0)}}, Vec3(0, 0, -9810))).state.positions;
+    return solve(make_tissue_model(body, sofa_material(), {FixedConstraint{plane_x(0.0)}}, Vec3(0, 0, -9810)))
+        .state.positions;
   };
   EXPECT_LT(testing::largest_distance(ours(mesh), ours(reordered(mesh))), 1e-8);
 }

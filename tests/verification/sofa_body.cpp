@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <Eigen/SparseCholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,10 +45,14 @@ Mat3 frame(const Corners& x) {
 
 Mat3 turn_of(SofaRotation rotation, const Corners& rest, const Corners& now) {
   switch (rotation) {
-    case SofaRotation::Small: return Mat3::Identity();
-    case SofaRotation::Large: return frame(now) * frame(rest).transpose();
-    case SofaRotation::PolarEdge: return polar(edges(now).transpose()).transpose() * polar(edges(rest).transpose());
-    case SofaRotation::PolarF: return polar(edges(now) * edges(rest).inverse());
+    case SofaRotation::Small:
+      return Mat3::Identity();
+    case SofaRotation::Large:
+      return frame(now) * frame(rest).transpose();
+    case SofaRotation::PolarEdge:
+      return polar(edges(now).transpose()).transpose() * polar(edges(rest).transpose());
+    case SofaRotation::PolarF:
+      return polar(edges(now) * edges(rest).inverse());
   }
   return Mat3::Identity();
 }
@@ -76,7 +79,8 @@ void clear_held(Vector& x, const std::vector<std::uint8_t>& is_held) {
 void hold(Eigen::SparseMatrix<double>& matrix, const std::vector<std::uint8_t>& is_held) {
   for (Eigen::Index c = 0; c < matrix.outerSize(); ++c) {
     for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, c); entry; ++entry) {
-      const bool is_out = is_held[static_cast<std::size_t>(entry.row())] != 0 || is_held[static_cast<std::size_t>(c)] != 0;
+      const bool is_out =
+          is_held[static_cast<std::size_t>(entry.row())] != 0 || is_held[static_cast<std::size_t>(c)] != 0;
       if (is_out) entry.valueRef() = entry.row() == c ? 1.0 : 0.0;
     }
   }
@@ -84,12 +88,14 @@ void hold(Eigen::SparseMatrix<double>& matrix, const std::vector<std::uint8_t>& 
 
 Vector weight(const SofaBody& body, const Vec3& gravity) {
   Vector result(3 * static_cast<Eigen::Index>(body.size()));
-  for (std::size_t v = 0; v < body.size(); ++v) result.segment<3>(3 * static_cast<Eigen::Index>(v)) = body.masses()[v] * gravity;
+  for (std::size_t v = 0; v < body.size(); ++v)
+    result.segment<3>(3 * static_cast<Eigen::Index>(v)) = body.masses()[v] * gravity;
   return result;
 }
 
 void add_to(Points& positions, const Vector& change) {
-  for (std::size_t v = 0; v < positions.size(); ++v) positions[v] += change.segment<3>(3 * static_cast<Eigen::Index>(v));
+  for (std::size_t v = 0; v < positions.size(); ++v)
+    positions[v] += change.segment<3>(3 * static_cast<Eigen::Index>(v));
 }
 
 /// Plain conjugate gradients as SOFA's: zero start, stops at |r| / |b| or after so many iterations, converged or not.
@@ -114,7 +120,11 @@ Vector conjugate_gradients(const Eigen::SparseMatrix<double>& matrix, const Vect
 }  // namespace
 
 SofaBody::SofaBody(const TetMesh& mesh, const LameParameters& lame, double density, SofaRotation rotation)
-    : mesh_(mesh), lame_(lame), rotation_(rotation), masses_(mesh.vertices.size(), 0.0), turns_(mesh.tets.size(), Mat3::Identity()) {
+    : mesh_(mesh),
+      lame_(lame),
+      rotation_(rotation),
+      masses_(mesh.vertices.size(), 0.0),
+      turns_(mesh.tets.size(), Mat3::Identity()) {
   for (const Tet& tet : mesh_.tets) {
     const Mat3 d = edges(corners_of(tet, mesh_.vertices));
     const Mat3 inverse = d.inverse();
@@ -143,9 +153,11 @@ Vector SofaBody::forces(const Points& positions) const {
     for (std::size_t c = 0; c < 4; ++c) f += positions[mesh_.tets[t][c].index()] * gradients_[t][c].transpose();
     const Mat3 s = turns_[t].transpose() * f;
     const Mat3 strain = 0.5 * (s + s.transpose()) - Mat3::Identity();
-    const Mat3 stress = turns_[t] * (2.0 * lame_.mu_kpa * strain + lame_.lambda_kpa * strain.trace() * Mat3::Identity());
+    const Mat3 stress =
+        turns_[t] * (2.0 * lame_.mu_kpa * strain + lame_.lambda_kpa * strain.trace() * Mat3::Identity());
     for (std::size_t c = 0; c < 4; ++c) {
-      result.segment<3>(3 * static_cast<Eigen::Index>(mesh_.tets[t][c].index())) -= volumes_[t] * (stress * gradients_[t][c]);
+      result.segment<3>(3 * static_cast<Eigen::Index>(mesh_.tets[t][c].index())) -=
+          volumes_[t] * (stress * gradients_[t][c]);
     }
   }
   return result;
@@ -159,8 +171,9 @@ Eigen::SparseMatrix<double> SofaBody::stiffness() const {
     for (std::size_t c = 0; c < 4; ++c) a[c] = turns_[t] * gradients_[t][c];
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = 0; j < 4; ++j) {
-        const Mat3 block = volumes_[t] * (lame_.lambda_kpa * a[i] * a[j].transpose() + lame_.mu_kpa * a[j] * a[i].transpose() +
-                                          lame_.mu_kpa * a[i].dot(a[j]) * Mat3::Identity());
+        const Mat3 block =
+            volumes_[t] * (lame_.lambda_kpa * a[i] * a[j].transpose() + lame_.mu_kpa * a[j] * a[i].transpose() +
+                           lame_.mu_kpa * a[i].dot(a[j]) * Mat3::Identity());
         const int row = 3 * static_cast<int>(mesh_.tets[t][i].index());
         const int column = 3 * static_cast<int>(mesh_.tets[t][j].index());
         for (int r = 0; r < 3; ++r) {

@@ -1,10 +1,10 @@
 #include "verification/sofa_state.hpp"
 
+#include <zlib.h>
+
 #include <sstream>
 #include <stdexcept>
 #include <string>
-
-#include <zlib.h>
 
 namespace incise::testing {
 namespace {

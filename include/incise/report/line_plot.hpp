@@ -8,8 +8,8 @@ namespace incise {
 struct LineSeries {
   std::string name;
   std::vector<double> x;
-  std::vector<double> y;   ///< as many as x
-  bool is_line = false;  ///< else one mark per point
+  std::vector<double> y;  ///< as many as x
+  bool is_line = false;   ///< else one mark per point
 };
 
 /// A plain x-y plot; labels carry the units.

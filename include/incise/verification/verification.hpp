@@ -13,7 +13,7 @@ namespace incise {
 struct CheckCurve {
   std::string name;
   std::vector<double> x;
-  std::vector<double> y;           ///< as many as x, all finite
+  std::vector<double> y;      ///< as many as x, all finite
   bool is_reference = false;  ///< what is known, drawn as a line; else what was found, drawn as marks
 };
 
@@ -57,9 +57,10 @@ struct VerificationSettings {
 /// Names of all checks, in the order in which they run.
 [[nodiscard]] std::vector<std::string> check_names();
 
-/// Runs the checks that settings.only selects, one after the other, each on all workers. No files, no data: every body is made
-/// here. A solver that gives up is a failed check, not an exception. Progress: stage "verifying", and a Notice with the
-/// name as each check starts. @throws InvalidArgument if no name fits or the scale is negative; Cancelled on request.
+/// Runs the checks that settings.only selects, one after the other, each on all workers. No files, no data: every body
+/// is made here. A solver that gives up is a failed check, not an exception. Progress: stage "verifying", and a Notice
+/// with the name as each check starts. @throws InvalidArgument if no name fits or the scale is negative; Cancelled on
+/// request.
 /// @note about a minute on two cores; docs/verification.md tells what each check means.
 [[nodiscard]] std::vector<VerificationCheck> run_checks(const VerificationSettings& settings, Workers& workers,
                                                         Monitor& monitor);
