@@ -73,6 +73,7 @@ void add_export(Application& application);
 void add_interchange(Application& application);
 void add_evaluate(Application& application);
 void add_report(Application& application);
+void add_verify(Application& application);
 void add_schema(Application& application);
 
 }  // namespace incise::cli

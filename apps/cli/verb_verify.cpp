@@ -1,0 +1,124 @@
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/nearest_name.hpp>
+#include <incise/report/line_plot.hpp>
+#include <incise/verification/verification.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <ostream>
+
+namespace incise::cli {
+namespace {
+
+struct Arguments {
+  VerificationSettings settings;
+  std::filesystem::path figures;
+};
+
+void require_a_check(const std::string& only) {
+  const std::vector<std::string> names = check_names();
+  if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(only); })) return;
+  throw CaseError("command line", "--only", fmt::format("'{}'", only),
+                  fmt::format("the start of one of {}", fmt::join(names, ", ")),
+                  fmt::format("Did you mean '{}'?", nearest_name(only, names)));
+}
+
+const char* text_of(Criterion criterion) {
+  return criterion == Criterion::Within ? "within" : "at_least";
+}
+
+nlohmann::ordered_json json_of(const VerificationCheck& check) {
+  nlohmann::ordered_json json;
+  json["name"] = check.name;
+  json["passed"] = check.passed;
+  json["expected"] = check.expected;
+  json["found"] = std::isfinite(check.found) ? nlohmann::ordered_json(check.found) : nlohmann::ordered_json(nullptr);
+  json["tolerance"] = check.tolerance;
+  json["criterion"] = text_of(check.criterion);
+  json["unit"] = check.unit;
+  json["what"] = check.what;
+  json["source"] = check.source;
+  json["note"] = check.note;
+  json["wall_s"] = check.wall_s;
+  return json;
+}
+
+void print_table(const std::vector<VerificationCheck>& checks) {
+  fmt::print("{:<34} {:>12} {:>12} {:>10}  {:<14} {:<7} {:>6}\n", "check", "expected", "found", "tolerance", "unit",
+             "passed", "s");
+  for (const VerificationCheck& check : checks) {
+    const std::string expected =
+        (check.criterion == Criterion::AtLeast ? ">= " : "") + fmt::format("{:.6g}", check.expected);
+    fmt::print("{:<34} {:>12} {:>12.6g} {:>10.2g}  {:<14} {:<7} {:>6.2f}\n", check.name, expected, check.found,
+               check.tolerance, check.unit, check.passed ? "yes" : "NO", check.wall_s);
+    if (!check.what.empty()) fmt::print("    {}\n", check.what);
+    if (!check.source.empty()) fmt::print("    source: {}\n", check.source);
+    if (!check.note.empty()) fmt::print("    {}\n", check.note);
+  }
+}
+
+void write_figure(const std::filesystem::path& folder, const VerificationCheck& check) {
+  if (check.plot.curves.empty()) return;
+  LinePlot plot{check.plot.title, check.plot.x_label, check.plot.y_label, check.plot.is_log_x, check.plot.is_log_y, {}};
+  for (const CheckCurve& curve : check.plot.curves)
+    plot.series.push_back({curve.name, curve.x, curve.y, curve.is_reference});
+  const std::string svg = line_plot_svg(plot);
+  write_atomically(folder / (check.name + ".svg"), [&svg](std::ostream& out) { out << svg; });
+}
+
+int run_verify(const Arguments& arguments, const CommonOptions& options) {
+  require_a_check(arguments.settings.only);
+  if (!arguments.figures.empty()) std::filesystem::create_directories(arguments.figures);
+  Console console(options.level());
+  Workers workers(options.context().threads);
+  const std::vector<VerificationCheck> checks = run_checks(arguments.settings, workers, console);
+  if (!arguments.figures.empty()) {
+    for (const VerificationCheck& check : checks) write_figure(arguments.figures, check);
+  }
+  nlohmann::ordered_json result;
+  result["passed"] =
+      std::all_of(checks.begin(), checks.end(), [](const VerificationCheck& check) { return check.passed; });
+  result["wall_s"] = 0.0;
+  for (const VerificationCheck& check : checks) {
+    result["wall_s"] = result["wall_s"].get<double>() + check.wall_s;
+    result["checks"].push_back(json_of(check));
+  }
+  if (!options.output.empty()) {
+    write_json(options.output, result);
+  }
+  if (options.json) {
+    print_result(options, result);
+  } else {
+    print_table(checks);
+    const auto failed =
+        std::count_if(checks.begin(), checks.end(), [](const VerificationCheck& check) { return !check.passed; });
+    fmt::print("\n{} of {} checks passed in {:.0f} s\n", checks.size() - static_cast<std::size_t>(failed),
+               checks.size(), result["wall_s"].get<double>());
+  }
+  return result["passed"].get<bool>() ? kDone : kNotAcceptable;
+}
+
+}  // namespace
+
+void add_verify(Application& application) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      application.add_verb("verify", "Put questions with known answers to the solver on this machine",
+                           "incise verify --only cantilever --figures figures",
+                           [arguments](const CommonOptions& options) { return run_verify(*arguments, options); });
+  verb->add_option("--only", arguments->settings.only, "Run the checks whose name starts so");
+  verb->add_option("--figures", arguments->figures, "Folder for one SVG plot per check");
+  verb->add_option("--tolerance-scale", arguments->settings.tolerance_scale,
+                   "Multiplies every tolerance; 0 shows the true residuals")
+      ->check(CLI::NonNegativeNumber);
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// One line of a check's plot.
+struct CheckCurve {
+  std::string name;
+  std::vector<double> x;
+  std::vector<double> y;      ///< as many as x, all finite
+  bool is_reference = false;  ///< what is known, drawn as a line; else what was found, drawn as marks
+};
+
+/// What a check found, as curves; axes carry their units in the labels.
+struct CheckPlot {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+  bool is_log_x = false;
+  bool is_log_y = false;
+  std::vector<CheckCurve> curves;
+};
+
+/// When a check counts as passed.
+enum class Criterion {
+  Within,   ///< |found - expected| <= tolerance
+  AtLeast,  ///< found >= expected - tolerance
+};
+
+/// One question with a known answer, put to the solver on this machine.
+struct VerificationCheck {
+  std::string name;    ///< lower_case, stable
+  std::string what;    ///< one sentence
+  std::string source;  ///< where the expected value comes from
+  std::string unit;    ///< of expected, found and tolerance; "-": a ratio
+  double expected = 0.0;
+  double found = 0.0;  ///< not a number where the solver did not get that far; `note` says why
+  double tolerance = 0.0;
+  Criterion criterion = Criterion::Within;
+  bool passed = false;
+  double wall_s = 0.0;
+  std::string note;  ///< further figures worth a look, or why it failed; may be empty
+  CheckPlot plot;
+};
+
+struct VerificationSettings {
+  std::string only;              ///< runs the checks whose name starts with this; empty: all
+  double tolerance_scale = 1.0;  ///< >= 0, times every tolerance; 0 shows the true residuals
+};
+
+/// Names of all checks, in the order in which they run.
+[[nodiscard]] std::vector<std::string> check_names();
+
+/// Runs the checks that settings.only selects, one after the other, each on all workers. No files, no data: every body
+/// is made here. A solver that gives up is a failed check, not an exception. Progress: stage "verifying", and a Notice
+/// with the name as each check starts. @throws InvalidArgument if no name fits or the scale is negative; Cancelled on
+/// request.
+/// @note about a minute on two cores; docs/verification.md tells what each check means.
+[[nodiscard]] std::vector<VerificationCheck> run_checks(const VerificationSettings& settings, Workers& workers,
+                                                        Monitor& monitor);
+
+/// Whether `found` satisfies the check's criterion; never for a value that is not finite.
+[[nodiscard]] bool is_met(const VerificationCheck& check);
+
+}  // namespace incise

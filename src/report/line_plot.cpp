@@ -1,0 +1,135 @@
+#include "report/plot.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/report/line_plot.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+constexpr double kWidth = 560.0;
+constexpr double kHeight = 340.0;
+constexpr double kMarkRadius = 3.2;
+
+struct Range {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The range of one axis' values (their logarithms on a log axis), with some air; never empty.
+Range range_of(const LinePlot& plot, bool is_x) {
+  const bool is_log = is_x ? plot.is_log_x : plot.is_log_y;
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const LineSeries& series : plot.series) {
+    for (const double value : is_x ? series.x : series.y) {
+      const double place = is_log ? std::log10(value) : value;
+      INCISE_REQUIRE(
+          std::isfinite(place),
+          fmt::format("series \"{}\": expected numbers that the axis can show, found {}", series.name, value));
+      range.low = std::min(range.low, place);
+      range.high = std::max(range.high, place);
+    }
+  }
+  double air = 0.06 * (range.high - range.low);
+  if (!(air > 0.0)) air = std::max(1e-12, 0.5 * std::abs(range.high));
+  return {range.low - air, range.high + air};
+}
+
+/// Ticks at 1, 2, 5 times powers of ten, or at the powers alone where those would crowd.
+std::vector<double> log_ticks(const Range& range) {
+  std::vector<double> ticks;
+  const bool is_wide = range.high - range.low > 2.0;
+  const int stride = std::max(1, static_cast<int>(std::ceil((range.high - range.low) / 8.0)));
+  for (int decade = static_cast<int>(std::floor(range.low)); decade <= range.high; ++decade) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      if (is_wide && (factor != 1.0 || decade % stride != 0)) continue;
+      const double place = decade + std::log10(factor);
+      if (place >= range.low && place <= range.high) ticks.push_back(place);
+    }
+  }
+  return ticks;
+}
+
+void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, bool is_log, bool is_x,
+               std::string_view name) {
+  const std::vector<double> ticks = is_log ? log_ticks(range) : round_ticks(range.low, range.high, 6);
+  if (!is_log) {
+    is_x ? draw_x_axis(svg, area, ticks, name) : draw_y_axis(svg, area, ticks, name);
+    return;
+  }
+  // The axis is drawn in logarithms, its numbers are what they stand for.
+  is_x ? draw_x_axis(svg, area, {}, name) : draw_y_axis(svg, area, {}, name);
+  const double bottom = area.corner.y() + area.size.y();
+  for (const double tick : ticks) {
+    const double value = std::pow(10.0, tick);
+    const std::string text = value < 0.001 ? fmt::format("{:.0e}", value) : number_text(value);
+    if (is_x) {
+      svg.line({area.x(tick), bottom}, {area.x(tick), bottom + 5.0}, "stroke=\"#555\"");
+      svg.text({area.x(tick), bottom + 19.0}, text, "middle");
+    } else {
+      svg.line({area.corner.x(), area.y(tick)}, {area.corner.x() + area.size.x(), area.y(tick)}, "stroke=\"#d9d9d4\"");
+      svg.text({area.corner.x() - 7.0, area.y(tick) + 4.0}, text, "end");
+    }
+  }
+}
+
+void draw_series(SvgWriter& svg, const PlotArea& area, const LinePlot& plot, const LineSeries& series,
+                 std::string_view color) {
+  std::vector<Vec2> points;
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    points.push_back(area.at(plot.is_log_x ? std::log10(series.x[i]) : series.x[i],
+                             plot.is_log_y ? std::log10(series.y[i]) : series.y[i]));
+  }
+  if (series.is_line) {
+    svg.polyline(points, false, fmt::format("stroke=\"{}\" stroke-width=\"1.8\" fill=\"none\"", color));
+    return;
+  }
+  svg.open_group(fmt::format("fill=\"#fff\" fill-opacity=\"0.6\" stroke=\"{}\" stroke-width=\"1.6\"", color));
+  for (const Vec2& p : points) svg.circle(p, kMarkRadius, "");
+  svg.close_group();
+}
+
+void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<std::string_view>& colors) {
+  double x = 70.0;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    if (plot.series[i].is_line) {
+      svg.line({x, 42.0}, {x + 16.0, 42.0}, fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", colors[i]));
+    } else {
+      svg.circle({x + 8.0, 42.0}, kMarkRadius,
+                 fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.6\"", colors[i]));
+    }
+    svg.text({x + 21.0, 46.0}, plot.series[i].name);
+    x += 40.0 + 6.4 * static_cast<double>(plot.series[i].name.size());
+  }
+}
+
+}  // namespace
+
+std::string line_plot_svg(const LinePlot& plot) {
+  INCISE_REQUIRE(!plot.series.empty(), "expected at least one series");
+  for (const LineSeries& series : plot.series) {
+    INCISE_REQUIRE(!series.x.empty() && series.x.size() == series.y.size(),
+                   fmt::format("series \"{}\": expected as many y as x, at least one, found {} and {}", series.name,
+                               series.y.size(), series.x.size()));
+  }
+  const Range x = range_of(plot, true);
+  const Range y = range_of(plot, false);
+  SvgWriter svg(kWidth, kHeight, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
+  svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
+  svg.text({0.5 * kWidth, 20.0}, plot.title, "middle", "font-weight=\"600\" font-size=\"13\"");
+  const PlotArea area{{70.0, 58.0}, {kWidth - 90.0, kHeight - 112.0}, x.low, x.high, y.low, y.high};
+  draw_axis(svg, area, y, plot.is_log_y, false, plot.y_label);
+  draw_axis(svg, area, x, plot.is_log_x, true, plot.x_label);
+  std::vector<std::string_view> colors;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) colors.push_back(ink::kSeries[i % ink::kSeries.size()]);
+  for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(svg, area, plot, plot.series[i], colors[i]);
+  draw_legend(svg, plot, colors);
+  return svg.finish();
+}
+
+}  // namespace incise

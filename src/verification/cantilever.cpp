@@ -1,0 +1,86 @@
+// A beam clamped at one end and loaded across the other, bent so little that the linear beam applies.
+#include "verification/bodies.hpp"
+#include "verification/check.hpp"
+#include "verification/closed_forms.hpp"
+#include "verification/convergence.hpp"
+
+#include <fmt/format.h>
+
+namespace incise {
+namespace {
+
+constexpr double kLength = 100.0;         // mm
+constexpr double kHeight = 10.0;          // mm
+constexpr double kTraction = -1e-4;       // kPa: a tip displacement near 1e-3 of the height
+constexpr double kRateTolerance = 0.2;    // the clamped corners, which the beam does not know, cost some
+constexpr double kTipTolerance = 0.005;   // of the tip: Saint-Venant's end zone over the length
+const std::vector<int> kCells{4, 8, 16};  // over the height
+
+/// Tip displacement with n cells over the height and half as many per length. At ν = 0 nothing happens across the
+/// width, so one layer of cells between planes of symmetry is the whole beam.
+double computed_tip_mm(const CheckContext& context, int n) {
+  Material material;
+  material.poissons_ratio = 0.0;
+  const double width = kHeight / n;
+  const TissueModel model =
+      make_tissue_model(make_block(Vec3(kLength, width, kHeight), {10 * n, 1, n}), material,
+                        {FixedConstraint{plane_across(0, 0.0)}, symmetry_across(1), symmetry_across(1, width),
+                         TractionConstraint{plane_across(0, kLength), Vec3(0, 0, kTraction)}});
+  return mean_displacement(model, solved(context, model, nullptr, kSmallStrainTolerance).state,
+                           plane_across(0, kLength))[2];
+}
+
+struct Refinement {
+  double expected = 0.0;
+  std::vector<double> tips;
+  [[nodiscard]] double error(std::size_t i) const { return std::abs(1.0 - tips[i] / expected); }
+};
+
+Refinement refine(const CheckContext& context) {
+  Refinement result;
+  result.expected = beam_tip_mm(kLength, kHeight, Material{}.youngs_modulus_kpa, kTraction * kHeight);
+  for (const int n : kCells) result.tips.push_back(computed_tip_mm(context, n));
+  return result;
+}
+
+void finish(VerificationCheck& check, const Refinement& refinement) {
+  CheckCurve marks{"tip displacement", {}, {}, false};
+  CheckCurve slope{"second order", {}, {}, true};
+  for (std::size_t i = 0; i < kCells.size(); ++i) {
+    marks.x.push_back(kCells[i]);
+    marks.y.push_back(refinement.error(i));
+    slope.x.push_back(kCells[i]);
+    slope.y.push_back(refinement.error(0) * std::pow(static_cast<double>(kCells[0]) / kCells[i], 2));
+    check.note += fmt::format("{}{} cells: {:.2f} % off", i > 0 ? ", " : "", kCells[i], 100.0 * refinement.error(i));
+  }
+  check.plot = {"Cantilever against Timoshenko's beam",
+                "cells over the height",
+                "relative error of the tip",
+                true,
+                true,
+                {slope, marks}};
+}
+
+constexpr const char* kSource = "Timoshenko's beam: F L³ / 3EI + F L / (5/6 G A)";
+
+}  // namespace
+
+VerificationCheck cantilever_rate(const CheckContext& context) {
+  VerificationCheck check = described("Cantilever, ν = 0: observed order of convergence of the tip displacement",
+                                      std::string(kSource) + "; order 2 of linear tets", "-", 2.0, kRateTolerance);
+  const Refinement refinement = refine(context);
+  check.found = observed_rate(refinement.error(1), refinement.error(2));
+  finish(check, refinement);
+  return check;
+}
+
+VerificationCheck cantilever_tip(const CheckContext& context) {
+  const Refinement refinement = refine(context);
+  VerificationCheck check = described("Cantilever, ν = 0: tip displacement, extrapolated at second order", kSource,
+                                      "mm", refinement.expected, kTipTolerance * std::abs(refinement.expected));
+  check.found = second_order_limit(refinement.tips[1], refinement.tips[2]);
+  finish(check, refinement);
+  return check;
+}
+
+}  // namespace incise

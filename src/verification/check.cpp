@@ -1,0 +1,52 @@
+#include "verification/check.hpp"
+
+#include <fmt/format.h>
+
+namespace incise {
+
+namespace {
+constexpr int kMaxNewtonIterations = 200;  // large rotations take many load steps
+}
+
+StaticResult solved(const CheckContext& context, const TissueModel& model, const TissueState* start,
+                    double relative_tolerance) {
+  StaticSettings settings;
+  settings.relative_tolerance = relative_tolerance;
+  settings.max_newton_iterations = kMaxNewtonIterations;
+  StaticResult result = solve_static(model, settings, context.workers, context.monitor, start);
+  if (result.outcome == Outcome::Cancelled) throw Cancelled("verifying: stopped on request");
+  if (result.outcome != Outcome::Success) {
+    throw NotSolved(fmt::format("static equilibrium of {} tets ({}): {} after {} Newton iterations, residual {:.2g}",
+                                model.mesh.tets.size(), law_text(model.material), to_string(result.outcome),
+                                result.iterations, result.relative_residual));
+  }
+  return result;
+}
+
+Mat3 mean_stress_kpa(const CheckContext& context, const TissueModel& model, const TissueState& state) {
+  TissueState copy = state;
+  Points forces(model.mesh.vertices.size(), Vec3::Zero());
+  add_elastic_response(model, copy, forces, nullptr, context.workers);
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t v = 0; v < forces.size(); ++v) sum -= forces[v] * model.mesh.vertices[v].transpose();
+  return sum / volume_mm3(model.mesh);
+}
+
+std::string law_text(const Material& material) {
+  std::string text = material.model == MaterialModel::Corotational ? "corotational" : "stable Neo-Hookean";
+  if (material.volume == VolumeTreatment::Averaged) text += ", averaged volume";
+  if (material.fibre_modulus_kpa > 0.0) text += ", fibres";
+  return text;
+}
+
+VerificationCheck described(std::string what, std::string source, std::string unit, double expected, double tolerance) {
+  VerificationCheck check;
+  check.what = std::move(what);
+  check.source = std::move(source);
+  check.unit = std::move(unit);
+  check.expected = expected;
+  check.tolerance = tolerance;
+  return check;
+}
+
+}  // namespace incise

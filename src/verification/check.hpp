@@ -1,0 +1,60 @@
+#pragma once
+
+#include <incise/core/error.hpp>
+#include <incise/mechanics/statics.hpp>
+#include <incise/verification/verification.hpp>
+
+namespace incise {
+
+/// What a check is given. The monitor passes on the wish to stop and nothing else.
+struct CheckContext {
+  Workers& workers;
+  Monitor& monitor;
+};
+
+/// The solver gave up: the check has no value. Caught by run_checks.
+class NotSolved : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Of the loads or reactions. Where strains are small, rounding of the positions allows no less.
+inline constexpr double kTightTolerance = 1e-10;
+inline constexpr double kSmallStrainTolerance = 1e-7;
+
+/// Static equilibrium to nearly rounding. @throws NotSolved naming the outcome; Cancelled.
+[[nodiscard]] StaticResult solved(const CheckContext& context, const TissueModel& model,
+                                  const TissueState* start = nullptr, double relative_tolerance = kTightTolerance);
+
+/// The mean first Piola stress of a body in equilibrium, kPa, from the forces that hold it: P = (1/V) Σ t ⊗ X over its
+/// vertices (theorem of mean stress). Uses nodal forces only, so it judges what the solver sees.
+[[nodiscard]] Mat3 mean_stress_kpa(const CheckContext& context, const TissueModel& model, const TissueState& state);
+
+/// "corotational", "stable Neo-Hookean, averaged volume", …
+[[nodiscard]] std::string law_text(const Material& material);
+
+/// A check with its fixed texts; the rest is filled in by the function that makes it.
+[[nodiscard]] VerificationCheck described(std::string what, std::string source, std::string unit, double expected,
+                                          double tolerance);
+
+// The checks, one file each.
+VerificationCheck patch_test(const CheckContext& context, const Material& material);
+VerificationCheck uniaxial_stretch(const CheckContext& context, const Material& material);
+VerificationCheck equibiaxial_stretch(const CheckContext& context, const Material& material);
+VerificationCheck simple_shear(const CheckContext& context, const Material& material);
+VerificationCheck cantilever_rate(const CheckContext& context);
+VerificationCheck cantilever_tip(const CheckContext& context);
+VerificationCheck cooks_membrane_rate(const CheckContext& context);
+VerificationCheck thick_sphere_rate(const CheckContext& context);
+VerificationCheck thick_sphere_displacement(const CheckContext& context);
+VerificationCheck elastica_tip(const CheckContext& context);
+VerificationCheck locking_of_the_standard_tet(const CheckContext& context, MaterialModel model);
+VerificationCheck no_locking_when_averaged(const CheckContext& context, MaterialModel model);
+VerificationCheck vibration_period(const CheckContext& context);
+VerificationCheck relaxation_of_one_prony_term(const CheckContext& context);
+VerificationCheck vertex_order(const CheckContext& context);
+VerificationCheck support_penetration(const CheckContext& context);
+VerificationCheck support_balance(const CheckContext& context);
+VerificationCheck support_pull(const CheckContext& context);
+
+}  // namespace incise

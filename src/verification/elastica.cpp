@@ -1,0 +1,104 @@
+// A slender beam whose tip force bends it by some sixty degrees: large rotations, small strains.
+#include "verification/beam_in_the_plane.hpp"
+#include "verification/bodies.hpp"
+#include "verification/check.hpp"
+#include "verification/convergence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kLength = 100.0;     // mm
+constexpr double kHeight = 4.0;       // mm
+constexpr double kLoad = 3.0;         // F L² / E I
+constexpr double kTolerance = 0.005;  // of the length
+const std::vector<int> kCells{4, 8, 16};
+constexpr int kCellsAlongPerCell = 16;
+
+PlaneBeam beam_per_width() {
+  const double e = Material{}.youngs_modulus_kpa;
+  PlaneBeam beam;
+  beam.length_mm = kLength;
+  beam.bending_stiffness = e * kHeight * kHeight * kHeight / 12.0;
+  beam.axial_stiffness = e * kHeight;
+  beam.shear_stiffness = 5.0 / 6.0 * 0.5 * e * kHeight;
+  beam.force_mn = kLoad * beam.bending_stiffness / (kLength * kLength);
+  return beam;
+}
+
+struct Bent {
+  Vec3 tip;         // displacement, mm
+  CheckCurve line;  // centre line, in lengths
+};
+
+/// The rest state laid along the beam's line, sections across it: Newton starts there, since a slender body finds its
+/// way from rest only in many small steps. Where it ends is decided by the balance of forces alone.
+TissueState bent_as_the_beam(const TissueModel& model, int n) {
+  const int cells = kCellsAlongPerCell * n;
+  const std::vector<Vec2> line = bent_line(beam_per_width(), cells);
+  TissueState state = rest_state(model);
+  for (Vec3& p : state.positions) {
+    const auto i = static_cast<std::size_t>(std::lround(p[0] / kLength * cells));
+    const Vec2 along = (line[std::min(i + 1, line.size() - 1)] - line[i == 0 ? 0 : i - 1]).normalized();
+    const double height = p[2] - 0.5 * kHeight;
+    if (i > 0) p = Vec3(line[i][0] - height * along[1], p[1], 0.5 * kHeight + line[i][1] + height * along[0]);
+  }
+  return state;
+}
+
+/// At ν = 0 nothing happens across the width: one layer of cells is the whole beam. Cells are 12.5/8 times as long as
+/// high.
+Bent bend(const CheckContext& context, int n) {
+  Material material;
+  material.poissons_ratio = 0.0;
+  const double width = kHeight / n;
+  const TissueModel model = make_tissue_model(
+      make_block(Vec3(kLength, width, kHeight), {kCellsAlongPerCell * n, 1, n}), material,
+      {FixedConstraint{plane_across(0, 0.0)}, symmetry_across(1), symmetry_across(1, width),
+       TractionConstraint{plane_across(0, kLength), Vec3(0, 0, -beam_per_width().force_mn / kHeight)}});
+  const TissueState start = bent_as_the_beam(model, n);
+  const TissueState state = solved(context, model, &start, 1e-8).state;
+  Bent bent{mean_displacement(model, state, plane_across(0, kLength)),
+            {fmt::format("tets, {} over the height", n), {}, {}, false}};
+  for (int i = 0; i <= 16; ++i) {
+    const Region section = plane_across(0, kLength * i / 16.0);
+    const Vec3 moved = mean_displacement(model, state, section) / kLength;
+    bent.line.x.push_back(i / 16.0 + moved[0]);
+    bent.line.y.push_back(moved[2]);
+  }
+  return bent;
+}
+
+}  // namespace
+
+VerificationCheck elastica_tip(const CheckContext& context) {
+  const std::vector<Vec2> line = bent_line(beam_per_width());
+  VerificationCheck check = described(
+      "Slender beam bent far by a tip force, F L²/EI = 3, ν = 0: drop of the tip, extrapolated at second order",
+      "elastica (Bisshopp and Drucker 1945) with shear and stretch (Reissner 1972), integrated along the arc",
+      "of the length", -line.back()[1] / kLength, kTolerance);
+  CheckCurve reference{"elastica", {}, {}, true};
+  for (std::size_t i = 0; i < line.size(); i += 8) {
+    reference.x.push_back(line[i][0] / kLength);
+    reference.y.push_back(line[i][1] / kLength);
+  }
+  check.plot = {"Beam bent far", "x / length", "z / length", false, false, {reference}};
+  std::vector<double> drops;
+  std::vector<double> errors;
+  for (const int n : kCells) {
+    const Bent bent = bend(context, n);
+    drops.push_back(-bent.tip[2] / kLength);
+    errors.push_back(drops.back() - check.expected);
+    check.note += fmt::format("{} cells: {:.2f} % off, ", n, 100.0 * errors.back() / check.expected);
+    if (n != kCells[1]) check.plot.curves.push_back(bent.line);
+  }
+  check.found = extrapolated(drops[0], drops[1], drops[2]);
+  check.note += fmt::format("order {:.2f}", observed_rate(errors[1], errors[2]));
+  return check;
+}
+
+}  // namespace incise

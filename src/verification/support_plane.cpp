@@ -1,0 +1,120 @@
+// A block on a rigid platform: it may not sink in, the platform carries what presses on it, and it never holds tissue
+// back.
+#include "verification/bodies.hpp"
+#include "verification/check.hpp"
+
+#include <incise/core/units.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+const Vec3 kSize(40, 30, 15);               // mm
+constexpr double kPenetration = 0.05;       // mm, promised by SupportPlane
+constexpr double kBalanceTolerance = 1e-6;  // of the load: Newton stops at 1e-10
+const Vec3 kGravity(0, 0, -units::kStandardGravityMmS2);
+const std::vector<double> kPressures{1.0, 5.0, 10.0, 20.0};  // kPa, dead loads; near 35 the clamped edge is crushed
+constexpr std::size_t kClamp = 0;                            // places among the constraints
+constexpr std::size_t kSupport = 1;
+
+TissueModel pressed_block(double pressure_kpa) {
+  return make_tissue_model(irregular_block(kSize, {8, 6, 3}, 0.2, 11), {},
+                           {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
+                            TractionConstraint{plane_across(2, kSize[2]), Vec3(0, 0, -pressure_kpa)}},
+                           kGravity);
+}
+
+/// Weight and pressure, mN: what clamp and platform have to carry.
+double load_mn(double pressure_kpa) {
+  const double weight = units::kg_mm3_from_kg_m3(Material{}.density_kg_m3) * kSize.prod() * -kGravity[2];
+  return weight + pressure_kpa * kSize[0] * kSize[1];
+}
+
+/// A block clamped at one end on the platform, its other end pulled upwards.
+TissueModel lifted_block() {
+  return make_tissue_model(irregular_block(kSize, {8, 6, 3}, 0.2, 11), {},
+                           {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
+                            TractionConstraint{plane_across(0, kSize[0]), Vec3(0, 0, 2.0)}},
+                           kGravity);
+}
+
+}  // namespace
+
+VerificationCheck support_penetration(const CheckContext& context) {
+  VerificationCheck check =
+      described("Block pressed onto a support plane with up to 20 kPa: deepest vertex behind the plane",
+                "promise of SupportPlane: at most 0.05 mm", "mm", 0.0, kPenetration);
+  CheckCurve marks{"deepest vertex", {}, {}, false};
+  for (const double pressure : kPressures) {
+    const StaticResult result = solved(context, pressed_block(pressure));
+    check.found = std::max(check.found, result.penetration_mm);
+    marks.x.push_back(pressure);
+    marks.y.push_back(result.penetration_mm);
+  }
+  check.plot = {"Support: penetration",
+                "pressure on top, kPa",
+                "deepest vertex, mm",
+                false,
+                false,
+                {{"promised", {0.0, kPressures.back()}, {kPenetration, kPenetration}, true}, marks}};
+  return check;
+}
+
+VerificationCheck support_balance(const CheckContext& context) {
+  VerificationCheck check = described(
+      "Block clamped at one end, pressed onto a support plane: what clamp and plane carry over weight and load",
+      "balance of forces", "-", 1.0, kBalanceTolerance);
+  check.found = 1.0;
+  CheckCurve line{"weight and load", {}, {}, true};
+  CheckCurve marks{"plane and clamp", {}, {}, false};
+  CheckCurve plane{"plane", {}, {}, false};
+  for (const double pressure : kPressures) {
+    const StaticResult result = solved(context, pressed_block(pressure));
+    const double push = result.reactions_mn[kSupport][2];
+    const double share = (push + result.reactions_mn[kClamp][2]) / load_mn(pressure);
+    if (std::abs(share - 1.0) >= std::abs(check.found - 1.0)) check.found = share;
+    line.x.push_back(pressure);
+    line.y.push_back(load_mn(pressure) / 1000.0);
+    marks.x.push_back(pressure);
+    marks.y.push_back((push + result.reactions_mn[kClamp][2]) / 1000.0);
+    plane.x.push_back(pressure);
+    plane.y.push_back(push / 1000.0);
+  }
+  check.plot = {"Support: balance", "pressure on top, kPa", "force, N", false, false, {line, marks, plane}};
+  return check;
+}
+
+VerificationCheck support_pull(const CheckContext& context) {
+  VerificationCheck check =
+      described("Block lifted off a support plane at one end: strongest pull of the plane on any vertex",
+                "a platform pushes or does nothing", "mN", 0.0, 0.0);
+  const TissueModel model = lifted_block();
+  const TissueState state = solved(context, model).state;
+  Points pushes(state.positions.size(), Vec3::Zero());
+  add_support_response(model, state, pushes, nullptr);
+  CheckCurve marks{"underside", {}, {}, false};
+  double highest = 0.0;
+  for (const VertexId v : select(model.mesh, plane_across(2, 0.0))) {
+    check.found = std::max(check.found, -pushes[v.index()][2]);
+    highest = std::max(highest, state.positions[v.index()][2]);
+    marks.x.push_back(model.mesh.vertices[v.index()][0]);
+    marks.y.push_back(state.positions[v.index()][2]);
+  }
+  // A test of lifting needs tissue that lifts.
+  if (!(highest > 1.0))
+    throw NotSolved(fmt::format("the block should rise by more than 1 mm, found {:.3g} mm", highest));
+  check.note = fmt::format("the underside rises by up to {:.2f} mm", highest);
+  check.plot = {"Support: a block lifted at one end",
+                "x at rest, mm",
+                "height of the underside, mm",
+                false,
+                false,
+                {{"plane", {0.0, kSize[0]}, {0.0, 0.0}, true}, marks}};
+  return check;
+}
+
+}  // namespace incise

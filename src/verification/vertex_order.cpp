@@ -1,0 +1,52 @@
+// A tet is the same whichever corner is named first. Rotations taken from a tet's edges know the difference; ours may
+// not.
+#include "verification/bodies.hpp"
+#include "verification/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace incise {
+namespace {
+
+constexpr double kTolerance = 1e-6;  // mm, of some 15 mm: rounding and the solver's residual
+const Vec3 kSize(100, 60, 25);       // mm
+const Vec3 kGravity(0, 0, -9810);    // mm/s²
+
+TissueModel cantilever(const std::array<std::size_t, 4>& order) {
+  TetMesh mesh = make_block(kSize, {12, 8, 5});
+  for (Tet& tet : mesh.tets) tet = {tet[order[0]], tet[order[1]], tet[order[2]], tet[order[3]]};
+  return make_tissue_model(mesh, {}, {FixedConstraint{plane_across(0, 0.0)}}, kGravity);
+}
+
+}  // namespace
+
+VerificationCheck vertex_order(const CheckContext& context) {
+  VerificationCheck check =
+      described("Cantilever under its weight, corners of every tet named in another order: largest change of a vertex",
+                "no physics in names", "mm", 0.0, kTolerance);
+  const TissueModel model = cantilever({0, 1, 2, 3});
+  const TissueState state = solved(context, model).state;
+  CheckCurve line{"order as made", {}, {}, true};
+  for (int i = 0; i <= 12; ++i) {
+    line.x.push_back(kSize[0] * i / 12.0);
+    line.y.push_back(mean_displacement(model, state, plane_across(0, line.x.back()))[2]);
+  }
+  check.plot = {"Cantilever under its weight, corners renamed", "x at rest, mm", "mean sag, mm", false, false, {line}};
+  // The even orders, which keep a tet's volume positive, up to those that keep the first face.
+  for (const std::array<std::size_t, 4>& order : {std::array<std::size_t, 4>{2, 3, 0, 1}, {1, 2, 0, 3}, {3, 1, 0, 2}}) {
+    const TissueModel other = cantilever(order);
+    const TissueState found = solved(context, other).state;
+    CheckCurve marks{fmt::format("{}{}{}{}", order[0], order[1], order[2], order[3]), line.x, {}, false};
+    for (const double x : line.x) marks.y.push_back(mean_displacement(other, found, plane_across(0, x))[2]);
+    check.plot.curves.push_back(marks);
+    for (std::size_t v = 0; v < state.positions.size(); ++v) {
+      check.found = std::max(check.found, (state.positions[v] - found.positions[v]).norm());
+    }
+  }
+  check.note = fmt::format("sag of the end: {:.2f} mm", -line.y.back());
+  return check;
+}
+
+}  // namespace incise
