@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
 
 #include <fmt/format.h>
 
@@ -8,6 +9,16 @@
 #include <thread>
 
 namespace incise::cli {
+namespace {
+
+void choose_isa(const std::string& name) {
+  if (!is_supported(parse_isa(name))) {
+    throw CaseError("command line", "--isa", name, fmt::format("an instruction set that this machine has: at best {}", to_string(best_isa())));
+  }
+  set_isa(parse_isa(name));
+}
+
+}  // namespace
 
 RunContext CommonOptions::context() const {
   const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -31,8 +42,12 @@ CLI::App* Application::add_verb(const std::string& name, const std::string& what
   verb->add_flag("--verbose", options->verbose, "More detail");
   verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
   verb->add_option("--seed", options->seed, "Seed of everything random")->check(CLI::NonNegativeNumber);
-  verb->add_option("--isa", options->isa, "Instruction set; this build has portable kernels only")->check(CLI::IsMember({"portable"}));
-  verb->callback([this, options, run = std::move(run)] { status_ = run(*options); });
+  verb->add_option("--isa", options->isa, "Instruction set of the vectorised kernels; by default the best that this machine has")
+      ->check(CLI::IsMember({"portable", "avx2", "avx512"}));
+  verb->callback([this, options, run = std::move(run)] {
+    if (!options->isa.empty()) choose_isa(options->isa);
+    status_ = run(*options);
+  });
   return verb;
 }
 

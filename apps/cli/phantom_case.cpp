@@ -1,6 +1,7 @@
 #include "phantom_case.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
 #include <incise/imaging/phantom.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -100,7 +101,7 @@ nlohmann::ordered_json write_phantom_case(const std::filesystem::path& folder, s
   manifest.commit = source_commit();
   manifest.command = fmt::format("incise phantom --seed {} --format {}", seed, format);
   manifest.seed = seed;
-  manifest.instruction_set = "portable";
+  manifest.instruction_set = to_string(active_isa());
   manifest.machine = machine_description();
   write_manifest(target.path(), manifest);
   target.commit();

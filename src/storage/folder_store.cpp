@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
@@ -84,6 +85,8 @@ const std::string& FolderStore::key(Product product) {
     text += fmt::format(" tumor={} line={}", input_hash(file_.inputs.tumor_contour), input_hash(file_.inputs.line_contour));
   }
   if (product == Product::Mesh) {
+    // Kernels of two instruction sets round differently: a study keeps to one, from the survey of the planned cut on.
+    text += fmt::format(" isa={}", to_string(active_isa()));
     for (const std::filesystem::path& holder : file_.inputs.holders) text += fmt::format(" holder={}", input_hash(holder));
   }
   if (product == Product::AsPlanned) text += fmt::format(" path={}", input_hash(file_.inputs.tool_path));
@@ -106,7 +109,7 @@ void FolderStore::write_manifest_to(const std::filesystem::path& folder, double 
   manifest.settings_json = settings_json(file_);
   manifest.seed = context_.seed;
   manifest.threads = context_.threads;
-  manifest.instruction_set = "portable";
+  manifest.instruction_set = to_string(active_isa());
   manifest.wall_s = wall_s;
   manifest.machine = machine_description();
   const CaseInputs& in = file_.inputs;
