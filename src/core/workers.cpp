@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -13,70 +13,90 @@
 
 namespace incise {
 
+/// Each thread has its own range of neighbouring chunks, the same in every loop of like size, so that what it touched is still in its cache; when
+/// it is through it helps in the others' ranges. The caller waits for chunks, not for threads: one that wakes late finds nothing to do.
 struct Workers::Shared {
-  std::vector<std::thread> threads;
-  std::mutex mutex;
-  std::condition_variable work_ready;
-  std::condition_variable work_done;
-  bool stopping = false;
-  std::size_t generation = 0;  // counts loops, so that a sleeping thread can tell a new one from the last
-  std::size_t busy = 0;        // threads that have not finished the current loop
+  /// The next chunk of a range, and which loop that belongs to: (loop << 32) + chunk. On a cache line of its own.
+  struct alignas(64) Ticket {
+    std::atomic<std::uint64_t> value = 0;
+  };
 
+  explicit Shared(std::size_t thread_count) : tickets(thread_count) {}
+
+  std::vector<std::thread> threads;
+  std::vector<Ticket> tickets;  // one per thread, the caller's first
+  std::atomic<std::uint32_t> loop = 0;
+  std::atomic<std::uint32_t> chunks_left = 0;
+  std::atomic<bool> stopping = false;
+
+  // Of the current loop. Read only by a thread that holds one of its chunks: then the loop cannot end.
   const std::function<void(std::size_t, std::size_t, std::size_t)>* body = nullptr;
   std::size_t count = 0;
   std::size_t chunk_size = 1;
-  std::size_t chunks = 0;
-  std::atomic<std::size_t> next_chunk = 0;
+  std::atomic<std::size_t> chunks = 0;
 
+  std::mutex mutex;  // guards the two below
   std::exception_ptr failure;
   std::size_t failed_chunk = 0;
 
-  void run_chunks() {
+  [[nodiscard]] std::size_t range_start(std::size_t range) const { return range * chunks.load() / tickets.size(); }
+
+  /// Takes the next chunk of a range in the given loop. @returns whether there was one.
+  bool take(std::uint32_t of_loop, std::size_t range, std::size_t& chunk) {
+    std::atomic<std::uint64_t>& ticket = tickets[range].value;
+    std::uint64_t current = ticket.load();
     while (true) {
-      const std::size_t chunk = next_chunk.fetch_add(1);
-      if (chunk >= chunks) return;
-      const std::size_t begin = chunk * chunk_size;
-      try {
-        (*body)(chunk, begin, std::min(count, begin + chunk_size));
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure || chunk < failed_chunk) {
-          failure = std::current_exception();
-          failed_chunk = chunk;
-        }
-      }
+      chunk = static_cast<std::size_t>(current & 0xFFFFFFFFU);
+      if (static_cast<std::uint32_t>(current >> 32) != of_loop || chunk >= range_start(range + 1)) return false;
+      if (ticket.compare_exchange_weak(current, current + 1)) return true;
     }
   }
 
-  void wait_for_work() {
-    std::size_t seen = 0;
-    std::unique_lock lock(mutex);
+  void run(std::size_t chunk) {
+    const std::size_t begin = chunk * chunk_size;
+    try {
+      (*body)(chunk, begin, std::min(count, begin + chunk_size));
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure || chunk < failed_chunk) {
+        failure = std::current_exception();
+        failed_chunk = chunk;
+      }
+    }
+    if (chunks_left.fetch_sub(1) == 1) chunks_left.notify_one();
+  }
+
+  void run_chunks(std::uint32_t of_loop, std::size_t thread) {
+    std::size_t chunk = 0;
+    for (std::size_t i = 0; i < tickets.size(); ++i) {
+      while (take(of_loop, (thread + i) % tickets.size(), chunk)) run(chunk);
+    }
+  }
+
+  void wait_for_work(std::size_t thread) {
+    std::uint32_t seen = 0;
     while (true) {
-      work_ready.wait(lock, [&] { return stopping || generation != seen; });
+      loop.wait(seen);
       if (stopping) return;
-      seen = generation;
-      lock.unlock();
-      run_chunks();
-      lock.lock();
-      if (--busy == 0) work_done.notify_one();
+      seen = loop.load();
+      run_chunks(seen, thread);
     }
   }
 };
 
-Workers::Workers(int threads) : shared_(std::make_unique<Shared>()) {
+Workers::Workers(int threads) {
   INCISE_REQUIRE(threads >= 0, fmt::format("expected 0 (all) or more threads, found {}", threads));
-  const int wanted = threads > 0 ? threads : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  for (int i = 1; i < wanted; ++i) {
-    shared_->threads.emplace_back([shared = shared_.get()] { shared->wait_for_work(); });
+  const auto wanted = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
+  shared_ = std::make_unique<Shared>(wanted);
+  for (std::size_t i = 1; i < wanted; ++i) {
+    shared_->threads.emplace_back([shared = shared_.get(), i] { shared->wait_for_work(i); });
   }
 }
 
 Workers::~Workers() {
-  {
-    const std::lock_guard lock(shared_->mutex);
-    shared_->stopping = true;
-  }
-  shared_->work_ready.notify_all();
+  shared_->stopping = true;
+  ++shared_->loop;
+  shared_->loop.notify_all();
   for (std::thread& thread : shared_->threads) thread.join();
 }
 
@@ -88,27 +108,31 @@ void Workers::for_chunks(std::size_t count, std::size_t chunk_size,
   if (count == 0) return;
   Shared& shared = *shared_;
   const std::size_t chunks = chunk_count(count, chunk_size);
+  INCISE_REQUIRE(chunks <= 0x7FFFFFFFU, fmt::format("expected fewer than 2^31 chunks, found {}", chunks));
   if (shared.threads.empty() || chunks == 1) {
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
       body(chunk, chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size));
     }
     return;
   }
-  {
-    const std::lock_guard lock(shared.mutex);
-    shared.body = &body;
-    shared.count = count;
-    shared.chunk_size = chunk_size;
-    shared.chunks = chunks;
-    shared.next_chunk = 0;
-    shared.failure = nullptr;
-    shared.busy = shared.threads.size();
-    ++shared.generation;
+  const std::uint32_t loop = shared.loop.load() + 1;
+  // First no ticket fits the last loop any more, so that a thread which wakes late cannot take one by the new bounds.
+  for (Shared::Ticket& ticket : shared.tickets) ticket.value = (static_cast<std::uint64_t>(loop) << 32) + 0xFFFFFFFFU;
+  shared.body = &body;
+  shared.count = count;
+  shared.chunk_size = chunk_size;
+  shared.chunks = chunks;
+  shared.chunks_left = static_cast<std::uint32_t>(chunks);
+  shared.failure = nullptr;
+  for (std::size_t range = 0; range < shared.tickets.size(); ++range) {
+    shared.tickets[range].value = (static_cast<std::uint64_t>(loop) << 32) + shared.range_start(range);
   }
-  shared.work_ready.notify_all();
-  shared.run_chunks();
-  std::unique_lock lock(shared.mutex);
-  shared.work_done.wait(lock, [&] { return shared.busy == 0; });
+  shared.loop = loop;
+  shared.loop.notify_all();
+  shared.run_chunks(loop, 0);
+  for (std::uint32_t left = shared.chunks_left.load(); left != 0; left = shared.chunks_left.load()) {
+    shared.chunks_left.wait(left);
+  }
   if (shared.failure) std::rethrow_exception(shared.failure);
 }
 
