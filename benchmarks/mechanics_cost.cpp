@@ -1,10 +1,11 @@
 // Cost of a static stretch against the size of the body, and SOFA's beam: accuracy beside time, as a table and as CSV.
-//   incise_mechanics_cost [--csv FILE] [--large] [--million] [--threads N]
+//   incise_mechanics_cost [--csv FILE] [--figure FILE.svg] [--large] [--million] [--threads N]
 #include "test_body.hpp"
 
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
 #include <incise/mechanics/motion.hpp>
+#include <incise/report/line_plot.hpp>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -116,8 +117,33 @@ double exponent(const std::vector<Row>& rows) {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
+/// Time against size, both axes logarithmic, beside a line that grows as fast as the body.
+std::string figure_of(const std::vector<Row>& stretches, double slope) {
+  LinePlot plot{fmt::format("Static stretch from rest to 1e-6: time grows as tets^{:.2f}", slope), "tetrahedra", "wall time, s", true, true, {}};
+  LineSeries measured{"measured", {}, {}, false};
+  LineSeries linear{"proportional to the body", {}, {}, true};
+  for (const Row& row : stretches) {
+    const auto tets = static_cast<double>(row.tets);
+    measured.x.push_back(tets);
+    measured.y.push_back(row.wall_s);
+    linear.x.push_back(tets);
+    linear.y.push_back(stretches.back().wall_s * tets / static_cast<double>(stretches.back().tets));
+  }
+  plot.series = {measured, linear};
+  return line_plot_svg(plot);
+}
+
+bool write(const std::string& file_name, const std::string& text) {
+  std::ofstream file(file_name);
+  file << text;
+  if (file.flush()) return true;
+  fmt::print(stderr, "cannot write {}\n", file_name);
+  return false;
+}
+
 int run(int argc, char** argv) {
   std::string csv;
+  std::string figure;
   std::vector<double> sizes{10e3, 30e3, 100e3};
   int threads = 1;
   for (int i = 1; i < argc; ++i) {
@@ -128,10 +154,12 @@ int run(int argc, char** argv) {
       sizes.push_back(1e6);
     } else if (argument == "--csv" && i + 1 < argc) {
       csv = argv[++i];
+    } else if (argument == "--figure" && i + 1 < argc) {
+      figure = argv[++i];
     } else if (argument == "--threads" && i + 1 < argc) {
       threads = std::atoi(argv[++i]);
     } else {
-      fmt::print(stderr, "expected [--csv FILE] [--large] [--million] [--threads N], found {}\n", argument);
+      fmt::print(stderr, "expected [--csv FILE] [--figure FILE] [--large] [--million] [--threads N], found {}\n", argument);
       return 2;
     }
   }
@@ -139,6 +167,7 @@ int run(int argc, char** argv) {
   std::vector<Row> rows;
   for (const double size : sizes) rows.push_back(stretch(size, workers));
   const double slope = exponent(rows);
+  const std::string drawn = figure_of(rows, slope);
   rows.push_back(beam(workers));
   std::string table =
       "name,tets,vertices,threads,processor_s,wall_s,newton,linear_iterations,relative_residual,bytes_per_tet,isa,"
@@ -149,15 +178,8 @@ int run(int argc, char** argv) {
                          row.bytes_per_tet, to_string(active_isa()), source_commit());
   }
   fmt::print("{}processor time of the stretch grows as tets^{:.2f}\n", table, slope);
-  if (!csv.empty()) {
-    std::ofstream file(csv);
-    file << table;
-    if (!file.flush()) {
-      fmt::print(stderr, "cannot write {}\n", csv);
-      return 3;
-    }
-  }
-  return 0;
+  const bool is_written = (csv.empty() || write(csv, table)) && (figure.empty() || write(figure, drawn));
+  return is_written ? 0 : 3;
 }
 
 }  // namespace

@@ -31,11 +31,11 @@ struct CutWorkspace::Data {
   double body_volume_mm3 = 0.0;            // at rest, uncut
   int steps_since_refresh = kCoarseRefreshSteps;
 
-  Data(const TissueModel& model, std::span<const Vec3> positions)
+  Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
       : neighbours(face_neighbours(model.mesh)),
         is_anchored(model.mesh.vertices.size(), 0),
         matrix(model.pattern),
-        solver(model.pattern, positions, kVerticesPerAggregate, Precision::Single),
+        solver(model.pattern, positions, kVerticesPerAggregate, precision),
         right_side(model.mesh.vertices.size()),
         increment(model.mesh.vertices.size()),
         body_volume_mm3(std::accumulate(model.volumes_mm3.begin(), model.volumes_mm3.end(), 0.0)) {
@@ -46,8 +46,8 @@ struct CutWorkspace::Data {
   }
 };
 
-CutWorkspace::CutWorkspace(const TissueModel& model, std::span<const Vec3> positions)
-    : data_(std::make_unique<Data>(model, positions)) {}
+CutWorkspace::CutWorkspace(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
+    : data_(std::make_unique<Data>(model, positions, precision)) {}
 CutWorkspace::~CutWorkspace() = default;
 CutWorkspace::CutWorkspace(CutWorkspace&&) noexcept = default;
 

@@ -1,6 +1,7 @@
 #include "mechanics/single_pcg.hpp"
 
 #include "mechanics/kernels/kernels.hpp"
+#include "mechanics/large_pages.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,7 @@ SinglePcg::SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSp
     }
     row_start_.push_back(static_cast<std::int32_t>(column_.size()));
   }
-  values_.assign(9 * column_.size() + kLoadBeyondEnd, 0.0F);
+  values_ = zeros_in_large_pages<float>(9 * column_.size() + kLoadBeyondEnd);
   inverse_diagonal_.assign(12 * count, 0.0F);
   for (std::vector<float>* vector : {&arm_, &is_free_, &x_, &r_, &z_, &p_, &q_}) vector->assign(4 * count, 0.0F);
   for (std::size_t i = 0; i < count; ++i) {

@@ -13,6 +13,7 @@ namespace incise {
 namespace {
 
 constexpr double kRelaxedMm = 1e-3;      // the tissue counts as at rest when no vertex moves farther in a step
+constexpr double kSingleTolerance = 1e-2;  // of a step's residual: from here up single precision suffices
 constexpr int kMaxRelaxationSteps = 60;  // after the tool is out
 
 void require_valid(const IncisionSettings& settings) {
@@ -110,7 +111,8 @@ IncisionResult simulate_incision(const TissueModel& model, const TissueState& st
   const ToolProgram program(path, settings.cut);
   IncisionResult result;
   CutState state = begin_cut(model, stretched, program.pose_at(0.0));
-  CutWorkspace workspace(model, stretched.positions);
+  CutWorkspace workspace(model, stretched.positions,
+                         settings.cut.residual_tolerance >= kSingleTolerance ? Precision::Single : Precision::Double);
   FrameKeeper frames(settings.frames, program.duration_s(), result.frames);
 
   result.outcome = run_program(model, program, settings, state, workspace, frames, workers, monitor, result);

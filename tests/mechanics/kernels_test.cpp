@@ -128,19 +128,20 @@ TEST_P(Kernels, MultiplyInSinglePrecisionToItsRounding) {
   Workers workers(2);
   BlockMatrixF single(model.pattern);
   convert(r.stiffness, single, workers);
-  std::vector<Eigen::Vector3f> x;
+  std::vector<Eigen::Vector4f> x;
   Points exact_x;
   for (const Vec3& p : shaken(model, 3.0, 17).positions) {
-    x.emplace_back(p.cast<float>());
-    exact_x.push_back(x.back().cast<double>());
+    x.emplace_back(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), 0.0F);
+    exact_x.emplace_back(x.back().head<3>().cast<double>());
   }
-  std::vector<Eigen::Vector3f> y(x.size());
+  std::vector<Eigen::Vector4f> y(x.size());
   Points expected(x.size());
   multiply(single, x, y, workers);
   multiply(r.stiffness, exact_x, expected, workers);
   for (std::size_t v = 0; v < x.size(); ++v) {
-    ASSERT_LE((y[v].cast<double>() - expected[v]).norm(), kFloatTolerance * testing::largest(expected))
+    ASSERT_LE((y[v].head<3>().cast<double>() - expected[v]).norm(), kFloatTolerance * testing::largest(expected))
         << "vertex " << v;
+    ASSERT_EQ(y[v][3], 0.0F) << "vertex " << v;
   }
 }
 

@@ -183,6 +183,51 @@ TEST(TwoLevelPcg, GivesTheSameBitsAtAnyThreadCount) {
   }
 }
 
+PcgReport solve_in_single_precision(const System& system, Points& x, double tolerance, int threads) {
+  Workers workers(threads);
+  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, 20, Precision::Single);
+  solver.update(system.matrix, true, workers);
+  PcgSettings settings;
+  settings.relative_tolerance = tolerance;
+  x.assign(system.right.size(), Vec3::Ones());
+  return solver.solve(system.matrix, system.right, x, settings, workers);
+}
+
+TEST(TwoLevelPcg, InSinglePrecisionFindsTheSolutionOfCholesky) {
+  const System system(clamped_block({8, 5, 4}, 0.49));
+  SparseCholesky cholesky(system.model.pattern);
+  ASSERT_TRUE(cholesky.factor(system.matrix));
+  Points exact(system.right.size());
+  cholesky.solve(system.right, exact);
+  Points x;
+  const PcgReport report = solve_in_single_precision(system, x, 1e-4, 1);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LT(difference(x, exact), 1e-3 * norm(exact));
+  // The matrix itself is rounded to 6e-8 of its entries, which here are worth 1e4 times the load.
+  EXPECT_LT(system.residual(x), 3e-3 * norm(system.right));
+}
+
+TEST(TwoLevelPcg, InSinglePrecisionTakesAsManyIterationsAsInDouble) {
+  const System system(clamped_block({8, 5, 4}, 0.49));
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-2;
+  Points x;
+  Points y;
+  const int in_double = solve_pcg(system, x, settings).iterations;
+  const int in_single = solve_in_single_precision(system, y, 1e-2, 1).iterations;
+  EXPECT_NEAR(in_single, in_double, 2);
+}
+
+TEST(TwoLevelPcg, InSinglePrecisionGivesTheSameBitsAtAnyThreadCount) {
+  const System system(clamped_block({12, 8, 8}, 0.45));
+  Points one;
+  Points three;
+  const PcgReport a = solve_in_single_precision(system, one, 1e-3, 1);
+  const PcgReport b = solve_in_single_precision(system, three, 1e-3, 3);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_EQ(one, three);
+}
+
 TEST(TwoLevelPcg, RefusesAMatrixWithANegativeDiagonal) {
   System system(clamped_block({3, 2, 2}));
   Workers workers(1);

@@ -49,7 +49,8 @@ struct CutStepReport {
 /// Memory and factorisations that steps reuse; never affects a result beyond rounding of the solver's tolerance.
 class CutWorkspace {
  public:
-  explicit CutWorkspace(const TissueModel& model, std::span<const Vec3> positions);
+  /// @param precision  of the linear solves; single suffices for tolerances of 1e-2 and more.
+  explicit CutWorkspace(const TissueModel& model, std::span<const Vec3> positions, Precision precision = Precision::Single);
   ~CutWorkspace();
   CutWorkspace(CutWorkspace&&) noexcept;
   struct Data;

@@ -35,7 +35,7 @@ struct BlockMatrix {
 /// the time its bytes need. Relative rounding 6e-8 of each entry.
 struct BlockMatrixF {
   std::shared_ptr<const BlockPattern> pattern;
-  std::vector<float> values;  ///< 9 per block, row-major
+  std::vector<float> values;  ///< 9 per block, row-major, and 4 zeros: room for one load beyond the end
 
   explicit BlockMatrixF(std::shared_ptr<const BlockPattern> p);
 };
@@ -44,7 +44,8 @@ void convert(const BlockMatrix& matrix, BlockMatrixF& result, Workers& workers);
 
 /// y = A x. x, y: N x 3. Fixed order: same bits at any thread count with the same active_isa().
 void multiply(const BlockMatrix& matrix, std::span<const Vec3> x, std::span<Vec3> y, Workers& workers);
-void multiply(const BlockMatrixF& matrix, std::span<const Eigen::Vector3f> x, std::span<Eigen::Vector3f> y,
+/// The same in single precision, for vectors of four numbers per vertex, the last of which has to be 0 in x and is 0 in y.
+void multiply(const BlockMatrixF& matrix, std::span<const Eigen::Vector4f> x, std::span<Eigen::Vector4f> y,
               Workers& workers);
 
 }  // namespace incise

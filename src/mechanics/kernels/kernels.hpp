@@ -64,7 +64,6 @@ struct PcgVectors {
 struct KernelTable {
   double (*sweep_tets)(const TetSweep&);  ///< returns the elastic energy, µJ
   void (*multiply_double)(const BlockRows<double>&, const double* x, double* y, std::size_t begin, std::size_t end);
-  void (*multiply_float)(const BlockRows<float>&, const float* x, float* y, std::size_t begin, std::size_t end);
   /// y_i = sum over j of column_j[i] c_j, for a dense n x n matrix stored by columns.
   void (*multiply_dense)(const double* matrix, std::size_t n, const double* c, double* y, std::size_t begin,
                          std::size_t end);

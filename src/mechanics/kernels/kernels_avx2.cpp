@@ -5,7 +5,7 @@
 
 namespace incise {
 
-const KernelTable kAvx2Kernels{sweep_tets,   multiply_double, multiply_float, multiply_dense,
-                                  multiply_four, move_four,       turn_four,      multiply_dense_rows};
+const KernelTable kAvx2Kernels{sweep_tets, multiply_double, multiply_dense,     multiply_four,
+                                  move_four,  turn_four,       multiply_dense_rows};
 
 }  // namespace incise
