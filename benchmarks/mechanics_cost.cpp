@@ -4,15 +4,22 @@
 
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/mechanics/motion.hpp>
 #include <incise/report/line_plot.hpp>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
+#include <sstream>
+#include <stdexcept>
 #include <string_view>
 
 namespace incise::bench {
@@ -40,11 +47,12 @@ struct Row {
   int newton = 0;
   int linear_iterations = 0;
   double accuracy = 0.0;       // relative residual of the last equation
-  double bytes_per_tet = 0.0;  // of all that the process holds, at most; 0: not measured
+  double bytes_per_tet = 0.0;  // of all that its process held at most, program and libraries included
+  bool has_converged = true;
 };
 
-Row stretch(double tets, Workers& workers) {
-  const double before = peak_bytes();
+Row stretch(double tets, int threads) {
+  Workers workers(threads);
   const TissueModel model = pulled_block(tets);
   Monitor silent;
   const double start = processor_seconds();
@@ -55,8 +63,37 @@ Row stretch(double tets, Workers& workers) {
   row.newton = result.iterations;
   row.linear_iterations = result.linear_iterations;
   row.accuracy = result.relative_residual;
-  row.bytes_per_tet = (peak_bytes() - before) / static_cast<double>(row.tets);
-  if (result.outcome != Outcome::Success) row.name += fmt::format(" ({})", to_string(result.outcome));
+  row.bytes_per_tet = peak_bytes() / static_cast<double>(row.tets);
+  row.has_converged = result.outcome == Outcome::Success;
+  return row;
+}
+
+/// Runs `work` in a process of its own, so that its peak of memory is its own, too.
+template <class Work>
+Row in_own_process(const Work& work) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("cannot make a pipe");
+  const pid_t child = fork();
+  if (child < 0) throw std::runtime_error("cannot start a process");
+  if (child == 0) {
+    const Row row = work();
+    const std::string text = fmt::format("{} {} {} {} {} {} {} {} {} {}", row.name, row.tets, row.vertices, row.processor_s, row.wall_s,
+                                         row.newton, row.linear_iterations, row.accuracy, row.bytes_per_tet, row.has_converged ? 1 : 0);
+    const bool is_sent = write(ends[1], text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    _exit(is_sent ? 0 : 1);
+  }
+  close(ends[1]);
+  std::string text;
+  std::array<char, 4096> buffer;
+  for (ssize_t n = 0; (n = read(ends[0], buffer.data(), buffer.size())) > 0;) text.append(buffer.data(), static_cast<std::size_t>(n));
+  close(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  Row row;
+  std::istringstream in(text);
+  in >> row.name >> row.tets >> row.vertices >> row.processor_s >> row.wall_s >> row.newton >> row.linear_iterations >> row.accuracy >>
+      row.bytes_per_tet >> row.has_converged;
+  if (status != 0 || in.fail()) throw std::runtime_error("a benchmark's process ended without its row");
   return row;
 }
 
@@ -65,7 +102,8 @@ Row stretch(double tets, Workers& workers) {
 /// horizontal beam of 10 x 40 x 10 fixed at one end that falls in gravity, with the material, step and damping of
 /// SOFA's corotational example (data/fem/sofa_corotational_beam), cells in six tets. Each system is solved to 1e-6,
 /// where SOFA stops after 25 iterations wherever it is.
-Row beam(Workers& workers) {
+Row beam(int threads) {
+  Workers workers(threads);
   constexpr int kSteps = 1000;
   Material material;
   material.youngs_modulus_kpa = 1000.0;
@@ -90,10 +128,11 @@ Row beam(Workers& workers) {
     row.newton += report.newton_iterations;
     row.linear_iterations += report.linear_iterations;
     row.accuracy = std::max(row.accuracy, report.relative_residual);
-    if (report.outcome != Outcome::Success) row.name = fmt::format("beam: step {} did not converge", i);
+    row.has_converged = row.has_converged && report.outcome == Outcome::Success;
   }
   clock_gettime(CLOCK_MONOTONIC, &to);
   row.processor_s = processor_seconds() - start;
+  row.bytes_per_tet = peak_bytes() / static_cast<double>(row.tets);
   row.wall_s = static_cast<double>(to.tv_sec - from.tv_sec) + 1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec);
   return row;
 }
@@ -133,7 +172,7 @@ std::string figure_of(const std::vector<Row>& stretches, double slope) {
   return line_plot_svg(plot);
 }
 
-bool write(const std::string& file_name, const std::string& text) {
+bool write_file(const std::string& file_name, const std::string& text) {
   std::ofstream file(file_name);
   file << text;
   if (file.flush()) return true;
@@ -163,28 +202,34 @@ int run(int argc, char** argv) {
       return 2;
     }
   }
-  Workers workers(threads);
   std::vector<Row> rows;
-  for (const double size : sizes) rows.push_back(stretch(size, workers));
+  for (const double size : sizes) rows.push_back(in_own_process([&] { return stretch(size, threads); }));
   const double slope = exponent(rows);
   const std::string drawn = figure_of(rows, slope);
-  rows.push_back(beam(workers));
-  std::string table =
-      "name,tets,vertices,threads,processor_s,wall_s,newton,linear_iterations,relative_residual,bytes_per_tet,isa,"
+  rows.push_back(in_own_process([&] { return beam(threads); }));
+  std::string table = fmt::format("# {}; g++ {}, {}; {}\n", machine_description(), __VERSION__, BUILD_FLAGS, version());
+  table +=
+      "name,tets,vertices,threads,processor_s,wall_s,newton,linear_iterations,relative_residual,bytes_per_tet,converged,isa,"
       "commit\n";
   for (const Row& row : rows) {
-    table += fmt::format("{},{},{},{},{:.3f},{:.3f},{},{},{:.1e},{:.0f},{},{}\n", row.name, row.tets, row.vertices,
+    table += fmt::format("{},{},{},{},{:.3f},{:.3f},{},{},{:.1e},{:.0f},{},{},{}\n", row.name, row.tets, row.vertices,
                          threads, row.processor_s, row.wall_s, row.newton, row.linear_iterations, row.accuracy,
-                         row.bytes_per_tet, to_string(active_isa()), source_commit());
+                         row.bytes_per_tet, row.has_converged ? "yes" : "no", to_string(active_isa()), source_commit());
   }
   fmt::print("{}processor time of the stretch grows as tets^{:.2f}\n", table, slope);
-  const bool is_written = (csv.empty() || write(csv, table)) && (figure.empty() || write(figure, drawn));
-  return is_written ? 0 : 3;
+  const bool is_written = (csv.empty() || write_file(csv, table)) && (figure.empty() || write_file(figure, drawn));
+  if (!is_written) return 3;
+  return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.has_converged; }) ? 0 : 4;
 }
 
 }  // namespace
 }  // namespace incise::bench
 
 int main(int argc, char** argv) {
-  return incise::bench::run(argc, argv);
+  try {
+    return incise::bench::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "incise_mechanics_cost: {}\n", error.what());
+    return 2;
+  }
 }
