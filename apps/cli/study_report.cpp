@@ -64,6 +64,15 @@ CtVolume crop(const CtVolume& ct, const VolumeGrid& around) {
   return part;
 }
 
+/// Why a study went no further than the stretch.
+void add_stretch(const fs::path& root, ReportData& data) {
+  const fs::path file = root / "stretched" / "deform.json";
+  if (!fs::exists(file)) return;
+  const Json json = read_json(file);
+  if (json.at("outcome") == to_string(Outcome::Success)) return;
+  data.notices.push_back({Severity::Warning, fmt::format("{}: {}", json.at("outcome").get<std::string>(), json.at("note").get<std::string>())});
+}
+
 void add_ct(const fs::path& root, const CaseFile& file, Monitor& monitor, ReportData& data) {
   const fs::path labels = root / "labels" / "labels.nrrd";
   if (!fs::exists(labels) || file.inputs.ct_volume.empty()) return;
@@ -130,13 +139,12 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
   const bool is_ring = plan.is_closed;
   ReportIncision incision;
   incision.name = cut.name;
-  for (const Outcome outcome : {Outcome::Success, Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::NotConverged}) {
-    if (json.at("outcome") == to_string(outcome)) incision.outcome = outcome;
-  }
+  incision.outcome = outcome_of(json.at("outcome").get<std::string>());
   if (json.at("closed_loop").is_boolean()) incision.closed_loop = json.at("closed_loop").get<bool>();
   if (json.at("negative_margin").is_boolean()) incision.negative_margin = json.at("negative_margin").get<bool>();
   incision.target_mm = file.settings.plan.lateral_margin_mm;
   incision.close_margin_mm = file.settings.close_margin_mm;
+  incision.kerf_allowance_mm = file.settings.needle.radius_mm();
   incision.measured_contour = "kerf mid-line, stretched tissue before the cut";
   incision.tumor_edge = plan.tumor_edge;
   incision.intended_path = entry_contour(plan);
@@ -212,12 +220,11 @@ void add_program(const fs::path& root, const Json& study, ReportData& data) {
   if (!study.contains("program")) return;
   const Json& program = study.at("program");
   for (const auto& [key, value] : program.items()) {
-    if (value.is_number() || value.is_boolean() || value.is_string()) data.program.push_back({key, value.is_string() ? value.get<std::string>() : value.dump(), ""});
+    if (value.is_number() || value.is_boolean() || value.is_string()) data.program.push_back({key, value.is_string() ? value.get<std::string>() : value.is_number_float() ? fmt::format("{:.4g}", value.get<double>()) : value.dump(), ""});
   }
   if (program.contains("checks")) {
     for (const Json& check : program.at("checks")) {
-      const bool is_least = check.at("text").get<std::string>().find("at least") != std::string::npos;
-      data.checks.push_back({check.at("name"), check.at("unit"), check.at("value"), is_least ? ">=" : "<=", check.at("limit"), check.at("passed")});
+      data.checks.push_back({check.at("text"), check.at("unit"), check.at("value"), check.at("relation"), check.at("limit"), check.at("passed")});
     }
   }
   if (program.contains("checks_not_made")) {
@@ -300,6 +307,7 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   data.virtual_notice = file.settings.is_virtual ? kVirtualNotice : kSimulatedNotice;
   data.approach = file.settings.plan.approach;
   add_ct(root, file, monitor, data);
+  add_stretch(root, data);
   fs::path mesh_file = root / "mesh" / "mesh.vtu";
   if (!file.inputs.specimen_mesh.empty()) mesh_file = file.inputs.specimen_mesh;
   if (fs::exists(mesh_file)) {

@@ -72,8 +72,8 @@ void draw_incision(SvgWriter& svg, const Picture& picture, const ReportIncision&
   };
   for (std::size_t i = 0; i < n; ++i) {
     const double error = incision.signed_error_mm[i];
-    if (error >= incision.close_margin_mm - incision.target_mm) continue;
-    const std::string_view color = error <= -incision.target_mm ? ink::kReached : ink::kTooClose;
+    if (error > incision.close_error_mm()) continue;
+    const std::string_view color = error <= incision.reached_error_mm() ? ink::kReached : ink::kTooClose;
     svg.polyline(part(i), false, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"13\"", color));
   }
   svg.polyline(points, is_closed, "fill=\"none\" stroke=\"#333\" stroke-width=\"6\" stroke-linejoin=\"round\"");

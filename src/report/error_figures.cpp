@@ -67,10 +67,9 @@ void draw_zones(SvgWriter& svg, const PlotArea& area, const ReportIncision& inci
                fmt::format("font-size=\"11\" fill=\"{}\"", color));
     }
   };
-  const double close = incision.close_margin_mm - incision.target_mm;
-  band(-incision.target_mm, close, ink::kTooClose,
+  band(incision.reached_error_mm(), incision.close_error_mm(), ink::kTooClose,
        fmt::format("closer than {} mm", number_text(incision.close_margin_mm)));
-  band(-1e9, -incision.target_mm, ink::kReached, "tumour edge reached");
+  band(-1e9, incision.reached_error_mm(), ink::kReached, "tumour edge reached");
 }
 
 void draw_series_legend(SvgWriter& svg, std::span<const ReportIncision> incisions, Vec2 at) {

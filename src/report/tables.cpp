@@ -90,9 +90,13 @@ std::string check_table(std::span<const ReportCheck> checks) {
   for (const ReportCheck& check : checks) {
     table.row();
     table.name(check.name);
-    table.number(number_text(check.value));
-    const std::string relation = check.relation == "<=" ? "≤" : check.relation == ">=" ? "≥" : check.relation;
-    table.number(relation + " " + number_text(check.limit));
+    if (check.relation.empty()) {  // a plain yes or no
+      table.number("");
+      table.number("");
+    } else {
+      table.number(number_text(check.value));
+      table.number((check.relation == ">=" ? "≥ " : "≤ ") + number_text(check.limit));
+    }
     table.unit(check.unit);
     table.raw(check.passed ? "<span class=\"good\">✓ passed</span>" : "<span class=\"bad\">✗ failed</span>");
   }

@@ -35,7 +35,7 @@ struct Worst {
 };
 
 ProgramCheck check_finite(const RobotProgram& program) {
-  ProgramCheck check{"finite", true, 0.0, 0.0, "", std::nullopt, "every number of the program is finite"};
+  ProgramCheck check{"finite", true, 0.0, 0.0, "", "", std::nullopt, "every number of the program is finite"};
   for (std::size_t i = 0; i < program.poses.size(); ++i) {
     const ProgramPose& p = program.poses[i];
     const bool is_finite = p.tip_mm.allFinite() && p.R_robot_tool.allFinite() && p.rotation_vector.allFinite() &&
@@ -61,20 +61,20 @@ class Checker {
 
   void frame() {
     const bool is_robot = path_.frame == PathFrame::Robot;
-    add("frame", is_robot, is_robot ? 1.0 : 0.0, 1.0, "", std::nullopt,
+    add("frame", is_robot, is_robot ? 1.0 : 0.0, 1.0, "", "", std::nullopt,
         fmt::format("the path's frame is {}, and has to be robot", to_string(path_.frame)));
   }
 
   void closed() {
     const double gap = (program_.poses[cut_.back()].tip_mm - program_.poses[cut_.front()].tip_mm).norm();
-    add("closed", path_.is_closed && program_.is_closed && gap <= kClosedToMm, gap, kClosedToMm, "mm", cut_.back(),
+    add("closed", path_.is_closed && program_.is_closed && gap <= kClosedToMm, gap, kClosedToMm, "<=", "mm", cut_.back(),
         path_.is_closed ? "gap between the end and the beginning of the ring"
                         : "the path is open, and has to be a ring");
   }
 
   void self_crossing() {
     const bool crosses = crosses_itself_in_view(entry_course(), axis_);
-    add("self_crossing", !crosses, crosses ? 1.0 : 0.0, 0.0, "", std::nullopt,
+    add("self_crossing", !crosses, crosses ? 1.0 : 0.0, 0.0, "", "", std::nullopt,
         "the course crosses itself nowhere, seen along the mean axis");
   }
 
@@ -86,16 +86,16 @@ class Checker {
       fastest.see(pose.tip_speed_mm_s, i);
       slowest.see(-pose.tip_speed_mm_s, i);
     }
-    add("speed_min", -slowest.value >= settings_.min_speed_mm_s, -slowest.value, settings_.min_speed_mm_s, "mm/s",
+    add("speed_min", -slowest.value >= settings_.min_speed_mm_s, -slowest.value, settings_.min_speed_mm_s, ">=", "mm/s",
         slowest.pose, "least tip speed of the cut");
-    add("speed_max", fastest.value <= settings_.max_speed_mm_s, fastest.value, settings_.max_speed_mm_s, "mm/s",
+    add("speed_max", fastest.value <= settings_.max_speed_mm_s, fastest.value, settings_.max_speed_mm_s, "<=", "mm/s",
         fastest.pose, "greatest tip speed of the cut");
   }
 
   void depth() {
     Worst worst;
     for (const std::size_t i : cut_) worst.see(std::abs(program_.poses[i].depth_mm - settings_.planned_depth_mm), i);
-    add("depth", worst.value <= settings_.depth_tolerance_mm, worst.value, settings_.depth_tolerance_mm, "mm",
+    add("depth", worst.value <= settings_.depth_tolerance_mm, worst.value, settings_.depth_tolerance_mm, "<=", "mm",
         worst.pose, fmt::format("greatest difference from the planned depth of {} mm", settings_.planned_depth_mm));
   }
 
@@ -108,7 +108,7 @@ class Checker {
       const bool is_inside = has_inside && contains_in_view(path_.tumor_edge, entry, axis_);
       closest.see(is_inside ? distance : -distance, i);
     }
-    add("margin", -closest.value >= settings_.close_margin_mm, -closest.value, settings_.close_margin_mm, "mm",
+    add("margin", -closest.value >= settings_.close_margin_mm, -closest.value, settings_.close_margin_mm, ">=", "mm",
         closest.pose, "least distance of the course from the tumour edge (negative: inside it)");
   }
 
@@ -116,7 +116,7 @@ class Checker {
     const Contour course = entry_contour(intended);
     Worst worst;
     for (const std::size_t i : cut_) worst.see(nearest_on(course, program_.poses[i].entry_mm()).distance_mm, i);
-    add("deviation", worst.value <= settings_.max_deviation_mm, worst.value, settings_.max_deviation_mm, "mm",
+    add("deviation", worst.value <= settings_.max_deviation_mm, worst.value, settings_.max_deviation_mm, "<=", "mm",
         worst.pose, "greatest distance of the course from the intended one");
   }
 
@@ -126,16 +126,16 @@ class Checker {
       const ProgramPose& pose = program_.poses[i];
       worst.see((pose.tip_mm - settings_.tool_length_mm * pose.R_robot_tool.col(2)).norm(), i);
     }
-    add("reach", worst.value <= settings_.max_reach_mm, worst.value, settings_.max_reach_mm, "mm", worst.pose,
+    add("reach", worst.value <= settings_.max_reach_mm, worst.value, settings_.max_reach_mm, "<=", "mm", worst.pose,
         "greatest distance of the flange from the base");
   }
 
   std::vector<ProgramCheck> take() { return std::move(checks_); }
 
  private:
-  void add(const char* name, bool passed, double value, double limit, const char* unit, std::optional<std::size_t> pose,
-           std::string text) {
-    checks_.push_back({name, passed, value, limit, unit, pose, std::move(text)});
+  void add(const char* name, bool passed, double value, double limit, const char* relation, const char* unit,
+           std::optional<std::size_t> pose, std::string text) {
+    checks_.push_back({name, passed, value, limit, relation, unit, pose, std::move(text)});
   }
 
   /// The entry points of the cut; a closed course does not repeat its first.

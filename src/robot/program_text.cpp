@@ -146,6 +146,7 @@ std::string to_json(const RobotProgram& program, const ProgramChecks* checks) {
                         {"passed", check.passed},
                         {"value", check.value},
                         {"limit", check.limit},
+                        {"relation", check.relation},
                         {"unit", check.unit}};
       item["pose"] = check.pose ? ordered_json(*check.pose) : ordered_json(nullptr);
       item["text"] = check.text;

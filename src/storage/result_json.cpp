@@ -115,6 +115,7 @@ Json to_json(const StaticResult& r) {
   Json json;
   json["outcome"] = to_string(r.outcome);
   json["converged"] = r.outcome == Outcome::Success;
+  json["note"] = explain_stretch(r);
   json["iterations"] = r.iterations;
   json["load_steps"] = r.load_steps;
   json["relative_residual"] = r.relative_residual;

@@ -131,6 +131,7 @@ class Runner {
         },
         [&](const StaticResult& result, double wall_s) { store_.save_stretched(model, result, wall_s); });
     study_.outcome = study_.stretched->outcome;
+    if (study_.outcome != Outcome::Success) monitor_.message(Severity::Warning, explain_stretch(*study_.stretched));
     return study_.outcome == Outcome::Success;
   }
 
@@ -214,6 +215,18 @@ class Runner {
 };
 
 }  // namespace
+
+std::string explain_stretch(const StaticResult& stretched) {
+  if (stretched.outcome == Outcome::Success) return "";
+  if (stretched.outcome == Outcome::Cancelled) return "stopped: the stretch was interrupted";
+  const std::string found =
+      stretched.outcome == Outcome::ElementInverted
+          ? fmt::format("the tissue came to rest, but {} of its tets turned inside out: it is stretched farther than the mesh can follow",
+                        stretched.inverted_tets)
+          : fmt::format("no equilibrium of the held tissue was found in {} iterations", stretched.iterations);
+  return fmt::format("stopped: {}. A smaller displacement_mm, wider held regions (specimen.constraints) or a finer mesh may help",
+                     found);
+}
 
 Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor) {
   return Runner(settings, store, workers, monitor).run(until);

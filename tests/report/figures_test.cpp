@@ -67,6 +67,20 @@ TEST(ContourFigure, MarksPointsThatAreTooCloseAndThoseThatReachTheEdge) {
   EXPECT_EQ(marks("#b3123f"), 1U);
 }
 
+TEST(ContourFigure, CountsWhatTheKerfTakesBesideItsMidline) {
+  ReportIncision cut = fixture().incision("Before", 0.0, 0.0);
+  cut.kerf_allowance_mm = 0.5;
+  const auto marks = [&](const char* color) {
+    return texts_between(contour_figure_svg(cut), std::string("stroke=\"") + color + "\" stroke-width=\"13\"", ">")
+        .size();
+  };
+  cut.signed_error_mm[3] = -2.35;  // 2.65 mm from the edge to the mid-line, 2.15 mm of tissue
+  cut.signed_error_mm[4] = -2.25;  // 2.25 mm of tissue
+  cut.signed_error_mm[9] = -4.6;   // the kerf's edge is inside
+  EXPECT_EQ(marks("#cc79a7"), 1U);
+  EXPECT_EQ(marks("#b3123f"), 1U);
+}
+
 TEST(ContourFigure, HasJetColoursWhenAsked) {
   const ReportIncision cut = fixture().incision("Before", 0.0, 1.0);
   const std::string jet = contour_figure_svg(cut, {.colors = ErrorColors::Jet});

@@ -27,4 +27,12 @@ enum class Outcome {
   return "unknown";
 }
 
+/// The outcome of that name. @returns NotConverged for a name that no version of this program writes.
+[[nodiscard]] constexpr Outcome outcome_of(std::string_view name) {
+  for (const Outcome outcome : {Outcome::Success, Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::ElementInverted, Outcome::Cancelled}) {
+    if (name == to_string(outcome)) return outcome;
+  }
+  return Outcome::NotConverged;
+}
+
 }  // namespace incise

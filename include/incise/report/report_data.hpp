@@ -93,11 +93,16 @@ struct ReportIncision {
   std::optional<bool> negative_margin;  ///< the cut keeps clear of the tumour edge; none: not known
   double mean_abs_error_mm = 0.0;
   double target_mm = 5.0;        ///< the distance to the tumour edge that was aimed at
-  double close_margin_mm = 2.2;  ///< closer than this counts as too close
+  double close_margin_mm = 2.2;  ///< less tissue than this counts as too close
+  double kerf_allowance_mm = 0.0;  ///< how much nearer to the tumour the kerf's edge is than this contour: the electrode's radius for a mid-line
   std::string measured_contour;  ///< "kerf mid-line": what the errors belong to
   Contour tumor_edge;
   Contour intended_path;
   Contour corrected_path;  ///< empty: none was made
+
+  /// The signed errors below which too little tissue, and none, is left beside the tumour.
+  [[nodiscard]] double close_error_mm() const { return close_margin_mm + kerf_allowance_mm - target_mm; }
+  [[nodiscard]] double reached_error_mm() const { return kerf_allowance_mm - target_mm; }
   Contour incision;
   std::vector<double> signed_error_mm;  ///< one per incision point; positive = farther from the tumour than intended
 };
@@ -114,7 +119,8 @@ struct ReportStage {
   std::string name, state;
   double wall_s = 0.0;
 };
-/// One safety check of the robot program: `value` has to be on the side of `limit` that `relation` says ("<=", ">=").
+/// One safety check of the robot program: `value` has to be on the side of `limit` that `relation` says ("<=", ">="); without
+/// a relation the check is a plain yes or no.
 struct ReportCheck {
   std::string name, unit;
   double value = 0.0;

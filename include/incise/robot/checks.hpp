@@ -21,12 +21,13 @@ struct CheckSettings {
   double tool_length_mm = 150.0;  ///< from the flange to the tip, along the axis
 };
 
-/// One named check: passed when `value` keeps to `limit` in the sense that `text` says.
+/// One named check: passed when `value` keeps to `limit` as `relation` says, or, without a relation, when `text` is true.
 struct ProgramCheck {
   std::string name;
   bool passed = false;
   double value = 0.0;
   double limit = 0.0;
+  std::string relation = "<=";      ///< "<=", ">=", or empty for a plain yes or no
   std::string unit;                 ///< mm, mm/s or empty
   std::optional<std::size_t> pose;  ///< the worst pose of the program, where there is one
   std::string text;                 ///< for a person

@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct Study {
   /// How it ended: that of the last simulated cut, or NotConverged/Cancelled of the stage that could not go on.
   Outcome outcome = Outcome::Success;
 };
+
+/// Why a stretch is of no use and what may help, for a person; empty when it is a success.
+[[nodiscard]] std::string explain_stretch(const StaticResult& stretched);
 
 /// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch, plan, cut, correct
 /// the path by the measured error, cut again. Products that the store already has are used; new ones are saved as soon as they are made.
