@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -21,7 +22,19 @@ struct Workers::Shared {
     std::atomic<std::uint64_t> value = 0;
   };
 
-  explicit Shared(std::size_t thread_count) : tickets(thread_count) {}
+  explicit Shared(std::size_t thread_count) : tickets(thread_count) { threads.reserve(thread_count); }
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+  ~Shared() { stop(); }
+
+  /// Ends and joins every thread that was started.
+  void stop() {
+    stopping = true;
+    ++loop;
+    loop.notify_all();
+    for (std::thread& thread : threads) thread.join();
+    threads.clear();
+  }
 
   std::vector<std::thread> threads;
   std::vector<Ticket> tickets;  // one per thread, the caller's first
@@ -88,17 +101,20 @@ Workers::Workers(int threads) {
   INCISE_REQUIRE(threads >= 0, fmt::format("expected 0 (all) or more threads, found {}", threads));
   const auto wanted = threads > 0 ? static_cast<std::size_t>(threads) : std::max(1U, std::thread::hardware_concurrency());
   shared_ = std::make_unique<Shared>(wanted);
-  for (std::size_t i = 1; i < wanted; ++i) {
-    shared_->threads.emplace_back([shared = shared_.get(), i] { shared->wait_for_work(i); });
+  try {
+    for (std::size_t i = 1; i < wanted; ++i) {
+      shared_->threads.emplace_back([shared = shared_.get(), i] { shared->wait_for_work(i); });
+    }
+  } catch (const std::exception& problem) {
+    const std::size_t started = shared_->threads.size() + 1;  // the caller's is one of them
+    const std::string reason = problem.what();
+    shared_->stop();
+    throw Error(fmt::format("expected to start {} threads, found that only {} could be started ({}); ask for fewer",
+                            wanted, started, reason));
   }
 }
 
-Workers::~Workers() {
-  shared_->stopping = true;
-  ++shared_->loop;
-  shared_->loop.notify_all();
-  for (std::thread& thread : shared_->threads) thread.join();
-}
+Workers::~Workers() = default;
 
 int Workers::thread_count() const { return static_cast<int>(shared_->threads.size()) + 1; }
 

@@ -37,6 +37,9 @@ HolderContact::HolderContact(const TriMesh& surface) : query_(surface), triangle
   find_edges(surface);
   find_normals(surface);
   box_ = bounding_box(surface.vertices);
+  const auto crossing = find_self_crossing(surface);
+  INCISE_REQUIRE(!crossing, fmt::format("expected a surface that does not pass through itself, found that triangles {} and {} cross",
+                                        (*crossing)[0].value, (*crossing)[1].value));
   INCISE_REQUIRE(!is_closed_ || enclosed_volume_mm3(surface) > 0.0,
                  "expected a closed surface with outward normals, found one that is inside out");
 }

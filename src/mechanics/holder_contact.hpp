@@ -21,7 +21,7 @@ struct SupportGap {
 class HolderContact {
  public:
   /// @throws InvalidArgument naming the first problem: no triangles, not finite, an edge of more than two triangles,
-  /// neighbours oriented against each other, a closed surface turned inside out.
+  /// neighbours oriented against each other, triangles that cross, a closed surface turned inside out.
   explicit HolderContact(const TriMesh& surface);
 
   [[nodiscard]] SupportGap gap(const Vec3& p) const;

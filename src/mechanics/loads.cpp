@@ -1,6 +1,7 @@
 #include "mechanics/loads.hpp"
 
 #include "mechanics/holder_contact.hpp"
+#include "mechanics/support.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
@@ -15,9 +16,9 @@ namespace incise {
 namespace {
 
 constexpr const char* kWhere = "case";
-/// A support pushes back with the pressure of the tissue's Young's modulus at this depth, so that pressures of up to E
-/// stay within it.
-constexpr double kPenetrationAtModulusMm = 0.05;
+/// Farthest that vertices may be moved, in diagonals of the body's box. No tissue stretches a hundredfold, and from there
+/// on rounding of the positions eats the strain.
+constexpr double kMostDiagonals = 100.0;
 /// Deepest that a vertex may lie inside a holder at rest, as a mesh and a scan of the same contact differ; from deeper,
 /// the nearest way out need not be the one that the tissue came by.
 constexpr double kDeepestStartMm = 2.0;
@@ -97,6 +98,14 @@ class ConstraintApplier {
 
   void apply_one(const DisplacedConstraint& displaced) {
     require_finite("displacement_mm", displaced.displacement_mm);
+    const double most_mm = kMostDiagonals * bounding_box(model_.mesh.vertices).diagonal().norm();
+    if (!(displaced.displacement_mm.stableNorm() <= most_mm)) {
+      throw CaseError(kWhere, field("displacement_mm"), text_of(displaced.displacement_mm),
+                      fmt::format("at most {:g} mm", most_mm),
+                      fmt::format("That is {:g} times the diagonal of the body's box: no tissue stretches so far, and "
+                                  "rounding would hide its strain. Lengths are in mm",
+                                  kMostDiagonals));
+    }
     hold(selected(displaced.where), {true, true, true}, displaced.displacement_mm);
   }
 
@@ -172,6 +181,9 @@ class ConstraintApplier {
     for (const VertexLoad& load : loads) {
       model_.dead_load_mn[load.vertex.index()] += load.force_mn;
       model_.applied_load_mn[index_] += load.force_mn;
+      if (model_.dead_load_mn[load.vertex.index()].allFinite() && model_.applied_load_mn[index_].allFinite()) continue;
+      throw CaseError(kWhere, field("traction_kpa"), text_of(traction.traction_kpa),
+                      "one whose force over the loaded area is a finite number of mN");
     }
   }
 
@@ -198,7 +210,11 @@ void apply_constraints(TissueModel& model, const Vec3& gravity_mm_s2) {
   model.holder.assign(count, {-1, -1, -1});
   model.prescribed_displacement_mm.assign(count, Vec3::Zero());
   model.dead_load_mn.resize(count);
-  for (std::size_t v = 0; v < count; ++v) model.dead_load_mn[v] = model.vertex_mass_kg[v] * gravity_mm_s2;
+  for (std::size_t v = 0; v < count; ++v) {
+    model.dead_load_mn[v] = model.vertex_mass_kg[v] * gravity_mm_s2;
+    if (model.dead_load_mn[v].allFinite()) continue;
+    throw CaseError(kWhere, "specimen.gravity_mm_s2", text_of(gravity_mm_s2), "one whose weights are finite numbers of mN");
+  }
   model.applied_load_mn.assign(model.constraints.size(), Vec3::Zero());
 
   ConstraintApplier applier(model, boundary_faces(model.mesh));

@@ -11,6 +11,8 @@ namespace incise {
 namespace {
 
 bool is_direction(const Vec3& v) { return v.allFinite() && v.norm() > 1e-12; }
+bool is_youngs_modulus(double kpa) { return kpa >= kLeastYoungsModulusKpa && kpa <= kMostYoungsModulusKpa; }
+constexpr const char* kYoungsModulusRange = "a number in [1e-6, 1e9] kPa";
 std::string text_of(const Vec3& v) { return fmt::format("[{:g}, {:g}, {:g}]", v[0], v[1], v[2]); }
 
 }  // namespace
@@ -21,12 +23,18 @@ std::vector<std::string> validate(const Material& material) {
     if (std::isfinite(value) && value > 0.0) return;
     violations.push_back(fmt::format("{}: found {}, expected a finite number above 0", name, value));
   };
-  check_positive("youngs_modulus_kpa", material.youngs_modulus_kpa);
+  if (!is_youngs_modulus(material.youngs_modulus_kpa)) {
+    violations.push_back(
+        fmt::format("youngs_modulus_kpa: found {}, expected {}", material.youngs_modulus_kpa, kYoungsModulusRange));
+  }
   const double nu = material.poissons_ratio;
   if (!(nu >= 0.0 && nu < 0.5)) {
     violations.push_back(fmt::format("poissons_ratio: found {}, expected a number in [0, 0.5)", nu));
   }
-  check_positive("density_kg_m3", material.density_kg_m3);
+  if (!(material.density_kg_m3 > 0.0 && material.density_kg_m3 <= kMostDensityKgM3)) {
+    violations.push_back(
+        fmt::format("density_kg_m3: found {}, expected a number in (0, 1e9] kg/m3", material.density_kg_m3));
+  }
   const auto check_not_negative = [&](const char* name, double value) {
     if (std::isfinite(value) && value >= 0.0) return;
     violations.push_back(fmt::format("{}: found {}, expected a finite number of at least 0", name, value));
@@ -57,8 +65,7 @@ std::vector<std::string> validate(const MaterialField& field, std::size_t tets) 
         fmt::format("{}: found {} at tet {}, expected {}", name, text(*bad), bad - values.begin(), expected));
   };
   const auto number = [](double value) { return fmt::format("{}", value); };
-  check("youngs_modulus_kpa", field.youngs_modulus_kpa, [](double e) { return std::isfinite(e) && e > 0.0; }, number,
-        "a finite number above 0");
+  check("youngs_modulus_kpa", field.youngs_modulus_kpa, is_youngs_modulus, number, kYoungsModulusRange);
   check("poissons_ratio", field.poissons_ratio, [](double nu) { return nu >= 0.0 && nu < 0.5; }, number,
         "a number in [0, 0.5)");
   check("fibre_direction", field.fibre_directions, is_direction, text_of, "a finite direction");

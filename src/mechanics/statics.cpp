@@ -290,6 +290,18 @@ void check(const StaticSettings& settings) {
                  fmt::format("expected first_load_fraction in (0, 1], found {}", settings.first_load_fraction));
 }
 
+/// One warning for each support that tissue has sunk into deeper than its stiffness is meant to allow.
+void warn_of_penetration(const TissueModel& model, const TissueState& state, Monitor& monitor) {
+  for (const SupportPlane& support : model.supports) {
+    const double depth = penetration_mm(support, state);
+    if (!(depth > kPenetrationAtModulusMm)) continue;
+    monitor.message(Severity::Warning,
+                    fmt::format("tissue lies up to {:.3g} mm inside the support specimen.constraints[{}], more than {:g} mm: "
+                                "it is pressed harder than its Young's modulus there",
+                                depth, support.constraint, kPenetrationAtModulusMm));
+  }
+}
+
 }  // namespace
 
 StaticResult solve_static(const TissueModel& model, const StaticSettings& settings, Workers& workers, Monitor& monitor,
@@ -304,6 +316,7 @@ StaticResult solve_static(const TissueModel& model, const StaticSettings& settin
   result.inverted_tets = equilibrium.count_inverted();
   result.reactions_mn = reactions(model, result.state, workers);
   result.penetration_mm = support_penetration_mm(model, result.state);
+  warn_of_penetration(model, result.state, monitor);
   for (std::size_t v = 0; v < result.state.positions.size(); ++v) {
     const double length = (result.state.positions[v] - model.mesh.vertices[v]).norm();
     result.max_displacement_mm = std::max(result.max_displacement_mm, length);

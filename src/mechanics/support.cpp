@@ -53,13 +53,17 @@ double support_energy_uj(const TissueModel& model, const TissueState& state) {
   return energy;
 }
 
+double penetration_mm(const SupportPlane& support, const TissueState& state) {
+  double deepest = 0.0;
+  for (const VertexId v : support.vertices) {
+    deepest = std::max(deepest, -support_gap(support, state.positions[v.index()]).gap_mm);
+  }
+  return deepest;
+}
+
 double support_penetration_mm(const TissueModel& model, const TissueState& state) {
   double deepest = 0.0;
-  for (const SupportPlane& support : model.supports) {
-    for (const VertexId v : support.vertices) {
-      deepest = std::max(deepest, -support_gap(support, state.positions[v.index()]).gap_mm);
-    }
-  }
+  for (const SupportPlane& support : model.supports) deepest = std::max(deepest, penetration_mm(support, state));
   return deepest;
 }
 

@@ -6,6 +6,8 @@ namespace incise {
 namespace {
 
 constexpr Range kHu{-1024.0, 32767.0, false, false};
+constexpr Range kYoungsModulus{kLeastYoungsModulusKpa, kMostYoungsModulusKpa};
+constexpr Range kDensity{0.0, kMostDensityKgM3, true, false};
 
 /// Visits an optional vector, box or matrix through plain numbers; `load` and `store` translate.
 template <std::size_t N, class Value, class Load, class Store>
@@ -107,7 +109,7 @@ void describe_viscosity(Material& m, FieldVisitor& v) {
 void describe_labels(std::vector<LabelMaterial>& labels, FieldVisitor& v) {
   static constexpr std::array<Column, 3> kColumns{{
       {{"label", "", "Value of the mesh's cell array 'label'."}, {-1e9, 1e9}, true, true},
-      {{"youngs_modulus_kpa", "kPa", "Young's modulus there; absent: as elsewhere."}, kPositive, false},
+      {{"youngs_modulus_kpa", "kPa", "Young's modulus there; absent: as elsewhere."}, kYoungsModulus, false},
       {{"poissons_ratio", "", "Poisson's ratio there; absent: as elsewhere."}, {0.0, 0.5, false, true}, false},
   }};
   std::vector<Row> rows;
@@ -129,9 +131,9 @@ void describe_specimen(CaseFile& file, FieldVisitor& v) {
   choice(v, {"volume", "", "How volume change is resisted: tet by tet (locks as Poisson's ratio nears 0.5), or as a mean about each vertex."},
          c.material.volume, kVolumes);
   v.number({"youngs_modulus_kpa", "kPa", "Young's modulus; the paper's 70 is about ten times published tongue stiffness."},
-           c.material.youngs_modulus_kpa, kPositive);
+           c.material.youngs_modulus_kpa, kYoungsModulus);
   v.number({"poissons_ratio", "", "Poisson's ratio."}, c.material.poissons_ratio, {0.0, 0.5, false, true});
-  v.number({"density_kg_m3", "kg/m3", "Density."}, c.material.density_kg_m3, kPositive);
+  v.number({"density_kg_m3", "kg/m3", "Density."}, c.material.density_kg_m3, kDensity);
   v.number({"fibre_modulus_kpa", "kPa", "Stiffness added along the fibres; 0: none."}, c.material.fibre_modulus_kpa, kNotNegative);
   v.direction({"fibre_direction", "", "Of the fibres at rest, where the mesh gives none."}, c.material.fibre_direction);
   describe_viscosity(c.material, v);

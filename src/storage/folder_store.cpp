@@ -221,8 +221,9 @@ std::optional<StaticResult> FolderStore::load_stretched(const TissueModel& model
   }
   result.iterations = json.at("iterations");
   result.load_steps = json.at("load_steps");
-  result.relative_residual = json.at("relative_residual");
+  if (const auto& residual = json.at("relative_residual"); !residual.is_null()) result.relative_residual = residual;
   result.max_displacement_mm = json.at("max_displacement_mm");
+  result.penetration_mm = support_penetration_mm(model, result.state);
   result.inverted_tets = json.at("inverted_tets");
   result.solver = json.at("solver");
   result.wall_s = json.at("wall_s");

@@ -118,8 +118,9 @@ Json to_json(const StaticResult& r) {
   json["note"] = explain_stretch(r);
   json["iterations"] = r.iterations;
   json["load_steps"] = r.load_steps;
-  json["relative_residual"] = r.relative_residual;
+  json["relative_residual"] = std::isfinite(r.relative_residual) ? Json(r.relative_residual) : Json(nullptr);
   json["max_displacement_mm"] = r.max_displacement_mm;
+  json["penetration_mm"] = r.penetration_mm;
   json["reaction_mn"] = Json::array();
   for (const Vec3& reaction : r.reactions_mn) json["reaction_mn"].push_back(vector_json(reaction));
   json["inverted_tets"] = r.inverted_tets;

@@ -1,9 +1,13 @@
 #include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
 #include <incise/core/workers.hpp>
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -57,7 +61,35 @@ TEST_P(WorkersWith, RethrowTheExceptionOfTheLowestChunkAndStayUsable) {
   EXPECT_NO_THROW(workers.for_each(100, 10, [](std::size_t) {}));
 }
 
-INSTANTIATE_TEST_SUITE_P(Threads, WorkersWith, ::testing::Values(1, 2, 4),
+TEST_P(WorkersWith, VisitEveryItemOnceInLoopsOfAnySizeThatFollowEachOther) {
+  // Short loops of changing bounds, so that threads wake late: into the next loop, or after the last.
+  Workers workers(GetParam());
+  Random random(static_cast<std::uint64_t>(GetParam()));
+  std::vector<int> visits;
+  for (int loop = 0; loop < 3000; ++loop) {
+    const auto count = static_cast<std::size_t>(random.uniform(0.0, 200.0));
+    const auto chunk_size = static_cast<std::size_t>(random.uniform(1.0, 20.0));
+    const std::size_t chunks = Workers::chunk_count(count, chunk_size);
+    const bool must_throw = chunks > 1 && random.uniform(0.0, 1.0) < 0.2;
+    const auto bad = static_cast<std::size_t>(random.uniform(0.0, static_cast<double>(chunks)));
+    visits.assign(count, 0);
+    const auto run = [&] {
+      workers.for_chunks(count, chunk_size, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) ++visits[i];
+        if (must_throw && chunk == bad) throw Error("asked for");
+      });
+    };
+    if (must_throw) {
+      ASSERT_THROW(run(), Error) << "loop " << loop;
+    } else {
+      ASSERT_NO_THROW(run()) << "loop " << loop;
+    }
+    if (must_throw && GetParam() == 1) continue;  // one thread stops at the exception
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(visits[i], 1) << "item " << i << " of loop " << loop;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, WorkersWith, ::testing::Values(1, 2, 4, 6),
                          [](const auto& with) { return std::to_string(with.param); });
 
 TEST(Workers, TakeEveryHardwareThreadForZeroAndRefuseLess) {
@@ -65,6 +97,27 @@ TEST(Workers, TakeEveryHardwareThreadForZeroAndRefuseLess) {
   EXPECT_EQ(Workers(3).thread_count(), 3);
   EXPECT_THROW(Workers(-1), InvalidArgument);
   EXPECT_THROW(Workers(1).for_each(5, 0, [](std::size_t) {}), InvalidArgument);
+}
+
+/// In a process of its own: what happens where memory ends before 1024 threads have their stacks.
+[[noreturn]] void start_too_many_threads() {
+  const rlimit limit{rlim_t{512} << 20U, rlim_t{512} << 20U};
+  if (setrlimit(RLIMIT_AS, &limit) != 0) std::_Exit(2);
+  try {
+    const Workers workers(1024);
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    const bool is_told = text.find("1024 threads") != std::string::npos && text.find("could be started") != std::string::npos;
+    std::_Exit(is_told && Workers(2).thread_count() == 2 ? 0 : 3);
+  }
+  std::_Exit(4);
+}
+
+TEST(WorkersDeathTest, SayHowManyThreadsCouldBeStarted) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizer needs more memory than the test leaves";
+#endif
+  EXPECT_EXIT(start_too_many_threads(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(Workers, CutTheLastChunkShort) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace incise {
 namespace {
@@ -26,6 +27,45 @@ double distance_to_box_surface(const Vec3& p, const Vec3& size) {
   const Vec3 outside = (-p).cwiseMax(p - size).cwiseMax(0.0);
   if (outside.norm() > 0.0) return outside.norm();
   return p.cwiseMin(size - p).minCoeff();
+}
+
+/// One surface of two, their triangles one after the other.
+TriMesh together(TriMesh one, const TriMesh& other, const Vec3& shift) {
+  const std::size_t first = one.vertices.size();
+  for (const Vec3& p : other.vertices) one.vertices.push_back(p + shift);
+  for (const Triangle& t : other.triangles) {
+    one.triangles.push_back({VertexId(first + t[0].index()), VertexId(first + t[1].index()), VertexId(first + t[2].index())});
+  }
+  return one;
+}
+
+TEST(SelfCrossing, IsFoundWhereverTwoBodiesPassThroughEachOther) {
+  EXPECT_FALSE(find_self_crossing(TriMesh{}));
+  const TriMesh block = block_surface();
+  EXPECT_FALSE(find_self_crossing(block));
+  // In general position, and with edges that meet edges (half a cell along every axis).
+  for (const Vec3& shift : {Vec3(0.37, 0.21, 0.43), Vec3(0.5, 0.5, 0.5), Vec3(3.9, 2.9, 1.9), Vec3(-0.5, 1.5, -1.5)}) {
+    const TriMesh both = together(block, block, shift);
+    const auto crossing = find_self_crossing(both);
+    ASSERT_TRUE(crossing) << shift.transpose();
+    EXPECT_LT((*crossing)[0].index(), block.triangles.size());
+    EXPECT_GE((*crossing)[1].index(), block.triangles.size());
+  }
+  EXPECT_FALSE(find_self_crossing(together(block, block, Vec3(4.1, 0.3, 0.2)))) << "side by side";
+  EXPECT_FALSE(find_self_crossing(together(block, boundary_surface(make_block({1, 1, 1}, {1, 1, 1})), Vec3(1.3, 1.2, 0.4))))
+      << "one inside the other";
+}
+
+TEST(SelfCrossing, AgreesWithTheCutOfTwoTrianglesByTheirPlanes) {
+  // Triangle in z = 0 with corners (0,0), (1,0), (0,1); a needle of a triangle crosses it at (x, y).
+  for (const auto& [x, y, is_crossing] : {std::tuple{0.3, 0.3, true}, {0.6, 0.3, true}, {0.6, 0.6, false}, {-0.1, 0.5, false}}) {
+    TriMesh surface;
+    surface.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {x, y, -1}, {x + 0.01, y, -1}, {x, y, 1}};
+    surface.triangles = {{VertexId(0), VertexId(1), VertexId(2)}, {VertexId(3), VertexId(4), VertexId(5)}};
+    EXPECT_EQ(find_self_crossing(surface).has_value(), is_crossing) << x << ", " << y;
+    for (Vec3& p : surface.vertices) p[2] = p[2] == 1.0 ? 0.0 : p[2];  // the needle's tip only touches
+    EXPECT_FALSE(find_self_crossing(surface));
+  }
 }
 
 TEST(SurfaceQuery, FindsTheNearestPointOfABlock) {

@@ -4,6 +4,7 @@
 #include <incise/core/error.hpp>
 #include <incise/mechanics/statics.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -193,6 +194,18 @@ TEST(Holder, SaysWhatIsWrongWithASurface) {
   TriMesh inside_out = boundary_surface(make_block(Vec3(5, 5, 5), {1, 1, 1}));
   for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
   EXPECT_THAT(refusal(inside_out), HasSubstr("inside out"));
+}
+
+TEST(Holder, RefusesASurfaceThatPassesThroughItselfWithTheTwoTriangles) {
+  // A second, tilted sheet through the first one.
+  TriMesh crossing = flat_sheet();
+  const std::size_t first = crossing.vertices.size();
+  const std::size_t triangles = crossing.triangles.size();
+  crossing.vertices.insert(crossing.vertices.end(), {Vec3(5, 1, -3), Vec3(15, 2, -3), Vec3(8, 3, 4)});
+  crossing.triangles.push_back({VertexId(first), VertexId(first + 1), VertexId(first + 2)});
+  EXPECT_THAT(refusal(crossing), HasSubstr(fmt::format("and {} cross", triangles)));
+  for (std::size_t v = first; v < first + 3; ++v) crossing.vertices[v][2] -= 10.0;  // clear of it
+  EXPECT_EQ(refusal(crossing), "accepted");
 }
 
 TEST(Holder, TissueThatStartsInsideItIsRefusedWithTheVertexAndTheDepth) {

@@ -37,5 +37,24 @@ TEST(Material, NamesEveryViolation) {
                           HasSubstr("density_kg_m3: found nan")));
 }
 
+TEST(Material, StiffnessAndDensityHaveARange) {
+  Material material;
+  for (const double e : {0.99e-6, 1.01e9, 1e300}) {
+    material.youngs_modulus_kpa = e;
+    EXPECT_THAT(validate(material), ElementsAre(HasSubstr("expected a number in [1e-6, 1e9] kPa"))) << e;
+    MaterialField field;
+    field.youngs_modulus_kpa = {70.0, e};
+    EXPECT_THAT(validate(field, 2), ElementsAre(HasSubstr("expected a number in [1e-6, 1e9] kPa"))) << e;
+  }
+  for (const double e : {1e-6, 1e9}) {
+    material.youngs_modulus_kpa = e;
+    EXPECT_THAT(validate(material), IsEmpty()) << e;
+  }
+  for (const double density : {0.0, 1.01e9}) {
+    material.density_kg_m3 = density;
+    EXPECT_THAT(validate(material), ElementsAre(HasSubstr("expected a number in (0, 1e9] kg/m3"))) << density;
+  }
+}
+
 }  // namespace
 }  // namespace incise

@@ -3,8 +3,11 @@
 #include <incise/core/error.hpp>
 #include <incise/mechanics/statics.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace incise {
 namespace {
@@ -79,6 +82,57 @@ TEST(SolveStatic, SupportHoldsAgainstAFirmPress) {
   ASSERT_EQ(result.outcome, Outcome::Success);
   EXPECT_LT(result.penetration_mm, 0.05);
   EXPECT_GT(result.reactions_mn[1][2], 0.5 * 10.0 * 1600.0);
+}
+
+/// Keeps the warnings.
+class WarningsOnly : public Monitor {
+ public:
+  void message(Severity severity, std::string_view text) override {
+    if (severity == Severity::Warning) texts.emplace_back(text);
+  }
+  std::vector<std::string> texts;
+};
+
+/// A column on a plane between walls, its lowest layer of tets of the given modulus, pressed down by 0.8 mm.
+TissueModel layered_column(double bottom_kpa) {
+  const TetMesh mesh = make_block(Vec3(10, 10, 20), {1, 1, 4});
+  MaterialField field;
+  for (const Tet& tet : mesh.tets) {
+    double height = 0.0;
+    for (const VertexId v : tet) height += 0.25 * mesh.vertices[v.index()][2];
+    field.youngs_modulus_kpa.push_back(height < 5.0 ? bottom_kpa : 70.0);
+  }
+  return make_tissue_model(mesh, {},
+                           {DisplacedConstraint{plane_z(20.0), Vec3(0, 0, -0.8)},
+                            FixedConstraint{plane_x(0.0), {true, false, false}},
+                            SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
+                            FixedConstraint{plane_x(10.0), {true, false, false}},
+                            FixedConstraint{testing::plane_y(0.0), {false, true, false}},
+                            FixedConstraint{testing::plane_y(10.0), {false, true, false}}},
+                           Vec3::Zero(), field);
+}
+
+TEST(SolveStatic, WarnsOfTissueThatSinksIntoASupport) {
+  Workers workers(1);
+  WarningsOnly soft;
+  const StaticResult sunk = solve_static(layered_column(6.0), {}, workers, soft);
+  ASSERT_EQ(sunk.outcome, Outcome::Success);
+  EXPECT_GT(sunk.penetration_mm, 0.05);
+  ASSERT_EQ(soft.texts.size(), 1U);
+  EXPECT_THAT(soft.texts[0], ::testing::AllOf(::testing::HasSubstr("specimen.constraints[2]"),
+                                              ::testing::HasSubstr(fmt::format("up to {:.3g} mm", sunk.penetration_mm))));
+  WarningsOnly firm;
+  EXPECT_LT(solve_static(layered_column(70.0), {}, workers, firm).penetration_mm, 0.05);
+  EXPECT_THAT(firm.texts, ::testing::IsEmpty());
+}
+
+TEST(SolveStatic, ALoadWhoseResidualCannotBeMeasuredIsNotConvergedWithoutAResidual) {
+  const StaticResult result =
+      solve(make_tissue_model(make_block(Vec3(10, 10, 10), {2, 2, 2}), {},
+                              {FixedConstraint{plane_x(0.0)}, TractionConstraint{plane_x(10.0), Vec3(1e200, 0, 0)}}));
+  EXPECT_EQ(result.outcome, Outcome::NotConverged);
+  EXPECT_EQ(result.iterations, 0);
+  EXPECT_TRUE(std::isnan(result.relative_residual)) << result.relative_residual;
 }
 
 TEST(SolveStatic, SupportLetsTissueLiftOff) {

@@ -147,6 +147,30 @@ TEST(TissueModel, DoesNotCountASupportAsHolding) {
   EXPECT_THAT(message, AllOf(HasSubstr("6 of 6"), HasSubstr("only pushes")));
 }
 
+TEST(TissueModel, RefusesLoadsWhoseForceIsNotFiniteAndDisplacementsFarBeyondTheBody) {
+  const auto traction = refusal([] {
+    static_cast<void>(block({kClamp, TractionConstraint{plane_x(20.0), Vec3(1e308, 0, 0)}}));
+  });
+  EXPECT_EQ(traction.first, "specimen.constraints[1].traction_kpa");
+  EXPECT_THAT(traction.second, HasSubstr("1e+308"));
+  EXPECT_EQ(refusal([] {
+              Material heavy;
+              heavy.density_kg_m3 = 1e9;
+              heavy.youngs_modulus_kpa = 1e9;
+              static_cast<void>(block({kClamp}, heavy, Vec3(0, 0, -1e308)));
+            }).first,
+            "specimen.gravity_mm_s2");
+  // The diagonal is 24.49 mm long.
+  const auto moved = [](double by) {
+    return refusal([&] { static_cast<void>(block({kClamp, DisplacedConstraint{plane_x(20.0), Vec3(by, 0, 0)}})); });
+  };
+  for (const double by : {1e300, 2500.0}) {
+    EXPECT_EQ(moved(by).first, "specimen.constraints[1].displacement_mm") << by;
+    EXPECT_THAT(moved(by).second, AllOf(HasSubstr("at most 2449.49 mm"), HasSubstr("diagonal"))) << by;
+  }
+  EXPECT_EQ(moved(2400.0).second, "no CaseError");
+}
+
 TEST(TissueModel, RefusesNumbersThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(refusal([&] {

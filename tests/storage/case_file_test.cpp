@@ -206,6 +206,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"specimen: {material: {poissons_ratio: 0.5}}", "specimen.material.poissons_ratio"},
         BadValue{"specimen: {material: {poissons_ratio: -0.1}}", "specimen.material.poissons_ratio"},
         BadValue{"specimen: {material: {density_kg_m3: 0}}", "specimen.material.density_kg_m3"},
+        BadValue{"specimen: {material: {density_kg_m3: 1e10}}", "specimen.material.density_kg_m3"},
+        BadValue{"specimen: {material: {youngs_modulus_kpa: 1e10}}", "specimen.material.youngs_modulus_kpa"},
         BadValue{"specimen: {gravity_mm_s2: [0, 0, .nan]}", "specimen.gravity_mm_s2"},
         BadValue{"cut: {speed_mm_s: 0}", "cut.speed_mm_s"}, BadValue{"cut: {dullness: -1}", "cut.dullness"},
         BadValue{"cut: {dullness: 0}", "cut.dullness"},

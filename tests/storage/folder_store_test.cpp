@@ -150,6 +150,10 @@ TEST_F(FolderStoreTest, AStretchedStateComesBackExactly) {
   EXPECT_EQ(loaded->outcome, Outcome::Success);
   EXPECT_EQ(loaded->state.positions, result.state.positions);
   EXPECT_EQ(loaded->iterations, 4);
+  EXPECT_TRUE(std::isnan(loaded->relative_residual)) << "none was measured";
+  const std::string json = read_text(folder_ / "out" / "stretched" / "deform.json");
+  EXPECT_NE(json.find("\"relative_residual\": null"), std::string::npos) << json;
+  EXPECT_NE(json.find("\"penetration_mm\": 0"), std::string::npos) << json;
   ASSERT_EQ(loaded->reactions_mn.size(), 1U);
   EXPECT_EQ(loaded->reactions_mn[0], Vec3(1, 2, 3));
 }

@@ -12,6 +12,7 @@ namespace incise {
 class Workers {
  public:
   /// @param threads  >= 1; 0 means every hardware thread.
+  /// @throws Error saying how many threads could be started, where the system gives no more.
   explicit Workers(int threads = 1);
   ~Workers();
   Workers(const Workers&) = delete;

@@ -41,6 +41,11 @@ class SurfaceQuery {
   std::unique_ptr<Tree> tree_;
 };
 
+/// Two triangles of a surface that pass through each other although they have no corner in common (neither a vertex nor a
+/// place): the pair with the lowest numbers, if there is one. Triangles that only touch with corners or lie in one plane do not
+/// count. O(n log n) for surfaces whose triangles are of like size.
+[[nodiscard]] std::optional<std::array<TriangleId, 2>> find_self_crossing(const TriMesh& surface);
+
 /// A material point inside a tet mesh: it follows the mesh wherever its vertices go.
 struct EmbeddedPoint {
   TetId tet;

@@ -25,14 +25,20 @@ struct PronyTerm {
   double time_s = 1.0;       ///< relaxation time, > 0
 };
 
+/// Young's modulus and density must lie in [least, most] and (0, most]. Far beyond any tissue, and wide enough for bodies in
+/// units of their own, but products with lengths and volumes stay far from the ends of double precision.
+inline constexpr double kLeastYoungsModulusKpa = 1e-6;
+inline constexpr double kMostYoungsModulusKpa = 1e9;
+inline constexpr double kMostDensityKgM3 = 1e9;
+
 /// What tissue is made of. Defaults are the paper's (II-C.3); 70 kPa is an effective value, ~10 x published tongue
 /// stiffness.
 struct Material {
   MaterialModel model = MaterialModel::Corotational;
   VolumeTreatment volume = VolumeTreatment::PerTet;
-  double youngs_modulus_kpa = 70.0;       ///< > 0; of the long-time response where there are Prony terms
+  double youngs_modulus_kpa = 70.0;       ///< [1e-6, 1e9]; of the long-time response where there are Prony terms
   double poissons_ratio = 0.49;           ///< [0, 0.5)
-  double density_kg_m3 = 1040.0;          ///< > 0
+  double density_kg_m3 = 1040.0;          ///< (0, 1e9]
   double fibre_modulus_kpa = 0.0;         ///< >= 0; stiffness added along the fibres, 0: isotropic
   Vec3 fibre_direction = Vec3::UnitY();   ///< at rest, any length but 0; where no field gives another
   std::vector<PronyTerm> prony;           ///< viscosity acts only in steps of time: statics are its long-time limit

@@ -6,6 +6,7 @@
 #include <incise/mechanics/solvers.hpp>
 #include <incise/mechanics/tissue.hpp>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -25,11 +26,11 @@ struct StaticResult {
   int iterations = 0;
   int load_steps = 0;
   int linear_iterations = 0;  ///< of conjugate gradients, in all
-  double relative_residual = 0.0;
+  double relative_residual = std::numeric_limits<double>::quiet_NaN();  ///< last one measured; NaN: none was
   std::vector<double> residual_history;
   std::vector<Vec3> reactions_mn;  ///< one per entry of model.constraints: the force of the constraint on the tissue
   double max_displacement_mm = 0.0;
-  double penetration_mm = 0.0;  ///< deepest vertex behind a support plane
+  double penetration_mm = 0.0;  ///< deepest vertex behind a support; more than 0.05 is told as a warning
   std::size_t inverted_tets = 0;
   double wall_s = 0.0;
   std::string solver;  ///< what was chosen and why, for a person
