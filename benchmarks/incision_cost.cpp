@@ -43,7 +43,7 @@ class PhantomStore final : public Store {
  public:
   explicit PhantomStore(const Phantom& phantom) : phantom_(phantom) {}
   CtVolume read_ct(Monitor&) override { return phantom_.ct; }
-  std::optional<TetMesh> read_specimen_mesh() override { return {}; }
+  std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return {}; }
   std::optional<Contour> read_tumor_edge() override { return phantom_.tumor_edge; }
   std::optional<Contour> read_line() override { return {}; }
   std::optional<ToolPath> read_given_path() override { return {}; }

@@ -88,8 +88,11 @@ int main(int argc, char** argv) {
   } catch (const DataError& error) {
     fmt::print(stderr, "incise: {}\n", error.what());
     return kBadData;
+  } catch (const StagesKept& error) {
+    fmt::print(stderr, "incise: {}; the stages that were finished are kept, run the same command to go on\n", error.what());
+    return kInterrupted;
   } catch (const Cancelled& error) {
-    fmt::print(stderr, "incise: {}; what was finished is kept, run the same command to go on\n", error.what());
+    fmt::print(stderr, "incise: {}; nothing was written\n", error.what());
     return kInterrupted;
   } catch (const std::filesystem::filesystem_error& error) {
     fmt::print(stderr, "incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message());

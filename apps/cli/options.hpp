@@ -2,6 +2,7 @@
 
 #include "console.hpp"
 
+#include <incise/core/error.hpp>
 #include <incise/storage/folder_store.hpp>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,12 @@ inline constexpr int kBadCase = 2;
 inline constexpr int kBadData = 3;
 inline constexpr int kNotAcceptable = 4;
 inline constexpr int kInterrupted = 130;
+
+/// The person asked to stop and finished stages are kept: main says so, where it says of a plain Cancelled that nothing was written.
+class StagesKept : public Cancelled {
+ public:
+  using Cancelled::Cancelled;
+};
 
 /// What every verb understands.
 struct CommonOptions {

@@ -50,10 +50,21 @@ Study StudyRun::run(Stage until, const CommonOptions& options, Monitor& monitor)
   } catch (const CaseError& error) {
     remove_if_nothing_was_made();
     throw error.in_file(file.file.string());
+  } catch (const Cancelled& error) {
+    remove_if_nothing_was_made();
+    if (has_products()) throw StagesKept(error.what());
+    throw;
   } catch (...) {
     remove_if_nothing_was_made();
     throw;
   }
+}
+
+bool StudyRun::has_products() const {
+  for (int product = 0; product <= static_cast<int>(Product::Corrected); ++product) {
+    if (std::filesystem::exists(store.folder(static_cast<Product>(product)))) return true;
+  }
+  return false;
 }
 
 void StudyRun::remove_if_nothing_was_made() const {
@@ -154,7 +165,11 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monit
   write_json(root / "study.json", record);
   study.store.write_manifest_to(root, elapsed());
   monitor.message(Severity::Notice, "report: drawing");
-  write_report_and_figures(study_report(root, monitor), root / "report.html");
+  try {
+    write_report_and_figures(study_report(root, monitor), root / "report.html");
+  } catch (const Cancelled& error) {
+    throw StagesKept(error.what());
+  }
   result["report"] = (root / "report.html").string();
   result["wall_s"] = elapsed();
   return has_program ? status_of(done.outcome) : kNotAcceptable;

@@ -18,6 +18,7 @@ struct StudyRun {
  private:
   /// A study that failed before its first product leaves no folder behind.
   void remove_if_nothing_was_made() const;
+  [[nodiscard]] bool has_products() const;
 };
 
 /// The case, and the files that it names looked for, before anything is written. @throws CaseError, DataError

@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
@@ -17,7 +18,7 @@ Evaluation measured(const Contour& incision, const Contour& tumor_edge, const Ev
   try {
     return evaluate(incision, tumor_edge, settings);
   } catch (const InvalidArgument& error) {
-    throw DataError(file, "", error.what(), "contours that can be measured");
+    throw DataError(file, "", without_function_name(error), "contours that can be measured");
   }
 }
 

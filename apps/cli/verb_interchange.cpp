@@ -17,7 +17,7 @@ namespace {
 std::shared_ptr<const TissueModel> specimen_of(const CaseFile& file, const std::filesystem::path& case_path,
                                                const CommonOptions& options, Monitor& monitor) {
   if (!file.inputs.specimen_mesh.empty()) {
-    return std::make_shared<TissueModel>(tissue_of(file.settings, read_specimen_mesh(file)));
+    return std::make_shared<TissueModel>(tissue_of(file.settings, read_specimen_mesh(file, monitor)));
   }
   CommonOptions of_study = options;
   of_study.output.clear();

@@ -1,6 +1,8 @@
 #include "options.hpp"
 
+#include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/storage/path_schema.hpp>
 
 #include <cstdio>
 #include <memory>
@@ -17,7 +19,10 @@ void add_schema(Application& application) {
   CLI::App* verb = application.add_verb(
       "schema", "Print the JSON Schema of an input file, or every default", "incise schema case --defaults > case.yaml",
       [arguments](const CommonOptions& options) {
-        const std::string text = arguments->defaults ? case_defaults_yaml() : case_schema_json();
+        if (arguments->what == "path" && arguments->defaults) {
+          throw CaseError("command line", "--defaults", "path", "case: a path has no defaults");
+        }
+        const std::string text = arguments->what == "path" ? path_schema_json() : arguments->defaults ? case_defaults_yaml() : case_schema_json();
         if (options.output.empty()) {
           std::fwrite(text.data(), 1, text.size(), stdout);
         } else {
@@ -25,7 +30,7 @@ void add_schema(Application& application) {
         }
         return kDone;
       });
-  verb->add_option("what", arguments->what, "Which file")->check(CLI::IsMember({"case"}))->required();
+  verb->add_option("what", arguments->what, "Which file")->check(CLI::IsMember({"case", "path"}))->required();
   verb->add_flag("--defaults", arguments->defaults, "A file with every default instead of the schema");
 }
 

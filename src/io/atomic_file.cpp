@@ -1,13 +1,17 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <set>
 
 namespace incise {
 namespace {
@@ -25,6 +29,33 @@ fs::path without_trailing_slash(const fs::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
+/// What a link points to is replaced, not the link; a device or a pipe must never be replaced by a file.
+fs::path replaced_by(const fs::path& name) {
+  std::error_code error;
+  return fs::is_symlink(name, error) && fs::exists(name, error) ? fs::canonical(name) : name;
+}
+
+constexpr const char* kManifest = "manifest.json";
+constexpr const char* kFiles = "files";
+
+/// Everything below a folder that is not a folder, links and hidden files too, relative to it.
+std::set<std::string> files_below(const fs::path& folder) {
+  std::set<std::string> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_symlink() || !entry.is_directory()) files.insert(entry.path().lexically_relative(folder).generic_string());
+  }
+  return files;
+}
+
+void list_files_in_manifest(const fs::path& folder) {
+  const fs::path file = folder / kManifest;
+  if (!fs::exists(file)) return;
+  nlohmann::ordered_json manifest = read_json(file);
+  if (!manifest.is_object()) return;
+  manifest[kFiles] = files_below(folder);
+  write_json(file, manifest);
+}
+
 void require_parent_folder(const fs::path& path) {
   const fs::path parent = path.parent_path().empty() ? fs::path(".") : path.parent_path();
   std::error_code error;
@@ -35,15 +66,20 @@ void require_parent_folder(const fs::path& path) {
 
 }  // namespace
 
-void write_atomically(const fs::path& name, const std::function<void(std::ostream&)>& write) {
+void require_writable(const fs::path& name) {
   require_parent_folder(name);
+  const fs::path path = replaced_by(name);
   std::error_code error;
-  // What a link points to is replaced, not the link; a device or a pipe must never be replaced by a file.
-  const fs::path path = fs::is_symlink(name, error) && fs::exists(name, error) ? fs::canonical(name) : name;
   if (fs::is_directory(path, error)) throw DataError(path, "", "a folder", "a file name to write to");
   if (fs::exists(path, error) && !fs::is_regular_file(path, error)) {
     throw DataError(path, "", "a device or pipe", "a file name to write to");
   }
+}
+
+void write_atomically(const fs::path& name, const std::function<void(std::ostream&)>& write) {
+  require_writable(name);
+  const fs::path path = replaced_by(name);
+  std::error_code error;
   const fs::path temporary = temporary_beside(path);
   try {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
@@ -78,9 +114,20 @@ std::string read_text(const fs::path& path) {
 void require_replaceable(const fs::path& folder) {
   std::error_code error;
   if (!fs::exists(folder, error) || !fs::is_directory(folder, error) || fs::is_empty(folder, error)) return;
-  if (fs::exists(folder / "manifest.json", error)) return;
-  throw DataError(folder, "", "a folder with files of another origin (no manifest.json)", "a free name, an empty folder, or a result to replace",
-                  "Choose another place for the output");
+  constexpr const char* kExpected = "a free name, an empty folder, or a result to replace";
+  constexpr const char* kHint = "Choose another place for the output";
+  if (!fs::exists(folder / kManifest, error)) {
+    throw DataError(folder, "", "a folder with files of another origin (no manifest.json)", kExpected, kHint);
+  }
+  const nlohmann::ordered_json manifest = read_json(folder / kManifest);
+  if (!manifest.is_object() || !manifest.contains(kFiles) || !manifest.at(kFiles).is_array()) {
+    throw DataError(folder, "", "a folder whose manifest.json lists no files", kExpected, kHint);
+  }
+  const nlohmann::ordered_json& own = manifest.at(kFiles);
+  for (const std::string& file : files_below(folder)) {
+    if (std::find(own.begin(), own.end(), nlohmann::ordered_json(file)) != own.end()) continue;
+    throw DataError(folder, "", fmt::format("'{}' of another origin", file), kExpected, "Move that file, or choose another place for the output");
+  }
 }
 
 AtomicFolder::AtomicFolder(fs::path target)
@@ -101,6 +148,7 @@ AtomicFolder::~AtomicFolder() {
 
 void AtomicFolder::commit() {
   INCISE_REQUIRE(!is_committed_, "expected one commit, found a second");
+  list_files_in_manifest(temporary_);
   std::error_code error;
   const fs::path older = temporary_beside(target_);
   const bool replaces = fs::exists(target_, error);

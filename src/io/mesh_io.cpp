@@ -96,8 +96,8 @@ double volume_of(const TetMesh& mesh, const Tet& tet) {
                        vertex(mesh.vertices, tet[3]));
 }
 
-/// Turns all tets over if all are negative; refuses anything mixed or flat.
-void make_positive(TetMesh& mesh, const std::filesystem::path& path) {
+/// Turns all tets over if all are negative, and says so; refuses anything mixed or flat.
+void make_positive(TetMesh& mesh, const std::filesystem::path& path, Monitor& monitor) {
   std::size_t negative = 0, first_negative = 0;
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
     const double volume = volume_of(mesh, mesh.tets[i]);
@@ -111,6 +111,9 @@ void make_positive(TetMesh& mesh, const std::filesystem::path& path) {
                     "all volumes of the same sign");
   }
   for (Tet& tet : mesh.tets) std::swap(tet[2], tet[3]);
+  monitor.message(Severity::Notice,
+                  fmt::format("{}: every tet has a negative volume; all are turned over by exchanging their last two corners",
+                              path.string()));
 }
 
 TetMesh read_by_ending(const std::filesystem::path& path) {
@@ -125,9 +128,14 @@ TetMesh read_by_ending(const std::filesystem::path& path) {
 }  // namespace
 
 TetMesh read_tet_mesh(const std::filesystem::path& path) {
+  Monitor silent;
+  return read_tet_mesh(path, silent);
+}
+
+TetMesh read_tet_mesh(const std::filesystem::path& path, Monitor& monitor) {
   TetMesh mesh = read_by_ending(path);
   if (mesh.tets.empty()) throw DataError(path, "", "no tetrahedra", "a tetrahedral mesh");
-  make_positive(mesh, path);
+  make_positive(mesh, path, monitor);
   return mesh;
 }
 

@@ -4,6 +4,7 @@
 #include "mechanics/support.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/core/units.hpp>
 
 #include <fmt/format.h>
@@ -54,7 +55,7 @@ class ConstraintApplier {
       vertices = select(model_.mesh, region);
     } catch (const InvalidArgument& problem) {
       throw CaseError(kWhere, field("where"), "an unusable region", "one that can be applied to this mesh",
-                      problem.what());
+                      as_sentence(problem));
     }
     if (vertices.empty()) throw nothing_selected("vertex");
     return vertices;
@@ -146,7 +147,7 @@ class ConstraintApplier {
       plane.holder = std::make_shared<HolderContact>(holder.surface);
     } catch (const InvalidArgument& problem) {
       throw CaseError(kWhere, field("surface"), fmt::format("an unusable surface, '{}'", holder.name),
-                      "triangles, oriented alike, with normals towards the tissue", problem.what());
+                      "triangles, oriented alike, with normals towards the tissue", as_sentence(problem));
     }
     return plane;
   }

@@ -78,7 +78,8 @@ MaterialField material_field_of(const TetMesh& mesh) {
     const auto found = mesh.cell_data.find(name);
     if (found == mesh.cell_data.end()) return nullptr;
     INCISE_REQUIRE(found->second.components == components,
-                   fmt::format("expected cell data \"{}\" with {} components, found {}", name, components,
+                   fmt::format("expected cell data \"{}\" with {} component{}, found {}", name, components,
+                               components == 1 ? "" : "s",
                                found->second.components));
     return &found->second;
   };

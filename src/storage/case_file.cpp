@@ -143,10 +143,10 @@ void require_plan_inputs(const CaseFile& file) {
   }
 }
 
-TetMesh read_specimen_mesh(const CaseFile& file) {
+TetMesh read_specimen_mesh(const CaseFile& file, Monitor& monitor) {
   const std::filesystem::path& path = file.inputs.specimen_mesh;
   INCISE_REQUIRE(!path.empty(), "expected a case that names a mesh");
-  TetMesh mesh = read_tet_mesh(path);
+  TetMesh mesh = read_tet_mesh(path, monitor);
   const std::vector<MeshProblem> problems = find_problems(mesh);
   if (problems.empty()) return mesh;
   std::string others;

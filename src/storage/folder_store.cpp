@@ -1,3 +1,5 @@
+#include "product_reading.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
@@ -97,7 +99,7 @@ const std::string& FolderStore::key(Product product) {
 bool FolderStore::is_current(Product product) {
   const std::filesystem::path stage = folder(product) / kStageFile;
   if (!std::filesystem::exists(stage)) return false;
-  const nlohmann::ordered_json json = read_json(stage);
+  const nlohmann::ordered_json json = of_earlier_run(folder(product), [&] { return read_json(stage); });
   return json.is_object() && json.contains("key") && json.at("key").is_string() && json.at("key") == key(product);
 }
 
@@ -123,6 +125,10 @@ void FolderStore::write_manifest_to(const std::filesystem::path& folder, double 
 
 void FolderStore::save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write) {
   require_replaceable(folder(product));
+  for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
+    if (is_stale(static_cast<Product>(later))) require_replaceable(folder(static_cast<Product>(later)));
+  }
+  require_replaceable(root_ / "program");
   AtomicFolder target(folder(product));
   write(target.path());
   write_manifest_to(target.path(), wall_s);
@@ -130,22 +136,22 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   target.commit();
   // What was made from the older product is of no use any more, and a report must not mix the two.
   for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
-    remove_if_stale(static_cast<Product>(later));
+    if (is_stale(static_cast<Product>(later))) std::filesystem::remove_all(folder(static_cast<Product>(later)));
   }
   std::filesystem::remove_all(root_ / "program");
 }
 
-void FolderStore::remove_if_stale(Product product) {
-  if (std::filesystem::exists(folder(product) / kStageFile) && !is_current(product)) std::filesystem::remove_all(folder(product));
+bool FolderStore::is_stale(Product product) {
+  return std::filesystem::exists(folder(product) / kStageFile) && !is_current(product);
 }
 
 CtVolume FolderStore::read_ct(Monitor& monitor) {
   return incise::read_ct(file_.inputs.ct_volume, file_.ct_reading, monitor).volume;
 }
 
-std::optional<TetMesh> FolderStore::read_specimen_mesh() {
+std::optional<TetMesh> FolderStore::read_specimen_mesh(Monitor& monitor) {
   if (file_.inputs.specimen_mesh.empty()) return std::nullopt;
-  return incise::read_specimen_mesh(file_);
+  return incise::read_specimen_mesh(file_, monitor);
 }
 
 std::optional<Contour> FolderStore::read_tumor_edge() {
@@ -169,17 +175,19 @@ std::optional<ToolPath> FolderStore::read_given_path() {
 
 std::optional<Segmentation> FolderStore::load_segmentation() {
   if (!is_current(Product::Labels)) return std::nullopt;
-  const nlohmann::ordered_json json = read_json(folder(Product::Labels) / "segment.json");
-  Segmentation segmentation;
-  segmentation.labels = read_labels(folder(Product::Labels) / "labels.nrrd");
-  segmentation.occupancy = read_gray(folder(Product::Labels) / "occupancy.nrrd");
-  segmentation.voxels = json.at("voxels");
-  segmentation.volume_mm3 = json.at("volume_mm3");
-  segmentation.occupancy_volume_mm3 = json.at("occupancy_volume_mm3");
-  segmentation.tissue_hu = json.at("tissue_hu");
-  segmentation.components = json.at("components");
-  segmentation.holes_filled = json.at("holes_filled");
-  return segmentation;
+  return of_earlier_run(folder(Product::Labels), [&]() -> std::optional<Segmentation> {
+    const nlohmann::ordered_json json = read_json(folder(Product::Labels) / "segment.json");
+    Segmentation segmentation;
+    segmentation.labels = read_labels(folder(Product::Labels) / "labels.nrrd");
+    segmentation.occupancy = read_gray(folder(Product::Labels) / "occupancy.nrrd");
+    segmentation.voxels = json.at("voxels");
+    segmentation.volume_mm3 = json.at("volume_mm3");
+    segmentation.occupancy_volume_mm3 = json.at("occupancy_volume_mm3");
+    segmentation.tissue_hu = json.at("tissue_hu");
+    segmentation.components = json.at("components");
+    segmentation.holes_filled = json.at("holes_filled");
+    return segmentation;
+  });
 }
 
 void FolderStore::save_segmentation(const Segmentation& segmentation, double wall_s) {
@@ -192,7 +200,9 @@ void FolderStore::save_segmentation(const Segmentation& segmentation, double wal
 
 std::optional<TetMesh> FolderStore::load_mesh() {
   if (!is_current(Product::Mesh)) return std::nullopt;
-  return read_tet_mesh(folder(Product::Mesh) / "mesh.vtu");
+  return of_earlier_run(folder(Product::Mesh), [&]() -> std::optional<TetMesh> {
+    return read_tet_mesh(folder(Product::Mesh) / "mesh.vtu");
+  });
 }
 
 void FolderStore::save_mesh(const MeshProduct& product, double wall_s) {
@@ -205,30 +215,31 @@ void FolderStore::save_mesh(const MeshProduct& product, double wall_s) {
 
 std::optional<StaticResult> FolderStore::load_stretched(const TissueModel& model) {
   if (!is_current(Product::Stretched)) return std::nullopt;
-  const std::filesystem::path file = folder(Product::Stretched) / "deformed.vtu";
-  const TetMesh mesh = read_tet_mesh(file);
-  const auto array = mesh.point_data.find("position_mm");
-  if (array == mesh.point_data.end() || array->second.values.size() != 3 * model.mesh.vertices.size()) {
-    throw DataError(file, "point array position_mm", "none that fits the mesh", "3 numbers for each vertex",
-                    "Remove the folder to compute it anew");
-  }
-  const nlohmann::ordered_json json = read_json(folder(Product::Stretched) / "deform.json");
-  StaticResult result;
-  result.outcome = outcome_of(json.at("outcome").get<std::string>());
-  result.state = rest_state(model);
-  for (std::size_t v = 0; v < result.state.positions.size(); ++v) {
-    result.state.positions[v] = Eigen::Map<const Vec3>(array->second.values.data() + 3 * v);
-  }
-  result.iterations = json.at("iterations");
-  result.load_steps = json.at("load_steps");
-  if (const auto& residual = json.at("relative_residual"); !residual.is_null()) result.relative_residual = residual;
-  result.max_displacement_mm = json.at("max_displacement_mm");
-  result.penetration_mm = support_penetration_mm(model, result.state);
-  result.inverted_tets = json.at("inverted_tets");
-  result.solver = json.at("solver");
-  result.wall_s = json.at("wall_s");
-  for (const auto& reaction : json.at("reaction_mn")) result.reactions_mn.push_back(vector_from(reaction));
-  return result;
+  return of_earlier_run(folder(Product::Stretched), [&]() -> std::optional<StaticResult> {
+    const std::filesystem::path file = folder(Product::Stretched) / "deformed.vtu";
+    const TetMesh mesh = read_tet_mesh(file);
+    const auto array = mesh.point_data.find("position_mm");
+    if (array == mesh.point_data.end() || array->second.values.size() != 3 * model.mesh.vertices.size()) {
+      throw DataError(file, "point array position_mm", "none that fits the mesh", "3 numbers for each vertex");
+    }
+    const nlohmann::ordered_json json = read_json(folder(Product::Stretched) / "deform.json");
+    StaticResult result;
+    result.outcome = outcome_of(json.at("outcome").get<std::string>());
+    result.state = rest_state(model);
+    for (std::size_t v = 0; v < result.state.positions.size(); ++v) {
+      result.state.positions[v] = Eigen::Map<const Vec3>(array->second.values.data() + 3 * v);
+    }
+    result.iterations = json.at("iterations");
+    result.load_steps = json.at("load_steps");
+    if (const auto& residual = json.at("relative_residual"); !residual.is_null()) result.relative_residual = residual;
+    result.max_displacement_mm = json.at("max_displacement_mm");
+    result.penetration_mm = support_penetration_mm(model, result.state);
+    result.inverted_tets = json.at("inverted_tets");
+    result.solver = json.at("solver");
+    result.wall_s = json.at("wall_s");
+    for (const auto& reaction : json.at("reaction_mn")) result.reactions_mn.push_back(vector_from(reaction));
+    return result;
+  });
 }
 
 void FolderStore::save_stretched(const TissueModel& model, const StaticResult& result, double wall_s) {
@@ -256,7 +267,9 @@ TetMesh deformed_mesh(const TissueModel& model, const TissueState& state) {
 
 std::optional<ToolPath> FolderStore::load_plan() {
   if (!is_current(Product::Plan)) return std::nullopt;
-  return read_tool_path(folder(Product::Plan) / "path.json");
+  return of_earlier_run(folder(Product::Plan), [&]() -> std::optional<ToolPath> {
+    return read_tool_path(folder(Product::Plan) / "path.json");
+  });
 }
 
 void FolderStore::save_plan(const ToolPath& path, double wall_s) {
@@ -269,15 +282,17 @@ void FolderStore::save_plan(const ToolPath& path, double wall_s) {
 
 std::optional<Compensation> FolderStore::load_correction() {
   if (!is_current(Product::Correction)) return std::nullopt;
-  const nlohmann::ordered_json json = read_json(folder(Product::Correction) / "compensate.json");
-  Compensation correction;
-  correction.path = read_tool_path(folder(Product::Correction) / "path.json");
-  correction.error_mm = json.at("error_mm").get<std::vector<double>>();
-  correction.move_mm = json.at("move_mm").get<std::vector<double>>();
-  correction.max_move_mm = json.at("max_move_mm");
-  correction.limited_waypoints = json.at("limited_waypoints");
-  correction.interpolated_waypoints = json.at("interpolated_waypoints");
-  return correction;
+  return of_earlier_run(folder(Product::Correction), [&]() -> std::optional<Compensation> {
+    const nlohmann::ordered_json json = read_json(folder(Product::Correction) / "compensate.json");
+    Compensation correction;
+    correction.path = read_tool_path(folder(Product::Correction) / "path.json");
+    correction.error_mm = json.at("error_mm").get<std::vector<double>>();
+    correction.move_mm = json.at("move_mm").get<std::vector<double>>();
+    correction.max_move_mm = json.at("max_move_mm");
+    correction.limited_waypoints = json.at("limited_waypoints");
+    correction.interpolated_waypoints = json.at("interpolated_waypoints");
+    return correction;
+  });
 }
 
 void FolderStore::save_correction(const Compensation& correction, double wall_s) {

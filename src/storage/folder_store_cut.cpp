@@ -1,3 +1,5 @@
+#include "product_reading.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
@@ -85,43 +87,45 @@ void write_frames(const std::filesystem::path& folder, const TetMesh& mesh, cons
 std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
   const Product product = product_of(role);
   if (!is_current(product)) return std::nullopt;
-  const std::filesystem::path from = folder(product);
-  const nlohmann::ordered_json json = read_json(from / "incision.json");
-  IncisionResult incision;
-  const std::string ended = json.at("program_outcome");
-  for (const Outcome outcome : {Outcome::Success, Outcome::OpenLoop, Outcome::NotConverged, Outcome::ElementInverted}) {
-    if (ended == to_string(outcome)) incision.outcome = outcome;
-  }
-  if (!json.at("closed_loop").is_null()) incision.is_closed_loop = json.at("closed_loop").get<bool>();
-  if (!json.at("gap_mm").is_null()) incision.gap_mm = json.at("gap_mm").get<double>();
-  incision.gap_deg = json.at("gap_deg");
-  incision.kerf_width_mm = json.at("kerf_width_mm");
-  incision.solver_iterations = json.at("solver_iterations");
-  incision.unconverged_steps = json.at("unconverged_steps");
-  incision.held_back_vertices = json.at("held_back_vertices");
-  incision.inverted_tets = json.at("inverted_tets");
-  incision.peak_tool_force_mn = json.at("peak_tool_force_mn");
-  incision.wall_s = json.at("wall_s");
-  incision.steps.resize(json.at("steps").get<std::size_t>());
-  const bool is_ring = !json.at("closed_loop").is_null();
-  const auto contour = [&from](const char* name, bool is_closed) -> std::optional<Contour> {
-    if (!std::filesystem::exists(from / name)) return std::nullopt;
-    return read_contour(from / name, is_closed);
-  };
-  incision.centerline = contour("centerline.csv", is_ring);
-  incision.inner_edge = contour("inner_edge.csv", true);
-  if (auto edge = contour("tumor_edge_final.csv", true)) incision.final_tumor_edge = std::move(*edge);
-  for (const auto& removal : json.at("removals")) {
-    Removal r;
-    r.tet = TetId(removal.at(0).get<std::size_t>());
-    r.step = removal.at(1);
-    r.time_s = removal.at(2);
-    r.cause = removal.at(3).get<int>() == 0 ? RemovalCause::Dwell : RemovalCause::LooseFragment;
-    r.rest_volume_mm3 = removal.at(4);
-    incision.record.removals.push_back(r);
-  }
-  const ToolPath intended = read_tool_path(folder(Product::Plan) / "path.json");
-  return judge(file_.settings, std::move(incision), intended, json.at("tets").get<std::size_t>());
+  return of_earlier_run(folder(product), [&]() -> std::optional<SimulatedCut> {
+    const std::filesystem::path from = folder(product);
+    const nlohmann::ordered_json json = read_json(from / "incision.json");
+    IncisionResult incision;
+    const std::string ended = json.at("program_outcome");
+    for (const Outcome outcome : {Outcome::Success, Outcome::OpenLoop, Outcome::NotConverged, Outcome::ElementInverted}) {
+      if (ended == to_string(outcome)) incision.outcome = outcome;
+    }
+    if (!json.at("closed_loop").is_null()) incision.is_closed_loop = json.at("closed_loop").get<bool>();
+    if (!json.at("gap_mm").is_null()) incision.gap_mm = json.at("gap_mm").get<double>();
+    incision.gap_deg = json.at("gap_deg");
+    incision.kerf_width_mm = json.at("kerf_width_mm");
+    incision.solver_iterations = json.at("solver_iterations");
+    incision.unconverged_steps = json.at("unconverged_steps");
+    incision.held_back_vertices = json.at("held_back_vertices");
+    incision.inverted_tets = json.at("inverted_tets");
+    incision.peak_tool_force_mn = json.at("peak_tool_force_mn");
+    incision.wall_s = json.at("wall_s");
+    incision.steps.resize(json.at("steps").get<std::size_t>());
+    const bool is_ring = !json.at("closed_loop").is_null();
+    const auto contour = [&from](const char* name, bool is_closed) -> std::optional<Contour> {
+      if (!std::filesystem::exists(from / name)) return std::nullopt;
+      return read_contour(from / name, is_closed);
+    };
+    incision.centerline = contour("centerline.csv", is_ring);
+    incision.inner_edge = contour("inner_edge.csv", true);
+    if (auto edge = contour("tumor_edge_final.csv", true)) incision.final_tumor_edge = std::move(*edge);
+    for (const auto& removal : json.at("removals")) {
+      Removal r;
+      r.tet = TetId(removal.at(0).get<std::size_t>());
+      r.step = removal.at(1);
+      r.time_s = removal.at(2);
+      r.cause = removal.at(3).get<int>() == 0 ? RemovalCause::Dwell : RemovalCause::LooseFragment;
+      r.rest_volume_mm3 = removal.at(4);
+      incision.record.removals.push_back(r);
+    }
+    const ToolPath intended = read_tool_path(folder(Product::Plan) / "path.json");
+    return judge(file_.settings, std::move(incision), intended, json.at("tets").get<std::size_t>());
+  });
 }
 
 void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticResult& stretched, const SimulatedCut& cut,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace incise {
 
 namespace {
@@ -21,6 +23,12 @@ StaticResult solved(const CheckContext& context, const TissueModel& model, const
                                 result.iterations, result.relative_residual));
   }
   return result;
+}
+
+void require_small_error(double relative_error, double bound) {
+  if (std::abs(relative_error) <= bound) return;
+  throw NotSolved(fmt::format("the finest mesh is {:.2f} % off before extrapolation, at most {:g} % is allowed",
+                              100.0 * relative_error, 100.0 * bound));
 }
 
 Mat3 mean_stress_kpa(const CheckContext& context, const TissueModel& model, const TissueState& state) {

@@ -26,6 +26,10 @@ inline constexpr double kSmallStrainTolerance = 1e-7;
 [[nodiscard]] StaticResult solved(const CheckContext& context, const TissueModel& model,
                                   const TissueState* start = nullptr, double relative_tolerance = kTightTolerance);
 
+/// An extrapolated value says little where the meshes it is made from are far off: the finest must be close by itself.
+/// @param relative_error  of the finest mesh. @throws NotSolved above `bound`, so that the check fails.
+void require_small_error(double relative_error, double bound);
+
 /// The mean first Piola stress of a body in equilibrium, kPa, from the forces that hold it: P = (1/V) Σ t ⊗ X over its
 /// vertices (theorem of mean stress). Uses nodal forces only, so it judges what the solver sees.
 [[nodiscard]] Mat3 mean_stress_kpa(const CheckContext& context, const TissueModel& model, const TissueState& state);

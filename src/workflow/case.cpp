@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/workflow/case.hpp>
 
 #include <fmt/format.h>
@@ -24,7 +25,11 @@ MaterialField field_from(const TetMesh& mesh) {
   try {
     field = material_field_of(mesh);
   } catch (const InvalidArgument& problem) {
-    throw CaseError(kWhere, field_name, problem.what(), "cell data of that shape");
+    // "expected …, found …"
+    const std::string text = without_function_name(problem);
+    const std::size_t comma = text.rfind(", found ");
+    INCISE_ASSERT(comma != std::string::npos && text.starts_with("expected "));
+    throw CaseError(kWhere, field_name, text.substr(comma + 8), text.substr(9, comma - 9));
   }
   if (field.youngs_modulus_kpa.empty() && field.poissons_ratio.empty() && field.fibre_directions.empty()) {
     throw CaseError(kWhere, field_name, cell_arrays(mesh),
@@ -35,14 +40,21 @@ MaterialField field_from(const TetMesh& mesh) {
   if (violations.empty()) return field;
   // "name: found …, expected …" of the first violation; there is one at most for each array.
   const std::string& first = violations.front();
+  const std::size_t colon = first.find(": found ");
   const std::size_t comma = first.find(", expected ");
-  throw CaseError(kWhere, field_name, first.substr(0, comma), first.substr(comma + 11));
+  throw CaseError(kWhere, field_name, fmt::format("{} of {}", first.substr(0, colon), first.substr(colon + 8, comma - colon - 8)),
+                  first.substr(comma + 11));
 }
 
 const std::vector<double>& labels_of(const TetMesh& mesh) {
   const auto found = mesh.cell_data.find(kLabelArray);
   if (found != mesh.cell_data.end() && found->second.components == 1 && found->second.values.size() == mesh.tets.size()) {
     return found->second.values;
+  }
+  if (found != mesh.cell_data.end()) {
+    throw CaseError(kWhere, "specimen.material.labels",
+                    fmt::format("the cell array 'label' with {} components and {} numbers", found->second.components, found->second.values.size()),
+                    fmt::format("one number for each of {} tets", mesh.tets.size()));
   }
   throw CaseError(kWhere, "specimen.material.labels", cell_arrays(mesh), "the cell array 'label', one number for each tet",
                   "A mesh that is made from a CT carries none: give specimen.mesh");
@@ -61,6 +73,11 @@ void lay_over(std::vector<double>& values, const std::vector<double>& labels, in
 MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation) {
   MaterialField field;
   if (variation.from_mesh) field = field_from(mesh);
+  const bool has_only_fibres = variation.from_mesh && field.youngs_modulus_kpa.empty() && field.poissons_ratio.empty();
+  if (has_only_fibres && material.fibre_modulus_kpa == 0.0) {
+    throw CaseError(kWhere, "specimen.material.fibre_modulus_kpa", "0 kPa, so that the mesh's fibre_direction changes nothing",
+                    "a number above 0", "Without fibres leave out from_mesh");
+  }
   if (variation.labels.empty()) return field;
   const std::vector<double>& labels = labels_of(mesh);
   for (std::size_t i = 0; i < variation.labels.size(); ++i) {

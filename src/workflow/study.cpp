@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/workflow/study.hpp>
 
@@ -82,7 +83,7 @@ class Runner {
   }
 
   bool segment() {
-    given_mesh_ = store_.read_specimen_mesh();
+    given_mesh_ = store_.read_specimen_mesh(monitor_);
     if (given_mesh_) {
       study_.stages.push_back({Stage::Segment, StageState::Skipped, 0.0});
       return true;
@@ -116,7 +117,7 @@ class Runner {
     try {
       return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, store_, workers_, monitor_);
     } catch (const InvalidArgument& error) {
-      throw CaseError("case", "meshing", error.what(), "edge lengths and a count that the tissue can be meshed with");
+      throw CaseError("case", "meshing", without_function_name(error), "edge lengths and a count that the tissue can be meshed with");
     }
   }
 

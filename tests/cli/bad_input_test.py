@@ -8,7 +8,7 @@ import unittest
 
 import small_case
 import small_dicom
-from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, files_below
+from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
 
 class CtTest(CommandTest):
@@ -324,6 +324,40 @@ class CaseTest(CommandTest):
         done = self.incise("plan", "case", "-o", self.folder / "work", "--quiet")
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
         self.assertEqual((plan / "mine.csv").read_text(), "mine")
+
+    def test_an_export_with_the_users_own_files_is_never_replaced(self):
+        export = ("interchange", "case", "--format", "sofa", "-o", self.out, "--quiet")
+        for _ in range(2):  # the second replaces the first
+            self.assertEqual(self.incise(*export).returncode, DONE)
+        (self.out / "sofa_result.vtu").write_text("an hour of SOFA")
+        self.assert_refused(self.incise(*export), BAD_DATA, "'sofa_result.vtu' of another origin")
+        self.assertEqual((self.out / "sofa_result.vtu").read_text(), "an hour of SOFA")
+
+    def test_an_interruption_says_that_finished_stages_are_kept(self):
+        done = self.interrupted("simulate", "case", "-o", self.out, after="stretch: done")
+        self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
+        self.assertIn("stages that were finished are kept", done.stderr)
+        self.assertTrue((self.out / "stretched" / "stage.json").is_file())
+
+    def test_a_damaged_product_says_what_to_remove(self):
+        self.assertEqual(self.incise("deform", "case", "-o", self.out, "--quiet").returncode, DONE)
+        for name in ("deformed.vtu", "deform.json", "stage.json"):
+            with self.subTest(name=name):
+                path = self.out / "stretched" / name
+                whole = path.read_text()
+                path.write_text("{ damaged")
+                done = self.incise("deform", "case", "-o", self.out, "--quiet")
+                self.assert_refused(done, BAD_DATA, name, f"Remove the folder {self.out / 'stretched'}")
+                path.write_text(whole)
+
+    def test_a_mesh_that_is_turned_over_as_a_whole_is_told(self):
+        vertices, tets = small_case.block()
+        small_case.write_msh(self.case / "block.msh", vertices, [(a, b, d, c) for a, b, c, d in tets])
+        for verb in (("deform", "case"), ("interchange", "case", "--format", "febio")):
+            with self.subTest(verb=verb[0]):
+                done = self.incise(*verb, "-o", self.folder / verb[0])
+                self.assertEqual(done.returncode, DONE, done.stderr)
+                self.assertIn("block.msh: every tet has a negative volume; all are turned over", done.stderr)
 
     def test_a_device_is_not_replaced_by_a_file(self):
         self.assert_refused(self.incise("schema", "case", "-o", "/dev/full"), BAD_DATA, "/dev/full", "a device")

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
 import unittest
@@ -32,6 +33,19 @@ class CommandTest(unittest.TestCase):
 
     def incise(self, *arguments, timeout=600):
         return subprocess.run([COMMAND, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=timeout)
+
+    def interrupted(self, *arguments, after):
+        """The command, asked to stop (as by Ctrl-C) once `after` stands on standard error."""
+        command = [COMMAND, *map(str, arguments)]
+        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            said = ""
+            for line in process.stderr:
+                said += line
+                if after in line:
+                    process.send_signal(signal.SIGINT)
+                    break
+            out, rest = process.communicate(timeout=600)
+        return subprocess.CompletedProcess(command, process.returncode, out, said + rest)
 
     def json_of(self, *arguments, status=DONE):
         """The one JSON object that a command prints with --json."""

@@ -4,7 +4,7 @@ import json
 import unittest
 import xml.etree.ElementTree
 
-from command import BAD_CASE, DONE, NOT_ACCEPTABLE, CommandTest
+from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest
 
 KEYS = {"name", "passed", "expected", "found", "tolerance", "criterion", "unit", "what", "source", "note", "wall_s"}
 
@@ -46,6 +46,17 @@ class VerifyTest(CommandTest):
 
     def test_an_unknown_name_is_refused_with_the_nearest(self):
         self.assert_refused(self.incise("verify", "--only", "cantilver_rate"), BAD_CASE, "--only", "cantilever_rate")
+
+    def test_an_output_that_cannot_be_written_is_told_before_anything_runs(self):
+        done = self.incise("verify", "-o", "missing/x.json")
+        self.assert_refused(done, BAD_DATA, "missing/x.json", "no folder 'missing'")
+        self.assertNotIn("check 1 of", done.stderr)
+
+    def test_an_interruption_says_that_nothing_was_written(self):
+        done = self.interrupted("verify", "-o", "x.json", after="check 1 of")
+        self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
+        self.assertIn("nothing was written", done.stderr)
+        self.assert_nothing_written(self.folder / "x.json")
 
     def test_output_holds_what_json_prints(self):
         path = self.folder / "verify.json"

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 
 #include <gtest/gtest.h>
 
@@ -46,6 +47,15 @@ TEST(Require, ThrowsInvalidArgumentThatNamesTheFunction) {
   } catch (const InvalidArgument& error) {
     EXPECT_STREQ(error.what(), "need_positive: expected a value above 0, found -1");
   }
+}
+
+TEST(ProblemText, LeavesOutTheNameOfTheFunctionAndNothingElse) {
+  const auto text_of = [](const char* what) { return without_function_name(InvalidArgument(what)); };
+  EXPECT_EQ(text_of("find_edges: expected 2 triangles"), "expected 2 triangles");
+  EXPECT_EQ(text_of("operator(): expected a: b"), "expected a: b");
+  EXPECT_EQ(text_of("the edge of two: found 3"), "the edge of two: found 3");
+  EXPECT_EQ(text_of("no colon"), "no colon");
+  EXPECT_EQ(as_sentence(InvalidArgument("find_edges: expected 2 triangles")), "Expected 2 triangles");
 }
 
 TEST(Errors, AreAllCaughtAsTheBase) {

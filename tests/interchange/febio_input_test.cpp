@@ -238,6 +238,13 @@ TEST_F(FebioInput, AStiffnessThatVariesIsAMapWithOneItemPerTet) {
   EXPECT_EQ(t, field.youngs_modulus_kpa.size());
 }
 
+TEST_F(FebioInput, ATitleWithControlCharactersAndHyphensStaysXml) {
+  const TissueModel model = specimen();
+  const std::string text = febio_input_xml({model, Vec3::Zero(), "a\x01\x1b" "b\tc---d", ""});
+  EXPECT_THAT(text, HasSubstr("ab\tc- - -d"));
+  EXPECT_TRUE(std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 && c != '\t' && c != '\n'; }));
+}
+
 TEST_F(FebioInput, FibresAreRefused) {
   Material fibrous;
   fibrous.fibre_modulus_kpa = 30.0;

@@ -92,6 +92,28 @@ TEST(AtomicFolder, IsGoneWithoutCommitAndTheOlderOneStays) {
   EXPECT_EQ(entries_in(folder.path()), 1u);
 }
 
+TEST(AtomicFolder, IsReplaceableOnlyWhileItHoldsNothingButItsOwnFiles) {
+  const incise::testing::TemporaryFolder folder;
+  const fs::path out = folder / "out";
+  EXPECT_NO_THROW(require_replaceable(out)) << "a free name";
+  AtomicFolder output(out);
+  fs::create_directory(output.path() / "frames");
+  std::ofstream(output.path() / "frames" / "0.vtu") << "frame";
+  std::ofstream(output.path() / "manifest.json") << "{}";
+  output.commit();
+  EXPECT_NO_THROW(require_replaceable(out));
+  EXPECT_THAT(read_text(out / "manifest.json"), HasSubstr("frames/0.vtu"));
+  std::ofstream(out / "frames" / "note.txt") << "mine";
+  EXPECT_THAT([&] { require_replaceable(out); }, ThrowsMessage<DataError>(HasSubstr("'frames/note.txt' of another origin")));
+  fs::remove(out / "frames" / "note.txt");
+  fs::create_symlink("/nowhere", out / "link");
+  EXPECT_THAT([&] { require_replaceable(out); }, ThrowsMessage<DataError>(HasSubstr("'link'")));
+  fs::remove(out / "link");
+  EXPECT_NO_THROW(require_replaceable(out));
+  std::ofstream(out / "manifest.json") << "{}";
+  EXPECT_THAT([&] { require_replaceable(out); }, ThrowsMessage<DataError>(HasSubstr("lists no files")));
+}
+
 TEST(AtomicFolder, DoesNotReplaceAFile) {
   const incise::testing::TemporaryFolder folder;
   std::ofstream(folder / "out") << "a file";

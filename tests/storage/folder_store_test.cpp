@@ -6,10 +6,13 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
+#include <incise/io/path_io.hpp>
 #include <incise/storage/folder_store.hpp>
+#include <incise/storage/path_schema.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <fstream>
 #include <numbers>
@@ -35,6 +38,8 @@ class FolderStoreTest : public ::testing::Test {
         << more;
     return read_case(folder_.path());
   }
+
+  Monitor silent_;
 
   /// A new store, as the next run of the program would make it.
   FolderStore open(const std::string& more = "") { return {read(more), folder_ / "out", {"incise test", 7, 2}}; }
@@ -72,7 +77,7 @@ TEST_F(FolderStoreTest, AnEmptyFolderHoldsNoProduct) {
 
 TEST_F(FolderStoreTest, ReadsWhatTheCaseNames) {
   FolderStore store = open();
-  const auto mesh = store.read_specimen_mesh();
+  const auto mesh = store.read_specimen_mesh(silent_);
   ASSERT_TRUE(mesh);
   EXPECT_EQ(mesh->tets.size(), 48U);
   EXPECT_EQ(store.read_tumor_edge()->points.size(), 12U);
@@ -136,7 +141,7 @@ TEST_F(FolderStoreTest, AStretchedStateComesBackExactly) {
   FolderStore store = open();
   const CaseFile file = store.case_file();
   const TissueModel model =
-      make_tissue_model(*store.read_specimen_mesh(), file.settings.material, *file.settings.constraints);
+      make_tissue_model(*store.read_specimen_mesh(silent_), file.settings.material, *file.settings.constraints);
   StaticResult result;
   result.outcome = Outcome::Success;
   result.state = rest_state(model);
@@ -217,7 +222,7 @@ TEST_F(FolderStoreTest, AChangedHolderMakesTheStretchStale) {
   };
   write_holder(-1.0);
   FolderStore store = open_held();
-  const TissueModel model = tissue_of(store.case_file().settings, *store.read_specimen_mesh());
+  const TissueModel model = tissue_of(store.case_file().settings, *store.read_specimen_mesh(silent_));
   StaticResult result;
   result.state = rest_state(model);
   store.save_stretched(model, result, 0.1);
@@ -233,7 +238,7 @@ TEST_F(FolderStoreTest, AMeshThatIsNotOneSoundBodyIsRefusedNamingTheFile) {
   mesh.tets.push_back(mesh.tets[5]);
   write_vtu(folder_ / "block.vtu", mesh);
   try {
-    static_cast<void>(open().read_specimen_mesh());
+    static_cast<void>(open().read_specimen_mesh(silent_));
     FAIL() << "expected DataError";
   } catch (const DataError& error) {
     EXPECT_EQ(error.path().filename(), "block.vtu");
@@ -243,11 +248,58 @@ TEST_F(FolderStoreTest, AMeshThatIsNotOneSoundBodyIsRefusedNamingTheFile) {
 
 TEST_F(FolderStoreTest, ANewProductTakesThePlaceOfAStaleOneAsAWhole) {
   open().save_plan(small_ring(), 0.0);
-  std::ofstream(folder_ / "out/plan/leftover.txt") << "of the older product";
+  std::ofstream(folder_ / "out/plan/stage.json", std::ios::app) << "\n";
   open("plan: {depth_mm: 4}\n").save_plan(small_ring(), 0.0);
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/plan/leftover.txt"));
+  EXPECT_EQ(read_text(folder_ / "out/plan/stage.json").find("\n\n"), std::string::npos);
   EXPECT_TRUE(open("plan: {depth_mm: 4}\n").load_plan());
   EXPECT_EQ(entries(), std::vector<std::string>{"plan"});
+}
+
+TEST_F(FolderStoreTest, AFileOfTheUsersOwnIsNeverRemoved) {
+  Compensation correction;
+  correction.path = small_ring();
+  open().save_plan(small_ring(), 0.0);
+  open().save_correction(correction, 0.0);
+  for (const char* name : {"plan", "correction"}) {  // the one that is replaced, and one that is stale after it
+    const std::filesystem::path note = folder_ / "out" / name / "note.txt";
+    std::ofstream(note) << "mine";
+    EXPECT_THROW(open("plan: {depth_mm: 4}\n").save_plan(small_ring(), 0.0), DataError) << name;
+    EXPECT_TRUE(std::filesystem::exists(note));
+    EXPECT_TRUE(open().load_plan());
+    std::filesystem::remove(note);
+  }
+  open("plan: {depth_mm: 4}\n").save_plan(small_ring(), 0.0);
+  EXPECT_EQ(entries(), std::vector<std::string>{"plan"});
+}
+
+TEST_F(FolderStoreTest, TheSchemaOfAPathNamesEveryFieldThatIsWritten) {
+  const auto schema = nlohmann::json::parse(path_schema_json());
+  ToolPath path = small_ring();
+  path.T_robot_sim = Mat4::Identity();
+  path.tumor_edge.is_closed = false;
+  path.source_sha256 = sha256_of_text("");
+  const auto written = nlohmann::json::parse(to_json(path));
+  const auto keys_of = [](const nlohmann::json& object) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : object.items()) keys.push_back(key);
+    return keys;
+  };
+  EXPECT_EQ(keys_of(written), keys_of(schema["properties"]));
+  EXPECT_EQ(keys_of(written["waypoints"][0]), keys_of(schema["properties"]["waypoints"]["items"]["properties"]));
+  EXPECT_EQ(written["schema"], schema["properties"]["schema"]["const"]);
+  for (const char* key : {"frame", "kind"}) {
+    const auto& names = schema["properties"][key]["enum"];
+    EXPECT_NE(std::find(names.begin(), names.end(), written[key]), names.end());
+  }
+  // What is required is all that the reader asks for.
+  nlohmann::json least;
+  for (const std::string key : schema["required"]) least[key] = written[key];
+  EXPECT_EQ(tool_path_from_json(least.dump(), "least").waypoints.size(), path.waypoints.size());
+  for (const std::string key : schema["required"]) {
+    nlohmann::json less = least;
+    less.erase(key);
+    EXPECT_THROW(static_cast<void>(tool_path_from_json(less.dump(), "less")), DataError) << key;
+  }
 }
 
 TEST_F(FolderStoreTest, AProductWithoutItsStageFileCountsAsAbsent) {
@@ -272,6 +324,7 @@ TEST_F(FolderStoreTest, ADamagedProductIsRefusedNamingItsFile) {
     FAIL() << "the path is damaged";
   } catch (const DataError& error) {
     EXPECT_EQ(error.path(), folder_ / "out/plan/path.json");
+    EXPECT_NE(std::string(error.what()).find("Remove the folder"), std::string::npos) << error.what();
   }
 }
 

@@ -1,5 +1,6 @@
 // Every check of `incise verify`, each a test of its own; and the rules by which a check passes.
 #include "verification/beam_in_the_plane.hpp"
+#include "verification/check.hpp"
 #include "verification/closed_forms.hpp"
 #include "verification/plane_reference.hpp"
 
@@ -22,8 +23,10 @@ class Check : public ::testing::TestWithParam<std::string> {};
 TEST_P(Check, FindsWhatIsExpected) {
   Workers workers(2);
   Monitor monitor;
+  int found = 0;
   for (const VerificationCheck& check : run_checks({GetParam(), 1.0}, workers, monitor)) {
     if (check.name != GetParam()) continue;
+    ++found;
     EXPECT_TRUE(check.passed) << check.what << "\nexpected " << check.expected << " " << check.unit << ", found "
                               << check.found << ", tolerance " << check.tolerance << "\nsource: " << check.source
                               << "\n"
@@ -40,6 +43,7 @@ TEST_P(Check, FindsWhatIsExpected) {
       }
     }
   }
+  EXPECT_EQ(found, 1) << "checks of this name";
 }
 
 INSTANTIATE_TEST_SUITE_P(Physics, Check, ::testing::ValuesIn(check_names()),
@@ -73,6 +77,13 @@ TEST(Checks, StopWhenAsked) {
   Workers workers(1);
   Stopped monitor;
   EXPECT_THROW((void)run_checks({}, workers, monitor), Cancelled);
+}
+
+TEST(Criterion, AFinestMeshThatIsFarOffFailsWhateverItsExtrapolationSays) {
+  EXPECT_NO_THROW(require_small_error(-0.009, 0.01));
+  EXPECT_THROW(require_small_error(-0.011, 0.01), NotSolved);
+  EXPECT_THROW(require_small_error(0.011, 0.01), NotSolved);
+  EXPECT_THROW(require_small_error(std::numeric_limits<double>::quiet_NaN(), 0.01), NotSolved);
 }
 
 TEST(Criterion, WithinTakesBothSidesAndAtLeastOnlyOne) {

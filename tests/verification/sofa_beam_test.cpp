@@ -28,7 +28,7 @@ struct Beam {
   int file;
   SofaRotation rotation;
   int draws;         // of rounding
-  double tolerance;  // with SOFA's 25 iterations, of a motion of 48
+  double tolerance;  // of every draw with SOFA's 25 iterations, of a motion of 48; the best has to be below kClose
 };
 // The linear beam is asked for 1e-3, which is within the noise: eight draws lie between 0.99e-3 and 1.71e-3.
 constexpr double kWithNoise = 3e-3;
@@ -83,12 +83,15 @@ class SofaBeam : public ::testing::TestWithParam<Beam> {
 TEST_P(SofaBeam, IsMetWithTheSame25IterationsOfConjugateGradients) {
   INCISE_NEEDS_DATA_DIR();
   // Twenty-five iterations do not converge, and 299 steps of them amplify rounding. Where that shows, the density is
-  // varied in its last bits and every run has to come close: the reference is one such draw itself.
+  // varied in its last bits: every run has to come close and one of them as close as is asked, since the reference is
+  // one such draw itself.
+  double best = std::numeric_limits<double>::infinity();
   for (int bits = 0; bits < GetParam().draws; ++bits) {
-    EXPECT_LT(difference(25, kDensity * (1.0 + 2.0 * bits * std::numeric_limits<double>::epsilon())),
-              GetParam().tolerance)
-        << "draw " << bits;
+    const double found = difference(25, kDensity * (1.0 + 2.0 * bits * std::numeric_limits<double>::epsilon()));
+    EXPECT_LT(found, GetParam().tolerance) << "draw " << bits;
+    best = std::min(best, found);
   }
+  EXPECT_LT(best, kClose) << "the best of the draws";
 }
 
 TEST_P(SofaBeam, IsMetWithinOnePerCentByAnExactSolve) {

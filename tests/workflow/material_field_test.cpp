@@ -13,6 +13,7 @@ using ::testing::AllOf;
 using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 /// 12 tets; labels 1 and, for the last three, 2.
 TetMesh labelled_block() {
@@ -78,17 +79,33 @@ TEST(MaterialField, SaysWhatTheMeshDoesNotCarry) {
               AllOf(HasSubstr("specimen.material.labels[1].label"), HasSubstr("between 1 and 2")));
 }
 
+TEST(MaterialField, RefusesDirectionsOfFibresThatHaveNoStiffness) {
+  TetMesh mesh = labelled_block();
+  mesh.cell_data["fibre_direction"] = {3, std::vector<double>(36, 1.0)};
+  MaterialVariation from_mesh;
+  from_mesh.from_mesh = true;
+  EXPECT_THAT(refusal(mesh, from_mesh), AllOf(HasSubstr("specimen.material.fibre_modulus_kpa: found 0 kPa"), HasSubstr("above 0")));
+  Material with_fibres;
+  with_fibres.fibre_modulus_kpa = 30.0;
+  EXPECT_EQ(material_field(mesh, with_fibres, from_mesh).fibre_directions.size(), 12U);
+}
+
 TEST(MaterialField, RefusesCellDataThatAreNoMaterial) {
   MaterialVariation from_mesh;
   from_mesh.from_mesh = true;
   TetMesh mesh = labelled_block();
   mesh.cell_data["poissons_ratio"] = {1, std::vector<double>(12, 0.3)};
   mesh.cell_data["poissons_ratio"].values[4] = 0.5;
-  EXPECT_THAT(refusal(mesh, from_mesh), AllOf(HasSubstr("poissons_ratio: found 0.5 at tet 4"), HasSubstr("[0, 0.5)")));
+  EXPECT_THAT(refusal(mesh, from_mesh), AllOf(HasSubstr("from_mesh: found poissons_ratio of 0.5 at tet 4"), HasSubstr("[0, 0.5)")));
   mesh.cell_data["poissons_ratio"].values[4] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal(mesh, from_mesh), HasSubstr("found nan at tet 4"));
+  EXPECT_THAT(refusal(mesh, from_mesh), HasSubstr("found poissons_ratio of nan at tet 4"));
   mesh.cell_data["poissons_ratio"] = {2, std::vector<double>(24, 0.3)};
-  EXPECT_THAT(refusal(mesh, from_mesh), HasSubstr("with 1 components, found 2"));
+  EXPECT_THAT(refusal(mesh, from_mesh), AllOf(HasSubstr("from_mesh: found 2, expected cell data \"poissons_ratio\" with 1 component"),
+                                         Not(HasSubstr("operator"))));
+  mesh.cell_data["label"] = {3, std::vector<double>(36, 1.0)};
+  MaterialVariation labels;
+  labels.labels = {{1, 700.0, std::nullopt}};
+  EXPECT_THAT(refusal(mesh, labels), AllOf(HasSubstr("'label' with 3 components"), HasSubstr("one number for each of 12 tets")));
 }
 
 TEST(TissueOf, TakesTheFieldAndTheConstraintsOfTheCase) {

@@ -12,7 +12,7 @@ namespace {
 class MemoryStore : public Store {
  public:
   CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
-  std::optional<TetMesh> read_specimen_mesh() override { return make_block({44, 50, 10}, {30, 34, 7}); }
+  std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return make_block({44, 50, 10}, {30, 34, 7}); }
   std::optional<Contour> read_tumor_edge() override {
     Contour edge;
     for (int i = 0; i < 60; ++i) {

@@ -14,12 +14,16 @@ namespace incise {
 /// was.
 void write_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
+/// Looks before a long computation whether write_atomically may write a file of this name. @throws DataError as it would.
+void require_writable(const std::filesystem::path& path);
+
 /// The whole content of a file, byte for byte.
 /// @throws DataError if it is missing, is a folder, or cannot be read.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// Refuses a folder that results must not replace: one that is not empty and holds no manifest.json, as every result folder does.
-/// @throws DataError
+/// Refuses a folder that results must not replace: one that holds any file that its manifest.json does not list as
+/// written with it. A folder that is missing or empty passes.
+/// @throws DataError naming the first such file
 void require_replaceable(const std::filesystem::path& folder);
 
 /// A folder that appears all or nothing: fill `path()`, then `commit()`.
@@ -37,7 +41,7 @@ class AtomicFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
 
   /// Renames the folder to its target; a folder that is there is replaced, and only removed once the new one is in
-  /// place.
+  /// place. Where there is a manifest.json, it first gets the key `files`: every file of the folder, relative and sorted.
   /// @throws DataError if that cannot be done; then the older folder stays. @pre called once.
   void commit();
 

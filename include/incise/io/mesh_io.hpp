@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/monitor.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 
 #include <filesystem>
@@ -18,13 +19,16 @@ namespace incise {
 /// from metres say, is the caller's matter.
 ///
 /// Some programs number the corners the other way round: when *every* tet of the file has a negative volume, all are
-/// turned over. A mixture is damage, and is refused, as is a tet without volume.
+/// turned over, by exchanging their last two corners; the monitor is told with a Notice. A mixture is damage, and is
+/// refused, as is a tet without volume.
 ///
 /// Point and cell data come along as doubles under their names. TetGen's unnamed columns become `attribute_0`… and
 /// `boundary_marker`; Gmsh's tags become the cell arrays `physical` and `geometrical`.
 /// @throws DataError naming the line, byte or item: missing, truncated or damaged file, not-a-number coordinates, index
 /// out of range,
 ///         no tets, mixed orientation, an unsupported variant (binary Gmsh, LZ4 or LZMA compression).
+[[nodiscard]] TetMesh read_tet_mesh(const std::filesystem::path& path, Monitor& monitor);
+/// The same for those who do not care which way round the file had it.
 [[nodiscard]] TetMesh read_tet_mesh(const std::filesystem::path& path);
 
 /// As read_tet_mesh, but a moment of a simulation is taken as it is: tets may be flat or turned inside out there, and

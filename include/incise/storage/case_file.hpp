@@ -48,9 +48,10 @@ void require_plan_inputs(const CaseFile& file);
 /// @throws DataError naming the first file that is missing and the field that asks for it.
 void require_input_files(const CaseFile& file);
 
-/// The tetrahedra that a case names, sound and in one piece. @pre a mesh is named.
+/// The tetrahedra that a case names, sound and in one piece; the monitor is told where all had to be turned over.
+/// @pre a mesh is named.
 /// @throws DataError naming the file and its first problem: an inverted, flat or duplicate tet, more than one body, and the like.
-[[nodiscard]] TetMesh read_specimen_mesh(const CaseFile& file);
+[[nodiscard]] TetMesh read_specimen_mesh(const CaseFile& file, Monitor& monitor);
 
 /// All settings of a case, defaults included, in the file's order.
 [[nodiscard]] std::vector<SettingLine> settings_of(const CaseFile& file);

@@ -45,7 +45,7 @@ class FolderStore : public Store {
   [[nodiscard]] bool is_current(Product product);
 
   CtVolume read_ct(Monitor& monitor) override;
-  std::optional<TetMesh> read_specimen_mesh() override;
+  std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) override;
   std::optional<Contour> read_tumor_edge() override;
   std::optional<Contour> read_line() override;
   std::optional<ToolPath> read_given_path() override;
@@ -71,7 +71,8 @@ class FolderStore : public Store {
   [[nodiscard]] const std::string& key(Product product);
   [[nodiscard]] std::string settings_with(const std::vector<std::string>& prefixes) const;
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
-  void remove_if_stale(Product product);
+  /// Made, and from other settings or inputs than the case's.
+  [[nodiscard]] bool is_stale(Product product);
   void save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write);
 
   CaseFile file_;

@@ -22,7 +22,7 @@ class Store {
   virtual ~Store() = default;
 
   virtual CtVolume read_ct(Monitor& monitor) = 0;
-  virtual std::optional<TetMesh> read_specimen_mesh() = 0;  ///< nothing: the mesh is made from the CT
+  virtual std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) = 0;  ///< nothing: the mesh is made from the CT
   virtual std::optional<Contour> read_tumor_edge() = 0;
   virtual std::optional<Contour> read_line() = 0;           ///< the curve of an open cut
   virtual std::optional<ToolPath> read_given_path() = 0;    ///< a path to follow in place of the planned one
