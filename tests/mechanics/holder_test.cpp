@@ -183,7 +183,7 @@ TEST(Holder, SaysWhatIsWrongWithASurface) {
   EXPECT_THAT(refusal(TriMesh{}), HasSubstr("at least 1 triangle"));
   TriMesh not_finite = flat_sheet();
   not_finite.vertices[5][0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(refusal(not_finite), HasSubstr("vertex 5 is not finite"));
+  EXPECT_THAT(refusal(not_finite), HasSubstr("Vertex 5 is not finite"));
   TriMesh mixed = flat_sheet();
   std::swap(mixed.triangles[3][0], mixed.triangles[3][1]);
   EXPECT_THAT(refusal(mixed), HasSubstr("same orientation"));
