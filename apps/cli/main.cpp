@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   CLI::App app("Plans robotic soft-tissue incisions by simulating them first.", "incise");
   app.set_version_flag("--version", fmt::format("incise {} ({})", version(), source_commit()));
   app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
   app.footer("\n`incise VERB --help` explains a verb and ends with an example.\n");
   Application application(app, joined(argc, argv));
   add_demo(application);

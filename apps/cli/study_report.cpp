@@ -14,6 +14,7 @@
 #include <incise/report/figures.hpp>
 #include <incise/report/html_report.hpp>
 #include <incise/storage/case_file.hpp>
+#include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -139,7 +140,7 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
   const bool is_ring = plan.is_closed;
   ReportIncision incision;
   incision.name = cut.name;
-  incision.outcome = outcome_of(json.at("outcome").get<std::string>());
+  incision.outcome = read_outcome(json, "outcome", folder / "incision.json");
   if (json.at("closed_loop").is_boolean()) incision.closed_loop = json.at("closed_loop").get<bool>();
   if (json.at("negative_margin").is_boolean()) incision.negative_margin = json.at("negative_margin").get<bool>();
   incision.target_mm = file.settings.plan.lateral_margin_mm;

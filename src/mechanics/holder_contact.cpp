@@ -93,8 +93,14 @@ void HolderContact::find_normals(const TriMesh& surface) {
       vertex_normals_[t[c].index()] += std::atan2(one.cross(other).norm(), one.dot(other)) * normal;
     }
   }
-  for (Vec3& normal : vertex_normals_)
-    normal = normal.norm() > kOnEdge ? normal.normalized().eval() : Vec3::UnitZ().eval();
+  for (const Triangle& t : triangles_) {
+    for (const VertexId corner : t) {
+      Vec3& normal = vertex_normals_[corner.index()];
+      INCISE_REQUIRE(normal.norm() > kOnEdge, fmt::format("expected an outside at every vertex, found triangles round vertex {} that face "
+                                                          "each other", corner.value));
+      normal.normalize();
+    }
+  }
 }
 
 SupportGap HolderContact::gap(const Vec3& p) const {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kWidth = 560.0;
 constexpr double kHeight = 340.0;
+constexpr double kLeft = 82.0;  // room for numbers and the axis' name beside them
 constexpr double kMarkRadius = 3.2;
 
 struct Range {
@@ -40,6 +41,20 @@ Range range_of(const LinePlot& plot, bool is_x) {
   return {range.low - air, range.high + air};
 }
 
+/// Where the marks stand on a logarithmic x axis, if they are few: sizes that double are read better than 1, 2, 5.
+std::vector<double> mark_ticks(const LinePlot& plot) {
+  constexpr std::size_t kMost = 6;
+  std::vector<double> ticks;
+  for (const LineSeries& series : plot.series) {
+    if (series.is_line) continue;
+    for (const double value : series.x) ticks.push_back(std::log10(value));
+  }
+  std::sort(ticks.begin(), ticks.end());
+  ticks.erase(std::unique(ticks.begin(), ticks.end()), ticks.end());
+  if (ticks.size() > kMost) ticks.clear();
+  return ticks;
+}
+
 /// Ticks at 1, 2, 5 times powers of ten, or at the powers alone where those would crowd.
 std::vector<double> log_ticks(const Range& range) {
   std::vector<double> ticks;
@@ -55,9 +70,10 @@ std::vector<double> log_ticks(const Range& range) {
   return ticks;
 }
 
-void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, bool is_log, bool is_x,
-               std::string_view name) {
-  const std::vector<double> ticks = is_log ? log_ticks(range) : round_ticks(range.low, range.high, 6);
+void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, const std::vector<double>& preferred, bool is_log,
+               bool is_x, std::string_view name) {
+  std::vector<double> ticks = preferred;
+  if (ticks.empty()) ticks = is_log ? log_ticks(range) : round_ticks(range.low, range.high, 6);
   if (!is_log) {
     is_x ? draw_x_axis(svg, area, ticks, name) : draw_y_axis(svg, area, ticks, name);
     return;
@@ -95,7 +111,7 @@ void draw_series(SvgWriter& svg, const PlotArea& area, const LinePlot& plot, con
 }
 
 void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<std::string_view>& colors) {
-  double x = 70.0;
+  double x = kLeft;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     if (plot.series[i].is_line) {
       svg.line({x, 42.0}, {x + 16.0, 42.0}, fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", colors[i]));
@@ -122,9 +138,9 @@ std::string line_plot_svg(const LinePlot& plot) {
   SvgWriter svg(kWidth, kHeight, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
   svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
   svg.text({0.5 * kWidth, 20.0}, plot.title, "middle", "font-weight=\"600\" font-size=\"13\"");
-  const PlotArea area{{70.0, 58.0}, {kWidth - 90.0, kHeight - 112.0}, x.low, x.high, y.low, y.high};
-  draw_axis(svg, area, y, plot.is_log_y, false, plot.y_label);
-  draw_axis(svg, area, x, plot.is_log_x, true, plot.x_label);
+  const PlotArea area{{kLeft, 58.0}, {kWidth - kLeft - 20.0, kHeight - 112.0}, x.low, x.high, y.low, y.high};
+  draw_axis(svg, area, y, {}, plot.is_log_y, false, plot.y_label);
+  draw_axis(svg, area, x, plot.is_log_x ? mark_ticks(plot) : std::vector<double>{}, plot.is_log_x, true, plot.x_label);
   std::vector<std::string_view> colors;
   for (std::size_t i = 0; i < plot.series.size(); ++i) colors.push_back(ink::kSeries[i % ink::kSeries.size()]);
   for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(svg, area, plot, plot.series[i], colors[i]);

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::string_view kRule = "stroke=\"#d9d9d4\" stroke-width=\"1\"";
 constexpr std::string_view kAxis = "stroke=\"#555\" stroke-width=\"1\"";
+constexpr double kYNameOffset = 54.0;  // of the name from the axis: numbers stand between
 
 /// Linear interpolation in a table of colours that are evenly spaced over [0, 1].
 template <std::size_t N>
@@ -76,7 +77,7 @@ void draw_y_axis(SvgWriter& svg, const PlotArea& area, const std::vector<double>
     svg.line({area.corner.x(), area.y(tick)}, {right, area.y(tick)}, kRule);
     svg.text({area.corner.x() - 7.0, area.y(tick) + 4.0}, number_text(tick), "end");
   }
-  const Vec2 middle(area.corner.x() - 44.0, area.corner.y() + 0.5 * area.size.y());
+  const Vec2 middle(area.corner.x() - kYNameOffset, area.corner.y() + 0.5 * area.size.y());
   svg.text(middle, name, "middle", fmt::format("transform=\"rotate(-90 {:.2f} {:.2f})\"", middle.x(), middle.y()));
 }
 

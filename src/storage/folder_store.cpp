@@ -224,7 +224,7 @@ std::optional<StaticResult> FolderStore::load_stretched(const TissueModel& model
     }
     const nlohmann::ordered_json json = read_json(folder(Product::Stretched) / "deform.json");
     StaticResult result;
-    result.outcome = outcome_of(json.at("outcome").get<std::string>());
+    result.outcome = read_outcome(json, "outcome", folder(Product::Stretched) / "deform.json");
     result.state = rest_state(model);
     for (std::size_t v = 0; v < result.state.positions.size(); ++v) {
       result.state.positions[v] = Eigen::Map<const Vec3>(array->second.values.data() + 3 * v);

@@ -91,10 +91,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     const std::filesystem::path from = folder(product);
     const nlohmann::ordered_json json = read_json(from / "incision.json");
     IncisionResult incision;
-    const std::string ended = json.at("program_outcome");
-    for (const Outcome outcome : {Outcome::Success, Outcome::OpenLoop, Outcome::NotConverged, Outcome::ElementInverted}) {
-      if (ended == to_string(outcome)) incision.outcome = outcome;
-    }
+    incision.outcome = read_outcome(json, "program_outcome", from / "incision.json");
     if (!json.at("closed_loop").is_null()) incision.is_closed_loop = json.at("closed_loop").get<bool>();
     if (!json.at("gap_mm").is_null()) incision.gap_mm = json.at("gap_mm").get<double>();
     incision.gap_deg = json.at("gap_deg");

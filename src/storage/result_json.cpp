@@ -1,4 +1,7 @@
+#include <incise/core/error.hpp>
 #include <incise/storage/result_json.hpp>
+
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -155,6 +158,13 @@ Json to_json(const std::vector<StageReport>& stages) {
     json.push_back({{"name", to_string(stage.stage)}, {"state", to_string(stage.state)}, {"wall_s", stage.wall_s}});
   }
   return json;
+}
+
+Outcome read_outcome(const nlohmann::ordered_json& json, const char* key, const std::filesystem::path& file) {
+  const auto name = json.at(key).get<std::string>();
+  const std::optional<Outcome> outcome = parse_outcome(name);
+  if (!outcome) throw DataError(file, key, fmt::format("'{}'", name), "the name of an outcome");
+  return *outcome;
 }
 
 }  // namespace incise

@@ -14,5 +14,14 @@ TEST(Outcome, HasTheNamesThatFilesUse) {
   EXPECT_EQ(to_string(Outcome::Cancelled), "cancelled");
 }
 
+TEST(Outcome, IsReadBackFromItsNameAndFromNoOther) {
+  for (const Outcome outcome : {Outcome::Success, Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::NotConverged,
+                                Outcome::ElementInverted, Outcome::Cancelled}) {
+    EXPECT_EQ(parse_outcome(to_string(outcome)), outcome);
+  }
+  EXPECT_EQ(parse_outcome("Success"), std::nullopt);
+  EXPECT_EQ(parse_outcome(""), std::nullopt);
+}
+
 }  // namespace
 }  // namespace incise

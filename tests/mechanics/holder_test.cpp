@@ -194,6 +194,10 @@ TEST(Holder, SaysWhatIsWrongWithASurface) {
   TriMesh inside_out = boundary_surface(make_block(Vec3(5, 5, 5), {1, 1, 1}));
   for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
   EXPECT_THAT(refusal(inside_out), HasSubstr("inside out"));
+  TriMesh folded;
+  folded.vertices = {Vec3(0, 0, 0), Vec3(5, 0, 0), Vec3(0, 5, 0)};
+  folded.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{0}, VertexId{2}, VertexId{1}}};
+  EXPECT_THAT(refusal(folded), HasSubstr("face each other"));
 }
 
 TEST(Holder, RefusesASurfaceThatPassesThroughItselfWithTheTwoTriangles) {

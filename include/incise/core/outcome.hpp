@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 namespace incise {
@@ -27,12 +28,13 @@ enum class Outcome {
   return "unknown";
 }
 
-/// The outcome of that name. @returns NotConverged for a name that no version of this program writes.
-[[nodiscard]] constexpr Outcome outcome_of(std::string_view name) {
-  for (const Outcome outcome : {Outcome::Success, Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::ElementInverted, Outcome::Cancelled}) {
+/// The outcome of that name; nullopt for any other.
+[[nodiscard]] constexpr std::optional<Outcome> parse_outcome(std::string_view name) {
+  for (const Outcome outcome : {Outcome::Success, Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::NotConverged,
+                                Outcome::ElementInverted, Outcome::Cancelled}) {
     if (name == to_string(outcome)) return outcome;
   }
-  return Outcome::NotConverged;
+  return std::nullopt;
 }
 
 }  // namespace incise

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+
 namespace incise {
 
 /// Results as the JSON objects that files and `--json` hold; keys carry units and what was not measured is null.
@@ -19,5 +21,8 @@ namespace incise {
 [[nodiscard]] nlohmann::ordered_json to_json(const Compensation& compensation);
 [[nodiscard]] nlohmann::ordered_json plan_summary_json(const ToolPath& path);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<StageReport>& stages);
+
+/// The outcome that a result file names under `key`. @throws DataError naming the file for a name that is none.
+[[nodiscard]] Outcome read_outcome(const nlohmann::ordered_json& json, const char* key, const std::filesystem::path& file);
 
 }  // namespace incise
