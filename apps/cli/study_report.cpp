@@ -256,9 +256,10 @@ void add_kerf_plots(const fs::path& root, ReportData& data) {
     add_series(folder / "lag.csv", "arclength_mm", "drift_mm", cut.name, drift);
   }
   if (!depth.series.empty()) {
-    const std::vector<double>& way = depth.series.front().x;
+    double way = 0.0;
+    for (const LineSeries& series : depth.series) way = std::max(way, series.x.back());
     const double planned = read_json(root / kCuts[0].folder / "incision.json").at("depth_reached_mm").at("planned");
-    depth.series.push_back({"planned", {way.front(), way.back()}, {planned, planned}, true});
+    depth.series.push_back({"planned depth of the tip", {0.0, way}, {planned, planned}, true});
   }
   for (LinePlot& plot : {std::ref(depth), std::ref(lag), std::ref(drift)}) {
     if (!plot.series.empty()) data.kerf_plots.push_back(plot);

@@ -53,19 +53,21 @@ std::vector<std::uint8_t> check_record(const TissueModel& model, const CutState&
   for (std::size_t i = 0; i < removals.size(); ++i) {
     const Removal& r = removals[i];
     const bool is_unknown = !r.tet.is_valid() || r.tet.index() >= model.mesh.tets.size();
-    violations.add(is_unknown, unknown, "record: entry {} names tet {}, expected one of {}", i, r.tet.value, model.mesh.tets.size());
+    violations.add(is_unknown, unknown, "record: entry {} names tet {}, expected one of {}", i, r.tet.value,
+                   model.mesh.tets.size());
     if (is_unknown) continue;
-    violations.add(times_removed[r.tet.index()] != 0, twice, "record: tet {} was removed twice, again in entry {}", r.tet.value, i);
+    violations.add(times_removed[r.tet.index()] != 0, twice, "record: tet {} was removed twice, again in entry {}",
+                   r.tet.value, i);
     times_removed[r.tet.index()] = 1;
     violations.add(i > 0 && !is_ordered(removals[i - 1], r), disordered,
-                   "record: entry {} (step {}, tet {}) does not follow the one before it (step {}, tet {})", i, r.step, r.tet.value,
-                   removals[i > 0 ? i - 1 : 0].step, removals[i > 0 ? i - 1 : 0].tet.value);
+                   "record: entry {} (step {}, tet {}) does not follow the one before it (step {}, tet {})", i, r.step,
+                   r.tet.value, removals[i > 0 ? i - 1 : 0].step, removals[i > 0 ? i - 1 : 0].tet.value);
     const bool is_ahead = !(r.step >= 0 && r.step <= state.step && r.time_s >= 0.0 && r.time_s <= state.time_s);
-    violations.add(is_ahead, ahead, "record: entry {} is of step {}, {} s; the cut is at step {}, {} s", i, r.step, r.time_s, state.step,
-                   state.time_s);
+    violations.add(is_ahead, ahead, "record: entry {} is of step {}, {} s; the cut is at step {}, {} s", i, r.step,
+                   r.time_s, state.step, state.time_s);
     violations.add(r.rest_volume_mm3 != model.volumes_mm3[r.tet.index()], volume,
-                   "record: tet {} has a rest volume of {} mm³, recorded are {} mm³", r.tet.value, model.volumes_mm3[r.tet.index()],
-                   r.rest_volume_mm3);
+                   "record: tet {} has a rest volume of {} mm³, recorded are {} mm³", r.tet.value,
+                   model.volumes_mm3[r.tet.index()], r.rest_volume_mm3);
   }
   return times_removed;
 }
@@ -98,8 +100,8 @@ void check_positions(const TissueModel& model, const CutState& state, Violations
     violations.add(!(std::isfinite(time) && time >= 0.0), contact, "contact: tet {} was touched for {} s", tet, time);
     if (state.tissue.is_live[tet] == 0) continue;
     for (const VertexId v : model.mesh.tets[tet]) {
-      violations.add(!state.tissue.positions[v.index()].allFinite(), position, "positions: vertex {} of live tet {} is not finite",
-                     v.value, tet);
+      violations.add(!state.tissue.positions[v.index()].allFinite(), position,
+                     "positions: vertex {} of live tet {} is not finite", v.value, tet);
     }
   }
 }
@@ -109,11 +111,12 @@ void check_bonds(const TissueModel& model, const CutState& state, Violations& vi
   for (std::size_t i = 0; i < state.bonds.size(); ++i) {
     const Bond& bond = state.bonds[i];
     const bool is_unknown = !bond.tet.is_valid() || bond.tet.index() >= model.mesh.tets.size();
-    violations.add(is_unknown, unknown, "bonds: entry {} names tet {}, expected one of {}", i, bond.tet.value, model.mesh.tets.size());
+    violations.add(is_unknown, unknown, "bonds: entry {} names tet {}, expected one of {}", i, bond.tet.value,
+                   model.mesh.tets.size());
     if (is_unknown) continue;
     violations.add(state.tissue.is_live[bond.tet.index()] == 0, dead, "bonds: tet {} is held and gone", bond.tet.value);
-    violations.add(i > 0 && !(state.bonds[i - 1].tet < bond.tet), disordered, "bonds: tet {} does not follow tet {}", bond.tet.value,
-                   state.bonds[i > 0 ? i - 1 : 0].tet.value);
+    violations.add(i > 0 && !(state.bonds[i - 1].tet < bond.tet), disordered, "bonds: tet {} does not follow tet {}",
+                   bond.tet.value, state.bonds[i > 0 ? i - 1 : 0].tet.value);
     violations.add(!bond.offset_mm.allFinite(), offset, "bonds: the offset of tet {} is not finite", bond.tet.value);
   }
 }

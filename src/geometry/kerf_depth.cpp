@@ -18,10 +18,12 @@ void require_valid(const KerfDepthSettings& s, const Contour& course) {
                  fmt::format("expected a needle diameter above 0 mm, found {}", s.needle_diameter_mm));
   INCISE_REQUIRE(s.reach_mm > 0.5 * s.needle_diameter_mm && std::isfinite(s.reach_mm),
                  fmt::format("expected a reach above half the needle's diameter, found {} mm", s.reach_mm));
-  INCISE_REQUIRE(s.spacing_mm > 0.0 && std::isfinite(s.spacing_mm), fmt::format("expected a spacing above 0 mm, found {}", s.spacing_mm));
+  INCISE_REQUIRE(s.spacing_mm > 0.0 && std::isfinite(s.spacing_mm),
+                 fmt::format("expected a spacing above 0 mm, found {}", s.spacing_mm));
   INCISE_REQUIRE(s.pixel_mm > 0.0 && s.pixel_mm <= s.needle_diameter_mm,
                  fmt::format("expected pixels in (0, {}] mm, found {}", s.needle_diameter_mm, s.pixel_mm));
-  INCISE_REQUIRE(course.points.size() >= 2, fmt::format("expected a course of at least 2 points, found {}", course.points.size()));
+  INCISE_REQUIRE(course.points.size() >= 2,
+                 fmt::format("expected a course of at least 2 points, found {}", course.points.size()));
   for (std::size_t i = 0; i < course.points.size(); ++i) {
     INCISE_REQUIRE(course.points[i].allFinite(), fmt::format("point {} of the course is not finite", i));
   }
@@ -41,8 +43,10 @@ ScalarRaster depth_picture(const KerfInput& kerf, const ViewTets& tets, const Vi
     const SightLines tet(corners);
     const Vec2 first = grid.index_of(box.min().head<2>());
     const Vec2 last = grid.index_of(box.max().head<2>());
-    for (int j = std::max(0, static_cast<int>(std::ceil(first.y()))); j <= std::min(grid.height - 1, static_cast<int>(std::floor(last.y()))); ++j) {
-      for (int i = std::max(0, static_cast<int>(std::ceil(first.x()))); i <= std::min(grid.width - 1, static_cast<int>(std::floor(last.x()))); ++i) {
+    for (int j = std::max(0, static_cast<int>(std::ceil(first.y())));
+         j <= std::min(grid.height - 1, static_cast<int>(std::floor(last.y()))); ++j) {
+      for (int i = std::max(0, static_cast<int>(std::ceil(first.x())));
+           i <= std::min(grid.width - 1, static_cast<int>(std::floor(last.x()))); ++i) {
         const std::size_t pixel = grid.offset(i, j);
         if (skin.triangles[pixel] < 0) continue;
         const double top = skin.heights_mm[pixel];
@@ -58,11 +62,13 @@ ScalarRaster depth_picture(const KerfInput& kerf, const ViewTets& tets, const Vi
 double deepest_across(const ScalarRaster& depth, const Vec2& p, const Vec2& across, const KerfDepthSettings& settings) {
   const double step = 0.5 * depth.pixel_mm;
   const auto half = static_cast<int>(std::floor(settings.reach_mm / step));
-  const int window = std::min(2 * half + 1, std::max(1, static_cast<int>(std::lround(settings.needle_diameter_mm / step))));
+  const int window =
+      std::min(2 * half + 1, std::max(1, static_cast<int>(std::lround(settings.needle_diameter_mm / step))));
   std::vector<double> sum_before{0.0};
   for (int k = -half; k <= half; ++k) {
     const Vec2 at = depth.index_of(p + k * step * across);
-    sum_before.push_back(sum_before.back() + depth.at_or(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())), 0.0));
+    sum_before.push_back(sum_before.back() + depth.at_or(static_cast<int>(std::lround(at.x())),
+                                                         static_cast<int>(std::lround(at.y())), 0.0));
   }
   double deepest = 0.0;
   for (std::size_t end = static_cast<std::size_t>(window); end < sum_before.size(); ++end) {

@@ -70,7 +70,8 @@ Manifoldness manifoldness_of(std::span<const Triangle> triangles) {
   fans_at.erase(std::unique(fans_at.begin(), fans_at.end()), fans_at.end());
   for (std::size_t i = 0, end = 0; i < fans_at.size(); i = end) {
     while (end < fans_at.size() && fans_at[end].first == fans_at[i].first) ++end;
-    if (end - i > 1 && !std::binary_search(on_bad_edge.begin(), on_bad_edge.end(), fans_at[i].first)) ++found.pinched_vertices;
+    if (end - i > 1 && !std::binary_search(on_bad_edge.begin(), on_bad_edge.end(), fans_at[i].first))
+      ++found.pinched_vertices;
   }
   return found;
 }

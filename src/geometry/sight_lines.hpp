@@ -21,7 +21,8 @@ class SightLines {
     if (!is_flat_) barycentric_ = homogeneous.inverse();
   }
 
-  /// The part of the line of sight through (x, y) that lies within the tet and between two heights; empty (high < low) if there is none.
+  /// The part of the line of sight through (x, y) that lies within the tet and between two heights; empty (high < low)
+  /// if there is none.
   struct Span {
     double low = 0.0;
     double high = -1.0;

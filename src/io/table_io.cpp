@@ -31,14 +31,16 @@ std::string joined(const std::vector<std::string_view>& names) {
 }
 
 /// Where the names are among the header's columns.
-std::vector<std::size_t> find_columns(const std::vector<std::string_view>& header, const std::vector<std::string>& names,
-                                      const std::filesystem::path& path, std::size_t line) {
+std::vector<std::size_t> find_columns(const std::vector<std::string_view>& header,
+                                      const std::vector<std::string>& names, const std::filesystem::path& path,
+                                      std::size_t line) {
   std::vector<std::size_t> places;
   for (const std::string& name : names) {
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end()) {
       throw DataError(path, fmt::format("line {}", line), fmt::format("the header '{}'", joined(header)),
-                      fmt::format("a header with the column {}", name), fmt::format("The first line reads {}.", fmt::join(names, ",")));
+                      fmt::format("a header with the column {}", name),
+                      fmt::format("The first line reads {}.", fmt::join(names, ",")));
     }
     places.push_back(static_cast<std::size_t>(found - header.begin()));
   }
@@ -47,7 +49,8 @@ std::vector<std::size_t> find_columns(const std::vector<std::string_view>& heade
 
 }  // namespace
 
-std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& path, const std::vector<std::string>& names) {
+std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& path,
+                                                  const std::vector<std::string>& names) {
   const std::string text = read_text(path);
   std::string_view rest = text;
   if (rest.rfind("\xEF\xBB\xBF", 0) == 0) rest.remove_prefix(3);  // byte order mark
@@ -78,7 +81,8 @@ std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& p
       columns[k].push_back(*value);
     }
   }
-  if (width == 0) throw DataError(path, "", "an empty file", fmt::format("a header {} and rows", fmt::join(names, ",")));
+  if (width == 0)
+    throw DataError(path, "", "an empty file", fmt::format("a header {} and rows", fmt::join(names, ",")));
   return columns;
 }
 
@@ -89,13 +93,15 @@ void write_csv_columns(const std::filesystem::path& path, const std::vector<Name
   for (const auto& [name, values] : columns) {
     INCISE_REQUIRE(!name.empty() && name.find_first_of(",\"\r\n") == std::string::npos,
                    fmt::format("expected column names without comma, quote or line end, found '{}'", name));
-    INCISE_REQUIRE(values.size() == rows, fmt::format("expected {} values in '{}', found {}", rows, name, values.size()));
+    INCISE_REQUIRE(values.size() == rows,
+                   fmt::format("expected {} values in '{}', found {}", rows, name, values.size()));
     text += (text.empty() ? "" : ",") + name;
   }
   for (std::size_t i = 0; i < rows; ++i) {
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const double value = columns[k].second[i];
-      INCISE_REQUIRE(std::isfinite(value), fmt::format("expected finite numbers, found {} in {} at point {}", value, columns[k].first, i));
+      INCISE_REQUIRE(std::isfinite(value),
+                     fmt::format("expected finite numbers, found {} in {} at point {}", value, columns[k].first, i));
       text += k == 0 ? "\n" : ",";
       text += io_detail::number_text(value);
     }

@@ -12,6 +12,8 @@
 namespace incise {
 namespace {
 
+constexpr double kBeyondWallMm = 4.0;  // beside the mid-line, live tissue is looked for this far behind the kerf's mean wall, which is rough
+
 /// The middle of what a ring runs round: the tumour if there is one, else the path.
 Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
   return curve_centroid(tumor_edge.points.empty() ? entry_contour(path) : tumor_edge);
@@ -86,7 +88,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
   measures.drag = tissue_drag(model, stretched.positions, path, settings, result.record);
   measures.deep_margin = deep_margin(measures.body, measures.depth, settings);
   if (result.centerline) {
-    measures.final_centerline = carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm, settings.approach, model.mesh,
+    measures.final_centerline = carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
                                                   tissue.is_live, stretched.positions, tissue.positions);
   }
   if (path.tumor_edge.points.size() < 3) return;

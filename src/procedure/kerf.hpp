@@ -23,10 +23,11 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
 /// @throws InvalidArgument for a tumour surface that does not enclose a volume.
 [[nodiscard]] std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& depth, const IncisionSettings& settings);
 
-/// A curve on the kerf, moved from one configuration to the other with the live tissue next to it. On a mid-line, which lies in the gap, the
-/// displacement is the mean of those `beside_mm` to its left and right; for a curve on the skin it is 0. nullopt: no live tissue within
-/// 1 mm of one of the places.
-[[nodiscard]] std::optional<Contour> carried_with_live(const Contour& curve, double beside_mm, const Vec3& approach, const TetMesh& mesh,
+/// A curve on the kerf, moved from one configuration to the other with the live tissue next to it.
+/// @param reach_mm  0: the curve lies on the skin. Else it lies in the gap, and moves by the mean displacement of the live tissue that comes
+///                  first to its left and to its right, looked for this far.
+/// @returns nullopt where there is no live tissue within 1 mm of a curve on the skin, or within reach of one in the gap.
+[[nodiscard]] std::optional<Contour> carried_with_live(const Contour& curve, double reach_mm, const Vec3& approach, const TetMesh& mesh,
                                                        std::span<const std::uint8_t> is_live, std::span<const Vec3> from,
                                                        std::span<const Vec3> to);
 

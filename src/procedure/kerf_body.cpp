@@ -8,8 +8,11 @@
 namespace incise {
 namespace {
 
-constexpr double kOnLiveTissueMm = 1.0;  // tissue that lies farther off does not tell where a curve on the kerf went
-constexpr double kBesideGapMm = 0.3;     // farther than half the mean width, because a kerf of whole tets is rough
+constexpr double kOnSkinMm = 1.0;       // tissue that lies farther off does not tell where a curve on the skin went
+constexpr double kAcrossStepMm = 0.25;  // in which tissue is looked for across a gap, and how near it has to be
+constexpr double kDirectionMm =
+    2.0;  // to both sides: length that gives a mid-line's direction, free of the mesh's grain
+constexpr double kBelowSkinMm = 0.5;  // there, so that a straight line across stays in the tissue where the skin slopes
 
 /// The triangles with the vertices that they use, in order of first use.
 TriMesh with_own_vertices(std::span<const BoundaryFace> faces, std::span<const Vec3> positions) {
@@ -75,8 +78,9 @@ std::vector<KerfLayer> kerf_layers(const KerfInput& kerf, const ToolPath& path, 
   return layers;
 }
 
-std::optional<Contour> carried_with_live(const Contour& curve, double beside_mm, const Vec3& approach, const TetMesh& mesh,
-                                         std::span<const std::uint8_t> is_live, std::span<const Vec3> from, std::span<const Vec3> to) {
+std::optional<Contour> carried_with_live(const Contour& curve, double reach_mm, const Vec3& approach,
+                                         const TetMesh& mesh, std::span<const std::uint8_t> is_live,
+                                         std::span<const Vec3> from, std::span<const Vec3> to) {
   TetMesh live;
   live.vertices.assign(from.begin(), from.end());
   for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
@@ -84,26 +88,34 @@ std::optional<Contour> carried_with_live(const Contour& curve, double beside_mm,
   }
   if (live.tets.empty()) return std::nullopt;
   const TetLocator locator(live, from);
-  const auto displacement = [&](const Vec3& p) -> std::optional<Vec3> {
-    const auto point = locator.locate(p, kOnLiveTissueMm);
+  const auto displacement = [&](const Vec3& p, double tolerance_mm) -> std::optional<Vec3> {
+    const auto point = locator.locate(p, tolerance_mm);
     if (!point) return std::nullopt;
     return position_of(*point, live, to) - position_of(*point, live, from);
   };
+  const auto first_across = [&](const Vec3& p, const Vec3& direction) -> std::optional<Vec3> {
+    for (double s = 0.0; s <= reach_mm; s += kAcrossStepMm) {
+      if (const auto u = displacement(p + kBelowSkinMm * approach + s * direction, kAcrossStepMm)) return u;
+    }
+    return std::nullopt;
+  };
   const std::size_t n = curve.points.size();
+  const std::size_t apart =
+      std::min(n / 8, static_cast<std::size_t>(kDirectionMm / length_mm(curve) * static_cast<double>(n))) + 1;
   Contour moved{{}, curve.is_closed};
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3& p = curve.points[i];
-    if (beside_mm == 0.0) {
-      const auto u = displacement(p);
+    if (reach_mm == 0.0) {
+      const auto u = displacement(p, kOnSkinMm);
       if (!u) return std::nullopt;
       moved.points.push_back(p + *u);
       continue;
     }
-    const std::size_t before = i > 0 ? i - 1 : (curve.is_closed ? n - 1 : 0);
-    const std::size_t after = i + 1 < n ? i + 1 : (curve.is_closed ? 0 : i);
+    const std::size_t before = curve.is_closed ? (i + n - apart) % n : i - std::min(i, apart);
+    const std::size_t after = curve.is_closed ? (i + apart) % n : std::min(i + apart, n - 1);
     const Vec3 left = -approach.cross(curve.points[after] - curve.points[before]).normalized();
-    const auto on_left = displacement(p + (beside_mm + kBesideGapMm) * left);
-    const auto on_right = displacement(p - (beside_mm + kBesideGapMm) * left);
+    const auto on_left = first_across(p, left);
+    const auto on_right = first_across(p, -left);
     if (!on_left || !on_right) return std::nullopt;
     moved.points.push_back(p + 0.5 * (*on_left + *on_right));
   }

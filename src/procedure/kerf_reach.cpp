@@ -22,7 +22,8 @@ class Nearest {
  public:
   explicit Nearest(const Vec3& approach) : approach_(approach) {}
 
-  /// @param outward  from the tumour's surface to the kerf, or, where the kerf is within the tumour, from it to the surface.
+  /// @param outward  from the tumour's surface to the kerf, or, where the kerf is within the tumour, from it to the
+  /// surface.
   void add(const Vec3& outward, bool is_inside) {
     const double length = outward.norm();
     const double distance = is_inside ? -length : length;
@@ -51,7 +52,8 @@ bool is_within(const Vec3& p, const SurfaceQuery& surface, const Box3& bounds, c
 DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings) {
   DepthReached result;
   for (const Waypoint& waypoint : path.waypoints) {
-    result.planned_mm += waypoint.depth_mm * waypoint.axis.dot(settings.approach) / static_cast<double>(path.waypoints.size());
+    result.planned_mm +=
+        waypoint.depth_mm * waypoint.axis.dot(settings.approach) / static_cast<double>(path.waypoints.size());
   }
   KerfDepthSettings depth;
   depth.needle_diameter_mm = settings.needle.diameter_mm;
@@ -62,7 +64,8 @@ DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const In
   return result;
 }
 
-std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& depth, const IncisionSettings& settings) {
+std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& depth,
+                                      const IncisionSettings& settings) {
   const TriMesh& tumor = settings.tumor_surface;
   if (tumor.triangles.empty() || body.surface.triangles.empty()) return std::nullopt;
   const double volume = enclosed_volume_mm3(tumor);

@@ -24,11 +24,12 @@ class Course {
 
   [[nodiscard]] double arclength_mm(double time_s) const { return speed_mm_s_ * (on_path(time_s) - begin_s_); }
 
-  /// Unit direction of the tip's motion at a time: while it plunges, that in which it sets out; once it stands, that in which it came.
-  /// nullopt if the tip does not move.
+  /// Unit direction of the tip's motion at a time: while it plunges, that in which it sets out; once it stands, that in
+  /// which it came. nullopt if the tip does not move.
   [[nodiscard]] std::optional<Vec3> direction(double time_s) const {
     for (double span = least_span_s_; span < 2.0 * (end_s_ - begin_s_); span *= 2.0) {
-      const Vec3 moved = program_.pose_at(on_path(time_s + span)).tip_mm - program_.pose_at(on_path(time_s - span)).tip_mm;
+      const Vec3 moved =
+          program_.pose_at(on_path(time_s + span)).tip_mm - program_.pose_at(on_path(time_s - span)).tip_mm;
       if (moved.norm() > 1e-9) return moved.normalized();
     }
     return std::nullopt;
@@ -88,7 +89,8 @@ std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const 
   for (std::size_t i = 0, end = 0; i < removals.size(); i = end) {
     StepSum step;
     for (; end < removals.size() && removals[end].step == removals[i].step; ++end) {
-      if (removals[end].cause == RemovalCause::LooseFragment) continue;  // it went with its surroundings, not with the tool
+      if (removals[end].cause == RemovalCause::LooseFragment)
+        continue;  // it went with its surroundings, not with the tool
       Vec3 place = Vec3::Zero();
       for (const VertexId v : model.mesh.tets[removals[end].tet.index()]) place += 0.25 * stretched[v.index()];
       step.volume_mm3 += removals[end].rest_volume_mm3;

@@ -13,7 +13,7 @@ inline const Vec3 kSteel(0.62, 0.66, 0.70);
 
 /// How large a millimetre is in frame_png, for lengths across the line of sight (the picture has no perspective).
 /// @pre, @throws as frame_png.
-[[nodiscard]] double frame_px_per_mm(const ReportAnimation& animation, std::size_t frame, const Vec3& approach, int width_px,
-                                     int height_px);
+[[nodiscard]] double frame_px_per_mm(const ReportAnimation& animation, std::size_t frame, const Vec3& approach,
+                                     int width_px, int height_px);
 
 }  // namespace incise

@@ -25,9 +25,13 @@ std::optional<Value> optional_at(const Json& json, const char* key) {
   return json.at(key).get<Value>();
 }
 
-Json spread_json(const Spread& spread) { return {{"mean", spread.mean}, {"min", spread.min}, {"max", spread.max}}; }
+Json spread_json(const Spread& spread) {
+  return {{"mean", spread.mean}, {"min", spread.min}, {"max", spread.max}};
+}
 
-Spread spread_from(const Json& json) { return {json.at("mean"), json.at("min"), json.at("max")}; }
+Spread spread_from(const Json& json) {
+  return {json.at("mean"), json.at("min"), json.at("max")};
+}
 
 Json summary_json(const std::optional<Summary>& summary) {
   if (!summary) return nullptr;
@@ -71,7 +75,9 @@ DeepMargin deep_margin_from(const Json& json) {
           spread_from(json.at("floor_below"))};
 }
 
-std::string layer_file(double depth_mm) { return fmt::format("centerline_{}mm.csv", depth_mm); }
+std::string layer_file(double depth_mm) {
+  return fmt::format("centerline_{}mm.csv", depth_mm);
+}
 
 void write_if_there(const std::filesystem::path& file, const std::optional<Contour>& contour) {
   if (contour) write_contour_csv(file, *contour);
@@ -98,8 +104,8 @@ DepthReached depth_from(const std::filesystem::path& folder, const Json& json, b
 
 TissueDrag drag_from(const std::filesystem::path& folder, const Json& json) {
   std::vector<std::vector<double>> columns = read_csv_columns(folder / "lag.csv", kLagColumns);
-  return {std::move(columns[0]), std::move(columns[1]), std::move(columns[2]), std::move(columns[3]),
-          spread_from(json.at("lag_mm")), spread_from(json.at("drift_mm"))};
+  return {std::move(columns[0]), std::move(columns[1]),          std::move(columns[2]),
+          std::move(columns[3]), spread_from(json.at("lag_mm")), spread_from(json.at("drift_mm"))};
 }
 
 }  // namespace
@@ -110,7 +116,8 @@ void add_kerf_json(Json& json, const SimulatedCut& cut) {
   json["kerf"]["volume_mm3"] = kerf.body.volume_mm3;
   json["live_skin"] = manifoldness_json(kerf.body.live_skin);
   json["layers"] = Json::array();
-  for (std::size_t i = 0; i < kerf.layers.size(); ++i) json["layers"].push_back(layer_json(kerf.layers[i], cut.layers.at(i)));
+  for (std::size_t i = 0; i < kerf.layers.size(); ++i)
+    json["layers"].push_back(layer_json(kerf.layers[i], cut.layers.at(i)));
   json["depth_reached_mm"] = spread_json(kerf.depth.depth_mm);
   json["depth_reached_mm"]["planned"] = kerf.depth.planned_mm;
   json["lag_mm"] = kerf.drag ? spread_json(kerf.drag->lag) : Json(nullptr);
@@ -125,8 +132,9 @@ void add_kerf_json(Json& json, const SimulatedCut& cut) {
 void write_kerf_files(const std::filesystem::path& folder, const KerfMeasures& kerf) {
   if (!kerf.body.surface.triangles.empty()) write_vtp(folder / "kerf.vtp", kerf.body.surface);
   for (const KerfLayer& layer : kerf.layers) write_if_there(folder / layer_file(layer.depth_mm), layer.centerline);
-  write_contour_csv(folder / "depth.csv", kerf.depth.profile.course,
-                    {{kDepthColumns[3], kerf.depth.profile.arclength_mm}, {kDepthColumns[4], kerf.depth.profile.depth_mm}});
+  write_contour_csv(
+      folder / "depth.csv", kerf.depth.profile.course,
+      {{kDepthColumns[3], kerf.depth.profile.arclength_mm}, {kDepthColumns[4], kerf.depth.profile.depth_mm}});
   if (kerf.drag) {
     write_csv_columns(folder / "lag.csv", {{kLagColumns[0], kerf.drag->time_s},
                                            {kLagColumns[1], kerf.drag->arclength_mm},

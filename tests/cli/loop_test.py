@@ -11,8 +11,7 @@ import small_case
 from command import COMMAND, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
 CUT_FILES = {"incision.json", "centerline.csv", "inner_edge.csv", "frames.pvd", "removed.vtu", "manifest.json",
-             "kerf.vtp", "depth.csv", "lag.csv", "centerline_1mm.csv", "centerline_2.5mm.csv", "centerline_final.csv",
-             "inner_edge_reference.csv"}
+             "kerf.vtp", "depth.csv", "lag.csv", "centerline_1mm.csv", "centerline_2.5mm.csv", "inner_edge_reference.csv"}
 KERF_MEASURES = ("kerf", "live_skin", "layers", "depth_reached_mm", "lag_mm", "drift_mm", "deep_margin_mm")
 
 

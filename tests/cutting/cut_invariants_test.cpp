@@ -18,7 +18,9 @@ struct Cut {
   std::size_t violations_on_the_way = 0;
 };
 
-ToolPose at(double x) { return {Vec3(x, 3.1, 2.0), -Vec3::UnitZ()}; }
+ToolPose at(double x) {
+  return {Vec3(x, 3.1, 2.0), -Vec3::UnitZ()};
+}
 
 const Cut& cut() {
   static const Cut made = [] {
@@ -31,7 +33,8 @@ const Cut& cut() {
     CutSettings settings;
     settings.dullness = 4.0;
     for (int i = 1; i <= 12; ++i) {
-      static_cast<void>(advance(c.model, settings, Needle{}, c.state, workspace, at(3.2 + 0.25 * i), settings.reference_step_s, workers));
+      static_cast<void>(advance(c.model, settings, Needle{}, c.state, workspace, at(3.2 + 0.25 * i),
+                                settings.reference_step_s, workers));
       c.violations_on_the_way += cut_invariants(c.model, c.state).size();
     }
     return c;
@@ -63,27 +66,33 @@ TEST(CutInvariants, SeeATetThatVanishedWithoutARecord) {
 }
 
 TEST(CutInvariants, SeeARemovedTetThatLives) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.tissue.is_live[s.record.removals[0].tet.index()] = 1; }), "in the record and live"));
+  EXPECT_TRUE(says(found_after([](CutState& s) { s.tissue.is_live[s.record.removals[0].tet.index()] = 1; }),
+                   "in the record and live"));
 }
 
 TEST(CutInvariants, SeeATetThatWasRemovedTwice) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.record.removals.push_back(s.record.removals.front()); }), "was removed twice"));
+  EXPECT_TRUE(says(found_after([](CutState& s) { s.record.removals.push_back(s.record.removals.front()); }),
+                   "was removed twice"));
 }
 
 TEST(CutInvariants, SeeATetThatTheMeshDoesNotHave) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.record.removals.front().tet = TetId(1000000); }), "names tet 1000000"));
+  EXPECT_TRUE(
+      says(found_after([](CutState& s) { s.record.removals.front().tet = TetId(1000000); }), "names tet 1000000"));
 }
 
 TEST(CutInvariants, SeeARecordOutOfOrder) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { std::swap(s.record.removals.front(), s.record.removals.back()); }), "does not follow"));
+  EXPECT_TRUE(says(found_after([](CutState& s) { std::swap(s.record.removals.front(), s.record.removals.back()); }),
+                   "does not follow"));
 }
 
 TEST(CutInvariants, SeeAWrongRestVolume) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.record.removals.front().rest_volume_mm3 *= 1.0 + 1e-12; }), "has a rest volume of"));
+  EXPECT_TRUE(says(found_after([](CutState& s) { s.record.removals.front().rest_volume_mm3 *= 1.0 + 1e-12; }),
+                   "has a rest volume of"));
 }
 
 TEST(CutInvariants, SeeARemovalAheadOfItsTime) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.record.removals.back().time_s = s.time_s + 0.01; }), "the cut is at step"));
+  EXPECT_TRUE(
+      says(found_after([](CutState& s) { s.record.removals.back().time_s = s.time_s + 0.01; }), "the cut is at step"));
 }
 
 TEST(CutInvariants, SeeLostVolume) {
@@ -113,7 +122,8 @@ TEST(CutInvariants, SeeAContactTimeThatIsNoTime) {
 }
 
 TEST(CutInvariants, SeeABondToWhatIsGone) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.bonds.front().tet = s.record.removals.front().tet; }), "is held and gone"));
+  EXPECT_TRUE(
+      says(found_after([](CutState& s) { s.bonds.front().tet = s.record.removals.front().tet; }), "is held and gone"));
 }
 
 TEST(CutInvariants, SeeBondsOutOfOrder) {

@@ -24,7 +24,9 @@ KerfInput carved(const std::vector<Box3>& boxes) {
 }
 
 /// A straight course over the top of the block.
-Contour course(double y) { return {{Vec3(2, y, 5), Vec3(18, y, 5)}, false}; }
+Contour course(double y) {
+  return {{Vec3(2, y, 5), Vec3(18, y, 5)}, false};
+}
 
 /// A trench of 1 mm width round y = 4 from x = 0 to 10, 3 mm deep.
 const Box3 kTrench(Vec3(0, 3.5, 2), Vec3(10, 4.5, 5));
@@ -66,7 +68,8 @@ TEST(KerfDepth, RefusesWhatItCannotMeasure) {
   settings.reach_mm = 0.4;
   EXPECT_THROW(static_cast<void>(depth_along(carved({kTrench}), course(4.0), settings)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(depth_along(carved({kTrench}), Contour{{Vec3(1, 1, 5)}, false})), InvalidArgument);
-  EXPECT_THROW(static_cast<void>(depth_along(carved({kTrench}), Contour{{Vec3(1, 1, 5), Vec3(1, 1, 5)}, false})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(depth_along(carved({kTrench}), Contour{{Vec3(1, 1, 5), Vec3(1, 1, 5)}, false})),
+               InvalidArgument);
 }
 
 }  // namespace

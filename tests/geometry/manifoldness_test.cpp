@@ -12,18 +12,22 @@ std::vector<Triangle> skin_of_cells(const std::vector<std::array<int, 2>>& cells
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     Vec3 middle = Vec3::Zero();
     for (const VertexId v : mesh.tets[t]) middle += 0.25 * vertex(mesh.vertices, v);
-    for (const auto& [i, j] : cells) is_live[t] |= static_cast<int>(middle.x()) == i && static_cast<int>(middle.y()) == j ? 1 : 0;
+    for (const auto& [i, j] : cells)
+      is_live[t] |= static_cast<int>(middle.x()) == i && static_cast<int>(middle.y()) == j ? 1 : 0;
   }
   std::vector<Triangle> triangles;
   for (const BoundaryFace& face : boundary_faces(mesh, is_live)) triangles.push_back(face.corners);
   return triangles;
 }
 
-Triangle triangle(std::size_t a, std::size_t b, std::size_t c) { return {VertexId(a), VertexId(b), VertexId(c)}; }
+Triangle triangle(std::size_t a, std::size_t b, std::size_t c) {
+  return {VertexId(a), VertexId(b), VertexId(c)};
+}
 
 /// The four faces of a tet with these corners.
 void add_tet(std::vector<Triangle>& triangles, std::array<std::size_t, 4> c) {
-  triangles.insert(triangles.end(), {triangle(c[1], c[2], c[3]), triangle(c[0], c[3], c[2]), triangle(c[0], c[1], c[3]), triangle(c[0], c[2], c[1])});
+  triangles.insert(triangles.end(), {triangle(c[1], c[2], c[3]), triangle(c[0], c[3], c[2]), triangle(c[0], c[1], c[3]),
+                                     triangle(c[0], c[2], c[1])});
 }
 
 TEST(Manifoldness, TheSkinOfABlockIsAClosedManifold) {
@@ -51,7 +55,9 @@ TEST(Manifoldness, TetsThatTouchInAVertexPinchIt) {
   EXPECT_EQ(manifoldness_of(triangles), (Manifoldness{8, 0, 0, 1}));
 }
 
-TEST(Manifoldness, NothingHasNoFlaw) { EXPECT_TRUE(manifoldness_of({}).is_closed_manifold()); }
+TEST(Manifoldness, NothingHasNoFlaw) {
+  EXPECT_TRUE(manifoldness_of({}).is_closed_manifold());
+}
 
 }  // namespace
 }  // namespace incise

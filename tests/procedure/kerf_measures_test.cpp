@@ -42,8 +42,9 @@ IncisionSettings coarse_settings() {
 }
 
 const TissueModel& block() {
-  static const TissueModel model = make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), Material{},
-                                                     {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
+  static const TissueModel model =
+      make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), Material{},
+                        {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
   return model;
 }
 
@@ -60,7 +61,8 @@ const IncisionResult& frozen_ring() {
 TEST(KerfMeasures, TheKerfsSurfaceEnclosesTheRemovedTets) {
   const KerfBody& body = frozen_ring().kerf.body;
   ASSERT_GT(frozen_ring().record.removals.size(), 100U);
-  EXPECT_NEAR(body.volume_mm3, frozen_ring().record.removed_volume_mm3(), 1e-9 * body.volume_mm3) << "nothing is stretched here";
+  EXPECT_NEAR(body.volume_mm3, frozen_ring().record.removed_volume_mm3(), 1e-9 * body.volume_mm3)
+      << "nothing is stretched here";
   EXPECT_EQ(body.boundary.open_edges, 0U);
   EXPECT_EQ(body.live_skin.open_edges, 0U);
   EXPECT_EQ(body.boundary.triangles, body.surface.triangles.size());
@@ -71,11 +73,13 @@ TEST(KerfMeasures, TheVolumeIsThatOfTheConfigurationInWhichTheKerfIsMeasured) {
   for (Vec3& p : doubled) p.x() *= 2.0;
   std::vector<std::uint8_t> is_live(block().mesh.tets.size(), 1);
   is_live[100] = is_live[101] = 0;
-  EXPECT_NEAR(kerf_body(block(), doubled, is_live).volume_mm3, 2.0 * (block().volumes_mm3[100] + block().volumes_mm3[101]), 1e-9);
+  EXPECT_NEAR(kerf_body(block(), doubled, is_live).volume_mm3,
+              2.0 * (block().volumes_mm3[100] + block().volumes_mm3[101]), 1e-9);
 }
 
 TEST(KerfMeasures, TissueThatHangsByAnEdgeIsCountedOnItsSkin) {
-  const TissueModel model = make_tissue_model(make_block({2, 2, 1}, {2, 2, 1}), Material{}, {FixedConstraint{EndRegion{Vec3::UnitX(), 0.1}}});
+  const TissueModel model =
+      make_tissue_model(make_block({2, 2, 1}, {2, 2, 1}), Material{}, {FixedConstraint{EndRegion{Vec3::UnitX(), 0.1}}});
   std::vector<std::uint8_t> is_live(model.mesh.tets.size(), 0);
   for (std::size_t t = 0; t < is_live.size(); ++t) {
     Vec3 middle = Vec3::Zero();
@@ -94,7 +98,8 @@ TEST(KerfMeasures, EachLayerOfAnUndraggedRingHasItsMidLineOnThePath) {
     EXPECT_TRUE(*layer.is_closed);
     double radius = 0.0;
     for (const Vec3& p : layer.centerline->points) {
-      radius += std::hypot(p.x() - kMiddle.x(), p.y() - kMiddle.y()) / static_cast<double>(layer.centerline->points.size());
+      radius +=
+          std::hypot(p.x() - kMiddle.x(), p.y() - kMiddle.y()) / static_cast<double>(layer.centerline->points.size());
       EXPECT_NEAR(p.z(), 8.0 - layer.depth_mm, 1e-6);
     }
     EXPECT_NEAR(radius, kRadiusMm, 0.15) << layer.depth_mm;  // an eighth of the cells' edge
@@ -133,10 +138,11 @@ TEST(KerfMeasures, AMidLineMovesWithTheTissueOnBothItsSides) {
   for (Vec3& p : parted) {
     if (std::hypot(p.x() - kMiddle.x(), p.y() - kMiddle.y()) < kRadiusMm) p.z() += 1.0;
   }
-  const auto moved = carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm, kDown, block().mesh,
-                                       result.final_state.tissue.is_live, block().mesh.vertices, parted);
+  const auto moved = carried_with_live(*result.centerline, 4.0, kDown, block().mesh, result.final_state.tissue.is_live,
+                                       block().mesh.vertices, parted);
   ASSERT_TRUE(moved);
-  for (const Vec3& p : moved->points) EXPECT_NEAR(p.z(), 8.5, 0.3) << "tets at the kerf's rough wall extrapolate a little";
+  for (const Vec3& p : moved->points)
+    EXPECT_NEAR(p.z(), 8.5, 0.3) << "tets at the kerf's rough wall extrapolate a little";
 }
 
 TEST(KerfMeasures, UndraggedTissueHasNeitherLagNorDrift) {
@@ -157,7 +163,8 @@ TissueDrag drag_of_one(const ToolPath& path, double time_s, const Vec3& u, Remov
 
 TEST(TissueDrag, OfAnOpenCutIsAheadAndToTheLeft) {
   const double speed = coarse_settings().cut.speed_mm_s;
-  const TissueDrag drag = drag_of_one(line(), (4.0 + 5.0) / speed, Vec3(0.3, -0.2, 0.1));  // 4 mm of plunge, 5 mm of way
+  const TissueDrag drag =
+      drag_of_one(line(), (4.0 + 5.0) / speed, Vec3(0.3, -0.2, 0.1));  // 4 mm of plunge, 5 mm of way
   ASSERT_EQ(drag.lag_mm.size(), 1U);
   EXPECT_NEAR(drag.lag_mm[0], 0.3, 1e-12);
   EXPECT_NEAR(drag.drift_mm[0], -0.2, 1e-12);
@@ -167,7 +174,8 @@ TEST(TissueDrag, OfAnOpenCutIsAheadAndToTheLeft) {
 TEST(TissueDrag, OfARingIsPositiveOutwardsWhicheverWayItRuns) {
   for (const double turn : {1.0, -1.0}) {
     const double quarter = 32.0 * 2.0 * kRadiusMm * std::sin(M_PI / 32.0) / 4.0;
-    const TissueDrag drag = drag_of_one(ring(4.0, turn), (4.0 + quarter) / coarse_settings().cut.speed_mm_s, Vec3(0.0, turn * 0.4, 0.0));
+    const TissueDrag drag =
+        drag_of_one(ring(4.0, turn), (4.0 + quarter) / coarse_settings().cut.speed_mm_s, Vec3(0.0, turn * 0.4, 0.0));
     ASSERT_EQ(drag.drift_mm.size(), 1U);
     EXPECT_NEAR(drag.drift_mm[0], 0.4, 1e-3) << turn;
     EXPECT_NEAR(drag.lag_mm[0], 0.0, 1e-3) << turn;

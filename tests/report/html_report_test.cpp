@@ -111,7 +111,9 @@ TEST(HtmlReport, OfNothingSaysWhatIsMissing) {
 
 TEST(HtmlReport, ShowsWhatIsKnownOfTheKerf) {
   ReportData data;
-  data.kerf_plots.push_back({.title = "Depth of the kerf (simulated)", .x_label = "way, mm", .y_label = "depth, mm", .series = {{"as planned", {0, 1}, {4, 5}, true}}});
+  LinePlot depth{.title = "Depth of the kerf (simulated)", .x_label = "way, mm", .y_label = "depth, mm", .series = {}};
+  depth.series.push_back({"as planned", {0, 1}, {4, 5}, true});
+  data.kerf_plots.push_back(depth);
   data.kerf_layers = {"Mid-line by depth", {"cut", "depth, mm"}, {{"as planned", "2.50"}}};
   const std::string page = html_report(data);
   EXPECT_EQ(nesting_problem(page), "");

@@ -46,7 +46,8 @@ TEST_F(TumorSurface, DrawnOnTheTissueAsScannedIsCarriedAlong) {
 }
 
 TEST_F(TumorSurface, WithoutAnEdgeIsTakenAsItLies) {
-  EXPECT_EQ(tumor_in_stretched(settings_, model_, stretched_, box(Vec3(8, 8, 5)), std::nullopt).vertices, box(Vec3(8, 8, 5)).vertices);
+  EXPECT_EQ(tumor_in_stretched(settings_, model_, stretched_, box(Vec3(8, 8, 5)), std::nullopt).vertices,
+            box(Vec3(8, 8, 5)).vertices);
 }
 
 TEST_F(TumorSurface, FarFromTheTissueIsRefusedByVertex) {

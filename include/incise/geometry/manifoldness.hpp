@@ -7,8 +7,8 @@
 
 namespace incise {
 
-/// Where a set of triangles fails to be a closed manifold surface. All 0: every edge has two triangles and those round every vertex form
-/// one closed fan. The skin of whole tets is without open edges, but its sheets may touch.
+/// Where a set of triangles fails to be a closed manifold surface. All 0: every edge has two triangles and those round
+/// every vertex form one closed fan. The skin of whole tets is without open edges, but its sheets may touch.
 struct Manifoldness {
   std::size_t triangles = 0;
   std::size_t open_edges = 0;         ///< with one triangle

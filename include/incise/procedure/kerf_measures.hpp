@@ -42,35 +42,40 @@ struct DepthReached {
   Spread depth_mm;          ///< of the profile
 };
 
-/// How far tissue was from its place in the stretched, uncut body when it was cut: along the tool's course (lag) and across it (drift).
-/// One entry per step in which tets went that had been touched long enough; means over them, weighted by rest volume.
+/// How far tissue was from its place in the stretched, uncut body when it was cut: along the tool's course (lag) and
+/// across it (drift). One entry per step in which tets went that had been touched long enough; means over them,
+/// weighted by rest volume.
 struct TissueDrag {
   std::vector<double> time_s;        ///< ascending
   std::vector<double> arclength_mm;  ///< that the tip had gone since the plunge; on a ring the overlap counts on
-  std::vector<double> lag_mm;        ///< positive: dragged ahead, so that tissue is cut that belongs farther on the way back
-  std::vector<double> drift_mm;      ///< positive: pushed outwards on a ring, to the left (seen against the approach) of an open cut
-  Spread lag;                        ///< of the entries; means weighted by rest volume
+  std::vector<double> lag_mm;  ///< positive: dragged ahead, so that tissue is cut that belongs farther on the way back
+  std::vector<double>
+      drift_mm;  ///< positive: pushed outwards on a ring, to the left (seen against the approach) of an open cut
+  Spread lag;    ///< of the entries; means weighted by rest volume
   Spread drift;
 };
 
-/// How near the kerf comes to the body of the tumour, stretched tissue before the cut, mm. A place of the kerf is beneath the tumour when
-/// it lies farther along the approach than across it from the nearest point of the tumour, else beside it.
+/// How near the kerf comes to the body of the tumour, stretched tissue before the cut, mm. A place of the kerf is
+/// beneath the tumour when it lies farther along the approach than across it from the nearest point of the tumour, else
+/// beside it.
 struct DeepMargin {
-  double nearest_mm = 0.0;            ///< in any direction; negative: the kerf enters the tumour that far
-  std::optional<double> beside_mm;    ///< least distance to what lies beside; absent: nothing does
-  std::optional<double> beneath_mm;   ///< least distance to what lies beneath; absent: nothing does
-  Spread floor_below_mm;              ///< along the path: by how much the kerf's floor lies deeper than the tumour's deepest point
+  double nearest_mm = 0.0;           ///< in any direction; negative: the kerf enters the tumour that far
+  std::optional<double> beside_mm;   ///< least distance to what lies beside; absent: nothing does
+  std::optional<double> beneath_mm;  ///< least distance to what lies beneath; absent: nothing does
+  Spread floor_below_mm;  ///< along the path: by how much the kerf's floor lies deeper than the tumour's deepest point
 };
 
 /// What came out of a cut, beside the two contours.
 struct KerfMeasures {
   KerfBody body;
-  std::vector<KerfLayer> layers;          ///< as asked for
+  std::vector<KerfLayer> layers;  ///< as asked for
   DepthReached depth;
-  std::optional<TissueDrag> drag;         ///< absent: nothing was cut, or the tip never moved along the path
-  std::optional<DeepMargin> deep_margin;  ///< absent: nothing was cut, or the tumour's surface is not known
-  std::optional<Contour> final_centerline;      ///< the mid-line moved with the tissue on both its sides, tool out, mm
-  std::optional<Contour> inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
+  std::optional<TissueDrag> drag;           ///< absent: nothing was cut, or the tip never moved along the path
+  std::optional<DeepMargin> deep_margin;    ///< absent: nothing was cut, or the tumour's surface is not known
+  std::optional<Contour> final_centerline;  ///< the mid-line moved with the tissue on both its sides, tool out, mm;
+                                            ///< absent also where a straight line across it meets no tissue on one side
+  std::optional<Contour>
+      inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
 };
 
 }  // namespace incise
