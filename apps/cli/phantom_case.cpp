@@ -49,6 +49,7 @@ meshing:
   tets: 40000   # quick to cut; leave it out for the finer default
 tumor:
   contour: tumor.csv        # drawn as seen from above; laid onto the stretched tissue along the approach
+  surface: tumor.ply        # its closed surface, placed as the edge is: for the deep margin
   configuration: stretched
 plan:
   kind: ring

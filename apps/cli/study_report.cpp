@@ -9,6 +9,8 @@
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/pvd_io.hpp>
+#include <incise/io/surface_io.hpp>
+#include <incise/io/table_io.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/meshing/quality.hpp>
 #include <incise/report/figures.hpp>
@@ -19,6 +21,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <functional>
 #include <ostream>
 
 namespace incise::cli {
@@ -174,6 +177,8 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
   data.animations.push_back(std::move(animation));
 }
 
+std::string cell(const std::optional<double>& value) { return value ? fmt::format("{:.2f}", *value) : "–"; }
+
 std::optional<double> number_at(const Json& json, const std::string& pointer) {
   const Json::json_pointer place(pointer);
   if (!json.contains(place) || !json.at(place).is_number()) return std::nullopt;
@@ -186,7 +191,7 @@ void add_evaluation(const fs::path& root, ReportData& data) {
     const char* unit;
     const char* pointer;
   };
-  static constexpr std::array<Measure, 17> kMeasures{{
+  static constexpr std::array<Measure, 32> kMeasures{{
       {"Absolute error of the mid-line against its target, mean", "mm", "/abs_error_mm/mean"},
       {"… standard deviation along the contour", "mm", "/abs_error_mm/sd"},
       {"… greatest", "mm", "/abs_error_mm/max"},
@@ -201,6 +206,21 @@ void add_evaluation(const fs::path& root, ReportData& data) {
       {"Centroid shift", "mm", "/centroid_shift_mm"},
       {"Points closer than the clinical cut-off", "share", "/close_margin/fraction"},
       {"Coverage of the ring", "share", "/coverage"},
+      {"Depth reached along the path, mean", "mm", "/depth_reached_mm/mean"},
+      {"… least", "mm", "/depth_reached_mm/min"},
+      {"… planned", "mm", "/depth_reached_mm/planned"},
+      {"Lag of the tissue when it was cut, mean", "mm", "/lag_mm/mean"},
+      {"… greatest", "mm", "/lag_mm/max"},
+      {"Drift of the tissue when it was cut, mean (positive: outwards)", "mm", "/drift_mm/mean"},
+      {"… greatest", "mm", "/drift_mm/max"},
+      {"Kerf to the tumour's surface, least distance", "mm", "/deep_margin_mm/nearest"},
+      {"… beside it", "mm", "/deep_margin_mm/beside"},
+      {"… beneath it (none: the kerf does not run there)", "mm", "/deep_margin_mm/beneath"},
+      {"Floor of the kerf below the tumour's deepest point, least", "mm", "/deep_margin_mm/floor_below/min"},
+      {"Volume of the kerf, stretched", "mm³", "/kerf/volume_mm3"},
+      {"Edges at which sheets of the kerf's surface touch", "", "/kerf/nonmanifold_edges"},
+      {"Edges at which sheets of the live skin touch", "", "/live_skin/nonmanifold_edges"},
+      {"Vertices at which sheets of the live skin touch", "", "/live_skin/pinched_vertices"},
       {"Tetrahedra removed", "", "/removed_tets"},
       {"Greatest force on the tool", "mN", "/peak_tool_force_mn"},
       {"Simulation time", "s", "/wall_s"},
@@ -214,6 +234,79 @@ void add_evaluation(const fs::path& root, ReportData& data) {
   if (before.is_null()) return;
   for (const Measure& m : kMeasures) {
     data.evaluation.push_back({m.name, m.unit, number_at(before, m.pointer), after.is_null() ? std::nullopt : number_at(after, m.pointer)});
+  }
+}
+
+/// A curve along the path from two columns of a file of one cut.
+void add_series(const fs::path& file, const char* x, const char* y, const std::string& name, LinePlot& plot) {
+  if (!fs::exists(file)) return;
+  std::vector<std::vector<double>> columns = read_csv_columns(file, {x, y});
+  if (!columns[0].empty()) plot.series.push_back({name, std::move(columns[0]), std::move(columns[1]), true});
+}
+
+/// Depth, lag and drift along the path, for both cuts.
+void add_kerf_plots(const fs::path& root, ReportData& data) {
+  constexpr const char* kAlong = "way of the tool along its path, mm";
+  LinePlot depth{.title = "Depth of the kerf (simulated)", .x_label = kAlong, .y_label = "depth below the skin, mm", .series = {}};
+  LinePlot lag{.title = "Lag: tissue dragged ahead when cut (simulated)", .x_label = kAlong, .y_label = "lag, mm", .series = {}};
+  LinePlot drift{.title = "Drift: tissue pushed outwards when cut (simulated)", .x_label = kAlong, .y_label = "drift, mm", .series = {}};
+  for (const CutFolder& cut : kCuts) {
+    const fs::path folder = root / cut.folder;
+    add_series(folder / "depth.csv", "arclength_mm", "depth_mm", cut.name, depth);
+    add_series(folder / "lag.csv", "arclength_mm", "lag_mm", cut.name, lag);
+    add_series(folder / "lag.csv", "arclength_mm", "drift_mm", cut.name, drift);
+  }
+  if (!depth.series.empty()) {
+    double way = 0.0;
+    for (const LineSeries& series : depth.series) way = std::max(way, series.x.back());
+    const double planned = read_json(root / kCuts[0].folder / "incision.json").at("depth_reached_mm").at("planned");
+    depth.series.push_back({"planned depth of the tip", {0.0, way}, {planned, planned}, true});
+  }
+  for (LinePlot& plot : {std::ref(depth), std::ref(lag), std::ref(drift)}) {
+    if (!plot.series.empty()) data.kerf_plots.push_back(plot);
+  }
+}
+
+/// The mid-line's errors, layer by layer.
+void add_layers(const CutFolder& cut, const Json& json, ReportData& data) {
+  data.kerf_layers.title = "Mid-line by depth (simulated), mm";
+  data.kerf_layers.columns = {"cut", "depth below the skin", "ring", "signed error, mean", "sd", "closest", "farthest", "|error|, mean", "kerf width"};
+  for (const Json& layer : json.at("layers")) {
+    const bool is_within = layer.at("within_plan");
+    const Json& closed = layer.at("closed_loop");
+    data.kerf_layers.rows.push_back({cut.name, cell(number_at(layer, "/depth_mm")),
+                                     !is_within ? "below the plan" : closed.is_null() ? "open cut" : closed.get<bool>() ? "closed" : "open",
+                                     cell(number_at(layer, "/signed_error_mm/mean")), cell(number_at(layer, "/signed_error_mm/sd")),
+                                     cell(number_at(layer, "/signed_error_mm/min")), cell(number_at(layer, "/signed_error_mm/max")),
+                                     cell(number_at(layer, "/abs_error_mm/mean")), cell(number_at(layer, "/kerf_width_mm"))});
+  }
+}
+
+/// The kerf as a body of its own, with the paths.
+void add_kerf_picture(const fs::path& folder, const CutFolder& cut, const std::vector<ReportLine>& lines, ReportData& data) {
+  if (!fs::exists(folder / "kerf.vtp")) return;
+  TriMesh kerf = read_surface(folder / "kerf.vtp");
+  ReportFrame frame;
+  frame.phase = "all that was removed, in the stretched tissue before the cut";
+  frame.is_kerf.assign(kerf.triangles.size(), 1);
+  frame.positions_mm = std::move(kerf.vertices);
+  frame.skin = std::move(kerf.triangles);
+  ReportAnimation body;
+  body.name = fmt::format("{}: the kerf", cut.name);
+  body.lines = lines;
+  body.frames.push_back(std::move(frame));
+  constexpr int kWidthPx = 560;
+  constexpr int kHeightPx = 340;
+  data.kerf_figures.push_back(frame_figure_svg(body, 0, data.approach, kWidthPx, kHeightPx));
+}
+
+void add_kerf(const fs::path& root, ReportData& data) {
+  add_kerf_plots(root, data);
+  for (std::size_t i = 0; i < kCuts.size(); ++i) {
+    const fs::path folder = root / kCuts[i].folder;
+    if (!fs::exists(folder / "incision.json")) continue;
+    add_layers(kCuts[i], read_json(folder / "incision.json"), data);
+    if (i < data.animations.size()) add_kerf_picture(folder, kCuts[i], data.animations[i].lines, data);
   }
 }
 
@@ -255,12 +348,13 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
                        {"machine", manifest.machine, ""}};
     for (const ManifestInput& input : manifest.inputs) data.provenance.push_back({"SHA-256 of " + input.path, input.sha256, ""});
   }
-  static constexpr std::array<std::array<const char*, 2>, 8> kFiles{{
+  static constexpr std::array<std::array<const char*, 2>, 9> kFiles{{
       {"mesh/mesh.vtu", "tetrahedral mesh, unstretched (ParaView)"},
       {"stretched/deformed.vtu", "clamped and stretched, with displacement and stress (ParaView)"},
       {"plan/path.json", "intended path"},
       {"as_planned/frames.pvd", "the first cut over time (ParaView)"},
       {"as_planned/incision.json", "all numbers of the first cut"},
+      {"as_planned/kerf.vtp", "the first cut's kerf as a closed surface (ParaView)"},
       {"correction/path.json", "corrected path"},
       {"corrected/frames.pvd", "the second cut over time (ParaView)"},
       {"program/program.script", "robot program (URScript)"},
@@ -288,11 +382,16 @@ void write_report_and_figures(const ReportData& data, const fs::path& page) {
   if (data.incisions.size() > 1) write("contours_corrected.svg", contour_figure_svg(data.incisions.back(), style));
   write("error_by_angle.svg", error_by_angle_svg(data.incisions, style));
   write("box_plot.svg", box_plot_svg(data.incisions, style));
+  constexpr std::array<const char*, 3> kPlots{"kerf_depth.svg", "kerf_lag.svg", "kerf_drift.svg"};
+  for (std::size_t i = 0; i < data.kerf_plots.size() && i < kPlots.size(); ++i) write(kPlots[i], line_plot_svg(data.kerf_plots[i]));
+  constexpr std::array<const char*, 2> kBodies{"kerf.svg", "kerf_corrected.svg"};
+  for (std::size_t i = 0; i < data.kerf_figures.size() && i < kBodies.size(); ++i) write(kBodies[i], data.kerf_figures[i]);
   if (!data.animations.empty() && !data.animations.back().frames.empty()) {
     constexpr int kWidthPx = 900;
     constexpr int kHeightPx = 560;
     const ReportAnimation& last = data.animations.back();
     write("cut.png", frame_png(last, last.frames.size() - 1, data.approach, kWidthPx, kHeightPx));
+    write("cut.svg", frame_figure_svg(last, last.frames.size() - 1, data.approach, kWidthPx, kHeightPx));
   }
 }
 
@@ -317,6 +416,7 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
     for (const CutFolder& cut : kCuts) add_cut(root, cut, file, mesh, monitor, data);
   }
   add_evaluation(root, data);
+  add_kerf(root, data);
   if (study.contains("stages")) {
     for (const Json& stage : study.at("stages")) data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
   }

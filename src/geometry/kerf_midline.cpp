@@ -31,15 +31,6 @@ Contour evenly_spaced(const Contour& curve, double spacing_mm) {
   return resample(curve, count);
 }
 
-/// Unit normal in the plane, to the left of the curve.
-Vec2 normal_at(const Contour& curve, std::size_t i) {
-  const std::size_t n = curve.points.size();
-  const std::size_t before = curve.is_closed ? (i + n - 1) % n : (i == 0 ? 0 : i - 1);
-  const std::size_t after = curve.is_closed ? (i + 1) % n : std::min(i + 1, n - 1);
-  const Vec2 along = (curve.points[after] - curve.points[before]).head<2>();
-  return Vec2(-along.y(), along.x()).normalized();
-}
-
 /// Where across the kerf the removed tissue has its middle, and how wide it is.
 struct CrossSection {
   double middle_mm = 0.0;  // from the given point, along the normal

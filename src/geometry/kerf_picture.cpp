@@ -1,5 +1,7 @@
 #include "geometry/kerf_picture.hpp"
 
+#include "geometry/sight_lines.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/morphology.hpp>
@@ -22,41 +24,7 @@ constexpr int kDirections = 3600;
 /// Halvings of the interval in which the widest disc is searched: 0.001 mm for rings of any size that occurs.
 constexpr int kBisections = 20;
 
-/// A tet as the four half spaces a + b z >= 0 along each line of sight: its barycentric coordinates.
-class SightLines {
- public:
-  explicit SightLines(const std::array<Vec3, 4>& corners) {
-    Eigen::Matrix4d homogeneous;
-    for (Eigen::Index c = 0; c < 4; ++c) homogeneous.col(c) << corners[static_cast<std::size_t>(c)], 1.0;
-    // The volume decides whether the inverse means anything; a flat tet hides nothing.
-    const double size = (homogeneous.topRows<3>().rightCols<3>().colwise() - homogeneous.col(0).head<3>()).norm();
-    is_flat_ = std::abs(homogeneous.determinant()) <= 1e-12 * size * size * size;
-    if (!is_flat_) barycentric_ = homogeneous.inverse();
-  }
-
-  /// Length of the line of sight through (x, y) that lies within the tet and between two heights.
-  [[nodiscard]] double length(const Vec2& p, double low, double high) const {
-    if (is_flat_) return 0.0;
-    for (Eigen::Index c = 0; c < 4; ++c) {
-      const double a = barycentric_(c, 0) * p.x() + barycentric_(c, 1) * p.y() + barycentric_(c, 3);
-      const double b = barycentric_(c, 2);
-      if (b > 0.0) {
-        low = std::max(low, -a / b);
-      } else if (b < 0.0) {
-        high = std::min(high, -a / b);
-      } else if (a < 0.0) {
-        return 0.0;
-      }
-    }
-    return std::max(0.0, high - low);
-  }
-
- private:
-  Eigen::Matrix4d barycentric_ = Eigen::Matrix4d::Zero();
-  bool is_flat_ = false;
-};
-
-using ViewTets = std::vector<std::array<Vec3, 4>>;
+}  // namespace
 
 ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view) {
   ViewTets tets = input.removed_tets;
@@ -68,6 +36,8 @@ ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view) {
   }
   return tets;
 }
+
+namespace {
 
 ScalarRaster coverage_of(const ViewTets& tets, const DepthBuffer& surface, const KerfMidlineSettings& settings) {
   ScalarRaster coverage(surface, 0.0);
@@ -127,6 +97,14 @@ std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame&
   picture.mask = mask_of(picture.coverage, settings);
   if (area_mm2(picture.mask) == 0.0) return std::nullopt;
   return picture;
+}
+
+Vec2 normal_at(const Contour& curve, std::size_t i) {
+  const std::size_t n = curve.points.size();
+  const std::size_t before = curve.is_closed ? (i + n - 1) % n : (i == 0 ? 0 : i - 1);
+  const std::size_t after = curve.is_closed ? (i + 1) % n : std::min(i + 1, n - 1);
+  const Vec2 along = (curve.points[after] - curve.points[before]).head<2>();
+  return Vec2(-along.y(), along.x()).normalized();
 }
 
 std::optional<Raster> enclosed_tissue(const Raster& mask, const Vec2& inside) {

@@ -4,7 +4,9 @@
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/geometry/raster.hpp>
 
+#include <array>
 #include <optional>
+#include <vector>
 
 namespace incise {
 
@@ -17,9 +19,17 @@ struct KerfPicture {
   Raster mask;            ///< where enough is gone, with narrow bridges and small islands taken in
 };
 
+using ViewTets = std::vector<std::array<Vec3, 4>>;
+
+/// The removed tets in view coordinates. @throws InvalidArgument for a corner that is not finite.
+[[nodiscard]] ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view);
+
 /// Projects the removed tets, cut to the layer below the surface. nullopt if nothing of the layer is gone.
 [[nodiscard]] std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
                                                       const KerfMidlineSettings& settings);
+
+/// Unit normal, in the picture plane, to the left of a curve at its point i. @pre neighbours of point i do not coincide in the picture.
+[[nodiscard]] Vec2 normal_at(const Contour& curve, std::size_t i);
 
 /// The uncut tissue around point `inside` if the kerf parts it from the picture's border, else nullopt.
 [[nodiscard]] std::optional<Raster> enclosed_tissue(const Raster& mask, const Vec2& inside);

@@ -7,6 +7,7 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/table_io.hpp>
 
 #include <fmt/format.h>
 
@@ -22,70 +23,10 @@ using io_detail::JsonValue;
 
 constexpr std::array<std::string_view, 3> kColumns{"x_mm", "y_mm", "z_mm"};
 
-/// The fields of one row of a CSV file without quoting.
-std::vector<std::string_view> split(std::string_view row) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = row.find(',');
-    fields.push_back(io_detail::trimmed(row.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    row.remove_prefix(comma + 1);
-  }
-}
-
-std::string joined(const std::vector<std::string_view>& names) {
-  return fmt::format("{}", fmt::join(names, ",")).substr(0, 80);
-}
-
-/// Where x_mm, y_mm and z_mm are among the header's columns.
-std::array<std::size_t, 3> find_columns(const std::vector<std::string_view>& header, const std::filesystem::path& path,
-                                        std::size_t line) {
-  std::array<std::size_t, 3> columns{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto found = std::find(header.begin(), header.end(), kColumns[k]);
-    if (found == header.end()) {
-      throw DataError(path, fmt::format("line {}", line), fmt::format("the header '{}'", joined(header)),
-                      fmt::format("a header with the column {}", kColumns[k]), "The first line reads x_mm,y_mm,z_mm.");
-    }
-    columns[k] = static_cast<std::size_t>(found - header.begin());
-  }
-  return columns;
-}
-
 Contour read_csv(const std::filesystem::path& path, bool is_closed) {
-  const std::string text = read_text(path);
-  std::string_view rest = text;
-  if (rest.rfind("\xEF\xBB\xBF", 0) == 0) rest.remove_prefix(3);  // byte order mark
+  const std::vector<std::vector<double>> columns = read_csv_columns(path, {kColumns.begin(), kColumns.end()});
   Contour contour{{}, is_closed};
-  std::array<std::size_t, 3> columns{};
-  std::size_t width = 0;
-  for (std::size_t line = 1; !rest.empty(); ++line) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    const std::string_view row = io_detail::trimmed(rest.substr(0, end));
-    rest.remove_prefix(std::min(end + 1, rest.size()));
-    if (row.empty()) continue;
-    const auto fields = split(row);
-    if (width == 0) {
-      columns = find_columns(fields, path, line);
-      width = fields.size();
-      continue;
-    }
-    if (fields.size() != width) {
-      throw DataError(path, fmt::format("line {}", line), fmt::format("{} fields", fields.size()),
-                      fmt::format("{}", width));
-    }
-    Vec3 point;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto value = io_detail::to_number(fields[columns[k]]);
-      if (!value || !std::isfinite(*value)) {
-        throw DataError(path, fmt::format("line {}, column {}", line, kColumns[k]),
-                        fmt::format("'{}'", fields[columns[k]].substr(0, 40)), "a finite number");
-      }
-      point[static_cast<Eigen::Index>(k)] = *value;
-    }
-    contour.points.push_back(point);
-  }
-  if (width == 0) throw DataError(path, "", "an empty file", "a header x_mm,y_mm,z_mm and points");
+  for (std::size_t i = 0; i < columns[0].size(); ++i) contour.points.emplace_back(columns[0][i], columns[1][i], columns[2][i]);
   return contour;
 }
 
@@ -187,31 +128,13 @@ Contour read_contour(const std::filesystem::path& path, bool is_closed) {
 
 void write_contour_csv(const std::filesystem::path& path, const Contour& contour,
                        const std::vector<NamedColumn>& columns) {
-  std::string text = "x_mm,y_mm,z_mm";
-  for (const auto& [name, values] : columns) {
-    INCISE_REQUIRE(!name.empty() && name.find_first_of(",\"\r\n") == std::string::npos,
-                   fmt::format("expected column names without comma, quote or line end, found '{}'", name));
-    INCISE_REQUIRE(values.size() == contour.points.size(),
-                   fmt::format("expected {} values in '{}', found {}", contour.points.size(), name, values.size()));
-    text += "," + name;
+  std::vector<NamedColumn> all;
+  for (std::size_t k = 0; k < 3; ++k) {
+    NamedColumn& column = all.emplace_back(kColumns[k], std::vector<double>{});
+    for (const Vec3& p : contour.points) column.second.push_back(p[static_cast<Eigen::Index>(k)]);
   }
-  const auto add = [&](double value, std::string_view what, std::size_t i) {
-    INCISE_REQUIRE(std::isfinite(value),
-                   fmt::format("expected finite numbers, found {} in {} at point {}", value, what, i));
-    text += io_detail::number_text(value);
-  };
-  for (std::size_t i = 0; i < contour.points.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      text += k == 0 ? "\n" : ",";
-      add(contour.points[i][static_cast<Eigen::Index>(k)], kColumns[k], i);
-    }
-    for (const auto& [name, values] : columns) {
-      text += ",";
-      add(values[i], name, i);
-    }
-  }
-  text += "\n";
-  write_atomically(path, [&](std::ostream& stream) { stream << text; });
+  all.insert(all.end(), columns.begin(), columns.end());
+  write_csv_columns(path, all);
 }
 
 void write_contour_vtp(const std::filesystem::path& path, const Contour& contour,

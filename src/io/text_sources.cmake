@@ -19,6 +19,7 @@ set(text_sources
   stl_reader.cpp
   surface_io.cpp
   surface_problems.cpp
+  table_io.cpp
   tetgen_reader.cpp
   text_cursor.cpp
   vtk_bytes.cpp

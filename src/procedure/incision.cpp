@@ -23,6 +23,12 @@ void require_valid(const IncisionSettings& settings) {
   if (!(settings.midline_layer_mm > 0.0)) {
     violations.push_back(fmt::format("midline_layer_mm: found {}, expected above 0 mm", settings.midline_layer_mm));
   }
+  for (std::size_t i = 0; i < settings.layer_depths_mm.size(); ++i) {
+    const double depth = settings.layer_depths_mm[i];
+    const bool is_ascending = i == 0 || depth > settings.layer_depths_mm[i - 1];
+    if (std::isfinite(depth) && depth >= 0.5 * kLayerThicknessMm && is_ascending) continue;
+    violations.push_back(fmt::format("layer_depths_mm[{}]: found {}, expected {} mm or more, ascending", i, depth, 0.5 * kLayerThicknessMm));
+  }
   if (settings.frames < 0) violations.push_back(fmt::format("frames: found {}, expected 0 or more", settings.frames));
   INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
 }

@@ -12,6 +12,8 @@
 namespace incise {
 namespace {
 
+constexpr double kBeyondWallMm = 4.0;  // beside the mid-line, live tissue is looked for this far behind the kerf's mean wall, which is rough
+
 /// The middle of what a ring runs round: the tumour if there is one, else the path.
 Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
   return curve_centroid(tumor_edge.points.empty() ? entry_contour(path) : tumor_edge);
@@ -69,7 +71,8 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
                   IncisionResult& result) {
   KerfMidlineSettings midline_settings;
   midline_settings.layer_bottom_mm = settings.midline_layer_mm;
-  const KerfMidline midline = midline_contour(kerf_input(model, stretched, path, settings, result.record), midline_settings);
+  const KerfInput kerf = kerf_input(model, stretched, path, settings, result.record);
+  const KerfMidline midline = midline_contour(kerf, midline_settings);
   result.centerline = midline.contour;
   result.kerf_width_mm = midline.mean_width_mm;
   if (path.is_closed) {
@@ -77,8 +80,18 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
     if (!midline.is_closed && std::isfinite(midline.gap_mm)) result.gap_mm = midline.gap_mm;
     result.gap_deg = midline.gap_deg;
   }
-  if (path.tumor_edge.points.size() < 3) return;
   const TissueState& tissue = result.final_state.tissue;
+  KerfMeasures& measures = result.kerf;
+  measures.body = kerf_body(model, stretched.positions, tissue.is_live);
+  measures.layers = kerf_layers(kerf, path, settings);
+  measures.depth = depth_reached(kerf, path, settings);
+  measures.drag = tissue_drag(model, stretched.positions, path, settings, result.record);
+  measures.deep_margin = deep_margin(measures.body, measures.depth, settings);
+  if (result.centerline) {
+    measures.final_centerline = carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
+                                                  tissue.is_live, stretched.positions, tissue.positions);
+  }
+  if (path.tumor_edge.points.size() < 3) return;
   result.final_tumor_edge = carried(path.tumor_edge, model.mesh, stretched.positions, tissue.positions);
   if (path.is_closed) {
     // A strip of tissue that the mid-line overlooks does not hold the plug either.
@@ -86,6 +99,10 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
     edge_settings.opening_mm = midline_settings.closing_mm;
     result.inner_edge = inner_edge_contour(cut_surface(model.mesh, tissue, settings, inside_of(result.final_tumor_edge, path)),
                                            edge_settings);
+    if (result.inner_edge) {
+      measures.inner_edge_reference = carried_with_live(*result.inner_edge, 0.0, settings.approach, model.mesh, tissue.is_live,
+                                                        tissue.positions, stretched.positions);
+    }
   }
 }
 

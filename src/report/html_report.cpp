@@ -87,7 +87,7 @@ std::string html_report(const ReportData& data) {
   scene["animations"] = animations_json(data);
 
   const std::string body = page_header(data) + "<main>\n" + result_section(data) + scan_section(data, planes) +
-                           mesh_section(data, mesh_is_shown) + cut_section(data) + error_section(data) +
+                           mesh_section(data, mesh_is_shown) + cut_section(data) + error_section(data) + kerf_section(data) +
                            program_section(data) + record_section(data) + "</main>\n" + page_footer();
   std::string script;
   for (const std::string_view part :

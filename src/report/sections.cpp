@@ -113,7 +113,7 @@ std::string page_header(const ReportData& data) {
   if (!data.subtitle.empty()) html += fmt::format("<p class=\"subtitle\">{}</p>\n", escaped(data.subtitle));
   html +=
       "<nav aria-label=\"Parts of this report\"><a href=\"#result\">Result</a><a href=\"#scan\">Scan</a>"
-      "<a href=\"#mesh\">Mesh</a><a href=\"#cut\">Cut</a><a href=\"#error\">Error</a><a href=\"#program\">Program</a>"
+      "<a href=\"#mesh\">Mesh</a><a href=\"#cut\">Cut</a><a href=\"#error\">Error</a><a href=\"#kerf\">Kerf</a><a href=\"#program\">Program</a>"
       "<a href=\"#record\">Settings and provenance</a></nav>\n</header>\n";
   return html;
 }

@@ -18,6 +18,7 @@ namespace incise {
 [[nodiscard]] std::string mesh_section(const ReportData& data, bool mesh_is_shown);
 [[nodiscard]] std::string cut_section(const ReportData& data);
 [[nodiscard]] std::string error_section(const ReportData& data);
+[[nodiscard]] std::string kerf_section(const ReportData& data);
 [[nodiscard]] std::string program_section(const ReportData& data);
 [[nodiscard]] std::string record_section(const ReportData& data);
 [[nodiscard]] std::string page_footer();

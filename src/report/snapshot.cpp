@@ -1,5 +1,6 @@
 #include "report/line_kinds.hpp"
 #include "report/png.hpp"
+#include "report/snapshot.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/report/html_report.hpp>
@@ -15,9 +16,6 @@ namespace {
 
 constexpr int kSupersampling = 2;  ///< along each side; edges are smooth then
 const Vec3 kBackground(0.965, 0.965, 0.955);
-const Vec3 kTissue(0.86, 0.60, 0.56);
-const Vec3 kKerf(0.55, 0.13, 0.13);
-const Vec3 kSteel(0.62, 0.66, 0.70);
 
 Vec3 rgb_of(std::string_view hex) {
   const auto part = [&](std::size_t at) { return std::stoi(std::string(hex.substr(at, 2)), nullptr, 16) / 255.0; };
@@ -113,15 +111,21 @@ class Canvas {
   std::vector<double> depth_;
 };
 
-}  // namespace
+/// How a frame lies in its picture.
+struct Projection {
+  Mat3 view;
+  Vec3 center = Vec3::Zero();  ///< of what is shown, in the view
+  double scale = 1.0;          ///< px per mm
+};
 
-std::string frame_png(const ReportAnimation& animation, std::size_t frame, const Vec3& approach, int width_px,
-                      int height_px) {
+Projection projection_of(const ReportAnimation& animation, std::size_t frame, const Vec3& approach, int width_px, int height_px) {
   INCISE_REQUIRE(frame < animation.frames.size(),
                  fmt::format("expected a frame below {}, found {}", animation.frames.size(), frame));
   INCISE_REQUIRE(width_px >= 16 && height_px >= 16, "expected a picture of at least 16 by 16");
   const ReportFrame& moment = animation.frames[frame];
-  const Mat3 view = oblique_view(approach);
+  Projection projection;
+  projection.view = oblique_view(approach);
+  const Mat3& view = projection.view;
   Box3 box;
   for (const Triangle& t : moment.skin) {
     for (const VertexId id : t) box.extend(Vec3(view * vertex(moment.positions_mm, id)));
@@ -129,19 +133,34 @@ std::string frame_png(const ReportAnimation& animation, std::size_t frame, const
   for (const ReportLine& line : animation.lines) {
     for (const Vec3& p : line.contour.points) box.extend(Vec3(view * p));
   }
-  const Vec3 tool = animation.tool_length_mm * moment.tool_axis;
   if (moment.tool_tip_mm) {
     box.extend(Vec3(view * *moment.tool_tip_mm));
-    box.extend(Vec3(view * (*moment.tool_tip_mm - tool)));
+    box.extend(Vec3(view * (*moment.tool_tip_mm - animation.tool_length_mm * moment.tool_axis)));
   }
   INCISE_REQUIRE(!box.isEmpty(), "expected a frame with a skin or with lines");
+  const Vec3 extent = box.sizes().cwiseMax(1.0);
+  projection.scale = 0.92 * std::min(width_px / extent.x(), height_px / extent.y());
+  projection.center = box.center();
+  return projection;
+}
+
+}  // namespace
+
+double frame_px_per_mm(const ReportAnimation& animation, std::size_t frame, const Vec3& approach, int width_px, int height_px) {
+  return projection_of(animation, frame, approach, width_px, height_px).scale;
+}
+
+std::string frame_png(const ReportAnimation& animation, std::size_t frame, const Vec3& approach, int width_px,
+                      int height_px) {
+  const Projection projection = projection_of(animation, frame, approach, width_px, height_px);
+  const Mat3& view = projection.view;
+  const double scale = kSupersampling * projection.scale;
+  const ReportFrame& moment = animation.frames[frame];
+  const Vec3 tool = animation.tool_length_mm * moment.tool_axis;
   const int width = width_px * kSupersampling;
   const int height = height_px * kSupersampling;
-  const Vec3 extent = box.sizes().cwiseMax(1.0);
-  const double scale = 0.92 * std::min(width / extent.x(), height / extent.y());
-  const Vec3 center = box.center();
   const auto project = [&](const Vec3& p) {
-    const Vec3 q = view * p - center;
+    const Vec3 q = view * p - projection.center;
     return Vec3(0.5 * width + scale * q.x(), 0.5 * height - scale * q.y(), scale * q.z());
   };
 
@@ -152,7 +171,7 @@ std::string frame_png(const ReportAnimation& animation, std::size_t frame, const
     const Vec3& c = vertex(moment.positions_mm, moment.skin[k][2]);
     const Vec3 normal = view * (b - a).cross(c - a).normalized();
     const double light = 0.45 + 0.55 * std::max(0.0, normal.dot(Vec3(-0.35, 0.45, 0.82)));
-    canvas.triangle(project(a), project(b), project(c), light * (moment.is_kerf[k] != 0 ? kKerf : kTissue));
+    canvas.triangle(project(a), project(b), project(c), light * (moment.is_kerf[k] != 0 ? still::kKerf : still::kTissue));
   }
   for (const ReportLine& line : animation.lines) {
     const std::size_t n = line.contour.points.size();
@@ -163,7 +182,7 @@ std::string frame_png(const ReportAnimation& animation, std::size_t frame, const
   }
   if (moment.tool_tip_mm) {
     canvas.stroke(project(*moment.tool_tip_mm), project(*moment.tool_tip_mm - tool),
-                  0.5 * scale * animation.tool_diameter_mm, 0.0, kSteel);
+                  0.5 * scale * animation.tool_diameter_mm, 0.0, still::kSteel);
   }
   return canvas.png();
 }

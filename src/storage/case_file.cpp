@@ -123,6 +123,7 @@ CaseFile read_case(const std::filesystem::path& file_or_folder) {
   describe_case(file, reader);
   reader.finish();
   for (std::filesystem::path* path : {&file.inputs.ct_volume, &file.inputs.specimen_mesh, &file.inputs.tumor_contour,
+                                      &file.inputs.tumor_surface,
                                       &file.inputs.line_contour, &file.inputs.tool_path}) {
     if (!path->empty()) *path = (file.folder / *path).lexically_normal();
   }
@@ -159,6 +160,7 @@ void require_input_files(const CaseFile& file) {
   const std::pair<const char*, const std::filesystem::path&> inputs[] = {{"ct.volume", in.ct_volume},
                                                                         {"specimen.mesh", in.specimen_mesh},
                                                                         {"tumor.contour", in.tumor_contour},
+                                                                        {"tumor.surface", in.tumor_surface},
                                                                         {"plan.line", in.line_contour},
                                                                         {"path", in.tool_path}};
   for (const auto& [field, path] : inputs) {

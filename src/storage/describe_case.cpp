@@ -151,6 +151,8 @@ void describe_specimen(CaseFile& file, FieldVisitor& v) {
 void describe_tumor(CaseFile& file, FieldVisitor& v) {
   v.begin_group({"tumor", "", "The edge that a ring keeps clear of."});
   v.path({"contour", "", ".csv (x_mm,y_mm,z_mm), .vtp or Slicer .mrk.json closed curve."}, file.inputs.tumor_contour);
+  v.path({"surface", "", "The tumour's closed surface (.stl, .ply, .vtp, .obj), for the deep margin; absent: only the edge is known."},
+         file.inputs.tumor_surface);
   static constexpr std::array<const char*, 2> kConfigurations{"stretched", "rest"};
   choice(v, {"configuration", "", "Whether the edge was marked on the stretched tissue or on the tissue as scanned."},
          file.settings.tumor_configuration, kConfigurations);

@@ -91,7 +91,9 @@ const std::string& FolderStore::key(Product product) {
     text += fmt::format(" isa={}", to_string(active_isa()));
     for (const std::filesystem::path& holder : file_.inputs.holders) text += fmt::format(" holder={}", input_hash(holder));
   }
-  if (product == Product::AsPlanned) text += fmt::format(" path={}", input_hash(file_.inputs.tool_path));
+  if (product == Product::AsPlanned) {
+    text += fmt::format(" path={} tumor_surface={}", input_hash(file_.inputs.tool_path), input_hash(file_.inputs.tumor_surface));
+  }
   key = sha256_of_text(text);
   return key;
 }
@@ -115,7 +117,7 @@ void FolderStore::write_manifest_to(const std::filesystem::path& folder, double 
   manifest.wall_s = wall_s;
   manifest.machine = machine_description();
   const CaseInputs& in = file_.inputs;
-  std::vector<std::filesystem::path> inputs{file_.file, in.ct_volume, in.specimen_mesh, in.tumor_contour, in.line_contour, in.tool_path};
+  std::vector<std::filesystem::path> inputs{file_.file, in.ct_volume, in.specimen_mesh, in.tumor_contour, in.tumor_surface, in.line_contour, in.tool_path};
   inputs.insert(inputs.end(), in.holders.begin(), in.holders.end());
   for (const std::filesystem::path& path : inputs) {
     if (!path.empty()) manifest.inputs.push_back({std::filesystem::absolute(path).lexically_proximate(file_.folder).string(), input_hash(path)});
@@ -157,6 +159,13 @@ std::optional<TetMesh> FolderStore::read_specimen_mesh(Monitor& monitor) {
 std::optional<Contour> FolderStore::read_tumor_edge() {
   if (file_.inputs.tumor_contour.empty()) return std::nullopt;
   return read_contour(file_.inputs.tumor_contour, true);
+}
+
+std::optional<TriMesh> FolderStore::read_tumor_surface() {
+  if (file_.inputs.tumor_surface.empty()) return std::nullopt;
+  TriMesh surface = read_surface(file_.inputs.tumor_surface);
+  require_closed_manifold(surface, file_.inputs.tumor_surface);
+  return surface;
 }
 
 std::optional<Contour> FolderStore::read_line() {

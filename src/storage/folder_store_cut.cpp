@@ -1,3 +1,4 @@
+#include "kerf_files.hpp"
 #include "product_reading.hpp"
 
 #include <incise/core/error.hpp>
@@ -111,6 +112,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     incision.centerline = contour("centerline.csv", is_ring);
     incision.inner_edge = contour("inner_edge.csv", true);
     if (auto edge = contour("tumor_edge_final.csv", true)) incision.final_tumor_edge = std::move(*edge);
+    incision.kerf = read_kerf_files(from, json, is_ring);
     for (const auto& removal : json.at("removals")) {
       Removal r;
       r.tet = TetId(removal.at(0).get<std::size_t>());
@@ -143,6 +145,7 @@ void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticR
     if (!incision.record.removals.empty()) {
       write_vtu(to / "removed.vtu", removed_mesh(model.mesh, stretched.state.positions, incision.record));
     }
+    write_kerf_files(to, incision.kerf);
     write_frames(to, model.mesh, incision.frames);
   });
 }

@@ -1,3 +1,5 @@
+#include "kerf_files.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/storage/result_json.hpp>
 
@@ -59,6 +61,7 @@ Json to_json(const SimulatedCut& cut) {
   json["gap_mm"] = or_null(incision.gap_mm);
   json["gap_deg"] = incision.gap_deg;
   json["kerf_width_mm"] = incision.kerf_width_mm;
+  add_kerf_json(json, cut);
   json["tets"] = cut.tets;
   json["removed_tets"] = incision.record.removals.size();
   json["removed_volume_mm3"] = incision.record.removed_volume_mm3();

@@ -1,5 +1,7 @@
 #include <incise/workflow/study.hpp>
 
+#include <cmath>
+
 namespace incise {
 namespace {
 
@@ -11,6 +13,24 @@ EvaluationSettings evaluation_settings(const Case& settings, ContourKind contour
   evaluation.close_margin_mm = settings.close_margin_mm;
   evaluation.approach = settings.plan.approach;
   return evaluation;
+}
+
+/// The mid-line of a layer against what the mid-line on the skin is held against: both as seen along the approach, at the skin's height.
+LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const ToolPath& intended, const EvaluationSettings& centerline) {
+  LayerErrors errors;
+  if (!layer.centerline) return errors;
+  Contour lifted = *layer.centerline;
+  for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
+  if (settings.plan.kind == PlanKind::Line) {
+    const Evaluation line = evaluate_line(lifted, entry_contour(intended), centerline);
+    return {line.signed_error_mm, line.abs_error_mm};
+  }
+  std::vector<double> values =
+      contour_errors(lifted, intended.tumor_edge, centerline.lateral_margin_mm, centerline.approach, centerline.step_mm).signed_error_mm;
+  errors.signed_error_mm = summarize(values);
+  for (double& value : values) value = std::abs(value);
+  errors.abs_error_mm = summarize(values);
+  return errors;
 }
 
 }  // namespace
@@ -27,17 +47,19 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
     cut.centerline = evaluate(cut.incision.centerline, intended.tumor_edge, centerline);
     cut.inner_edge = evaluate(cut.incision.inner_edge, cut.incision.final_tumor_edge, inner_edge);
   }
+  for (const KerfLayer& layer : cut.incision.kerf.layers) cut.layers.push_back(layer_errors(settings, layer, intended, centerline));
   cut.outcome = cut.incision.outcome == Outcome::Success ? cut.centerline.outcome : cut.incision.outcome;
   return cut;
 }
 
 SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched, const ToolPath& path,
-                           const ToolPath& intended, Workers& workers, Monitor& monitor) {
+                           const ToolPath& intended, Workers& workers, Monitor& monitor, const TriMesh& tumor_surface) {
   IncisionSettings incision;
   incision.cut = settings.cut;
   incision.needle = settings.needle;
   incision.approach = settings.plan.approach.normalized();
   incision.frames = settings.frames;
+  incision.tumor_surface = tumor_surface;
   ToolPath with_edge = path;
   with_edge.tumor_edge = intended.tumor_edge;
   return judge(settings, simulate_incision(model, stretched, with_edge, incision, workers, monitor), intended,

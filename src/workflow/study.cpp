@@ -55,6 +55,7 @@ class Runner {
   /// What is quickly read is read first: a damaged contour shows before anything long has run.
   void read_inputs() {
     tumor_edge_ = store_.read_tumor_edge();
+    tumor_surface_ = store_.read_tumor_surface();
     line_ = store_.read_line();
     given_path_ = store_.read_given_path();
     const bool is_ring = settings_.plan.kind == PlanKind::Ring;
@@ -151,13 +152,19 @@ class Runner {
         stage, [&] { return store_.load_cut(role); },
         [&] {
           SimulatedCut made =
-              cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_);
+              cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_, placed_tumor());
           if (made.outcome == Outcome::Cancelled) throw Cancelled("the cut was interrupted");
           return made;
         },
         [&](const SimulatedCut& made, double wall_s) {
           store_.save_cut(role, *study_.model, *study_.stretched, made, wall_s);
         });
+  }
+
+  /// The tumour's surface in the stretched tissue; without triangles: not known.
+  TriMesh placed_tumor() const {
+    if (!tumor_surface_) return {};
+    return tumor_in_stretched(settings_, *study_.model, study_.stretched->state.positions, *tumor_surface_, tumor_edge_);
   }
 
   bool simulate() {
@@ -210,6 +217,7 @@ class Runner {
   Monitor& monitor_;
   std::optional<TetMesh> given_mesh_;
   std::optional<Contour> tumor_edge_;
+  std::optional<TriMesh> tumor_surface_;
   std::optional<Contour> line_;
   std::optional<ToolPath> given_path_;
   Study study_;

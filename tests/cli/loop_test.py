@@ -10,7 +10,9 @@ from xml.etree import ElementTree
 import small_case
 from command import COMMAND, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
-CUT_FILES = {"incision.json", "centerline.csv", "inner_edge.csv", "frames.pvd", "removed.vtu", "manifest.json"}
+CUT_FILES = {"incision.json", "centerline.csv", "inner_edge.csv", "frames.pvd", "removed.vtu", "manifest.json",
+             "kerf.vtp", "depth.csv", "lag.csv", "centerline_1mm.csv", "centerline_2.5mm.csv", "inner_edge_reference.csv"}
+KERF_MEASURES = ("kerf", "live_skin", "layers", "depth_reached_mm", "lag_mm", "drift_mm", "deep_margin_mm")
 
 
 def states(result):
@@ -26,6 +28,8 @@ class LoopTest(CommandTest):
         return json.loads((self.out / name).read_text())
 
     def test_run_goes_from_mesh_to_report_and_a_second_run_reuses_every_stage(self):
+        small_case.write_case(self.folder / "case", {"tumor": {"surface": "tumor.stl"}})
+        small_case.write_tumor_surface(self.folder / "case" / "tumor.stl")
         first = self.json_of("run", "case", "-o", self.out)
         self.assertEqual(first["outcome"], "success")
         self.assertEqual(states(first), {"segment": "skipped", "mesh": "skipped", "stretch": "computed", "plan": "computed",
@@ -42,12 +46,29 @@ class LoopTest(CommandTest):
         second = self.json_of("run", "case", "-o", self.out)
         self.assertEqual({state for name, state in states(second).items() if name not in ("segment", "mesh")}, {"reused"})
         for when in ("before", "after"):
-            for measure in ("abs_error_mm", "signed_error_mm", "hu_score", "close_margin", "inner_edge"):
+            for measure in ("abs_error_mm", "signed_error_mm", "hu_score", "close_margin", "inner_edge", *KERF_MEASURES):
                 self.assertEqual(first[when][measure], second[when][measure], f"{when} {measure}")
+
+        self.check_kerf(first["before"])
 
         # A report can be drawn anew, and the program's path exported once more.
         self.json_of("report", self.out, "-o", self.folder / "again.html")
         self.json_of("export", self.out / "program" / "path.json", "-o", self.folder / "again.script")
+
+    def check_kerf(self, cut):
+        """The kerf of the small block: 5 mm deep at 5 mm from a tumour of 3 mm depth, within what a mesh of 3 mm allows."""
+        self.assertEqual([layer["depth_mm"] for layer in cut["layers"]], [1, 2.5, 4, 5])
+        top = next(layer for layer in cut["layers"] if layer["depth_mm"] == 2.5)
+        self.assertTrue(top["closed_loop"])
+        self.assertLess(abs(top["signed_error_mm"]["mean"] - cut["signed_error_mm"]["mean"]), 1.0)
+        self.assertAlmostEqual(cut["depth_reached_mm"]["planned"], 5.0, delta=1e-6)
+        self.assertGreater(cut["depth_reached_mm"]["min"], 2.0)
+        self.assertGreater(cut["lag_mm"]["mean"], 0.0)
+        self.assertEqual(cut["kerf"]["open_edges"], 0)
+        self.assertEqual(cut["live_skin"]["open_edges"], 0)
+        margin = cut["deep_margin_mm"]
+        self.assertLess(margin["nearest"], 5.0)
+        self.assertGreater(margin["floor_below"]["mean"], 0.0)
 
     def test_a_changed_setting_runs_its_stage_and_those_after_it_again(self):
         self.json_of("plan", "case", "-o", self.out)

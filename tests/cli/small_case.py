@@ -76,6 +76,24 @@ def ring(center=TUMOR_CENTER_MM, radius=TUMOR_RADIUS_MM, z=BLOCK_MM[2], corners=
     return [(center[0] + radius * math.cos(a), center[1] + radius * math.sin(a), z) for a in angles]
 
 
+TUMOR_DEPTH_MM = 3.0
+
+
+def write_tumor_surface(path, corners=24):
+    """STL, ascii: the upright cylinder below the tumour's edge, with outward triangles."""
+    top = ring(corners=corners)
+    bottom = [(x, y, z - TUMOR_DEPTH_MM) for x, y, z in top]
+    triangles = []
+    for n in range(corners):
+        m = (n + 1) % corners
+        triangles += [(top[0], top[n], top[m]), (bottom[0], bottom[m], bottom[n])] if n not in (0, corners - 1) else []
+        triangles += [(bottom[n], bottom[m], top[m]), (bottom[n], top[m], top[n])]
+    lines = ["solid tumor"]
+    for triangle in triangles:
+        lines += ["facet normal 0 0 0", "outer loop"] + [f"vertex {x!r} {y!r} {z!r}" for x, y, z in triangle] + ["endloop", "endfacet"]
+    pathlib.Path(path).write_text("\n".join(lines + ["endsolid tumor", ""]))
+
+
 def merged(base, changes):
     """`base` with `changes` laid over it, group by group; None takes a key away."""
     result = dict(base)

@@ -103,10 +103,23 @@ TEST(HtmlReport, OfNothingSaysWhatIsMissing) {
   for (const char* text :
        {"No incision has been evaluated yet.", "There is no CT here.", "There is no mesh here.",
         "There are no pictures of the cut here.", "There is no incision contour here.", "There is no evaluation here.",
-        "No program has been exported.", "The settings are not known."}) {
+        "There are no measures of the kerf here.", "No program has been exported.", "The settings are not known."}) {
     EXPECT_THAT(page, HasSubstr(text));
   }
   EXPECT_THAT(page, Not(HasSubstr("class=\"virtual\"")));
+}
+
+TEST(HtmlReport, ShowsWhatIsKnownOfTheKerf) {
+  ReportData data;
+  LinePlot depth{.title = "Depth of the kerf (simulated)", .x_label = "way, mm", .y_label = "depth, mm", .series = {}};
+  depth.series.push_back({"as planned", {0, 1}, {4, 5}, true});
+  data.kerf_plots.push_back(depth);
+  data.kerf_layers = {"Mid-line by depth", {"cut", "depth, mm"}, {{"as planned", "2.50"}}};
+  const std::string page = html_report(data);
+  EXPECT_EQ(nesting_problem(page), "");
+  EXPECT_THAT(page, HasSubstr("Depth of the kerf (simulated)"));
+  EXPECT_THAT(page, HasSubstr("Mid-line by depth"));
+  EXPECT_THAT(page, Not(HasSubstr("There are no measures of the kerf here.")));
 }
 
 TEST(HtmlReport, IsTheSameForTheSameData) {

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace incise {
 namespace {
 
@@ -95,6 +97,31 @@ TEST(FramePng, IsAPngOfTheSizeAskedFor) {
   EXPECT_EQ(static_cast<unsigned char>(png[19]), 160);  // width, big endian, bytes 16 to 19
   EXPECT_EQ(static_cast<unsigned char>(png[23]), 90);
   EXPECT_THROW(static_cast<void>(frame_png(animation, 99, -Vec3::UnitZ(), 160, 90)), InvalidArgument);
+}
+
+TEST(FrameFigure, SaysWhatItShowsHowLargeAndThatItIsSimulated) {
+  const ReportAnimation animation = testing::RingFixture(4.0).animation("Before", 2);
+  const std::string figure = frame_figure_svg(animation, 2, -Vec3::UnitZ(), 600, 300);
+  for (const char* text : {"Before (simulated)", "data:image/png;base64,", ">tissue<", ">kerf<", ">needle<", ">tumour edge<", ">10 mm, "}) {
+    EXPECT_NE(figure.find(text), std::string::npos) << text;
+  }
+}
+
+TEST(FrameFigure, ItsScaleBarIsAsLongAsWhatItMeasures) {
+  // A line of 10 mm across the line of sight, alone in the picture: it fills 92 % of the width, and so does the bar.
+  const Vec3 across = Vec3(std::cos(-0.6), std::sin(-0.6), 0.0);
+  ReportAnimation animation;
+  animation.name = "line";
+  animation.lines.push_back({LineKind::TumorEdge, {{Vec3::Zero(), 10.0 * across}, false}});
+  animation.frames.emplace_back();
+  const std::string figure = frame_figure_svg(animation, 0, -Vec3::UnitZ(), 500, 400);
+  const std::size_t bar = figure.find("stroke-width=\"3\"");
+  ASSERT_NE(bar, std::string::npos);
+  const std::string element = figure.substr(figure.rfind('<', bar), bar - figure.rfind('<', bar));
+  const auto number = [&element](const std::string& name) {
+    return std::stod(element.substr(element.find(" " + name + "=\"") + name.size() + 3));
+  };
+  EXPECT_NEAR(number("x2") - number("x1"), 0.92 * 500.0, 0.1) << element;
 }
 
 }  // namespace

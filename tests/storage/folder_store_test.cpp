@@ -7,8 +7,10 @@
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/surface_io.hpp>
 #include <incise/storage/folder_store.hpp>
 #include <incise/storage/path_schema.hpp>
+#include <incise/storage/result_json.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <gtest/gtest.h>
@@ -179,6 +181,114 @@ TEST_F(FolderStoreTest, ACorrectionComesBackExactly) {
   EXPECT_EQ(loaded->error_mm, correction.error_mm);
   EXPECT_EQ(loaded->move_mm, correction.move_mm);
   EXPECT_EQ(loaded->max_move_mm, 1.1);
+}
+
+/// A cut of which every measure is there.
+SimulatedCut measured_cut() {
+  SimulatedCut cut;
+  cut.tets = 48;
+  cut.incision.outcome = Outcome::Success;
+  cut.incision.is_closed_loop = true;
+  cut.incision.centerline = testing::circle(3.1, 40, Vec3(5, 10, 5));
+  cut.incision.final_tumor_edge = testing::circle(2.0, 12, Vec3(5, 10, 5));
+  cut.incision.record.removals.push_back({TetId(3), 2, 0.04, RemovalCause::Dwell, Vec3(1, 2, 3), 1.0 / 3.0});
+  KerfMeasures& kerf = cut.incision.kerf;
+  kerf.body.surface = boundary_surface(make_block({1, 2, 3}, {1, 1, 1}));
+  kerf.body.volume_mm3 = 6.0;
+  kerf.body.boundary = {12, 0, 1, 2};
+  kerf.body.live_skin = {30, 0, 3, 4};
+  kerf.layers = {{2.5, true, true, std::nullopt, 1.5, testing::circle(1.0 / 3.0, 9, Vec3(5, 10, 2.5))},
+                 {4.0, true, false, 0.7, 0.0, std::nullopt},
+                 {5.0, false, std::nullopt, std::nullopt, 0.0, std::nullopt}};
+  kerf.depth = {4.5, {testing::circle(3.1, 8), {0, 1, 2, 3, 4, 5, 6, 7}, {0.1, 4, 4, 4, 4, 4, 4, 1.0 / 3.0}}, {3.1, 0.1, 4.0}};
+  kerf.drag = TissueDrag{{0.1, 0.2}, {0, 1.0 / 7.0}, {0.5, 0.6}, {-0.1, 0.2}, {0.55, 0.5, 0.6}, {0.05, -0.1, 0.2}};
+  kerf.deep_margin = DeepMargin{1.5, 2.5, std::nullopt, {0.3, 0.1, 0.5}};
+  kerf.final_centerline = testing::circle(3.0, 10);
+  kerf.inner_edge_reference = testing::circle(2.5, 10);
+  cut.layers.resize(3);
+  return cut;
+}
+
+TEST_F(FolderStoreTest, WhatCameOutOfACutComesBackExactly) {
+  FolderStore store = open();
+  store.save_plan(small_ring(), 0.0);
+  const TissueModel model = tissue_of(store.case_file().settings, *store.read_specimen_mesh(silent_));
+  StaticResult stretched;
+  stretched.state = rest_state(model);
+  store.save_cut(CutRole::AsPlanned, model, stretched, measured_cut(), 0.1);
+  const auto loaded = open().load_cut(CutRole::AsPlanned);
+  ASSERT_TRUE(loaded);
+  const KerfMeasures made = measured_cut().incision.kerf;
+  const KerfMeasures& found = loaded->incision.kerf;
+  EXPECT_EQ(found.body.surface.vertices, made.body.surface.vertices);
+  EXPECT_EQ(found.body.surface.triangles, made.body.surface.triangles);
+  EXPECT_EQ(found.body.boundary, made.body.boundary);
+  EXPECT_EQ(found.body.live_skin, made.body.live_skin);
+  ASSERT_EQ(found.layers.size(), 3U);
+  EXPECT_EQ(found.layers[0].centerline->points, made.layers[0].centerline->points);
+  EXPECT_EQ(found.layers[1].gap_mm, 0.7);
+  EXPECT_FALSE(found.layers[2].is_closed);
+  EXPECT_EQ(found.depth.profile.depth_mm, made.depth.profile.depth_mm);
+  EXPECT_EQ(found.depth.profile.course.points, made.depth.profile.course.points);
+  EXPECT_EQ(found.depth.planned_mm, 4.5);
+  EXPECT_EQ(found.drag->arclength_mm, made.drag->arclength_mm);
+  EXPECT_EQ(found.drag->drift.min, -0.1);
+  EXPECT_EQ(found.deep_margin->beside_mm, 2.5);
+  EXPECT_FALSE(found.deep_margin->beneath_mm);
+  EXPECT_EQ(found.final_centerline->points, made.final_centerline->points);
+  EXPECT_EQ(found.inner_edge_reference->points, made.inner_edge_reference->points);
+}
+
+TEST_F(FolderStoreTest, ALayerIsHeldAgainstTheLateralMargin) {
+  FolderStore store = open();
+  store.save_plan(small_ring(), 0.0);
+  const SimulatedCut judged = judge(store.case_file().settings, measured_cut().incision, small_ring(), 48);
+  ASSERT_EQ(judged.layers.size(), 3U);
+  ASSERT_TRUE(judged.layers[0].signed_error_mm);
+  EXPECT_NEAR(judged.layers[0].signed_error_mm->mean, -(2.0 - 1.0 / 3.0) - 5.0, 0.1) << "a third of a millimetre round the tumour's middle";
+  EXPECT_FALSE(judged.layers[1].signed_error_mm);
+}
+
+TEST_F(FolderStoreTest, WhyADeepMarginIsNotKnownIsSaid) {
+  SimulatedCut cut = measured_cut();
+  cut.incision.kerf.deep_margin.reset();
+  const nlohmann::ordered_json json = to_json(cut);
+  EXPECT_TRUE(json.at("deep_margin_mm").is_null());
+  EXPECT_NE(json.at("deep_margin_unknown").get<std::string>().find("tumor.surface"), std::string::npos);
+}
+
+// --- the tumour's surface
+
+TEST_F(FolderStoreTest, ATumourSurfaceWithAHoleIsRefused) {
+  TriMesh open_box = boundary_surface(make_block({1, 1, 1}, {1, 1, 1}));
+  open_box.triangles.pop_back();
+  write_ply(folder_ / "tumor.ply", open_box);
+  std::ofstream(folder_ / "case.yaml") << "schema: incise.case/1\nspecimen: {mesh: block.vtu}\ntumor: {contour: tumor.csv, surface: tumor.ply}\n";
+  FolderStore store(read_case(folder_.path()), folder_ / "out", {"incise test", 7, 2});
+  try {
+    static_cast<void>(store.read_tumor_surface());
+    FAIL() << "expected DataError";
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.path().filename(), "tumor.ply");
+    EXPECT_NE(std::string(error.what()).find("open boundary"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(FolderStoreTest, AChangedTumourSurfaceMakesTheCutStaleAndNotThePlan) {
+  const auto with_surface = [this](double size) -> FolderStore {
+    write_ply(folder_ / "tumor.ply", boundary_surface(make_block({size, 1, 1}, {1, 1, 1})));
+    std::ofstream(folder_ / "case.yaml") << "schema: incise.case/1\nspecimen: {mesh: block.vtu}\ntumor: {contour: tumor.csv, surface: tumor.ply}\n";
+    return {read_case(folder_.path()), folder_ / "out", {"incise test", 7, 2}};
+  };
+  FolderStore store = with_surface(1.0);
+  store.save_plan(small_ring(), 0.0);
+  const TissueModel model = make_tissue_model(*store.read_specimen_mesh(silent_), Material{}, {FixedConstraint{EndRegion{Vec3::UnitY(), 1.0}}});
+  StaticResult stretched;
+  stretched.state = rest_state(model);
+  store.save_cut(CutRole::AsPlanned, model, stretched, measured_cut(), 0.1);
+  EXPECT_TRUE(with_surface(1.0).is_current(Product::AsPlanned));
+  EXPECT_FALSE(with_surface(2.0).is_current(Product::AsPlanned));
+  EXPECT_TRUE(with_surface(2.0).is_current(Product::Plan));
 }
 
 // --- what a product depends on

@@ -22,7 +22,8 @@ struct Removal {
   double rest_volume_mm3 = 0.0;
 };
 
-/// Every tet that went, in order: the whole memory of a cut. Within a step: ascending tet.
+/// Every tet that went, in order: the whole memory of a cut. Within a step: what was touched long enough, then loose fragments, each by
+/// ascending tet.
 struct CutRecord {
   std::vector<Removal> removals;
   [[nodiscard]] double removed_volume_mm3() const {

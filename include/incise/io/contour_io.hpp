@@ -2,17 +2,14 @@
 
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/tet_mesh.hpp>
+#include <incise/io/table_io.hpp>
 
 #include <filesystem>
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace incise {
-
-/// A column of numbers, one per point, that goes beside the coordinates.
-using NamedColumn = std::pair<std::string, std::vector<double>>;
 
 /// Reads a contour, mm, LPS.
 ///

@@ -8,6 +8,7 @@
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/tool_path.hpp>
 #include <incise/mechanics/tissue.hpp>
+#include <incise/procedure/kerf_measures.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -20,6 +21,8 @@ struct IncisionSettings {
   Needle needle;
   Vec3 approach = -Vec3::UnitZ();     ///< unit; the direction in which camera and surgeon look
   double midline_layer_mm = 2.5;      ///< the mid-line is that of the kerf down to this depth below the surface, > 0
+  std::vector<double> layer_depths_mm{1.0, 2.5, 4.0, 5.0};  ///< middles of the layers with a mid-line of their own; each >= 0.5, ascending
+  TriMesh tumor_surface;              ///< closed, stretched tissue before the cut, mm; without triangles: not known
   int frames = 0;                     ///< moments to keep for pictures, evenly spaced over the cut; 0: none
 };
 
@@ -53,6 +56,7 @@ struct IncisionResult {
   std::optional<Contour> centerline;     ///< mid-line of the kerf, on the surface, stretched tissue before the cut, mm
   std::optional<Contour> inner_edge;     ///< border of the tissue inside the ring, tool out, tissue still stretched, mm
   Contour final_tumor_edge;              ///< where the tumour edge lies then, mm
+  KerfMeasures kerf;                     ///< body, layers, depth, drag and deep margin
   CutRecord record;
   CutState final_state;                  ///< tool out, tissue still stretched
   std::vector<CutFrame> frames;

@@ -23,4 +23,9 @@ void write_report(const ReportData& data, const std::filesystem::path& path);
 [[nodiscard]] std::string frame_png(const ReportAnimation& animation, std::size_t frame, const Vec3& approach,
                                     int width_px, int height_px);
 
+/// The same as a figure: an SVG document that holds the picture, with a title that says "simulated", a legend of what it shows and a scale
+/// bar of 10 mm. @pre, @throws as frame_png.
+[[nodiscard]] std::string frame_figure_svg(const ReportAnimation& animation, std::size_t frame, const Vec3& approach,
+                                           int width_px, int height_px);
+
 }  // namespace incise

@@ -5,6 +5,7 @@
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/volume.hpp>
+#include <incise/report/line_plot.hpp>
 
 #include <array>
 #include <cstdint>
@@ -159,6 +160,9 @@ struct ReportData {
   std::vector<ReportAnimation> animations;
   std::vector<ReportIncision> incisions;  ///< in the order in which they were made: before, after
   std::vector<ReportMeasure> evaluation;
+  std::vector<LinePlot> kerf_plots;       ///< depth, lag and drift along the path
+  std::vector<std::string> kerf_figures;  ///< complete SVG documents
+  ReportTable kerf_layers;                ///< mid-line errors by depth
   std::vector<ReportStage> stages;
   std::vector<ReportValue> program;  ///< summary of the robot program
   std::vector<ReportCheck> checks;

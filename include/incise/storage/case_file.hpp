@@ -14,6 +14,7 @@ struct CaseInputs {
   std::filesystem::path ct_volume;
   std::filesystem::path specimen_mesh;
   std::filesystem::path tumor_contour;
+  std::filesystem::path tumor_surface;    ///< closed, in the configuration of the contour
   std::filesystem::path line_contour;     ///< the curve of an open cut
   std::filesystem::path tool_path;        ///< a path to follow in place of the planned one
   std::vector<std::filesystem::path> holders;  ///< surfaces of supports, in the order of the constraints that name them

@@ -28,7 +28,8 @@ enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Correction, Corre
 ///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
 ///   stretched/   deformed.vtu, deform.json
 ///   plan/        path.json, path.vtp, plan.json
-///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, removed.vtu, frames.pvd, frames/
+///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, removed.vtu, frames.pvd, frames/,
+///                kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv, inner_edge_reference.csv
 ///   correction/  path.json, path.vtp, compensate.json
 ///   corrected/   as as_planned/
 ///
@@ -47,6 +48,7 @@ class FolderStore : public Store {
   CtVolume read_ct(Monitor& monitor) override;
   std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) override;
   std::optional<Contour> read_tumor_edge() override;
+  std::optional<TriMesh> read_tumor_surface() override;
   std::optional<Contour> read_line() override;
   std::optional<ToolPath> read_given_path() override;
 

@@ -6,6 +6,7 @@
 #include <incise/planning/compensation.hpp>
 #include <incise/procedure/incision.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,18 @@ struct MeshProduct {
   Contour planned_cut_rest;  ///< where the planned cut lies in the unstretched body, mm; empty when the mesh was given
 };
 
+/// Errors of the mid-line in one layer against the lateral margin, as seen along the approach; absent: no mid-line there.
+struct LayerErrors {
+  std::optional<Summary> signed_error_mm;
+  std::optional<Summary> abs_error_mm;
+};
+
 /// One simulated incision and what it is worth.
 struct SimulatedCut {
   IncisionResult incision;
   Evaluation centerline;  ///< mid-line against the lateral margin, stretched tissue before the cut
   Evaluation inner_edge;  ///< inner edge against margin less electrode radius, tool out
+  std::vector<LayerErrors> layers;  ///< one for each of incision.kerf.layers
   Outcome outcome = Outcome::NotConverged;  ///< of incision and margin together
   std::size_t tets = 0;   ///< of the mesh before the cut
 };

@@ -24,6 +24,8 @@ class Store {
   virtual CtVolume read_ct(Monitor& monitor) = 0;
   virtual std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) = 0;  ///< nothing: the mesh is made from the CT
   virtual std::optional<Contour> read_tumor_edge() = 0;
+  /// The tumour's closed surface, in the configuration of its edge; nothing: only the edge is known.
+  virtual std::optional<TriMesh> read_tumor_surface() { return std::nullopt; }
   virtual std::optional<Contour> read_line() = 0;           ///< the curve of an open cut
   virtual std::optional<ToolPath> read_given_path() = 0;    ///< a path to follow in place of the planned one
 

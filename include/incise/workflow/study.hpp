@@ -67,7 +67,15 @@ struct Study {
 [[nodiscard]] StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor);
 [[nodiscard]] ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line);
+/// The tumour's surface in the stretched tissue: placed as its edge is (each vertex is moved along the approach by what the edge's points
+/// near it are moved when they are laid onto the skin) and, where it was drawn on the tissue as scanned, carried along with that.
+/// @param drawn_edge  as given, in the surface's configuration; absent: the surface is taken as it lies.
+/// @throws CaseError (field tumor.surface) for a vertex farther than surface_tolerance_mm from the tissue.
+[[nodiscard]] TriMesh tumor_in_stretched(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+                                         TriMesh surface, const std::optional<Contour>& drawn_edge);
+/// @param tumor_surface  closed, stretched tissue before the cut, mm; without triangles: not known.
 [[nodiscard]] SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,
-                                         const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor);
+                                         const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor,
+                                         const TriMesh& tumor_surface = {});
 
 }  // namespace incise

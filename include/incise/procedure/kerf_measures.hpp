@@ -1,0 +1,81 @@
+#pragma once
+
+#include <incise/geometry/contour.hpp>
+#include <incise/geometry/kerf_depth.hpp>
+#include <incise/geometry/manifoldness.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace incise {
+
+/// Mean and range of a list of numbers, in their unit.
+struct Spread {
+  double mean = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+};
+
+/// The kerf's mid-line in a layer of 1 mm at some depth below the skin.
+struct KerfLayer {
+  double depth_mm = 0.0;              ///< of the layer's middle, along the approach
+  bool is_within_plan = false;        ///< the planned depth reaches the layer's middle; if not, nothing was looked for
+  std::optional<bool> is_closed;      ///< whether a ring closed there; absent for an open cut, or outside the plan
+  std::optional<double> gap_mm;       ///< ring that stayed open there: width of the widest uncut bridge
+  double width_mm = 0.0;              ///< of the kerf there, mean; 0 without a mid-line
+  std::optional<Contour> centerline;  ///< at that depth, stretched tissue before the cut, mm
+};
+
+/// The kerf as a body, in the stretched tissue before the cut: the removed tets together.
+struct KerfBody {
+  TriMesh surface;          ///< their boundary, outwards; sheets may touch
+  double volume_mm3 = 0.0;  ///< enclosed: the sum of the tets' volumes there
+  Manifoldness boundary;    ///< of `surface`
+  Manifoldness live_skin;   ///< of the skin of the tissue that is left
+};
+
+/// How deep the kerf goes along the path that the tool followed.
+struct DepthReached {
+  double planned_mm = 0.0;  ///< mean depth of the tool's tip below its entry points, along the approach
+  DepthProfile profile;     ///< see depth_along
+  Spread depth_mm;          ///< of the profile
+};
+
+/// How far tissue was from its place in the stretched, uncut body when it was cut: along the tool's course (lag) and
+/// across it (drift). One entry per step in which tets went that had been touched long enough; means over them,
+/// weighted by rest volume.
+struct TissueDrag {
+  std::vector<double> time_s;        ///< ascending
+  std::vector<double> arclength_mm;  ///< that the tip had gone since the plunge; on a ring the overlap counts on
+  std::vector<double> lag_mm;  ///< positive: dragged ahead, so that tissue is cut that belongs farther on the way back
+  std::vector<double>
+      drift_mm;  ///< positive: pushed outwards on a ring, to the left (seen against the approach) of an open cut
+  Spread lag;    ///< of the entries; means weighted by rest volume
+  Spread drift;
+};
+
+/// How near the kerf comes to the body of the tumour, stretched tissue before the cut, mm. A place of the kerf is
+/// beneath the tumour when it lies farther along the approach than across it from the nearest point of the tumour, else
+/// beside it.
+struct DeepMargin {
+  double nearest_mm = 0.0;           ///< in any direction; negative: the kerf enters the tumour that far
+  std::optional<double> beside_mm;   ///< least distance to what lies beside; absent: nothing does
+  std::optional<double> beneath_mm;  ///< least distance to what lies beneath; absent: nothing does
+  Spread floor_below_mm;  ///< along the path: by how much the kerf's floor lies deeper than the tumour's deepest point
+};
+
+/// What came out of a cut, beside the two contours.
+struct KerfMeasures {
+  KerfBody body;
+  std::vector<KerfLayer> layers;  ///< as asked for
+  DepthReached depth;
+  std::optional<TissueDrag> drag;           ///< absent: nothing was cut, or the tip never moved along the path
+  std::optional<DeepMargin> deep_margin;    ///< absent: nothing was cut, or the tumour's surface is not known
+  std::optional<Contour> final_centerline;  ///< the mid-line moved with the tissue on both its sides, tool out, mm;
+                                            ///< absent also where a straight line across it meets no tissue on one side
+  std::optional<Contour>
+      inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
+};
+
+}  // namespace incise

@@ -1,0 +1,136 @@
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/cutting/cut_invariants.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace incise {
+namespace {
+
+/// Relative rounding of a sum of millions of positive numbers, taken in different orders.
+constexpr double kRounding = 1e-10;
+
+/// Collects sentences; of each kind the first alone.
+class Violations {
+ public:
+  template <class... Args>
+  void add(bool is_violated, bool& is_known, fmt::format_string<Args...> text, Args&&... args) {
+    if (!is_violated || is_known) return;
+    is_known = true;
+    texts_.push_back(fmt::format(text, std::forward<Args>(args)...));
+  }
+  [[nodiscard]] std::vector<std::string> take() { return std::move(texts_); }
+
+ private:
+  std::vector<std::string> texts_;
+};
+
+void require_fitting(const TissueModel& model, const CutState& state) {
+  const auto require = [](std::size_t found, std::size_t expected, const char* what) {
+    INCISE_REQUIRE(found == expected, fmt::format("{}: expected {}, found {}", what, expected, found));
+  };
+  require(state.tissue.positions.size(), model.mesh.vertices.size(), "positions");
+  require(state.tissue.is_live.size(), model.mesh.tets.size(), "flags of live tets");
+  require(state.contact_s.size(), model.mesh.tets.size(), "contact times");
+}
+
+/// Whether `next` may follow `before` in a record.
+bool is_ordered(const Removal& before, const Removal& next) {
+  if (before.step != next.step) return before.step < next.step;
+  const bool was_loose = before.cause == RemovalCause::LooseFragment;
+  const bool is_loose = next.cause == RemovalCause::LooseFragment;
+  return was_loose == is_loose ? before.tet < next.tet : is_loose;
+}
+
+/// @returns how often each tet is in the record.
+std::vector<std::uint8_t> check_record(const TissueModel& model, const CutState& state, Violations& violations) {
+  std::vector<std::uint8_t> times_removed(model.mesh.tets.size(), 0);
+  bool unknown = false, twice = false, disordered = false, ahead = false, volume = false;
+  const std::vector<Removal>& removals = state.record.removals;
+  for (std::size_t i = 0; i < removals.size(); ++i) {
+    const Removal& r = removals[i];
+    const bool is_unknown = !r.tet.is_valid() || r.tet.index() >= model.mesh.tets.size();
+    violations.add(is_unknown, unknown, "record: entry {} names tet {}, expected one of {}", i, r.tet.value,
+                   model.mesh.tets.size());
+    if (is_unknown) continue;
+    violations.add(times_removed[r.tet.index()] != 0, twice, "record: tet {} was removed twice, again in entry {}",
+                   r.tet.value, i);
+    times_removed[r.tet.index()] = 1;
+    violations.add(i > 0 && !is_ordered(removals[i - 1], r), disordered,
+                   "record: entry {} (step {}, tet {}) does not follow the one before it (step {}, tet {})", i, r.step,
+                   r.tet.value, removals[i > 0 ? i - 1 : 0].step, removals[i > 0 ? i - 1 : 0].tet.value);
+    const bool is_ahead = !(r.step >= 0 && r.step <= state.step && r.time_s >= 0.0 && r.time_s <= state.time_s);
+    violations.add(is_ahead, ahead, "record: entry {} is of step {}, {} s; the cut is at step {}, {} s", i, r.step,
+                   r.time_s, state.step, state.time_s);
+    violations.add(r.rest_volume_mm3 != model.volumes_mm3[r.tet.index()], volume,
+                   "record: tet {} has a rest volume of {} mm³, recorded are {} mm³", r.tet.value,
+                   model.volumes_mm3[r.tet.index()], r.rest_volume_mm3);
+  }
+  return times_removed;
+}
+
+void check_balance(const TissueModel& model, const CutState& state, std::span<const std::uint8_t> times_removed,
+                   Violations& violations) {
+  bool gone = false, alive = false, volume = false, mass = false;
+  double live_mm3 = 0.0;
+  for (std::size_t tet = 0; tet < times_removed.size(); ++tet) {
+    const bool is_live = state.tissue.is_live[tet] != 0;
+    violations.add(!is_live && times_removed[tet] == 0, gone, "record: tet {} is gone and not in the record", tet);
+    violations.add(is_live && times_removed[tet] != 0, alive, "record: tet {} is in the record and live", tet);
+    if (is_live) live_mm3 += model.volumes_mm3[tet];
+  }
+  const double uncut_mm3 = std::accumulate(model.volumes_mm3.begin(), model.volumes_mm3.end(), 0.0);
+  const double found_mm3 = live_mm3 + state.record.removed_volume_mm3();
+  violations.add(!(std::abs(found_mm3 - uncut_mm3) <= kRounding * uncut_mm3), volume,
+                 "balance: live and removed rest volume are {} mm³, the uncut body's is {} mm³", found_mm3, uncut_mm3);
+  // The model keeps mass by vertex, so this also says that no mass was lost when it was shared out.
+  const double uncut_kg = std::accumulate(model.vertex_mass_kg.begin(), model.vertex_mass_kg.end(), 0.0);
+  const double found_kg = found_mm3 * units::kg_mm3_from_kg_m3(model.material.density_kg_m3);
+  violations.add(!(std::abs(found_kg - uncut_kg) <= kRounding * uncut_kg), mass,
+                 "balance: live and removed mass are {} kg, the uncut body's is {} kg", found_kg, uncut_kg);
+}
+
+void check_positions(const TissueModel& model, const CutState& state, Violations& violations) {
+  bool position = false, contact = false;
+  for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
+    const double time = state.contact_s[tet];
+    violations.add(!(std::isfinite(time) && time >= 0.0), contact, "contact: tet {} was touched for {} s", tet, time);
+    if (state.tissue.is_live[tet] == 0) continue;
+    for (const VertexId v : model.mesh.tets[tet]) {
+      violations.add(!state.tissue.positions[v.index()].allFinite(), position,
+                     "positions: vertex {} of live tet {} is not finite", v.value, tet);
+    }
+  }
+}
+
+void check_bonds(const TissueModel& model, const CutState& state, Violations& violations) {
+  bool unknown = false, dead = false, disordered = false, offset = false;
+  for (std::size_t i = 0; i < state.bonds.size(); ++i) {
+    const Bond& bond = state.bonds[i];
+    const bool is_unknown = !bond.tet.is_valid() || bond.tet.index() >= model.mesh.tets.size();
+    violations.add(is_unknown, unknown, "bonds: entry {} names tet {}, expected one of {}", i, bond.tet.value,
+                   model.mesh.tets.size());
+    if (is_unknown) continue;
+    violations.add(state.tissue.is_live[bond.tet.index()] == 0, dead, "bonds: tet {} is held and gone", bond.tet.value);
+    violations.add(i > 0 && !(state.bonds[i - 1].tet < bond.tet), disordered, "bonds: tet {} does not follow tet {}",
+                   bond.tet.value, state.bonds[i > 0 ? i - 1 : 0].tet.value);
+    violations.add(!bond.offset_mm.allFinite(), offset, "bonds: the offset of tet {} is not finite", bond.tet.value);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> cut_invariants(const TissueModel& model, const CutState& state) {
+  require_fitting(model, state);
+  Violations violations;
+  const std::vector<std::uint8_t> times_removed = check_record(model, state, violations);
+  check_balance(model, state, times_removed, violations);
+  check_positions(model, state, violations);
+  check_bonds(model, state, violations);
+  return violations.take();
+}
+
+}  // namespace incise
