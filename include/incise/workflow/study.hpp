@@ -67,7 +67,9 @@ struct Study {
 [[nodiscard]] StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor);
 [[nodiscard]] ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line);
+/// @param from  an interrupted cut along this path; nothing: from the beginning.  @param keep  see continue_incision.
 [[nodiscard]] SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,
-                                         const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor);
+                                         const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor,
+                                         std::optional<IncisionProgress> from = {}, const ProgressKeeper& keep = {});
 
 }  // namespace incise
