@@ -23,6 +23,7 @@ constexpr std::size_t kHashDigits = 64;
 class CheckpointFileTest : public testing::RingInABlock {
  protected:
   CheckpointFileTest() : RingInABlock(16) {
+    settings_.cut.dullness = 4.0;
     settings_.frames = 4;
     Workers workers(1);
     static_cast<void>(continue_incision(model_, rest_state(model_), path_, settings_,
