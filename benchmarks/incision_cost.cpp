@@ -57,6 +57,8 @@ class PhantomStore final : public Store {
   void save_plan(const ToolPath&, double) override {}
   std::optional<SimulatedCut> load_cut(CutRole) override { return {}; }
   void save_cut(CutRole, const TissueModel&, const StaticResult&, const SimulatedCut&, double) override {}
+  std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
+  void keep_progress(CutRole, const IncisionProgress&, bool) override {}
   std::optional<Compensation> load_correction() override { return {}; }
   void save_correction(const Compensation&, double) override {}
 

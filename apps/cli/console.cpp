@@ -51,12 +51,13 @@ void Console::progress(std::string_view stage, double fraction) {
     stage_ = stage;
     stage_start_ = now;
     last_shown_ = now;
+    time_left_ = TimeLeft{};
   }
+  time_left_.note(std::chrono::duration<double>(now - stage_start_).count(), fraction);
   const double since_shown = std::chrono::duration<double>(now - last_shown_).count();
   if (since_shown < (is_terminal_ ? 0.1 : 5.0)) return;
   last_shown_ = now;
-  const double elapsed = std::chrono::duration<double>(now - stage_start_).count();
-  const std::string left = fraction > 0.02 ? ", " + time_text(elapsed * (1.0 - fraction) / fraction) + " left" : "";
+  const std::string left = time_left_.seconds() ? ", " + time_text(*time_left_.seconds()) + " left" : "";
   if (is_terminal_) {
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(fraction * kWidth);

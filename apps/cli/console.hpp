@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/monitor.hpp>
+#include <incise/core/time_left.hpp>
 
 #include <chrono>
 #include <string>
@@ -26,6 +27,7 @@ class Console : public Monitor {
   bool has_bar_ = false;
   std::string stage_;
   std::chrono::steady_clock::time_point stage_start_;
+  TimeLeft time_left_;  ///< of the stage
   std::chrono::steady_clock::time_point last_shown_;
 };
 

@@ -90,7 +90,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "incise: {}\n", error.what());
     return kBadData;
   } catch (const StagesKept& error) {
-    fmt::print(stderr, "incise: {}; the stages that were finished are kept, run the same command to go on\n", error.what());
+    fmt::print(stderr, "incise: {}\n", error.what());
     return kInterrupted;
   } catch (const Cancelled& error) {
     fmt::print(stderr, "incise: {}; nothing was written\n", error.what());

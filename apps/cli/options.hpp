@@ -23,10 +23,11 @@ inline constexpr int kBadData = 3;
 inline constexpr int kNotAcceptable = 4;
 inline constexpr int kInterrupted = 130;
 
-/// The person asked to stop and finished stages are kept: main says so, where it says of a plain Cancelled that nothing was written.
+/// The person asked to stop and something is kept, by default the finished stages; of a plain Cancelled main says that nothing was written.
 class StagesKept : public Cancelled {
  public:
-  using Cancelled::Cancelled;
+  explicit StagesKept(const std::string& what, const std::string& kept = "the stages that were finished are kept")
+      : Cancelled(what + "; " + kept + ", run the same command to go on") {}
 };
 
 /// What every verb understands.

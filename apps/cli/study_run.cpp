@@ -17,6 +17,12 @@
 #include <ostream>
 
 namespace incise::cli {
+namespace {
+
+constexpr int kMostFrames = 500;               // as in the case file
+constexpr double kLongestCheckpointS = 86400;  // a day
+
+}  // namespace
 
 std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options) {
   if (!options.output.empty()) return options.output;
@@ -29,8 +35,30 @@ CaseFile case_with_inputs(const std::filesystem::path& case_path) {
   return file;
 }
 
-StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options)
-    : is_new_folder(!std::filesystem::exists(output)), store(case_with_inputs(case_path), output, options.context()) {
+void add_cut_options(CLI::App& verb, CutOptions& options) {
+  verb.add_option("--frames", options.frames, "Moments of the cut to keep for pictures, in place of the case's cut.frames")
+      ->check(CLI::Range(1, kMostFrames));
+  verb.add_flag("--resume", options.must_resume,
+                "Go on from the checkpoint of an interrupted cut, or refuse. Without it the cut goes on, too, where there is one that fits");
+  verb.add_option("--checkpoint-s", options.checkpoint_s, "Seconds between two checkpoints of a cut; Ctrl-C always writes one")
+      ->check(CLI::Range(0.0, kLongestCheckpointS));
+}
+
+namespace {
+
+CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut) {
+  CaseFile file = case_with_inputs(case_path);
+  if (cut.frames) file.settings.frames = *cut.frames;
+  return file;
+}
+
+}  // namespace
+
+StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options,
+                   const CutOptions& cut)
+    : is_new_folder(!std::filesystem::exists(output)),
+      store(case_as_asked(case_path, cut), output, options.context(), cut.checkpoint_s) {
+  if (cut.must_resume) require_checkpoint();
   // Kept apart from the products: which case they are of, for `incise report`.
   const auto relative = std::filesystem::absolute(store.case_file().file).lexically_proximate(std::filesystem::absolute(output));
   const std::filesystem::path record = output / "study.json";
@@ -39,6 +67,20 @@ StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem
     if (older.is_object() && older.contains("case_file") && older.at("case_file") == relative.string()) return;
   }
   write_json(record, {{"case_file", relative.string()}});
+}
+
+void StudyRun::require_checkpoint() {
+  bool is_there = false;
+  for (const CutRole role : {CutRole::AsPlanned, CutRole::Corrected}) {
+    if (!std::filesystem::exists(store.checkpoint(role))) continue;
+    store.require_fitting_checkpoint(role);
+    is_there = true;
+  }
+  if (is_there) return;
+  remove_if_nothing_was_made();
+  throw CaseError("command line", "--resume", fmt::format("no checkpoint in {}", store.root().string()),
+                  "as_planned.checkpoint or corrected.checkpoint, which an interrupted cut leaves",
+                  "Without --resume the cut starts from the beginning");
 }
 
 Study StudyRun::run(Stage until, const CommonOptions& options, Monitor& monitor) {
@@ -52,6 +94,9 @@ Study StudyRun::run(Stage until, const CommonOptions& options, Monitor& monitor)
     throw error.in_file(file.file.string());
   } catch (const Cancelled& error) {
     remove_if_nothing_was_made();
+    if (!store.last_checkpoint().empty()) {
+      throw StagesKept(error.what(), fmt::format("its checkpoint {} is kept", store.last_checkpoint().string()));
+    }
     if (has_products()) throw StagesKept(error.what());
     throw;
   } catch (...) {

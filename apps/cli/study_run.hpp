@@ -4,11 +4,24 @@
 
 #include <incise/workflow/study.hpp>
 
+#include <optional>
+
 namespace incise::cli {
+
+/// What the verbs that cut understand beside the common options.
+struct CutOptions {
+  std::optional<int> frames;    ///< --frames: in place of the case's cut.frames
+  bool must_resume = false;     ///< --resume: go on from a checkpoint or not at all
+  double checkpoint_s = 30.0;   ///< --checkpoint-s: least wall time between two checkpoints
+};
+/// Adds them to a verb; `options` receives what is given.
+void add_cut_options(CLI::App& verb, CutOptions& options);
 
 /// One way through a study on a folder: the stages up to `until`, and a study.json in the folder that says which case it is of.
 struct StudyRun {
-  StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options);
+  /// @throws CaseError or DataError when it has to resume and there is no checkpoint, or one that does not fit.
+  StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options,
+           const CutOptions& cut = {});
 
   Study run(Stage until, const CommonOptions& options, Monitor& monitor);
 
@@ -16,6 +29,7 @@ struct StudyRun {
   FolderStore store;
 
  private:
+  void require_checkpoint();
   /// A study that failed before its first product leaves no folder behind.
   void remove_if_nothing_was_made() const;
   [[nodiscard]] bool has_products() const;

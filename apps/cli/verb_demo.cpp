@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+
 namespace incise::cli {
 namespace {
 
@@ -26,17 +28,19 @@ std::filesystem::path specimen_for(const std::filesystem::path& folder, std::uin
 }  // namespace
 
 void add_demo(Application& application) {
-  application.add_verb(
+  auto cut = std::make_shared<CutOptions>();
+  CLI::App* verb = application.add_verb(
       "demo", "A complete virtual case: make a specimen, then everything that `run` does", "incise demo -o demo",
-      [](const CommonOptions& options) {
+      [cut](const CommonOptions& options) {
         Console console(options.level());
         const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
-        StudyRun study(specimen_for(root / "specimen", options.seed, console), root, options);
+        StudyRun study(specimen_for(root / "specimen", options.seed, console), root, options, *cut);
         nlohmann::ordered_json result;
         const int status = run_whole_loop(study, options, console, result);
         print_result(options, result);
         return status;
       });
+  add_cut_options(*verb, *cut);
 }
 
 }  // namespace incise::cli

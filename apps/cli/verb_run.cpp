@@ -6,17 +6,19 @@ namespace incise::cli {
 
 void add_run(Application& application) {
   auto case_path = std::make_shared<std::filesystem::path>();
+  auto cut = std::make_shared<CutOptions>();
   CLI::App* verb = application.add_verb(
       "run", "The whole loop on your case: CT, mesh, stretch, plan, cut, correct, cut again, program, report. Resumes",
-      "incise run my_patient -o my_patient/out", [case_path](const CommonOptions& options) {
+      "incise run my_patient -o my_patient/out", [case_path, cut](const CommonOptions& options) {
         Console console(options.level());
-        StudyRun study(*case_path, output_of(*case_path, options), options);
+        StudyRun study(*case_path, output_of(*case_path, options), options, *cut);
         nlohmann::ordered_json result;
         const int status = run_whole_loop(study, options, console, result);
         print_result(options, result);
         return status;
       });
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
+  add_cut_options(*verb, *cut);
 }
 
 }  // namespace incise::cli

@@ -8,6 +8,8 @@
 namespace incise::cli {
 namespace {
 
+constexpr const char* kCaseHelp = "Case file, or a folder with case.yaml";
+
 nlohmann::ordered_json result_of(Stage stage, const Study& study) {
   nlohmann::ordered_json json;
   switch (stage) {
@@ -28,9 +30,10 @@ nlohmann::ordered_json result_of(Stage stage, const Study& study) {
   }
 }
 
-int run_stage(Stage stage, Product product, const std::filesystem::path& case_path, const CommonOptions& options) {
+int run_stage(Stage stage, Product product, const std::filesystem::path& case_path, const CommonOptions& options,
+              const CutOptions& cut = {}) {
   Console console(options.level());
-  StudyRun run(case_path, output_of(case_path, options), options);
+  StudyRun run(case_path, output_of(case_path, options), options, cut);
   const Study study = run.run(stage, options, console);
   const bool is_stretched = study.stretched && study.stretched->outcome == Outcome::Success;
   nlohmann::ordered_json result = is_stretched ? result_of(stage, study) : to_json(*study.stretched);
@@ -40,30 +43,47 @@ int run_stage(Stage stage, Product product, const std::filesystem::path& case_pa
   return status_of(study.outcome);
 }
 
+/// A verb that runs the study up to a stage that cuts nothing.
 void add_stage(Application& application, const char* name, const char* what, const char* example, Stage stage, Product product) {
   auto case_path = std::make_shared<std::filesystem::path>();
   CLI::App* verb = application.add_verb(name, what, example, [=](const CommonOptions& options) {
     return run_stage(stage, product, *case_path, options);
   });
-  verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
+  verb->add_option("case", *case_path, kCaseHelp)->required();
+}
+
+/// A verb that runs the study up to a stage that cuts.
+CLI::App& add_cutting_stage(Application& application, const char* name, const char* what, const char* example, Stage stage,
+                            Product product) {
+  auto case_path = std::make_shared<std::filesystem::path>();
+  auto cut = std::make_shared<CutOptions>();
+  CLI::App* verb = application.add_verb(name, what, example, [=](const CommonOptions& options) {
+    return run_stage(stage, product, *case_path, options, *cut);
+  });
+  verb->add_option("case", *case_path, kCaseHelp)->required();
+  add_cut_options(*verb, *cut);
+  return *verb;
 }
 
 }  // namespace
 
 void add_stages(Application& application) {
-  add_stage(application, "deform", "Clamp and stretch the tissue: static equilibrium under the case's constraints",
+  add_stage(application, "deform",
+            "Clamp and stretch the tissue: static equilibrium under the case's constraints. Interrupted, it keeps nothing of the stretch: "
+            "run again, it starts over and ends in the same bits",
             "incise deform specimen -o out", Stage::Stretch, Product::Stretched);
   add_stage(application, "plan", "Lay the intended incision on the stretched tissue", "incise plan specimen -o out", Stage::Plan,
             Product::Plan);
-  add_stage(application, "simulate", "Cut along the planned path (or the case's own) and measure what comes out",
-            "incise simulate specimen -o out", Stage::Simulate, Product::AsPlanned);
-  auto case_path = std::make_shared<std::filesystem::path>();
-  auto method = std::make_shared<std::string>("paper");
-  CLI::App* verb = application.add_verb(
-      "compensate", "Correct the path by the simulated error and verify it by cutting again", "incise compensate specimen -o out",
-      [=](const CommonOptions& options) { return run_stage(Stage::Verify, Product::Correction, *case_path, options); });
-  verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
-  verb->add_option("--method", *method, "paper: each waypoint moves once by the error measured there")->check(CLI::IsMember({"paper"}));
+  add_cutting_stage(application, "simulate",
+                    "Cut along the planned path (or the case's own) and measure what comes out. Interrupted, it leaves a checkpoint, from "
+                    "which it goes on and ends in the same bits",
+                    "incise simulate specimen -o out", Stage::Simulate, Product::AsPlanned);
+  CLI::App& compensate =
+      add_cutting_stage(application, "compensate", "Correct the path by the simulated error and verify it by cutting again",
+                        "incise compensate specimen -o out", Stage::Verify, Product::Correction);
+  const auto only_one_there_is = [](const std::string&) {};
+  compensate.add_option_function<std::string>("--method", only_one_there_is, "paper: each waypoint moves once by the error measured there")
+      ->check(CLI::IsMember({"paper"}));
 }
 
 }  // namespace incise::cli

@@ -11,7 +11,7 @@
 namespace incise {
 namespace {
 
-constexpr int kCoarseRefreshSteps = 20;        // the coarse matrix of the preconditioner may be this stale
+constexpr int kRenewalSteps = 20;              // what a workspace carries over, the coarse matrix of the preconditioner, may be this stale
 constexpr int kVerticesPerAggregate = 140;
 constexpr double kForceFloorMn = 5.0;          // scale of the stopping test when hardly anything is held
 constexpr double kLeastShare = 0.02;           // of a touched tet's volume that the tool holds: a corner is still held
@@ -29,7 +29,6 @@ struct CutWorkspace::Data {
   Points increment;
   Points before;
   double body_volume_mm3 = 0.0;            // at rest, uncut
-  int steps_since_refresh = kCoarseRefreshSteps;
 
   Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
       : neighbours(face_neighbours(model.mesh)),
@@ -58,6 +57,8 @@ CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPo
   state.tool = tool;
   return state;
 }
+
+bool is_renewal_step(const CutState& state) { return state.step % kRenewalSteps == 0; }
 
 namespace {
 
@@ -150,9 +151,7 @@ void move_tissue(const TissueModel& model, const CutSettings& settings, const Ne
   }
   hold_constrained(model, scratch.matrix, scratch.right_side, orphans(model, state.tissue));
 
-  const bool is_stale = ++scratch.steps_since_refresh >= kCoarseRefreshSteps;
-  if (is_stale) scratch.steps_since_refresh = 0;
-  scratch.solver.update(scratch.matrix, is_stale, workers);
+  scratch.solver.update(scratch.matrix, is_renewal_step(state), workers);
   PcgSettings pcg;
   pcg.relative_tolerance = settings.residual_tolerance;
   pcg.reference_mn = std::max(bond_scale, kForceFloorMn);

@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/procedure/incision.hpp>
+#include <incise/procedure/incision_memory.hpp>
 
 #include <fmt/format.h>
 
@@ -12,9 +13,11 @@
 namespace incise {
 namespace {
 
-constexpr double kRelaxedMm = 1e-3;      // the tissue counts as at rest when no vertex moves farther in a step
+constexpr double kRelaxedMm = 1e-3;        // the tissue counts as at rest when no vertex moves farther in a step
 constexpr double kSingleTolerance = 1e-2;  // of a step's residual: from here up single precision suffices
-constexpr int kMaxRelaxationSteps = 60;  // after the tool is out
+constexpr double kTimeRoundingS = 1e-9;    // the program counts as over when less than this is left of it
+constexpr int kMaxRelaxationSteps = 60;    // after the tool is out
+constexpr int kStepsToTellFrom = 20;       // a run's duration is told after these
 
 void require_valid(const IncisionSettings& settings) {
   std::vector<std::string> violations = validate(settings.cut, settings.needle.diameter_mm);
@@ -41,7 +44,7 @@ class FrameKeeper {
 
   void offer(const CutState& state, bool is_tool_in) {
     const double due = duration_s_ * static_cast<double>(kept_.size()) / std::max(1, frames_ - 1);
-    if (static_cast<int>(kept_.size()) < frames_ - 1 && state.time_s >= due - 1e-9) keep(state, is_tool_in);
+    if (static_cast<int>(kept_.size()) < frames_ - 1 && state.time_s >= due - kTimeRoundingS) keep(state, is_tool_in);
   }
   void keep_last(const CutState& state) {
     if (frames_ > 0) keep(state, false);
@@ -56,45 +59,133 @@ class FrameKeeper {
   std::vector<CutFrame>& kept_;
 };
 
-void log_step(const CutState& state, const CutStepReport& report, IncisionResult& result) {
-  result.steps.push_back({state.time_s, report.solve.iterations, report.tets_in_contact, report.removed + report.loose_removed,
-                          report.tool_force_mn});
-  result.solver_iterations += static_cast<std::size_t>(report.solve.iterations);
-  result.unconverged_steps += report.solve.converged ? 0 : 1;
-  result.held_back_vertices += report.held_back_vertices;
-  result.peak_tool_force_mn = std::max(result.peak_tool_force_mn, report.tool_force_mn.norm());
+CutStepLog log_of(const CutState& state, const CutStepReport& report) {
+  return {state.time_s,
+          report.solve.iterations,
+          report.solve.converged,
+          report.tets_in_contact,
+          report.removed + report.loose_removed,
+          report.held_back_vertices,
+          report.tool_force_mn};
 }
 
-/// Runs the tool program. @returns Success when it was carried out, else how it ended.
-Outcome run_program(const TissueModel& model, const ToolProgram& program, const IncisionSettings& settings, CutState& state,
-                    CutWorkspace& workspace, FrameKeeper& frames, Workers& workers, Monitor& monitor, IncisionResult& result) {
-  const double step_s = settings.cut.step_s();
-  frames.offer(state, true);
-  while (state.time_s < program.duration_s() - 1e-9) {
-    if (monitor.is_cancelled()) return Outcome::Cancelled;
-    const double dt = std::min(step_s, program.duration_s() - state.time_s);
-    const CutStepReport report = advance(model, settings.cut, settings.needle, state, workspace,
-                                         program.pose_at(state.time_s + dt), dt, workers);
-    log_step(state, report, result);
-    if (!report.is_finite) return Outcome::NotConverged;
-    frames.offer(state, true);
-    monitor.progress("cutting", state.time_s / program.duration_s());
-  }
-  return Outcome::Success;
+void require_same_mesh(const TissueModel& model, const CutState& state) {
+  INCISE_REQUIRE(state.tissue.positions.size() == model.mesh.vertices.size() && state.contact_s.size() == model.mesh.tets.size(),
+                 fmt::format("expected the progress of a cut of {} vertices and {} tets, found {} and {}", model.mesh.vertices.size(),
+                             model.mesh.tets.size(), state.tissue.positions.size(), state.contact_s.size()));
 }
 
-/// Takes the tool out and lets the tissue come to rest.
-Outcome relax(const TissueModel& model, const IncisionSettings& settings, CutState& state, CutWorkspace& workspace,
-              Workers& workers, const Monitor& monitor, IncisionResult& result) {
-  for (int i = 0; i < kMaxRelaxationSteps; ++i) {
-    if (monitor.is_cancelled()) return Outcome::Cancelled;
-    const CutStepReport report =
-        advance(model, settings.cut, settings.needle, state, workspace, std::nullopt, settings.cut.step_s(), workers);
-    log_step(state, report, result);
-    if (!report.is_finite) return Outcome::NotConverged;
-    if (report.max_step_mm < kRelaxedMm) return Outcome::Success;
+Precision precision_for(const CutSettings& cut) {
+  return cut.residual_tolerance >= kSingleTolerance ? Precision::Single : Precision::Double;
+}
+
+/// Takes an incision step by step to the end of its program and then to rest.
+class IncisionRun {
+ public:
+  IncisionRun(const TissueModel& model, const TissueState& stretched, const ToolProgram& program, const IncisionSettings& settings,
+              IncisionProgress& progress, Workers& workers, Monitor& monitor, const ProgressKeeper& keep)
+      : model_(model),
+        program_(program),
+        settings_(settings),
+        progress_(progress),
+        workspace_(model, stretched.positions, precision_for(settings.cut)),
+        workers_(workers),
+        monitor_(monitor),
+        keep_(keep),
+        frames_(settings.frames, program.duration_s(), progress.frames),
+        earlier_wall_s_(progress.wall_s) {}
+
+  /// @returns Success when it was carried out, else how it ended.
+  Outcome run() {
+    tell_size();
+    while (is_tool_in()) {
+      if (is_to_stop()) return Outcome::Cancelled;
+      const double dt = std::min(settings_.cut.step_s(), program_.duration_s() - state().time_s);
+      const CutStepReport report = step(program_.pose_at(state().time_s + dt), dt);
+      if (!report.is_finite) return Outcome::NotConverged;
+      frames_.offer(state(), true);
+      monitor_.progress("cutting", std::min(1.0, state().time_s / program_.duration_s()));
+    }
+    while (progress_.relaxation_steps < kMaxRelaxationSteps) {
+      if (is_to_stop()) return Outcome::Cancelled;
+      const CutStepReport report = step(std::nullopt, settings_.cut.step_s());
+      ++progress_.relaxation_steps;
+      if (!report.is_finite) return Outcome::NotConverged;
+      if (report.max_step_mm < kRelaxedMm) break;
+    }
+    return Outcome::Success;
   }
-  return Outcome::Success;
+
+  void keep_last_frame() { frames_.keep_last(state()); }
+
+ private:
+  [[nodiscard]] CutState& state() { return progress_.state; }
+  [[nodiscard]] bool is_tool_in() const {
+    return progress_.relaxation_steps == 0 && progress_.state.time_s < program_.duration_s() - kTimeRoundingS;
+  }
+  [[nodiscard]] double wall_s() const {
+    return earlier_wall_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+  /// Steps that the tool's program still takes.
+  [[nodiscard]] int steps_left() const {
+    return static_cast<int>(std::ceil(std::max(0.0, program_.duration_s() - progress_.state.time_s) / settings_.cut.step_s()));
+  }
+
+  void tell_size() const {
+    const std::size_t tets = model_.mesh.tets.size();
+    const double bytes = static_cast<double>(
+        expected_memory_bytes(model_.mesh.vertices.size(), tets, model_.material.volume, settings_.frames));
+    monitor_.message(Severity::Notice,
+                     fmt::format("cutting {} tets in {} steps and at most {} until they are at rest, with about {:.0f} MB", tets,
+                                 steps_left(), kMaxRelaxationSteps - progress_.relaxation_steps, bytes / 1e6));
+  }
+
+  /// Once a few steps have shown their pace.
+  void tell_duration() const {
+    if (progress_.state.step != first_step_ + kStepsToTellFrom) return;
+    const double per_step_s = (wall_s() - earlier_wall_s_) / kStepsToTellFrom;
+    monitor_.message(Severity::Notice, fmt::format("cutting: takes about {:.0f} s", per_step_s * (kStepsToTellFrom + steps_left())));
+  }
+
+  CutStepReport step(const std::optional<ToolPose>& next, double dt) {
+    const CutStepReport report = advance(model_, settings_.cut, settings_.needle, state(), workspace_, next, dt, workers_);
+    progress_.steps.push_back(log_of(state(), report));
+    tell_duration();
+    return report;
+  }
+
+  /// Shows the progress where it can be put by, and tells whether to stop here.
+  bool is_to_stop() {
+    const bool is_cancelled = monitor_.is_cancelled();
+    if (!keep_) return is_cancelled;
+    if (!is_renewal_step(state())) return false;
+    progress_.wall_s = wall_s();
+    keep_(progress_, is_cancelled);
+    return is_cancelled;
+  }
+
+  const TissueModel& model_;
+  const ToolProgram& program_;
+  const IncisionSettings& settings_;
+  IncisionProgress& progress_;
+  CutWorkspace workspace_;
+  Workers& workers_;
+  Monitor& monitor_;
+  const ProgressKeeper& keep_;
+  FrameKeeper frames_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double earlier_wall_s_;
+  int first_step_ = progress_.state.step;  // of this run
+};
+
+void sum_up(const std::vector<CutStepLog>& steps, IncisionResult& result) {
+  for (const CutStepLog& step : steps) {
+    result.solver_iterations += static_cast<std::size_t>(step.iterations);
+    result.unconverged_steps += step.converged ? 0 : 1;
+    result.held_back_vertices += step.held_back_vertices;
+    result.peak_tool_force_mn = std::max(result.peak_tool_force_mn, step.tool_force_mn.norm());
+  }
 }
 
 std::size_t count_inverted(const TissueModel& model, const TissueState& tissue) {
@@ -110,31 +201,47 @@ std::size_t count_inverted(const TissueModel& model, const TissueState& tissue) 
 
 }  // namespace
 
-IncisionResult simulate_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
-                                 const IncisionSettings& settings, Workers& workers, Monitor& monitor) {
+IncisionProgress begin_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                                const IncisionSettings& settings) {
   require_valid(settings);
+  const ToolProgram program(path, settings.cut);
+  IncisionProgress progress;
+  progress.state = begin_cut(model, stretched, program.pose_at(0.0));
+  FrameKeeper(settings.frames, program.duration_s(), progress.frames).offer(progress.state, true);
+  return progress;
+}
+
+IncisionResult continue_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                                 const IncisionSettings& settings, IncisionProgress progress, Workers& workers, Monitor& monitor,
+                                 const ProgressKeeper& keep) {
+  require_valid(settings);
+  require_same_mesh(model, progress.state);
   const auto start = std::chrono::steady_clock::now();
+  const double earlier_wall_s = progress.wall_s;
   const ToolProgram program(path, settings.cut);
   IncisionResult result;
-  CutState state = begin_cut(model, stretched, program.pose_at(0.0));
-  CutWorkspace workspace(model, stretched.positions,
-                         settings.cut.residual_tolerance >= kSingleTolerance ? Precision::Single : Precision::Double);
-  FrameKeeper frames(settings.frames, program.duration_s(), result.frames);
-
-  result.outcome = run_program(model, program, settings, state, workspace, frames, workers, monitor, result);
-  if (result.outcome == Outcome::Success) {
-    result.outcome = relax(model, settings, state, workspace, workers, monitor, result);
-  }
-  frames.keep_last(state);
-  result.record = state.record;
-  result.inverted_tets = count_inverted(model, state.tissue);
-  result.final_state = std::move(state);
+  {
+    IncisionRun run(model, stretched, program, settings, progress, workers, monitor, keep);
+    result.outcome = run.run();
+    run.keep_last_frame();
+  }  // its workspace is large
+  sum_up(progress.steps, result);
+  result.steps = std::move(progress.steps);
+  result.frames = std::move(progress.frames);
+  result.record = progress.state.record;
+  result.inverted_tets = count_inverted(model, progress.state.tissue);
+  result.final_state = std::move(progress.state);
   measure_kerf(model, stretched, path, settings, result);
   if (result.outcome == Outcome::Success && result.is_closed_loop && !*result.is_closed_loop) {
     result.outcome = Outcome::OpenLoop;
   }
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.wall_s = earlier_wall_s + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+IncisionResult simulate_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                                 const IncisionSettings& settings, Workers& workers, Monitor& monitor) {
+  return continue_incision(model, stretched, path, settings, begin_incision(model, stretched, path, settings), workers, monitor);
 }
 
 TriMesh skin_of(const TetMesh& mesh, std::span<const Vec3> positions, std::span<const std::uint8_t> is_live) {

@@ -44,8 +44,8 @@ Vec3 vector_from(const nlohmann::ordered_json& json) {
 
 }  // namespace
 
-FolderStore::FolderStore(CaseFile file, std::filesystem::path root, RunContext context)
-    : file_(std::move(file)), root_(std::move(root)), context_(std::move(context)) {
+FolderStore::FolderStore(CaseFile file, std::filesystem::path root, RunContext context, double checkpoint_s)
+    : file_(std::move(file)), root_(std::move(root)), context_(std::move(context)), checkpoint_period_(checkpoint_s) {
   std::error_code error;
   std::filesystem::create_directories(root_, error);
   if (error || !std::filesystem::is_directory(root_)) {
@@ -141,6 +141,7 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
     if (is_stale(static_cast<Product>(later))) std::filesystem::remove_all(folder(static_cast<Product>(later)));
   }
   std::filesystem::remove_all(root_ / "program");
+  remove_checkpoints_from(product);
 }
 
 bool FolderStore::is_stale(Product product) {

@@ -2,11 +2,14 @@
 #include "product_reading.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/pvd_io.hpp>
+#include <incise/storage/checkpoint_file.hpp>
 #include <incise/storage/folder_store.hpp>
 #include <incise/storage/result_json.hpp>
 
@@ -16,6 +19,11 @@
 
 namespace incise {
 namespace {
+
+/// What a checkpoint says it was made by.
+std::string maker() { return fmt::format("incise {} ({}), {}", version(), source_commit().substr(0, 12), to_string(active_isa())); }
+
+std::string short_key(const std::string& key) { return key.substr(0, 12); }
 
 Product product_of(CutRole role) { return role == CutRole::AsPlanned ? Product::AsPlanned : Product::Corrected; }
 
@@ -84,6 +92,43 @@ void write_frames(const std::filesystem::path& folder, const TetMesh& mesh, cons
 }
 
 }  // namespace
+
+std::filesystem::path FolderStore::checkpoint(CutRole role) const { return folder(product_of(role)).concat(".checkpoint"); }
+
+void FolderStore::require_fitting_checkpoint(CutRole role) {
+  const CheckpointFile file(checkpoint(role));
+  const std::string& own = key(product_of(role));
+  if (file.key() == own) return;
+  throw DataError(checkpoint(role), "key", fmt::format("'{}' of a cut made by {}", short_key(file.key()), file.maker()),
+                  fmt::format("'{}' of this case, its settings and inputs with {}", short_key(own), maker()),
+                  "Go on with the case as it was, or cut from the beginning (without --resume)");
+}
+
+std::optional<IncisionProgress> FolderStore::load_progress(CutRole role, const TissueModel& model, Monitor& monitor) {
+  last_kept_ = std::chrono::steady_clock::now();
+  if (!std::filesystem::exists(checkpoint(role))) return std::nullopt;
+  const CheckpointFile file(checkpoint(role));
+  if (file.key() == key(product_of(role))) return file.progress(model);
+  monitor.message(Severity::Notice,
+                  fmt::format("{}: is of other settings or inputs, or of another build ({}); the cut starts from the beginning",
+                              checkpoint(role).string(), file.maker()));
+  return std::nullopt;
+}
+
+void FolderStore::keep_progress(CutRole role, const IncisionProgress& progress, bool is_interrupted) {
+  const auto now = std::chrono::steady_clock::now();
+  if (!is_interrupted && now - last_kept_ < checkpoint_period_) return;
+  write_checkpoint(checkpoint(role), key(product_of(role)), maker(), progress);
+  last_kept_ = std::chrono::steady_clock::now();
+  last_checkpoint_ = checkpoint(role);
+}
+
+void FolderStore::remove_checkpoints_from(Product product) {
+  for (const CutRole role : {CutRole::AsPlanned, CutRole::Corrected}) {
+    if (product_of(role) >= product) std::filesystem::remove(checkpoint(role));
+  }
+  last_checkpoint_.clear();
+}
 
 std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
   const Product product = product_of(role);

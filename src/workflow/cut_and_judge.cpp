@@ -53,7 +53,8 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
 }
 
 SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched, const ToolPath& path,
-                           const ToolPath& intended, Workers& workers, Monitor& monitor, const TriMesh& tumor_surface) {
+                           const ToolPath& intended, Workers& workers, Monitor& monitor, const TriMesh& tumor_surface,
+                           std::optional<IncisionProgress> from, const ProgressKeeper& keep) {
   IncisionSettings incision;
   incision.cut = settings.cut;
   incision.needle = settings.needle;
@@ -62,7 +63,8 @@ SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const
   incision.tumor_surface = tumor_surface;
   ToolPath with_edge = path;
   with_edge.tumor_edge = intended.tumor_edge;
-  return judge(settings, simulate_incision(model, stretched, with_edge, incision, workers, monitor), intended,
+  if (!from) from = begin_incision(model, stretched, with_edge, incision);
+  return judge(settings, continue_incision(model, stretched, with_edge, incision, std::move(*from), workers, monitor, keep), intended,
                model.mesh.tets.size());
 }
 

@@ -1,6 +1,8 @@
 #include <incise/core/error.hpp>
+#include <incise/core/memory.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/geometry/surface_query.hpp>
+#include <incise/procedure/incision_memory.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
@@ -32,6 +34,8 @@ std::string_view to_string(StageState state) {
 }
 
 namespace {
+
+double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
 /// One study on its way through the stages.
 class Runner {
@@ -109,8 +113,22 @@ class Runner {
       };
       mesh = load_or_make(Stage::Mesh, [&] { return store_.load_mesh(); }, make, [](const TetMesh&, double) {});
     }
+    require_memory(mesh);
     study_.model = std::make_shared<TissueModel>(tissue_of(settings_, std::move(mesh)));
     return true;
+  }
+
+  /// States what the rest will take, and refuses it where there is not so much.
+  void require_memory(const TetMesh& mesh) {
+    const std::uint64_t needed =
+        expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, settings_.frames);
+    monitor_.message(Severity::Notice, fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB",
+                                                   mesh.tets.size(), mesh.vertices.size(), megabytes(needed)));
+    const std::optional<std::uint64_t> available = available_memory_bytes();
+    if (!available || needed <= *available) return;
+    throw DataError("this machine", "memory", fmt::format("{:.0f} MB that can be taken", megabytes(*available)),
+                    fmt::format("about {:.0f} MB for {} tets", megabytes(needed), mesh.tets.size()),
+                    "A coarser mesh needs less: meshing.fine_mm, meshing.coarse_mm, meshing.tets");
   }
 
   /// The mesher tells what it cannot do with the lengths or the count as a broken precondition; here they came from the case.
@@ -128,7 +146,7 @@ class Runner {
         Stage::Stretch, [&] { return store_.load_stretched(model); },
         [&] {
           StaticResult made = stretch(model, workers_, monitor_);
-          if (made.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted");
+          if (made.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted and will start over");
           return made;
         },
         [&](const StaticResult& result, double wall_s) { store_.save_stretched(model, result, wall_s); });
@@ -151,9 +169,16 @@ class Runner {
     return load_or_make(
         stage, [&] { return store_.load_cut(role); },
         [&] {
-          SimulatedCut made =
-              cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_, placed_tumor());
-          if (made.outcome == Outcome::Cancelled) throw Cancelled("the cut was interrupted");
+          std::optional<IncisionProgress> from = store_.load_progress(role, *study_.model, monitor_);
+          if (from) monitor_.message(Severity::Notice, fmt::format("{}: goes on after step {}", to_string(stage), from->state.step));
+          const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
+            store_.keep_progress(role, progress, is_interrupted);
+          };
+          SimulatedCut made = cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_,
+                                            placed_tumor(), std::move(from), keep);
+          if (made.outcome == Outcome::Cancelled) {
+            throw Cancelled(fmt::format("the cut was interrupted after step {}", made.incision.final_state.step));
+          }
           return made;
         },
         [&](const SimulatedCut& made, double wall_s) {

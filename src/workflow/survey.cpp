@@ -23,7 +23,7 @@ Contour carried_to_rest(const Contour& curve, const TetMesh& mesh, std::span<con
 }
 
 void require_equilibrium(const StaticResult& result, const char* which) {
-  if (result.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted");
+  if (result.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted and will start over");
   if (result.outcome != Outcome::Success) {
     throw CaseError("case", "specimen.constraints",
                     fmt::format("no equilibrium of the {} ({} after {} iterations, residual {:.1e})", which,

@@ -278,6 +278,51 @@ class CaseTest(CommandTest):
         self.change(plan={"depth_mm": 20})
         self.assert_case_refused("simulate", BAD_CASE, "depth", "20", stages=["stretched"])
 
+    def test_a_tool_or_a_cut_that_cannot_be_is_refused_with_its_line_before_anything_runs(self):
+        for group, field, value, expected in (
+            ("tool", "kind", "laser", "expected one of"),
+            ("tool", "diameter_mm", 0, "expected a number in [0.05, 10]"),
+            ("tool", "length_mm", 0, "expected a number in (0, 200]"),
+            ("cut", "speed_mm_s", 0, "expected a number in [0.01, 100]"),
+            ("cut", "dullness", 0, "expected a number in (0, 1000]"),
+            ("cut", "dullness", -1, "expected a number in (0, 1000]"),
+            ("cut", "dullness", ".nan", "expected a number in (0, 1000]"),
+            ("cut", "frames", -1, "expected a number in [0, 500]"),
+            ("plan", "depth_mm", 0, "expected a number in [0.5, 50]"),
+        ):
+            with self.subTest(field=field, value=value):
+                self.change(**{group: {field: value}})
+                self.assert_case_refused("simulate", BAD_CASE, "case.yaml line ", f"{group}.{field}: found ", str(value), expected)
+
+    def test_a_step_longer_than_the_needle_is_thick_is_refused_before_anything_runs(self):
+        self.change(cut={"advance_per_step_mm": 1.5})
+        self.assert_case_refused("simulate", BAD_CASE, "case.yaml: cut.advance_per_step_mm: found 1.5, expected", "at most the needle's diameter")
+
+    SURFACE_MM = 11.7  # of the stretched block
+
+    def assert_path_refused(self, status, *says, stages=("stretched", "plan"), z=SURFACE_MM, **waypoint):
+        waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7, **waypoint}
+                     for p in small_case.ring(radius=10.0, z=z, corners=24)]
+        (self.case / "path.json").write_text(json.dumps({"frame": "sim_stretched", "kind": "incise", "closed": True, "waypoints": waypoints}))
+        self.change(path="path.json")
+        self.assert_case_refused("simulate", status, *says, stages=stages)
+
+    def test_a_given_path_above_the_surface_is_refused(self):
+        self.assert_path_refused(BAD_CASE, "path: waypoints", "waypoint 0", "above the surface", "expected at most 2 mm", z=25.0)
+
+    def test_a_given_path_through_the_platform_is_refused(self):
+        self.assert_path_refused(BAD_CASE, "path: depth_mm", "13 mm at waypoint 0", "mm thick", "reach the platform", depth_mm=13)
+
+    def test_a_given_path_without_depth_is_refused(self):
+        self.assert_path_refused(BAD_CASE, "path: depth_mm", "0 mm at waypoint 0", "above 0 mm", depth_mm=0)
+
+    def test_a_given_path_whose_tool_points_upwards_is_refused(self):
+        self.assert_path_refused(BAD_CASE, "waypoint 0", "points out of the tissue", axis=[0, 0, 1])
+
+    def test_a_given_path_with_numbers_that_cannot_be_is_named_with_its_place(self):
+        self.assert_path_refused(BAD_DATA, "path.json", "/waypoints/0/speed_mm_s", "found 0", stages=(), speed_mm_s=0)
+        self.assert_path_refused(BAD_DATA, "path.json", "/waypoints/0/axis", "length 2", stages=(), axis=[0, 0, -2])
+
     def test_a_given_path_outside_the_tissue_is_refused(self):
         path = {
             "frame": "sim_stretched",

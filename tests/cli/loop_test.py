@@ -155,32 +155,5 @@ class SameBitsTest(CommandTest):
         self.assertEqual(self.deformed(self.out), straight)
 
 
-class InterruptTest(CommandTest):
-    def test_ctrl_c_keeps_finished_stages_and_leaves_no_half_cut(self):
-        small_case.write_case(self.folder / "case", {"cut": {"advance_per_step_mm": 0.2}})
-        command = [COMMAND, "simulate", "case", "-o", str(self.out)]
-        running = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 120
-        while not (self.out / "plan").exists() and running.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.02)
-        time.sleep(0.2)
-        self.assertIsNone(running.poll(), "the cut was over before it could be interrupted")
-        running.send_signal(signal.SIGINT)
-        stdout, stderr = running.communicate(timeout=120)
-        self.assertEqual(running.returncode, INTERRUPTED, stderr)
-        self.assertEqual(stdout, "")
-        self.assertIn("run the same command to go on", stderr)
-        self.assertEqual({name.split("/")[0] for name in files_below(self.out)}, {"study.json", "stretched", "plan"})
-
-        resumed = self.json_of("simulate", "case", "-o", self.out)
-        self.assertEqual(states(resumed), {"segment": "skipped", "mesh": "skipped", "stretch": "reused", "plan": "reused",
-                                           "simulate": "computed"})
-        self.assertEqual(resumed["outcome"], "success")
-
-        # Going on gives what an uninterrupted run gives.
-        straight = self.json_of("simulate", "case", "-o", self.folder / "straight")
-        self.assertEqual(resumed["abs_error_mm"], straight["abs_error_mm"])
-
-
 if __name__ == "__main__":
     unittest.main()

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -106,6 +107,29 @@ TEST_F(Carve, GivesTheSameRecordAndPositionsAtAnyThreadCount) {
     EXPECT_EQ(removed(one), removed(many)) << threads << " threads";
     EXPECT_EQ(one.tissue.positions, many.tissue.positions) << threads << " threads";
   }
+}
+
+TEST_F(Carve, FromARenewalStepANewWorkspaceGivesTheSameBits) {
+  Workers workers(1);
+  const CutSettings settings;
+  CutState straight = begin_cut(model_, rest_state(model_), standing_at(5.0));
+  CutWorkspace used(model_, model_.mesh.vertices);
+  CutState resumed;
+  std::optional<CutWorkspace> fresh;
+  int renewals = 0;
+  for (int i = 1; i <= 50; ++i) {
+    if (is_renewal_step(straight)) {  // the one run leaves its workspace and what became of it behind, the other goes on
+      resumed = straight;
+      fresh.emplace(model_, model_.mesh.vertices);
+      ++renewals;
+    }
+    const ToolPose next = standing_at(5.0 + 0.2 * i);
+    static_cast<void>(advance(model_, settings, needle_, straight, used, next, 0.02, workers));
+    static_cast<void>(advance(model_, settings, needle_, resumed, *fresh, next, 0.02, workers));
+    ASSERT_EQ(straight.tissue.positions, resumed.tissue.positions) << "step " << i;
+  }
+  EXPECT_EQ(renewals, 3);
+  EXPECT_FALSE(straight.record.removals.empty());
 }
 
 TEST_F(Carve, DragsHeldTissueAlongWithTheNeedle) {

@@ -1,57 +1,11 @@
+#include "procedure/ring_in_a_block.hpp"
+
 #include <incise/core/error.hpp>
-#include <incise/procedure/incision.hpp>
-
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 namespace incise {
 namespace {
 
-constexpr double kRadiusMm = 9.0;
-const Vec3 kMiddle(16.0, 16.0, 8.0);
-
-/// A 32 x 32 x 8 mm block of cells of 1.33 mm, held at its underside, and a thick needle that suits such a coarse mesh.
-class Incision : public ::testing::Test {
- protected:
-  Incision()
-      : model_(make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), Material{},
-                                 {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}})) {
-    settings_.needle.diameter_mm = 1.6;
-    settings_.cut.reach_mm = 0.4;
-    settings_.cut.advance_per_step_mm = 0.8;
-    settings_.cut.dullness = 2.0;
-  }
-
-  static ToolPath ring(double depth_mm) {
-    ToolPath path;
-    for (int i = 0; i < 32; ++i) {
-      const double angle = 2.0 * M_PI * i / 32.0;
-      const Vec3 outward(std::cos(angle), std::sin(angle), 0.0);
-      Waypoint waypoint;
-      waypoint.position_mm = kMiddle + kRadiusMm * outward;
-      waypoint.depth_mm = depth_mm;
-      path.waypoints.push_back(waypoint);
-      path.tumor_edge.points.push_back(kMiddle + (kRadiusMm - 5.0) * outward);
-    }
-    return path;
-  }
-
-  IncisionResult cut(const ToolPath& path) {
-    Workers workers(1);
-    Monitor silent;
-    return simulate_incision(model_, rest_state(model_), path, settings_, workers, silent);
-  }
-
-  static double mean_radius(const Contour& contour) {
-    double sum = 0.0;
-    for (const Vec3& p : contour.points) sum += std::hypot(p.x() - kMiddle.x(), p.y() - kMiddle.y());
-    return sum / static_cast<double>(contour.points.size());
-  }
-
-  TissueModel model_;
-  IncisionSettings settings_;
-};
+class Incision : public testing::RingInABlock {};
 
 TEST_F(Incision, ARingInFrozenTissueClosesOnThePath) {
   settings_.cut.bond_stiffness_kpa_mm2 = 0.0;

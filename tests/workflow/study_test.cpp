@@ -1,6 +1,10 @@
+#include <incise/core/error.hpp>
+#include <incise/core/memory.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <gtest/gtest.h>
+
+#include <sys/resource.h>
 
 #include <cmath>
 #include <map>
@@ -37,6 +41,8 @@ class MemoryStore : public Store {
     return found == cuts.end() ? std::nullopt : std::optional(found->second);
   }
   void save_cut(CutRole role, const TissueModel&, const StaticResult&, const SimulatedCut& cut, double) override { cuts[role] = cut; }
+  std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
+  void keep_progress(CutRole, const IncisionProgress&, bool) override {}
   std::optional<Compensation> load_correction() override { return correction; }
   void save_correction(const Compensation& made, double) override { correction = made; }
 
@@ -99,6 +105,31 @@ TEST(RunStudy, StopsAfterTheStageThatWasAskedFor) {
   EXPECT_TRUE(study.stretched.has_value());
   EXPECT_FALSE(study.plan.has_value());
   EXPECT_NEAR(study.stretched->max_displacement_mm, 5.0, 0.5);
+}
+
+TEST(RunStudy, AMeshThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItIsStretched) {
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_DATA, &old), 0);
+  const auto free = available_memory_bytes();
+  if (!free) GTEST_SKIP() << "this system does not tell what is available";
+  Case settings = coarse_case();
+  settings.frames = 500;  // 125 MB of them, beside some 45 MB
+  MemoryStore store;
+  Workers workers(1);
+  Monitor silent;
+  rlimit tight = old;
+  tight.rlim_cur = 120'000'000;
+  ASSERT_EQ(setrlimit(RLIMIT_DATA, &tight), 0);
+  std::string said;
+  try {
+    static_cast<void>(run_study(settings, store, Stage::Stretch, workers, silent));
+  } catch (const DataError& error) {
+    said = error.what();
+  }
+  ASSERT_EQ(setrlimit(RLIMIT_DATA, &old), 0);
+  EXPECT_NE(said.find("this machine: memory: found "), std::string::npos) << said;
+  EXPECT_NE(said.find("MB for 42840 tets"), std::string::npos) << said;
+  EXPECT_FALSE(store.stretched.has_value());
 }
 
 TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {

@@ -34,6 +34,10 @@ struct CutState {
 };
 [[nodiscard]] CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPose& tool);
 
+/// Whether the next step from here makes everything anew that a workspace carries from step to step (every 20th step does). From such a
+/// state a new workspace, in another process too, gives the same bits as the one that led there: the states that can be put by.
+[[nodiscard]] bool is_renewal_step(const CutState& state);
+
 /// What one step did.
 struct CutStepReport {
   PcgReport solve;

@@ -9,8 +9,8 @@
 #include <incise/geometry/tool_path.hpp>
 #include <incise/mechanics/tissue.hpp>
 #include <incise/procedure/kerf_measures.hpp>
+#include <incise/procedure/incision_progress.hpp>
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -24,24 +24,6 @@ struct IncisionSettings {
   std::vector<double> layer_depths_mm{1.0, 2.5, 4.0, 5.0};  ///< middles of the layers with a mid-line of their own; each >= 0.5, ascending
   TriMesh tumor_surface;              ///< closed, stretched tissue before the cut, mm; without triangles: not known
   int frames = 0;                     ///< moments to keep for pictures, evenly spaced over the cut; 0: none
-};
-
-/// The tissue at one moment of the cut.
-struct CutFrame {
-  double time_s = 0.0;
-  ToolPose tool;
-  bool is_tool_in = true;
-  Points positions;                   ///< N x 3, mm
-  std::vector<std::uint8_t> is_live;  ///< per tet
-};
-
-/// One line of the log of a cut.
-struct CutStepLog {
-  double time_s = 0.0;
-  int iterations = 0;                 ///< of the linear solver
-  std::size_t tets_in_contact = 0;
-  std::size_t removed = 0;
-  Vec3 tool_force_mn = Vec3::Zero();  ///< of the tissue on the tool
 };
 
 /// A simulated incision, however it ended.
@@ -69,10 +51,24 @@ struct IncisionResult {
   double wall_s = 0.0;
 };
 
-/// Simulates an incision: tool program, cut, tool out, relaxation, and the contours that are measured.
+/// An incision that has not begun: the tool over the first waypoint, the tissue stretched.
 /// @param stretched  equilibrium of the clamped and stretched tissue.
-/// @param path       frame sim_stretched, waypoints on the surface; its tumour edge is carried along with the tissue.
-/// Throws InvalidArgument for settings or a path that cannot be used (the list of violations).
+/// @param path       frame sim_stretched, waypoints on the surface.
+/// @throws InvalidArgument for settings or a path that cannot be used (the list of violations).
+[[nodiscard]] IncisionProgress begin_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                                              const IncisionSettings& settings);
+
+/// Carries an incision from where it is to its end: tool program, cut, tool out, relaxation, and the contours that are measured.
+/// @param path      its tumour edge is carried along with the tissue.
+/// @param progress  of this model, stretched tissue, path and settings; it has not begun, or is one that `keep` was shown.
+/// @param keep      with it, a monitor that asks to stop is obeyed at the next renewal step (at most 20 steps later), so that nothing
+///                  that was computed is lost; without it at once.
+/// @throws InvalidArgument as begin_incision, or when the progress is of another mesh.
+[[nodiscard]] IncisionResult continue_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                                               const IncisionSettings& settings, IncisionProgress progress, Workers& workers,
+                                               Monitor& monitor, const ProgressKeeper& keep = {});
+
+/// Simulates an incision from beginning to end: begin_incision, then continue_incision.
 [[nodiscard]] IncisionResult simulate_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
                                                const IncisionSettings& settings, Workers& workers, Monitor& monitor);
 

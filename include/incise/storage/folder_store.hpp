@@ -4,6 +4,7 @@
 #include <incise/workflow/store.hpp>
 
 #include <array>
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -33,12 +34,14 @@ enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Correction, Corre
 ///   correction/  path.json, path.vtp, compensate.json
 ///   corrected/   as as_planned/
 ///
+/// and while a cut is under way or interrupted, beside them, as_planned.checkpoint or corrected.checkpoint (see CheckpointFile),
 /// and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that the product depends on: a product
 /// with another key is stale and counts as absent.
 class FolderStore : public Store {
  public:
   /// @param root  is made if missing. @throws DataError if that fails.
-  FolderStore(CaseFile file, std::filesystem::path root, RunContext context);
+  /// @param checkpoint_s  least wall time between two checkpoints of a cut under way.
+  FolderStore(CaseFile file, std::filesystem::path root, RunContext context, double checkpoint_s = 30.0);
 
   [[nodiscard]] const CaseFile& case_file() const { return file_; }
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
@@ -63,8 +66,18 @@ class FolderStore : public Store {
   std::optional<SimulatedCut> load_cut(CutRole role) override;
   void save_cut(CutRole role, const TissueModel& model, const StaticResult& stretched, const SimulatedCut& cut,
                 double wall_s) override;
+  std::optional<IncisionProgress> load_progress(CutRole role, const TissueModel& model, Monitor& monitor) override;
+  void keep_progress(CutRole role, const IncisionProgress& progress, bool is_interrupted) override;
   std::optional<Compensation> load_correction() override;
   void save_correction(const Compensation& correction, double wall_s) override;
+
+  /// Where the checkpoint of a cut is, if there is one.
+  [[nodiscard]] std::filesystem::path checkpoint(CutRole role) const;
+  /// The checkpoint that this store wrote last; empty: none, or its cut was finished since.
+  [[nodiscard]] const std::filesystem::path& last_checkpoint() const { return last_checkpoint_; }
+  /// Asks for a checkpoint from which a cut of this case can go on. @throws DataError naming both when it is of another case, other
+  /// settings, inputs or build, or damaged. @pre checkpoint(role) exists.
+  void require_fitting_checkpoint(CutRole role);
 
   /// A manifest for an output folder of this study.
   void write_manifest_to(const std::filesystem::path& folder, double wall_s);
@@ -75,11 +88,15 @@ class FolderStore : public Store {
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
   /// Made, and from other settings or inputs than the case's.
   [[nodiscard]] bool is_stale(Product product);
+  void remove_checkpoints_from(Product product);
   void save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write);
 
   CaseFile file_;
   std::filesystem::path root_;
   RunContext context_;
+  std::chrono::duration<double> checkpoint_period_;
+  std::chrono::steady_clock::time_point last_kept_ = std::chrono::steady_clock::now();
+  std::filesystem::path last_checkpoint_;
   std::array<std::string, 7> keys_;                      ///< empty: not computed yet
   std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
 };

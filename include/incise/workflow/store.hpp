@@ -41,6 +41,12 @@ class Store {
   virtual std::optional<SimulatedCut> load_cut(CutRole role) = 0;
   virtual void save_cut(CutRole role, const TissueModel& model, const StaticResult& stretched, const SimulatedCut& cut,
                         double wall_s) = 0;
+  /// A cut of today's settings and inputs that was interrupted, if there is one.
+  /// @param model    that it was begun on.
+  /// @param monitor  is told of one that is of other settings or inputs, and so of no use.
+  virtual std::optional<IncisionProgress> load_progress(CutRole role, const TissueModel& model, Monitor& monitor) = 0;
+  /// Is shown a cut on its way (see ProgressKeeper) and keeps as much of it as it sees fit, the last of an interrupted cut always.
+  virtual void keep_progress(CutRole role, const IncisionProgress& progress, bool is_interrupted) = 0;
   virtual std::optional<Compensation> load_correction() = 0;
   virtual void save_correction(const Compensation& correction, double wall_s) = 0;
 };

@@ -74,8 +74,10 @@ struct Study {
 [[nodiscard]] TriMesh tumor_in_stretched(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                          TriMesh surface, const std::optional<Contour>& drawn_edge);
 /// @param tumor_surface  closed, stretched tissue before the cut, mm; without triangles: not known.
+/// @param from  an interrupted cut along this path; nothing: from the beginning.  @param keep  see continue_incision.
 [[nodiscard]] SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,
                                          const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor,
-                                         const TriMesh& tumor_surface = {});
+                                         const TriMesh& tumor_surface = {},
+                                         std::optional<IncisionProgress> from = {}, const ProgressKeeper& keep = {});
 
 }  // namespace incise

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <incise/cutting/carving.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace incise {
+
+/// The tissue at one moment of the cut.
+struct CutFrame {
+  double time_s = 0.0;
+  ToolPose tool;
+  bool is_tool_in = true;
+  Points positions;                   ///< N x 3, mm
+  std::vector<std::uint8_t> is_live;  ///< per tet
+};
+
+/// One line of the log of a cut.
+struct CutStepLog {
+  double time_s = 0.0;
+  int iterations = 0;                 ///< of the linear solver
+  bool converged = true;              ///< the linear solve did not reach its limit
+  std::size_t tets_in_contact = 0;
+  std::size_t removed = 0;
+  std::size_t held_back_vertices = 0; ///< vertices whose step was cut to CutSettings::max_step_mm
+  Vec3 tool_force_mn = Vec3::Zero();  ///< of the tissue on the tool
+};
+
+/// An incision on its way, as a value: all that its further course depends on beside tissue, path and settings, and what it has left
+/// behind so far.
+struct IncisionProgress {
+  CutState state;
+  int relaxation_steps = 0;           ///< done since the tool is out; 0 while it is in
+  std::vector<CutStepLog> steps;
+  std::vector<CutFrame> frames;
+  double wall_s = 0.0;                ///< spent so far, all processes together
+};
+
+/// Is shown the progress at each renewal step (see is_renewal_step), from which a later call, in another process too, goes on with the
+/// same bits. `is_interrupted`: the monitor asked to stop, and this is the last that will be shown.
+using ProgressKeeper = std::function<void(const IncisionProgress& progress, bool is_interrupted)>;
+
+}  // namespace incise

@@ -1,0 +1,152 @@
+"""A cut that is interrupted goes on from its checkpoint and ends in the same files."""
+
+import json
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import small_case
+from command import BAD_CASE, BAD_DATA, COMMAND, DONE, INTERRUPTED, CommandTest, files_below
+
+# Some hundreds of steps: long enough to be met on its way.
+LONG_CUT = {"cut": {"advance_per_step_mm": 0.4, "frames": 4}}
+
+
+def without_times(value):
+    """A result without how long it took and where it lies."""
+    if isinstance(value, dict):
+        return {key: without_times(item) for key, item in value.items() if key not in ("wall_s", "ms_per_step", "stages", "folder")}
+    return value
+
+
+class CheckpointTest(CommandTest):
+    @classmethod
+    def setUpClass(cls):
+        """One run that nothing interrupts, on one thread: what all others are compared with."""
+        temporary = tempfile.TemporaryDirectory(prefix="incise_cli_")
+        cls.addClassCleanup(temporary.cleanup)
+        cls.straight = pathlib.Path(temporary.name) / "out"
+        case = small_case.write_case(pathlib.Path(temporary.name) / "case", LONG_CUT)
+        subprocess.run([COMMAND, "run", case, "-o", cls.straight, "--threads", "1"], check=True, capture_output=True)
+
+    def setUp(self):
+        """The same case, already stretched and planned."""
+        super().setUp()
+        self.case = small_case.write_case(self.folder / "case", LONG_CUT)
+        self.checkpoint = self.out / "as_planned.checkpoint"
+        for product in ("stretched", "plan"):
+            shutil.copytree(self.straight / product, self.out / product)
+
+    def stop(self, verb, checkpoint, stop_signal, *options):
+        """The command with a checkpoint at every occasion, stopped by a signal once there is one."""
+        command = [COMMAND, verb, "case", "-o", str(self.out), "--checkpoint-s", "0", *options]
+        running = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 120
+        while not checkpoint.exists() and running.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.002)
+        self.assertIsNone(running.poll(), "it was over before it could be stopped")
+        running.send_signal(stop_signal)
+        stdout, stderr = running.communicate(timeout=120)
+        return subprocess.CompletedProcess(command, running.returncode, stdout, stderr)
+
+    def assert_same_cut(self, one, other):
+        """Byte for byte, but for the time that it took and the record of the command."""
+        self.assertEqual(files_below(one), files_below(other))
+        for name in files_below(one):
+            if name in ("manifest.json", "stage.json") or (one / name).is_dir():
+                continue
+            if name == "incision.json":
+                self.assertEqual(*(without_times(json.loads((folder / name).read_text())) for folder in (one, other)))
+            else:
+                self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
+
+    def test_ctrl_c_leaves_a_checkpoint_and_resume_ends_in_the_same_files(self):
+        done = self.stop("simulate", self.checkpoint, signal.SIGINT)
+        self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
+        self.assertEqual(done.stdout, "")
+        self.assertRegex(done.stderr, r"incise: the cut was interrupted after step \d+; its checkpoint \S+as_planned\.checkpoint is kept, run the same command to go on\n")
+        self.assertEqual({name.split("/")[0] for name in files_below(self.out)},
+                         {"study.json", "stretched", "plan", "as_planned.checkpoint"})
+
+        resumed = self.incise("simulate", "case", "-o", self.out, "--resume", "--threads", "2")
+        self.assertEqual(resumed.returncode, DONE, resumed.stderr)
+        self.assertRegex(resumed.stderr, r"simulate: goes on after step \d+")
+        self.assertFalse(self.checkpoint.exists(), "a cut that is finished needs none")
+        self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
+
+    def test_a_killed_run_goes_on_from_its_last_checkpoint(self):
+        self.stop("simulate", self.checkpoint, signal.SIGKILL)
+        resumed = self.incise("simulate", "case", "-o", self.out)  # by itself
+        self.assertEqual(resumed.returncode, DONE, resumed.stderr)
+        self.assertIn("simulate: goes on after step", resumed.stderr)
+        self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
+
+    def test_run_goes_on_in_its_second_cut(self):
+        done = self.stop("run", self.out / "corrected.checkpoint", signal.SIGTERM)
+        self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
+        resumed = self.incise("run", "case", "-o", self.out)
+        self.assertEqual(resumed.returncode, DONE, resumed.stderr)
+        self.assertIn("verify: goes on after step", resumed.stderr)
+        for product in ("as_planned", "corrected"):
+            self.assert_same_cut(self.out / product, self.straight / product)
+
+    def test_resume_without_a_checkpoint_is_refused(self):
+        new = self.folder / "new"
+        done = self.incise("simulate", "case", "-o", new, "--resume")
+        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint in", str(new), "as_planned.checkpoint", "Without --resume")
+        self.assert_nothing_written(new)
+
+    def test_a_checkpoint_of_other_settings_is_refused_by_resume_and_passed_over_without_it(self):
+        self.stop("simulate", self.checkpoint, signal.SIGINT)
+        left = self.checkpoint.read_bytes()
+        small_case.write_case(self.case, {"cut": {"advance_per_step_mm": 0.8, "frames": 2, "dullness": 8}})
+        done = self.incise("simulate", "case", "-o", self.out, "--resume")
+        self.assert_refused(done, BAD_DATA, "as_planned.checkpoint", "key", "of a cut made by incise", "of this case, its settings and inputs")
+        self.assertEqual(self.checkpoint.read_bytes(), left)
+        done = self.incise("simulate", "case", "-o", self.out)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("the cut starts from the beginning", done.stderr)
+
+    def test_a_damaged_checkpoint_says_what_to_remove(self):
+        self.stop("simulate", self.checkpoint, signal.SIGINT)
+        whole = self.checkpoint.read_bytes()
+        for name, damaged in (("cut short", whole[: len(whole) // 2]), ("one bit", whole[:5000] + bytes([whole[5000] ^ 1]) + whole[5001:]),
+                              ("foreign", b"not a checkpoint at all"), ("empty", b"")):
+            for option in ([], ["--resume"]):
+                with self.subTest(damage=name, option=option):
+                    self.checkpoint.write_bytes(damaged)
+                    done = self.incise("simulate", "case", "-o", self.out, *option)
+                    self.assert_refused(done, BAD_DATA, "as_planned.checkpoint", "byte ", "Remove the file")
+
+
+class FramesTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        small_case.write_case(self.folder / "case")
+
+    def test_as_many_frames_as_asked_for_with_the_tool_beside_them(self):
+        self.json_of("simulate", "case", "-o", self.out, "--frames", "5")
+        cut = self.out / "as_planned"
+        self.assertEqual((cut / "frames.pvd").read_text().count("<DataSet "), 5)
+        self.assertEqual(len(list((cut / "frames").glob("frame_*.vtu"))), 5)
+        tools = json.loads((cut / "frames" / "tool.json").read_text())["frames"]
+        self.assertEqual(len(tools), 5)
+        self.assertEqual([len(tools[0]["tip_mm"]), len(tools[0]["axis"])], [3, 3])
+        self.assertEqual([tool["is_tool_in"] for tool in tools], [True] * 4 + [False])
+        self.assertEqual(json.loads((cut / "manifest.json").read_text())["settings"]["cut.frames"], "5")
+
+    def test_counts_that_are_none_are_refused(self):
+        for count in ("0", "-1", "501", "2.5", "many", ""):
+            with self.subTest(count=count):
+                done = self.incise("simulate", "case", "-o", self.out, "--frames", count)
+                self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+                self.assertIn("--frames", done.stderr)
+                self.assert_nothing_written()
+
+
+if __name__ == "__main__":
+    unittest.main()
