@@ -1,0 +1,263 @@
+// What the simulated cut depends on. Cuts run side by side, one thread each; errors of the mid-line against the lateral margin stand beside the cost.
+//   incise_cut_study step  [--threads N] [--csv FILE] [--figure FILE]   the simulation step: 0.13, 0.26, 0.52 mm
+//   incise_cut_study mesh  ...                                          edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move
+//   incise_cut_study table ...                                          the paper's Table I: 25 pairs of speed and dullness on two virtual specimens
+#include "virtual_study.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/procedure/incision.hpp>
+#include <incise/report/line_plot.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <mutex>
+#include <optional>
+#include <string_view>
+
+namespace incise::bench {
+namespace {
+
+struct Options {
+  std::string study;
+  int threads = 2;
+  std::string csv;
+  std::string figure;
+};
+
+Options parse(int argc, char** argv) {
+  Options options;
+  INCISE_REQUIRE(argc > 1, "expected step, mesh or table");
+  options.study = argv[1];
+  INCISE_REQUIRE(options.study == "step" || options.study == "mesh" || options.study == "table",
+                 fmt::format("expected step, mesh or table, found {}", options.study));
+  for (int i = 2; i < argc; i += 2) {
+    const std::string_view name = argv[i];
+    INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a value after {}", name));
+    const char* value = argv[i + 1];
+    if (name == "--threads") {
+      options.threads = std::atoi(value);
+    } else if (name == "--csv") {
+      options.csv = value;
+    } else if (name == "--figure") {
+      options.figure = value;
+    } else {
+      throw InvalidArgument(fmt::format("expected --threads, --csv or --figure, found {}", name));
+    }
+  }
+  return options;
+}
+
+/// A stretched specimen with the planned path.
+struct Body {
+  std::string name;
+  double edge_mm = 0.0;
+  Case settings;
+  Study study;
+};
+
+Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& meshing, Workers& workers) {
+  Body body{std::move(name), meshing.fine_mm, {}, {}};
+  body.settings.is_virtual = true;
+  body.settings.meshing = meshing;
+  body.settings.frames = 0;
+  PhantomStore store(phantom);
+  Monitor silent;
+  body.study = run_study(body.settings, store, Stage::Plan, workers, silent);
+  fmt::print(stderr, "{}: {} tets\n", body.name, body.study.model->mesh.tets.size());
+  return body;
+}
+
+enum class Tissue { Held, WithoutDrag, Frozen };
+constexpr std::string_view name_of(Tissue tissue) {
+  return tissue == Tissue::Held ? "drag" : tissue == Tissue::WithoutDrag ? "no drag" : "frozen";
+}
+
+struct Job {
+  const Body* body;
+  Tissue tissue = Tissue::Held;
+  CutSettings cut;
+};
+
+/// The stretched body as one that nothing can move.
+TissueModel frozen(const TissueModel& model, const TissueState& stretched) {
+  TetMesh mesh = model.mesh;
+  mesh.vertices = stretched.positions;
+  mesh.point_data.clear();
+  mesh.cell_data.clear();
+  return make_tissue_model(std::move(mesh), Material{}, {FixedConstraint{SphereRegion{Vec3::Zero(), 1e4}}}, Vec3::Zero());
+}
+
+SimulatedCut carry_out(const Job& job) {
+  Workers alone(1);
+  Monitor silent;
+  Case settings = job.body->settings;
+  settings.cut = job.cut;
+  if (job.tissue != Tissue::Held) settings.cut.bond_stiffness_kpa_mm2 = 0.0;
+  const Study& study = job.body->study;
+  if (job.tissue != Tissue::Frozen) {
+    return cut_and_judge(settings, *study.model, study.stretched->state, *study.plan, *study.plan, alone, silent);
+  }
+  const TissueModel model = frozen(*study.model, study.stretched->state);
+  return cut_and_judge(settings, model, rest_state(model), *study.plan, *study.plan, alone, silent);
+}
+
+constexpr std::string_view kHeader =
+    "specimen,edge_mm,tets,tissue,speed_mm_s,dullness,advance_mm,outcome,closed_loop,signed_mean_mm,signed_sd_mm,signed_min_mm,signed_max_mm,"
+    "abs_mean_mm,paper_abs_mean_mm,kerf_width_mm,removed_tets,steps,iterations,wall_s\n";
+
+/// One line of the table; what an open ring does not have stays empty.
+std::string row_of(const Job& job, const SimulatedCut& done) {
+  const IncisionResult& cut = done.incision;
+  const auto number = [](const std::optional<double>& value) { return value ? fmt::format("{:.3f}", *value) : std::string(); };
+  const auto part = [&](const std::optional<Summary>& summary, double Summary::*value) {
+    return summary ? fmt::format("{:.3f}", *summary.*value) : std::string();
+  };
+  const Evaluation& e = done.centerline;
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{:.1f}\n", job.body->name, job.body->edge_mm, done.tets,
+                     name_of(job.tissue), job.cut.speed_mm_s, job.cut.dullness, job.cut.advance_per_step_mm, to_string(done.outcome),
+                     cut.is_closed_loop.value_or(false) ? "yes" : "no", part(e.signed_error_mm, &Summary::mean),
+                     part(e.signed_error_mm, &Summary::sd), part(e.signed_error_mm, &Summary::min), part(e.signed_error_mm, &Summary::max),
+                     part(e.abs_error_mm, &Summary::mean), number(e.paper_abs_error_mm), cut.kerf_width_mm, cut.record.removals.size(),
+                     cut.steps.size(), cut.solver_iterations, cut.wall_s);
+}
+
+/// What is kept of a cut.
+struct Done {
+  std::string row;
+  std::optional<Summary> error_mm;  ///< absent: the ring is open
+};
+
+std::vector<Done> carry_out(const std::vector<Job>& jobs, Workers& workers) {
+  std::vector<Done> done(jobs.size());
+  std::mutex printing;
+  fmt::print("{}", kHeader);
+  workers.for_each(jobs.size(), 1, [&](std::size_t i) {
+    const SimulatedCut cut = carry_out(jobs[i]);
+    done[i] = {row_of(jobs[i], cut), cut.centerline.signed_error_mm};
+    const std::lock_guard lock(printing);
+    fmt::print("{}", done[i].row);
+    std::fflush(stdout);
+  });
+  return done;
+}
+
+struct Result {
+  std::vector<Done> done;
+  LinePlot plot;
+};
+
+void add_point(LinePlot& plot, const std::string& name, double x, const Done& done) {
+  if (!done.error_mm) return;
+  auto series = std::find_if(plot.series.begin(), plot.series.end(), [&name](const LineSeries& s) { return s.name == name; });
+  if (series == plot.series.end()) series = plot.series.insert(plot.series.end(), LineSeries{name, {}, {}, false});
+  series->x.push_back(x);
+  series->y.push_back(done.error_mm->mean);
+}
+
+Result study_steps(Workers& workers) {
+  Monitor silent;
+  const Phantom phantom = make_phantom(PhantomSettings{}, silent);
+  const Body body = make_body(phantom, "seed 1", MeshingChoice{}, workers);
+  std::vector<Job> jobs;
+  for (const double advance : {0.13, 0.26, 0.52}) {
+    jobs.push_back({&body, Tissue::Held, {}});
+    jobs.back().cut.advance_per_step_mm = advance;
+  }
+  Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the step", "needle advance a step, mm",
+                                           "mean signed error, mm", true, false, {}}};
+  for (std::size_t i = 0; i < jobs.size(); ++i) add_point(result.plot, "13 mm/s x 9", jobs[i].cut.advance_per_step_mm, result.done[i]);
+  return result;
+}
+
+Result study_meshes(Workers& workers) {
+  Monitor silent;
+  const Phantom phantom = make_phantom(PhantomSettings{}, silent);
+  std::vector<Body> bodies;
+  for (const double edge : {1.0, 0.8, 0.6, 0.5}) {
+    MeshingChoice meshing;
+    meshing.fine_mm = edge;
+    bodies.push_back(make_body(phantom, "seed 1", meshing, workers));
+  }
+  std::vector<Job> jobs;
+  for (const Body& body : bodies) {
+    jobs.push_back({&body, Tissue::Held, {}});
+    // Tissue that is not held passes the needle too fast for 13 mm/s x 9 to cut it.
+    for (const Tissue tissue : {Tissue::WithoutDrag, Tissue::Frozen}) {
+      jobs.push_back({&body, tissue, {}});
+      jobs.back().cut.dullness = 5.0;
+    }
+  }
+  Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh", "edge length in the band, mm",
+                                           "mean signed error, mm", true, false, {}}};
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    add_point(result.plot, fmt::format("{}, 13 mm/s x {}", name_of(jobs[i].tissue), jobs[i].cut.dullness), jobs[i].body->edge_mm,
+              result.done[i]);
+  }
+  return result;
+}
+
+/// The 25 pairs of the paper's Table I.
+Result study_table(Workers& workers) {
+  static constexpr std::array<double, 5> kValues{1.0, 5.0, 9.0, 13.0, 17.0};
+  Monitor silent;
+  std::vector<Body> bodies;
+  for (const std::uint64_t seed : {1, 2}) {
+    PhantomSettings specimen;
+    specimen.seed = seed;
+    MeshingChoice meshing;
+    meshing.tets = 40000;
+    bodies.push_back(make_body(make_phantom(specimen, silent), fmt::format("seed {}", seed), meshing, workers));
+  }
+  std::vector<Job> jobs;
+  for (const Body& body : bodies) {
+    for (const double speed : kValues) {
+      for (const double dullness : kValues) {
+        jobs.push_back({&body, Tissue::Held, {}});
+        jobs.back().cut.speed_mm_s = speed;
+        jobs.back().cut.dullness = dullness;
+      }
+    }
+  }
+  Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against speed x dullness; open rings are left out",
+                                           "speed x dullness x 0.02 s, mm", "mean signed error, mm", false, false, {}}};
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    const CutSettings& cut = jobs[i].cut;
+    add_point(result.plot, jobs[i].body->name, cut.speed_mm_s * cut.dwell_s(), result.done[i]);
+  }
+  return result;
+}
+
+void write_file(const std::string& name, const std::string& text) {
+  if (name.empty()) return;
+  std::ofstream file(name);
+  file << text;
+  INCISE_REQUIRE(static_cast<bool>(file.flush()), fmt::format("cannot write {}", name));
+}
+
+int run(const Options& options) {
+  Workers workers(options.threads);
+  const Result result = options.study == "step"   ? study_steps(workers)
+                        : options.study == "mesh" ? study_meshes(workers)
+                                                  : study_table(workers);
+  std::string table(kHeader);
+  for (const Done& done : result.done) table += done.row;
+  write_file(options.csv, table);
+  if (!options.figure.empty()) write_file(options.figure, line_plot_svg(result.plot));
+  return 0;
+}
+
+}  // namespace
+}  // namespace incise::bench
+
+int main(int argc, char** argv) {
+  try {
+    return incise::bench::run(incise::bench::parse(argc, argv));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "incise_cut_study: {}\n", error.what());
+    return 2;
+  }
+}
