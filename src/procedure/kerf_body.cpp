@@ -12,7 +12,7 @@ constexpr double kOnSkinMm = 1.0;       // tissue that lies farther off does not
 constexpr double kAcrossStepMm = 0.25;  // in which tissue is looked for across a gap, and how near it has to be
 constexpr double kDirectionMm =
     2.0;  // to both sides: length that gives a mid-line's direction, free of the mesh's grain
-constexpr double kBelowSkinMm = 0.5;  // there, so that a straight line across stays in the tissue where the skin slopes
+constexpr double kBelowSkinMm = 0.5;  // there, so that tets of the skin are met in their middle
 
 /// The triangles with the vertices that they use, in order of first use.
 TriMesh with_own_vertices(std::span<const BoundaryFace> faces, std::span<const Vec3> positions) {
@@ -93,9 +93,12 @@ std::optional<Contour> carried_with_live(const Contour& curve, double reach_mm, 
     if (!point) return std::nullopt;
     return position_of(*point, live, to) - position_of(*point, live, from);
   };
+  const SurfaceQuery skin(skin_of(mesh, from));  // uncut: the walk across the gap follows its slope
   const auto first_across = [&](const Vec3& p, const Vec3& direction) -> std::optional<Vec3> {
     for (double s = 0.0; s <= reach_mm; s += kAcrossStepMm) {
-      if (const auto u = displacement(p + kBelowSkinMm * approach + s * direction, kAcrossStepMm)) return u;
+      const auto seen = skin.seen_at(p + s * direction, approach);
+      if (!seen) continue;
+      if (const auto u = displacement(seen->position_mm + kBelowSkinMm * approach, kAcrossStepMm)) return u;
     }
     return std::nullopt;
   };
