@@ -17,9 +17,9 @@ constexpr double kSingleTolerance = 1e-2;  // of a step's residual: from here up
 constexpr int kMaxRelaxationSteps = 60;  // after the tool is out
 
 void require_valid(const IncisionSettings& settings) {
-  std::vector<std::string> violations = validate(settings.cut, settings.needle.diameter_mm);
-  const std::vector<std::string> needle = validate(settings.needle);
-  violations.insert(violations.end(), needle.begin(), needle.end());
+  std::vector<std::string> violations = validate(settings.cut, 2.0 * radius_mm(settings.tool));
+  const std::vector<std::string> tool = validate(settings.tool);
+  violations.insert(violations.end(), tool.begin(), tool.end());
   if (!(settings.midline_layer_mm > 0.0)) {
     violations.push_back(fmt::format("midline_layer_mm: found {}, expected above 0 mm", settings.midline_layer_mm));
   }
@@ -52,10 +52,12 @@ class FrameKeeper {
 
 void log_step(const CutState& state, const CutStepReport& report, IncisionResult& result) {
   result.steps.push_back({state.time_s, report.solve.iterations, report.tets_in_contact, report.removed + report.loose_removed,
-                          report.tool_force_mn});
+                          report.slipped, report.tool_force_mn, report.tool_torque_mn_mm});
   result.solver_iterations += static_cast<std::size_t>(report.solve.iterations);
   result.unconverged_steps += report.solve.converged ? 0 : 1;
   result.held_back_vertices += report.held_back_vertices;
+  result.slipped_bonds += report.slipped;
+  result.peak_tool_torque_mn_mm = std::max(result.peak_tool_torque_mn_mm, report.tool_torque_mn_mm.norm());
   result.peak_tool_force_mn = std::max(result.peak_tool_force_mn, report.tool_force_mn.norm());
 }
 
@@ -67,7 +69,7 @@ Outcome run_program(const TissueModel& model, const ToolProgram& program, const 
   while (state.time_s < program.duration_s() - 1e-9) {
     if (monitor.is_cancelled()) return Outcome::Cancelled;
     const double dt = std::min(step_s, program.duration_s() - state.time_s);
-    const CutStepReport report = advance(model, settings.cut, settings.needle, state, workspace,
+    const CutStepReport report = advance(model, settings.cut, settings.tool, state, workspace,
                                          program.pose_at(state.time_s + dt), dt, workers);
     log_step(state, report, result);
     if (!report.is_finite) return Outcome::NotConverged;
@@ -83,7 +85,7 @@ Outcome relax(const TissueModel& model, const IncisionSettings& settings, CutSta
   for (int i = 0; i < kMaxRelaxationSteps; ++i) {
     if (monitor.is_cancelled()) return Outcome::Cancelled;
     const CutStepReport report =
-        advance(model, settings.cut, settings.needle, state, workspace, std::nullopt, settings.cut.step_s(), workers);
+        advance(model, settings.cut, settings.tool, state, workspace, std::nullopt, settings.cut.step_s(), workers);
     log_step(state, report, result);
     if (!report.is_finite) return Outcome::NotConverged;
     if (report.max_step_mm < kRelaxedMm) return Outcome::Success;
@@ -108,7 +110,7 @@ IncisionResult simulate_incision(const TissueModel& model, const TissueState& st
                                  const IncisionSettings& settings, Workers& workers, Monitor& monitor) {
   require_valid(settings);
   const auto start = std::chrono::steady_clock::now();
-  const ToolProgram program(path, settings.cut);
+  const ToolProgram program(path, settings.cut, settings.tool);
   IncisionResult result;
   CutState state = begin_cut(model, stretched, program.pose_at(0.0));
   CutWorkspace workspace(model, stretched.positions,

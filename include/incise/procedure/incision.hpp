@@ -17,7 +17,7 @@ namespace incise {
 
 struct IncisionSettings {
   CutSettings cut;
-  Needle needle;
+  Tool tool;
   Vec3 approach = -Vec3::UnitZ();     ///< unit; the direction in which camera and surgeon look
   double midline_layer_mm = 2.5;      ///< the mid-line is that of the kerf down to this depth below the surface, > 0
   int frames = 0;                     ///< moments to keep for pictures, evenly spaced over the cut; 0: none
@@ -38,7 +38,9 @@ struct CutStepLog {
   int iterations = 0;                 ///< of the linear solver
   std::size_t tets_in_contact = 0;
   std::size_t removed = 0;
+  std::size_t slipped = 0;            ///< bonds that slipped
   Vec3 tool_force_mn = Vec3::Zero();  ///< of the tissue on the tool
+  Vec3 tool_torque_mn_mm = Vec3::Zero();  ///< of the tissue on the tool, about its tip
 };
 
 /// A simulated incision, however it ended.
@@ -61,7 +63,9 @@ struct IncisionResult {
   std::size_t unconverged_steps = 0;     ///< steps whose linear solve reached its limit
   std::size_t held_back_vertices = 0;    ///< vertex steps cut to CutSettings::max_step_mm
   std::size_t inverted_tets = 0;         ///< live tets of negative volume at the end
+  std::size_t slipped_bonds = 0;         ///< slips, summed over all steps
   double peak_tool_force_mn = 0.0;
+  double peak_tool_torque_mn_mm = 0.0;   ///< about the tool's tip
   double wall_s = 0.0;
 };
 
