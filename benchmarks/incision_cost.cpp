@@ -145,7 +145,7 @@ int run(const Options& options) {
              length_mm(entry_contour(*study.plan)));
 
   IncisionSettings incision;
-  incision.needle = settings.needle;
+  incision.tool = settings.tool;
   incision.approach = settings.plan.approach;
   incision.cut = settings.cut;
   incision.cut.advance_per_step_mm = options.advance_mm;

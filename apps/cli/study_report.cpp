@@ -148,7 +148,7 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
   if (json.at("negative_margin").is_boolean()) incision.negative_margin = json.at("negative_margin").get<bool>();
   incision.target_mm = file.settings.plan.lateral_margin_mm;
   incision.close_margin_mm = file.settings.close_margin_mm;
-  incision.kerf_allowance_mm = file.settings.needle.radius_mm();
+  incision.kerf_allowance_mm = radius_mm(file.settings.tool);
   incision.measured_contour = "kerf mid-line, stretched tissue before the cut";
   incision.tumor_edge = plan.tumor_edge;
   incision.intended_path = entry_contour(plan);
@@ -157,8 +157,8 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
 
   ReportAnimation animation;
   animation.name = cut.name;
-  animation.tool_diameter_mm = file.settings.needle.diameter_mm;
-  animation.tool_length_mm = file.settings.needle.length_mm;
+  animation.tool_diameter_mm = 2.0 * radius_mm(file.settings.tool);
+  animation.tool_length_mm = length_mm(file.settings.tool).value_or(animation.tool_diameter_mm);
   if (!plan.tumor_edge.points.empty()) animation.lines.push_back({LineKind::TumorEdge, plan.tumor_edge});
   animation.lines.push_back({LineKind::IntendedPath, incision.intended_path});
   if (has_correction) animation.lines.push_back({LineKind::CorrectedPath, incision.corrected_path});
@@ -191,7 +191,7 @@ void add_evaluation(const fs::path& root, ReportData& data) {
     const char* unit;
     const char* pointer;
   };
-  static constexpr std::array<Measure, 32> kMeasures{{
+  static constexpr std::array<Measure, 35> kMeasures{{
       {"Absolute error of the mid-line against its target, mean", "mm", "/abs_error_mm/mean"},
       {"… standard deviation along the contour", "mm", "/abs_error_mm/sd"},
       {"… greatest", "mm", "/abs_error_mm/max"},
@@ -223,6 +223,9 @@ void add_evaluation(const fs::path& root, ReportData& data) {
       {"Vertices at which sheets of the live skin touch", "", "/live_skin/pinched_vertices"},
       {"Tetrahedra removed", "", "/removed_tets"},
       {"Greatest force on the tool", "mN", "/peak_tool_force_mn"},
+      {"Greatest torque on the tool about its tip", "mN mm", "/peak_tool_torque_mn_mm"},
+      {"Heat damages tissue this far beside the electrode (closed form, not calibrated)", "mm", "/thermal_half_width_mm"},
+      {"Tissue left unheated beside the tumour edge, least (below 0: heat reaches it)", "mm", "/thermal_margin_mm"},
       {"Simulation time", "s", "/wall_s"},
   }};
   const auto read = [&root](const CutFolder& cut) {

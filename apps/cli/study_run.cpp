@@ -136,6 +136,13 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
     json["reason"] = "robot.T_robot_sim is not given";
     return json;
   }
+  if (half_width_mm(file.settings.tool) > 0.0) {
+    const std::string reason = fmt::format("a program does not turn a {} into its direction of travel", kind_of(file.settings.tool));
+    monitor.message(Severity::Warning, "no program: " + reason);
+    json["written"] = false;
+    json["reason"] = reason;
+    return json;
+  }
   // A program is made of the path whose simulated cut was good: the corrected one where the correction is accepted, else the first.
   const bool is_first_good = done.as_planned && done.as_planned->outcome == Outcome::Success;
   if (!done.is_accepted && !is_first_good) {
@@ -179,7 +186,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
 
 nlohmann::ordered_json headline(const nlohmann::ordered_json& cut) {
   nlohmann::ordered_json json = cut;
-  for (const char* key : {"removals", "removal_columns"}) json.erase(key);
+  for (const char* key : {"removals", "removal_columns", "removal_causes"}) json.erase(key);
   return json;
 }
 

@@ -4,6 +4,8 @@
 #include <incise/core/error.hpp>
 #include <incise/cutting/carving.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -16,7 +18,8 @@ constexpr int kVerticesPerAggregate = 140;
 constexpr double kForceFloorMn = 5.0;          // scale of the stopping test when hardly anything is held
 constexpr double kLeastShare = 0.02;           // of a touched tet's volume that the tool holds: a corner is still held
 constexpr double kFragmentShare = 0.01;        // of the body's volume at rest: smaller loose parts are cut away with the kerf
-constexpr int kMomentsPerStep = 4;             // intervals in which the distance to the tool is followed within a step
+constexpr int kIntervalsPerStep = 4;           // after each of which the distance to the tool is looked at within a step
+constexpr double kFullDose = 1.0 - 1e-9;       // a dose is a sum over steps: what rounding may leave it short of 1
 
 }  // namespace
 
@@ -52,7 +55,8 @@ CutWorkspace::CutWorkspace(CutWorkspace&&) noexcept = default;
 
 CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPose& tool) {
   CutState state;
-  state.contact_s.assign(model.mesh.tets.size(), 0.0);
+  state.dose.assign(model.mesh.tets.size(), 0.0);
+  state.tear_dose.assign(model.mesh.tets.size(), 0.0);
   state.tissue = std::move(stretched);
   state.tool = tool;
   return state;
@@ -60,9 +64,19 @@ CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPo
 
 bool is_renewal_step(const CutState& state) { return state.step % kRenewalSteps == 0; }
 
+std::string_view to_string(RemovalCause cause) {
+  switch (cause) {
+    case RemovalCause::Dwell: return "dwell";
+    case RemovalCause::LooseFragment: return "loose_fragment";
+    case RemovalCause::Tear: return "tear";
+  }
+  return "unknown";
+}
+
 namespace {
 
-Vec3 shaft_end(const ToolPose& tool, const Needle& needle) { return tool.tip_mm - needle.length_mm * tool.axis; }
+/// The contact criterion: a tet is touched while its distance from the tool's core is at most this, mm.
+double touching_distance_mm(const Tool& tool, const CutSettings& settings) { return radius_mm(tool) + settings.reach_mm; }
 
 Vec3 centroid(const std::array<Vec3, 4>& corners) { return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]); }
 
@@ -83,20 +97,20 @@ double norm_of_sums(std::vector<std::pair<VertexId, Vec3>> pulls) {
 /// Adds the pull of the tool on bonded tets, as if it were at `next` already, and its exact (constant) tangent.
 /// The share of a tet that is held is that of the last pose, so the pull is linear in the step.
 /// @returns the stiffness of each bond, mN/mm, in their order; `scale` receives the norm of the pulls over all vertices, mN.
-std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Needle& needle, const CutState& state,
-               const ToolPose& next, std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
+std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Tool& tool, const CutState& state,
+                              const ToolPose& next, std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
   std::vector<double> stiffnesses;
   std::vector<std::pair<VertexId, Vec3>> pulls;  // on vertices, one entry per tet that shares the vertex
-  const double limit = needle.radius_mm() + settings.reach_mm;
-  // Drag acts across the needle's axis; tissue may slide along it.
-  const Mat3 across = Mat3::Identity() - next.axis * next.axis.transpose();
+  const double limit = touching_distance_mm(tool, settings);
+  const ToolCore core(tool, state.tool);
+  const Mat3 held = held_directions(tool, next);
   for (const Bond& bond : state.bonds) {
     const auto corners = corners_of(model.mesh, state.tissue.positions, bond.tet.index());
-    const double share = share_within(corners, state.tool.tip_mm, shaft_end(state.tool, needle), limit);
+    const double share = share_within(corners, core, limit);
     const double stiffness = settings.bond_stiffness_kpa_mm2 * model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
-    const Vec3 pull = -stiffness * (across * (centroid(corners) - next.tip_mm - bond.offset_mm));
+    const Vec3 pull = -stiffness * (held * (centroid(corners) - next.tip_mm - bond.offset_mm));
     stiffnesses.push_back(stiffness);
-    const Mat3 block = stiffness / 16.0 * across;
+    const Mat3 block = stiffness / 16.0 * held;
     for (std::size_t a = 0; a < 4; ++a) {
       const VertexId v = model.mesh.tets[bond.tet.index()][a];
       forces[v.index()] += 0.25 * pull;
@@ -111,16 +125,37 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   return stiffnesses;
 }
 
-/// What the held tissue, where it came to lie, does to the tool, mN.
-Vec3 force_on_tool(const TissueModel& model, const CutState& state, const ToolPose& tool, std::span<const double> stiffnesses) {
-  const Mat3 across = Mat3::Identity() - tool.axis * tool.axis.transpose();
-  Vec3 force = Vec3::Zero();
+/// Lets tissue that the tool, now in pose `next`, has left too far behind slip: the place where it is held follows.
+void slip(const TissueModel& model, const Tool& tool, const ToolPose& next, double slip_mm, CutState& state, CutStepReport& report) {
+  const Mat3 held = held_directions(tool, next);
+  for (Bond& bond : state.bonds) {
+    const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, bond.tet.index()));
+    const Vec3 behind = held * (middle - next.tip_mm - bond.offset_mm);
+    const double distance = behind.norm();
+    if (distance <= slip_mm) continue;
+    bond.offset_mm += (1.0 - slip_mm / distance) * behind;
+    ++report.slipped;
+  }
+}
+
+/// What the held tissue, where it came to lie, does to the tool in pose `next`: force, mN, and torque about the tip, mN mm.
+/// @returns for each bond the work that the tool did on its tet in this step per rest volume, kPa, from the pull at the step's end and the
+///          way of the place of the tool that holds it; 0 where the tet did work on the tool.
+std::vector<double> load_tool(const TissueModel& model, const CutState& state, const Tool& tool, const ToolPose& next,
+                              std::span<const double> stiffnesses, CutStepReport& report) {
+  const Mat3 held = held_directions(tool, next);
+  const Eigen::Quaterniond back = turn_of_held(tool, next, state.tool);
+  std::vector<double> works_kpa;
   for (std::size_t b = 0; b < state.bonds.size(); ++b) {
     const Bond& bond = state.bonds[b];
     const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, bond.tet.index()));
-    force += stiffnesses[b] * (across * (middle - tool.tip_mm - bond.offset_mm));
+    const Vec3 force = stiffnesses[b] * (held * (middle - next.tip_mm - bond.offset_mm));
+    report.tool_force_mn += force;
+    report.tool_torque_mn_mm += (middle - next.tip_mm).cross(force);
+    const Vec3 way = next.tip_mm - state.tool.tip_mm + bond.offset_mm - back * bond.offset_mm;
+    works_kpa.push_back(std::max(0.0, -force.dot(way)) / model.volumes_mm3[bond.tet.index()]);
   }
-  return force;
+  return works_kpa;
 }
 
 /// Vertices without a live tet: nothing holds them, so they stay where they are.
@@ -134,16 +169,17 @@ std::vector<std::uint8_t> orphans(const TissueModel& model, const TissueState& t
 }
 
 /// Moves the tissue by one linearised quasi-static step. The mass term is far below the stiffness and only steadies loose bits.
-void move_tissue(const TissueModel& model, const CutSettings& settings, const Needle& needle, CutState& state,
-                 CutWorkspace::Data& scratch, const std::optional<ToolPose>& next, double step_s, Workers& workers,
-                 CutStepReport& report) {
+/// @returns the stiffness of each bond, mN/mm, in their order.
+std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
+                                CutWorkspace::Data& scratch, const std::optional<ToolPose>& next, double step_s, Workers& workers,
+                                CutStepReport& report) {
   std::fill(scratch.matrix.values.begin(), scratch.matrix.values.end(), 0.0);
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
   add_elastic_response(model, state.tissue, scratch.right_side, &scratch.matrix, workers);
   add_support_response(model, state.tissue, scratch.right_side, &scratch.matrix);
   double bond_scale = 0.0;
   std::vector<double> stiffnesses;
-  if (next) stiffnesses = add_bonds(model, settings, needle, state, *next, scratch.right_side, scratch.matrix, bond_scale);
+  if (next) stiffnesses = add_bonds(model, settings, tool, state, *next, scratch.right_side, scratch.matrix, bond_scale);
   for (std::size_t v = 0; v < model.vertex_mass_kg.size(); ++v) {
     double* diagonal = scratch.matrix.block(model.pattern->diagonal[v]);
     const double inertia = model.vertex_mass_kg[v] / (step_s * step_s);
@@ -167,24 +203,21 @@ void move_tissue(const TissueModel& model, const CutSettings& settings, const Ne
     }
     report.max_step_mm = std::max(report.max_step_mm, std::min(length, settings.max_step_mm));
   }
-  if (!report.is_finite) return;
+  if (!report.is_finite) return stiffnesses;
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) state.tissue.positions[v] += scratch.increment[v];
-  if (next) report.tool_force_mn = force_on_tool(model, state, *next, stiffnesses);
+  return stiffnesses;
 }
 
-/// Follows the contact of the tissue with the tool through the step: adds contact time, makes bonds where contact begins and drops
-/// them where it ends.
-void follow_contact(const TissueModel& model, const CutSettings& settings, const Needle& needle, CutState& state,
-                    std::span<const Vec3> before, const ToolPose& next, double step_s, Workers& workers,
-                    CutStepReport& report) {
-  const double limit = needle.radius_mm() + settings.reach_mm;
-  const std::vector<TetId> candidates = contact_candidates(model, state.tissue.is_live, before, state.tissue.positions, state.tool,
-                                                           next, needle, limit, workers);
-  struct Contact {
-    ContactInterval interval;
-    bool at_end = false;
-    Vec3 offset_mm = Vec3::Zero();
-  };
+/// What a step's contact with the tool means for a tet.
+struct Contact {
+  ContactInterval interval;
+  Vec3 offset_mm = Vec3::Zero();  ///< of its centroid from the tool's tip where contact began
+};
+
+/// Follows the contact of the candidates with the tool through the step; `cores` are the tool's at evenly spaced moments.
+std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, const CutState& state, std::span<const Vec3> before,
+                                   const ToolPose& next, std::span<const ToolCore> cores, double limit_mm,
+                                   std::span<const TetId> candidates, Workers& workers) {
   std::vector<Contact> contacts(candidates.size());
   workers.for_each(candidates.size(), 64, [&](std::size_t c) {
     const std::size_t tet = candidates[c].index();
@@ -195,32 +228,54 @@ void follow_contact(const TissueModel& model, const CutSettings& settings, const
       for (std::size_t i = 0; i < 4; ++i) corners[i] = from[i] + t * (to[i] - from[i]);
       return corners;
     };
-    std::array<double, kMomentsPerStep + 1> distances{};
-    for (int m = 0; m <= kMomentsPerStep; ++m) {
-      const double t = static_cast<double>(m) / kMomentsPerStep;
-      const ToolPose tool = between(state.tool, next, t);
-      distances[static_cast<std::size_t>(m)] = distance_to_segment(at(t), tool.tip_mm, shaft_end(tool, needle));
+    std::array<double, kIntervalsPerStep + 1> distances{};
+    for (std::size_t m = 0; m < distances.size(); ++m) {
+      distances[m] = distance_to_core(at(static_cast<double>(m) / kIntervalsPerStep), cores[m]);
     }
+    const auto distance = [&](double t) { return distance_to_core(at(t), ToolCore(tool, between(state.tool, next, t))); };
     Contact& contact = contacts[c];
-    contact.interval = contact_interval(distances, limit);
-    contact.at_end = distances.back() <= limit;
+    contact.interval = contact_interval(distances, distance, limit_mm);
     contact.offset_mm =
         centroid(at(contact.interval.first)) - between(state.tool, next, contact.interval.first).tip_mm;
   });
+  return contacts;
+}
 
+/// Follows the contact of the tissue with the tool through the step: adds to the dose of what is touched, makes bonds where contact begins
+/// and drops them where it ends. @param works_kpa  per bond: the tool's work in this step per rest volume.
+void follow_contact(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
+                    std::span<const Vec3> before, const ToolPose& next, double step_s, std::span<const double> works_kpa,
+                    Workers& workers, CutStepReport& report) {
+  const double limit = touching_distance_mm(tool, settings);
+  std::vector<ToolCore> cores;
+  for (int m = 0; m <= kIntervalsPerStep; ++m) {
+    cores.emplace_back(tool, between(state.tool, next, static_cast<double>(m) / kIntervalsPerStep));
+  }
+  const std::vector<TetId> candidates =
+      contact_candidates(model, state.tissue.is_live, before, state.tissue.positions, cores, limit, workers);
+  const std::vector<Contact> contacts = find_contacts(model, tool, state, before, next, cores, limit, candidates, workers);
+
+  const double dwell_rate = settings.dwell_rate_per_s();
   std::vector<Bond> bonds;
   auto held = state.bonds.begin();
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const Contact& contact = contacts[c];
+    const std::size_t tet = candidates[c].index();
+    held = std::lower_bound(held, state.bonds.end(), candidates[c],
+                            [](const Bond& bond, TetId id) { return bond.tet < id; });
+    const bool was_held = held != state.bonds.end() && held->tet == candidates[c];
     if (contact.interval.fraction > 0.0) {
-      state.contact_s[candidates[c].index()] += contact.interval.fraction * step_s;
+      const double toughness = model.toughness.empty() ? 1.0 : model.toughness[tet];
+      double torn = 0.0;
+      if (settings.tear_energy_kpa && was_held) {
+        torn = contact.interval.fraction * works_kpa[static_cast<std::size_t>(held - state.bonds.begin())] /
+               (toughness * *settings.tear_energy_kpa);
+      }
+      state.tear_dose[tet] += torn;
+      state.dose[tet] += contact.interval.fraction * step_s * dwell_rate / toughness + torn;
       ++report.tets_in_contact;
     }
-    held = std::lower_bound(held, state.bonds.end(), candidates[c],
-                            [](const Bond& bond, TetId tet) { return bond.tet < tet; });
-    if (!contact.at_end) continue;
-    const bool was_held = held != state.bonds.end() && held->tet == candidates[c];
-    bonds.push_back(was_held ? *held : Bond{candidates[c], contact.offset_mm});
+    if (contact.interval.at_end) bonds.push_back(was_held ? *held : Bond{candidates[c], contact.offset_mm});
   }
   state.bonds = std::move(bonds);
 }
@@ -232,28 +287,45 @@ void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause c
                                    model.volumes_mm3[tet.index()]});
 }
 
-/// Removes the tets whose time is up, then what is left hanging by no face.
-void carve(const TissueModel& model, const CutSettings& settings, CutState& state, const CutWorkspace::Data& scratch,
-           CutStepReport& report) {
-  const double dwell = settings.dwell_s();
-  std::vector<TetId> due;
-  for (std::size_t tet = 0; tet < state.contact_s.size(); ++tet) {
-    if (state.tissue.is_live[tet] != 0 && state.contact_s[tet] >= dwell) due.emplace_back(tet);
+/// Removes tets (live, ascending), then what is left hanging by no face. @returns how many fragments' tets went with them.
+std::size_t carve(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch, const std::vector<TetId>& due) {
+  if (due.empty()) return 0;
+  for (const TetId tet : due) {
+    const bool is_torn = state.tear_dose[tet.index()] > 0.5 * state.dose[tet.index()];
+    remove(model, state, tet, is_torn ? RemovalCause::Tear : RemovalCause::Dwell);
   }
-  if (due.empty()) return;
-  for (const TetId tet : due) remove(model, state, tet, RemovalCause::Dwell);
   const std::vector<TetId> loose =
       loose_fragments(model.mesh, model.volumes_mm3, scratch.neighbours, state.tissue.is_live, scratch.is_anchored, due,
                       kFragmentShare * scratch.body_volume_mm3);
   for (const TetId tet : loose) remove(model, state, tet, RemovalCause::LooseFragment);
   std::erase_if(state.bonds, [&](const Bond& bond) { return state.tissue.is_live[bond.tet.index()] == 0; });
-  report.removed = due.size();
-  report.loose_removed = loose.size();
+  return loose.size();
+}
+
+/// The live tets whose dose is full.
+std::vector<TetId> fully_dosed(const CutState& state) {
+  std::vector<TetId> due;
+  for (std::size_t tet = 0; tet < state.dose.size(); ++tet) {
+    if (state.tissue.is_live[tet] != 0 && state.dose[tet] >= kFullDose) due.emplace_back(tet);
+  }
+  return due;
 }
 
 }  // namespace
 
-CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Needle& needle, CutState& state,
+std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace, std::span<const TetId> tets) {
+  std::vector<TetId> due;
+  for (const TetId tet : tets) {
+    INCISE_REQUIRE(tet.is_valid() && tet.index() < model.mesh.tets.size(),
+                   fmt::format("expected one of {} tets, found {}", model.mesh.tets.size(), tet.value));
+    if (state.tissue.is_live[tet.index()] != 0) due.push_back(tet);
+  }
+  std::sort(due.begin(), due.end());
+  due.erase(std::unique(due.begin(), due.end()), due.end());
+  return due.size() + carve(model, state, workspace.data(), due);
+}
+
+CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers) {
   INCISE_REQUIRE(step_s > 0.0 && std::isfinite(step_s), "expected a step above 0 s");
   CutWorkspace::Data& scratch = workspace.data();
@@ -261,18 +333,22 @@ CutStepReport advance(const TissueModel& model, const CutSettings& settings, con
   scratch.before = state.tissue.positions;
   if (!next) {
     state.bonds.clear();
-  } else if (next->axis != state.tool.axis) {
+  } else {
     // What the tool holds turns with it.
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(state.tool.axis, next->axis);
+    const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, *next);
     for (Bond& bond : state.bonds) bond.offset_mm = turn * bond.offset_mm;
   }
-  move_tissue(model, settings, needle, state, scratch, next, step_s, workers, report);
+  const std::vector<double> stiffnesses = move_tissue(model, settings, tool, state, scratch, next, step_s, workers, report);
   state.time_s += step_s;
   ++state.step;
   if (!next || !report.is_finite) return report;
-  follow_contact(model, settings, needle, state, scratch.before, *next, step_s, workers, report);
+  if (settings.slip_mm) slip(model, tool, *next, *settings.slip_mm, state, report);
+  const std::vector<double> works_kpa = load_tool(model, state, tool, *next, stiffnesses, report);
+  follow_contact(model, settings, tool, state, scratch.before, *next, step_s, works_kpa, workers, report);
   state.tool = *next;
-  carve(model, settings, state, scratch, report);
+  const std::vector<TetId> due = fully_dosed(state);
+  report.loose_removed = carve(model, state, scratch, due);
+  report.removed = due.size();
   return report;
 }
 

@@ -68,7 +68,62 @@ bool meets(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
   return enter <= leave;
 }
 
+/// A flat core of four corners as a place and two sides.
+struct Rectangle {
+  Vec3 origin;
+  Vec3 u;
+  Vec3 v;
+  explicit Rectangle(std::span<const Vec3> corners) : origin(corners[0]), u(corners[1] - corners[0]), v(corners[3] - corners[0]) {}
+
+  /// Whether a point of space projects into the rectangle along its normal.
+  [[nodiscard]] bool is_over(const Vec3& p) const {
+    const double s = (p - origin).dot(u);
+    const double t = (p - origin).dot(v);
+    return s >= 0.0 && s <= u.squaredNorm() && t >= 0.0 && t <= v.squaredNorm();
+  }
+  [[nodiscard]] double height(const Vec3& p) const { return (p - origin).dot(u.cross(v).normalized()); }
+};
+
+/// Distance of a tet from a rectangle: the nearest pair has a point on the rectangle's border, or it is a corner of the tet over the
+/// rectangle's inside, or an edge of the tet goes through.
+double distance_to_rectangle(const std::array<Vec3, 4>& tet, std::span<const Vec3> corners) {
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i) best = std::min(best, distance_to_segment(tet, corners[i], corners[(i + 1) % 4]));
+  const Rectangle rectangle(corners);
+  std::array<double, 4> heights{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    heights[i] = rectangle.height(tet[i]);
+    if (rectangle.is_over(tet[i])) best = std::min(best, std::abs(heights[i]));
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) {
+      if (heights[i] * heights[j] >= 0.0) continue;
+      const Vec3 crossing = tet[i] + heights[i] / (heights[i] - heights[j]) * (tet[j] - tet[i]);
+      if (rectangle.is_over(crossing)) return 0.0;
+    }
+  }
+  return best;
+}
+
+/// Squared distance of a point from a core.
+double point_core_squared(const Vec3& p, const ToolCore& core) {
+  const std::span<const Vec3> c = core.corners();
+  if (c.size() <= 2) return point_segment_squared(p, c.front(), c.back());
+  const Rectangle rectangle(c);
+  if (rectangle.is_over(p)) return rectangle.height(p) * rectangle.height(p);
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i) best = std::min(best, point_segment_squared(p, c[i], c[(i + 1) % 4]));
+  return best;
+}
+
 }  // namespace
+
+double distance_to_core(const std::array<Vec3, 4>& tet, const ToolCore& core) {
+  const std::span<const Vec3> corners = core.corners();
+  return corners.size() <= 2 ? distance_to_segment(tet, corners.front(), corners.back()) : distance_to_rectangle(tet, corners);
+}
+
+double distance_to_core(const Vec3& point, const ToolCore& core) { return std::sqrt(point_core_squared(point, core)); }
 
 double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
   if (meets(tet, a, b)) return 0.0;
@@ -84,19 +139,94 @@ double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const 
   return std::sqrt(best);
 }
 
-ContactInterval contact_interval(std::span<const double> distances_mm, double limit_mm) {
-  ContactInterval interval;
-  if (distances_mm.size() < 2) return interval;
-  const double width = 1.0 / static_cast<double>(distances_mm.size() - 1);
-  for (std::size_t i = 0; i + 1 < distances_mm.size(); ++i) {
-    const double from = distances_mm[i] - limit_mm;
-    const double to = distances_mm[i + 1] - limit_mm;
-    if (from > 0.0 && to > 0.0) continue;
-    const double start = from > 0.0 ? from / (from - to) : 0.0;
-    const double end = to > 0.0 ? from / (from - to) : 1.0;
-    if (interval.fraction == 0.0 && end > start) interval.first = (static_cast<double>(i) + start) * width;
-    interval.fraction += (end - start) * width;
+namespace {
+
+constexpr int kPassingSteps = 12;          // at most, of regula falsi towards a moment at which contact begins or ends
+constexpr double kPassingMm = 1e-6;        // it is found when the distance is the limit to within this
+constexpr int kLeastSteps = 8;             // of the golden section towards the moment of the least distance
+
+/// A moment and by how much the distance is over the limit then.
+struct Moment {
+  double t;
+  double over_mm;
+};
+
+/// The moment between two at which the limit is passed; it lies between their distances. Regula falsi in the Illinois variant.
+template <class Over>
+double passing_moment(const Over& over, Moment from, Moment to) {
+  double t = from.t;
+  int kept = 0;  // the end that was kept last: its weight is halved when it is kept again
+  for (int i = 0; i < kPassingSteps; ++i) {
+    t = from.t + (to.t - from.t) * from.over_mm / (from.over_mm - to.over_mm);
+    const double now = over(t);
+    if (std::abs(now) < kPassingMm) break;
+    if ((now > 0.0) == (from.over_mm > 0.0)) {
+      from = {t, now};
+      if (kept == 2) to.over_mm *= 0.5;
+      kept = 2;
+    } else {
+      to = {t, now};
+      if (kept == 1) from.over_mm *= 0.5;
+      kept = 1;
+    }
   }
+  return t;
+}
+
+/// A moment of contact between two without, or that of the least distance where there is none (golden section).
+template <class Over>
+Moment least_moment(const Over& over, double from, double to) {
+  const double share = 0.5 * (std::sqrt(5.0) - 1.0);
+  Moment a{to - share * (to - from), 0.0};
+  Moment b{from + share * (to - from), 0.0};
+  a.over_mm = over(a.t);
+  b.over_mm = over(b.t);
+  for (int i = 0; i < kLeastSteps && a.over_mm > 0.0 && b.over_mm > 0.0; ++i) {
+    if (a.over_mm < b.over_mm) {
+      to = b.t;
+      b = a;
+      a.t = to - share * (to - from);
+      a.over_mm = over(a.t);
+    } else {
+      from = a.t;
+      a = b;
+      b.t = from + share * (to - from);
+      b.over_mm = over(b.t);
+    }
+  }
+  return a.over_mm < b.over_mm ? a : b;
+}
+
+}  // namespace
+
+ContactInterval contact_interval(std::span<const double> distances_mm, const std::function<double(double)>& distance_mm,
+                                 double limit_mm) {
+  const auto over = [&](double t) { return distance_mm(t) - limit_mm; };
+  std::vector<Moment> moments;
+  double change = 0.0;
+  for (std::size_t m = 0; m < distances_mm.size(); ++m) {
+    moments.push_back({static_cast<double>(m) / static_cast<double>(distances_mm.size() - 1), distances_mm[m] - limit_mm});
+    if (m > 0) change = std::max(change, std::abs(distances_mm[m] - distances_mm[m - 1]));
+  }
+  ContactInterval interval;
+  interval.at_end = moments.back().over_mm <= 0.0;
+  const auto touching = [](const Moment& moment) { return moment.over_mm <= 0.0; };
+  const auto begin = std::find_if(moments.begin(), moments.end(), touching);
+  if (begin != moments.end()) {
+    const auto end = std::find_if(moments.rbegin(), moments.rend(), touching).base();  // the first moment after contact
+    interval.first = begin == moments.begin() ? 0.0 : passing_moment(over, *(begin - 1), *begin);
+    interval.fraction = (end == moments.end() ? 1.0 : passing_moment(over, *(end - 1), *end)) - interval.first;
+    return interval;
+  }
+  // No contact at any of the moments. A convex distance falls no farther between two than it changes from one to the next.
+  const auto least = std::min_element(moments.begin(), moments.end(), [](const Moment& a, const Moment& b) { return a.over_mm < b.over_mm; });
+  if (least->over_mm > change) return interval;
+  const Moment& before = least == moments.begin() ? *least : *(least - 1);
+  const Moment& after = least + 1 == moments.end() ? *least : *(least + 1);
+  const Moment inside = least_moment(over, before.t, after.t);
+  if (inside.over_mm > 0.0) return interval;
+  interval.first = passing_moment(over, before, inside);
+  interval.fraction = passing_moment(over, inside, after) - interval.first;
   return interval;
 }
 
@@ -106,12 +236,12 @@ std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::span<const Vec3> positi
 }
 
 std::vector<TetId> contact_candidates(const TissueModel& model, std::span<const std::uint8_t> is_live,
-                                      std::span<const Vec3> before, std::span<const Vec3> after, const ToolPose& tool_before,
-                                      const ToolPose& tool_after, const Needle& needle, double limit_mm, Workers& workers) {
-  Box3 swept(tool_before.tip_mm);
-  swept.extend(tool_after.tip_mm);
-  swept.extend(tool_before.tip_mm - needle.length_mm * tool_before.axis);
-  swept.extend(tool_after.tip_mm - needle.length_mm * tool_after.axis);
+                                      std::span<const Vec3> before, std::span<const Vec3> after, std::span<const ToolCore> cores,
+                                      double limit_mm, Workers& workers) {
+  Box3 swept;
+  for (const ToolCore& core : cores) {
+    for (const Vec3& corner : core.corners()) swept.extend(corner);
+  }
   const Vec3 low = swept.min() - Vec3::Constant(limit_mm);
   const Vec3 high = swept.max() + Vec3::Constant(limit_mm);
 
@@ -137,7 +267,7 @@ std::vector<TetId> contact_candidates(const TissueModel& model, std::span<const 
   return all;
 }
 
-double share_within(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b, double limit_mm) {
+double share_within(const std::array<Vec3, 4>& tet, const ToolCore& core, double limit_mm) {
   // The points (i, j, k, l) / 4 with i + j + k + l = 4, drawn a little towards the centroid so that each stands for its surroundings.
   constexpr int kOrder = 4;
   constexpr double kShrink = 0.8;
@@ -151,7 +281,7 @@ double share_within(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b
         const Vec3 corner_mix = (i * tet[0] + j * tet[1] + k * tet[2] + l * tet[3]) / kOrder;
         const Vec3 p = centroid + kShrink * (corner_mix - centroid);
         ++samples;
-        if (point_segment_squared(p, a, b) <= limit_mm * limit_mm) ++inside;
+        if (point_core_squared(p, core) <= limit_mm * limit_mm) ++inside;
       }
     }
   }

@@ -5,6 +5,7 @@
 #include <incise/mechanics/tissue.hpp>
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,14 +14,31 @@ namespace incise {
 /// Corner positions of a tet.
 [[nodiscard]] std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::span<const Vec3> positions, std::size_t tet);
 
-/// Live tets whose bounding box, over a step from `before` to `after`, comes within `limit_mm` of the tool's swept box; ascending.
-/// A superset of the tets in contact. O(M).
+/// Distance, mm, between a tet (solid, any orientation) and the segment from a to b (which may be one point); 0 where they meet. Exact.
+[[nodiscard]] double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b);
+
+/// When within a step something is in contact, as a fraction of the step.
+struct ContactInterval {
+  double fraction = 0.0;  ///< how long, [0, 1]
+  double first = 0.0;     ///< from when on, [0, 1]; meaningful when fraction > 0
+  bool at_end = false;    ///< still at the step's end
+};
+
+/// The part of a step during which a distance is at most `limit_mm`. Where it passes the limit between two of the evenly spaced moments, and where
+/// it may come below it between two, it is looked at more closely. Begin and end are those at which the distance is within 1e-6 mm of the
+/// limit, for a distance that is convex in time, as that between two convex solids that move straight past each other is.
+/// @param distances_mm  at evenly spaced moments from the step's beginning to its end, at least 2.
+/// @param distance_mm   at any moment in [0, 1] of the step.
+[[nodiscard]] ContactInterval contact_interval(std::span<const double> distances_mm, const std::function<double(double)>& distance_mm,
+                                               double limit_mm);
+
+/// Live tets whose bounding box, over a step from `before` to `after`, comes within `limit_mm` of the box of the tool's core at all the
+/// moments that are looked at; ascending. A superset of the tets in contact then. O(M).
 [[nodiscard]] std::vector<TetId> contact_candidates(const TissueModel& model, std::span<const std::uint8_t> is_live,
                                                     std::span<const Vec3> before, std::span<const Vec3> after,
-                                                    const ToolPose& tool_before, const ToolPose& tool_after,
-                                                    const Needle& needle, double limit_mm, Workers& workers);
+                                                    std::span<const ToolCore> cores, double limit_mm, Workers& workers);
 
-/// The share of a tet's volume within `limit_mm` of the segment from a to b, from 35 evenly spread sample points, [0, 1].
-[[nodiscard]] double share_within(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b, double limit_mm);
+/// The share of a tet's volume within `limit_mm` of a core, from 35 evenly spread sample points, [0, 1].
+[[nodiscard]] double share_within(const std::array<Vec3, 4>& tet, const ToolCore& core, double limit_mm);
 
 }  // namespace incise

@@ -34,7 +34,8 @@ void require_fitting(const TissueModel& model, const CutState& state) {
   };
   require(state.tissue.positions.size(), model.mesh.vertices.size(), "positions");
   require(state.tissue.is_live.size(), model.mesh.tets.size(), "flags of live tets");
-  require(state.contact_s.size(), model.mesh.tets.size(), "contact times");
+  require(state.dose.size(), model.mesh.tets.size(), "doses");
+  require(state.tear_dose.size(), model.mesh.tets.size(), "doses of tearing");
 }
 
 /// Whether `next` may follow `before` in a record.
@@ -94,10 +95,12 @@ void check_balance(const TissueModel& model, const CutState& state, std::span<co
 }
 
 void check_positions(const TissueModel& model, const CutState& state, Violations& violations) {
-  bool position = false, contact = false;
+  bool position = false, dosed = false;
   for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
-    const double time = state.contact_s[tet];
-    violations.add(!(std::isfinite(time) && time >= 0.0), contact, "contact: tet {} was touched for {} s", tet, time);
+    const double dose = state.dose[tet];
+    const double torn = state.tear_dose[tet];
+    violations.add(!(std::isfinite(dose) && torn >= 0.0 && torn <= dose), dosed, "dose: tet {} has {}, of which {} by tearing", tet, dose,
+                   torn);
     if (state.tissue.is_live[tet] == 0) continue;
     for (const VertexId v : model.mesh.tets[tet]) {
       violations.add(!state.tissue.positions[v.index()].allFinite(), position,

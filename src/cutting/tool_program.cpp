@@ -9,14 +9,23 @@
 namespace incise {
 namespace {
 
-ToolPose pose_of(const Waypoint& waypoint) {
-  return {waypoint.position_mm + waypoint.depth_mm * waypoint.axis, waypoint.axis};
+constexpr double kMovesAlong = 1e-6;  // of a way across the axis: below, the tool is led along its axis
+
+ToolPose pose_of(const Waypoint& waypoint, const Vec3& heading) {
+  return {waypoint.position_mm + waypoint.depth_mm * waypoint.axis, waypoint.axis, heading_across(heading, waypoint.axis)};
 }
 
-/// How far a tool goes from one pose to another: the way of its tip or, where it only turns, that of the point `depth_mm` behind the tip.
+/// How far a tool goes from one pose to another: the way of its tip or, where only its axis turns, that of the point `depth_mm` behind the tip.
 double travel_mm(const ToolPose& from, const ToolPose& to, double depth_mm) {
   const double tip = (to.tip_mm - from.tip_mm).norm();
   return tip > 0.0 ? tip : depth_mm * (to.axis - from.axis).norm();
+}
+
+/// The direction in which a tool is led that goes from one tip to another; it keeps its heading where it goes along its axis.
+Vec3 led_along(const Vec3& from_tip, const Vec3& to_tip, const Vec3& axis, const Vec3& heading) {
+  const Vec3 way = to_tip - from_tip;
+  const double across = (way - axis.dot(way) * axis).norm();
+  return heading_across(across > kMovesAlong * way.norm() ? way : heading, axis);
 }
 
 void require_usable(const ToolPath& path) {
@@ -36,31 +45,42 @@ void require_usable(const ToolPath& path) {
 
 }  // namespace
 
-ToolPose between(const ToolPose& a, const ToolPose& b, double t) {
-  return {a.tip_mm + t * (b.tip_mm - a.tip_mm), (a.axis + t * (b.axis - a.axis)).normalized()};
-}
-
-ToolProgram::ToolProgram(const ToolPath& path, const CutSettings& settings) {
+ToolProgram::ToolProgram(const ToolPath& path, const CutSettings& settings, const Tool& tool) {
   require_usable(path);
   const double speed = settings.speed_mm_s;
   const Waypoint& first = path.waypoints.front();
-  keys_.push_back({0.0, {first.position_mm, first.axis}, Phase::Plunge});
+  const Vec3 any = Vec3::UnitX();
+  const Vec3 second_tip = pose_of(path.waypoints[1], any).tip_mm;
+  const Vec3 ahead = led_along(pose_of(first, any).tip_mm, second_tip, first.axis, any);
+  keys_.push_back({0.0, {first.position_mm, first.axis, ahead}, Phase::Plunge});
 
-  const auto move_to = [&](const ToolPose& pose, Phase phase) {
-    const double distance = travel_mm(keys_.back().pose, pose, first.depth_mm);
-    if (distance > 0.0) keys_.push_back({keys_.back().time_s + distance / speed, pose, phase});
+  // A tool turns into the direction of its next move before it makes it; what is round about its axis needs no time for that.
+  const auto turn_to = [&](const Vec3& heading, Phase phase) {
+    const ToolPose from = keys_.back().pose;
+    const double distance = half_width_mm(tool) * std::abs(turn_rad(from.heading, heading, from.axis));
+    const Key turned{keys_.back().time_s + distance / speed, {from.tip_mm, from.axis, heading}, phase};
+    keys_.push_back(turned);
   };
-  move_to(pose_of(first), Phase::Plunge);
-  for (std::size_t i = 1; i < path.waypoints.size(); ++i) move_to(pose_of(path.waypoints[i]), Phase::Follow);
+  const auto move_to = [&](const Waypoint& waypoint, double share, Phase phase) {
+    const ToolPose from = keys_.back().pose;
+    const ToolPose end = pose_of(waypoint, from.heading);
+    ToolPose to = share < 1.0 ? between(from, end, share) : end;
+    const double distance = travel_mm(from, to, first.depth_mm);
+    if (!(distance > 0.0)) return;
+    const Vec3 heading = led_along(from.tip_mm, to.tip_mm, from.axis, from.heading);
+    if (heading != from.heading) turn_to(heading, phase);
+    to.heading = heading_across(heading, to.axis);
+    keys_.push_back({keys_.back().time_s + distance / speed, to, phase});
+  };
+  move_to(first, 1.0, Phase::Plunge);
+  for (std::size_t i = 1; i < path.waypoints.size(); ++i) move_to(path.waypoints[i], 1.0, Phase::Follow);
 
   if (path.is_closed) {
-    move_to(pose_of(first), Phase::Follow);
+    move_to(first, 1.0, Phase::Follow);
     double left = settings.overlap_mm;
     for (std::size_t i = 1; left > 0.0 && i < path.waypoints.size(); ++i) {
-      const ToolPose from = keys_.back().pose;
-      const ToolPose to = pose_of(path.waypoints[i]);
-      const double distance = (to.tip_mm - from.tip_mm).norm();
-      move_to(distance <= left ? to : between(from, to, left / distance), Phase::Overlap);
+      const double distance = (pose_of(path.waypoints[i], any).tip_mm - keys_.back().pose.tip_mm).norm();
+      move_to(path.waypoints[i], distance <= left ? 1.0 : left / distance, Phase::Overlap);
       left -= distance;
     }
   }

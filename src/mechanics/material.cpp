@@ -68,6 +68,8 @@ std::vector<std::string> validate(const MaterialField& field, std::size_t tets) 
   check("youngs_modulus_kpa", field.youngs_modulus_kpa, is_youngs_modulus, number, kYoungsModulusRange);
   check("poissons_ratio", field.poissons_ratio, [](double nu) { return nu >= 0.0 && nu < 0.5; }, number,
         "a number in [0, 0.5)");
+  check("toughness", field.toughness, [](double toughness) { return std::isfinite(toughness) && toughness > 0.0; }, number,
+        "a finite number above 0");
   check("fibre_direction", field.fibre_directions, is_direction, text_of, "a finite direction");
   return violations;
 }

@@ -77,6 +77,7 @@ TissueModel make_tissue_model(TetMesh mesh, const Material& material, std::vecto
   model.material = material;
   model.constraints = std::move(constraints);
   add_elements(model, field);
+  model.toughness = field.toughness;
   apply_constraints(model, gravity_mm_s2);
   require_no_rigid_motion(model);
   add_topology(model);

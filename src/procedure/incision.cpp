@@ -20,9 +20,9 @@ constexpr int kMaxRelaxationSteps = 60;    // after the tool is out
 constexpr int kStepsToTellFrom = 20;       // a run's duration is told after these
 
 void require_valid(const IncisionSettings& settings) {
-  std::vector<std::string> violations = validate(settings.cut, settings.needle.diameter_mm);
-  const std::vector<std::string> needle = validate(settings.needle);
-  violations.insert(violations.end(), needle.begin(), needle.end());
+  std::vector<std::string> violations = validate(settings.cut, 2.0 * radius_mm(settings.tool));
+  const std::vector<std::string> tool = validate(settings.tool);
+  violations.insert(violations.end(), tool.begin(), tool.end());
   if (!(settings.midline_layer_mm > 0.0)) {
     violations.push_back(fmt::format("midline_layer_mm: found {}, expected above 0 mm", settings.midline_layer_mm));
   }
@@ -66,13 +66,15 @@ CutStepLog log_of(const CutState& state, const CutStepReport& report) {
           report.tets_in_contact,
           report.removed + report.loose_removed,
           report.held_back_vertices,
-          report.tool_force_mn};
+          report.slipped,
+          report.tool_force_mn,
+          report.tool_torque_mn_mm};
 }
 
 void require_same_mesh(const TissueModel& model, const CutState& state) {
-  INCISE_REQUIRE(state.tissue.positions.size() == model.mesh.vertices.size() && state.contact_s.size() == model.mesh.tets.size(),
+  INCISE_REQUIRE(state.tissue.positions.size() == model.mesh.vertices.size() && state.dose.size() == model.mesh.tets.size(),
                  fmt::format("expected the progress of a cut of {} vertices and {} tets, found {} and {}", model.mesh.vertices.size(),
-                             model.mesh.tets.size(), state.tissue.positions.size(), state.contact_s.size()));
+                             model.mesh.tets.size(), state.tissue.positions.size(), state.dose.size()));
 }
 
 Precision precision_for(const CutSettings& cut) {
@@ -149,7 +151,7 @@ class IncisionRun {
   }
 
   CutStepReport step(const std::optional<ToolPose>& next, double dt) {
-    const CutStepReport report = advance(model_, settings_.cut, settings_.needle, state(), workspace_, next, dt, workers_);
+    const CutStepReport report = advance(model_, settings_.cut, settings_.tool, state(), workspace_, next, dt, workers_);
     progress_.steps.push_back(log_of(state(), report));
     tell_duration();
     return report;
@@ -184,6 +186,8 @@ void sum_up(const std::vector<CutStepLog>& steps, IncisionResult& result) {
     result.solver_iterations += static_cast<std::size_t>(step.iterations);
     result.unconverged_steps += step.converged ? 0 : 1;
     result.held_back_vertices += step.held_back_vertices;
+    result.slipped_bonds += step.slipped;
+    result.peak_tool_torque_mn_mm = std::max(result.peak_tool_torque_mn_mm, step.tool_torque_mn_mm.norm());
     result.peak_tool_force_mn = std::max(result.peak_tool_force_mn, step.tool_force_mn.norm());
   }
 }
@@ -204,7 +208,7 @@ std::size_t count_inverted(const TissueModel& model, const TissueState& tissue) 
 IncisionProgress begin_incision(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
                                 const IncisionSettings& settings) {
   require_valid(settings);
-  const ToolProgram program(path, settings.cut);
+  const ToolProgram program(path, settings.cut, settings.tool);
   IncisionProgress progress;
   progress.state = begin_cut(model, stretched, program.pose_at(0.0));
   FrameKeeper(settings.frames, program.duration_s(), progress.frames).offer(progress.state, true);
@@ -218,7 +222,7 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
   require_same_mesh(model, progress.state);
   const auto start = std::chrono::steady_clock::now();
   const double earlier_wall_s = progress.wall_s;
-  const ToolProgram program(path, settings.cut);
+  const ToolProgram program(path, settings.cut, settings.tool);
   IncisionResult result;
   {
     IncisionRun run(model, stretched, program, settings, progress, workers, monitor, keep);

@@ -56,9 +56,9 @@ DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const In
         waypoint.depth_mm * waypoint.axis.dot(settings.approach) / static_cast<double>(path.waypoints.size());
   }
   KerfDepthSettings depth;
-  depth.needle_diameter_mm = settings.needle.diameter_mm;
-  depth.pixel_mm = std::min(depth.pixel_mm, 0.25 * settings.needle.diameter_mm);
-  depth.reach_mm = std::max(depth.reach_mm, settings.needle.diameter_mm);
+  depth.needle_diameter_mm = 2.0 * radius_mm(settings.tool);
+  depth.pixel_mm = std::min(depth.pixel_mm, 0.25 * depth.needle_diameter_mm);
+  depth.reach_mm = std::max(depth.reach_mm, depth.needle_diameter_mm);
   result.profile = depth_along(kerf, entry_contour(path), depth);
   result.depth_mm = spread_of(result.profile.depth_mm);
   return result;

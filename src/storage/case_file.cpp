@@ -42,8 +42,9 @@ void require_consistent(const CaseFile& file, const std::string& name) {
   refuse("ct", validate(c.segmentation), "a usable segmentation");
   refuse("specimen.material", validate(c.material), "a usable material");
   refuse("plan", validate(c.plan), "a usable plan");
-  refuse("tool", validate(c.needle), "a usable needle");
-  refuse("cut", validate(c.cut, c.needle.diameter_mm), "usable cut settings");
+  refuse("tool", validate(c.tool), "a usable tool");
+  refuse("cut", validate(c.cut, 2.0 * radius_mm(c.tool)), "usable cut settings");
+  refuse("thermal", validate(c.thermal), "usable constants of heat");
   if (c.meshing.fine_mm > c.meshing.coarse_mm) {
     throw CaseError(name, "meshing.fine_mm", fmt::format("{} mm", c.meshing.fine_mm),
                     fmt::format("at most meshing.coarse_mm = {} mm", c.meshing.coarse_mm));
@@ -51,9 +52,8 @@ void require_consistent(const CaseFile& file, const std::string& name) {
   if (c.meshing.tets > 0 && c.meshing.tets < 100) {
     throw CaseError(name, "meshing.tets", fmt::format("{}", c.meshing.tets), "0 (as the lengths give) or at least 100");
   }
-  if (c.plan.depth_mm > c.needle.length_mm) {
-    throw CaseError(name, "plan.depth_mm", fmt::format("{} mm", c.plan.depth_mm),
-                    fmt::format("at most tool.length_mm = {} mm", c.needle.length_mm));
+  if (const auto length = length_mm(c.tool); length && c.plan.depth_mm > *length) {
+    throw CaseError(name, "plan.depth_mm", fmt::format("{} mm", c.plan.depth_mm), fmt::format("at most tool.length_mm = {} mm", *length));
   }
   if (c.T_robot_sim) {
     const Mat3 rotation = c.T_robot_sim->topLeftCorner<3, 3>();
@@ -75,19 +75,28 @@ void require_inputs(const CaseFile& file, const std::string& name) {
   }
 }
 
-/// Labels that are listed twice, or without anything that sets them apart.
-void require_consistent_labels(const std::vector<LabelMaterial>& labels, const std::string& name) {
+/// @param field  the list of the case that names labels.
+template <class Entry>
+void require_each_label_once(const std::vector<Entry>& labels, const char* field, const std::string& name) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
-    const std::string field = fmt::format("specimen.material.labels[{}]", i);
-    if (!labels[i].youngs_modulus_kpa && !labels[i].poissons_ratio) {
-      throw CaseError(name, field, fmt::format("label {} without a value", labels[i].label), "youngs_modulus_kpa, poissons_ratio or both");
-    }
     for (std::size_t j = 0; j < i; ++j) {
-      if (labels[j].label == labels[i].label) {
-        throw CaseError(name, field, fmt::format("label {} again", labels[i].label), "each label once");
-      }
+      if (labels[j].label != labels[i].label) continue;
+      throw CaseError(name, fmt::format("{}[{}]", field, i), fmt::format("label {} again", labels[i].label), "each label once");
     }
   }
+}
+
+/// Labels that are listed twice, or without anything that sets them apart.
+void require_consistent_labels(const Case& settings, const std::string& name) {
+  const char* field = "specimen.material.labels";
+  const std::vector<LabelMaterial>& labels = settings.variation.labels;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i].youngs_modulus_kpa || labels[i].poissons_ratio) continue;
+    throw CaseError(name, fmt::format("{}[{}]", field, i), fmt::format("label {} without a value", labels[i].label),
+                    "youngs_modulus_kpa, poissons_ratio or both");
+  }
+  require_each_label_once(labels, field, name);
+  require_each_label_once(settings.toughness.labels, "cut.toughness", name);
 }
 
 /// Reads the surfaces that supports name.
@@ -136,7 +145,7 @@ CaseFile read_case(const std::filesystem::path& file_or_folder) {
     if (!path->empty()) *path = (file.folder / *path).lexically_normal();
   }
   require_consistent(file, name);
-  require_consistent_labels(file.settings.variation.labels, name);
+  require_consistent_labels(file.settings, name);
   require_inputs(file, name);
   read_holders(file, name);
   return file;

@@ -1,5 +1,9 @@
 #include "describe_case.hpp"
 
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <array>
 
 namespace incise {
@@ -170,7 +174,7 @@ void describe_plan(CaseFile& file, FieldVisitor& v) {
   v.number({"lateral_margin_mm", "mm", "From the tumour edge to the kerf's mid-line."}, p.lateral_margin_mm, {0.5, 50.0});
   v.number({"depth_mm", "mm", "Of the tool's tip below the surface."}, p.depth_mm, {0.5, 50.0});
   v.number({"speed_mm_s", "mm/s", "Of the real tool."}, p.speed_mm_s, {0.1, 50.0});
-  v.number({"power_w", "W", "Electrosurgical power; carried into the program."}, p.power_w, {0.0, 120.0, true, false});
+  v.number({"power_w", "W", "Electrosurgical power: how fast contact cuts (cut.power_exponent), and how far beside the cut heat reaches."}, p.power_w, {0.0, 120.0, true, false});
   v.direction({"approach", "", "Into the tissue, as camera and surgeon look."}, p.approach);
   v.direction({"start_direction", "", "A ring starts at its waypoint farthest along this; the start decides where the error falls."},
               p.start_direction);
@@ -182,27 +186,103 @@ void describe_plan(CaseFile& file, FieldVisitor& v) {
   v.end_group();
 }
 
-void describe_tool_and_cut(Case& c, FieldVisitor& v) {
+/// The dimensions of the three tools; each has some of them.
+struct ToolDimensions {
+  std::optional<double> diameter_mm, length_mm, thickness_mm, width_mm;
+};
+
+ToolDimensions dimensions_of(const Tool& tool) {
+  struct Read {
+    ToolDimensions operator()(const Needle& t) const { return {t.diameter_mm, t.length_mm, {}, {}}; }
+    ToolDimensions operator()(const Blade& t) const { return {{}, t.length_mm, t.thickness_mm, t.width_mm}; }
+    ToolDimensions operator()(const Ball& t) const { return {t.diameter_mm, {}, {}, {}}; }
+  };
+  return std::visit(Read{}, tool);
+}
+
+/// @pre all dimensions that the tool has are there.
+Tool tool_with(const Tool& kind, const ToolDimensions& d) {
+  if (std::holds_alternative<Needle>(kind)) return Needle{*d.diameter_mm, *d.length_mm};
+  if (std::holds_alternative<Blade>(kind)) return Blade{*d.thickness_mm, *d.width_mm, *d.length_mm};
+  return Ball{*d.diameter_mm};
+}
+
+void describe_tool(CaseFile& file, FieldVisitor& v) {
+  static constexpr std::array<const char*, 3> kTools{"needle", "blade", "ball"};  // in the order of the alternatives of Tool
+  Tool& tool = file.settings.tool;
   v.begin_group({"tool", "", "The instrument."});
-  static constexpr std::array<const char*, 1> kTools{"needle"};
-  std::size_t tool = 0;
-  v.choice({"kind", "", "A needle electrode."}, tool, kTools);
-  v.number({"diameter_mm", "mm", "Of the needle."}, c.needle.diameter_mm, {0.05, 10.0});
-  v.number({"length_mm", "mm", "Of the needle, from its tip."}, c.needle.length_mm, {0.0, 200.0, true, false});
+  std::size_t kind = tool.index();
+  v.choice({"kind", "", "A needle, a blade that is led edge first, or a ball."}, kind, kTools);
+  if (kind != tool.index()) tool = std::array<Tool, 3>{Needle{}, Blade{}, Ball{}}[kind];
+  const ToolDimensions own = dimensions_of(tool);
+  ToolDimensions given = own;
+  struct Field {
+    FieldInfo info;
+    std::optional<double> ToolDimensions::*dimension;
+    Range range;
+  };
+  static constexpr std::array<Field, 4> kFields{{
+      {{"diameter_mm", "mm", "Of needle or ball."}, &ToolDimensions::diameter_mm, {0.05, 10.0}},
+      {{"length_mm", "mm", "Of needle or blade, from its tip."}, &ToolDimensions::length_mm, {0.0, 200.0, true, false}},
+      {{"thickness_mm", "mm", "Of a blade."}, &ToolDimensions::thickness_mm, {0.05, 10.0}},
+      {{"width_mm", "mm", "Of a blade, in the direction of travel."}, &ToolDimensions::width_mm, {0.05, 50.0}},
+  }};
+  for (const Field& field : kFields) {
+    v.optional_number(field.info, given.*field.dimension, field.range);
+    if ((given.*field.dimension).has_value() && !(own.*field.dimension).has_value()) {
+      throw CaseError(file.file.string(), fmt::format("tool.{}", field.info.name), "a dimension of another tool",
+                      fmt::format("no such key for tool.kind: {}", kTools[kind]));
+    }
+  }
   v.end_group();
+  tool = tool_with(tool, given);
+}
+
+void describe_toughness(ToughnessVariation& toughness, FieldVisitor& v) {
+  static constexpr std::array<Column, 2> kColumns{{
+      {{"label", "", "Value of the mesh's cell array 'label'."}, {-1e9, 1e9}, true, true},
+      {{"toughness", "", "There; the reference tissue has 1."}, kPositive},
+  }};
+  std::vector<Row> rows;
+  for (const LabelToughness& l : toughness.labels) rows.push_back({static_cast<double>(l.label), l.toughness});
+  v.table({"toughness", "", "Parts of the mesh that take more or less dose to cut, by the cell array 'label'; absent: 1 everywhere."}, kColumns, rows);
+  toughness.labels.clear();
+  for (const Row& row : rows) toughness.labels.push_back({static_cast<int>(*row[0]), *row[1]});
+  v.flag({"toughness_from_mesh", "", "Whether the mesh's cell data toughness hold."}, toughness.from_mesh);
+}
+
+void describe_cut(Case& c, FieldVisitor& v) {
   v.begin_group({"cut", "", "How the simulated tool cuts; speed and dullness come from calibration."});
   v.number({"speed_mm_s", "mm/s", "Of the simulated tool."}, c.cut.speed_mm_s, {0.01, 100.0});
   v.number({"dullness", "steps", "Contact needed before a tetrahedron goes, in reference steps."}, c.cut.dullness, {0.0, 1000.0, true, false});
   v.number({"reference_step_s", "s", "The time that one unit of dullness stands for."}, c.cut.reference_step_s, {0.0, 1.0, true, false});
-  v.number({"advance_per_step_mm", "mm", "Tool travel in one simulation step, at most the needle's diameter."}, c.cut.advance_per_step_mm,
-           {0.01, 10.0});
-  v.number({"reach_mm", "mm", "Tissue is in contact within needle radius plus this of the axis."}, c.cut.reach_mm, {0.0, 5.0});
+  v.number({"reference_power_w", "W", "Power for which dullness holds."}, c.cut.reference_power_w, {0.0, 120.0, true, false});
+  v.number({"power_exponent", "", "Contact cuts (plan.power_w / reference_power_w) to this times as fast; 0: power has no effect."},
+           c.cut.power_exponent, {0.0, 10.0});
+  v.optional_number({"tear_energy_kpa", "kPa", "Work of the tool per volume at which held tissue tears; absent: it does not."},
+                    c.cut.tear_energy_kpa, kPositive);
+  v.optional_number({"slip_mm", "mm", "Tissue that the tool has left this far behind slips; absent: never."}, c.cut.slip_mm, kPositive);
+  describe_toughness(c.toughness, v);
+  v.number({"advance_per_step_mm", "mm", "Tool travel in one simulation step, at most the tool's diameter or thickness."},
+           c.cut.advance_per_step_mm, {0.01, 10.0});
+  v.number({"reach_mm", "mm", "Tissue is in contact within the tool's radius plus this of its core."}, c.cut.reach_mm, {0.0, 5.0});
   v.number({"bond_stiffness_kpa_mm2", "kPa/mm2", "Pull of the tool on tissue that it holds, per volume and offset; 0: no drag."},
            c.cut.bond_stiffness_kpa_mm2, kNotNegative);
   v.number({"overlap_mm", "mm", "A ring is cut this far beyond its start."}, c.cut.overlap_mm, {0.0, 50.0});
   v.number({"residual_tolerance", "", "Of each step's linear solve, relative to the contact force."}, c.cut.residual_tolerance,
            {0.0, 1.0, true, true});
   v.integer({"frames", "", "Moments of the cut that are kept for pictures."}, c.frames, {0.0, 500.0});
+  v.end_group();
+}
+
+void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
+  v.begin_group({"thermal", "", "How far beside the cut heat damages tissue, at plan.power_w and plan.speed_mm_s. Not calibrated."});
+  v.number({"conductivity_w_m_k", "W/(m K)", "Of heat in tissue; muscle in the IT'IS database."}, t.conductivity_w_m_k, {0.0, 100.0, true, false});
+  v.number({"heat_capacity_mj_m3_k", "MJ/(m3 K)", "Per volume; muscle in the IT'IS database."}, t.heat_capacity_mj_m3_k, {0.0, 100.0, true, false});
+  v.number({"body_c", "°C", "Temperature of the tissue before the cut."}, t.body_c, {-20.0, 60.0});
+  v.number({"damage_c", "°C", "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); above body_c."}, t.damage_c, {-20.0, 200.0});
+  v.number({"absorbed_fraction", "", "Share of the power that heats the tissue beside the kerf; 1: an upper bound."}, t.absorbed_fraction,
+           {0.0, 1.0, true, false});
   v.end_group();
 }
 
@@ -237,7 +317,9 @@ void describe_case(CaseFile& file, FieldVisitor& v) {
   describe_specimen(file, v);
   describe_tumor(file, v);
   describe_plan(file, v);
-  describe_tool_and_cut(file.settings, v);
+  describe_tool(file, v);
+  describe_cut(file.settings, v);
+  describe_thermal(file.settings.thermal, v);
   describe_robot(file, v);
 }
 

@@ -51,6 +51,8 @@ class FieldVisitor {
   virtual void begin_group(const FieldInfo& info) = 0;
   virtual void end_group() = 0;
   virtual void number(const FieldInfo& info, double& value, const Range& range) = 0;
+  /// A number that may be absent.
+  virtual void optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) = 0;
   virtual void integer(const FieldInfo& info, int& value, const Range& range) = 0;
   virtual void flag(const FieldInfo& info, bool& value) = 0;
   virtual void text(const FieldInfo& info, std::string& value) = 0;

@@ -79,6 +79,12 @@ void SchemaWriter::number(const FieldInfo& info, double& value, const Range& ran
   add(info, std::move(schema));
 }
 
+void SchemaWriter::optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) {
+  nlohmann::ordered_json schema = number_schema(range, "number");
+  if (value) schema["default"] = *value;
+  add(info, std::move(schema));
+}
+
 void SchemaWriter::integer(const FieldInfo& info, int& value, const Range& range) {
   nlohmann::ordered_json schema = number_schema(range, "integer");
   schema["default"] = value;
@@ -162,6 +168,10 @@ void SettingLister::begin_group(const FieldInfo& info) {
 void SettingLister::end_group() { groups_.pop_back(); }
 
 void SettingLister::number(const FieldInfo& info, double& value, const Range&) { add(info, fmt::format("{}", value)); }
+
+void SettingLister::optional_number(const FieldInfo& info, std::optional<double>& value, const Range&) {
+  add(info, value ? fmt::format("{}", *value) : std::string());
+}
 
 void SettingLister::integer(const FieldInfo& info, int& value, const Range&) { add(info, fmt::format("{}", value)); }
 

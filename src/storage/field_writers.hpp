@@ -18,6 +18,7 @@ class SchemaWriter : public FieldVisitor {
   void begin_group(const FieldInfo& info) override;
   void end_group() override;
   void number(const FieldInfo& info, double& value, const Range& range) override;
+  void optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) override;
   void integer(const FieldInfo& info, int& value, const Range& range) override;
   void flag(const FieldInfo& info, bool& value) override;
   void text(const FieldInfo& info, std::string& value) override;
@@ -50,6 +51,7 @@ class SettingLister : public FieldVisitor {
   void begin_group(const FieldInfo& info) override;
   void end_group() override;
   void number(const FieldInfo& info, double& value, const Range& range) override;
+  void optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) override;
   void integer(const FieldInfo& info, int& value, const Range& range) override;
   void flag(const FieldInfo& info, bool& value) override;
   void text(const FieldInfo& info, std::string& value) override;

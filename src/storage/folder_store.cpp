@@ -15,6 +15,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace incise {
 namespace {
 
@@ -23,15 +25,16 @@ constexpr const char* kStageFile = "stage.json";
 struct ProductInfo {
   const char* folder;
   std::vector<std::string> settings;  ///< prefixes of the settings that it depends on, beside those of what it is made from
+  std::vector<std::string> but = {};  ///< of those, prefixes of settings that it does not depend on
 };
 
 const ProductInfo& info(Product product) {
   static const std::array<ProductInfo, 7> kInfo{{
       {"labels", {"ct."}},
-      {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}},
+      {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}, {"plan.power_w"}},
       {"stretched", {"specimen."}},
-      {"plan", {"tumor.", "plan."}},
-      {"as_planned", {"tool.", "cut.", "path"}},
+      {"plan", {"tumor.", "plan."}, {"plan.power_w"}},
+      {"as_planned", {"plan.power_w", "tool.", "cut.", "thermal.", "path"}},
       {"correction", {}},
       {"corrected", {}},
   }};
@@ -55,12 +58,13 @@ FolderStore::FolderStore(CaseFile file, std::filesystem::path root, RunContext c
 
 std::filesystem::path FolderStore::folder(Product product) const { return root_ / info(product).folder; }
 
-std::string FolderStore::settings_with(const std::vector<std::string>& prefixes) const {
+std::string FolderStore::settings_with(const std::vector<std::string>& prefixes, const std::vector<std::string>& but) const {
+  const auto starts_with_one = [](const std::string& key, const std::vector<std::string>& list) {
+    return std::any_of(list.begin(), list.end(), [&key](const std::string& prefix) { return key.starts_with(prefix); });
+  };
   std::string text;
   for (const SettingLine& line : settings_of(file_)) {
-    for (const std::string& prefix : prefixes) {
-      if (line.key.starts_with(prefix)) text += fmt::format("{}={}\n", line.key, line.value);
-    }
+    if (starts_with_one(line.key, prefixes) && !starts_with_one(line.key, but)) text += fmt::format("{}={}\n", line.key, line.value);
   }
   return text;
 }
@@ -76,7 +80,7 @@ const std::string& FolderStore::key(Product product) {
   std::string& key = keys_[static_cast<std::size_t>(product)];
   if (!key.empty()) return key;
   // Each product depends on the one before it; the code's own version is part of the first key, and so of all.
-  std::string text = info(product).folder + settings_with(info(product).settings);
+  std::string text = info(product).folder + settings_with(info(product).settings, info(product).but);
   if (product == Product::Labels) {
     text += fmt::format("{} {} ct={} mesh={}", version(), source_commit(), input_hash(file_.inputs.ct_volume),
                         input_hash(file_.inputs.specimen_mesh));

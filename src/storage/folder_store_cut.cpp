@@ -4,6 +4,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
@@ -15,6 +16,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <limits>
 
 namespace incise {
@@ -24,6 +26,9 @@ namespace {
 std::string maker() { return fmt::format("incise {} ({}), {}", version(), source_commit().substr(0, 12), to_string(active_isa())); }
 
 std::string short_key(const std::string& key) { return key.substr(0, 12); }
+
+/// Each stands in files by its number.
+constexpr std::array<RemovalCause, 3> kCauses{RemovalCause::Dwell, RemovalCause::LooseFragment, RemovalCause::Tear};
 
 Product product_of(CutRole role) { return role == CutRole::AsPlanned ? Product::AsPlanned : Product::Corrected; }
 
@@ -48,6 +53,7 @@ TetMesh removed_mesh(const TetMesh& mesh, const Points& stretched, const CutReco
   DataArray time{1, {}};
   DataArray step{1, {}};
   DataArray loose{1, {}};
+  DataArray cause{1, {}};
   for (const Removal& removal : record.removals) {
     Tet tet = mesh.tets[removal.tet.index()];
     for (VertexId& corner : tet) {
@@ -62,11 +68,35 @@ TetMesh removed_mesh(const TetMesh& mesh, const Points& stretched, const CutReco
     time.values.push_back(removal.time_s);
     step.values.push_back(removal.step);
     loose.values.push_back(removal.cause == RemovalCause::LooseFragment ? 1.0 : 0.0);
+    cause.values.push_back(static_cast<double>(removal.cause));
   }
   removed.cell_data["removed_at_s"] = std::move(time);
   removed.cell_data["step"] = std::move(step);
   removed.cell_data["is_loose_fragment"] = std::move(loose);
+  removed.cell_data["cause"] = std::move(cause);
   return removed;
+}
+
+RemovalCause cause_from(const nlohmann::ordered_json& json, const std::filesystem::path& file) {
+  const int number = json.get<int>();
+  for (const RemovalCause cause : kCauses) {
+    if (static_cast<int>(cause) == number) return cause;
+  }
+  throw DataError(file, "removals", fmt::format("a cause {}", number), "the number of one of removal_causes");
+}
+
+/// What each step of the cut did, one line each.
+void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog>& steps) {
+  write_atomically(file, [&steps](std::ostream& out) {
+    out << "time_s,iterations,tets_in_contact,removed,slipped,tool_force_x_mn,tool_force_y_mn,tool_force_z_mn,"
+           "tool_torque_x_mn_mm,tool_torque_y_mn_mm,tool_torque_z_mn_mm\n";
+    for (const CutStepLog& step : steps) {
+      const Vec3& force = step.tool_force_mn;
+      const Vec3& torque = step.tool_torque_mn_mm;
+      out << fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", step.time_s, step.iterations, step.tets_in_contact, step.removed,
+                         step.slipped, force.x(), force.y(), force.z(), torque.x(), torque.y(), torque.z());
+    }
+  });
 }
 
 /// Frames as a ParaView time series, the tool beside them as columns of a table.
@@ -82,10 +112,12 @@ void write_frames(const std::filesystem::path& folder, const TetMesh& mesh, cons
     series.push_back({frame.time_s, name});
     const Vec3& tip = frame.tool.tip_mm;
     const Vec3& axis = frame.tool.axis;
+    const Vec3& heading = frame.tool.heading;
     tools.push_back({{"time_s", frame.time_s},
                      {"is_tool_in", frame.is_tool_in},
                      {"tip_mm", {tip.x(), tip.y(), tip.z()}},
-                     {"axis", {axis.x(), axis.y(), axis.z()}}});
+                     {"axis", {axis.x(), axis.y(), axis.z()}},
+                     {"heading", {heading.x(), heading.y(), heading.z()}}});
   }
   write_pvd(folder / "frames.pvd", series);
   write_json(folder / "frames" / "tool.json", {{"frames", tools}});
@@ -146,7 +178,9 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     incision.unconverged_steps = json.at("unconverged_steps");
     incision.held_back_vertices = json.at("held_back_vertices");
     incision.inverted_tets = json.at("inverted_tets");
+    incision.slipped_bonds = json.at("slipped_bonds");
     incision.peak_tool_force_mn = json.at("peak_tool_force_mn");
+    incision.peak_tool_torque_mn_mm = json.at("peak_tool_torque_mn_mm");
     incision.wall_s = json.at("wall_s");
     incision.steps.resize(json.at("steps").get<std::size_t>());
     const bool is_ring = !json.at("closed_loop").is_null();
@@ -163,7 +197,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
       r.tet = TetId(removal.at(0).get<std::size_t>());
       r.step = removal.at(1);
       r.time_s = removal.at(2);
-      r.cause = removal.at(3).get<int>() == 0 ? RemovalCause::Dwell : RemovalCause::LooseFragment;
+      r.cause = cause_from(removal.at(3), from / "incision.json");
       r.rest_volume_mm3 = removal.at(4);
       incision.record.removals.push_back(r);
     }
@@ -178,12 +212,15 @@ void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticR
     const IncisionResult& incision = cut.incision;
     nlohmann::ordered_json json = to_json(cut);
     json["program_outcome"] = to_string(incision.outcome);
-    json["removal_columns"] = {"tet", "step", "time_s", "is_loose_fragment", "rest_volume_mm3"};
+    json["removal_columns"] = {"tet", "step", "time_s", "cause", "rest_volume_mm3"};
+    json["removal_causes"] = nlohmann::ordered_json::array();  // by the number in the column
+    for (const RemovalCause cause : kCauses) json["removal_causes"].push_back(to_string(cause));
     json["removals"] = nlohmann::ordered_json::array();
     for (const Removal& r : incision.record.removals) {
-      json["removals"].push_back({r.tet.value, r.step, r.time_s, r.cause == RemovalCause::Dwell ? 0 : 1, r.rest_volume_mm3});
+      json["removals"].push_back({r.tet.value, r.step, r.time_s, static_cast<int>(r.cause), r.rest_volume_mm3});
     }
     write_json(to / "incision.json", json);
+    write_steps(to / "steps.csv", incision.steps);
     if (incision.centerline) write_contour_csv(to / "centerline.csv", *incision.centerline);
     if (incision.inner_edge) write_contour_csv(to / "inner_edge.csv", *incision.inner_edge);
     if (!incision.final_tumor_edge.points.empty()) write_contour_csv(to / "tumor_edge_final.csv", incision.final_tumor_edge);

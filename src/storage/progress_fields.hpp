@@ -12,6 +12,7 @@ template <class Fields, class Value>
 void walk_pose(Fields& f, Value& tool) {
   f("tip_mm", tool.tip_mm);
   f("axis", tool.axis);
+  f("heading", tool.heading);
 }
 
 template <class Fields, class Value>
@@ -27,7 +28,8 @@ void walk_tissue(Fields& f, Value& tissue) {
 template <class Fields, class Value>
 void walk_state(Fields& f, Value& state) {
   walk_tissue(f, state.tissue);
-  f.per_tet("contact_s", state.contact_s, [&f](auto& time_s) { f("time_s", time_s); });
+  f.per_tet("dose", state.dose, [&f](auto& dose) { f("dose", dose); });
+  f.per_tet("tear_dose", state.tear_dose, [&f](auto& dose) { f("dose", dose); });
   f.list("bonds", state.bonds, [&f](auto& bond) {
     f("tet", bond.tet);
     f("offset_mm", bond.offset_mm);
@@ -53,7 +55,9 @@ void walk_step(Fields& f, Value& step) {
   f("tets_in_contact", step.tets_in_contact);
   f("removed", step.removed);
   f("held_back_vertices", step.held_back_vertices);
+  f("slipped", step.slipped);
   f("tool_force_mn", step.tool_force_mn);
+  f("tool_torque_mn_mm", step.tool_torque_mn_mm);
 }
 
 template <class Fields, class Value>

@@ -70,7 +70,11 @@ Json to_json(const SimulatedCut& cut) {
   json["unconverged_steps"] = incision.unconverged_steps;
   json["held_back_vertices"] = incision.held_back_vertices;
   json["inverted_tets"] = incision.inverted_tets;
+  json["slipped_bonds"] = incision.slipped_bonds;
   json["peak_tool_force_mn"] = incision.peak_tool_force_mn;
+  json["peak_tool_torque_mn_mm"] = incision.peak_tool_torque_mn_mm;
+  json["thermal_half_width_mm"] = cut.thermal_half_width_mm;
+  json["thermal_margin_mm"] = or_null(cut.thermal_margin_mm);
   json["wall_s"] = incision.wall_s;
   json["ms_per_step"] = incision.steps.empty() ? 0.0 : 1e3 * incision.wall_s / static_cast<double>(incision.steps.size());
   return json;

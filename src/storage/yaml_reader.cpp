@@ -123,6 +123,11 @@ void YamlReader::number(const FieldInfo& info, double& value, const Range& range
   if (node.IsDefined()) value = read_number(node, field(info.name), range);
 }
 
+void YamlReader::optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) {
+  const YAML::Node node = take(info.name);
+  if (node.IsDefined()) value = read_number(node, field(info.name), range);
+}
+
 void YamlReader::integer(const FieldInfo& info, int& value, const Range& range) {
   const YAML::Node node = take(info.name);
   if (!node.IsDefined()) return;

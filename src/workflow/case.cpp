@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace incise {
 namespace {
 
 constexpr const char* kWhere = "case";
 constexpr const char* kLabelArray = "label";
+constexpr const char* kToughnessArray = "toughness";
 
 /// "'a', 'b'" of the mesh's cell arrays.
 std::string cell_arrays(const TetMesh& mesh) {
@@ -46,18 +48,27 @@ MaterialField field_from(const TetMesh& mesh) {
                   first.substr(comma + 11));
 }
 
-const std::vector<double>& labels_of(const TetMesh& mesh) {
+/// @param field  of the case that asks for labels.
+const std::vector<double>& labels_of(const TetMesh& mesh, const char* field) {
   const auto found = mesh.cell_data.find(kLabelArray);
   if (found != mesh.cell_data.end() && found->second.components == 1 && found->second.values.size() == mesh.tets.size()) {
     return found->second.values;
   }
   if (found != mesh.cell_data.end()) {
-    throw CaseError(kWhere, "specimen.material.labels",
+    throw CaseError(kWhere, field,
                     fmt::format("the cell array 'label' with {} components and {} numbers", found->second.components, found->second.values.size()),
                     fmt::format("one number for each of {} tets", mesh.tets.size()));
   }
-  throw CaseError(kWhere, "specimen.material.labels", cell_arrays(mesh), "the cell array 'label', one number for each tet",
+  throw CaseError(kWhere, field, cell_arrays(mesh), "the cell array 'label', one number for each tet",
                   "A mesh that is made from a CT carries none: give specimen.mesh");
+}
+
+/// @param field  of the case that names the label.
+void require_label(const std::vector<double>& labels, int label, const std::string& field) {
+  if (std::find(labels.begin(), labels.end(), static_cast<double>(label)) != labels.end()) return;
+  const auto [least, most] = std::minmax_element(labels.begin(), labels.end());
+  throw CaseError(kWhere, field, fmt::format("{}, which no tet has", label),
+                  fmt::format("a label of the mesh; they lie between {:g} and {:g}", *least, *most));
 }
 
 /// `values` with the tets of one label changed; they start as `common` everywhere.
@@ -79,14 +90,10 @@ MaterialField material_field(const TetMesh& mesh, const Material& material, cons
                     "a number above 0", "Without fibres leave out from_mesh");
   }
   if (variation.labels.empty()) return field;
-  const std::vector<double>& labels = labels_of(mesh);
+  const std::vector<double>& labels = labels_of(mesh, "specimen.material.labels");
   for (std::size_t i = 0; i < variation.labels.size(); ++i) {
     const LabelMaterial& entry = variation.labels[i];
-    if (std::find(labels.begin(), labels.end(), static_cast<double>(entry.label)) == labels.end()) {
-      const auto [least, most] = std::minmax_element(labels.begin(), labels.end());
-      throw CaseError(kWhere, fmt::format("specimen.material.labels[{}].label", i), fmt::format("{}, which no tet has", entry.label),
-                      fmt::format("a label of the mesh; they lie between {:g} and {:g}", *least, *most));
-    }
+    require_label(labels, entry.label, fmt::format("specimen.material.labels[{}].label", i));
     if (entry.youngs_modulus_kpa) {
       lay_over(field.youngs_modulus_kpa, labels, entry.label, *entry.youngs_modulus_kpa, material.youngs_modulus_kpa);
     }
@@ -97,6 +104,35 @@ MaterialField material_field(const TetMesh& mesh, const Material& material, cons
   return field;
 }
 
+std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& variation) {
+  std::vector<double> toughness;
+  if (variation.from_mesh) {
+    const char* field = "cut.toughness_from_mesh";
+    const auto found = mesh.cell_data.find(kToughnessArray);
+    if (found == mesh.cell_data.end()) {
+      throw CaseError(kWhere, field, cell_arrays(mesh), "the cell array 'toughness', one number for each tet",
+                      "A mesh that is made from a CT carries none: give specimen.mesh");
+    }
+    toughness = found->second.values;
+    if (found->second.components != 1 || toughness.size() != mesh.tets.size()) {
+      throw CaseError(kWhere, field, fmt::format("the cell array 'toughness' with {} components and {} numbers", found->second.components,
+                                                 toughness.size()),
+                      fmt::format("one number for each of {} tets", mesh.tets.size()));
+    }
+    const auto bad = std::find_if_not(toughness.begin(), toughness.end(), [](double t) { return std::isfinite(t) && t > 0.0; });
+    if (bad != toughness.end()) {
+      throw CaseError(kWhere, field, fmt::format("toughness of {} at tet {}", *bad, bad - toughness.begin()), "a finite number above 0");
+    }
+  }
+  if (variation.labels.empty()) return toughness;
+  const std::vector<double>& labels = labels_of(mesh, "cut.toughness");
+  for (std::size_t i = 0; i < variation.labels.size(); ++i) {
+    const LabelToughness& entry = variation.labels[i];
+    require_label(labels, entry.label, fmt::format("cut.toughness[{}].label", i));
+    lay_over(toughness, labels, entry.label, entry.toughness, 1.0);
+  }
+  return toughness;
+}
 
 std::vector<Constraint> default_constraints(const TetMesh& mesh) {
   constexpr double kClampMm = 15.0;    // what the posterior clamp of a specimen holder takes hold of

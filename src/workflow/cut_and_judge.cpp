@@ -9,7 +9,7 @@ EvaluationSettings evaluation_settings(const Case& settings, ContourKind contour
   EvaluationSettings evaluation;
   evaluation.contour = contour;
   evaluation.lateral_margin_mm = settings.plan.lateral_margin_mm;
-  evaluation.electrode_radius_mm = settings.needle.radius_mm();
+  evaluation.electrode_radius_mm = radius_mm(settings.tool);
   evaluation.close_margin_mm = settings.close_margin_mm;
   evaluation.approach = settings.plan.approach;
   return evaluation;
@@ -48,6 +48,12 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
     cut.inner_edge = evaluate(cut.incision.inner_edge, cut.incision.final_tumor_edge, inner_edge);
   }
   for (const KerfLayer& layer : cut.incision.kerf.layers) cut.layers.push_back(layer_errors(settings, layer, intended, centerline));
+  // Heat is that of the real tool, whatever speed the simulated one needed.
+  cut.thermal_half_width_mm =
+      thermal_half_width_mm(settings.thermal, settings.plan.power_w, settings.plan.speed_mm_s, settings.plan.depth_mm);
+  if (settings.plan.kind == PlanKind::Ring && cut.centerline.signed_error_mm) {
+    cut.thermal_margin_mm = cut.centerline.target_mm + cut.centerline.signed_error_mm->min - cut.thermal_half_width_mm;
+  }
   cut.outcome = cut.incision.outcome == Outcome::Success ? cut.centerline.outcome : cut.incision.outcome;
   return cut;
 }
@@ -57,7 +63,8 @@ SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const
                            std::optional<IncisionProgress> from, const ProgressKeeper& keep) {
   IncisionSettings incision;
   incision.cut = settings.cut;
-  incision.needle = settings.needle;
+  incision.cut.power_w = settings.plan.power_w;
+  incision.tool = settings.tool;
   incision.approach = settings.plan.approach.normalized();
   incision.frames = settings.frames;
   incision.tumor_surface = tumor_surface;

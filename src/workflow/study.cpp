@@ -215,7 +215,7 @@ class Runner {
           CompensationSettings compensation;
           compensation.target_mm = settings_.plan.lateral_margin_mm;
           compensation.close_margin_mm = settings_.close_margin_mm;
-          compensation.electrode_radius_mm = settings_.needle.radius_mm();
+          compensation.electrode_radius_mm = radius_mm(settings_.tool);
           compensation.approach = settings_.plan.approach;
           compensation.axis_mode = settings_.plan.axis_mode;
           const SurfaceQuery surface(skin_of(study_.model->mesh, study_.stretched->state.positions));
@@ -231,7 +231,7 @@ class Runner {
     study_.outcome = study_.corrected->outcome;
     const auto& before = study_.as_planned->centerline.abs_error_mm;
     const auto& after = study_.corrected->centerline.abs_error_mm;
-    study_.is_accepted = study_.outcome == Outcome::Success && before && after && after->mean < settings_.needle.radius_mm() &&
+    study_.is_accepted = study_.outcome == Outcome::Success && before && after && after->mean < radius_mm(settings_.tool) &&
                          after->mean < before->mean;
     return true;
   }

@@ -36,7 +36,8 @@ void require_equilibrium(const StaticResult& result, const char* which) {
 
 TissueModel tissue_of(const Case& settings, TetMesh mesh) {
   std::vector<Constraint> constraints = settings.constraints ? *settings.constraints : default_constraints(mesh);
-  const MaterialField field = material_field(mesh, settings.material, settings.variation);
+  MaterialField field = material_field(mesh, settings.material, settings.variation);
+  field.toughness = toughness_of(mesh, settings.toughness);
   return make_tissue_model(std::move(mesh), settings.material, std::move(constraints), settings.gravity_mm_s2, field);
 }
 

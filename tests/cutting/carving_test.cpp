@@ -1,3 +1,5 @@
+#include "contact.hpp"
+
 #include <incise/cutting/carving.hpp>
 #include <incise/cutting/tool_program.hpp>
 
@@ -168,6 +170,197 @@ TEST_F(Carve, TissueReturnsWhenTheToolIsOut) {
   }
   EXPECT_LT(farthest, 0.01);  // the linear solves stop at 1 % of 5 mN
   EXPECT_TRUE(state.bonds.empty());
+}
+
+TEST_F(Carve, TwiceThePowerHalvesTheDwell) {
+  CutSettings settings;
+  settings.power_w = 2.0 * settings.reference_power_w;
+  EXPECT_FALSE(run(settings, 10.3, 10.3, 1, 0.501 * settings.dwell_s()).record.removals.empty());
+  EXPECT_TRUE(run(settings, 10.3, 10.3, 1, 0.495 * settings.dwell_s()).record.removals.empty());
+}
+
+TEST_F(Carve, TissueOfTwiceTheToughnessTakesTwiceTheDwell) {
+  model_.toughness.assign(model_.mesh.tets.size(), 2.0);
+  CutSettings settings;
+  EXPECT_FALSE(run(settings, 10.3, 10.3, 1, 2.002 * settings.dwell_s()).record.removals.empty());
+  EXPECT_TRUE(run(settings, 10.3, 10.3, 1, 1.98 * settings.dwell_s()).record.removals.empty());
+}
+
+TEST_F(Carve, OnlyTheTenderPartOfABodyOfTwoKindsIsCutAtOnce) {
+  model_.toughness.assign(model_.mesh.tets.size(), 1.0);
+  for (std::size_t tet = 0; tet < model_.mesh.tets.size(); ++tet) {
+    const Tet& t = model_.mesh.tets[tet];
+    double middle = 0.0;
+    for (const VertexId v : t) middle += 0.25 * model_.mesh.vertices[v.index()].x();
+    if (middle > 10.3) model_.toughness[tet] = 5.0;
+  }
+  CutSettings settings;
+  settings.bond_stiffness_kpa_mm2 = 0.0;
+  const CutState state = run(settings, 10.3, 10.3, 1, 2.0 * settings.dwell_s());
+  EXPECT_GT(state.record.removals.size(), 10U);
+  for (const Removal& removal : state.record.removals) {
+    if (removal.cause == RemovalCause::Dwell) {
+      EXPECT_LE(removal.centroid_mm.x(), 10.3);
+    }
+  }
+}
+
+TEST_F(Carve, HeldTissueTearsWhenTheToolWorksOnIt) {
+  CutSettings settings;
+  settings.dullness = 1000.0;  // contact alone removes nothing
+  EXPECT_TRUE(run(settings, 10.0, 11.5, 6, 0.02).record.removals.empty());
+  settings.tear_energy_kpa = 5.0;
+  const CutState state = run(settings, 10.0, 11.5, 6, 0.02);
+  ASSERT_FALSE(state.record.removals.empty());
+  EXPECT_EQ(state.record.removals.front().cause, RemovalCause::Tear);
+}
+
+TEST_F(Carve, WhereContactDoesMostOfTheDoseTheCauseIsDwell) {
+  CutSettings settings;
+  settings.tear_energy_kpa = 1e6;
+  const CutState state = run(settings, 10.0, 12.6, 10, 0.02);
+  ASSERT_FALSE(state.record.removals.empty());
+  for (const Removal& removal : state.record.removals) EXPECT_NE(removal.cause, RemovalCause::Tear);
+}
+
+TEST_F(Carve, TheWorkOfAToolThatStandsStillIsNothing) {
+  CutSettings settings;
+  settings.dullness = 1000.0;
+  settings.tear_energy_kpa = 1e-3;
+  EXPECT_TRUE(run(settings, 10.3, 10.3, 20, 0.02).record.removals.empty());
+}
+
+TEST_F(Carve, TissueThatSlipsStaysWithinTheSlipBehindTheTool) {
+  CutSettings settings;
+  settings.dullness = 1000.0;
+  settings.slip_mm = 0.1;
+  const CutState state = run(settings, 10.0, 11.5, 6, 0.02);
+  EXPECT_FALSE(state.bonds.empty());
+  const ToolPose tool = standing_at(11.5);
+  for (const Bond& bond : state.bonds) {
+    const auto corners = corners_of(model_.mesh, state.tissue.positions, bond.tet.index());
+    const Vec3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    EXPECT_LE((held_directions(needle_, tool) * (middle - tool.tip_mm - bond.offset_mm)).norm(), 0.1 + 1e-9);
+  }
+}
+
+TEST_F(Carve, ASlipBoundsTheForceAndIsCounted) {
+  CutSettings settings;
+  settings.dullness = 1000.0;
+  Workers workers(1);
+  std::array<double, 2> peak{};
+  std::size_t slipped = 0;
+  for (const bool can_slip : {false, true}) {
+    if (can_slip) settings.slip_mm = 0.05;
+    CutState state = begin_cut(model_, rest_state(model_), standing_at(10.0));
+    CutWorkspace workspace(model_, state.tissue.positions);
+    for (int i = 1; i <= 6; ++i) {
+      const CutStepReport report = advance(model_, settings, needle_, state, workspace, standing_at(10.0 + 0.25 * i), 0.02, workers);
+      peak[can_slip ? 1 : 0] = std::max(peak[can_slip ? 1 : 0], report.tool_force_mn.norm());
+      slipped += report.slipped;
+    }
+  }
+  EXPECT_LT(peak[1], 0.5 * peak[0]);
+  EXPECT_GT(slipped, 0U);
+}
+
+TEST_F(Carve, TheTissuePullsTheNeedleBackAndTurnsItAboutItsTip) {
+  CutSettings settings;
+  settings.dullness = 1000.0;
+  Workers workers(1);
+  CutState state = begin_cut(model_, rest_state(model_), standing_at(10.0));
+  CutWorkspace workspace(model_, state.tissue.positions);
+  CutStepReport report;
+  for (int i = 1; i <= 4; ++i) report = advance(model_, settings, needle_, state, workspace, standing_at(10.0 + 0.2 * i), 0.02, workers);
+  EXPECT_LT(report.tool_force_mn.x(), -10.0);
+  // Held tissue lies from 0.75 mm below the tip to the surface, 4 mm above it, and pulls towards -x: about y, -force times height.
+  const double height = report.tool_torque_mn_mm.y() / report.tool_force_mn.x();
+  EXPECT_GT(height, 0.5);
+  EXPECT_LT(height, 4.0);
+}
+
+TEST_F(Carve, ABallHoldsTissueAlsoAlongItsAxisAndANeedleDoesNot) {
+  CutSettings settings;
+  settings.dullness = 1000.0;
+  Workers workers(1);
+  for (const Tool& tool : {Tool{Ball{.diameter_mm = 1.5}}, Tool{Needle{}}}) {
+    ToolPose pose = standing_at(10.3);
+    CutState state = begin_cut(model_, rest_state(model_), pose);
+    CutWorkspace workspace(model_, state.tissue.positions);
+    CutStepReport report;
+    for (int i = 0; i < 4; ++i) {
+      pose.tip_mm.z() += 0.1;
+      report = advance(model_, settings, tool, state, workspace, pose, 0.02, workers);
+    }
+    if (std::holds_alternative<Ball>(tool)) {
+      EXPECT_LT(report.tool_force_mn.z(), -1.0);
+    } else {
+      EXPECT_EQ(report.tool_force_mn.z(), 0.0);
+    }
+  }
+}
+
+/// A 3 mm cube of 162 tets that does not move, and a needle that comes in at 13 mm/s, stays, and goes out on the other side.
+class Passage : public ::testing::Test {
+ protected:
+  static constexpr double kSpeed = 13.0;  // mm/s
+  static constexpr double kFrom = -2.0;
+  static constexpr double kStand = 1.3;
+  static constexpr double kTo = 5.0;
+
+  Passage() : model_(make_tissue_model(make_block({3, 3, 3}, {3, 3, 3}), Material{}, {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(4, 4, 0.1))}}})) {
+    settings_.bond_stiffness_kpa_mm2 = 0.0;
+  }
+  static ToolPose at(double x) { return {Vec3(x, 1.7, 1.2), -Vec3::UnitZ()}; }
+  static ToolPose pose(double time_s, double stay_s) {
+    const double arrival = (kStand - kFrom) / kSpeed;
+    if (time_s < arrival) return at(kFrom + kSpeed * time_s);
+    return at(std::min(kTo, kStand + kSpeed * std::max(0.0, time_s - arrival - stay_s)));
+  }
+  /// For how long a needle that does not stay touches a tet, s.
+  double passing_s(TetId tet) const {
+    const auto corners = corners_of(model_.mesh, model_.mesh.vertices, tet.index());
+    constexpr int kSamples = 40000;
+    int touched = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const double x = kFrom + (kTo - kFrom) * (i + 0.5) / kSamples;
+      if (distance_to_core(corners, ToolCore(Needle{}, at(x))) <= 0.75) ++touched;
+    }
+    return (kTo - kFrom) / kSpeed * touched / kSamples;
+  }
+  /// Whether contact removes a tet that is touched for `touched_s` in all, `advance_mm` a step.
+  bool goes(TetId tet, double passing_s, double touched_s, double advance_mm) {
+    const double stay_s = touched_s - passing_s;
+    const double end_s = (kTo - kFrom) / kSpeed + stay_s;
+    Workers workers(1);
+    CutState state = begin_cut(model_, rest_state(model_), at(kFrom));
+    CutWorkspace workspace(model_, state.tissue.positions);
+    while (state.time_s < end_s - 1e-9) {
+      const double step_s = std::min(advance_mm / kSpeed, end_s - state.time_s);
+      static_cast<void>(advance(model_, settings_, Needle{}, state, workspace, pose(state.time_s + step_s, stay_s), step_s, workers));
+    }
+    return std::any_of(state.record.removals.begin(), state.record.removals.end(),
+                       [&](const Removal& r) { return r.tet == tet && r.cause == RemovalCause::Dwell; });
+  }
+  TissueModel model_;
+  CutSettings settings_;
+};
+
+TEST_F(Passage, ATetTouchedForATenthOfAPercentMoreGoesAndOneForAPercentLessStaysAtAnyStep) {
+  std::size_t tested = 0;
+  for (std::size_t i = 0; i < model_.mesh.tets.size() && tested < 4; ++i) {
+    const TetId tet(i);
+    const auto corners = corners_of(model_.mesh, model_.mesh.vertices, i);
+    if (distance_to_core(corners, ToolCore(Needle{}, at(kStand))) > 0.1) continue;  // touched before, in and after the stay
+    ++tested;
+    const double passing = passing_s(tet);
+    settings_.dullness = 1.5 * passing / settings_.reference_step_s;
+    for (const double advance_mm : {0.01, 0.13, 0.26, 0.52}) {
+      EXPECT_TRUE(goes(tet, passing, 1.001 * settings_.dwell_s(), advance_mm)) << "tet " << i << ", " << advance_mm << " mm a step";
+      EXPECT_FALSE(goes(tet, passing, 0.99 * settings_.dwell_s(), advance_mm)) << "tet " << i << ", " << advance_mm << " mm a step";
+    }
+  }
+  EXPECT_EQ(tested, 4U);
 }
 
 }  // namespace

@@ -117,8 +117,12 @@ TEST(CutInvariants, SeeAPositionThatIsNotFinite) {
   EXPECT_TRUE(says(found_after([](CutState& s) { s.tissue.positions[7].y() = kNaN; }), "vertex 7 of live tet"));
 }
 
-TEST(CutInvariants, SeeAContactTimeThatIsNoTime) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.contact_s[5] = -1e-9; }), "tet 5 was touched for"));
+TEST(CutInvariants, SeeADoseThatIsNone) {
+  EXPECT_TRUE(says(found_after([](CutState& s) { s.dose[5] = kNaN; }), "dose: tet 5 has"));
+}
+
+TEST(CutInvariants, SeeTearingBeyondTheDose) {
+  EXPECT_TRUE(says(found_after([](CutState& s) { s.tear_dose[5] = s.dose[5] + 1e-9; }), "dose: tet 5 has"));
 }
 
 TEST(CutInvariants, SeeABondToWhatIsGone) {
@@ -136,7 +140,7 @@ TEST(CutInvariants, SeeABondWithoutAnOffset) {
 
 TEST(CutInvariants, RefuseAStateOfAnotherMesh) {
   CutState other = cut().state;
-  other.contact_s.pop_back();
+  other.dose.pop_back();
   EXPECT_THROW(static_cast<void>(cut_invariants(cut().model, other)), InvalidArgument);
 }
 

@@ -1,5 +1,4 @@
 #include <incise/cutting/cut_settings.hpp>
-#include <incise/cutting/tool.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,11 +39,24 @@ TEST(CutSettings, AStepLongerThanTheNeedleIsWideIsRefused) {
   EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("advance_per_step_mm: found 1.01")));
 }
 
-TEST(Needle, ADiameterOfZeroIsRefused) {
-  Needle needle;
-  EXPECT_THAT(validate(needle), IsEmpty());
-  needle.diameter_mm = 0.0;
-  EXPECT_THAT(validate(needle), ElementsAre(HasSubstr("diameter_mm: found 0")));
+TEST(CutSettings, APowerOfTheLawOutOfRangeIsRefused) {
+  CutSettings settings;
+  settings.power_w = 0.0;
+  settings.power_exponent = 10.5;
+  settings.tear_energy_kpa = 0.0;
+  settings.slip_mm = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(validate(settings, kNeedleDiameterMm),
+              ElementsAre(HasSubstr("power_w: found 0"), HasSubstr("power_exponent: found 10.5"), HasSubstr("tear_energy_kpa: found 0"),
+                          HasSubstr("slip_mm: found inf")));
+}
+
+TEST(CutSettings, TwiceThePowerCutsTwiceAsFastOrAsTheExponentSays) {
+  CutSettings settings;
+  EXPECT_NEAR(settings.dwell_rate_per_s(), 1.0 / 0.18, 1e-12);
+  settings.power_w = 70.0;
+  EXPECT_NEAR(settings.dwell_rate_per_s(), 2.0 / 0.18, 1e-12);
+  settings.power_exponent = 0.0;
+  EXPECT_NEAR(settings.dwell_rate_per_s(), 1.0 / 0.18, 1e-12);
 }
 
 }  // namespace

@@ -28,17 +28,17 @@ CutSettings ten_mm_per_second() {
 }
 
 TEST(ToolProgram, ARingTakesPlungePerimeterOverlapAndDwell) {
-  const ToolProgram program(square(true), ten_mm_per_second());
+  const ToolProgram program(square(true), ten_mm_per_second(), Needle{});
   EXPECT_NEAR(program.duration_s(), 0.5 + 4.0 + 0.5 + 0.18, 1e-12);
 }
 
 TEST(ToolProgram, AnOpenCutHasNoOverlap) {
-  const ToolProgram program(square(false), ten_mm_per_second());
+  const ToolProgram program(square(false), ten_mm_per_second(), Needle{});
   EXPECT_NEAR(program.duration_s(), 0.5 + 3.0 + 0.18, 1e-12);
 }
 
 TEST(ToolProgram, TheTipStartsOnTheSurfaceAndPlungesAlongTheAxis) {
-  const ToolProgram program(square(true), ten_mm_per_second());
+  const ToolProgram program(square(true), ten_mm_per_second(), Needle{});
   EXPECT_TRUE(program.pose_at(0.0).tip_mm.isApprox(Vec3(0, 0, 0)));
   EXPECT_NEAR((program.pose_at(0.25).tip_mm - Vec3(0, 0, -2.5)).norm(), 0.0, 1e-12);
   EXPECT_EQ(program.phase_at(0.25), ToolProgram::Phase::Plunge);
@@ -47,7 +47,7 @@ TEST(ToolProgram, TheTipStartsOnTheSurfaceAndPlungesAlongTheAxis) {
 }
 
 TEST(ToolProgram, TheOverlapRunsOnAlongTheStart) {
-  const ToolProgram program(square(true), ten_mm_per_second());
+  const ToolProgram program(square(true), ten_mm_per_second(), Needle{});
   EXPECT_EQ(program.phase_at(4.6), ToolProgram::Phase::Overlap);
   EXPECT_NEAR((program.pose_at(5.0).tip_mm - Vec3(5, 0, -5)).norm(), 0.0, 1e-12);
   EXPECT_EQ(program.phase_at(5.1), ToolProgram::Phase::Dwell);
@@ -55,7 +55,7 @@ TEST(ToolProgram, TheOverlapRunsOnAlongTheStart) {
 }
 
 TEST(ToolProgram, ItMovesAtTheSimulatedSpeedEverywhereButInTheDwell) {
-  const ToolProgram program(square(true), ten_mm_per_second());
+  const ToolProgram program(square(true), ten_mm_per_second(), Needle{});
   for (double t = 0.005; t < 4.99; t += 0.01) {
     if (std::abs(std::fmod(t - 0.5, 1.0)) < 0.011) continue;  // corners
     const double distance = (program.pose_at(t + 0.001).tip_mm - program.pose_at(t).tip_mm).norm();
@@ -66,21 +66,40 @@ TEST(ToolProgram, ItMovesAtTheSimulatedSpeedEverywhereButInTheDwell) {
 TEST(ToolProgram, APathThatIsNotInTheStretchedTissueIsRefused) {
   ToolPath path = square(true);
   path.frame = PathFrame::Robot;
-  EXPECT_THROW(ToolProgram(path, CutSettings{}), InvalidArgument);
+  EXPECT_THROW(ToolProgram(path, CutSettings{}, Needle{}), InvalidArgument);
 }
 
 TEST(ToolProgram, AnAxisThatIsNoUnitVectorIsRefused) {
   ToolPath path = square(true);
   path.waypoints[2].axis = Vec3(0, 0, -2);
-  EXPECT_THROW(ToolProgram(path, CutSettings{}), InvalidArgument);
+  EXPECT_THROW(ToolProgram(path, CutSettings{}, Needle{}), InvalidArgument);
 }
 
-TEST(ToolPose, HalfWayBetweenTwoPosesTheAxisIsAUnitVector) {
-  const ToolPose a{{0, 0, 0}, {0, 0, -1}};
-  const ToolPose b{{2, 0, 0}, {0, 1, 0}};
-  const ToolPose middle = between(a, b, 0.5);
-  EXPECT_TRUE(middle.tip_mm.isApprox(Vec3(1, 0, 0)));
-  EXPECT_TRUE(middle.axis.isApprox(Vec3(0, std::sqrt(0.5), -std::sqrt(0.5))));
+TEST(ToolProgram, ATurnAtACornerTakesABladeTimeAndARoundToolNone) {
+  const Blade blade{.width_mm = 4.0};
+  const double turns = 4 * 0.5 * M_PI * 2.0;  // mm of its edges: at three corners, and at the start before the overlap
+  EXPECT_NEAR(ToolProgram(square(true), ten_mm_per_second(), blade).duration_s(), 0.5 + 4.0 + 0.5 + 0.18 + turns / 10.0, 1e-9);
+  EXPECT_NEAR(ToolProgram(square(true), ten_mm_per_second(), Ball{}).duration_s(), 0.5 + 4.0 + 0.5 + 0.18, 1e-12);
+}
+
+TEST(ToolProgram, ABladeHeadsAlongThePathInEveryMove) {
+  const ToolProgram program(square(true), ten_mm_per_second(), Blade{.width_mm = 4.0});
+  EXPECT_NEAR((program.pose_at(0.2).heading - Vec3::UnitX()).norm(), 0.0, 1e-9) << "plunge";
+  for (double t = 0.005; t < program.duration_s() - 0.2; t += 0.01) {
+    const ToolPose now = program.pose_at(t);
+    const Vec3 way = program.pose_at(t + 0.001).tip_mm - now.tip_mm;
+    if (std::hypot(way.x(), way.y()) < 0.0099) continue;  // plunge, turn or corner
+    EXPECT_NEAR((now.heading - way.normalized()).norm(), 0.0, 1e-6) << "at " << t << " s";
+  }
+}
+
+TEST(ToolProgram, ALineThatTurnsBackOnItselfTurnsABladeRightRound) {
+  ToolPath path = square(false);
+  path.waypoints.resize(3);
+  path.waypoints[2] = path.waypoints[0];
+  const ToolProgram program(path, ten_mm_per_second(), Blade{.width_mm = 4.0});
+  EXPECT_NEAR((program.pose_at(program.duration_s()).heading + Vec3::UnitX()).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(program.duration_s(), 0.5 + 2.0 + 0.18 + 2.0 * M_PI / 10.0, 1e-9);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
-#include <incise/cutting/invariants.hpp>
+#include <incise/cutting/cut_invariants.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -88,13 +88,13 @@ std::size_t cut_at_random(const TissueModel& model, std::uint64_t seed, std::map
   const std::string name = fmt::format("path {} ({})", seed, cut.kind);
   Workers alone(1);
   Monitor silent;
-  const ToolProgram program(cut.path, cut.settings.cut);
+  const ToolProgram program(cut.path, cut.settings.cut, cut.settings.tool);
   CutState state = begin_cut(model, rest_state(model), program.pose_at(0.0));
   CutWorkspace workspace(model, state.tissue.positions);
   std::size_t failures = 0;
   while (state.time_s < program.duration_s() - 1e-9 && failures == 0) {
     const double step_s = std::min(cut.settings.cut.step_s(), program.duration_s() - state.time_s);
-    const CutStepReport report = advance(model, cut.settings.cut, cut.settings.needle, state, workspace,
+    const CutStepReport report = advance(model, cut.settings.cut, cut.settings.tool, state, workspace,
                                          program.pose_at(state.time_s + step_s), step_s, alone);
     failures += report_violations(fmt::format("{}, step {}", name, state.step), model, state);
     if (!report.is_finite) break;

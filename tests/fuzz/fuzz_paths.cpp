@@ -88,14 +88,17 @@ FuzzCut random_cut(std::uint64_t seed) {
   }
   CutSettings& c = cut.settings.cut;
   const auto one_of = [&random](const auto& values) { return values[random.below(values.size())]; };
-  cut.settings.needle.diameter_mm = random.uniform(0.8, 3.0);
-  cut.settings.needle.length_mm = random.uniform(3.0, 25.0);
+  const double width = random.uniform(0.8, 3.0);
+  const double length = random.uniform(3.0, 25.0);
+  cut.settings.tool = one_of(std::array<Tool, 3>{Needle{width, length}, Blade{0.5 * width, 2.0 * width, length}, Ball{width}});
   c.speed_mm_s = one_of(std::array{0.5, 7.0, 13.0, 60.0, 500.0});
   c.dullness = one_of(std::array{0.01, 1.0, 9.0, 17.0, 200.0});
-  c.advance_per_step_mm = cut.settings.needle.diameter_mm * random.uniform(0.4, 1.0);
+  c.advance_per_step_mm = 2.0 * radius_mm(cut.settings.tool) * random.uniform(0.4, 1.0);
   c.reach_mm = random.uniform(0.0, 1.0);
   c.bond_stiffness_kpa_mm2 = one_of(std::array{0.0, 100.0, 400.0, 3000.0});
   c.overlap_mm = random.uniform(0.0, 10.0);
+  if (random.below(3) == 0) c.slip_mm = random.uniform(0.05, 2.0);
+  if (random.below(3) == 0) c.tear_energy_kpa = random.uniform(0.5, 100.0);
   return cut;
 }
 

@@ -47,6 +47,46 @@ TEST_F(Incision, AToolAboveTheSurfaceCutsNothingAndSaysSo) {
   EXPECT_EQ(result.outcome, Outcome::OpenLoop);
 }
 
+TEST_F(Incision, ABladeThatHeadsAlongTheRingCutsItClosed) {
+  settings_.tool = Blade{.thickness_mm = 1.6, .width_mm = 3.0};
+  settings_.cut.bond_stiffness_kpa_mm2 = 0.0;
+  const IncisionResult result = cut(ring(4.0));
+  EXPECT_EQ(result.outcome, Outcome::Success);
+  ASSERT_TRUE(result.centerline.has_value());
+  EXPECT_NEAR(mean_radius(*result.centerline), kRadiusMm, 0.2);
+}
+
+TEST_F(Incision, ABallAtTheSurfaceCutsAGrooveThatCloses) {
+  settings_.tool = Ball{.diameter_mm = 2.0};
+  settings_.cut.bond_stiffness_kpa_mm2 = 0.0;
+  const IncisionResult result = cut(ring(0.5));
+  EXPECT_EQ(result.outcome, Outcome::Success);
+  for (const Removal& removal : result.record.removals) EXPECT_GT(removal.centroid_mm.z(), 8.0 - 0.5 - 1.0 - 0.4 - 1.4) << "no deeper than the ball";
+}
+
+TEST_F(Incision, ABallLedDeepBelowTheSurfaceTunnelsAndLeavesTheRingOpen) {
+  settings_.tool = Ball{.diameter_mm = 1.6};
+  settings_.cut.bond_stiffness_kpa_mm2 = 0.0;
+  const IncisionResult result = cut(ring(5.0));
+  EXPECT_GT(result.record.removals.size(), 100U);
+  EXPECT_EQ(result.outcome, Outcome::OpenLoop);
+}
+
+TEST_F(Incision, CountsTheSlipsAndThePeakTorqueOfAllSteps) {
+  settings_.cut.slip_mm = 0.2;
+  const IncisionResult result = cut(ring(4.0));
+  std::size_t slipped = 0;
+  double torque = 0.0;
+  for (const CutStepLog& step : result.steps) {
+    slipped += step.slipped;
+    torque = std::max(torque, step.tool_torque_mn_mm.norm());
+  }
+  EXPECT_GT(slipped, 0U);
+  EXPECT_EQ(result.slipped_bonds, slipped);
+  EXPECT_GT(torque, 0.0);
+  EXPECT_EQ(result.peak_tool_torque_mn_mm, torque);
+}
+
 TEST_F(Incision, AnOpenCutHasNoLoopToClose) {
   ToolPath path;
   path.is_closed = false;

@@ -33,7 +33,7 @@ ToolPath line() {
 
 IncisionSettings coarse_settings() {
   IncisionSettings settings;
-  settings.needle.diameter_mm = 1.6;
+  settings.tool = Needle{.diameter_mm = 1.6};
   settings.cut.reach_mm = 0.4;
   settings.cut.advance_per_step_mm = 0.8;
   settings.cut.dullness = 2.0;

@@ -18,7 +18,7 @@ class RingInABlock : public ::testing::Test {
   explicit RingInABlock(int cells_across = 24)
       : model_(make_tissue_model(make_block({32, 32, 8}, {cells_across, cells_across, cells_across / 4}), Material{},
                                  {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}})) {
-    settings_.needle.diameter_mm = 1.6 * 24 / cells_across;
+    settings_.tool = Needle{.diameter_mm = 1.6 * 24 / cells_across};
     settings_.cut.reach_mm = 0.4 * 24 / cells_across;
     settings_.cut.advance_per_step_mm = 0.8;
     settings_.cut.dullness = 2.0;

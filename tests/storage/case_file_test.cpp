@@ -109,6 +109,55 @@ TEST_F(CaseFileTest, JsonIsReadLikeYaml) {
   EXPECT_EQ(file.settings.cut.dullness, 4.0);
 }
 
+TEST_F(CaseFileTest, ABladeAndABallAreReadWithTheirOwnDimensions) {
+  const CaseFile blade = read(std::string(kLeast) + "tool: {kind: blade, thickness_mm: 0.4, width_mm: 3, length_mm: 20}\n");
+  const auto& made = std::get<Blade>(blade.settings.tool);
+  EXPECT_EQ(made.thickness_mm, 0.4);
+  EXPECT_EQ(made.width_mm, 3.0);
+  EXPECT_EQ(made.length_mm, 20.0);
+  const CaseFile ball = read(std::string(kLeast) + "tool: {kind: ball, diameter_mm: 3}\n");
+  EXPECT_EQ(std::get<Ball>(ball.settings.tool).diameter_mm, 3.0);
+  EXPECT_EQ(std::get<Needle>(read(kLeast).settings.tool).length_mm, Needle{}.length_mm);
+}
+
+TEST_F(CaseFileTest, ADimensionOfAnotherToolIsRefusedByName) {
+  EXPECT_THAT(refusal_with("tool: {kind: ball, width_mm: 3}\n"), AllOf(HasSubstr("tool.width_mm"), HasSubstr("tool.kind: ball")));
+  EXPECT_THAT(refusal_with("tool: {thickness_mm: 1}\n"), AllOf(HasSubstr("tool.thickness_mm"), HasSubstr("tool.kind: needle")));
+}
+
+TEST_F(CaseFileTest, EveryKeyOfTheLawOfCuttingIsRead) {
+  const CaseFile file = read(std::string(kLeast) +
+                             "cut:\n  reference_power_w: 30\n  power_exponent: 1.5\n  tear_energy_kpa: 20\n  slip_mm: 0.7\n"
+                             "  toughness: [{label: 2, toughness: 3.5}]\n  toughness_from_mesh: true\n"
+                             "thermal: {conductivity_w_m_k: 0.5, heat_capacity_mj_m3_k: 4, body_c: 20, damage_c: 65, absorbed_fraction: 0.25}\n");
+  const Case& c = file.settings;
+  EXPECT_EQ(c.cut.reference_power_w, 30.0);
+  EXPECT_EQ(c.cut.power_exponent, 1.5);
+  EXPECT_EQ(c.cut.tear_energy_kpa, 20.0);
+  EXPECT_EQ(c.cut.slip_mm, 0.7);
+  ASSERT_EQ(c.toughness.labels.size(), 1U);
+  EXPECT_EQ(c.toughness.labels[0].label, 2);
+  EXPECT_EQ(c.toughness.labels[0].toughness, 3.5);
+  EXPECT_TRUE(c.toughness.from_mesh);
+  EXPECT_EQ(c.thermal.conductivity_w_m_k, 0.5);
+  EXPECT_EQ(c.thermal.heat_capacity_mj_m3_k, 4.0);
+  EXPECT_EQ(c.thermal.body_c, 20.0);
+  EXPECT_EQ(c.thermal.damage_c, 65.0);
+  EXPECT_EQ(c.thermal.absorbed_fraction, 0.25);
+  EXPECT_FALSE(read(kLeast).settings.cut.tear_energy_kpa.has_value());
+  EXPECT_FALSE(read(kLeast).settings.cut.slip_mm.has_value());
+}
+
+TEST_F(CaseFileTest, ALawOfCuttingThatIsNoneIsRefusedNamingItsField) {
+  EXPECT_THAT(refusal_with("cut: {tear_energy_kpa: 0}\n"), AllOf(HasSubstr("cut.tear_energy_kpa"), HasSubstr("above 0")));
+  EXPECT_THAT(refusal_with("cut: {slip_mm: -1}\n"), AllOf(HasSubstr("cut.slip_mm"), HasSubstr("above 0")));
+  EXPECT_THAT(refusal_with("cut: {toughness: [{label: 1, toughness: 0}]}\n"), HasSubstr("cut.toughness[0].toughness"));
+  EXPECT_THAT(refusal_with("cut: {toughness: [{label: 1, toughness: 2}, {label: 1, toughness: 3}]}\n"),
+              AllOf(HasSubstr("cut.toughness[1]"), HasSubstr("label 1 again")));
+  EXPECT_THAT(refusal_with("thermal: {body_c: 50, damage_c: 45}\n"), AllOf(HasSubstr("thermal"), HasSubstr("damage_c: found 45")));
+  EXPECT_THAT(refusal_with("tool: {kind: blade, thickness_mm: 0.2}\n"), HasSubstr("advance_per_step_mm"));
+}
+
 // --- what is refused
 // ---------------------------------------------------------------------------------------------------
 

@@ -57,6 +57,28 @@ class FolderStoreTest : public ::testing::Test {
     return path;
   }
 
+  TissueModel model() { return tissue_of(read().settings, *open().read_specimen_mesh(silent_)); }
+  StaticResult stretched() {
+    StaticResult result;
+    result.state = rest_state(model());
+    return result;
+  }
+  /// Three tets, each removed for another cause, in one step.
+  static SimulatedCut small_cut() {
+    SimulatedCut cut;
+    for (const RemovalCause cause : {RemovalCause::Dwell, RemovalCause::Tear, RemovalCause::LooseFragment}) {
+      Removal removal;
+      removal.tet = TetId(cut.incision.record.removals.size());
+      removal.cause = cause;
+      cut.incision.record.removals.push_back(removal);
+    }
+    cut.incision.final_tumor_edge = testing::circle(2.0, 12, Vec3(5, 10, 5));
+    cut.incision.steps.push_back({0.5, 3, 20, 2, 4, Vec3(1, 2, 3), Vec3(10, 20, 25)});
+    cut.incision.slipped_bonds = 4;
+    cut.incision.peak_tool_torque_mn_mm = 33.0;
+    return cut;
+  }
+
   std::vector<std::string> entries() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_ / "out"))
@@ -307,6 +329,58 @@ TEST_F(FolderStoreTest, ASettingOfALaterStageLeavesAProductCurrent) {
   open().save_plan(small_ring(), 0.0);
   EXPECT_TRUE(open("cut: {dullness: 4}\n").load_plan());
   EXPECT_TRUE(open("tool: {diameter_mm: 0.8}\n").load_plan());
+}
+
+TEST_F(FolderStoreTest, AChangedPowerIsCutAnewAndPlannedNoMore) {
+  open("plan: {power_w: 35}\n").save_plan(small_ring(), 0.1);
+  open("plan: {power_w: 35}\n").save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
+  FolderStore other = open("plan: {power_w: 30}\n");
+  EXPECT_TRUE(other.load_plan());
+  EXPECT_FALSE(other.load_cut(CutRole::AsPlanned));
+}
+
+TEST_F(FolderStoreTest, ACutComesBackWithItsCausesSlipsAndTorque) {
+  open().save_plan(small_ring(), 0.1);
+  open().save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
+  const auto loaded = open().load_cut(CutRole::AsPlanned);
+  ASSERT_TRUE(loaded);
+  const std::vector<Removal>& removals = loaded->incision.record.removals;
+  ASSERT_EQ(removals.size(), 3U);
+  EXPECT_EQ(removals[0].cause, RemovalCause::Dwell);
+  EXPECT_EQ(removals[1].cause, RemovalCause::Tear);
+  EXPECT_EQ(removals[2].cause, RemovalCause::LooseFragment);
+  EXPECT_EQ(loaded->incision.slipped_bonds, 4U);
+  EXPECT_EQ(loaded->incision.peak_tool_torque_mn_mm, 33.0);
+  EXPECT_GT(loaded->thermal_half_width_mm, 0.0);
+}
+
+TEST_F(FolderStoreTest, EachStepOfACutHasALineWithForceAndTorque) {
+  open().save_plan(small_ring(), 0.1);
+  open().save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
+  std::ifstream in(folder_ / "out" / "as_planned" / "steps.csv");
+  std::string header;
+  std::string line;
+  std::getline(in, header);
+  std::getline(in, line);
+  EXPECT_EQ(header, "time_s,iterations,tets_in_contact,removed,slipped,tool_force_x_mn,tool_force_y_mn,tool_force_z_mn,"
+                    "tool_torque_x_mn_mm,tool_torque_y_mn_mm,tool_torque_z_mn_mm");
+  EXPECT_EQ(line, "0.5,3,20,2,4,1,2,3,10,20,25");
+}
+
+TEST_F(FolderStoreTest, ACauseThatThereIsNotIsRefusedNamingItsFile) {
+  open().save_plan(small_ring(), 0.1);
+  open().save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
+  const std::filesystem::path file = folder_ / "out" / "as_planned" / "incision.json";
+  nlohmann::ordered_json json;
+  std::ifstream(file) >> json;
+  json["removals"][0][3] = 9;
+  std::ofstream(file) << json;
+  try {
+    static_cast<void>(open().load_cut(CutRole::AsPlanned));
+    FAIL() << "there is no cause 9";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("incision.json: removals: found a cause 9"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(FolderStoreTest, AChangedInputFileMakesItsProductsStale) {

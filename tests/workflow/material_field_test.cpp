@@ -118,5 +118,54 @@ TEST(TissueOf, TakesTheFieldAndTheConstraintsOfTheCase) {
   EXPECT_LT(model.dead_load_mn[0][2], 0.0) << "gravity";
 }
 
+/// What is said against a toughness that a mesh does not carry.
+std::string toughness_refusal(const TetMesh& mesh, const ToughnessVariation& variation) {
+  try {
+    static_cast<void>(toughness_of(mesh, variation));
+  } catch (const CaseError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Toughness, IsEmptyWhereNothingVaries) { EXPECT_THAT(toughness_of(labelled_block(), {}), IsEmpty()); }
+
+TEST(Toughness, OfLabelsIsLaidOverThatOfTheMesh) {
+  TetMesh mesh = labelled_block();
+  mesh.cell_data["toughness"] = {1, std::vector<double>(12, 1.5)};
+  const std::vector<double> toughness = toughness_of(mesh, {true, {{2, 4.0}}});
+  ASSERT_EQ(toughness.size(), 12U);
+  EXPECT_EQ(toughness[8], 1.5);
+  EXPECT_EQ(toughness[9], 4.0);
+  EXPECT_EQ(toughness_of(mesh, {false, {{2, 4.0}}})[8], 1.0);
+}
+
+TEST(Toughness, SaysWhatTheMeshDoesNotCarry) {
+  EXPECT_THAT(toughness_refusal(labelled_block(), {true, {}}), AllOf(HasSubstr("cut.toughness_from_mesh"), HasSubstr("'toughness'")));
+  EXPECT_THAT(toughness_refusal(make_block(Vec3(1, 1, 1), {1, 1, 1}), {false, {{2, 4.0}}}),
+              AllOf(HasSubstr("cut.toughness"), HasSubstr("a mesh without cell data")));
+  EXPECT_THAT(toughness_refusal(labelled_block(), {false, {{7, 4.0}}}), AllOf(HasSubstr("cut.toughness[0].label"), HasSubstr("between 1 and 2")));
+}
+
+TEST(Toughness, OfAMeshThatIsNoneIsRefusedNamingTheTet) {
+  TetMesh mesh = labelled_block();
+  mesh.cell_data["toughness"] = {1, std::vector<double>(12, 1.0)};
+  mesh.cell_data["toughness"].values[3] = 0.0;
+  EXPECT_THAT(toughness_refusal(mesh, {true, {}}), HasSubstr("found toughness of 0 at tet 3"));
+  mesh.cell_data["toughness"].values[3] = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(toughness_refusal(mesh, {true, {}}), HasSubstr("found toughness of inf at tet 3"));
+  mesh.cell_data["toughness"].values.pop_back();
+  EXPECT_THAT(toughness_refusal(mesh, {true, {}}), HasSubstr("11 numbers"));
+}
+
+TEST(Toughness, OfTheCaseIsThatOfTheTissue) {
+  Case settings;
+  settings.constraints = {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(21, 11, 0.1))}}};
+  settings.toughness.labels = {{2, 4.0}};
+  const TissueModel model = tissue_of(settings, labelled_block());
+  ASSERT_EQ(model.toughness.size(), 12U);
+  EXPECT_EQ(model.toughness[11], 4.0);
+}
+
 }  // namespace
 }  // namespace incise

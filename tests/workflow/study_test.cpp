@@ -61,7 +61,7 @@ Case coarse_case() {
       FixedConstraint{EndRegion{Vec3::UnitY(), 4.0}},
       DisplacedConstraint{EndRegion{-Vec3::UnitY(), 4.0}, Vec3(0.0, -5.0, 0.0)},
       FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(45, 51, 0.1))}, {false, false, true}}};
-  settings.needle.diameter_mm = 1.6;
+  settings.tool = Needle{.diameter_mm = 1.6};
   settings.cut.reach_mm = 0.4;
   settings.cut.advance_per_step_mm = 0.8;
   settings.cut.dullness = 9.0;

@@ -19,13 +19,14 @@ namespace incise {
 /// The hold that the tool has on one tet between first contact and removal.
 struct Bond {
   TetId tet;
-  Vec3 offset_mm = Vec3::Zero();  ///< of the tet's centroid from the tool's tip when first touched
+  Vec3 offset_mm = Vec3::Zero();  ///< of the tet's centroid from the tool's tip when first touched, less what it has slipped since
 };
 
-/// A simulation of cutting as a value: tissue, contact times, bonds and what was removed so far.
+/// A simulation of cutting as a value: tissue, doses, bonds and what was removed so far.
 struct CutState {
   TissueState tissue;
-  std::vector<double> contact_s;     ///< per tet: time in contact so far; kept when contact is lost
+  std::vector<double> dose;          ///< per tet: how much of what removes it is done, gone at 1; kept when contact is lost
+  std::vector<double> tear_dose;     ///< per tet: the part of `dose` that is the tool's work
   std::vector<Bond> bonds;           ///< ascending tet
   ToolPose tool;
   double time_s = 0.0;
@@ -45,7 +46,9 @@ struct CutStepReport {
   std::size_t removed = 0;
   std::size_t loose_removed = 0;
   std::size_t held_back_vertices = 0;         ///< vertices whose step was cut to max_step_mm
+  std::size_t slipped = 0;                    ///< bonds that slipped
   Vec3 tool_force_mn = Vec3::Zero();          ///< of the tissue on the tool
+  Vec3 tool_torque_mn_mm = Vec3::Zero();      ///< of the tissue on the tool, about its tip
   double max_step_mm = 0.0;
   bool is_finite = true;                      ///< false: positions were left as before the step
 };
@@ -64,21 +67,14 @@ class CutWorkspace {
   std::unique_ptr<Data> data_;
 };
 
-/// One quasi-static step of implicit Euler with one linear solve: the tool moves from state.tool to `next`, bonded tissue follows, contact
-/// time is integrated inside the step, and tets whose time is up go, with fragments that then hang by no face.
+/// Removes live tets as a full dose would, with fragments that then hang by no face; the record names them as cut in the state's step.
+/// @returns how many went. @throws InvalidArgument for a tet that the mesh does not have.
+std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace, std::span<const TetId> tets);
+
+/// One quasi-static step of implicit Euler with one linear solve: the tool moves from state.tool to `next`, bonded tissue follows or slips,
+/// the dose of touched tets is integrated inside the step, and tets whose dose is full go, with fragments that then hang by no face.
 /// Without `next` the tool is out: bonds are dropped and the tissue relaxes.
-CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Needle& needle, CutState& state,
+CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers);
-
-/// Distance, mm, between a tet (solid, any orientation) and the segment from a to b; 0 where they meet. Exact.
-[[nodiscard]] double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b);
-
-/// Time within a step during which the distance is at most `limit`, as a fraction in [0, 1], and when it first is: distances at evenly
-/// spaced moments of the step, taken as linear between them.
-struct ContactInterval {
-  double fraction = 0.0;
-  double first = 0.0;  ///< in [0, 1]; meaningful when fraction > 0
-};
-[[nodiscard]] ContactInterval contact_interval(std::span<const double> distances_mm, double limit_mm);
 
 }  // namespace incise

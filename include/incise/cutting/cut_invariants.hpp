@@ -15,7 +15,7 @@ namespace incise {
 ///               ahead of the state, nor is a time; within a step: what was touched long enough, then loose fragments,
 ///               each ascending
 ///   positions   of vertices with a live tet: finite
-///   contact     times are finite and not negative
+///   dose        finite; what tearing contributed is between 0 and the whole
 ///   bonds       on live tets only, ascending, with finite offsets
 ///
 /// @returns every kind of violation, one sentence each with the first offender; empty: all hold. O(N + M + removals +

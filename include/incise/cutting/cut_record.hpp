@@ -3,15 +3,18 @@
 #include <incise/core/ids.hpp>
 #include <incise/geometry/types.hpp>
 
+#include <string_view>
 #include <vector>
 
 namespace incise {
 
 /// Why a tet was removed.
 enum class RemovalCause {
-  Dwell,          ///< touched for the dwell time
+  Dwell,          ///< its dose was full, at least half of it from contact
   LooseFragment,  ///< no longer joined to the body by a face
+  Tear,           ///< its dose was full, more than half of it from the work that the tool did on it
 };
+[[nodiscard]] std::string_view to_string(RemovalCause cause);  ///< dwell, loose_fragment, tear
 
 struct Removal {
   TetId tet;

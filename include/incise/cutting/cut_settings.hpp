@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,20 +12,27 @@ struct CutSettings {
   double speed_mm_s = 13.0;           ///< of the simulated tool, > 0
   double dullness = 9.0;              ///< contact needed before a tet goes, counted in reference steps, > 0
   double reference_step_s = 0.02;     ///< the time that one unit of dullness stands for, > 0
-  double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step; (0, needle diameter]
-  double reach_mm = 0.25;             ///< a tet is in contact within needle radius + reach of the axis, >= 0
+  double power_w = 35.0;              ///< of the electrode, > 0; a study takes that of its plan
+  double reference_power_w = 35.0;    ///< power at which dullness is the required contact, > 0; the paper's (II-B.3)
+  double power_exponent = 1.0;        ///< contact cuts (power / reference power) to this times as fast, [0, 10]; 0: power has no effect
+  std::optional<double> tear_energy_kpa;  ///< work per rest volume at which held tissue tears, kPa (= µJ/mm³), > 0; none: it does not
+  std::optional<double> slip_mm;      ///< tissue that the tool has left this far behind slips, > 0; none: never
+  double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step; (0, the tool's diameter or thickness]
+  double reach_mm = 0.25;             ///< a tet is in contact within the tool's radius + reach of its core, >= 0
   double bond_stiffness_kpa_mm2 = 400.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag
   double overlap_mm = 8.0;            ///< a ring is cut this far beyond its start, >= 0
   double residual_tolerance = 0.1;    ///< each step's linear solve: |r| <= this · |contact force|, (0, 1); the next step puts the rest right
   double max_step_mm = 1.0;           ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
 
-  /// Contact time that removes a tet, s.
+  /// Contact time that removes a tet of the reference tissue at the reference power, s.
   [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
+  /// Dose per second of contact with the reference tissue, 1/s: (P / P_ref)^n / (d τ₀).
+  [[nodiscard]] double dwell_rate_per_s() const;
   /// Duration of one simulation step, s.
   [[nodiscard]] double step_s() const { return advance_per_step_mm / speed_mm_s; }
 };
 
-/// Every violation, one sentence each with the field's name; empty: valid. The step is checked against the needle's diameter.
-[[nodiscard]] std::vector<std::string> validate(const CutSettings& settings, double needle_diameter_mm);
+/// Every violation, one sentence each with the field's name; empty: valid. The step is checked against the tool's diameter or thickness.
+[[nodiscard]] std::vector<std::string> validate(const CutSettings& settings, double tool_diameter_mm);
 
 }  // namespace incise

@@ -10,13 +10,14 @@ namespace incise {
 
 /// What the simulated tool does, as a function of time: plunge along the axis at the first waypoint, follow the waypoints (straight
 /// between them), overlap beyond the start if the path is a ring, stay for one dwell time, and leave. All motion at
-/// CutSettings::speed_mm_s: the waypoints' own speeds are the robot's.
+/// CutSettings::speed_mm_s: the waypoints' own speeds are the robot's. The tool heads where it goes; a blade turns on the spot before it
+/// sets out in another direction, its edges at the same speed.
 class ToolProgram {
  public:
   enum class Phase { Plunge, Follow, Overlap, Dwell };
 
   /// @pre path in PathFrame::SimStretched with at least 2 waypoints (3 for a ring), finite, unit axes, depth > 0.
-  ToolProgram(const ToolPath& path, const CutSettings& settings);
+  ToolProgram(const ToolPath& path, const CutSettings& settings, const Tool& tool);
 
   [[nodiscard]] double duration_s() const { return keys_.back().time_s; }
   /// Pose at a time; before 0 and after the end: that of the nearer end.

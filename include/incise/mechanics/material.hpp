@@ -50,9 +50,10 @@ struct MaterialField {
   std::vector<double> youngs_modulus_kpa;
   std::vector<double> poissons_ratio;
   std::vector<Vec3> fibre_directions;
+  std::vector<double> toughness;  ///< how much more it takes to cut a tet than one of the reference tissue, > 0; of itself 1
 };
 
-/// The fields that a mesh carries as cell data: `youngs_modulus_kpa`, `poissons_ratio` (1 component), `fibre_direction` (3).
+/// The fields of elasticity that a mesh carries as cell data: `youngs_modulus_kpa`, `poissons_ratio` (1 component), `fibre_direction` (3).
 [[nodiscard]] MaterialField material_field_of(const TetMesh& mesh);
 
 /// Every violation, one sentence each; empty: valid.

@@ -39,6 +39,7 @@ struct TissueModel {
   std::vector<double> volumes_mm3;               ///< per tet, at rest
   std::vector<LameParameters> lame;              ///< per tet
   std::vector<Vec3> fibres;                      ///< per tet: unit direction at rest; empty without fibres
+  std::vector<double> toughness;                 ///< per tet: against cutting, relative to the reference tissue; empty: 1 everywhere
   std::vector<double> vertex_mass_kg;            ///< lumped: a quarter of each adjacent tet
   std::vector<std::array<bool, 3>> is_fixed;     ///< per vertex and axis
   std::vector<Vec3> prescribed_displacement_mm;  ///< per vertex; used where is_fixed

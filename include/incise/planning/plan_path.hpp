@@ -29,7 +29,7 @@ struct PlanSettings {
   double lateral_margin_mm = 5.0;  ///< from the tumour edge to the kerf's mid-line, > 0
   double depth_mm = 5.0;           ///< of the tool's tip below the surface, along its axis, > 0
   double speed_mm_s = 7.0;         ///< of the real tool, > 0
-  double power_w = 35.0;           ///< electrosurgical, > 0; carried into the program, no model uses it
+  double power_w = 35.0;           ///< electrosurgical, > 0
   Vec3 approach = -Vec3::UnitZ();  ///< into the tissue, as camera and surgeon look; non-zero
   /// A ring starts at its waypoint farthest along this, a line at that end (anterior in LPS); not along the approach.
   Vec3 start_direction = -Vec3::UnitY();

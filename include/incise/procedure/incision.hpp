@@ -18,7 +18,7 @@ namespace incise {
 
 struct IncisionSettings {
   CutSettings cut;
-  Needle needle;
+  Tool tool;
   Vec3 approach = -Vec3::UnitZ();     ///< unit; the direction in which camera and surgeon look
   double midline_layer_mm = 2.5;      ///< the mid-line is that of the kerf down to this depth below the surface, > 0
   std::vector<double> layer_depths_mm{1.0, 2.5, 4.0, 5.0};  ///< middles of the layers with a mid-line of their own; each >= 0.5, ascending
@@ -47,7 +47,9 @@ struct IncisionResult {
   std::size_t unconverged_steps = 0;     ///< steps whose linear solve reached its limit
   std::size_t held_back_vertices = 0;    ///< vertex steps cut to CutSettings::max_step_mm
   std::size_t inverted_tets = 0;         ///< live tets of negative volume at the end
+  std::size_t slipped_bonds = 0;         ///< slips, summed over all steps
   double peak_tool_force_mn = 0.0;
+  double peak_tool_torque_mn_mm = 0.0;   ///< about the tool's tip
   double wall_s = 0.0;
 };
 

@@ -25,7 +25,9 @@ struct CutStepLog {
   std::size_t tets_in_contact = 0;
   std::size_t removed = 0;
   std::size_t held_back_vertices = 0; ///< vertices whose step was cut to CutSettings::max_step_mm
+  std::size_t slipped = 0;            ///< bonds that slipped
   Vec3 tool_force_mn = Vec3::Zero();  ///< of the tissue on the tool
+  Vec3 tool_torque_mn_mm = Vec3::Zero();  ///< of the tissue on the tool, about its tip
 };
 
 /// An incision on its way, as a value: all that its further course depends on beside tissue, path and settings, and what it has left

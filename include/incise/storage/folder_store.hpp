@@ -29,8 +29,8 @@ enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Correction, Corre
 ///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
 ///   stretched/   deformed.vtu, deform.json
 ///   plan/        path.json, path.vtp, plan.json
-///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, removed.vtu, frames.pvd, frames/,
-///                kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv, inner_edge_reference.csv
+///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, steps.csv, removed.vtu,
+///                frames.pvd, frames/, kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv, inner_edge_reference.csv
 ///   correction/  path.json, path.vtp, compensate.json
 ///   corrected/   as as_planned/
 ///
@@ -84,7 +84,7 @@ class FolderStore : public Store {
 
  private:
   [[nodiscard]] const std::string& key(Product product);
-  [[nodiscard]] std::string settings_with(const std::vector<std::string>& prefixes) const;
+  [[nodiscard]] std::string settings_with(const std::vector<std::string>& prefixes, const std::vector<std::string>& but) const;
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
   /// Made, and from other settings or inputs than the case's.
   [[nodiscard]] bool is_stale(Product product);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/cutting/cut_settings.hpp>
+#include <incise/cutting/thermal.hpp>
 #include <incise/cutting/tool.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/imaging/segmentation.hpp>
@@ -35,6 +36,18 @@ struct MaterialVariation {
   std::vector<LabelMaterial> labels;  ///< laid over `from_mesh`; tets with a label that is not listed keep what they have
 };
 
+/// How tough the tets with one value of the mesh's cell array `label` are.
+struct LabelToughness {
+  int label = 0;
+  double toughness = 1.0;  ///< relative to the reference tissue, > 0
+};
+
+/// How tough the specimen is against cutting, relative to the tissue for which speed and dullness hold; 1 where nothing else is said.
+struct ToughnessVariation {
+  bool from_mesh = false;              ///< the mesh's cell array `toughness`
+  std::vector<LabelToughness> labels;  ///< laid over `from_mesh`
+};
+
 enum class TumorConfiguration {
   Stretched,  ///< the edge is marked on the clamped and stretched tissue, as in the paper
   Rest,       ///< on the tissue as it was scanned
@@ -53,8 +66,10 @@ struct Case {
   TumorConfiguration tumor_configuration = TumorConfiguration::Stretched;
   double surface_tolerance_mm = 5.0;        ///< farthest that a tumour edge may lie off the surface, along the approach
   PlanSettings plan;
-  Needle needle;
-  CutSettings cut;
+  Tool tool;
+  CutSettings cut;                          ///< without its power, which is the plan's
+  ToughnessVariation toughness;
+  ThermalSettings thermal;
   double close_margin_mm = 2.2;             ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
   int frames = 24;                          ///< moments of the cut that are kept for pictures
   std::optional<Mat4> T_robot_sim;          ///< where the specimen lies under the robot, until registration finds it
@@ -63,6 +78,11 @@ struct Case {
 /// The material of each tet, as far as the study lets it vary; nothing does: empty lists.
 /// @throws CaseError (field specimen.material.from_mesh or .labels[i]) when the mesh does not carry what the study asks for.
 [[nodiscard]] MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation);
+
+/// The toughness of each tet, as far as the study lets it vary; it does not: an empty list.
+/// @throws CaseError (field cut.toughness_from_mesh or cut.toughness[i]) when the mesh does not carry what the study asks for, or a number that
+///         is not above 0.
+[[nodiscard]] std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& variation);
 
 /// The paper's set-up (II-A) for a tongue in LPS: posterior 15 mm clamped, anterior 10 mm pulled 20 mm forward, underside resting on a platform
 /// at the mesh's lowest point.
