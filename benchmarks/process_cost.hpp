@@ -13,8 +13,12 @@ inline double seconds_of(clockid_t clock) {
 }
 
 /// Of all threads of this process.
-inline double processor_seconds() { return seconds_of(CLOCK_PROCESS_CPUTIME_ID); }
-inline double wall_seconds() { return seconds_of(CLOCK_MONOTONIC); }
+inline double processor_seconds() {
+  return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
+inline double wall_seconds() {
+  return seconds_of(CLOCK_MONOTONIC);
+}
 
 /// Most memory that this process has held so far.
 inline double peak_bytes() {

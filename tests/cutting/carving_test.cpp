@@ -108,6 +108,28 @@ TEST_F(Carve, GivesTheSameRecordAndPositionsAtAnyThreadCount) {
   }
 }
 
+/// At every twentieth step nothing is used that the state does not hold: a new workspace goes on as the old one does.
+TEST_F(Carve, GoesOnFromATwentiethStepWithTheSameBits) {
+  const CutSettings settings;
+  Workers workers(1);
+  const auto go = [&](CutState& state, CutWorkspace& workspace, int from, int to) {
+    for (int i = from + 1; i <= to; ++i) {
+      static_cast<void>(advance(model_, settings, needle_, state, workspace, standing_at(5.0 + 0.2 * i), 0.02, workers));
+    }
+  };
+  CutState whole = begin_cut(model_, rest_state(model_), standing_at(5.0));
+  CutWorkspace workspace(model_, whole.tissue.positions);
+  go(whole, workspace, 0, 20);
+  CutState later = whole;
+  go(whole, workspace, 20, 33);
+  CutWorkspace another(model_, model_.mesh.vertices);
+  go(later, another, 20, 33);
+  EXPECT_FALSE(removed(whole).empty());
+  EXPECT_EQ(removed(later), removed(whole));
+  EXPECT_EQ(later.tissue.positions, whole.tissue.positions);
+  EXPECT_EQ(later.tissue.rotations, whole.tissue.rotations);
+}
+
 TEST_F(Carve, DragsHeldTissueAlongWithTheNeedle) {
   CutSettings settings;
   settings.dullness = 1000.0;  // nothing is removed

@@ -46,7 +46,12 @@ struct CutStepReport {
   bool is_finite = true;                      ///< false: positions were left as before the step
 };
 
-/// Memory and factorisations that steps reuse; never affects a result beyond rounding of the solver's tolerance.
+/// Before steps whose CutState::step is a multiple of this, a workspace forgets what it keeps of earlier ones: the preconditioner's
+/// coarse matrix and the stiffness may be this old.
+inline constexpr int kFreshSteps = 20;
+
+/// Memory, stiffness and factorisations that steps reuse; never affects a result beyond the solver's tolerance. A cut that goes on from
+/// its state before a multiple of kFreshSteps, in a workspace made with the same positions and precision, gives the same bits.
 class CutWorkspace {
  public:
   /// @param precision  of the linear solves; single suffices for tolerances of 1e-2 and more.
