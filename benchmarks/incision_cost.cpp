@@ -1,10 +1,14 @@
 // What a whole incision costs: a virtual tongue from CT to stretched tissue, then the same ring cut with several settings.
 //   incise_incision_cost [--tets N] [--threads N] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE]
 // Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4).
+#include "process_cost.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/imaging/phantom.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/procedure/incision.hpp>
 #include <incise/workflow/study.hpp>
 
@@ -13,25 +17,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <string_view>
-#include <sys/resource.h>
 
 namespace incise::bench {
 namespace {
-
-double seconds_of(clockid_t clock) {
-  timespec t{};
-  clock_gettime(clock, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double peak_mb() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
 
 double load_average() {
   double loads[1] = {0.0};
@@ -122,11 +112,11 @@ Run cut(const Study& study, const IncisionSettings& settings, int threads) {
   Workers workers(threads);
   Monitor silent;
   Run run;
-  const double processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
-  const double wall = seconds_of(CLOCK_MONOTONIC);
+  const double processor = processor_seconds();
+  const double wall = wall_seconds();
   run.result = simulate_incision(*study.model, study.stretched->state, *study.plan, settings, workers, silent);
-  run.wall_s = seconds_of(CLOCK_MONOTONIC) - wall;
-  run.processor_s = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor;
+  run.wall_s = wall_seconds() - wall;
+  run.processor_s = processor_seconds() - processor;
   return run;
 }
 
@@ -141,7 +131,7 @@ int run(const Options& options) {
   PhantomStore store(phantom);
   const Study study = run_study(settings, store, Stage::Plan, workers, silent);
   fmt::print("{} tets, {} vertices; mesh and stretch ready, {:.0f} MB held at most so far; instruction set {}; path {:.1f} mm\n",
-             study.model->mesh.tets.size(), study.model->mesh.vertices.size(), peak_mb(), to_string(active_isa()),
+             study.model->mesh.tets.size(), study.model->mesh.vertices.size(), 1e-6 * peak_bytes(), to_string(active_isa()),
              length_mm(entry_contour(*study.plan)));
 
   IncisionSettings incision;
@@ -162,6 +152,10 @@ int run(const Options& options) {
   fmt::print("{:>7} {:>6} {:>9} {:>8} {:>9} {:>9} {:>7} {:>8} {:>9} {:>8} {:>10} {:>6}\n", "threads", "steps", "its/step", "wall s",
              "CPU s", "ms/step", "removed", "signed", "to tight", "MB", "outcome", "load");
   std::vector<double> walls;
+  std::string table = fmt::format("# {}; g++ {}, {}; {}\n", machine_description(), __VERSION__, BUILD_FLAGS, version());
+  table +=
+      "tets,vertices,threads,advance_mm,residual_tolerance,steps,iterations,wall_s,processor_s,removed,signed_error_mm,"
+      "to_tight_mm,bytes_per_tet,outcome,load,isa,commit\n";
   for (int i = 0; i < options.runs; ++i) {
     const Run run = cut(study, incision, options.threads);
     const IncisionResult& r = run.result;
@@ -177,12 +171,23 @@ int run(const Options& options) {
     const double steps = static_cast<double>(r.steps.size());
     fmt::print("{:>7} {:>6} {:>9.1f} {:>8.2f} {:>9.2f} {:>9.2f} {:>7} {:>8.3f} {:>9.4f} {:>8.0f} {:>10} {:>6.2f}\n", options.threads,
                r.steps.size(), static_cast<double>(r.solver_iterations) / steps, run.wall_s, run.processor_s, 1000.0 * run.wall_s / steps,
-               r.record.removals.size(), signed_mm, to_tight, peak_mb(), to_string(r.outcome), load_average());
+               r.record.removals.size(), signed_mm, to_tight, 1e-6 * peak_bytes(), to_string(r.outcome), load_average());
     std::fflush(stdout);
+    table += fmt::format("{},{},{},{},{},{},{},{:.3f},{:.3f},{},{:.4f},{:.4f},{:.0f},{},{:.2f},{},{}\n", study.model->mesh.tets.size(),
+                         study.model->mesh.vertices.size(), options.threads, incision.cut.advance_per_step_mm,
+                         incision.cut.residual_tolerance, r.steps.size(), r.solver_iterations, run.wall_s, run.processor_s,
+                         r.record.removals.size(), signed_mm, to_tight,
+                         peak_bytes() / static_cast<double>(study.model->mesh.tets.size()), to_string(r.outcome), load_average(),
+                         to_string(active_isa()), source_commit());
   }
   std::sort(walls.begin(), walls.end());
   fmt::print("median wall: {:.2f} s\n", walls[walls.size() / 2]);
-  return 0;
+  if (options.csv.empty()) return 0;
+  std::ofstream file(options.csv);
+  file << table;
+  if (file.flush()) return 0;
+  fmt::print(stderr, "cannot write {}\n", options.csv);
+  return 3;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Cost of a static stretch against the size of the body, and SOFA's beam: accuracy beside time, as a table and as CSV.
 //   incise_mechanics_cost [--csv FILE] [--figure FILE.svg] [--large] [--million] [--threads N]
+#include "process_cost.hpp"
 #include "test_body.hpp"
 
 #include <incise/core/isa.hpp>
@@ -9,14 +10,12 @@
 #include <incise/report/line_plot.hpp>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <ctime>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -24,19 +23,6 @@
 
 namespace incise::bench {
 namespace {
-
-double processor_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// Most memory that this process has held so far.
-double peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
 
 struct Row {
   std::string name;
@@ -120,9 +106,7 @@ Row beam(int threads) {
   MotionWorkspace workspace(model, settings);
   Row row{"beam_8x26x8_1000_steps", model.mesh.tets.size(), model.mesh.vertices.size()};
   const double start = processor_seconds();
-  timespec from{};
-  timespec to{};
-  clock_gettime(CLOCK_MONOTONIC, &from);
+  const double from = wall_seconds();
   for (int i = 0; i < kSteps; ++i) {
     const StepReport report = advance_motion(model, motion, settings, workspace, workers);
     row.newton += report.newton_iterations;
@@ -130,10 +114,9 @@ Row beam(int threads) {
     row.accuracy = std::max(row.accuracy, report.relative_residual);
     row.has_converged = row.has_converged && report.outcome == Outcome::Success;
   }
-  clock_gettime(CLOCK_MONOTONIC, &to);
+  row.wall_s = wall_seconds() - from;
   row.processor_s = processor_seconds() - start;
   row.bytes_per_tet = peak_bytes() / static_cast<double>(row.tets);
-  row.wall_s = static_cast<double>(to.tv_sec - from.tv_sec) + 1e-9 * static_cast<double>(to.tv_nsec - from.tv_nsec);
   return row;
 }
 

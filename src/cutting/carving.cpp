@@ -3,6 +3,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/cutting/carving.hpp>
+#include <incise/mechanics/step_stiffness.hpp>
 
 #include <fmt/format.h>
 
@@ -26,17 +27,20 @@ constexpr double kFullDose = 1.0 - 1e-9;       // a dose is a sum over steps: wh
 struct CutWorkspace::Data {
   std::vector<std::array<std::int32_t, 4>> neighbours;
   std::vector<std::uint8_t> is_anchored;   // vertices that a constraint holds
-  BlockMatrix matrix;
+  StepStiffness stiffness;
   TwoLevelPcg solver;
   Points right_side;
   Points increment;
   Points before;
   double body_volume_mm3 = 0.0;            // at rest, uncut
+  int next_step = -1;                      // the one that may build on what is kept here
+  std::vector<std::uint8_t> is_orphan;     // vertices without a live tet: nothing holds them, so they stay where they are
+  std::size_t carved_then = 0;             // tets carved when that was found
 
   Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
       : neighbours(face_neighbours(model.mesh)),
         is_anchored(model.mesh.vertices.size(), 0),
-        matrix(model.pattern),
+        stiffness(model),
         solver(model.pattern, positions, kVerticesPerAggregate, precision),
         right_side(model.mesh.vertices.size()),
         increment(model.mesh.vertices.size()),
@@ -158,14 +162,12 @@ std::vector<double> load_tool(const TissueModel& model, const CutState& state, c
   return works_kpa;
 }
 
-/// Vertices without a live tet: nothing holds them, so they stay where they are.
-std::vector<std::uint8_t> orphans(const TissueModel& model, const TissueState& tissue) {
-  std::vector<std::uint8_t> is_orphan(model.mesh.vertices.size(), 1);
+void find_orphans(const TissueModel& model, const TissueState& tissue, std::vector<std::uint8_t>& is_orphan) {
+  is_orphan.assign(model.mesh.vertices.size(), 1);
   for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
     if (tissue.is_live[tet] == 0) continue;
     for (const VertexId v : model.mesh.tets[tet]) is_orphan[v.index()] = 0;
   }
-  return is_orphan;
 }
 
 /// Moves the tissue by one linearised quasi-static step. The mass term is far below the stiffness and only steadies loose bits.
@@ -173,25 +175,26 @@ std::vector<std::uint8_t> orphans(const TissueModel& model, const TissueState& t
 std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                                 CutWorkspace::Data& scratch, const std::optional<ToolPose>& next, double step_s, Workers& workers,
                                 CutStepReport& report) {
-  std::fill(scratch.matrix.values.begin(), scratch.matrix.values.end(), 0.0);
+  const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
+  scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
-  add_elastic_response(model, state.tissue, scratch.right_side, &scratch.matrix, workers);
-  add_support_response(model, state.tissue, scratch.right_side, &scratch.matrix);
+  scratch.stiffness.begin(model, state.tissue, step_s, is_fresh, scratch.right_side, workers);
   double bond_scale = 0.0;
   std::vector<double> stiffnesses;
-  if (next) stiffnesses = add_bonds(model, settings, tool, state, *next, scratch.right_side, scratch.matrix, bond_scale);
-  for (std::size_t v = 0; v < model.vertex_mass_kg.size(); ++v) {
-    double* diagonal = scratch.matrix.block(model.pattern->diagonal[v]);
-    const double inertia = model.vertex_mass_kg[v] / (step_s * step_s);
-    for (const int i : {0, 4, 8}) diagonal[i] += inertia;
+  if (next) {
+    for (const Bond& bond : state.bonds) scratch.stiffness.lend(model, bond.tet);
+    stiffnesses = add_bonds(model, settings, tool, state, *next, scratch.right_side, scratch.stiffness.matrix(), bond_scale);
   }
-  hold_constrained(model, scratch.matrix, scratch.right_side, orphans(model, state.tissue));
-
-  scratch.solver.update(scratch.matrix, is_renewal_step(state), workers);
+  if (is_fresh || state.record.removals.size() != scratch.carved_then) {
+    find_orphans(model, state.tissue, scratch.is_orphan);
+    scratch.carved_then = state.record.removals.size();
+  }
+  scratch.stiffness.hold(model, scratch.right_side, scratch.is_orphan, workers);
+  scratch.solver.update(scratch.stiffness.matrix(), is_fresh, workers, scratch.stiffness.changed_rows());
   PcgSettings pcg;
   pcg.relative_tolerance = settings.residual_tolerance;
   pcg.reference_mn = std::max(bond_scale, kForceFloorMn);
-  report.solve = scratch.solver.solve(scratch.matrix, scratch.right_side, scratch.increment, pcg, workers);
+  report.solve = scratch.solver.solve(scratch.stiffness.matrix(), scratch.right_side, scratch.increment, pcg, workers);
 
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) {
     Vec3& step = scratch.increment[v];

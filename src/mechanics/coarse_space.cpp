@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -14,21 +15,71 @@
 namespace incise {
 namespace {
 
-/// A dense inverse of more than 6 x 512 unknowns would cost more than the iterations it saves.
-constexpr std::size_t kMaxAggregates = 512;
+/// With more aggregates than this a cycle over three levels is cheaper than a dense inverse, which grows as their
+/// square.
+constexpr std::size_t kMaxDenseAggregates = 192;
+constexpr std::size_t kAggregatesPerGroup = 8;
+constexpr std::size_t kMaxGroups = 512;
 /// Share of an aggregate's largest motion below which another counts as one it cannot make (held, or all vertices on a
 /// line).
 constexpr double kLeastMotionShare = 1e-8;
-constexpr std::size_t kCoarseRowsPerChunk = 192;
 
-std::size_t group_size(std::size_t vertices, std::size_t wanted) {
-  return std::max(wanted, (vertices + kMaxAggregates - 1) / kMaxAggregates);
+using Mat6 = Eigen::Matrix<double, 6, 6>;
+
+/// Columns: combinations of six motions that can be made, of unit size, given the motions' Gram matrix; zero columns
+/// for the rest.
+Mat6 independent_motions(const Mat6& gram) {
+  const Eigen::SelfAdjointEigenSolver<Mat6> solver(gram);
+  Mat6 basis = Mat6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    const double size = solver.eigenvalues()[i];
+    if (size > 0.0 && size > kLeastMotionShare * solver.eigenvalues()[5]) {
+      basis.col(i) = solver.eigenvectors().col(i) / std::sqrt(size);
+    }
+  }
+  return basis;
+}
+
+/// In the layout of a CoarseCycle.
+std::vector<double> packed(const std::vector<Mat6>& blocks, bool is_transposed) {
+  std::vector<double> numbers(kCoarseBlock * blocks.size(), 0.0);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    for (int column = 0; column < 6; ++column) {
+      for (int row = 0; row < 6; ++row) {
+        numbers[kCoarseBlock * b + static_cast<std::size_t>(8 * column + row)] =
+            is_transposed ? blocks[b](column, row) : blocks[b](row, column);
+      }
+    }
+  }
+  return numbers;
+}
+
+/// Copies the lower triangle of an n x n matrix, stored by columns, to the upper one.
+void mirror(std::vector<double>& dense, std::size_t n) {
+  for (std::size_t column = 0; column < n; ++column) {
+    for (std::size_t row = column + 1; row < n; ++row) dense[row * n + column] = dense[column * n + row];
+  }
+}
+
+/// The inverse in place of a positive definite n x n matrix of which the lower triangle is given.
+void invert(std::vector<double>& dense, std::size_t size) {
+  const int n = static_cast<int>(size);
+  int info = 0;
+  hold_blas_to_one_thread();
+  dpotrf_("L", &n, dense.data(), &n, &info);
+  INCISE_REQUIRE(info == 0,
+                 fmt::format("expected a positive definite matrix, found coarse pivot {} not above 0", info));
+  dpotri_("L", &n, dense.data(), &n, &info);
+  INCISE_REQUIRE(info == 0, fmt::format("expected a regular coarse matrix, found a zero at {}", info));
+  mirror(dense, size);
 }
 
 }  // namespace
 
 CoarseSpace::CoarseSpace(std::span<const Vec3> positions, std::size_t per_aggregate)
-    : aggregates_(bisect(positions, group_size(positions.size(), per_aggregate))),
+    : aggregates_(bisect(positions, per_aggregate)),
+      center_(aggregates_.count()),
+      radius_(aggregates_.count()),
       arm_(positions.size()),
       free_(positions.size(), Vec3::Ones()) {
   for (std::size_t a = 0; a < aggregates_.count(); ++a) {
@@ -44,7 +95,13 @@ CoarseSpace::CoarseSpace(std::span<const Vec3> positions, std::size_t per_aggreg
       const Vec3 offset = positions[static_cast<std::size_t>(*v)] - center;
       arm_[static_cast<std::size_t>(*v)] = radius > 0.0 ? Vec3(offset / radius) : Vec3::Zero();
     }
+    center_[a] = center;
+    radius_[a] = radius;
   }
+  if (aggregates_.count() <= kMaxDenseAggregates) return;
+  groups_ = bisect(center_, std::max(kAggregatesPerGroup, (center_.size() + kMaxGroups - 1) / kMaxGroups));
+  cycle_.group = groups_.of_vertex;
+  cycle_.groups = groups_.count();
 }
 
 void CoarseSpace::set_held(std::span<const std::uint8_t> held) {
@@ -62,12 +119,10 @@ CoarseSpace::Modes CoarseSpace::modes(std::size_t v) const {
   return free_[v].asDiagonal() * p;
 }
 
-/// The six rows of Pᵀ A P that belong to one aggregate. dense_ is column-major, so they are written as columns: A is
-/// symmetric.
-void CoarseSpace::project_rows(const BlockMatrix& matrix, std::size_t aggregate) {
+/// Adds the six columns of Pᵀ A P that belong to one aggregate to target(other aggregate), blocks of 6 x 6.
+template <class Target>
+void CoarseSpace::project_rows(const BlockMatrix& matrix, std::size_t aggregate, const Target& target) const {
   using RowBlock = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  const std::size_t n = size();
-  std::fill_n(dense_.begin() + static_cast<std::ptrdiff_t>(6 * n * aggregate), 6 * n, 0.0);
   std::vector<std::pair<std::int32_t, Modes>> sums;  // of A_vw P_w over the vertices w of each neighbouring aggregate
   for (auto i = aggregates_.start[aggregate]; i < aggregates_.start[aggregate + 1]; ++i) {
     const auto v = static_cast<std::size_t>(aggregates_.vertices[static_cast<std::size_t>(i)]);
@@ -80,32 +135,17 @@ void CoarseSpace::project_rows(const BlockMatrix& matrix, std::size_t aggregate)
       sum->second.noalias() += RowBlock(matrix.block(slot)) * modes(w);
     }
     const Modes own = modes(v);
-    for (const auto& [other, sum] : sums) {
-      Eigen::Map<Mat6, 0, Eigen::OuterStride<>> target(
-          dense_.data() + 6 * n * aggregate + 6 * static_cast<std::size_t>(other),
-          Eigen::OuterStride<>(static_cast<Eigen::Index>(n)));
-      target.noalias() += sum.transpose() * own;
-    }
+    for (const auto& [other, sum] : sums) target(other).noalias() += sum.transpose() * own;
   }
 }
 
-/// Columns: combinations of the six motions that the aggregate's free axes can make, of unit size; zero columns for the
-/// rest.
-CoarseSpace::Mat6 CoarseSpace::independent_motions(std::size_t aggregate) const {
+CoarseSpace::Mat6 CoarseSpace::motions_of(std::size_t aggregate) const {
   Mat6 gram = Mat6::Zero();
   for (auto i = aggregates_.start[aggregate]; i < aggregates_.start[aggregate + 1]; ++i) {
     const Modes p = modes(static_cast<std::size_t>(aggregates_.vertices[static_cast<std::size_t>(i)]));
     gram.noalias() += p.transpose() * p;
   }
-  const Eigen::SelfAdjointEigenSolver<Mat6> solver(gram);
-  Mat6 basis = Mat6::Zero();
-  for (int i = 0; i < 6; ++i) {
-    const double size = solver.eigenvalues()[i];
-    if (size > 0.0 && size > kLeastMotionShare * solver.eigenvalues()[5]) {
-      basis.col(i) = solver.eigenvectors().col(i) / std::sqrt(size);
-    }
-  }
-  return basis;
+  return independent_motions(gram);
 }
 
 /// Each 6 x 6 block B_ij becomes Tᵀ_i B_ij T_j, for the blocks on and below the diagonal.
@@ -124,33 +164,19 @@ void CoarseSpace::change_basis(const std::vector<Mat6>& basis, Workers& workers)
   });
 }
 
-void CoarseSpace::invert() {
-  const int n = static_cast<int>(size());
-  int info = 0;
-  hold_blas_to_one_thread();
-  dpotrf_("L", &n, dense_.data(), &n, &info);
-  INCISE_REQUIRE(info == 0,
-                 fmt::format("expected a positive definite matrix, found coarse pivot {} not above 0", info));
-  dpotri_("L", &n, dense_.data(), &n, &info);
-  INCISE_REQUIRE(info == 0, fmt::format("expected a regular coarse matrix, found a zero at {}", info));
-  mirror();
-}
-
-/// Copies the lower triangle to the upper one.
-void CoarseSpace::mirror() {
-  const std::size_t n = size();
-  for (std::size_t column = 0; column < n; ++column) {
-    for (std::size_t row = column + 1; row < n; ++row) dense_[row * n + column] = dense_[column * n + row];
-  }
-}
-
-void CoarseSpace::refresh(const BlockMatrix& matrix, Workers& workers) {
+void CoarseSpace::refresh_dense(const BlockMatrix& matrix, Workers& workers) {
   const std::size_t n = size();
   dense_.resize(n * n);
-  workers.for_each(aggregates_.count(), 4, [&](std::size_t a) { project_rows(matrix, a); });
+  workers.for_each(aggregates_.count(), 4, [&](std::size_t a) {
+    std::fill_n(dense_.begin() + static_cast<std::ptrdiff_t>(6 * n * a), 6 * n, 0.0);
+    project_rows(matrix, a, [&](std::int32_t other) {
+      return Eigen::Map<Mat6, 0, Eigen::OuterStride<>>(dense_.data() + 6 * n * a + 6 * static_cast<std::size_t>(other),
+                                                       Eigen::OuterStride<>(static_cast<Eigen::Index>(n)));
+    });
+  });
 
   std::vector<Mat6> basis(aggregates_.count());
-  for (std::size_t a = 0; a < basis.size(); ++a) basis[a] = independent_motions(a);
+  for (std::size_t a = 0; a < basis.size(); ++a) basis[a] = motions_of(a);
   change_basis(basis, workers);
   for (std::size_t a = 0; a < basis.size(); ++a) {
     for (std::size_t i = 0; i < 6; ++i) {
@@ -158,13 +184,175 @@ void CoarseSpace::refresh(const BlockMatrix& matrix, Workers& workers) {
       if (basis[a].col(static_cast<int>(i)).isZero(0.0)) dense_[(6 * a + i) * (n + 1)] = 1.0;
     }
   }
-  invert();
+  invert(dense_, n);
   for (Mat6& b : basis) b.transposeInPlace();
   change_basis(basis, workers);
-  mirror();
+  mirror(dense_, n);
 }
 
-void CoarseSpace::apply(std::span<const double> c, std::span<double> y, Workers& workers) const {
+/// Which aggregates share an entry of A.
+void CoarseSpace::connect_aggregates(const BlockPattern& pattern) {
+  cycle_.row_start.push_back(0);
+  std::vector<std::int32_t> others;
+  for (std::size_t a = 0; a < aggregates_.count(); ++a) {
+    others.clear();
+    for (auto i = aggregates_.start[a]; i < aggregates_.start[a + 1]; ++i) {
+      const auto v = static_cast<std::size_t>(aggregates_.vertices[static_cast<std::size_t>(i)]);
+      for (auto slot = pattern.row_start[v]; slot < pattern.row_start[v + 1]; ++slot) {
+        others.push_back(
+            aggregates_.of_vertex[static_cast<std::size_t>(pattern.column[static_cast<std::size_t>(slot)])]);
+      }
+    }
+    std::sort(others.begin(), others.end());
+    others.erase(std::unique(others.begin(), others.end()), others.end());
+    cycle_.column.insert(cycle_.column.end(), others.begin(), others.end());
+    cycle_.row_start.push_back(static_cast<std::int32_t>(cycle_.column.size()));
+  }
+  blocks_.resize(cycle_.column.size());
+  for (std::vector<Mat6>* blocks : {&basis_, &into_basis_, &lift_}) blocks->resize(aggregates_.count());
+}
+
+/// The blocks of one aggregate's row, each still transposed.
+void CoarseSpace::project_blocks(const BlockMatrix& matrix, std::size_t aggregate) {
+  const auto begin = cycle_.column.begin() + cycle_.row_start[aggregate];
+  const auto end = cycle_.column.begin() + cycle_.row_start[aggregate + 1];
+  const auto own = blocks_.begin() + cycle_.row_start[aggregate];
+  std::fill_n(own, end - begin, Mat6(Mat6::Zero()));
+  project_rows(matrix, aggregate,
+               [&](std::int32_t other) -> Mat6& { return own[std::lower_bound(begin, end, other) - begin]; });
+}
+
+/// A basis of the motions that an aggregate can make, in which its diagonal block is 1.
+void CoarseSpace::find_basis(std::size_t aggregate) {
+  const Mat6 motions = motions_of(aggregate);
+  const auto begin = cycle_.column.begin() + cycle_.row_start[aggregate];
+  const auto end = cycle_.column.begin() + cycle_.row_start[aggregate + 1];
+  const auto slot = std::lower_bound(begin, end, static_cast<std::int32_t>(aggregate)) - cycle_.column.begin();
+  Mat6 diagonal = motions.transpose() * blocks_[static_cast<std::size_t>(slot)] * motions;
+  Mat6 into_motions = Mat6::Zero();  // their left inverse: they are orthogonal
+  for (int i = 0; i < 6; ++i) {
+    if (motions.col(i).isZero(0.0)) {
+      diagonal(i, i) = 1.0;  // as in refresh_dense
+    } else {
+      into_motions.row(i) = motions.col(i).transpose() / motions.col(i).squaredNorm();
+    }
+  }
+  const Eigen::LLT<Mat6> factor(diagonal);
+  INCISE_REQUIRE(factor.info() == Eigen::Success,
+                 fmt::format("expected a positive definite matrix, found otherwise on aggregate {}", aggregate));
+  basis_[aggregate] = factor.matrixL().solve(motions.transpose()).transpose();
+  into_basis_[aggregate] = factor.matrixU() * into_motions;
+}
+
+/// B_ij becomes Tᵀ_i B_ij T_j in one aggregate's row.
+void CoarseSpace::change_block_basis(std::size_t aggregate) {
+  for (auto slot = cycle_.row_start[aggregate]; slot < cycle_.row_start[aggregate + 1]; ++slot) {
+    const auto other = static_cast<std::size_t>(cycle_.column[static_cast<std::size_t>(slot)]);
+    Mat6& block = blocks_[static_cast<std::size_t>(slot)];
+    block = other == aggregate ? Mat6(Mat6::Identity())
+                               : Mat6(basis_[aggregate].transpose() * block.transpose() * basis_[other]);
+  }
+}
+
+/// The aggregate's motion when its group makes each of its six: t + ω x (center - group's) and ω, over the radii; in
+/// its basis.
+CoarseSpace::Mat6 CoarseSpace::rigid_lift(std::size_t aggregate) const {
+  const auto group = static_cast<std::size_t>(groups_.of_vertex[aggregate]);
+  Vec3 middle = Vec3::Zero();
+  const auto members = groups_.start[group + 1] - groups_.start[group];
+  const auto for_members = [&](const auto& body) {
+    for (auto i = groups_.start[group]; i < groups_.start[group + 1]; ++i) {
+      body(static_cast<std::size_t>(groups_.vertices[static_cast<std::size_t>(i)]));
+    }
+  };
+  for_members([&](std::size_t a) { middle += center_[a] / members; });
+  double squared = 0.0;
+  for_members(
+      [&](std::size_t a) { squared += ((center_[a] - middle).squaredNorm() + radius_[a] * radius_[a]) / members; });
+  const double radius = squared > 0.0 ? std::sqrt(squared) : 1.0;
+  const Vec3 arm = (center_[aggregate] - middle) / radius;
+  Mat6 lift = Mat6::Identity();
+  lift.topRightCorner<3, 3>() << 0.0, arm[2], -arm[1], -arm[2], 0.0, arm[0], arm[1], -arm[0], 0.0;
+  lift.bottomRightCorner<3, 3>() *= radius_[aggregate] / radius;
+  return into_basis_[aggregate] * lift;
+}
+
+/// Lifts into each group's independent motions.
+void CoarseSpace::find_lifts() {
+  for (std::size_t a = 0; a < aggregates_.count(); ++a) lift_[a] = rigid_lift(a);
+  for (std::size_t group = 0; group < groups_.count(); ++group) {
+    const auto first = static_cast<std::size_t>(groups_.start[group]);
+    const auto members =
+        std::span(groups_.vertices).subspan(first, static_cast<std::size_t>(groups_.start[group + 1]) - first);
+    Mat6 gram = Mat6::Zero();
+    for (const std::int32_t a : members) {
+      gram.noalias() += lift_[static_cast<std::size_t>(a)].transpose() * lift_[static_cast<std::size_t>(a)];
+    }
+    const Mat6 basis = independent_motions(gram);
+    for (const std::int32_t a : members) {
+      lift_[static_cast<std::size_t>(a)] = (lift_[static_cast<std::size_t>(a)] * basis).eval();
+    }
+  }
+}
+
+/// The dense inverse of the third level.
+void CoarseSpace::project_groups() {
+  const std::size_t n = 6 * groups_.count();
+  cycle_.top.assign(n * n, 0.0);
+  for (std::size_t a = 0; a < aggregates_.count(); ++a) {
+    const auto row = static_cast<std::size_t>(cycle_.group[a]);
+    for (auto slot = cycle_.row_start[a]; slot < cycle_.row_start[a + 1]; ++slot) {
+      const auto b = static_cast<std::size_t>(cycle_.column[static_cast<std::size_t>(slot)]);
+      const auto column = static_cast<std::size_t>(cycle_.group[b]);
+      if (column > row) continue;
+      Eigen::Map<Mat6, 0, Eigen::OuterStride<>>(cycle_.top.data() + 6 * n * column + 6 * row,
+                                                Eigen::OuterStride<>(static_cast<Eigen::Index>(n))) +=
+          lift_[a].transpose() * blocks_[static_cast<std::size_t>(slot)] * lift_[b];
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    // A motion that no member can make: an empty row, as in refresh_dense; no lift reaches it.
+    if (cycle_.top[i * (n + 1)] == 0.0) cycle_.top[i * (n + 1)] = 1.0;
+  }
+  invert(cycle_.top, n);
+}
+
+void CoarseSpace::refresh_cycle(const BlockMatrix& matrix, Workers& workers) {
+  if (cycle_.row_start.empty()) connect_aggregates(*matrix.pattern);
+  workers.for_each(aggregates_.count(), 4, [&](std::size_t a) {
+    project_blocks(matrix, a);
+    find_basis(a);
+  });
+  workers.for_each(aggregates_.count(), 4, [&](std::size_t a) { change_block_basis(a); });
+  find_lifts();
+  project_groups();
+  for (std::size_t a = 0; a < aggregates_.count(); ++a) {
+    const auto row = cycle_.column.begin() + cycle_.row_start[a];
+    const auto slot =
+        std::lower_bound(row, cycle_.column.begin() + cycle_.row_start[a + 1], static_cast<std::int32_t>(a)) -
+        cycle_.column.begin();
+    blocks_[static_cast<std::size_t>(slot)].setZero();  // the 1 that Gauss and Seidel divide by
+  }
+  cycle_.blocks = packed(blocks_, false);
+  cycle_.basis = packed(basis_, false);
+  cycle_.basis_transposed = packed(basis_, true);
+  cycle_.lift = packed(lift_, false);
+  cycle_.lift_transposed = packed(lift_, true);
+}
+
+void CoarseSpace::refresh(const BlockMatrix& matrix, Workers& workers) {
+  if (is_dense()) {
+    refresh_dense(matrix, workers);
+  } else {
+    refresh_cycle(matrix, workers);
+  }
+}
+
+void CoarseSpace::apply(std::span<const double> c, std::span<double> y, Workers& workers) {
+  if (!is_dense()) {
+    cycle_.apply(c, y, workers);
+    return;
+  }
   const std::size_t n = size();
   workers.for_chunks(n, kCoarseRowsPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
     kernels().multiply_dense(dense_.data(), n, c.data(), y.data(), begin, end);

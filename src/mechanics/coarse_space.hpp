@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mechanics/aggregates.hpp"
+#include "mechanics/coarse_cycle.hpp"
 
 #include <incise/mechanics/block_matrix.hpp>
 
@@ -13,9 +14,12 @@ namespace incise {
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
+/// Rows of the dense coarse inverse that one thread takes at a time.
+inline constexpr std::size_t kCoarseRowsPerChunk = 192;
+
 /// Rigid motions of groups of vertices: u_v = t + ω × arm_v for each vertex of an aggregate, without the axes that are
-/// held. The second level of the preconditioner: C = T (Tᵀ Pᵀ A P T)⁻¹ Tᵀ, dense, where T drops the motions that an
-/// aggregate cannot make.
+/// held. The second level of the preconditioner: C = T (Tᵀ Pᵀ A P T)⁻¹ Tᵀ, where T drops the motions that an aggregate
+/// cannot make. Dense with few aggregates; with more, the inverse is that of one CoarseCycle.
 class CoarseSpace {
  public:
   CoarseSpace(std::span<const Vec3> positions, std::size_t per_aggregate);
@@ -30,8 +34,11 @@ class CoarseSpace {
 
   [[nodiscard]] const Vec3& arm(std::size_t v) const { return arm_[v]; }
   [[nodiscard]] const Vec3& is_free(std::size_t v) const { return free_[v]; }
-  /// C, size() x size(), after the last refresh.
+  [[nodiscard]] bool is_dense() const { return groups_.count() == 0; }
+  /// C, size() x size(), after the last refresh; where it is dense.
   [[nodiscard]] std::span<const double> inverse() const { return dense_; }
+  /// What stands for C, after the last refresh; where it is not dense.
+  [[nodiscard]] const CoarseCycle<double>& cycle() const { return cycle_; }
 
   /// Share of vertex v in Pᵀ r.
   void add_restricted(std::size_t v, const Vec3& r, Vec6& sum) const {
@@ -45,23 +52,38 @@ class CoarseSpace {
     return (Vec3(y[0], y[1], y[2]) + turn.cross(arm_[v])).cwiseProduct(free_[v]);
   }
   /// y = C c.
-  void apply(std::span<const double> c, std::span<double> y, Workers& workers) const;
+  void apply(std::span<const double> c, std::span<double> y, Workers& workers);
 
  private:
   using Mat6 = Eigen::Matrix<double, 6, 6>;
   using Modes = Eigen::Matrix<double, 3, 6>;
 
   [[nodiscard]] Modes modes(std::size_t v) const;
-  void project_rows(const BlockMatrix& matrix, std::size_t aggregate);
-  [[nodiscard]] Mat6 independent_motions(std::size_t aggregate) const;
+  template <class Target>
+  void project_rows(const BlockMatrix& matrix, std::size_t aggregate, const Target& target) const;
+  [[nodiscard]] Mat6 motions_of(std::size_t aggregate) const;
   void change_basis(const std::vector<Mat6>& basis, Workers& workers);
-  void invert();
-  void mirror();
+  void refresh_dense(const BlockMatrix& matrix, Workers& workers);
+
+  void connect_aggregates(const BlockPattern& pattern);
+  void project_blocks(const BlockMatrix& matrix, std::size_t aggregate);
+  void find_basis(std::size_t aggregate);
+  void change_block_basis(std::size_t aggregate);
+  [[nodiscard]] Mat6 rigid_lift(std::size_t aggregate) const;
+  void find_lifts();
+  void project_groups();
+  void refresh_cycle(const BlockMatrix& matrix, Workers& workers);
 
   Aggregates aggregates_;
-  std::vector<Vec3> arm_;      ///< per vertex: from the aggregate's centre, over its radius
-  std::vector<Vec3> free_;     ///< per vertex: 1 along free axes, 0 along held ones
-  std::vector<double> dense_;  ///< size() x size(), symmetric
+  std::vector<Vec3> center_;    ///< per aggregate: of its vertices, mm
+  std::vector<double> radius_;  ///< per aggregate: root mean square distance from its centre, mm
+  std::vector<Vec3> arm_;       ///< per vertex: from the aggregate's centre, over its radius
+  std::vector<Vec3> free_;      ///< per vertex: 1 along free axes, 0 along held ones
+  std::vector<double> dense_;   ///< size() x size(), symmetric
+  Aggregates groups_;           ///< of aggregates; none where C is dense
+  CoarseCycle<double> cycle_;
+  std::vector<Mat6> blocks_;                     ///< of the cycle, in its order, while it is made
+  std::vector<Mat6> basis_, into_basis_, lift_;  ///< per aggregate: T, its left inverse, the cycle's lift
 };
 
 }  // namespace incise

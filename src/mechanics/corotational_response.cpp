@@ -43,6 +43,7 @@ TetSweep reading_sweep(const TissueModel& model, const TissueState& state) {
           nullptr,
           nullptr,
           SweepTangent::None,
+          nullptr,
           robust_rotation};
 }
 
@@ -52,6 +53,16 @@ TetSweep of_run(TetSweep sweep, const TetBatches& batches, std::size_t run) {
   sweep.batches = batches.batches.data() + begin;
   sweep.count = static_cast<std::size_t>(batches.run_start[run + 1]) - begin;
   return sweep;
+}
+
+/// Runs of one colour share no vertex and go at once; colours follow each other.
+void sweep_all(const TetSweep& sweep, const TetBatches& batches, Workers& workers) {
+  const KernelTable& table = kernels();
+  for (std::size_t color = 0; color < batches.colors(); ++color) {
+    const auto first = static_cast<std::size_t>(batches.color_start[color]);
+    const auto count = static_cast<std::size_t>(batches.color_start[color + 1]) - first;
+    workers.for_each(count, 1, [&](std::size_t i) { table.sweep_tets(of_run(sweep, batches, first + i)); });
+  }
 }
 
 }  // namespace
@@ -66,14 +77,19 @@ void add_corotational_response(const TissueModel& model, TissueState& state, std
     sweep.values = stiffness->values.data();
     sweep.tangent = sweep_tangent(tangent);
   }
-  const TetBatches& batches = *model.batches;
-  const KernelTable& table = kernels();
-  for (std::size_t color = 0; color < batches.colors(); ++color) {
-    const auto first = static_cast<std::size_t>(batches.color_start[color]);
-    const auto count = static_cast<std::size_t>(batches.color_start[color + 1]) - first;
-    workers.for_each(count, 1, [&](std::size_t i) { table.sweep_tets(of_run(sweep, batches, first + i)); });
-  }
-  if (stiffness != nullptr) mirror_upper(*stiffness, batches.mirror, workers);
+  sweep_all(sweep, *model.batches, workers);
+  if (stiffness != nullptr) mirror_upper(*stiffness, model.batches->mirror, workers);
+}
+
+void renew_corotational_tangent(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix& stiffness,
+                                const AssembledTets& assembled, Workers& workers) {
+  TetSweep sweep = reading_sweep(model, state);
+  sweep.new_rotations = state.rotations.data()->data();
+  sweep.forces = forces.data()->data();
+  sweep.values = stiffness.values.data();
+  sweep.tangent = SweepTangent::FrozenRotations;
+  sweep.assembled = &assembled;
+  sweep_all(sweep, *model.batches, workers);
 }
 
 double corotational_energy_uj(const TissueModel& model, const TissueState& state) {

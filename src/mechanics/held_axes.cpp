@@ -1,16 +1,14 @@
+#include "mechanics/held_axes.hpp"
+
 #include <incise/core/error.hpp>
-#include <incise/mechanics/tissue.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 namespace incise {
-namespace {
 
-/// Axes of one vertex whose equation is replaced: its constrained axes, or all of them when nothing of the body pulls
-/// on it.
-std::uint8_t held_axes(const TissueModel& model, BlockMatrix& matrix, std::span<const std::uint8_t> also_held,
+std::uint8_t held_axes(const TissueModel& model, const BlockMatrix& matrix, std::span<const std::uint8_t> also_held,
                        std::size_t v) {
   constexpr std::uint8_t kAll = 7;
   if (!also_held.empty() && also_held[v] != 0) return kAll;
@@ -23,12 +21,30 @@ std::uint8_t held_axes(const TissueModel& model, BlockMatrix& matrix, std::span<
   return axes;
 }
 
-}  // namespace
+void hold_right_side(std::uint8_t axes, Vec3& right_side) {
+  for (int i = 0; i < 3; ++i) {
+    if ((axes >> i & 1) != 0) right_side[i] = 0.0;
+  }
+}
+
+void hold_row(BlockMatrix& matrix, std::span<const std::uint8_t> held, std::size_t row) {
+  const BlockPattern& pattern = *matrix.pattern;
+  for (auto slot = pattern.row_start[row]; slot < pattern.row_start[row + 1]; ++slot) {
+    const auto column = static_cast<std::size_t>(pattern.column[static_cast<std::size_t>(slot)]);
+    if ((held[row] | held[column]) == 0) continue;
+    double* block = matrix.block(slot);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const bool is_held = (held[row] >> i & 1U) != 0 || (held[column] >> j & 1U) != 0;
+        if (is_held) block[3 * i + j] = row == column && i == j ? 1.0 : 0.0;
+      }
+    }
+  }
+}
 
 void hold_constrained(const TissueModel& model, BlockMatrix& matrix, std::span<Vec3> right_side,
                       std::span<const std::uint8_t> also_held) {
-  const BlockPattern& pattern = *model.pattern;
-  const std::size_t count = pattern.rows();
+  const std::size_t count = model.pattern->rows();
   INCISE_REQUIRE(matrix.pattern == model.pattern, "expected a matrix of the model's own pattern");
   INCISE_REQUIRE(
       right_side.size() == count && (also_held.empty() || also_held.size() == count),
@@ -37,20 +53,8 @@ void hold_constrained(const TissueModel& model, BlockMatrix& matrix, std::span<V
   for (std::size_t v = 0; v < count; ++v) held[v] = held_axes(model, matrix, also_held, v);
 
   for (std::size_t row = 0; row < count; ++row) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      if ((held[row] >> i & 1U) != 0) right_side[row][static_cast<int>(i)] = 0.0;
-    }
-    for (auto slot = pattern.row_start[row]; slot < pattern.row_start[row + 1]; ++slot) {
-      const auto column = static_cast<std::size_t>(pattern.column[static_cast<std::size_t>(slot)]);
-      if ((held[row] | held[column]) == 0) continue;
-      double* block = matrix.block(slot);
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-          const bool is_held = (held[row] >> i & 1U) != 0 || (held[column] >> j & 1U) != 0;
-          if (is_held) block[3 * i + j] = row == column && i == j ? 1.0 : 0.0;
-        }
-      }
-    }
+    hold_right_side(held[row], right_side[row]);
+    hold_row(matrix, held, row);
   }
 }
 

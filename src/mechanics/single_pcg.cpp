@@ -2,24 +2,21 @@
 
 #include "mechanics/kernels/kernels.hpp"
 #include "mechanics/large_pages.hpp"
+#include "mechanics/pcg_iteration.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace incise {
 namespace {
 
-constexpr std::size_t kAggregatesPerChunk = 4;
-constexpr std::size_t kCoarseRowsPerChunk = 192;
 constexpr std::size_t kLoadBeyondEnd = 4;
-
-double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 }  // namespace
 
 SinglePcg::SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSpace& coarse)
-    : pattern_(std::move(pattern)), vertex_(coarse.aggregates().vertices), start_(coarse.aggregates().start) {
+    : pattern_(std::move(pattern)), vertex_(coarse.aggregates().vertices), start_(coarse.aggregates().start),
+      is_coarse_dense_(coarse.is_dense()) {
   const std::size_t count = pattern_->rows();
   std::vector<std::int32_t> own(count);
   for (std::size_t i = 0; i < count; ++i) own[static_cast<std::size_t>(vertex_[i])] = static_cast<std::int32_t>(i);
@@ -59,17 +56,16 @@ void SinglePcg::for_aggregates(Workers& workers, const Body& body) const {
 }
 
 void SinglePcg::update(const BlockMatrix& matrix, std::span<const Mat3> inverse_diagonal, const CoarseSpace& coarse,
-                       bool has_new_coarse, Workers& workers) {
+                       bool has_new_coarse, std::span<const std::uint8_t> changed_rows, Workers& workers) {
   for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
-    const auto first = static_cast<std::size_t>(start_[begin]);
-    const auto last = static_cast<std::size_t>(start_[end]);
-    float* to = values_.data() + 9 * static_cast<std::size_t>(row_start_[first]);
-    for (auto slot = row_start_[first]; slot < row_start_[last]; ++slot, to += 9) {
-      const double* from = matrix.block(source_slot_[static_cast<std::size_t>(slot)]);
-      for (int k = 0; k < 9; ++k) to[k] = static_cast<float>(from[k]);
-    }
-    for (std::size_t i = first; i < last; ++i) {
+    for (auto i = static_cast<std::size_t>(start_[begin]); i < static_cast<std::size_t>(start_[end]); ++i) {
       const auto v = static_cast<std::size_t>(vertex_[i]);
+      if (!changed_rows.empty() && changed_rows[v] == 0) continue;
+      float* to = values_.data() + 9 * static_cast<std::size_t>(row_start_[i]);
+      for (auto slot = row_start_[i]; slot < row_start_[i + 1]; ++slot, to += 9) {
+        const double* from = matrix.block(source_slot_[static_cast<std::size_t>(slot)]);
+        for (int k = 0; k < 9; ++k) to[k] = static_cast<float>(from[k]);
+      }
       for (std::size_t column = 0; column < 3; ++column) {
         for (std::size_t k = 0; k < 3; ++k) {
           inverse_diagonal_[12 * i + 4 * column + k] =
@@ -80,6 +76,10 @@ void SinglePcg::update(const BlockMatrix& matrix, std::span<const Mat3> inverse_
     }
   });
   if (!has_new_coarse) return;
+  if (!is_coarse_dense_) {
+    cycle_ = rounded(coarse.cycle());
+    return;
+  }
   const std::span<const double> inverse = coarse.inverse();
   coarse_.resize(inverse.size());
   workers.for_each(inverse.size(), 65536, [&](std::size_t i) { coarse_[i] = static_cast<float>(inverse[i]); });
@@ -116,9 +116,13 @@ void SinglePcg::move(float alpha, Workers& workers) {
 /// The coarse part of M r; returns r · M r.
 double SinglePcg::precondition(Workers& workers) {
   const std::size_t n = motion_.size();
-  workers.for_chunks(n, kCoarseRowsPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
-    kernels().multiply_dense_rows(coarse_.data(), n, restricted_.data(), motion_.data(), begin, end);
-  });
+  if (is_coarse_dense_) {
+    workers.for_chunks(n, kCoarseRowsPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      kernels().multiply_dense_rows(coarse_.data(), n, restricted_.data(), motion_.data(), begin, end);
+    });
+  } else {
+    cycle_.apply(restricted_, motion_, workers);
+  }
   double product = sum_of(partial_rz_);
   for (std::size_t i = 0; i < n; ++i) product += static_cast<double>(restricted_[i]) * static_cast<double>(motion_[i]);
   return product;
@@ -147,26 +151,18 @@ void SinglePcg::turn(float beta, Workers& workers) {
 
 PcgReport SinglePcg::solve(std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings, Workers& workers) {
   load(b, workers);
-  move(0.0F, workers);
-  PcgReport report;
-  report.residual_mn = std::sqrt(sum_of(partial_rr_));
-  const double reference = settings.reference_mn > 0.0 ? settings.reference_mn : report.residual_mn;
-  const double target = settings.relative_tolerance * std::max(reference, settings.floor_mn);
-  double rz_before = 0.0;
-  while (!(report.residual_mn <= target) && report.iterations < settings.max_iterations) {
-    const double rz = precondition(workers);
-    turn(report.iterations == 0 ? 0.0F : static_cast<float>(rz / rz_before), workers);
-    const double pq = multiply(workers);
-    if (!(pq > 0.0) || !std::isfinite(rz)) {  // x is the last good iterate
-      report.is_indefinite = true;
-      break;
+  struct Sweeps {
+    SinglePcg& pcg;
+    Workers& workers;
+    double move(double alpha) {
+      pcg.move(static_cast<float>(alpha), workers);
+      return std::sqrt(sum_of(pcg.partial_rr_));
     }
-    move(static_cast<float>(rz / pq), workers);
-    rz_before = rz;
-    ++report.iterations;
-    report.residual_mn = std::sqrt(sum_of(partial_rr_));
-  }
-  report.converged = report.residual_mn <= target;
+    double precondition() { return pcg.precondition(workers); }
+    void turn(double beta) { pcg.turn(static_cast<float>(beta), workers); }
+    double multiply() { return pcg.multiply(workers); }
+  } sweeps{*this, workers};
+  const PcgReport report = iterate(sweeps, settings);
   for (std::size_t i = 0; i < vertex_.size(); ++i) {
     const auto v = static_cast<std::size_t>(vertex_[i]);
     x[v] = Vec3(x_[4 * i], x_[4 * i + 1], x_[4 * i + 2]);

@@ -19,9 +19,10 @@ class SinglePcg {
  public:
   SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSpace& coarse);
 
-  /// Rounds the matrix, the inverse of its diagonal blocks and, with `has_new_coarse`, the coarse inverse.
+  /// Rounds the rows of the matrix that changed (all, where no flags are given), the inverse of their diagonal blocks and, with
+  /// `has_new_coarse`, the coarse inverse.
   void update(const BlockMatrix& matrix, std::span<const Mat3> inverse_diagonal, const CoarseSpace& coarse,
-              bool has_new_coarse, Workers& workers);
+              bool has_new_coarse, std::span<const std::uint8_t> changed_rows, Workers& workers);
   /// As TwoLevelPcg::solve, for the matrix of the last update.
   PcgReport solve(std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings, Workers& workers);
 
@@ -42,7 +43,9 @@ class SinglePcg {
   std::vector<float> values_;              ///< 9 per own slot, and room for one load beyond the end
   std::vector<float> inverse_diagonal_;    ///< 12 per vertex: three columns of four
   std::vector<float> arm_, is_free_;       ///< 4 per vertex
-  std::vector<float> coarse_;              ///< n x n
+  bool is_coarse_dense_;
+  std::vector<float> coarse_;              ///< n x n, where the coarse inverse is dense
+  CoarseCycle<float> cycle_;               ///< where it is not
   std::vector<float> x_, r_, z_, p_, q_;   ///< 4 per vertex
   std::vector<float> restricted_, motion_; ///< n
   std::vector<double> partial_rr_, partial_rz_, partial_pq_;

@@ -45,8 +45,7 @@ class TangentSolver {
   int cg_iterations_ = 0;
   int cg_systems_ = 0;
   int factorisations_ = 0;
-  int last_iterations_ = 0;  // of the last system, and of the first after the coarse matrix was made
-  int fresh_iterations_ = 0;
+  int fresh_iterations_ = 0;  // per digit, of the first system after the coarse matrix was made
   bool is_coarse_stale_ = true;
 };
 

@@ -115,23 +115,25 @@ std::shared_ptr<const TetBatches> make_tet_batches(const TissueModel& model) {
   return result;
 }
 
-void mirror_upper(BlockMatrix& matrix, std::span<const std::int32_t> mirror, Workers& workers) {
+void mirror_row(BlockMatrix& matrix, std::span<const std::int32_t> mirror, std::size_t row) {
   const BlockPattern& pattern = *matrix.pattern;
-  workers.for_each(pattern.rows(), kRowsPerChunk, [&](std::size_t row) {
-    for (auto slot = pattern.row_start[row]; slot < pattern.diagonal[row]; ++slot) {
-      const double* from = matrix.block(mirror[static_cast<std::size_t>(slot)]);
-      double* to = matrix.block(slot);
-      to[0] = from[0];
-      to[1] = from[3];
-      to[2] = from[6];
-      to[3] = from[1];
-      to[4] = from[4];
-      to[5] = from[7];
-      to[6] = from[2];
-      to[7] = from[5];
-      to[8] = from[8];
-    }
-  });
+  for (auto slot = pattern.row_start[row]; slot < pattern.diagonal[row]; ++slot) {
+    const double* from = matrix.block(mirror[static_cast<std::size_t>(slot)]);
+    double* to = matrix.block(slot);
+    to[0] = from[0];
+    to[1] = from[3];
+    to[2] = from[6];
+    to[3] = from[1];
+    to[4] = from[4];
+    to[5] = from[7];
+    to[6] = from[2];
+    to[7] = from[5];
+    to[8] = from[8];
+  }
+}
+
+void mirror_upper(BlockMatrix& matrix, std::span<const std::int32_t> mirror, Workers& workers) {
+  workers.for_each(matrix.pattern->rows(), kRowsPerChunk, [&](std::size_t row) { mirror_row(matrix, mirror, row); });
 }
 
 }  // namespace incise

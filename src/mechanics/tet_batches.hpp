@@ -30,6 +30,8 @@ struct TetBatches {
 /// For each block of a symmetric pattern the slot of its transpose.
 [[nodiscard]] std::vector<std::int32_t> transposed_slots(const BlockPattern& pattern);
 
+/// Copies the transposes of the blocks above the diagonal to those below it, in one row.
+void mirror_row(BlockMatrix& matrix, std::span<const std::int32_t> mirror, std::size_t row);
 /// Copies the transposes of the blocks above the diagonal to those below it.
 void mirror_upper(BlockMatrix& matrix, std::span<const std::int32_t> mirror, Workers& workers);
 

@@ -1,5 +1,6 @@
 #include "mechanics/block_product.hpp"
 #include "mechanics/coarse_space.hpp"
+#include "mechanics/pcg_iteration.hpp"
 #include "mechanics/single_pcg.hpp"
 
 #include <incise/core/error.hpp>
@@ -14,12 +15,6 @@
 
 namespace incise {
 namespace {
-
-constexpr std::size_t kAggregatesPerChunk = 4;
-
-double sum_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
 
 /// Bits of the axes of a diagonal block that hold_constrained turned into identity rows.
 std::uint8_t identity_axes(const double* block) {
@@ -141,10 +136,15 @@ TwoLevelPcg::~TwoLevelPcg() = default;
 TwoLevelPcg::TwoLevelPcg(TwoLevelPcg&&) noexcept = default;
 TwoLevelPcg& TwoLevelPcg::operator=(TwoLevelPcg&&) noexcept = default;
 
-void TwoLevelPcg::update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers) {
+void TwoLevelPcg::update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers,
+                         std::span<const std::uint8_t> changed_rows) {
   Data& d = *data_;
   INCISE_REQUIRE(matrix.pattern == d.pattern, "expected a matrix of the pattern that the solver was made for");
+  if (!d.has_coarse) changed_rows = {};  // nothing was taken yet
+  INCISE_REQUIRE(changed_rows.empty() || changed_rows.size() == d.pattern->rows(),
+                 fmt::format("expected one flag per row, found {}", changed_rows.size()));
   workers.for_each(d.pattern->rows(), kRowsPerChunk, [&](std::size_t v) {
+    if (!changed_rows.empty() && changed_rows[v] == 0) return;
     const double* block = matrix.block(d.pattern->diagonal[v]);
     const Mat3 diagonal = Eigen::Map<const Mat3>(block);
     const double minor = diagonal(0, 0) * diagonal(1, 1) - diagonal(0, 1) * diagonal(1, 0);
@@ -161,7 +161,7 @@ void TwoLevelPcg::update(const BlockMatrix& matrix, bool refresh_coarse, Workers
     d.coarse.refresh(matrix, workers);
     d.has_coarse = true;
   }
-  if (d.single) d.single->update(matrix, d.inverse_diagonal, d.coarse, has_new_coarse, workers);
+  if (d.single) d.single->update(matrix, d.inverse_diagonal, d.coarse, has_new_coarse, changed_rows, workers);
 }
 
 PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b, std::span<Vec3> x,
@@ -181,28 +181,20 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
   std::fill(x.begin(), x.end(), Vec3::Zero());
   std::fill(d.p.begin(), d.p.end(), Vec3::Zero());
   std::fill(d.q.begin(), d.q.end(), Vec3::Zero());
-  d.move_and_precondition(0.0, x, workers);
-
-  PcgReport report;
-  report.residual_mn = std::sqrt(sum_of(d.partial_rr));
-  const double reference = settings.reference_mn > 0.0 ? settings.reference_mn : report.residual_mn;
-  const double target = settings.relative_tolerance * std::max(reference, settings.floor_mn);
-  double rz_before = 0.0;
-  while (!(report.residual_mn <= target) && report.iterations < settings.max_iterations) {
-    const double rz = d.finish_preconditioning(workers);
-    d.turn_direction(report.iterations == 0 ? 0.0 : rz / rz_before, workers);
-    const double pq = d.apply_matrix(matrix, workers);
-    if (!(pq > 0.0) || !std::isfinite(rz)) {  // x is the last good iterate
-      report.is_indefinite = true;
-      return report;
+  struct Sweeps {
+    Data& data;
+    const BlockMatrix& matrix;
+    std::span<Vec3> x;
+    Workers& workers;
+    double move(double alpha) {
+      data.move_and_precondition(alpha, x, workers);
+      return std::sqrt(sum_of(data.partial_rr));
     }
-    d.move_and_precondition(rz / pq, x, workers);
-    rz_before = rz;
-    ++report.iterations;
-    report.residual_mn = std::sqrt(sum_of(d.partial_rr));
-  }
-  report.converged = report.residual_mn <= target;
-  return report;
+    double precondition() { return data.finish_preconditioning(workers); }
+    void turn(double beta) { data.turn_direction(beta, workers); }
+    double multiply() { return data.apply_matrix(matrix, workers); }
+  } sweeps{d, matrix, x, workers};
+  return iterate(sweeps, settings);
 }
 
 }  // namespace incise

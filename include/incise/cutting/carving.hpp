@@ -53,7 +53,8 @@ struct CutStepReport {
   bool is_finite = true;                      ///< false: positions were left as before the step
 };
 
-/// Memory and factorisations that steps reuse; never affects a result beyond rounding of the solver's tolerance.
+/// Memory, stiffness and factorisations that steps reuse; never affects a result beyond the solver's tolerance. A cut that goes on from
+/// its state before a renewal step (is_renewal_step), in a workspace made with the same positions and precision, gives the same bits.
 class CutWorkspace {
  public:
   /// @param precision  of the linear solves; single suffices for tolerances of 1e-2 and more.

@@ -51,7 +51,8 @@ class TwoLevelPcg {
 
   /// Takes the diagonal blocks of `matrix` (in single precision: all of it), and with `refresh_coarse` its coarse matrix too. Throws InvalidArgument if
   /// not positive definite.
-  void update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers);
+  /// @param changed_rows  per row of blocks: 0 where it is that of the last update(); empty: all may have changed.
+  void update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers, std::span<const std::uint8_t> changed_rows = {});
   /// Solves matrix * x = b from x = 0. Deterministic for any thread count. In single precision `matrix` has to be that
   /// of the last update().
   PcgReport solve(const BlockMatrix& matrix, std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings,

@@ -25,6 +25,14 @@ struct alignas(64) TetBatch {
 
 enum class SweepTangent { None, FrozenRotations, Exact, Projected };
 
+/// What of the tangent of frozen rotations is in the matrix already.
+struct AssembledTets {
+  double* rotations = nullptr;        ///< 9 per tet, by columns: those with which its blocks were made
+  std::uint8_t* is_in = nullptr;      ///< per tet: 1 where its blocks are in the matrix
+  std::uint8_t* is_changed = nullptr; ///< per vertex: set to 1 for the corners of tets whose blocks are changed
+  double turn_limit = 0.0;            ///< |R - R before|² (Frobenius) above which a tet's blocks are made anew
+};
+
 /// One pass over some batches: rotations, and what is asked for of forces, tangent and energy.
 struct TetSweep {
   const TetBatch* batches;
@@ -36,6 +44,9 @@ struct TetSweep {
   double* forces;               ///< 3 per vertex, added to, mN; null: not wanted
   double* values;  ///< 9 per block, by rows, those on and above the diagonal added to, mN/mm; null: not wanted
   SweepTangent tangent;
+  /// Null: every live tet's tangent is added. Else (frozen rotations only) the difference to what is in the matrix: tets that turned,
+  /// went or came; kept up to date.
+  const AssembledTets* assembled;
   /// Rotation of one tet (f and r by rows, r holds the guess) where Newton's method is not sure to find the maximum.
   void (*robust_rotation)(const double* f, double* r);
 };
@@ -77,6 +88,10 @@ struct KernelTable {
   /// y = C c for a dense n x n matrix stored by rows.
   void (*multiply_dense_rows)(const float* matrix, std::size_t n, const float* c, float* y, std::size_t begin,
                               std::size_t end);
+  /// Sum of 6 x 6 blocks (six columns of eight numbers) times six of the eight numbers of x at each block's column; eight numbers, the
+  /// last two 0.
+  void (*sum_blocks_double)(const double* blocks, const std::int32_t* column, std::size_t count, const double* x, double* sum);
+  void (*sum_blocks_single)(const float* blocks, const std::int32_t* column, std::size_t count, const float* x, float* sum);
 };
 
 /// The kernels of active_isa().

@@ -6,6 +6,6 @@
 namespace incise {
 
 const KernelTable kPortableKernels{sweep_tets, multiply_double, multiply_dense,     multiply_four,
-                                  move_four,  turn_four,       multiply_dense_rows};
+                                  move_four,  turn_four,       multiply_dense_rows, sum_blocks_double, sum_blocks_single};
 
 }  // namespace incise
