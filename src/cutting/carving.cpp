@@ -98,21 +98,23 @@ double norm_of_sums(std::vector<std::pair<VertexId, Vec3>> pulls) {
   return std::sqrt(squared);
 }
 
-/// Adds the pull of the tool on bonded tets, as if it were at `next` already, and its exact (constant) tangent.
+/// Adds the pull of the tool on bonded tets and its exact (constant) tangent. The tool pulls from where it stood when contact was last looked
+/// at: what it holds and where it holds it belong to one moment. From `next` it would pull tissue that it has let go on the way there, and
+/// the drag would grow with the step (docs/models/cutting.md).
 /// The share of a tet that is held is that of the last pose, so the pull is linear in the step.
 /// @returns the stiffness of each bond, mN/mm, in their order; `scale` receives the norm of the pulls over all vertices, mN.
 std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Tool& tool, const CutState& state,
-                              const ToolPose& next, std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
+                              std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
   std::vector<double> stiffnesses;
   std::vector<std::pair<VertexId, Vec3>> pulls;  // on vertices, one entry per tet that shares the vertex
   const double limit = touching_distance_mm(tool, settings);
   const ToolCore core(tool, state.tool);
-  const Mat3 held = held_directions(tool, next);
+  const Mat3 held = held_directions(tool, state.tool);
   for (const Bond& bond : state.bonds) {
     const auto corners = corners_of(model.mesh, state.tissue.positions, bond.tet.index());
     const double share = share_within(corners, core, limit);
     const double stiffness = settings.bond_stiffness_kpa_mm2 * model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
-    const Vec3 pull = -stiffness * (held * (centroid(corners) - next.tip_mm - bond.offset_mm));
+    const Vec3 pull = -stiffness * (held * (centroid(corners) - state.tool.tip_mm - bond.offset_mm));
     stiffnesses.push_back(stiffness);
     const Mat3 block = stiffness / 16.0 * held;
     for (std::size_t a = 0; a < 4; ++a) {
@@ -129,12 +131,12 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   return stiffnesses;
 }
 
-/// Lets tissue that the tool, now in pose `next`, has left too far behind slip: the place where it is held follows.
-void slip(const TissueModel& model, const Tool& tool, const ToolPose& next, double slip_mm, CutState& state, CutStepReport& report) {
-  const Mat3 held = held_directions(tool, next);
+/// Lets tissue that the tool has left too far behind slip: the place where it is held follows.
+void slip(const TissueModel& model, const Tool& tool, double slip_mm, CutState& state, CutStepReport& report) {
+  const Mat3 held = held_directions(tool, state.tool);
   for (Bond& bond : state.bonds) {
     const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, bond.tet.index()));
-    const Vec3 behind = held * (middle - next.tip_mm - bond.offset_mm);
+    const Vec3 behind = held * (middle - state.tool.tip_mm - bond.offset_mm);
     const double distance = behind.norm();
     if (distance <= slip_mm) continue;
     bond.offset_mm += (1.0 - slip_mm / distance) * behind;
@@ -142,21 +144,21 @@ void slip(const TissueModel& model, const Tool& tool, const ToolPose& next, doub
   }
 }
 
-/// What the held tissue, where it came to lie, does to the tool in pose `next`: force, mN, and torque about the tip, mN mm.
-/// @returns for each bond the work that the tool did on its tet in this step per rest volume, kPa, from the pull at the step's end and the
-///          way of the place of the tool that holds it; 0 where the tet did work on the tool.
+/// What the held tissue, where it came to lie, does to the tool: force, mN, and torque about the tip, mN mm.
+/// @returns for each bond the work that the tool did on its tet in this step per rest volume, kPa, from that pull and the way to
+///          `next` of the place of the tool that holds it; 0 where the tet did work on the tool.
 std::vector<double> load_tool(const TissueModel& model, const CutState& state, const Tool& tool, const ToolPose& next,
                               std::span<const double> stiffnesses, CutStepReport& report) {
-  const Mat3 held = held_directions(tool, next);
-  const Eigen::Quaterniond back = turn_of_held(tool, next, state.tool);
+  const Mat3 held = held_directions(tool, state.tool);
+  const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, next);
   std::vector<double> works_kpa;
   for (std::size_t b = 0; b < state.bonds.size(); ++b) {
     const Bond& bond = state.bonds[b];
     const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, bond.tet.index()));
-    const Vec3 force = stiffnesses[b] * (held * (middle - next.tip_mm - bond.offset_mm));
+    const Vec3 force = stiffnesses[b] * (held * (middle - state.tool.tip_mm - bond.offset_mm));
     report.tool_force_mn += force;
-    report.tool_torque_mn_mm += (middle - next.tip_mm).cross(force);
-    const Vec3 way = next.tip_mm - state.tool.tip_mm + bond.offset_mm - back * bond.offset_mm;
+    report.tool_torque_mn_mm += (middle - state.tool.tip_mm).cross(force);
+    const Vec3 way = next.tip_mm - state.tool.tip_mm + turn * bond.offset_mm - bond.offset_mm;
     works_kpa.push_back(std::max(0.0, -force.dot(way)) / model.volumes_mm3[bond.tet.index()]);
   }
   return works_kpa;
@@ -183,7 +185,7 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   std::vector<double> stiffnesses;
   if (next) {
     for (const Bond& bond : state.bonds) scratch.stiffness.lend(model, bond.tet);
-    stiffnesses = add_bonds(model, settings, tool, state, *next, scratch.right_side, scratch.stiffness.matrix(), bond_scale);
+    stiffnesses = add_bonds(model, settings, tool, state, scratch.right_side, scratch.stiffness.matrix(), bond_scale);
   }
   if (is_fresh || state.record.removals.size() != scratch.carved_then) {
     find_orphans(model, state.tissue, scratch.is_orphan);
@@ -334,19 +336,16 @@ CutStepReport advance(const TissueModel& model, const CutSettings& settings, con
   CutWorkspace::Data& scratch = workspace.data();
   CutStepReport report;
   scratch.before = state.tissue.positions;
-  if (!next) {
-    state.bonds.clear();
-  } else {
-    // What the tool holds turns with it.
-    const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, *next);
-    for (Bond& bond : state.bonds) bond.offset_mm = turn * bond.offset_mm;
-  }
+  if (!next) state.bonds.clear();
   const std::vector<double> stiffnesses = move_tissue(model, settings, tool, state, scratch, next, step_s, workers, report);
   state.time_s += step_s;
   ++state.step;
   if (!next || !report.is_finite) return report;
-  if (settings.slip_mm) slip(model, tool, *next, *settings.slip_mm, state, report);
+  if (settings.slip_mm) slip(model, tool, *settings.slip_mm, state, report);
   const std::vector<double> works_kpa = load_tool(model, state, tool, *next, stiffnesses, report);
+  // What the tool holds turns with it.
+  const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, *next);
+  for (Bond& bond : state.bonds) bond.offset_mm = turn * bond.offset_mm;
   follow_contact(model, settings, tool, state, scratch.before, *next, step_s, works_kpa, workers, report);
   state.tool = *next;
   const std::vector<TetId> due = fully_dosed(state);

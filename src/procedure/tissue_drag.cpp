@@ -12,7 +12,7 @@ constexpr int kHalvings = 60;  // of the time in which a phase's end is searched
 class Course {
  public:
   Course(const ToolPath& path, const IncisionSettings& settings)
-      : program_(path, settings.cut),
+      : program_(path, settings.cut, settings.tool),
         speed_mm_s_(settings.cut.speed_mm_s),
         least_span_s_(0.5 * settings.cut.step_s()),
         begin_s_(last_moment([](ToolProgram::Phase phase) { return phase == ToolProgram::Phase::Plunge; })),

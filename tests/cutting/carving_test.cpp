@@ -234,7 +234,12 @@ TEST_F(Carve, TissueThatSlipsStaysWithinTheSlipBehindTheTool) {
   CutSettings settings;
   settings.dullness = 1000.0;
   settings.slip_mm = 0.1;
-  const CutState state = run(settings, 10.0, 11.5, 6, 0.02);
+  Workers workers(1);
+  CutState state = begin_cut(model_, rest_state(model_), standing_at(10.0));
+  CutWorkspace workspace(model_, state.tissue.positions);
+  for (const double x : {10.25, 10.5, 10.75, 11.0, 11.25, 11.5, 11.5}) {  // the tool pulls from where it stood before the step
+    static_cast<void>(advance(model_, settings, needle_, state, workspace, standing_at(x), 0.02, workers));
+  }
   EXPECT_FALSE(state.bonds.empty());
   const ToolPose tool = standing_at(11.5);
   for (const Bond& bond : state.bonds) {

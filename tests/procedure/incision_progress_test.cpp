@@ -54,7 +54,7 @@ class InterruptedIncision : public testing::RingInABlock {
 
   /// Lengthens the overlap until the tool is out one step before a renewal step.
   void end_before_a_renewal_step() {
-    const double steps = ToolProgram(path_, settings_.cut).duration_s() / settings_.cut.step_s();
+    const double steps = ToolProgram(path_, settings_.cut, settings_.tool).duration_s() / settings_.cut.step_s();
     const int wanting = 19 - static_cast<int>(std::ceil(steps)) % 20;
     settings_.cut.overlap_mm += wanting * settings_.cut.advance_per_step_mm;
   }

@@ -73,7 +73,7 @@ class FolderStoreTest : public ::testing::Test {
       cut.incision.record.removals.push_back(removal);
     }
     cut.incision.final_tumor_edge = testing::circle(2.0, 12, Vec3(5, 10, 5));
-    cut.incision.steps.push_back({0.5, 3, 20, 2, 4, Vec3(1, 2, 3), Vec3(10, 20, 25)});
+    cut.incision.steps.push_back({0.5, 3, true, 20, 2, 0, 4, Vec3(1, 2, 3), Vec3(10, 20, 25)});
     cut.incision.slipped_bonds = 4;
     cut.incision.peak_tool_torque_mn_mm = 33.0;
     return cut;
