@@ -296,7 +296,7 @@ class CaseTest(CommandTest):
 
     def test_a_step_longer_than_the_needle_is_thick_is_refused_before_anything_runs(self):
         self.change(cut={"advance_per_step_mm": 1.5})
-        self.assert_case_refused("simulate", BAD_CASE, "case.yaml: cut.advance_per_step_mm: found 1.5, expected", "at most the needle's diameter")
+        self.assert_case_refused("simulate", BAD_CASE, "case.yaml: cut.advance_per_step_mm: found 1.5, expected", "at most the tool's diameter or thickness")
 
     SURFACE_MM = 11.7  # of the stretched block
 

@@ -103,7 +103,7 @@ class CheckpointTest(CommandTest):
     def test_a_checkpoint_of_other_settings_is_refused_by_resume_and_passed_over_without_it(self):
         self.stop("simulate", self.checkpoint, signal.SIGINT)
         left = self.checkpoint.read_bytes()
-        small_case.write_case(self.case, {"cut": {"advance_per_step_mm": 0.8, "frames": 2, "dullness": 8}})
+        small_case.write_case(self.case, {"cut": {"advance_per_step_mm": 0.8, "frames": 2, "dullness": 4}})
         done = self.incise("simulate", "case", "-o", self.out, "--resume")
         self.assert_refused(done, BAD_DATA, "as_planned.checkpoint", "key", "of a cut made by incise", "of this case, its settings and inputs")
         self.assertEqual(self.checkpoint.read_bytes(), left)

@@ -21,7 +21,7 @@ CASE = {
     },
     "tumor": {"contour": "tumor.csv"},
     "plan": {"lateral_margin_mm": 5, "depth_mm": 5, "waypoints": 24},
-    "cut": {"advance_per_step_mm": 0.8, "frames": 2},
+    "cut": {"dullness": 5, "advance_per_step_mm": 0.8, "frames": 2},
     "robot": {"T_robot_sim": [[0, 1, 0, 500], [-1, 0, 0, 20], [0, 0, 1, 200], [0, 0, 0, 1]]},
 }
 

@@ -64,7 +64,7 @@ std::vector<FuzzBody> fuzz_bodies(const std::filesystem::path& data_dir) {
   std::vector<FuzzBody> bodies;
   bodies.push_back({"block", held(make_block({20, 16, 12}, {10, 8, 6}))});
   bodies.push_back({"fine block", held(make_block({20, 16, 12}, {16, 12, 9}))});
-  bodies.push_back({"irregular block", held(irregular_block({20, 16, 12}, {10, 8, 6}, 0.3, 3))});
+  bodies.push_back({"irregular block", held(irregular_block({20, 16, 12}, {10, 8, 6}, 0.2, 3))});
   bodies.push_back({"block with slivers", held(block_with_slivers())});
   bodies.push_back({"sheet", held(make_block({40, 30, 1}, {20, 15, 1}))});
   bodies.push_back({"beam", held(make_block({80, 4, 4}, {60, 3, 3}))});
