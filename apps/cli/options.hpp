@@ -67,6 +67,8 @@ class Application {
 
 /// Prints the result: with --json the one object on standard output, else a short table.
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result);
+/// The same for a whole loop: for a person, the measures that matter of the two cuts side by side.
+void print_study(const CommonOptions& options, const nlohmann::ordered_json& result);
 
 /// 0 for Success, 130 for Cancelled, 4 for every other outcome.
 [[nodiscard]] int status_of(Outcome outcome);

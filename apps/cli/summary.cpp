@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
 
 namespace incise::cli {
@@ -36,7 +37,43 @@ void print_lines(const nlohmann::ordered_json& object, const std::string& prefix
   }
 }
 
+struct StudyLine {
+  const char* text;
+  const char* pointer;  // into the summary of one cut
+};
+constexpr std::array<StudyLine, 12> kStudyLines{{{"outcome", "/outcome"},
+                                                 {"ring closed", "/closed_loop"},
+                                                 {"mid-line: mean |error|, mm", "/abs_error_mm/mean"},
+                                                 {"mid-line: greatest |error|, mm", "/abs_error_mm/max"},
+                                                 {"mid-line: mean signed error, mm", "/signed_error_mm/mean"},
+                                                 {"inner edge: mean |error|, mm", "/inner_edge/abs_error_mm/mean"},
+                                                 {"centroid shift, mm", "/centroid_shift_mm"},
+                                                 {"depth reached: least, mm", "/depth_reached_mm/min"},
+                                                 {"lag when cut: mean, mm", "/lag_mm/mean"},
+                                                 {"kerf to tumour surface: least, mm", "/deep_margin_mm/nearest"},
+                                                 {"greatest tool force, mN", "/peak_tool_force_mn"},
+                                                 {"time of the cut, s", "/wall_s"}}};
+
+std::string shown_at(const nlohmann::ordered_json& result, const char* part, const char* pointer) {
+  const auto cut = result.find(part);
+  const nlohmann::ordered_json::json_pointer place(pointer);
+  return cut != result.end() && cut->is_object() && cut->contains(place) ? shown(cut->at(place)) : "-";
+}
+
 }  // namespace
+
+void print_study(const CommonOptions& options, const nlohmann::ordered_json& result) {
+  if (options.json) return print_result(options, result);
+  fmt::print("{:<36} {:>16} {:>16}\n", "simulated", "as planned", "corrected");
+  for (const StudyLine& line : kStudyLines) {
+    fmt::print("{:<36} {:>16} {:>16}\n", line.text, shown_at(result, "before", line.pointer), shown_at(result, "after", line.pointer));
+  }
+  fmt::print("\n");
+  for (const char* key : {"outcome", "accepted", "specimen_is", "report", "wall_s"}) {
+    if (const auto value = result.find(key); value != result.end() && !value->is_structured()) fmt::print("{:<36} {}\n", key, shown(*value));
+  }
+  fmt::print("every figure: --json, or incision.json in the folder of each cut\n");
+}
 
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result) {
   if (options.json) {

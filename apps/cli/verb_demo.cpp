@@ -37,7 +37,7 @@ void add_demo(Application& application) {
         StudyRun study(specimen_for(root / "specimen", options.seed, console), root, options, *cut);
         nlohmann::ordered_json result;
         const int status = run_whole_loop(study, options, console, result);
-        print_result(options, result);
+        print_study(options, result);
         return status;
       });
   add_cut_options(*verb, *cut);

@@ -14,7 +14,7 @@ void add_run(Application& application) {
         StudyRun study(*case_path, output_of(*case_path, options), options, *cut);
         nlohmann::ordered_json result;
         const int status = run_whole_loop(study, options, console, result);
-        print_result(options, result);
+        print_study(options, result);
         return status;
       });
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
