@@ -84,7 +84,10 @@ ToolProgram::ToolProgram(const ToolPath& path, const CutSettings& settings, cons
       left -= distance;
     }
   }
-  keys_.push_back({keys_.back().time_s + settings.dwell_s(), keys_.back().pose, Phase::Dwell});
+  keys_.push_back({keys_.back().time_s + 1.0 / settings.dwell_rate_per_s(), keys_.back().pose, Phase::Dwell});
+  for (std::size_t i = 1; i < keys_.size(); ++i) {
+    keys_[i].way_mm = keys_[i - 1].way_mm + (keys_[i].pose.tip_mm - keys_[i - 1].pose.tip_mm).norm();
+  }
 }
 
 std::size_t ToolProgram::key_after(double time_s) const {
@@ -99,6 +102,14 @@ ToolPose ToolProgram::pose_at(double time_s) const {
   const Key& to = keys_[key_after(time_s)];
   const Key& from = keys_[key_after(time_s) - 1];
   return between(from.pose, to.pose, (time_s - from.time_s) / (to.time_s - from.time_s));
+}
+
+double ToolProgram::way_mm_at(double time_s) const {
+  if (time_s <= 0.0) return 0.0;
+  if (time_s >= duration_s()) return keys_.back().way_mm;
+  const Key& to = keys_[key_after(time_s)];
+  const Key& from = keys_[key_after(time_s) - 1];
+  return from.way_mm + (to.way_mm - from.way_mm) * (time_s - from.time_s) / (to.time_s - from.time_s);
 }
 
 ToolProgram::Phase ToolProgram::phase_at(double time_s) const { return keys_[key_after(time_s)].phase; }

@@ -13,7 +13,6 @@ class Course {
  public:
   Course(const ToolPath& path, const IncisionSettings& settings)
       : program_(path, settings.cut, settings.tool),
-        speed_mm_s_(settings.cut.speed_mm_s),
         least_span_s_(0.5 * settings.cut.step_s()),
         begin_s_(last_moment([](ToolProgram::Phase phase) { return phase == ToolProgram::Phase::Plunge; })),
         end_s_(last_moment([](ToolProgram::Phase phase) { return phase != ToolProgram::Phase::Dwell; })) {
@@ -22,7 +21,7 @@ class Course {
     to_the_right_ = is_outside_right ? 1.0 : -1.0;
   }
 
-  [[nodiscard]] double arclength_mm(double time_s) const { return speed_mm_s_ * (on_path(time_s) - begin_s_); }
+  [[nodiscard]] double arclength_mm(double time_s) const { return program_.way_mm_at(on_path(time_s)) - program_.way_mm_at(begin_s_); }
 
   /// Unit direction of the tip's motion at a time: while it plunges, that in which it sets out; once it stands, that in
   /// which it came. nullopt if the tip does not move.
@@ -54,7 +53,6 @@ class Course {
   }
 
   ToolProgram program_;
-  double speed_mm_s_;
   double least_span_s_;
   double begin_s_;  // the tip leaves the first waypoint
   double end_s_;    // and stands

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -94,7 +95,13 @@ class FieldReader {
   void operator()(const char* name, std::size_t& value) { value = up_to(name, std::numeric_limits<std::int64_t>::max()); }
   void operator()(const char* name, std::uint8_t& value) { value = flag(name); }
   void operator()(const char* name, bool& value) { value = flag(name) != 0; }
-  void operator()(const char* name, RemovalCause& cause) { cause = flag(name) == 0 ? RemovalCause::Dwell : RemovalCause::LooseFragment; }
+  void operator()(const char* name, RemovalCause& cause) {
+    const auto number = take<std::uint8_t>(name);
+    const auto known = std::find_if(kRemovalCauses.begin(), kRemovalCauses.end(),
+                                    [number](RemovalCause each) { return static_cast<std::uint8_t>(each) == number; });
+    if (known == kRemovalCauses.end()) fail<std::uint8_t>(name, fmt::format("{}", number), "the number of a cause");
+    cause = *known;
+  }
   void operator()(const char* name, TetId& tet) { tet = TetId(up_to(name, tets_ - 1)); }
   void operator()(const char* name, Vec3& v) {
     for (int i = 0; i < 3; ++i) (*this)(name, v[i]);

@@ -241,7 +241,7 @@ void describe_tool(CaseFile& file, FieldVisitor& v) {
 void describe_toughness(ToughnessVariation& toughness, FieldVisitor& v) {
   static constexpr std::array<Column, 2> kColumns{{
       {{"label", "", "Value of the mesh's cell array 'label'."}, {-1e9, 1e9}, true, true},
-      {{"toughness", "", "There; the reference tissue has 1."}, kPositive},
+      {{"toughness", "", "There; the reference tissue has 1."}, {1e-3, 1e3}},
   }};
   std::vector<Row> rows;
   for (const LabelToughness& l : toughness.labels) rows.push_back({static_cast<double>(l.label), l.toughness});
@@ -260,14 +260,14 @@ void describe_cut(Case& c, FieldVisitor& v) {
   v.number({"power_exponent", "", "Contact cuts (plan.power_w / reference_power_w) to this times as fast; 0: power has no effect."},
            c.cut.power_exponent, {0.0, 10.0});
   v.optional_number({"tear_energy_kpa", "kPa", "Work of the tool per volume at which held tissue tears; absent: it does not."},
-                    c.cut.tear_energy_kpa, kPositive);
+                    c.cut.tear_energy_kpa, {1e-3, 1e6});
   v.optional_number({"slip_mm", "mm", "Tissue that the tool has left this far behind slips; absent: never."}, c.cut.slip_mm, kPositive);
   describe_toughness(c.toughness, v);
   v.number({"advance_per_step_mm", "mm", "Tool travel in one simulation step, at most the tool's diameter or thickness."},
            c.cut.advance_per_step_mm, {0.01, 10.0});
   v.number({"reach_mm", "mm", "Tissue is in contact within the tool's radius plus this of its core."}, c.cut.reach_mm, {0.0, 5.0});
   v.number({"bond_stiffness_kpa_mm2", "kPa/mm2", "Pull of the tool on tissue that it holds, per volume and offset; 0: no drag."},
-           c.cut.bond_stiffness_kpa_mm2, kNotNegative);
+           c.cut.bond_stiffness_kpa_mm2, {0.0, 1e6});
   v.number({"overlap_mm", "mm", "A ring is cut this far beyond its start."}, c.cut.overlap_mm, {0.0, 50.0});
   v.number({"residual_tolerance", "", "Of each step's linear solve, relative to the contact force."}, c.cut.residual_tolerance,
            {0.0, 1.0, true, true});
@@ -277,12 +277,12 @@ void describe_cut(Case& c, FieldVisitor& v) {
 
 void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
   v.begin_group({"thermal", "", "How far beside the cut heat damages tissue, at plan.power_w and plan.speed_mm_s. Not calibrated."});
-  v.number({"conductivity_w_m_k", "W/(m K)", "Of heat in tissue; muscle in the IT'IS database."}, t.conductivity_w_m_k, {0.0, 100.0, true, false});
-  v.number({"heat_capacity_mj_m3_k", "MJ/(m3 K)", "Per volume; muscle in the IT'IS database."}, t.heat_capacity_mj_m3_k, {0.0, 100.0, true, false});
+  v.number({"conductivity_w_m_k", "W/(m K)", "Of heat in tissue; muscle in the IT'IS database."}, t.conductivity_w_m_k, {0.01, 100.0});
+  v.number({"heat_capacity_mj_m3_k", "MJ/(m3 K)", "Per volume; muscle in the IT'IS database."}, t.heat_capacity_mj_m3_k, {0.01, 100.0});
   v.number({"body_c", "°C", "Temperature of the tissue before the cut."}, t.body_c, {-20.0, 60.0});
   v.number({"damage_c", "°C", "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); above body_c."}, t.damage_c, {-20.0, 200.0});
   v.number({"absorbed_fraction", "", "Share of the power that heats the tissue beside the kerf; 1: an upper bound."}, t.absorbed_fraction,
-           {0.0, 1.0, true, false});
+           {0.001, 1.0});
   v.end_group();
 }
 

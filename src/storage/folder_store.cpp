@@ -145,7 +145,7 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
     if (is_stale(static_cast<Product>(later))) std::filesystem::remove_all(folder(static_cast<Product>(later)));
   }
   std::filesystem::remove_all(root_ / "program");
-  remove_checkpoints_from(product);
+  remove_checkpoints_of_no_use(product);
 }
 
 bool FolderStore::is_stale(Product product) {

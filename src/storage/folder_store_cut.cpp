@@ -27,9 +27,6 @@ std::string maker() { return fmt::format("incise {} ({}), {}", version(), source
 
 std::string short_key(const std::string& key) { return key.substr(0, 12); }
 
-/// Each stands in files by its number.
-constexpr std::array<RemovalCause, 3> kCauses{RemovalCause::Dwell, RemovalCause::LooseFragment, RemovalCause::Tear};
-
 Product product_of(CutRole role) { return role == CutRole::AsPlanned ? Product::AsPlanned : Product::Corrected; }
 
 /// The live tets at one moment; the cell array `tet` keeps their place in the uncut mesh.
@@ -79,7 +76,7 @@ TetMesh removed_mesh(const TetMesh& mesh, const Points& stretched, const CutReco
 
 RemovalCause cause_from(const nlohmann::ordered_json& json, const std::filesystem::path& file) {
   const int number = json.get<int>();
-  for (const RemovalCause cause : kCauses) {
+  for (const RemovalCause cause : kRemovalCauses) {
     if (static_cast<int>(cause) == number) return cause;
   }
   throw DataError(file, "removals", fmt::format("a cause {}", number), "the number of one of removal_causes");
@@ -155,9 +152,13 @@ void FolderStore::keep_progress(CutRole role, const IncisionProgress& progress, 
   last_checkpoint_ = checkpoint(role);
 }
 
-void FolderStore::remove_checkpoints_from(Product product) {
+void FolderStore::remove_checkpoints_of_no_use(Product saved) {
   for (const CutRole role : {CutRole::AsPlanned, CutRole::Corrected}) {
-    if (product_of(role) >= product) std::filesystem::remove(checkpoint(role));
+    const Product product = product_of(role);
+    if (product < saved || !std::filesystem::exists(checkpoint(role))) continue;
+    // One whose key fits was made from what was saved just now, too: the same settings and inputs give the same bits.
+    if (product != saved && CheckpointFile(checkpoint(role)).key() == key(product)) continue;
+    std::filesystem::remove(checkpoint(role));
   }
   last_checkpoint_.clear();
 }
@@ -214,7 +215,7 @@ void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticR
     json["program_outcome"] = to_string(incision.outcome);
     json["removal_columns"] = {"tet", "step", "time_s", "cause", "rest_volume_mm3"};
     json["removal_causes"] = nlohmann::ordered_json::array();  // by the number in the column
-    for (const RemovalCause cause : kCauses) json["removal_causes"].push_back(to_string(cause));
+    for (const RemovalCause cause : kRemovalCauses) json["removal_causes"].push_back(to_string(cause));
     json["removals"] = nlohmann::ordered_json::array();
     for (const Removal& r : incision.record.removals) {
       json["removals"].push_back({r.tet.value, r.step, r.time_s, static_cast<int>(r.cause), r.rest_volume_mm3});

@@ -1,5 +1,6 @@
 #include <incise/workflow/study.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace incise {
@@ -33,6 +34,12 @@ LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const Too
   return errors;
 }
 
+/// Length of the electrode in tissue, over which its power is spread.
+double heated_length_mm(const Tool& tool, const PlanSettings& plan) {
+  const std::optional<double> length = length_mm(tool);
+  return length ? std::min(*length, plan.depth_mm) : 2.0 * radius_mm(tool);  // a ball has no shaft
+}
+
 }  // namespace
 
 SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& intended, std::size_t tets) {
@@ -50,7 +57,7 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
   for (const KerfLayer& layer : cut.incision.kerf.layers) cut.layers.push_back(layer_errors(settings, layer, intended, centerline));
   // Heat is that of the real tool, whatever speed the simulated one needed.
   cut.thermal_half_width_mm =
-      thermal_half_width_mm(settings.thermal, settings.plan.power_w, settings.plan.speed_mm_s, settings.plan.depth_mm);
+      thermal_half_width_mm(settings.thermal, settings.plan.power_w, settings.plan.speed_mm_s, heated_length_mm(settings.tool, settings.plan));
   if (settings.plan.kind == PlanKind::Ring && cut.centerline.signed_error_mm) {
     cut.thermal_margin_mm = cut.centerline.target_mm + cut.centerline.signed_error_mm->min - cut.thermal_half_width_mm;
   }

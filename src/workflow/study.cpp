@@ -172,7 +172,12 @@ class Runner {
           std::optional<IncisionProgress> from = store_.load_progress(role, *study_.model, monitor_);
           if (from) monitor_.message(Severity::Notice, fmt::format("{}: goes on after step {}", to_string(stage), from->state.step));
           const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
-            store_.keep_progress(role, progress, is_interrupted);
+            try {
+              store_.keep_progress(role, progress, is_interrupted);
+            } catch (const DataError& error) {
+              if (is_interrupted) throw;  // nothing of the cut would be left
+              monitor_.message(Severity::Warning, fmt::format("{}. The cut goes on without a checkpoint", error.what()));
+            }
           };
           SimulatedCut made = cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_,
                                             placed_tumor(), std::move(from), keep);
@@ -192,8 +197,21 @@ class Runner {
     return tumor_in_stretched(settings_, *study_.model, study_.stretched->state.positions, *tumor_surface_, tumor_edge_);
   }
 
+  /// A given path goes no deeper than the tool is long.
+  void require_reached() const {
+    const std::optional<double> length = length_mm(settings_.tool);
+    for (std::size_t i = 0; length && i < given_path_->waypoints.size(); ++i) {
+      const double depth = given_path_->waypoints[i].depth_mm;
+      if (depth > *length) {
+        throw CaseError("path", "depth_mm", fmt::format("{} mm at waypoint {}", depth, i),
+                        fmt::format("at most the tool's length of {} mm", *length));
+      }
+    }
+  }
+
   bool simulate() {
     if (given_path_) {
+      require_reached();
       check_path(*given_path_, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
     }
     study_.followed = given_path_ ? *given_path_ : *study_.plan;

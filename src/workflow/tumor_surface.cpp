@@ -10,9 +10,13 @@ namespace {
 /// By how much each point of the drawn edge has to move along the approach to lie on the skin.
 std::vector<double> moves_of_edge(const Contour& edge, const SurfaceQuery& skin, const Vec3& approach) {
   std::vector<double> moves;
-  for (const Vec3& p : edge.points) {
+  for (std::size_t i = 0; i < edge.points.size(); ++i) {
+    const Vec3& p = edge.points[i];
     const std::optional<SurfacePoint> seen = skin.seen_at(p, approach);
-    INCISE_REQUIRE(seen.has_value(), "expected an edge whose points lie on the skin, seen along the approach");
+    if (!seen) {
+      throw CaseError("tumor", "contour", fmt::format("point {} at ({:.2f}, {:.2f}, {:.2f}) mm, beside the tissue", i, p.x(), p.y(), p.z()),
+                      "an edge on the skin, seen along the approach: the tumour's surface is placed with it");
+    }
     moves.push_back(seen->distance_mm);
   }
   return moves;

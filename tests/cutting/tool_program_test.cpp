@@ -63,6 +63,22 @@ TEST(ToolProgram, ItMovesAtTheSimulatedSpeedEverywhereButInTheDwell) {
   }
 }
 
+TEST(ToolProgram, TheLastDwellIsThatOfTheElectrodesPower) {
+  CutSettings blunt = ten_mm_per_second();
+  blunt.power_w = 0.25 * blunt.reference_power_w;
+  CutSettings same = ten_mm_per_second();
+  same.dullness *= 4.0;
+  EXPECT_DOUBLE_EQ(ToolProgram(square(true), blunt, Needle{}).duration_s(), ToolProgram(square(true), same, Needle{}).duration_s());
+  EXPECT_NEAR(ToolProgram(square(true), blunt, Needle{}).duration_s(), 0.5 + 4.0 + 0.5 + 4.0 * 0.18, 1e-12);
+}
+
+TEST(ToolProgram, TheWayOfTheTipLeavesOutTurnsAndTheDwell) {
+  const ToolProgram program(square(true), ten_mm_per_second(), Blade{});
+  EXPECT_NEAR(program.way_mm_at(program.duration_s()), 5.0 + 40.0 + 5.0, 1e-12);
+  EXPECT_NEAR(program.way_mm_at(0.25), 2.5, 1e-12);
+  EXPECT_EQ(program.way_mm_at(-1.0), 0.0);
+}
+
 TEST(ToolProgram, APathThatIsNotInTheStretchedTissueIsRefused) {
   ToolPath path = square(true);
   path.frame = PathFrame::Robot;

@@ -85,6 +85,14 @@ class CheckpointFileTest : public testing::RingInABlock {
   std::string bytes_;
 };
 
+TEST_F(CheckpointFileTest, KeepsEveryCauseOfRemoval) {
+  ASSERT_GE(progress_.state.record.removals.size(), kRemovalCauses.size());
+  for (std::size_t i = 0; i < kRemovalCauses.size(); ++i) progress_.state.record.removals[i].cause = kRemovalCauses[i];
+  write_checkpoint(file_, std::string(kKey), "maker", progress_);
+  const IncisionProgress back = read();
+  for (std::size_t i = 0; i < kRemovalCauses.size(); ++i) EXPECT_EQ(back.state.record.removals[i].cause, kRemovalCauses[i]);
+}
+
 TEST_F(CheckpointFileTest, AnIncisionGoesOnFromItWithTheBitsOfAnUninterruptedOne) {
   ASSERT_FALSE(progress_.state.record.removals.empty());
   ASSERT_FALSE(progress_.state.bonds.empty());

@@ -3,6 +3,7 @@
 #include <incise/core/ids.hpp>
 #include <incise/geometry/types.hpp>
 
+#include <array>
 #include <string_view>
 #include <vector>
 
@@ -15,6 +16,9 @@ enum class RemovalCause {
   Tear,           ///< its dose was full, more than half of it from the work that the tool did on it
 };
 [[nodiscard]] std::string_view to_string(RemovalCause cause);  ///< dwell, loose_fragment, tear
+
+/// Each stands in files by its number.
+inline constexpr std::array<RemovalCause, 3> kRemovalCauses{RemovalCause::Dwell, RemovalCause::LooseFragment, RemovalCause::Tear};
 
 struct Removal {
   TetId tet;

@@ -88,7 +88,7 @@ class FolderStore : public Store {
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
   /// Made, and from other settings or inputs than the case's.
   [[nodiscard]] bool is_stale(Product product);
-  void remove_checkpoints_from(Product product);
+  void remove_checkpoints_of_no_use(Product saved);
   void save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write);
 
   CaseFile file_;
