@@ -2,15 +2,14 @@
 //   incise_incision_cost [--tets N] [--threads N] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE]
 // Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4).
 #include "process_cost.hpp"
+#include "virtual_study.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
 #include <incise/geometry/contour.hpp>
-#include <incise/imaging/phantom.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/procedure/incision.hpp>
-#include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
 
@@ -27,34 +26,6 @@ double load_average() {
   double loads[1] = {0.0};
   return getloadavg(loads, 1) == 1 ? loads[0] : -1.0;
 }
-
-/// Gives a study the phantom and keeps nothing.
-class PhantomStore final : public Store {
- public:
-  explicit PhantomStore(const Phantom& phantom) : phantom_(phantom) {}
-  CtVolume read_ct(Monitor&) override { return phantom_.ct; }
-  std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return {}; }
-  std::optional<Contour> read_tumor_edge() override { return phantom_.tumor_edge; }
-  std::optional<Contour> read_line() override { return {}; }
-  std::optional<ToolPath> read_given_path() override { return {}; }
-  std::optional<Segmentation> load_segmentation() override { return {}; }
-  void save_segmentation(const Segmentation&, double) override {}
-  std::optional<TetMesh> load_mesh() override { return {}; }
-  void save_mesh(const MeshProduct&, double) override {}
-  std::optional<StaticResult> load_stretched(const TissueModel&) override { return {}; }
-  void save_stretched(const TissueModel&, const StaticResult&, double) override {}
-  std::optional<ToolPath> load_plan() override { return {}; }
-  void save_plan(const ToolPath&, double) override {}
-  std::optional<SimulatedCut> load_cut(CutRole) override { return {}; }
-  void save_cut(CutRole, const TissueModel&, const StaticResult&, const SimulatedCut&, double) override {}
-  std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
-  void keep_progress(CutRole, const IncisionProgress&, bool) override {}
-  std::optional<Compensation> load_correction() override { return {}; }
-  void save_correction(const Compensation&, double) override {}
-
- private:
-  const Phantom& phantom_;
-};
 
 struct Options {
   int tets = 100000;

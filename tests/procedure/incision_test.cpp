@@ -115,14 +115,6 @@ TEST_F(Incision, KeepsTheFramesThatWereAskedForFromFirstToLast) {
 }
 
 TEST_F(Incision, StopsWhereItIsWhenAskedTo) {
-  class StopAtHalf : public Monitor {
-   public:
-    void progress(std::string_view, double fraction) override { fraction_ = fraction; }
-    [[nodiscard]] bool is_cancelled() const override { return fraction_ > 0.5; }
-
-   private:
-    double fraction_ = 0.0;
-  };
   StopAtHalf monitor;
   Workers workers(1);
   const IncisionResult result = simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, monitor);

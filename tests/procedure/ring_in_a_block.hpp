@@ -11,6 +11,16 @@ namespace incise::testing {
 /// A 32 x 32 x 8 mm block, held at its underside, and a thick needle that suits its coarse mesh.
 class RingInABlock : public ::testing::Test {
  protected:
+  /// Asks to stop half-way.
+  class StopAtHalf : public Monitor {
+   public:
+    void progress(std::string_view, double fraction) override { fraction_ = fraction; }
+    [[nodiscard]] bool is_cancelled() const override { return fraction_ > 0.5; }
+
+   private:
+    double fraction_ = 0.0;
+  };
+
   static constexpr double kRadiusMm = 9.0;
   static inline const Vec3 kMiddle{16.0, 16.0, 8.0};
 

@@ -33,16 +33,6 @@ class CheckpointFileTest : public testing::RingInABlock {
     bytes_ = read_text(file_);
   }
 
-  /// Asks to stop half-way.
-  class StopAtHalf : public Monitor {
-   public:
-    void progress(std::string_view, double fraction) override { fraction_ = fraction; }
-    [[nodiscard]] bool is_cancelled() const override { return fraction_ > 0.5; }
-
-   private:
-    double fraction_ = 0.0;
-  };
-
   [[nodiscard]] IncisionProgress read() const { return CheckpointFile(file_).progress(model_); }
 
   void replace_file(const std::string& bytes) const { std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes; }

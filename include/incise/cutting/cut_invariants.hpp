@@ -9,17 +9,15 @@ namespace incise {
 
 /// What has to hold of a cut at every step, whatever the tool did:
 ///
-///   balance     rest volume and mass of the live tets and of those in the record add up to the uncut body's, to
-///   rounding record      every tet that is not live is in the record once, with its rest volume, and no live one is;
-///   steps ascend and none is
-///               ahead of the state, nor is a time; within a step: what was touched long enough, then loose fragments,
-///               each ascending
-///   positions   of vertices with a live tet: finite
-///   dose        finite; what tearing contributed is between 0 and the whole
-///   bonds       on live tets only, ascending, with finite offsets
+/// - balance: rest volume and mass of the live tets and of those in the record add up to the uncut body's, to rounding
+/// - record: every tet that is not live is in it once, with its rest volume, and no live one is; steps ascend, and none is
+///   ahead of the state, nor is a time; within a step: what was touched long enough, then loose fragments, each ascending
+/// - positions: of vertices with a live tet, mm: finite
+/// - dose: finite; what tearing contributed is between 0 and the whole
+/// - bonds: on live tets only, ascending, with finite offsets
 ///
-/// @returns every kind of violation, one sentence each with the first offender; empty: all hold. O(N + M + removals +
-/// bonds).
+/// @returns every kind of violation, one sentence each with the first offender; empty: all hold.
+/// O(vertices + tets + removals + bonds).
 /// @throws InvalidArgument when the state's lists do not fit the model's mesh.
 [[nodiscard]] std::vector<std::string> cut_invariants(const TissueModel& model, const CutState& state);
 

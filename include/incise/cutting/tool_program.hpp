@@ -9,8 +9,8 @@
 namespace incise {
 
 /// What the simulated tool does, as a function of time: plunge along the axis at the first waypoint, follow the waypoints (straight
-/// between them), overlap beyond the start if the path is a ring, stay for the time that removes a tet of the reference tissue at the electrode's power, and leave. All motion at
-/// CutSettings::speed_mm_s: the waypoints' own speeds are the robot's. The tool heads where it goes; a blade turns on the spot before it
+/// between them), overlap beyond the start if the path is a ring, stay for the time that removes a tet of the
+/// reference tissue at the electrode's power, and leave. All motion at CutSettings::speed_mm_s: the waypoints' own speeds are the robot's. The tool heads where it goes; a blade turns on the spot before it
 /// sets out in another direction, its edges at the same speed.
 class ToolProgram {
  public:
