@@ -1,3 +1,4 @@
+#include "bond_stiffness.hpp"
 #include "contact.hpp"
 #include "fragments.hpp"
 
@@ -84,6 +85,15 @@ double touching_distance_mm(const Tool& tool, const CutSettings& settings) { ret
 
 Vec3 centroid(const std::array<Vec3, 4>& corners) { return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]); }
 
+/// Root mean square of the edges.
+double mean_edge_mm(const std::array<Vec3, 4>& corners) {
+  double squares = 0.0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = 0; b < a; ++b) squares += (corners[a] - corners[b]).squaredNorm();
+  }
+  return std::sqrt(squares / 6.0);
+}
+
 /// Norm over all vertices of what each is given in all, mN.
 double norm_of_sums(std::vector<std::pair<VertexId, Vec3>> pulls) {
   std::stable_sort(pulls.begin(), pulls.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -113,7 +123,9 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   for (const Bond& bond : state.bonds) {
     const auto corners = corners_of(model.mesh, state.tissue.positions, bond.tet.index());
     const double share = share_within(corners, core, limit);
-    const double stiffness = settings.bond_stiffness_kpa_mm2 * model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
+    const double edge_mm = mean_edge_mm(corners_of(model.mesh, model.mesh.vertices, bond.tet.index()));
+    const double stiffness = resolved_bond_stiffness(settings.bond_stiffness_kpa_mm2, model.lame[bond.tet.index()].mu_kpa, edge_mm) *
+                             model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
     const Vec3 pull = -stiffness * (held * (centroid(corners) - state.tool.tip_mm - bond.offset_mm));
     stiffnesses.push_back(stiffness);
     const Mat3 block = stiffness / 16.0 * held;
@@ -180,7 +192,10 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
-  scratch.stiffness.begin(model, state.tissue, step_s, is_fresh, scratch.right_side, workers);
+  // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension overshoots by more than it
+  // was off and swings for ever.
+  const Tangent tangent = next ? Tangent::FrozenRotations : Tangent::Projected;
+  scratch.stiffness.begin(model, state.tissue, step_s, is_fresh, tangent, scratch.right_side, workers);
   double bond_scale = 0.0;
   std::vector<double> stiffnesses;
   if (next) {

@@ -35,6 +35,7 @@ struct StepStiffness::Data {
   std::vector<std::uint8_t> is_supported;   // per row: has one of them
   std::vector<std::uint8_t> held;
   double step_s = 0.0;
+  Tangent tangent = Tangent::FrozenRotations;
 
   explicit Data(const TissueModel& model)
       : matrix(model.pattern),
@@ -101,7 +102,7 @@ void StepStiffness::Data::assemble_all(const TissueModel& model, TissueState& st
                        std::fill(matrix.values.begin() + static_cast<std::ptrdiff_t>(begin),
                                  matrix.values.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
                      });
-  add_elastic_response(model, state, forces, &matrix, workers);
+  add_elastic_response(model, state, forces, &matrix, tangent, workers);
   for (std::size_t v = 0; v < model.vertex_mass_kg.size(); ++v) {
     double* diagonal = matrix.block(model.pattern->diagonal[v]);
     const double inertia = model.vertex_mass_kg[v] / (step_s * step_s);
@@ -124,12 +125,13 @@ void StepStiffness::Data::renew(const TissueModel& model, TissueState& state, st
   });
 }
 
-void StepStiffness::begin(const TissueModel& model, TissueState& state, double step_s, bool is_fresh,
+void StepStiffness::begin(const TissueModel& model, TissueState& state, double step_s, bool is_fresh, Tangent tangent,
                           std::span<Vec3> forces, Workers& workers) {
   Data& d = *data_;
   d.take_back();
-  if (is_fresh || step_s != d.step_s || d.is_in.empty()) {
+  if (is_fresh || tangent != Tangent::FrozenRotations || d.tangent != Tangent::FrozenRotations || step_s != d.step_s || d.is_in.empty()) {
     d.step_s = step_s;
+    d.tangent = tangent;
     d.assemble_all(model, state, forces, workers);
   } else {
     d.renew(model, state, forces, workers);

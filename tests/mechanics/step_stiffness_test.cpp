@@ -35,7 +35,7 @@ class KeptStiffness : public ::testing::TestWithParam<Isa> {
   Points prepare(bool is_fresh, int threads = 1) {
     Workers workers(threads);
     Points forces(model_.mesh.vertices.size(), Vec3::Zero());
-    stiffness_.begin(model_, state_, kStepS, is_fresh, forces, workers);
+    stiffness_.begin(model_, state_, kStepS, is_fresh, Tangent::FrozenRotations, forces, workers);
     stiffness_.hold(model_, forces, {}, workers);
     return forces;
   }
@@ -163,10 +163,10 @@ TEST(StepStiffness, AssemblesOtherLawsAnewInEachStep) {
   StepStiffness kept(model);
   StepStiffness fresh(model);
   Points forces(model.mesh.vertices.size(), Vec3::Zero());
-  kept.begin(model, state, kStepS, true, forces, workers);
+  kept.begin(model, state, kStepS, true, Tangent::FrozenRotations, forces, workers);
   for (Vec3& p : state.positions) p.x() *= 1.0005;
-  kept.begin(model, state, kStepS, false, forces, workers);
-  fresh.begin(model, state, kStepS, true, forces, workers);
+  kept.begin(model, state, kStepS, false, Tangent::FrozenRotations, forces, workers);
+  fresh.begin(model, state, kStepS, true, Tangent::FrozenRotations, forces, workers);
   EXPECT_EQ(kept.matrix().values, fresh.matrix().values);
 }
 

@@ -49,7 +49,7 @@ struct CutStepReport {
   std::size_t slipped = 0;                    ///< bonds that slipped
   Vec3 tool_force_mn = Vec3::Zero();          ///< of the tissue on the tool
   Vec3 tool_torque_mn_mm = Vec3::Zero();      ///< of the tissue on the tool, about its tip
-  double max_step_mm = 0.0;
+  double max_step_mm = 0.0;                   ///< farthest that the solve moves a vertex, at most CutSettings::max_step_mm
   bool is_finite = true;                      ///< false: positions were left as before the step
 };
 
@@ -74,7 +74,7 @@ std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace&
 
 /// One quasi-static step of implicit Euler with one linear solve: the tool moves from state.tool to `next`, bonded tissue follows or slips,
 /// the dose of touched tets is integrated inside the step, and tets whose dose is full go, with fragments that then hang by no face.
-/// Without `next` the tool is out: bonds are dropped and the tissue relaxes.
+/// Without `next` the tool is out: bonds are dropped and the tissue takes a step of Newton's method towards rest.
 CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers);
 

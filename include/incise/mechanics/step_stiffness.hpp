@@ -9,10 +9,10 @@
 
 namespace incise {
 
-/// The stiffness of tissue that changes little from step to step: tangent of frozen rotations, inertia M/Δt², support,
-/// what the caller adds for one step, and held axes. Of plain corotational tissue only tets are assembled anew that
+/// The stiffness of tissue that changes little from step to step: tangent, inertia M/Δt², support,
+/// what the caller adds for one step, and held axes. With rotations frozen, of plain corotational tissue only tets are assembled anew that
 /// were carved or that turned by more than some 0.01 rad since they were assembled last; forces are those of every tet
-/// and exact. Other tissue is assembled anew in each step. Order of use in a step: begin, lend and add, hold. Same bits
+/// and exact. Other tissue, and other tangents, are assembled anew in each step. Order of use in a step: begin, lend and add, hold. Same bits
 /// at any thread count; what is kept depends on the steps since the last one that began fresh.
 class StepStiffness {
  public:
@@ -25,8 +25,8 @@ class StepStiffness {
   /// @param is_fresh  every tet is assembled anew, so that nothing depends on earlier steps. So it is at the first
   /// step, and where
   ///                  step_s is not that of the last.
-  void begin(const TissueModel& model, TissueState& state, double step_s, bool is_fresh, std::span<Vec3> forces,
-             Workers& workers);
+  void begin(const TissueModel& model, TissueState& state, double step_s, bool is_fresh, Tangent tangent,
+             std::span<Vec3> forces, Workers& workers);
   /// Allows the caller to add to the sixteen blocks of a tet: what it adds is taken back at the next begin().
   void lend(const TissueModel& model, TetId tet);
   /// Identity rows for held axes, as hold_constrained.
