@@ -184,7 +184,10 @@ Result study_meshes(Workers& workers) {
   }
   std::vector<Job> jobs;
   for (const Body& body : bodies) {
-    jobs.push_back({&body, Tissue::Held, {}});
+    for (const double dullness : {7.0, 9.0}) {
+      jobs.push_back({&body, Tissue::Held, {}});
+      jobs.back().cut.dullness = dullness;
+    }
     // Tissue that is not held passes the needle too fast for 13 mm/s x 9 to cut it.
     for (const Tissue tissue : {Tissue::WithoutDrag, Tissue::Frozen}) {
       jobs.push_back({&body, tissue, {}});
