@@ -21,6 +21,8 @@ constexpr double kForceFloorMn = 5.0;          // scale of the stopping test whe
 constexpr double kLeastShare = 0.02;           // of a touched tet's volume that the tool holds: a corner is still held
 constexpr double kFragmentShare = 0.01;        // of the body's volume at rest: smaller loose parts are cut away with the kerf
 constexpr int kIntervalsPerStep = 4;           // after each of which the distance to the tool is looked at within a step
+constexpr double kLeastDecrease = 1e-4;       // of the energy on the way to rest, as a share of what the slope promises (Armijo)
+constexpr int kMaxHalvings = 12;               // of such a step
 constexpr double kFullDose = 1.0 - 1e-9;       // a dose is a sum over steps: what rounding may leave it short of 1
 
 }  // namespace
@@ -184,6 +186,29 @@ void find_orphans(const TissueModel& model, const TissueState& tissue, std::vect
   }
 }
 
+/// What the tissue strives to lower once the tool is out, µJ.
+double potential_energy_uj(const TissueModel& model, const TissueState& tissue) {
+  double work_uj = 0.0;
+  for (std::size_t v = 0; v < model.dead_load_mn.size(); ++v) work_uj += model.dead_load_mn[v].dot(tissue.positions[v]);
+  return elastic_energy_uj(model, tissue) + support_energy_uj(model, tissue) - work_uj;
+}
+
+/// Halves a step towards rest until it lowers the energy; crushed tets would throw each other about for ever without it.
+/// @param pull_mn  what is out of balance where the step begins. @returns the share of the step that is taken; 0: none lowers the energy.
+double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_mn, std::span<const Vec3> increment, TissueState& tissue) {
+  const std::vector<Vec3> start = tissue.positions;
+  const double before_uj = potential_energy_uj(model, tissue);
+  double promised_uj = 0.0;
+  for (std::size_t v = 0; v < increment.size(); ++v) promised_uj += pull_mn[v].dot(increment[v]);
+  double share = 1.0;
+  for (int halving = 0; halving <= kMaxHalvings; ++halving, share *= 0.5) {
+    for (std::size_t v = 0; v < increment.size(); ++v) tissue.positions[v] = start[v] + share * increment[v];
+    if (potential_energy_uj(model, tissue) <= before_uj - kLeastDecrease * share * promised_uj) return share;
+  }
+  tissue.positions = start;
+  return 0.0;
+}
+
 /// Moves the tissue by one linearised quasi-static step. The mass term is far below the stiffness and only steadies loose bits.
 /// @returns the stiffness of each bond, mN/mm, in their order.
 std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
@@ -224,6 +249,10 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
     report.max_step_mm = std::max(report.max_step_mm, std::min(length, settings.max_step_mm));
   }
   if (!report.is_finite) return stiffnesses;
+  if (!next) {
+    report.max_step_mm *= take_lowering_share(model, scratch.right_side, scratch.increment, state.tissue);
+    return stiffnesses;
+  }
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) state.tissue.positions[v] += scratch.increment[v];
   return stiffnesses;
 }

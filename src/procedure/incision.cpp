@@ -113,12 +113,16 @@ class IncisionRun {
       const CutStepReport report = step(std::nullopt, settings_.cut.step_s());
       ++progress_.relaxation_steps;
       if (!report.is_finite) return Outcome::NotConverged;
-      if (report.max_step_mm < kRelaxedMm) break;
+      is_at_rest_ = report.max_step_mm < kRelaxedMm;
+      if (is_at_rest_) return Outcome::Success;
     }
+    monitor_.message(Severity::Warning, fmt::format("the tissue is not at rest {} steps after the tool is out: the inner edge may still move",
+                                                    kMaxRelaxationSteps));
     return Outcome::Success;
   }
 
   void keep_last_frame() { frames_.keep_last(state()); }
+  [[nodiscard]] bool is_at_rest() const { return is_at_rest_; }
 
  private:
   [[nodiscard]] CutState& state() { return progress_.state; }
@@ -178,6 +182,7 @@ class IncisionRun {
   FrameKeeper frames_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double earlier_wall_s_;
+  bool is_at_rest_ = false;
   int first_step_ = progress_.state.step;  // of this run
 };
 
@@ -227,6 +232,7 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
   {
     IncisionRun run(model, stretched, program, settings, progress, workers, monitor, keep);
     result.outcome = run.run();
+    result.is_at_rest = run.is_at_rest();
     run.keep_last_frame();
   }  // its workspace is large
   sum_up(progress.steps, result);

@@ -176,6 +176,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     incision.gap_deg = json.at("gap_deg");
     incision.kerf_width_mm = json.at("kerf_width_mm");
     incision.solver_iterations = json.at("solver_iterations");
+    incision.is_at_rest = json.at("at_rest");
     incision.unconverged_steps = json.at("unconverged_steps");
     incision.held_back_vertices = json.at("held_back_vertices");
     incision.inverted_tets = json.at("inverted_tets");

@@ -67,6 +67,7 @@ Json to_json(const SimulatedCut& cut) {
   json["removed_volume_mm3"] = incision.record.removed_volume_mm3();
   json["steps"] = incision.steps.size();
   json["solver_iterations"] = incision.solver_iterations;
+  json["at_rest"] = incision.is_at_rest;
   json["unconverged_steps"] = incision.unconverged_steps;
   json["held_back_vertices"] = incision.held_back_vertices;
   json["inverted_tets"] = incision.inverted_tets;

@@ -26,6 +26,7 @@ TEST_F(Incision, HeldTissueDriftsInwards) {
   ASSERT_TRUE(result.centerline.has_value());
   EXPECT_LT(mean_radius(*result.centerline), kRadiusMm - 0.1);
   EXPECT_GT(result.peak_tool_force_mn, 50.0);
+  EXPECT_TRUE(result.is_at_rest);
 }
 
 TEST_F(Incision, AnArcThatDoesNotGoRoundIsAnOpenLoop) {

@@ -44,6 +44,7 @@ struct IncisionResult {
   std::vector<CutFrame> frames;
   std::vector<CutStepLog> steps;
   std::size_t solver_iterations = 0;     ///< sum over all steps
+  bool is_at_rest = false;               ///< no vertex moved by more than 0.001 mm in the last step, the tool out
   std::size_t unconverged_steps = 0;     ///< steps whose linear solve reached its limit
   std::size_t held_back_vertices = 0;    ///< vertex steps cut to CutSettings::max_step_mm
   std::size_t inverted_tets = 0;         ///< live tets of negative volume at the end
