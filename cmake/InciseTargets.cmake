@@ -5,6 +5,16 @@ target_compile_options(incise_warnings INTERFACE
   -Wno-missing-field-initializers    # settings are aggregates: what is not named keeps its default
   -Wno-restrict)                     # g++ 12 sees overlaps in std::string operator+ that are not there (GCC bug 105651)
 
+option(INCISE_UNITY_BUILD "Compile the sources of a target in groups: less to compile from scratch, more after a small change"
+       ${PROJECT_IS_TOP_LEVEL})
+
+# Most of what a source takes to compile is the headers that it shares with its neighbours; a group of sources reads them once. Within a
+# target that is compiled so, no two sources may have a private name in common. The presets dev and coverage compile each source by itself:
+# clang-tidy and gcovr look at them so, and a source that lacks an include shows.
+function(incise_compile_in_groups target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${INCISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 5)
+endfunction()
+
 # Reads cmake/layers.txt and adds each module folder under src/ that exists.
 function(incise_add_modules)
   file(STRINGS ${PROJECT_SOURCE_DIR}/cmake/layers.txt rows REGEX "^[0-9]")
@@ -17,10 +27,10 @@ function(incise_add_modules)
   endforeach()
 endfunction()
 
-# incise_module(<name> SOURCES … [USES <incise modules>] [PUBLIC <targets>] [PRIVATE <targets>])
-# Makes the target incise_<name>, alias incise::<name>, with include/ public and src/ private.
+# incise_module(<name> SOURCES … [USES <incise modules>] [PUBLIC <targets>] [PRIVATE <targets>] [IN_GROUPS])
+# Makes the target incise_<name>, alias incise::<name>, with include/ public and src/ private; IN_GROUPS: see incise_compile_in_groups.
 function(incise_module name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "IN_GROUPS" "" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
   set(target incise_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(incise::${name} ALIAS ${target})
@@ -31,13 +41,16 @@ function(incise_module name)
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM ARG_USES PREPEND incise_)
   target_link_libraries(${target} PUBLIC ${ARG_USES} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:incise_warnings>)
+  if(ARG_IN_GROUPS)
+    incise_compile_in_groups(${target})
+  endif()
   set_property(GLOBAL APPEND PROPERTY INCISE_MODULE_TARGETS ${target})
 endfunction()
 
-# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end])
+# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end] [IN_GROUPS])
 # One test program per folder under tests/; each TEST in it is one ctest entry.
 function(incise_test name)
-  cmake_parse_arguments(ARG "" "LABEL;TIMEOUT" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "IN_GROUPS" "LABEL;TIMEOUT" "SOURCES;USES;LINK" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -50,6 +63,9 @@ function(incise_test name)
   # A test's own code need not be fast; what it calls is the library, built as ever. The headers all tests share are compiled once.
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_precompile_headers(${target} REUSE_FROM incise_test_headers)
+  if(ARG_IN_GROUPS)
+    incise_compile_in_groups(${target})
+  endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${target} PRIVATE ${ARG_USES} ${ARG_LINK} incise_test_support GTest::gtest_main GTest::gmock incise_warnings)
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. 

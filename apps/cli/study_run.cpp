@@ -54,10 +54,11 @@ CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions&
 
 }  // namespace
 
-StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options,
-                   const CutOptions& cut)
+StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until,
+                   const CommonOptions& options, const CutOptions& cut)
     : is_new_folder(!std::filesystem::exists(output)),
-      store(case_as_asked(case_path, cut), output, options.context(), cut.checkpoint_s) {
+      store(case_as_asked(case_path, cut), output, options.context(), cut.checkpoint_s),
+      until_(until) {
   if (cut.must_resume) require_checkpoint();
   // Kept apart from the products: which case they are of, for `incise report`.
   const auto relative = std::filesystem::absolute(store.case_file().file).lexically_proximate(std::filesystem::absolute(output));
@@ -70,25 +71,30 @@ StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem
 }
 
 void StudyRun::require_checkpoint() {
-  bool is_there = false;
-  for (const CutRole role : {CutRole::AsPlanned, CutRole::Corrected}) {
-    if (!std::filesystem::exists(store.checkpoint(role))) continue;
-    store.require_fitting_checkpoint(role);
-    is_there = true;
+  // The one cut that comes next: a checkpoint of the other would leave this one to start from the beginning.
+  const bool is_first_made = store.is_current(Product::AsPlanned);
+  const CutRole next = is_first_made && until_ >= Stage::Verify ? CutRole::Corrected : CutRole::AsPlanned;
+  if (std::filesystem::exists(store.checkpoint(next))) {
+    store.require_fitting_checkpoint(next);
+    return;
   }
-  if (is_there) return;
   remove_if_nothing_was_made();
-  throw CaseError("command line", "--resume", fmt::format("no checkpoint in {}", store.root().string()),
-                  "as_planned.checkpoint or corrected.checkpoint, which an interrupted cut leaves",
+  const std::string name = store.checkpoint(next).filename().string();
+  if (is_first_made && next == CutRole::AsPlanned) {
+    throw CaseError("command line", "--resume", fmt::format("the cut as planned finished in {}", store.root().string()),
+                    fmt::format("{}, which an interrupted cut leaves", name), "Without --resume it is read from there");
+  }
+  throw CaseError("command line", "--resume", fmt::format("no checkpoint {} in {}", name, store.root().string()),
+                  fmt::format("what the {} cut leaves when it is interrupted", next == CutRole::AsPlanned ? "planned" : "corrected"),
                   "Without --resume the cut starts from the beginning");
 }
 
-Study StudyRun::run(Stage until, const CommonOptions& options, Monitor& monitor) {
+Study StudyRun::run(const CommonOptions& options, Monitor& monitor) {
   Workers workers(options.threads);
   const CaseFile& file = store.case_file();
   try {
-    if (until >= Stage::Plan || file.inputs.specimen_mesh.empty()) require_plan_inputs(file);
-    return run_study(file.settings, store, until, workers, monitor);
+    if (until_ >= Stage::Plan || file.inputs.specimen_mesh.empty()) require_plan_inputs(file);
+    return run_study(file.settings, store, until_, workers, monitor);
   } catch (const CaseError& error) {
     remove_if_nothing_was_made();
     throw error.in_file(file.file.string());
@@ -194,7 +200,7 @@ nlohmann::ordered_json headline(const nlohmann::ordered_json& cut) {
 
 int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monitor, nlohmann::ordered_json& result) {
   const auto start = std::chrono::steady_clock::now();
-  const Study done = study.run(Stage::Verify, options, monitor);
+  const Study done = study.run(options, monitor);
   const std::filesystem::path root = study.store.root();
   result["stages"] = to_json(done.stages);
   result["outcome"] = to_string(done.outcome);

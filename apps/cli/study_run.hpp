@@ -19,16 +19,18 @@ void add_cut_options(CLI::App& verb, CutOptions& options);
 
 /// One way through a study on a folder: the stages up to `until`, and a study.json in the folder that says which case it is of.
 struct StudyRun {
-  /// @throws CaseError or DataError when it has to resume and there is no checkpoint, or one that does not fit.
-  StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, const CommonOptions& options,
+  /// @param until  the last stage that will be asked for.
+  /// @throws CaseError or DataError when it has to resume and the first cut that is to be made has no checkpoint, or one that does not fit.
+  StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until, const CommonOptions& options,
            const CutOptions& cut = {});
 
-  Study run(Stage until, const CommonOptions& options, Monitor& monitor);
+  Study run(const CommonOptions& options, Monitor& monitor);
 
   const bool is_new_folder;  ///< the output did not exist before
   FolderStore store;
 
  private:
+  const Stage until_;
   void require_checkpoint();
   /// A study that failed before its first product leaves no folder behind.
   void remove_if_nothing_was_made() const;

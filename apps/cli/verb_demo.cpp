@@ -34,7 +34,7 @@ void add_demo(Application& application) {
       [cut](const CommonOptions& options) {
         Console console(options.level());
         const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
-        StudyRun study(specimen_for(root / "specimen", options.seed, console), root, options, *cut);
+        StudyRun study(specimen_for(root / "specimen", options.seed, console), root, Stage::Verify, options, *cut);
         nlohmann::ordered_json result;
         const int status = run_whole_loop(study, options, console, result);
         print_study(options, result);

@@ -21,8 +21,8 @@ std::shared_ptr<const TissueModel> specimen_of(const CaseFile& file, const std::
   }
   CommonOptions of_study = options;
   of_study.output.clear();
-  StudyRun study(case_path, output_of(case_path, of_study), of_study);
-  return study.run(Stage::Mesh, of_study, monitor).model;
+  StudyRun study(case_path, output_of(case_path, of_study), Stage::Mesh, of_study);
+  return study.run(of_study, monitor).model;
 }
 
 int export_case(const std::filesystem::path& case_path, const std::string& format, const CommonOptions& options) {

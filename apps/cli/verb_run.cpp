@@ -11,7 +11,7 @@ void add_run(Application& application) {
       "run", "The whole loop on your case: CT, mesh, stretch, plan, cut, correct, cut again, program, report. Resumes",
       "incise run my_patient -o my_patient/out", [case_path, cut](const CommonOptions& options) {
         Console console(options.level());
-        StudyRun study(*case_path, output_of(*case_path, options), options, *cut);
+        StudyRun study(*case_path, output_of(*case_path, options), Stage::Verify, options, *cut);
         nlohmann::ordered_json result;
         const int status = run_whole_loop(study, options, console, result);
         print_study(options, result);

@@ -33,8 +33,8 @@ nlohmann::ordered_json result_of(Stage stage, const Study& study) {
 int run_stage(Stage stage, Product product, const std::filesystem::path& case_path, const CommonOptions& options,
               const CutOptions& cut = {}) {
   Console console(options.level());
-  StudyRun run(case_path, output_of(case_path, options), options, cut);
-  const Study study = run.run(stage, options, console);
+  StudyRun run(case_path, output_of(case_path, options), stage, options, cut);
+  const Study study = run.run(options, console);
   const bool is_stretched = study.stretched && study.stretched->outcome == Outcome::Success;
   nlohmann::ordered_json result = is_stretched ? result_of(stage, study) : to_json(*study.stretched);
   result["folder"] = run.store.folder(product).string();

@@ -45,8 +45,18 @@ void require_usable(const ToolPath& path) {
 
 }  // namespace
 
+double tip_way_mm(const ToolPath& path) {
+  const auto tip = [&path](std::size_t i) -> Vec3 { return path.waypoints[i].position_mm + path.waypoints[i].depth_mm * path.waypoints[i].axis; };
+  double way = 0.0;
+  for (std::size_t i = 1; i < path.waypoints.size(); ++i) way += (tip(i) - tip(i - 1)).norm();
+  if (path.is_closed && path.waypoints.size() > 1) way += (tip(0) - tip(path.waypoints.size() - 1)).norm();
+  return way;
+}
+
 ToolProgram::ToolProgram(const ToolPath& path, const CutSettings& settings, const Tool& tool) {
   require_usable(path);
+  INCISE_REQUIRE(!path.is_closed || settings.overlap_mm < tip_way_mm(path),
+                 fmt::format("expected an overlap below the ring's {} mm, found {}", tip_way_mm(path), settings.overlap_mm));
   const double speed = settings.speed_mm_s;
   const Waypoint& first = path.waypoints.front();
   const Vec3 any = Vec3::UnitX();
@@ -78,9 +88,10 @@ ToolProgram::ToolProgram(const ToolPath& path, const CutSettings& settings, cons
   if (path.is_closed) {
     move_to(first, 1.0, Phase::Follow);
     double left = settings.overlap_mm;
-    for (std::size_t i = 1; left > 0.0 && i < path.waypoints.size(); ++i) {
-      const double distance = (pose_of(path.waypoints[i], any).tip_mm - keys_.back().pose.tip_mm).norm();
-      move_to(path.waypoints[i], distance <= left ? 1.0 : left / distance, Phase::Overlap);
+    for (std::size_t i = 1; left > 0.0 && i <= path.waypoints.size(); ++i) {
+      const Waypoint& next = path.waypoints[i % path.waypoints.size()];
+      const double distance = (pose_of(next, any).tip_mm - keys_.back().pose.tip_mm).norm();
+      move_to(next, distance <= left ? 1.0 : left / distance, Phase::Overlap);
       left -= distance;
     }
   }

@@ -1,3 +1,5 @@
+#include "plane_cross.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour.hpp>
 
@@ -34,10 +36,6 @@ std::vector<Vec2> flat_points(const Contour& contour, const Vec3& approach) {
   return flat;
 }
 
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 bool lies_between(const Vec2& a, const Vec2& b, const Vec2& p) {
   return (p.array() >= a.cwiseMin(b).array()).all() && (p.array() <= a.cwiseMax(b).array()).all();
 }
@@ -46,10 +44,10 @@ bool lies_between(const Vec2& a, const Vec2& b, const Vec2& p) {
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   if ((a.cwiseMax(b).array() < c.cwiseMin(d).array()).any()) return false;
   if ((c.cwiseMax(d).array() < a.cwiseMin(b).array()).any()) return false;
-  const double c_side = cross(b - a, c - a);
-  const double d_side = cross(b - a, d - a);
-  const double a_side = cross(d - c, a - c);
-  const double b_side = cross(d - c, b - c);
+  const double c_side = plane_cross(b - a, c - a);
+  const double d_side = plane_cross(b - a, d - a);
+  const double a_side = plane_cross(d - c, a - c);
+  const double b_side = plane_cross(d - c, b - c);
   if (((c_side > 0 && d_side < 0) || (c_side < 0 && d_side > 0)) &&
       ((a_side > 0 && b_side < 0) || (a_side < 0 && b_side > 0))) {
     return true;
@@ -137,7 +135,7 @@ double signed_area_mm2(const Contour& contour, const Vec3& approach) {
   if (flat.size() < 3) return 0.0;
   // Relative to the first point, so that a contour far from the origin loses no digits.
   double twice = 0.0;
-  for (std::size_t i = 1; i + 1 < flat.size(); ++i) twice += cross(flat[i] - flat[0], flat[i + 1] - flat[0]);
+  for (std::size_t i = 1; i + 1 < flat.size(); ++i) twice += plane_cross(flat[i] - flat[0], flat[i + 1] - flat[0]);
   return 0.5 * twice;
 }
 

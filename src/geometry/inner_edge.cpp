@@ -13,7 +13,7 @@ namespace incise {
 namespace {
 
 /// Skin that is pictured around the kerf, so that the plug and the skin outside can be told apart.
-constexpr double kBorderMm = 2.0;
+constexpr double kSkinBorderMm = 2.0;
 
 /// Reach of the plane that is fitted to the plug's skin where a height is read, mm.
 constexpr double kHeightReachMm = 0.6;
@@ -45,7 +45,7 @@ std::optional<DepthBuffer> picture_of(const CutSurface& surface, const Points& i
     for (const VertexId id : surface.triangles[t]) walls.extend(vertex(in_view, id));
   }
   if (walls.isEmpty()) return std::nullopt;
-  const RasterGrid grid = grid_around(walls.min().head<2>(), walls.max().head<2>(), pixel_mm, kBorderMm);
+  const RasterGrid grid = grid_around(walls.min().head<2>(), walls.max().head<2>(), pixel_mm, kSkinBorderMm);
   return depth_buffer(grid, in_view, surface.triangles);
 }
 

@@ -16,7 +16,7 @@ namespace incise {
 namespace {
 
 /// Free border around the kerf, so that the way out of an open ring is not narrowed by the picture's frame.
-constexpr double kBorderMm = 3.0;
+constexpr double kKerfBorderMm = 3.0;
 
 /// Steps in which directions are sorted when a gap is looked for.
 constexpr int kDirections = 3600;
@@ -90,7 +90,7 @@ std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame&
   Points in_view;
   in_view.reserve(input.surface.vertices.size());
   for (const Vec3& p : input.surface.vertices) in_view.push_back(view.to_view(p));
-  const double border = kBorderMm + settings.closing_mm;
+  const double border = kKerfBorderMm + settings.closing_mm;
   const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), settings.pixel_mm, border);
   KerfPicture picture;
   picture.coverage = coverage_of(tets, depth_buffer(grid, in_view, input.surface.triangles), settings);

@@ -1,3 +1,5 @@
+#include "plane_cross.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/geometry/raster.hpp>
 
@@ -15,7 +17,7 @@ constexpr double kMaxPixels = 1e8;
 
 /// Slack, in pixels, by which a pixel's centre may lie off a triangle: neighbours then leave no pixel between them
 /// undrawn.
-constexpr double kEdgeSlack = 1e-9;
+constexpr double kPixelSlack = 1e-9;
 
 struct PixelRange {
   int first = 0;
@@ -24,20 +26,16 @@ struct PixelRange {
 
 /// The pixels along one axis whose centres lie in [low, high], cut to [0, count).
 PixelRange pixels_between(double low, double high, int count) {
-  const double first = std::max(0.0, std::ceil(low - kEdgeSlack));
-  const double last = std::min(static_cast<double>(count - 1), std::floor(high + kEdgeSlack));
+  const double first = std::max(0.0, std::ceil(low - kPixelSlack));
+  const double last = std::min(static_cast<double>(count - 1), std::floor(high + kPixelSlack));
   if (!(first <= last)) return {};
   return {static_cast<int>(first), static_cast<int>(last)};
-}
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 /// Calls visit(i, j, weights) for every pixel whose centre lies in the triangle, given in pixel coordinates.
 template <class Visit>
 void for_each_pixel_in(const RasterGrid& grid, const std::array<Vec2, 3>& t, const Visit& visit) {
-  const double doubled_area = cross(t[1] - t[0], t[2] - t[0]);
+  const double doubled_area = plane_cross(t[1] - t[0], t[2] - t[0]);
   if (doubled_area == 0.0 || !std::isfinite(doubled_area)) return;
   const PixelRange columns =
       pixels_between(std::min({t[0].x(), t[1].x(), t[2].x()}), std::max({t[0].x(), t[1].x(), t[2].x()}), grid.width);
@@ -45,13 +43,13 @@ void for_each_pixel_in(const RasterGrid& grid, const std::array<Vec2, 3>& t, con
       pixels_between(std::min({t[0].y(), t[1].y(), t[2].y()}), std::max({t[0].y(), t[1].y(), t[2].y()}), grid.height);
   std::array<double, 3> slack{};
   for (std::size_t c = 0; c < 3; ++c) {
-    slack[c] = kEdgeSlack * (t[(c + 2) % 3] - t[(c + 1) % 3]).norm() / std::abs(doubled_area);
+    slack[c] = kPixelSlack * (t[(c + 2) % 3] - t[(c + 1) % 3]).norm() / std::abs(doubled_area);
   }
   for (int j = rows.first; j <= rows.last; ++j) {
     for (int i = columns.first; i <= columns.last; ++i) {
       const Vec2 p(i, j);
-      const double u = cross(t[2] - t[1], p - t[1]) / doubled_area;
-      const double v = cross(t[0] - t[2], p - t[2]) / doubled_area;
+      const double u = plane_cross(t[2] - t[1], p - t[1]) / doubled_area;
+      const double v = plane_cross(t[0] - t[2], p - t[2]) / doubled_area;
       const double w = 1.0 - u - v;
       if (u >= -slack[0] && v >= -slack[1] && w >= -slack[2]) visit(i, j, Vec3(u, v, w));
     }

@@ -8,7 +8,7 @@
 namespace incise {
 namespace {
 
-using Corners = std::array<Vec3, 3>;
+using TriangleCorners = std::array<Vec3, 3>;
 
 /// A volume below this share of (size of both triangles)³ is rounding: its points lie in one plane.
 constexpr double kFlat = 1e-12;
@@ -16,7 +16,7 @@ constexpr double kFlat = 1e-12;
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); }
 
 /// Whether the segment from p to q has its ends on both sides of the triangle's plane and passes through it, edges included.
-bool pierces(const Vec3& p, const Vec3& q, const Corners& t, double flat) {
+bool pierces(const Vec3& p, const Vec3& q, const TriangleCorners& t, double flat) {
   const double below = volume(t[0], t[1], t[2], p);
   const double above = volume(t[0], t[1], t[2], q);
   if (std::abs(below) <= flat || std::abs(above) <= flat || (below > 0.0) == (above > 0.0)) return false;
@@ -30,13 +30,13 @@ bool pierces(const Vec3& p, const Vec3& q, const Corners& t, double flat) {
   return !(is_left && is_right);
 }
 
-bool share_a_corner(const Corners& one, const Corners& other) {
+bool share_a_corner(const TriangleCorners& one, const TriangleCorners& other) {
   return std::any_of(one.begin(), one.end(),
                      [&](const Vec3& p) { return std::find(other.begin(), other.end(), p) != other.end(); });
 }
 
 /// Triangles that share no corner cross where an edge of one passes through the other.
-bool cross(const Corners& one, const Corners& other) {
+bool cross(const TriangleCorners& one, const TriangleCorners& other) {
   Box3 box;
   for (std::size_t i = 0; i < 3; ++i) box.extend(one[i]).extend(other[i]);
   const double size = box.diagonal().norm();
@@ -53,7 +53,7 @@ bool cross(const Corners& one, const Corners& other) {
 std::optional<std::array<TriangleId, 2>> find_self_crossing(const TriMesh& surface) {
   const std::size_t count = surface.triangles.size();
   if (count == 0) return std::nullopt;
-  std::vector<Corners> corners(count);
+  std::vector<TriangleCorners> corners(count);
   std::vector<Box3> boxes(count);
   for (std::size_t t = 0; t < count; ++t) {
     for (std::size_t c = 0; c < 3; ++c) {

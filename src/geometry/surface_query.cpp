@@ -14,7 +14,7 @@ namespace incise {
 namespace {
 
 /// Slack, as a share of a triangle's size, by which a ray may miss it: neighbours then leave no crack between them.
-constexpr double kEdgeSlack = 1e-9;
+constexpr double kRaySlack = 1e-9;
 /// Largest share of a triangle's sides that this slack may come to where the ray grazes the triangle.
 constexpr double kMaxBarycentricSlack = 1e-3;
 
@@ -61,7 +61,7 @@ std::optional<Hit> hit_triangle(const Ray& ray, const std::array<Vec3, 3>& corne
   const Vec3 q = to_origin.cross(e1);
   const double w = ray.direction.dot(q) / determinant;
   // The slack is a length beside the triangle; seen at a grazing angle it covers more of the barycentric range.
-  const double slack = std::min(kMaxBarycentricSlack, kEdgeSlack * size / std::abs(determinant));
+  const double slack = std::min(kMaxBarycentricSlack, kRaySlack * size / std::abs(determinant));
   if (v < -slack || w < -slack || v + w > 1.0 + slack) return std::nullopt;
   const Vec3 inside = Vec3(1.0 - v - w, v, w).cwiseMax(0.0);  // a hit within the slack is one of the edge
   return Hit{e2.dot(q) / determinant, inside / inside.sum()};
@@ -104,7 +104,7 @@ SurfaceQuery::SurfaceQuery(const TriMesh& surface) : tree_(std::make_unique<Tree
   }
   tree_->boxes = BoxTree(boxes);
   const Box3& all = tree_->boxes.box();
-  tree_->slack_mm = kEdgeSlack * (1.0 + all.sizes().maxCoeff() + all.center().norm());
+  tree_->slack_mm = kRaySlack * (1.0 + all.sizes().maxCoeff() + all.center().norm());
 }
 
 SurfaceQuery::~SurfaceQuery() = default;

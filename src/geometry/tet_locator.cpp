@@ -17,10 +17,10 @@ namespace {
 /// two.
 constexpr double kInsideSlack = 1e-12;
 
-using Corners = std::array<Vec3, 4>;
+using TetCorners = std::array<Vec3, 4>;
 
 /// Barycentric coordinates of p; nullopt for a tet without volume.
-std::optional<std::array<double, 4>> barycentric_of(const Corners& c, const Vec3& p) {
+std::optional<std::array<double, 4>> barycentric_of(const TetCorners& c, const Vec3& p) {
   const double volume = signed_volume(c[0], c[1], c[2], c[3]);
   if (volume == 0.0) return std::nullopt;
   std::array<double, 4> weights{};
@@ -31,7 +31,7 @@ std::optional<std::array<double, 4>> barycentric_of(const Corners& c, const Vec3
   return weights;
 }
 
-double squared_distance_to_faces(const Corners& c, const Vec3& p) {
+double squared_distance_to_faces(const TetCorners& c, const Vec3& p) {
   constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
   double best = std::numeric_limits<double>::infinity();
   for (const auto& [i, j, k] : kFaces) {
@@ -44,7 +44,7 @@ double squared_distance_to_faces(const Corners& c, const Vec3& p) {
 }  // namespace
 
 struct TetLocator::Tree {
-  std::vector<Corners> corners;
+  std::vector<TetCorners> corners;
   BoxTree boxes;
 };
 
@@ -57,7 +57,7 @@ TetLocator::TetLocator(const TetMesh& mesh, std::span<const Vec3> positions) : t
   boxes.reserve(mesh.tets.size());
   tree_->corners.reserve(mesh.tets.size());
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
-    Corners corners;
+    TetCorners corners;
     Box3 box;
     for (std::size_t c = 0; c < 4; ++c) {
       const VertexId id = mesh.tets[i][c];
@@ -86,7 +86,7 @@ std::optional<EmbeddedPoint> TetLocator::locate(const Vec3& p, double tolerance_
   std::optional<EmbeddedPoint> best;
   const auto squared_distance = [&](const Box3& box) { return box.squaredExteriorDistance(p); };
   const auto visit = [&](std::uint32_t tet) {
-    const Corners& corners = tree_->corners[tet];
+    const TetCorners& corners = tree_->corners[tet];
     const std::optional<std::array<double, 4>> weights = barycentric_of(corners, p);
     if (!weights) return;
     const double depth = *std::min_element(weights->begin(), weights->end());

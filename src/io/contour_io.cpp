@@ -21,10 +21,10 @@ namespace {
 
 using io_detail::JsonValue;
 
-constexpr std::array<std::string_view, 3> kColumns{"x_mm", "y_mm", "z_mm"};
+constexpr std::array<std::string_view, 3> kPointColumns{"x_mm", "y_mm", "z_mm"};
 
 Contour read_csv(const std::filesystem::path& path, bool is_closed) {
-  const std::vector<std::vector<double>> columns = read_csv_columns(path, {kColumns.begin(), kColumns.end()});
+  const std::vector<std::vector<double>> columns = read_csv_columns(path, {kPointColumns.begin(), kPointColumns.end()});
   Contour contour{{}, is_closed};
   for (std::size_t i = 0; i < columns[0].size(); ++i) contour.points.emplace_back(columns[0][i], columns[1][i], columns[2][i]);
   return contour;
@@ -130,7 +130,7 @@ void write_contour_csv(const std::filesystem::path& path, const Contour& contour
                        const std::vector<NamedColumn>& columns) {
   std::vector<NamedColumn> all;
   for (std::size_t k = 0; k < 3; ++k) {
-    NamedColumn& column = all.emplace_back(kColumns[k], std::vector<double>{});
+    NamedColumn& column = all.emplace_back(kPointColumns[k], std::vector<double>{});
     for (const Vec3& p : contour.points) column.second.push_back(p[static_cast<Eigen::Index>(k)]);
   }
   all.insert(all.end(), columns.begin(), columns.end());

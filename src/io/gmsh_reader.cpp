@@ -12,7 +12,7 @@
 namespace incise::io_detail {
 namespace {
 
-constexpr long long kMost = 0x7FFFFFFF;
+constexpr long long kMostOfGmsh = 0x7FFFFFFF;
 constexpr int kTet4 = 4;
 
 /// Nodes of a Gmsh element kind that bounds a body rather than fills it; 0 for all others.
@@ -102,7 +102,7 @@ class GmshReader {
   void read_nodes_2() {
     const std::size_t count = cursor_.count("nodes");
     for (std::size_t i = 0; i < count; ++i) {
-      const long long tag = cursor_.integer("node number", 0, kMost);
+      const long long tag = cursor_.integer("node number", 0, kMostOfGmsh);
       add_node(tag, read_point(cursor_, "coordinate"));
     }
   }
@@ -110,15 +110,15 @@ class GmshReader {
   void read_nodes_4() {
     const std::size_t blocks = cursor_.count("node blocks");
     const std::size_t total = cursor_.count("nodes");
-    cursor_.integer("smallest node number", 0, kMost);
-    cursor_.integer("largest node number", 0, kMost);
+    cursor_.integer("smallest node number", 0, kMostOfGmsh);
+    cursor_.integer("largest node number", 0, kMostOfGmsh);
     for (std::size_t b = 0; b < blocks; ++b) {
       cursor_.integer("entity dimension", 0, 3);
-      cursor_.integer("entity number", -kMost, kMost);
+      cursor_.integer("entity number", -kMostOfGmsh, kMostOfGmsh);
       const long long parameters = cursor_.integer("parametric flag", 0, 1);
       if (parameters == 1) cursor_.fail("parametric nodes", "plain nodes", "Save it without parametric coordinates.");
       std::vector<long long> tags(cursor_.count("nodes in the block"));
-      for (long long& tag : tags) tag = cursor_.integer("node number", 0, kMost);
+      for (long long& tag : tags) tag = cursor_.integer("node number", 0, kMostOfGmsh);
       for (const long long tag : tags) add_node(tag, read_point(cursor_, "coordinate"));
     }
     if (mesh_.vertices.size() != total)
@@ -131,12 +131,12 @@ class GmshReader {
       const int count = nodes_of_lower_dimensional(kind);
       if (count == 0)
         cursor_.fail(fmt::format("element type {}", kind), "linear tetrahedra (type 4) and their boundary");
-      for (int k = 0; k < count; ++k) cursor_.integer("node number", 0, kMost);
+      for (int k = 0; k < count; ++k) cursor_.integer("node number", 0, kMostOfGmsh);
       return;
     }
     Tet tet;
     for (VertexId& id : tet) {
-      const long long node = cursor_.integer("node number", 0, kMost);
+      const long long node = cursor_.integer("node number", 0, kMostOfGmsh);
       const auto found = nodes_.find(node);
       if (found == nodes_.end()) cursor_.fail(fmt::format("node {}", node), "a node of this file");
       id = VertexId(found->second);
@@ -150,10 +150,10 @@ class GmshReader {
   void read_elements_1() {
     const std::size_t count = cursor_.count("elements");
     for (std::size_t i = 0; i < count; ++i) {
-      const long long tag = cursor_.integer("element number", 0, kMost);
+      const long long tag = cursor_.integer("element number", 0, kMostOfGmsh);
       const int kind = static_cast<int>(cursor_.integer("element type", 1, 200));
-      const long long physical = cursor_.integer("physical tag", -kMost, kMost);
-      const long long geometrical = cursor_.integer("geometrical tag", -kMost, kMost);
+      const long long physical = cursor_.integer("physical tag", -kMostOfGmsh, kMostOfGmsh);
+      const long long geometrical = cursor_.integer("geometrical tag", -kMostOfGmsh, kMostOfGmsh);
       cursor_.integer("number of nodes", 1, 1000);
       read_element(kind, tag, physical, geometrical);
     }
@@ -162,12 +162,12 @@ class GmshReader {
   void read_elements_2() {
     const std::size_t count = cursor_.count("elements");
     for (std::size_t i = 0; i < count; ++i) {
-      const long long tag = cursor_.integer("element number", 0, kMost);
+      const long long tag = cursor_.integer("element number", 0, kMostOfGmsh);
       const int kind = static_cast<int>(cursor_.integer("element type", 1, 200));
       const long long tag_count = cursor_.integer("number of tags", 0, 1000);
       std::array<long long, 2> tags{0, 0};
       for (long long k = 0; k < tag_count; ++k) {
-        const long long value = cursor_.integer("tag", -kMost, kMost);
+        const long long value = cursor_.integer("tag", -kMostOfGmsh, kMostOfGmsh);
         if (k < 2) tags[static_cast<std::size_t>(k)] = value;
       }
       read_element(kind, tag, tags[0], tags[1]);
@@ -181,11 +181,11 @@ class GmshReader {
     cursor_.line();
     for (std::size_t i = 0; i < counts[0] + counts[1] + counts[2]; ++i) cursor_.line();
     for (std::size_t i = 0; i < counts[3]; ++i) {
-      const long long tag = cursor_.integer("volume number", -kMost, kMost);
+      const long long tag = cursor_.integer("volume number", -kMostOfGmsh, kMostOfGmsh);
       for (int k = 0; k < 6; ++k) cursor_.number("box corner");
       const std::size_t physical_count = cursor_.count("physical tags");
       for (std::size_t k = 0; k < physical_count; ++k) {
-        const long long value = cursor_.integer("physical tag", -kMost, kMost);
+        const long long value = cursor_.integer("physical tag", -kMostOfGmsh, kMostOfGmsh);
         if (k == 0) volume_physical_[tag] = value;
       }
       cursor_.line();
@@ -195,16 +195,16 @@ class GmshReader {
   void read_elements_4() {
     const std::size_t blocks = cursor_.count("element blocks");
     cursor_.count("elements");
-    cursor_.integer("smallest element number", 0, kMost);
-    cursor_.integer("largest element number", 0, kMost);
+    cursor_.integer("smallest element number", 0, kMostOfGmsh);
+    cursor_.integer("largest element number", 0, kMostOfGmsh);
     for (std::size_t b = 0; b < blocks; ++b) {
       cursor_.integer("entity dimension", 0, 3);
-      const long long entity = cursor_.integer("entity number", -kMost, kMost);
+      const long long entity = cursor_.integer("entity number", -kMostOfGmsh, kMostOfGmsh);
       const int kind = static_cast<int>(cursor_.integer("element type", 1, 200));
       const auto physical = volume_physical_.find(entity);
       const std::size_t count = cursor_.count("elements in the block");
       for (std::size_t i = 0; i < count; ++i) {
-        const long long tag = cursor_.integer("element number", 0, kMost);
+        const long long tag = cursor_.integer("element number", 0, kMostOfGmsh);
         read_element(kind, tag, physical == volume_physical_.end() ? 0 : physical->second, entity);
       }
     }
@@ -226,16 +226,16 @@ class GmshReader {
     for (std::size_t i = 0; i < reals; ++i) cursor_.number("real tag");
     const std::size_t integers = cursor_.count("integer tags");
     if (integers < 3) cursor_.fail(fmt::format("{} integer tags", integers), "at least 3");
-    cursor_.integer("time step", -kMost, kMost);
+    cursor_.integer("time step", -kMostOfGmsh, kMostOfGmsh);
     DataArray array{static_cast<int>(cursor_.integer("components", 1, 9)), {}};
     const std::size_t entries = cursor_.count("entries");
-    for (std::size_t i = 3; i < integers; ++i) cursor_.integer("integer tag", -kMost, kMost);
+    for (std::size_t i = 3; i < integers; ++i) cursor_.integer("integer tag", -kMostOfGmsh, kMostOfGmsh);
     const std::size_t width = static_cast<std::size_t>(array.components);
     array.values.assign(items * width, 0.0);
     std::vector<bool> is_set(items, false);
     std::size_t set_count = 0;
     for (std::size_t i = 0; i < entries; ++i) {
-      const auto found = index.find(cursor_.integer("number", 0, kMost));
+      const auto found = index.find(cursor_.integer("number", 0, kMostOfGmsh));
       for (std::size_t k = 0; k < width; ++k) {
         const double value = cursor_.number("value");
         if (found != index.end()) array.values[found->second * width + k] = value;

@@ -9,7 +9,7 @@
 namespace incise::io_detail {
 namespace {
 
-constexpr long long kMost = 0x7FFFFFFF;
+constexpr long long kMostTetrahedra = 0x7FFFFFFF;
 
 /// Reads `count` values into each of the named columns' next place.
 void read_attributes(TextCursor& cursor, std::vector<DataArray>& columns) {
@@ -49,7 +49,7 @@ void read_tets(TextCursor& cursor, TetMesh& mesh, long long base) {
   std::vector<DataArray> columns(static_cast<std::size_t>(attributes));
   const long long last = base + static_cast<long long>(mesh.vertices.size()) - 1;
   for (std::size_t i = 0; i < count; ++i) {
-    cursor.integer("tetrahedron number", 0, kMost);
+    cursor.integer("tetrahedron number", 0, kMostTetrahedra);
     Tet tet;
     for (VertexId& id : tet) id = VertexId(static_cast<std::size_t>(cursor.integer("point number", base, last) - base));
     mesh.tets.push_back(tet);

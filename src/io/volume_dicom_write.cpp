@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 using gdcm::Tag;
 using gdcm::VR;
 
-constexpr int kIntercept = -1024;  // HU of stored value 0
-const char* const kCtImageStorage = "1.2.840.10008.5.1.4.1.1.2";
+constexpr int kWrittenIntercept = -1024;  // HU of stored value 0
+const char* const kWrittenStorage = "1.2.840.10008.5.1.4.1.1.2";
 
 /// A unique identifier that follows from a text: "2.25." and 128 bits of its SHA-256, marked as a UUID made from a
 /// name.
@@ -104,8 +104,8 @@ struct Series {
 Series plan_series(const fs::path& folder, const CtVolume& volume, const DicomTags& tags) {
   const auto [low, high] = std::minmax_element(volume.voxels.begin(), volume.voxels.end());
   Series series;
-  series.is_signed = *low < kIntercept;
-  if (series.is_signed && *high > 32767 + kIntercept) {
+  series.is_signed = *low < kWrittenIntercept;
+  if (series.is_signed && *high > 32767 + kWrittenIntercept) {
     throw DataError(folder, "PixelData", fmt::format("{} to {} HU", *low, *high),
                     "a range that 16 bits hold with intercept -1024");
   }
@@ -128,7 +128,7 @@ Series plan_series(const fs::path& folder, const CtVolume& volume, const DicomTa
 void describe_study(gdcm::DataSet& data, const Series& series, const DicomTags& tags) {
   set_text(data, Tag(0x0008, 0x0005), VR::CS, "ISO_IR 192");
   set_text(data, Tag(0x0008, 0x0008), VR::CS, "DERIVED\\PRIMARY\\AXIAL");
-  set_text(data, Tag(0x0008, 0x0016), VR::UI, kCtImageStorage);
+  set_text(data, Tag(0x0008, 0x0016), VR::UI, kWrittenStorage);
   set_text(data, Tag(0x0008, 0x0060), VR::CS, "CT");
   set_text(data, Tag(0x0008, 0x0070), VR::LO, tags.manufacturer);
   set_text(data, Tag(0x0008, 0x1030), VR::LO, tags.study_description);
@@ -165,7 +165,7 @@ void describe_slice(gdcm::DataSet& data, const Series& series, const VolumeGrid&
   // Distance between rows first, then between columns.
   set_text(data, Tag(0x0028, 0x0030), VR::DS, decimal_strings({grid.spacing_mm[1], grid.spacing_mm[0]}));
   set_text(data, Tag(0x0028, 0x0004), VR::CS, "MONOCHROME2");
-  set_text(data, Tag(0x0028, 0x1052), VR::DS, fmt::format("{}", kIntercept));
+  set_text(data, Tag(0x0028, 0x1052), VR::DS, fmt::format("{}", kWrittenIntercept));
   set_text(data, Tag(0x0028, 0x1053), VR::DS, "1");
   set_text(data, Tag(0x0028, 0x1054), VR::LO, "HU");
   set_word(data, Tag(0x0028, 0x0002), 1);
@@ -182,7 +182,7 @@ void set_pixels(gdcm::DataSet& data, const CtVolume& volume, int k) {
   std::vector<std::uint16_t> stored(pixels);
   const std::int16_t* hu = volume.voxels.data() + pixels * static_cast<std::size_t>(k);
   std::transform(hu, hu + pixels, stored.begin(),
-                 [](std::int16_t value) { return static_cast<std::uint16_t>(value - kIntercept); });
+                 [](std::int16_t value) { return static_cast<std::uint16_t>(value - kWrittenIntercept); });
   gdcm::DataElement element(Tag(0x7fe0, 0x0010));
   element.SetVR(VR::OW);
   element.SetByteValue(reinterpret_cast<const char*>(stored.data()),

@@ -15,7 +15,7 @@ namespace incise {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr int kBisections = 60;
+constexpr int kShareBisections = 60;
 constexpr double kMoveToleranceMm = 1e-6;
 /// By how much a move stays inside a limit that the finished path is then held to: beyond rounding.
 constexpr double kLimitSlackMm = 1e-6;
@@ -132,7 +132,7 @@ Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is
   double far = length_mm;
   Move best{origin, 0.0};
   if (const std::optional<Move> full = reach(far); full && full->length_mm <= length_mm + 1e-12) return *full;
-  for (int n = 0; n < kBisections; ++n) {
+  for (int n = 0; n < kShareBisections; ++n) {
     const double middle = 0.5 * (near + far);
     const std::optional<Move> there = reach(middle);
     if (there && there->length_mm <= length_mm) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kGridMm = 0.25;
 constexpr double kMarginToleranceMm = 0.01;
-constexpr int kBisections = 48;
+constexpr int kOffsetBisections = 48;
 constexpr double kFirstStepMm = 0.01;  // of the search for a waypoint's bracket, doubled each time
 constexpr int kMostDoublings = 7;
 
@@ -61,7 +61,7 @@ std::optional<Vec2> bring_to_margin(const Vec2& place, const MarginField& field)
   for (int n = 0; n < kMostDoublings && !(field(place + far * direction) * start <= 0.0); ++n) far *= 2.0;
   if (!(field(place + far * direction) * start <= 0.0)) return std::nullopt;
   double near = 0.0;
-  for (int n = 0; n < kBisections; ++n) {
+  for (int n = 0; n < kOffsetBisections; ++n) {
     const double middle = 0.5 * (near + far);
     (field(place + middle * direction) * start > 0.0 ? near : far) = middle;
   }

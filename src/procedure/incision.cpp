@@ -16,6 +16,7 @@ namespace {
 constexpr double kRelaxedMm = 1e-3;        // the tissue counts as at rest when no vertex moves farther in a step
 constexpr double kSingleTolerance = 1e-2;  // of a step's residual: from here up single precision suffices
 constexpr double kTimeRoundingS = 1e-9;    // the program counts as over when less than this is left of it
+constexpr double kLeastStepShare = 0.01;   // of a step: less than this at the program's end goes with the step before it
 constexpr int kMaxRelaxationSteps = 60;    // after the tool is out
 constexpr int kStepsToTellFrom = 20;       // a run's duration is told after these
 
@@ -102,7 +103,7 @@ class IncisionRun {
     tell_size();
     while (is_tool_in()) {
       if (is_to_stop()) return Outcome::Cancelled;
-      const double dt = std::min(settings_.cut.step_s(), program_.duration_s() - state().time_s);
+      const double dt = next_step_s();
       const CutStepReport report = step(program_.pose_at(state().time_s + dt), dt);
       if (!report.is_finite) return Outcome::NotConverged;
       frames_.offer(state(), true);
@@ -135,7 +136,16 @@ class IncisionRun {
 
   /// Steps that the tool's program still takes.
   [[nodiscard]] int steps_left() const {
-    return static_cast<int>(std::ceil(std::max(0.0, program_.duration_s() - progress_.state.time_s) / settings_.cut.step_s()));
+    const double left_s = std::max(0.0, program_.duration_s() - progress_.state.time_s);
+    return static_cast<int>(std::ceil(left_s / settings_.cut.step_s() - kLeastStepShare));
+  }
+
+  /// The program ends with a shorter step, but not with a sliver of one that rounding left over: mass over the step's square and viscosity
+  /// over the step would hold the tissue where it is, and nothing of the program is lost when the step before goes that much farther.
+  [[nodiscard]] double next_step_s() const {
+    const double left_s = program_.duration_s() - progress_.state.time_s;
+    const double step_s = settings_.cut.step_s();
+    return left_s < (1.0 + kLeastStepShare) * step_s ? left_s : step_s;
   }
 
   void tell_size() const {
@@ -186,6 +196,16 @@ class IncisionRun {
   int first_step_ = progress_.state.step;  // of this run
 };
 
+/// A step gives one frame at most.
+void tell_missing_frames(const IncisionSettings& settings, Outcome outcome, const IncisionProgress& progress, Monitor& monitor) {
+  const std::size_t kept = progress.frames.size();
+  if (outcome != Outcome::Success || kept >= static_cast<std::size_t>(settings.frames)) return;
+  monitor.message(Severity::Warning,
+                  fmt::format("{} frames in place of {}: the cut took no more than {} steps with the tool in, and keeps one frame a step at most. "
+                              "A smaller advance_per_step_mm gives more",
+                              kept, settings.frames, progress.steps.size() - static_cast<std::size_t>(progress.relaxation_steps)));
+}
+
 void sum_up(const std::vector<CutStepLog>& steps, IncisionResult& result) {
   for (const CutStepLog& step : steps) {
     result.solver_iterations += static_cast<std::size_t>(step.iterations);
@@ -234,6 +254,7 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
     result.outcome = run.run();
     result.is_at_rest = run.is_at_rest();
     run.keep_last_frame();
+    tell_missing_frames(settings, result.outcome, progress, monitor);
   }  // its workspace is large
   sum_up(progress.steps, result);
   result.steps = std::move(progress.steps);

@@ -12,9 +12,9 @@
 namespace incise {
 namespace {
 
-constexpr double kWidth = 560.0;
-constexpr double kHeight = 520.0;
-constexpr double kScaleBarMm = 5.0;
+constexpr double kPictureWidth = 560.0;
+constexpr double kPictureHeight = 520.0;
+constexpr double kShortBarMm = 5.0;
 constexpr std::string_view kTumorStroke = "stroke-width=\"2.6\" stroke-linejoin=\"round\"";
 constexpr std::string_view kIntendedStroke = "stroke-width=\"1.6\" stroke-linejoin=\"round\"";
 constexpr std::string_view kCorrectedStroke = "stroke-width=\"1.8\" stroke-dasharray=\"6 3\" stroke-linejoin=\"round\"";
@@ -167,9 +167,9 @@ std::string description_of(const ReportIncision& incision) {
 std::string contour_figure_svg(const ReportIncision& incision, const FigureStyle& style) {
   require_drawable(incision);
   const double limit_mm = error_limit_of(style, {&incision, 1});
-  SvgWriter svg(kWidth, kHeight, fmt::format("{}: contours seen along the approach", incision.name),
+  SvgWriter svg(kPictureWidth, kPictureHeight, fmt::format("{}: contours seen along the approach", incision.name),
                 description_of(incision));
-  svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
+  svg.rectangle({0.0, 0.0}, {kPictureWidth, kPictureHeight}, "fill=\"#fff\"");
   svg.text({16.0, 26.0}, incision.name, "start", "font-size=\"15\" font-weight=\"600\"");
   svg.text({16.0, 44.0}, fmt::format("mean |error| {:.2f} mm", incision.mean_abs_error_mm), "start", "fill=\"#555\"");
 
@@ -187,9 +187,9 @@ std::string contour_figure_svg(const ReportIncision& incision, const FigureStyle
   draw_color_bar(svg, {476.0, 96.0}, {16.0, 240.0}, limit_mm, style.colors);
   draw_orientation(svg, picture.view, {500.0, 412.0}, style.axis_names);
 
-  const double bar_px = kScaleBarMm * picture.px_per_mm;
+  const double bar_px = kShortBarMm * picture.px_per_mm;
   svg.line({24.0, 448.0}, {24.0 + bar_px, 448.0}, "stroke=\"#111\" stroke-width=\"3\"");
-  svg.text({30.0 + bar_px, 452.0}, fmt::format("{} mm", number_text(kScaleBarMm)));
+  svg.text({30.0 + bar_px, 452.0}, fmt::format("{} mm", number_text(kShortBarMm)));
   draw_legend(svg, incision, {16.0, 482.0});
   return svg.finish();
 }

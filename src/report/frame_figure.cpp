@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kHeadPx = 44.0;
 constexpr double kFootPx = 78.0;
-constexpr double kScaleBarMm = 10.0;
+constexpr double kLongBarMm = 10.0;
 constexpr double kLetterPx = 6.6;  // wide enough for any sans-serif face of this size
 
 struct Entry {
@@ -67,10 +67,10 @@ std::string frame_figure_svg(const ReportAnimation& animation, std::size_t frame
   svg.rectangle({0.0, 0.0}, {static_cast<double>(width_px), height}, "fill=\"#fff\"");
   svg.text({16.0, 26.0}, title, "start", "font-size=\"15\" font-weight=\"600\"");
   svg.image({0.0, kHeadPx}, {static_cast<double>(width_px), static_cast<double>(height_px)}, png_data_uri(picture));
-  const double bar_px = kScaleBarMm * px_per_mm;
+  const double bar_px = kLongBarMm * px_per_mm;
   const Vec2 bar(16.0, kHeadPx + height_px + 18.0);
   svg.line(bar, bar + Vec2(bar_px, 0.0), "stroke=\"#111\" stroke-width=\"3\"");
-  svg.text(bar + Vec2(bar_px + 6.0, 4.0), fmt::format("{} mm, across the line of sight", number_text(kScaleBarMm)),
+  svg.text(bar + Vec2(bar_px + 6.0, 4.0), fmt::format("{} mm, across the line of sight", number_text(kLongBarMm)),
            "start", "font-size=\"12\"");
   draw_legend(svg, legend_of(animation, moment), {16.0, kHeadPx + height_px + 42.0}, width_px);
   return svg.finish();

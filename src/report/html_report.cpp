@@ -35,10 +35,6 @@ std::string filled(std::string_view text, const std::map<std::string, std::strin
   }
 }
 
-Json json_of(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
 Json view_json(const ReportData& data) {
   const ViewFrame view = view_along(data.approach);
   return {{"x", json_of(view.x)}, {"y", json_of(view.y)}, {"z", json_of(view.z)}, {"ends", data.axis_names}};

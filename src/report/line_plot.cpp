@@ -12,8 +12,8 @@
 namespace incise {
 namespace {
 
-constexpr double kWidth = 560.0;
-constexpr double kHeight = 340.0;
+constexpr double kPlotWidth = 560.0;
+constexpr double kPlotHeight = 340.0;
 constexpr double kLeft = 82.0;  // room for numbers and the axis' name beside them
 constexpr double kMarkRadius = 3.2;
 
@@ -135,10 +135,10 @@ std::string line_plot_svg(const LinePlot& plot) {
   }
   const Range x = range_of(plot, true);
   const Range y = range_of(plot, false);
-  SvgWriter svg(kWidth, kHeight, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
-  svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
-  svg.text({0.5 * kWidth, 20.0}, plot.title, "middle", "font-weight=\"600\" font-size=\"13\"");
-  const PlotArea area{{kLeft, 58.0}, {kWidth - kLeft - 20.0, kHeight - 112.0}, x.low, x.high, y.low, y.high};
+  SvgWriter svg(kPlotWidth, kPlotHeight, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
+  svg.rectangle({0.0, 0.0}, {kPlotWidth, kPlotHeight}, "fill=\"#fff\"");
+  svg.text({0.5 * kPlotWidth, 20.0}, plot.title, "middle", "font-weight=\"600\" font-size=\"13\"");
+  const PlotArea area{{kLeft, 58.0}, {kPlotWidth - kLeft - 20.0, kPlotHeight - 112.0}, x.low, x.high, y.low, y.high};
   draw_axis(svg, area, y, {}, plot.is_log_y, false, plot.y_label);
   draw_axis(svg, area, x, plot.is_log_x ? mark_ticks(plot) : std::vector<double>{}, plot.is_log_x, true, plot.x_label);
   std::vector<std::string_view> colors;

@@ -15,10 +15,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSteps = 65535.0;
 
-Json json_of(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
 /// Appends `bytes` low bytes of a number, the lowest first.
 void append_number(std::string& bytes, std::uint32_t value, int count) {
   for (int k = 0; k < count; ++k) bytes += static_cast<char>(value >> (8 * k) & 0xffU);
@@ -100,6 +96,10 @@ Json line_json(const ReportLine& line) {
 }
 
 }  // namespace
+
+Json json_of(const Vec3& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
 
 Json animation_json(const ReportAnimation& animation, std::size_t budget) {
   Renumbering vertices;

@@ -8,6 +8,9 @@
 
 namespace incise {
 
+/// A point or direction as JSON: [x, y, z].
+[[nodiscard]] nlohmann::ordered_json json_of(const Vec3& v);
+
 /// The animations as JSON for the page's script. Positions are 16-bit steps within one box per animation (a step is
 /// 1/65535 of the box, some micrometres); vertices that no skin uses are left out; numbers are little endian, as
 /// base64. {name, low: [3], step_mm: [3], vertices: V, index_bytes: 2|4, frames: [{time_s, phase, positions, outer,

@@ -73,17 +73,36 @@ class FieldWriter {
   void per_vertex(const char* name, const std::vector<Item>& items, const Walk& walk) { list(name, items, walk); }
   template <class Item, class Walk>
   void per_tet(const char* name, const std::vector<Item>& items, const Walk& walk) { list(name, items, walk); }
+  template <class Item, class Walk>
+  void per_viscous_tet(const char* name, const std::vector<Item>& items, const Walk& walk) { list(name, items, walk); }
+  template <class Item, class Walk>
+  void per_branch(const char* name, const std::vector<Item>& items, const Walk& walk) { list(name, items, walk); }
+  template <class Item, class Walk>
+  void ascending(const char* name, const std::vector<Item>& items, const Walk& walk) { list(name, items, walk); }
 
  private:
   std::string& bytes_;
 };
 
+/// How long the lists of a checkpoint are that go with its model.
+struct ListLengths {
+  std::size_t vertices = 0;
+  std::size_t tets = 0;
+  std::size_t strains = 0;   ///< that viscous tissue remembers; 0: it is not viscous
+  std::size_t branches = 0;
+};
+
+ListLengths lengths_for(const TissueModel& model) {
+  const ViscousMemory memory = rest_state(model).memory;
+  return {model.mesh.vertices.size(), model.mesh.tets.size(), memory.strains.size(), memory.branches.size()};
+}
+
 /// Takes the fields back, each checked; memory grows with what was read, not with what a count claims.
 class FieldReader {
  public:
   /// @param bytes  up to where the fields end; reading begins at `at`.
-  FieldReader(const std::filesystem::path& file, std::string_view bytes, std::size_t at, std::size_t vertices, std::size_t tets)
-      : file_(file), bytes_(bytes), at_(at), vertices_(vertices), tets_(tets) {}
+  FieldReader(const std::filesystem::path& file, std::string_view bytes, std::size_t at, const ListLengths& lengths)
+      : file_(file), bytes_(bytes), at_(at), lengths_(lengths) {}
 
   [[nodiscard]] std::size_t at() const { return at_; }
 
@@ -102,7 +121,7 @@ class FieldReader {
     if (known == kRemovalCauses.end()) fail<std::uint8_t>(name, fmt::format("{}", number), "the number of a cause");
     cause = *known;
   }
-  void operator()(const char* name, TetId& tet) { tet = TetId(up_to(name, tets_ - 1)); }
+  void operator()(const char* name, TetId& tet) { tet = TetId(up_to(name, lengths_.tets - 1)); }
   void operator()(const char* name, Vec3& v) {
     for (int i = 0; i < 3; ++i) (*this)(name, v[i]);
   }
@@ -121,9 +140,23 @@ class FieldReader {
     for (std::size_t i = 0; i < count; ++i) walk(items.emplace_back());
   }
   template <class Item, class Walk>
-  void per_vertex(const char* name, std::vector<Item>& items, const Walk& walk) { exactly(name, items, vertices_, walk); }
+  void per_vertex(const char* name, std::vector<Item>& items, const Walk& walk) { exactly(name, items, lengths_.vertices, "the mesh", walk); }
   template <class Item, class Walk>
-  void per_tet(const char* name, std::vector<Item>& items, const Walk& walk) { exactly(name, items, tets_, walk); }
+  void per_tet(const char* name, std::vector<Item>& items, const Walk& walk) { exactly(name, items, lengths_.tets, "the mesh", walk); }
+  template <class Item, class Walk>
+  void per_viscous_tet(const char* name, std::vector<Item>& items, const Walk& walk) { exactly(name, items, lengths_.strains, "the tissue", walk); }
+  template <class Item, class Walk>
+  void per_branch(const char* name, std::vector<Item>& items, const Walk& walk) { exactly(name, items, lengths_.branches, "the tissue", walk); }
+  template <class Item, class Walk>
+  void ascending(const char* name, std::vector<Item>& items, const Walk& walk) {
+    list(name, items, [&](Item& item) {
+      const std::size_t start = at_;
+      walk(item);
+      if (items.size() < 2 || items[items.size() - 2].tet < item.tet) return;
+      throw DataError(file_, fmt::format("byte {}: {}", start, name),
+                      fmt::format("tet {} behind tet {}", item.tet.value, items[items.size() - 2].tet.value), "each tet once, ascending", kHint);
+    });
+  }
 
  private:
   template <class Number>
@@ -155,10 +188,10 @@ class FieldReader {
   }
 
   template <class Item, class Walk>
-  void exactly(const char* name, std::vector<Item>& items, std::size_t expected, const Walk& walk) {
+  void exactly(const char* name, std::vector<Item>& items, std::size_t expected, const char* owner, const Walk& walk) {
     const std::size_t start = at_;
     const auto count = take<std::uint64_t>(name);
-    if (count != expected) fail<std::uint64_t>(name, fmt::format("{}", count), fmt::format("{}, as the mesh has", expected));
+    if (count != expected) fail<std::uint64_t>(name, fmt::format("{}", count), fmt::format("{}, as {} has", expected, owner));
     at_ = start;
     list(name, items, walk);
   }
@@ -166,9 +199,30 @@ class FieldReader {
   const std::filesystem::path& file_;
   std::string_view bytes_;
   std::size_t at_;
-  std::size_t vertices_;
-  std::size_t tets_;
+  ListLengths lengths_;
 };
+
+/// Refuses fields that do not fit each other.
+void require_consistent(const std::filesystem::path& file, const IncisionProgress& progress) {
+  const auto refuse = [&file](const char* place, const std::string& found, const char* expected) {
+    throw DataError(file, place, found, expected, kHint);
+  };
+  const CutState& state = progress.state;
+  for (const Bond& bond : state.bonds) {
+    if (state.tissue.is_live[bond.tet.index()] == 0) refuse("bonds", fmt::format("tet {}, which is removed", bond.tet.value), "live tets");
+  }
+  std::vector<std::uint8_t> is_live(state.tissue.is_live.size(), 1);
+  for (const Removal& removal : state.record.removals) {
+    std::uint8_t& mark = is_live[removal.tet.index()];
+    if (mark == 0) refuse("removals", fmt::format("tet {} again", removal.tet.value), "each tet once");
+    mark = 0;
+  }
+  if (is_live != state.tissue.is_live) refuse("is_live", "other tets than those left by the removals", "one mark for each removal");
+  if (progress.steps.size() != static_cast<std::size_t>(state.step) || progress.relaxation_steps > state.step) {
+    refuse("step", fmt::format("{} with {} lines of the log, {} of them at rest", state.step, progress.steps.size(), progress.relaxation_steps),
+           "one line for each step");
+  }
+}
 
 /// Refuses a file that is not a whole checkpoint of this version.
 void require_whole(const std::filesystem::path& file, std::string_view bytes) {
@@ -211,7 +265,7 @@ void write_checkpoint(const std::filesystem::path& file, const std::string& key,
 
 CheckpointFile::CheckpointFile(const std::filesystem::path& file) : file_(file), bytes_(read_text(file)) {
   require_whole(file_, bytes_);
-  FieldReader take(file_, std::string_view(bytes_).substr(0, bytes_.size() - kHashDigits), kHeaderBytes, 0, 0);
+  FieldReader take(file_, std::string_view(bytes_).substr(0, bytes_.size() - kHashDigits), kHeaderBytes, {});
   take("key", key_);
   take("maker", maker_);
   fields_start_ = take.at();
@@ -219,12 +273,13 @@ CheckpointFile::CheckpointFile(const std::filesystem::path& file) : file_(file),
 
 IncisionProgress CheckpointFile::progress(const TissueModel& model) const {
   const std::string_view fields = std::string_view(bytes_).substr(0, bytes_.size() - kHashDigits);
-  FieldReader take(file_, fields, fields_start_, model.mesh.vertices.size(), model.mesh.tets.size());
+  FieldReader take(file_, fields, fields_start_, lengths_for(model));
   IncisionProgress progress;
   walk_progress(take, progress);
   if (take.at() != fields.size()) {
     throw DataError(file_, fmt::format("byte {}", take.at()), fmt::format("{} bytes too many", fields.size() - take.at()), "the SHA-256", kHint);
   }
+  require_consistent(file_, progress);
   return progress;
 }
 

@@ -268,7 +268,7 @@ void describe_cut(Case& c, FieldVisitor& v) {
   v.number({"reach_mm", "mm", "Tissue is in contact within the tool's radius plus this of its core."}, c.cut.reach_mm, {0.0, 5.0});
   v.number({"bond_stiffness_kpa_mm2", "kPa/mm2", "Pull of the tool on tissue that it holds, per volume and offset; 0: no drag."},
            c.cut.bond_stiffness_kpa_mm2, {0.0, 1e6});
-  v.number({"overlap_mm", "mm", "A ring is cut this far beyond its start."}, c.cut.overlap_mm, {0.0, 50.0});
+  v.number({"overlap_mm", "mm", "A ring is cut this far beyond its start, less than once round."}, c.cut.overlap_mm, {0.0, 50.0});
   v.number({"residual_tolerance", "", "Of each step's linear solve, relative to the contact force."}, c.cut.residual_tolerance,
            {0.0, 1.0, true, true});
   v.integer({"frames", "", "Moments of the cut that are kept for pictures."}, c.frames, {0.0, 500.0});

@@ -24,21 +24,33 @@ constexpr const char* kStageFile = "stage.json";
 
 struct ProductInfo {
   const char* folder;
-  std::vector<std::string> settings;  ///< prefixes of the settings that it depends on, beside those of what it is made from
-  std::vector<std::string> but = {};  ///< of those, prefixes of settings that it does not depend on
+  std::vector<std::string> settings;  ///< prefixes of the settings that it is made with, beside those of what it is made from
+  std::vector<std::string> but = {};  ///< of those, prefixes of settings that it is made without
 };
 
+// What is only held against a cut that was made (see FolderStore::judgement_key) makes no cut anew.
 const ProductInfo& info(Product product) {
   static const std::array<ProductInfo, 7> kInfo{{
       {"labels", {"ct."}},
-      {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}, {"plan.power_w"}},
+      {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}, {"plan.power_w", "plan.speed_mm_s", "plan.close_margin_mm"}},
       {"stretched", {"specimen."}},
-      {"plan", {"tumor.", "plan."}, {"plan.power_w"}},
-      {"as_planned", {"plan.power_w", "tool.", "cut.", "thermal.", "path"}},
-      {"correction", {}},
+      {"plan", {"tumor.", "plan."}, {"plan.power_w", "plan.close_margin_mm"}},
+      {"as_planned", {"plan.power_w", "tool.", "cut."}},
+      {"correction", {"plan.close_margin_mm"}},
       {"corrected", {}},
   }};
   return kInfo[static_cast<std::size_t>(product)];
+}
+
+/// The case without the names of its files: what is in them counts, not where they lie.
+CaseFile without_paths(CaseFile file) {
+  file.inputs = {};
+  if (!file.settings.constraints) return file;
+  for (Constraint& constraint : *file.settings.constraints) {
+    auto* support = std::get_if<SupportConstraint>(&constraint);
+    if (support != nullptr && support->holder) support->holder = std::make_shared<HolderSurface>();
+  }
+  return file;
 }
 
 Vec3 vector_from(const nlohmann::ordered_json& json) {
@@ -63,7 +75,7 @@ std::string FolderStore::settings_with(const std::vector<std::string>& prefixes,
     return std::any_of(list.begin(), list.end(), [&key](const std::string& prefix) { return key.starts_with(prefix); });
   };
   std::string text;
-  for (const SettingLine& line : settings_of(file_)) {
+  for (const SettingLine& line : settings_of(without_paths(file_))) {
     if (starts_with_one(line.key, prefixes) && !starts_with_one(line.key, but)) text += fmt::format("{}={}\n", line.key, line.value);
   }
   return text;
@@ -79,15 +91,18 @@ std::string FolderStore::input_hash(const std::filesystem::path& path) {
 const std::string& FolderStore::key(Product product) {
   std::string& key = keys_[static_cast<std::size_t>(product)];
   if (!key.empty()) return key;
-  // Each product depends on the one before it; the code's own version is part of the first key, and so of all.
-  std::string text = info(product).folder + settings_with(info(product).settings, info(product).but);
+  // Each product depends on the one before it; the code's own version is part of the first key, and so of all. Where the case names a
+  // mesh, nothing is segmented or meshed.
+  const bool is_skipped = !file_.inputs.specimen_mesh.empty() && product <= Product::Mesh;
+  std::string text = info(product).folder;
+  if (!is_skipped) text += settings_with(info(product).settings, info(product).but);
   if (product == Product::Labels) {
     text += fmt::format("{} {} ct={} mesh={}", version(), source_commit(), input_hash(file_.inputs.ct_volume),
                         input_hash(file_.inputs.specimen_mesh));
   } else {
     text += this->key(static_cast<Product>(static_cast<int>(product) - 1));
   }
-  if (product == Product::Mesh || product == Product::Plan) {
+  if ((product == Product::Mesh && !is_skipped) || product == Product::Plan) {
     text += fmt::format(" tumor={} line={}", input_hash(file_.inputs.tumor_contour), input_hash(file_.inputs.line_contour));
   }
   if (product == Product::Mesh) {
@@ -138,7 +153,9 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   AtomicFolder target(folder(product));
   write(target.path());
   write_manifest_to(target.path(), wall_s);
-  write_json(target.path() / kStageFile, {{"key", key(product)}, {"wall_s", wall_s}});
+  nlohmann::ordered_json stage{{"key", key(product)}, {"wall_s", wall_s}};
+  if (product == Product::AsPlanned || product == Product::Corrected) stage["judged_by"] = judgement_key();
+  write_json(target.path() / kStageFile, stage);
   target.commit();
   // What was made from the older product is of no use any more, and a report must not mix the two.
   for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
@@ -146,6 +163,25 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   }
   std::filesystem::remove_all(root_ / "program");
   remove_checkpoints_of_no_use(product);
+}
+
+std::string FolderStore::judgement_key() const { return sha256_of_text(settings_with({"thermal.", "plan.close_margin_mm"}, {})); }
+
+void FolderStore::note_judgement(Product product) {
+  // The manifest lists the folder's files as its older self did: only the settings are others now.
+  const std::filesystem::path manifest = folder(product) / "manifest.json";
+  nlohmann::ordered_json json = read_json(manifest);
+  json["settings"] = nlohmann::ordered_json::parse(settings_json(file_));
+  write_json(manifest, json);
+  const std::filesystem::path stage = folder(product) / kStageFile;
+  json = read_json(stage);
+  json["judged_by"] = judgement_key();
+  write_json(stage, json);
+}
+
+bool FolderStore::is_judged_anew(Product product) {
+  const nlohmann::ordered_json json = read_json(folder(product) / kStageFile);
+  return !json.contains("judged_by") || json.at("judged_by") != judgement_key();
 }
 
 bool FolderStore::is_stale(Product product) {

@@ -82,6 +82,20 @@ RemovalCause cause_from(const nlohmann::ordered_json& json, const std::filesyste
   throw DataError(file, "removals", fmt::format("a cause {}", number), "the number of one of removal_causes");
 }
 
+/// All numbers of a cut, and how its program ended and what it removed.
+nlohmann::ordered_json incision_json(const SimulatedCut& cut) {
+  nlohmann::ordered_json json = to_json(cut);
+  json["program_outcome"] = to_string(cut.incision.outcome);
+  json["removal_columns"] = {"tet", "step", "time_s", "cause", "rest_volume_mm3"};
+  json["removal_causes"] = nlohmann::ordered_json::array();  // by the number in the column
+  for (const RemovalCause cause : kRemovalCauses) json["removal_causes"].push_back(to_string(cause));
+  json["removals"] = nlohmann::ordered_json::array();
+  for (const Removal& r : cut.incision.record.removals) {
+    json["removals"].push_back({r.tet.value, r.step, r.time_s, static_cast<int>(r.cause), r.rest_volume_mm3});
+  }
+  return json;
+}
+
 /// What each step of the cut did, one line each.
 void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog>& steps) {
   write_atomically(file, [&steps](std::ostream& out) {
@@ -204,7 +218,12 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
       incision.record.removals.push_back(r);
     }
     const ToolPath intended = read_tool_path(folder(Product::Plan) / "path.json");
-    return judge(file_.settings, std::move(incision), intended, json.at("tets").get<std::size_t>());
+    SimulatedCut cut = judge(file_.settings, std::move(incision), intended, json.at("tets").get<std::size_t>());
+    if (is_judged_anew(product)) {
+      write_json(from / "incision.json", incision_json(cut));
+      note_judgement(product);
+    }
+    return cut;
   });
 }
 
@@ -212,16 +231,7 @@ void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticR
                            double wall_s) {
   save(product_of(role), wall_s, [&](const std::filesystem::path& to) {
     const IncisionResult& incision = cut.incision;
-    nlohmann::ordered_json json = to_json(cut);
-    json["program_outcome"] = to_string(incision.outcome);
-    json["removal_columns"] = {"tet", "step", "time_s", "cause", "rest_volume_mm3"};
-    json["removal_causes"] = nlohmann::ordered_json::array();  // by the number in the column
-    for (const RemovalCause cause : kRemovalCauses) json["removal_causes"].push_back(to_string(cause));
-    json["removals"] = nlohmann::ordered_json::array();
-    for (const Removal& r : incision.record.removals) {
-      json["removals"].push_back({r.tet.value, r.step, r.time_s, static_cast<int>(r.cause), r.rest_volume_mm3});
-    }
-    write_json(to / "incision.json", json);
+    write_json(to / "incision.json", incision_json(cut));
     write_steps(to / "steps.csv", incision.steps);
     if (incision.centerline) write_contour_csv(to / "centerline.csv", *incision.centerline);
     if (incision.inner_edge) write_contour_csv(to / "inner_edge.csv", *incision.inner_edge);

@@ -1,5 +1,7 @@
 #include "kerf_files.hpp"
 
+#include "json_values.hpp"
+
 #include <incise/io/contour_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/table_io.hpp>
@@ -13,11 +15,6 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<std::string> kDepthColumns{"x_mm", "y_mm", "z_mm", "arclength_mm", "depth_mm"};
 const std::vector<std::string> kLagColumns{"time_s", "arclength_mm", "lag_mm", "drift_mm"};
-
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 template <class Value>
 std::optional<Value> optional_at(const Json& json, const char* key) {

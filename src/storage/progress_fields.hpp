@@ -6,7 +6,8 @@ namespace incise {
 
 // All fields of an incision's progress, in the order in which a checkpoint holds them: the one list, from which writing (a `Fields` that
 // puts) and reading (one that takes) both follow. `Fields` has operator() for a single value, list() for a list of any length, per_vertex()
-// and per_tet() for lists as long as the mesh; the last three are given what to do with one item. A value may be const or not.
+// and per_tet() for lists as long as the mesh, per_viscous_tet() and per_branch() for what viscous tissue remembers, and ascending() for items
+// in the order of their tets, each tet once; the lists are given what to do with one item. A value may be const or not.
 
 template <class Fields, class Value>
 void walk_pose(Fields& f, Value& tool) {
@@ -21,8 +22,8 @@ void walk_tissue(Fields& f, Value& tissue) {
   f.per_vertex("positions", tissue.positions, [&f](auto& p) { f("position", p); });
   f.per_tet("rotations", tissue.rotations, matrix);
   f.per_tet("is_live", tissue.is_live, [&f](auto& mark) { f("mark", mark); });
-  f.list("strains", tissue.memory.strains, matrix);
-  f.list("branches", tissue.memory.branches, matrix);
+  f.per_viscous_tet("strains", tissue.memory.strains, matrix);
+  f.per_branch("branches", tissue.memory.branches, matrix);
 }
 
 template <class Fields, class Value>
@@ -30,7 +31,7 @@ void walk_state(Fields& f, Value& state) {
   walk_tissue(f, state.tissue);
   f.per_tet("dose", state.dose, [&f](auto& dose) { f("dose", dose); });
   f.per_tet("tear_dose", state.tear_dose, [&f](auto& dose) { f("dose", dose); });
-  f.list("bonds", state.bonds, [&f](auto& bond) {
+  f.ascending("bonds", state.bonds, [&f](auto& bond) {
     f("tet", bond.tet);
     f("offset_mm", bond.offset_mm);
   });

@@ -1,3 +1,4 @@
+#include "json_values.hpp"
 #include "kerf_files.hpp"
 
 #include <incise/core/error.hpp>
@@ -11,11 +12,6 @@ namespace incise {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 

@@ -9,25 +9,25 @@
 namespace incise {
 namespace {
 
-constexpr double kLength = 100.0;         // mm
-constexpr double kHeight = 10.0;          // mm
-constexpr double kTraction = -1e-4;       // kPa: a tip displacement near 1e-3 of the height
-constexpr double kRateTolerance = 0.2;    // the clamped corners, which the beam does not know, cost some
-constexpr double kTipTolerance = 0.005;   // of the tip: Saint-Venant's end zone over the length
-const std::vector<int> kCells{4, 8, 16};  // over the height
+constexpr double kBeamLength = 100.0;               // mm
+constexpr double kBeamHeight = 10.0;                // mm
+constexpr double kEndTraction = -1e-4;              // kPa: a tip displacement near 1e-3 of the height
+constexpr double kTipRateTolerance = 0.2;           // the clamped corners, which the beam does not know, cost some
+constexpr double kTipTolerance = 0.005;             // of the tip: Saint-Venant's end zone over the length
+const std::vector<int> kCellsOverHeight{4, 8, 16};  // over the height
 
 /// Tip displacement with n cells over the height and half as many per length. At ν = 0 nothing happens across the
 /// width, so one layer of cells between planes of symmetry is the whole beam.
 double computed_tip_mm(const CheckContext& context, int n) {
   Material material;
   material.poissons_ratio = 0.0;
-  const double width = kHeight / n;
+  const double width = kBeamHeight / n;
   const TissueModel model =
-      make_tissue_model(make_block(Vec3(kLength, width, kHeight), {10 * n, 1, n}), material,
+      make_tissue_model(make_block(Vec3(kBeamLength, width, kBeamHeight), {10 * n, 1, n}), material,
                         {FixedConstraint{plane_across(0, 0.0)}, symmetry_across(1), symmetry_across(1, width),
-                         TractionConstraint{plane_across(0, kLength), Vec3(0, 0, kTraction)}});
+                         TractionConstraint{plane_across(0, kBeamLength), Vec3(0, 0, kEndTraction)}});
   return mean_displacement(model, solved(context, model, nullptr, kSmallStrainTolerance).state,
-                           plane_across(0, kLength))[2];
+                           plane_across(0, kBeamLength))[2];
 }
 
 struct Refinement {
@@ -38,20 +38,22 @@ struct Refinement {
 
 Refinement refine(const CheckContext& context) {
   Refinement result;
-  result.expected = beam_tip_mm(kLength, kHeight, Material{}.youngs_modulus_kpa, kTraction * kHeight);
-  for (const int n : kCells) result.tips.push_back(computed_tip_mm(context, n));
+  result.expected = beam_tip_mm(kBeamLength, kBeamHeight, Material{}.youngs_modulus_kpa, kEndTraction * kBeamHeight);
+  for (const int n : kCellsOverHeight) result.tips.push_back(computed_tip_mm(context, n));
   return result;
 }
 
 void finish(VerificationCheck& check, const Refinement& refinement) {
   CheckCurve marks{"tip displacement", {}, {}, false};
   CheckCurve slope{"second order", {}, {}, true};
-  for (std::size_t i = 0; i < kCells.size(); ++i) {
-    marks.x.push_back(kCells[i]);
+  for (std::size_t i = 0; i < kCellsOverHeight.size(); ++i) {
+    marks.x.push_back(kCellsOverHeight[i]);
     marks.y.push_back(refinement.error(i));
-    slope.x.push_back(kCells[i]);
-    slope.y.push_back(refinement.error(0) * std::pow(static_cast<double>(kCells[0]) / kCells[i], 2));
-    check.note += fmt::format("{}{} cells: {:.2f} % off", i > 0 ? ", " : "", kCells[i], 100.0 * refinement.error(i));
+    slope.x.push_back(kCellsOverHeight[i]);
+    slope.y.push_back(refinement.error(0) *
+                      std::pow(static_cast<double>(kCellsOverHeight[0]) / kCellsOverHeight[i], 2));
+    check.note +=
+        fmt::format("{}{} cells: {:.2f} % off", i > 0 ? ", " : "", kCellsOverHeight[i], 100.0 * refinement.error(i));
   }
   check.plot = {"Cantilever against Timoshenko's beam",
                 "cells over the height",
@@ -61,13 +63,14 @@ void finish(VerificationCheck& check, const Refinement& refinement) {
                 {slope, marks}};
 }
 
-constexpr const char* kSource = "Timoshenko's beam: F L³ / 3EI + F L / (5/6 G A)";
+constexpr const char* kBeamSource = "Timoshenko's beam: F L³ / 3EI + F L / (5/6 G A)";
 
 }  // namespace
 
 VerificationCheck cantilever_rate(const CheckContext& context) {
-  VerificationCheck check = described("Cantilever, ν = 0: observed order of convergence of the tip displacement",
-                                      std::string(kSource) + "; order 2 of linear tets", "-", 2.0, kRateTolerance);
+  VerificationCheck check =
+      described("Cantilever, ν = 0: observed order of convergence of the tip displacement",
+                std::string(kBeamSource) + "; order 2 of linear tets", "-", 2.0, kTipRateTolerance);
   const Refinement refinement = refine(context);
   check.found = observed_rate(refinement.error(1), refinement.error(2));
   finish(check, refinement);
@@ -76,7 +79,7 @@ VerificationCheck cantilever_rate(const CheckContext& context) {
 
 VerificationCheck cantilever_tip(const CheckContext& context) {
   const Refinement refinement = refine(context);
-  VerificationCheck check = described("Cantilever, ν = 0: tip displacement, extrapolated at second order", kSource,
+  VerificationCheck check = described("Cantilever, ν = 0: tip displacement, extrapolated at second order", kBeamSource,
                                       "mm", refinement.expected, kTipTolerance * std::abs(refinement.expected));
   check.found = second_order_limit(refinement.tips[1], refinement.tips[2]);
   finish(check, refinement);

@@ -16,18 +16,18 @@
 namespace incise {
 namespace {
 
-constexpr double kTraction = 2e-3;  // kPa, upwards: strains near 1e-4, so that linear elasticity applies
-constexpr double kRateTolerance = 0.1;
-const std::vector<int> kCells{16, 32, 64};
+constexpr double kPanelTraction = 2e-3;  // kPa, upwards: strains near 1e-4, so that linear elasticity applies
+constexpr double kPanelRateTolerance = 0.1;
+const std::vector<int> kPanelCells{16, 32, 64};
 constexpr int kReferenceCells = 32;  // quadratic elements each way; the coarser two of its meshes have 8 and 16
 
 }  // namespace
 
 double panel_tip_of_tets_mm(const CheckContext& context, const Material& material, int n) {
-  const TissueModel model =
-      make_tissue_model(cooks_panel(n), material,
-                        {FixedConstraint{plane_across(0, 0.0), {true, true, false}}, symmetry_across(2),
-                         symmetry_across(2, 1.0), TractionConstraint{plane_across(0, 48.0), Vec3(0, kTraction, 0)}});
+  const TissueModel model = make_tissue_model(
+      cooks_panel(n), material,
+      {FixedConstraint{plane_across(0, 0.0), {true, true, false}}, symmetry_across(2), symmetry_across(2, 1.0),
+       TractionConstraint{plane_across(0, 48.0), Vec3(0, kPanelTraction, 0)}});
   const Region tip = BoxRegion{Box3(Vec3(48.0 - 1e-6, 52.0 - 1e-6, -1.0), Vec3(48.0 + 1e-6, 52.0 + 1e-6, 2.0))};
   return mean_displacement(model, solved(context, model, nullptr, kSmallStrainTolerance).state, tip)[1];
 }
@@ -36,7 +36,7 @@ double panel_reference_tip_mm(const Material& material) {
   PanelProblem problem;
   problem.youngs_modulus_kpa = material.youngs_modulus_kpa;
   problem.poissons_ratio = material.poissons_ratio;
-  problem.traction_kpa = kTraction;
+  problem.traction_kpa = kPanelTraction;
   return extrapolated(panel_tip_mm(problem, kReferenceCells / 4), panel_tip_mm(problem, kReferenceCells / 2),
                       panel_tip_mm(problem, kReferenceCells));
 }
@@ -50,18 +50,18 @@ VerificationCheck cooks_membrane_rate(const CheckContext& context) {
   VerificationCheck check = described(
       "Cook's membrane, plane strain, ν = 0.3: observed order of convergence of the tip displacement",
       "at least twice the exponent of the clamped-free corner (Williams 1952); tip by nine-node quadrilaterals", "-",
-      2.0 * exponent, kRateTolerance);
+      2.0 * exponent, kPanelRateTolerance);
   // On meshes as coarse as these the smooth part of the error, of order 2, still outweighs the corner's.
   check.criterion = Criterion::AtLeast;
   const double expected = panel_reference_tip_mm(material);
   CheckCurve marks{"tip displacement", {}, {}, false};
   CheckCurve slope{fmt::format("order {:.2f}, the least to be seen", 2.0 * exponent), {}, {}, true};
-  for (const int n : kCells) {
+  for (const int n : kPanelCells) {
     marks.x.push_back(n);
     marks.y.push_back(std::abs(1.0 - panel_tip_of_tets_mm(context, material, n) / expected));
     slope.x.push_back(n);
-    slope.y.push_back(marks.y[0] * std::pow(static_cast<double>(kCells[0]) / n, 2.0 * exponent));
-    check.note += fmt::format("{}{} cells: {:.2f} % off", n == kCells[0] ? "" : ", ", n, 100.0 * marks.y.back());
+    slope.y.push_back(marks.y[0] * std::pow(static_cast<double>(kPanelCells[0]) / n, 2.0 * exponent));
+    check.note += fmt::format("{}{} cells: {:.2f} % off", n == kPanelCells[0] ? "" : ", ", n, 100.0 * marks.y.back());
   }
   check.found = observed_rate(marks.y[marks.y.size() - 2], marks.y.back());
   check.plot = {"Cook's membrane", "cells each way", "relative error of the tip", true, true, {slope, marks}};

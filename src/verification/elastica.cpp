@@ -12,22 +12,22 @@
 namespace incise {
 namespace {
 
-constexpr double kLength = 100.0;     // mm
-constexpr double kHeight = 4.0;       // mm
+constexpr double kStripLength = 100.0;     // mm
+constexpr double kStripHeight = 4.0;       // mm
 constexpr double kLoad = 3.0;         // F L² / E I
-constexpr double kTolerance = 0.005;  // of the length
-constexpr double kFinestError = 0.01;  // of the drop: what the finest mesh itself may be off
-const std::vector<int> kCells{4, 8, 16};
+constexpr double kDropTolerance = 0.005;  // of the length
+constexpr double kFinestDropError = 0.01;  // of the drop: what the finest mesh itself may be off
+const std::vector<int> kStripCells{4, 8, 16};
 constexpr int kCellsAlongPerCell = 16;
 
 PlaneBeam beam_per_width() {
   const double e = Material{}.youngs_modulus_kpa;
   PlaneBeam beam;
-  beam.length_mm = kLength;
-  beam.bending_stiffness = e * kHeight * kHeight * kHeight / 12.0;
-  beam.axial_stiffness = e * kHeight;
-  beam.shear_stiffness = 5.0 / 6.0 * 0.5 * e * kHeight;
-  beam.force_mn = kLoad * beam.bending_stiffness / (kLength * kLength);
+  beam.length_mm = kStripLength;
+  beam.bending_stiffness = e * kStripHeight * kStripHeight * kStripHeight / 12.0;
+  beam.axial_stiffness = e * kStripHeight;
+  beam.shear_stiffness = 5.0 / 6.0 * 0.5 * e * kStripHeight;
+  beam.force_mn = kLoad * beam.bending_stiffness / (kStripLength * kStripLength);
   return beam;
 }
 
@@ -43,10 +43,10 @@ TissueState bent_as_the_beam(const TissueModel& model, int n) {
   const std::vector<Vec2> line = bent_line(beam_per_width(), cells);
   TissueState state = rest_state(model);
   for (Vec3& p : state.positions) {
-    const auto i = static_cast<std::size_t>(std::lround(p[0] / kLength * cells));
+    const auto i = static_cast<std::size_t>(std::lround(p[0] / kStripLength * cells));
     const Vec2 along = (line[std::min(i + 1, line.size() - 1)] - line[i == 0 ? 0 : i - 1]).normalized();
-    const double height = p[2] - 0.5 * kHeight;
-    if (i > 0) p = Vec3(line[i][0] - height * along[1], p[1], 0.5 * kHeight + line[i][1] + height * along[0]);
+    const double height = p[2] - 0.5 * kStripHeight;
+    if (i > 0) p = Vec3(line[i][0] - height * along[1], p[1], 0.5 * kStripHeight + line[i][1] + height * along[0]);
   }
   return state;
 }
@@ -56,18 +56,18 @@ TissueState bent_as_the_beam(const TissueModel& model, int n) {
 Bent bend(const CheckContext& context, int n) {
   Material material;
   material.poissons_ratio = 0.0;
-  const double width = kHeight / n;
+  const double width = kStripHeight / n;
   const TissueModel model = make_tissue_model(
-      make_block(Vec3(kLength, width, kHeight), {kCellsAlongPerCell * n, 1, n}), material,
+      make_block(Vec3(kStripLength, width, kStripHeight), {kCellsAlongPerCell * n, 1, n}), material,
       {FixedConstraint{plane_across(0, 0.0)}, symmetry_across(1), symmetry_across(1, width),
-       TractionConstraint{plane_across(0, kLength), Vec3(0, 0, -beam_per_width().force_mn / kHeight)}});
+       TractionConstraint{plane_across(0, kStripLength), Vec3(0, 0, -beam_per_width().force_mn / kStripHeight)}});
   const TissueState start = bent_as_the_beam(model, n);
   const TissueState state = solved(context, model, &start, 1e-8).state;
-  Bent bent{mean_displacement(model, state, plane_across(0, kLength)),
+  Bent bent{mean_displacement(model, state, plane_across(0, kStripLength)),
             {fmt::format("tets, {} over the height", n), {}, {}, false}};
   for (int i = 0; i <= 16; ++i) {
-    const Region section = plane_across(0, kLength * i / 16.0);
-    const Vec3 moved = mean_displacement(model, state, section) / kLength;
+    const Region section = plane_across(0, kStripLength * i / 16.0);
+    const Vec3 moved = mean_displacement(model, state, section) / kStripLength;
     bent.line.x.push_back(i / 16.0 + moved[0]);
     bent.line.y.push_back(moved[2]);
   }
@@ -81,23 +81,23 @@ VerificationCheck elastica_tip(const CheckContext& context) {
   VerificationCheck check = described(
       "Slender beam bent far by a tip force, F L²/EI = 3, ν = 0: drop of the tip, extrapolated at second order",
       "elastica (Bisshopp and Drucker 1945) with shear and stretch (Reissner 1972), integrated along the arc",
-      "of the length", -line.back()[1] / kLength, kTolerance);
+      "of the length", -line.back()[1] / kStripLength, kDropTolerance);
   CheckCurve reference{"elastica", {}, {}, true};
   for (std::size_t i = 0; i < line.size(); i += 8) {
-    reference.x.push_back(line[i][0] / kLength);
-    reference.y.push_back(line[i][1] / kLength);
+    reference.x.push_back(line[i][0] / kStripLength);
+    reference.y.push_back(line[i][1] / kStripLength);
   }
   check.plot = {"Beam bent far", "x / length", "z / length", false, false, {reference}};
   std::vector<double> drops;
   std::vector<double> errors;
-  for (const int n : kCells) {
+  for (const int n : kStripCells) {
     const Bent bent = bend(context, n);
-    drops.push_back(-bent.tip[2] / kLength);
+    drops.push_back(-bent.tip[2] / kStripLength);
     errors.push_back(drops.back() - check.expected);
     check.note += fmt::format("{} cells: {:.2f} % off, ", n, 100.0 * errors.back() / check.expected);
-    if (n != kCells[1]) check.plot.curves.push_back(bent.line);
+    if (n != kStripCells[1]) check.plot.curves.push_back(bent.line);
   }
-  require_small_error(errors.back() / check.expected, kFinestError);
+  require_small_error(errors.back() / check.expected, kFinestDropError);
   check.found = extrapolated(drops[0], drops[1], drops[2]);
   check.note += fmt::format("order {:.2f}", observed_rate(errors[1], errors[2]));
   return check;

@@ -12,9 +12,9 @@
 namespace incise {
 namespace {
 
-constexpr double kTolerance = 1e-8;  // of the size: Newton stops at 1e-10 of the loads
+constexpr double kStretchTolerance = 1e-8;  // of the size: Newton stops at 1e-10 of the loads
 constexpr double kShearTolerance = 1e-10;
-const Vec3 kSize(40, 20, 20);  // mm
+const Vec3 kBarSize(40, 20, 20);  // mm
 const std::vector<double> kStrains{0.05, 0.1, 0.2, 0.3, 0.4, 0.5};
 
 /// Largest distance of a vertex from diag(stretches) X, over the longest side.
@@ -23,7 +23,7 @@ double distance_from(const TissueModel& model, const TissueState& state, const V
   for (std::size_t v = 0; v < state.positions.size(); ++v) {
     worst = std::max(worst, (state.positions[v] - stretches.cwiseProduct(model.mesh.vertices[v])).norm());
   }
-  return worst / kSize.maxCoeff();
+  return worst / kBarSize.maxCoeff();
 }
 
 CheckCurve closed_form_curve(const std::function<double(double)>& stress) {
@@ -44,8 +44,8 @@ VerificationCheck pulled(const CheckContext& context, const Material& material, 
                   law_text(material), material.poissons_ratio),
       material.model == MaterialModel::Corotational ? "P = R (2μ(S − I) + λ tr(S − I) I), free sides: P = 0"
                                                     : "Smith, de Goes and Kim 2018, free sides by root finding",
-      "of the length", 0.0, kTolerance);
-  const TetMesh mesh = irregular_block(kSize, {6, 3, 3}, 0.2, 3);
+      "of the length", 0.0, kStretchTolerance);
+  const TetMesh mesh = irregular_block(kBarSize, {6, 3, 3}, 0.2, 3);
   CheckCurve marks{"computed", {}, {}, false};
   TissueState state;
   for (const double strain : kStrains) {
@@ -54,12 +54,12 @@ VerificationCheck pulled(const CheckContext& context, const Material& material, 
     std::vector<Constraint> constraints;
     for (int axis = 0; axis < 3; ++axis) constraints.push_back(symmetry_across(axis));
     for (int axis = 0; axis < axes; ++axis) {
-      constraints.emplace_back(TractionConstraint{plane_across(axis, kSize[axis]), stress * Vec3::Unit(axis)});
+      constraints.emplace_back(TractionConstraint{plane_across(axis, kBarSize[axis]), stress * Vec3::Unit(axis)});
     }
     const TissueModel model = make_tissue_model(mesh, material, constraints);
     state = solved(context, model, state.positions.empty() ? nullptr : &state).state;
     check.found = std::max(check.found, distance_from(model, state, stretches));
-    marks.x.push_back(mean_displacement(model, state, plane_across(0, kSize[0]))[0] / kSize[0]);
+    marks.x.push_back(mean_displacement(model, state, plane_across(0, kBarSize[0]))[0] / kBarSize[0]);
     marks.y.push_back(stress);
   }
   const CheckCurve line =
@@ -91,8 +91,8 @@ VerificationCheck simple_shear(const CheckContext& context, const Material& mate
       material.model == MaterialModel::Corotational ? "2μ(γ − sin θ) + λ(√(4 + γ²) − 2) sin θ, tan θ = γ/2"
                                                     : "Smith, de Goes and Kim 2018: 4μ/3 γ (1 − 1/(4 + γ²))",
       "of μ", 0.0, kShearTolerance);
-  TissueModel model =
-      make_tissue_model(irregular_block(kSize, {6, 3, 3}, 0.2, 3), material, {FixedConstraint{plane_across(1, 0.0)}});
+  TissueModel model = make_tissue_model(irregular_block(kBarSize, {6, 3, 3}, 0.2, 3), material,
+                                        {FixedConstraint{plane_across(1, 0.0)}});
   const double mu = lame_parameters(material.youngs_modulus_kpa, material.poissons_ratio).mu_kpa;
   CheckCurve marks{"mean stress from the nodal forces", {}, {}, false};
   for (const double shear : kStrains) {

@@ -9,8 +9,8 @@
 namespace incise {
 namespace {
 
-constexpr double kTolerance = 1e-11;  // rounding of positions over a strain of 1 %
-const Vec3 kSize(60, 20, 10);         // mm
+constexpr double kPatchTolerance = 1e-11;  // rounding of positions over a strain of 1 %
+const Vec3 kPatchSize(60, 20, 10);         // mm
 
 Mat3 gradient(double share) {
   Mat3 g;
@@ -41,7 +41,7 @@ double position_error(const CheckContext& context, TissueModel& model, const Mat
   for (std::size_t v = 0; v < model.mesh.vertices.size(); ++v) {
     error = std::max(error, (result.state.positions[v] - f * model.mesh.vertices[v]).norm());
   }
-  return error / kSize[0];
+  return error / kPatchSize[0];
 }
 
 }  // namespace
@@ -50,9 +50,9 @@ VerificationCheck patch_test(const CheckContext& context, const Material& materi
   VerificationCheck check =
       described(fmt::format("Patch test on an irregular mesh, {}: forces inside and distance from the linear field",
                             law_text(material)),
-                "Irons and Razzaque 1972: exact to rounding", "-", 0.0, kTolerance);
-  TissueModel model =
-      make_tissue_model(irregular_block(kSize, {6, 4, 3}, 0.2, 5), material, {FixedConstraint{plane_across(0, 0.0)}});
+                "Irons and Razzaque 1972: exact to rounding", "-", 0.0, kPatchTolerance);
+  TissueModel model = make_tissue_model(irregular_block(kPatchSize, {6, 4, 3}, 0.2, 5), material,
+                                        {FixedConstraint{plane_across(0, 0.0)}});
   prescribe_boundary(model, gradient(1.0));
   CheckCurve curve{"largest inner force / largest boundary force", {}, {}, false};
   for (const double share : {0.01, 0.03, 0.1, 0.3, 1.0, 2.0}) {
@@ -68,7 +68,7 @@ VerificationCheck patch_test(const CheckContext& context, const Material& materi
                 "inner force / boundary force",
                 true,
                 false,
-                {curve, {"tolerance", {0.01, 2.0}, {kTolerance, kTolerance}, true}}};
+                {curve, {"tolerance", {0.01, 2.0}, {kPatchTolerance, kPatchTolerance}, true}}};
   return check;
 }
 

@@ -10,10 +10,10 @@
 namespace incise {
 namespace {
 
-constexpr double kShear = 1e-4;      // small: the closed form is that of linear viscoelasticity
-constexpr double kStep = 0.05;       // s
-constexpr int kSteps = 40;           // four relaxation times
-constexpr double kTolerance = 1e-6;  // the step rule is exact; what is left is of the order of the strain
+constexpr double kShear = 1e-4;                // small: the closed form is that of linear viscoelasticity
+constexpr double kStep = 0.05;                 // s
+constexpr int kSteps = 40;                     // four relaxation times
+constexpr double kRelaxationTolerance = 1e-6;  // the step rule is exact; what is left is of the order of the strain
 constexpr PronyTerm kTerm{1.5, 0.5};
 
 /// Shear stress at the end of a step, kPa: elastic and viscous forces on the boundary, as a mean over the body.
@@ -34,7 +34,7 @@ VerificationCheck relaxation_of_one_prony_term(const CheckContext& context) {
   VerificationCheck check = described(
       "Shear held constant, one Prony term: largest difference of the stress from its relaxation curve over four "
       "relaxation times",
-      "linear viscoelasticity: μ γ (1 + g e^{−t/τ}), g = 1.5, τ = 0.5 s", "of μ γ", 0.0, kTolerance);
+      "linear viscoelasticity: μ γ (1 + g e^{−t/τ}), g = 1.5, τ = 0.5 s", "of μ γ", 0.0, kRelaxationTolerance);
   const TissueModel model = make_tissue_model(irregular_block(Vec3(20, 20, 20), {3, 3, 3}, 0.2, 9), material,
                                               {FixedConstraint{plane_across(1, 0.0)}});
   TissueState state = rest_state(model);

@@ -13,33 +13,33 @@
 namespace incise {
 namespace {
 
-const Vec3 kSize(40, 30, 15);               // mm
+const Vec3 kSlabSize(40, 30, 15);               // mm
 constexpr double kPenetration = 0.05;       // mm, promised by SupportPlane
 constexpr double kBalanceTolerance = 1e-6;  // of the load: Newton stops at 1e-10
-const Vec3 kGravity(0, 0, -units::kStandardGravityMmS2);
+const Vec3 kSlabGravity(0, 0, -units::kStandardGravityMmS2);
 const std::vector<double> kPressures{1.0, 5.0, 10.0, 20.0};  // kPa, dead loads; near 35 the clamped edge is crushed
 constexpr std::size_t kClamp = 0;                            // places among the constraints
 constexpr std::size_t kSupport = 1;
 
 TissueModel pressed_block(double pressure_kpa) {
-  return make_tissue_model(irregular_block(kSize, {8, 6, 3}, 0.2, 11), {},
+  return make_tissue_model(irregular_block(kSlabSize, {8, 6, 3}, 0.2, 11), {},
                            {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
-                            TractionConstraint{plane_across(2, kSize[2]), Vec3(0, 0, -pressure_kpa)}},
-                           kGravity);
+                            TractionConstraint{plane_across(2, kSlabSize[2]), Vec3(0, 0, -pressure_kpa)}},
+                           kSlabGravity);
 }
 
 /// Weight and pressure, mN: what clamp and platform have to carry.
 double load_mn(double pressure_kpa) {
-  const double weight = units::kg_mm3_from_kg_m3(Material{}.density_kg_m3) * kSize.prod() * -kGravity[2];
-  return weight + pressure_kpa * kSize[0] * kSize[1];
+  const double weight = units::kg_mm3_from_kg_m3(Material{}.density_kg_m3) * kSlabSize.prod() * -kSlabGravity[2];
+  return weight + pressure_kpa * kSlabSize[0] * kSlabSize[1];
 }
 
 /// A block clamped at one end on the platform, its other end pulled upwards.
 TissueModel lifted_block() {
-  return make_tissue_model(irregular_block(kSize, {8, 6, 3}, 0.2, 11), {},
+  return make_tissue_model(irregular_block(kSlabSize, {8, 6, 3}, 0.2, 11), {},
                            {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
-                            TractionConstraint{plane_across(0, kSize[0]), Vec3(0, 0, 2.0)}},
-                           kGravity);
+                            TractionConstraint{plane_across(0, kSlabSize[0]), Vec3(0, 0, 2.0)}},
+                           kSlabGravity);
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ VerificationCheck support_pull(const CheckContext& context) {
                 "height of the underside, mm",
                 false,
                 false,
-                {{"plane", {0.0, kSize[0]}, {0.0, 0.0}, true}, marks}};
+                {{"plane", {0.0, kSlabSize[0]}, {0.0, 0.0}, true}, marks}};
   return check;
 }
 

@@ -12,9 +12,9 @@ namespace {
 constexpr double kInner = 10.0;     // mm
 constexpr double kOuter = 20.0;     // mm
 constexpr double kPressure = 1e-2;  // kPa: strains near 1e-4
-constexpr double kRateTolerance = 0.3;
-constexpr double kShareTolerance = 0.005;  // of the displacement: what is left after extrapolation
-constexpr double kFinestError = 0.025;     // of the displacement: what the finest mesh itself may be off
+constexpr double kSphereRateTolerance = 0.3;
+constexpr double kSphereTolerance = 0.005;    // of the displacement: what is left after extrapolation
+constexpr double kFinestRadialError = 0.025;  // of the displacement: what the finest mesh itself may be off
 const std::vector<int> kLayers{2, 4, 8};
 
 struct Sphere {
@@ -48,14 +48,14 @@ double closed_form_um(double r) {
   return 1000.0 * sphere_displacement_mm(r, kInner, kOuter, kPressure, Material{}.youngs_modulus_kpa, 0.3);
 }
 
-constexpr const char* kSource = "Lamé 1852: u = p a³ / (E (b³ − a³)) ((1 − 2ν) r + (1 + ν) b³ / 2r²)";
+constexpr const char* kSphereSource = "Lamé 1852: u = p a³ / (E (b³ − a³)) ((1 − 2ν) r + (1 + ν) b³ / 2r²)";
 
 }  // namespace
 
 VerificationCheck thick_sphere_rate(const CheckContext& context) {
   VerificationCheck check =
       described("Thick sphere under inner pressure, ν = 0.3: observed order of convergence of the inner displacement",
-                std::string(kSource) + "; order 2 of linear tets", "-", 2.0, kRateTolerance);
+                std::string(kSphereSource) + "; order 2 of linear tets", "-", 2.0, kSphereRateTolerance);
   CheckCurve marks{"inner displacement", {}, {}, false};
   CheckCurve slope{"second order", {}, {}, true};
   for (const int n : kLayers) {
@@ -77,15 +77,15 @@ VerificationCheck thick_sphere_rate(const CheckContext& context) {
 
 VerificationCheck thick_sphere_displacement(const CheckContext& context) {
   VerificationCheck check =
-      described("Thick sphere under inner pressure, ν = 0.3: inner displacement, extrapolated at second order", kSource,
-                "µm", closed_form_um(kInner), kShareTolerance * closed_form_um(kInner));
+      described("Thick sphere under inner pressure, ν = 0.3: inner displacement, extrapolated at second order",
+                kSphereSource, "µm", closed_form_um(kInner), kSphereTolerance * closed_form_um(kInner));
   std::vector<double> found;
   Sphere finest;
   for (const int n : kLayers) {
     finest = inflate(context, n);
     found.push_back(finest.inner_um());
   }
-  require_small_error(found.back() / check.expected - 1.0, kFinestError);
+  require_small_error(found.back() / check.expected - 1.0, kFinestRadialError);
   check.found = second_order_limit(found[1], found[2]);
   CheckCurve marks{fmt::format("vertices, {} layers", kLayers.back()), {}, {}, false};
   const std::size_t stride = 1 + finest.state.positions.size() / 200;

@@ -10,12 +10,12 @@
 namespace incise {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // mm, of some 15 mm: rounding and the solver's residual
-const Vec3 kSize(100, 60, 25);       // mm
-const Vec3 kGravity(0, 0, -9810);    // mm/s²
+constexpr double kOrderTolerance = 1e-6;  // mm, of some 15 mm: rounding and the solver's residual
+const Vec3 kWedgeSize(100, 60, 25);       // mm
+const Vec3 kGravity(0, 0, -9810);         // mm/s²
 
 TissueModel cantilever(const std::array<std::size_t, 4>& order) {
-  TetMesh mesh = make_block(kSize, {12, 8, 5});
+  TetMesh mesh = make_block(kWedgeSize, {12, 8, 5});
   for (Tet& tet : mesh.tets) tet = {tet[order[0]], tet[order[1]], tet[order[2]], tet[order[3]]};
   return make_tissue_model(mesh, {}, {FixedConstraint{plane_across(0, 0.0)}}, kGravity);
 }
@@ -25,12 +25,12 @@ TissueModel cantilever(const std::array<std::size_t, 4>& order) {
 VerificationCheck vertex_order(const CheckContext& context) {
   VerificationCheck check =
       described("Cantilever under its weight, corners of every tet named in another order: largest change of a vertex",
-                "no physics in names", "mm", 0.0, kTolerance);
+                "no physics in names", "mm", 0.0, kOrderTolerance);
   const TissueModel model = cantilever({0, 1, 2, 3});
   const TissueState state = solved(context, model).state;
   CheckCurve line{"order as made", {}, {}, true};
   for (int i = 0; i <= 12; ++i) {
-    line.x.push_back(kSize[0] * i / 12.0);
+    line.x.push_back(kWedgeSize[0] * i / 12.0);
     line.y.push_back(mean_displacement(model, state, plane_across(0, line.x.back()))[2]);
   }
   check.plot = {"Cantilever under its weight, corners renamed", "x at rest, mm", "mean sag, mm", false, false, {line}};

@@ -12,22 +12,22 @@
 namespace incise {
 namespace {
 
-const Vec3 kSize(100, 5, 5);               // mm
-constexpr double kAmplitude = 0.1;         // mm
-constexpr int kStepsPerPeriod = 200;       // implicit Euler then lengthens the period by (2π/200)²/3 = 0.03 %
-constexpr double kShareTolerance = 0.005;  // of the period
+const Vec3 kRodSize(100, 5, 5);             // mm
+constexpr double kAmplitude = 0.1;          // mm
+constexpr int kStepsPerPeriod = 200;        // implicit Euler then lengthens the period by (2π/200)²/3 = 0.03 %
+constexpr double kPeriodTolerance = 0.005;  // of the period
 
 TissueModel bar() {
   Material material;
   material.poissons_ratio = 0.0;
-  return make_tissue_model(make_block(kSize, {40, 2, 2}), material, {FixedConstraint{plane_across(0, 0.0)}});
+  return make_tissue_model(make_block(kRodSize, {40, 2, 2}), material, {FixedConstraint{plane_across(0, 0.0)}});
 }
 
 double period_s() {
   const Material material;
   const double wave_speed =
       std::sqrt(material.youngs_modulus_kpa / units::kg_mm3_from_kg_m3(material.density_kg_m3));  // mm/s
-  return 4.0 * kSize[0] / wave_speed;
+  return 4.0 * kRodSize[0] / wave_speed;
 }
 
 /// Tip displacement over time, from the mode's shape at rest.
@@ -37,10 +37,10 @@ CheckCurve swing(const CheckContext& context, const TissueModel& model) {
   settings.max_newton_iterations = 5;
   settings.relative_tolerance = 1e-8;
   TissueState state = rest_state(model);
-  for (Vec3& p : state.positions) p[0] += kAmplitude * std::sin(0.5 * units::kPi * p[0] / kSize[0]);
+  for (Vec3& p : state.positions) p[0] += kAmplitude * std::sin(0.5 * units::kPi * p[0] / kRodSize[0]);
   Motion motion = motion_at_rest(model, state);
   MotionWorkspace workspace(model, settings);
-  const Region tip = plane_across(0, kSize[0]);
+  const Region tip = plane_across(0, kRodSize[0]);
   CheckCurve curve{"computed", {0.0}, {mean_displacement(model, motion.tissue, tip)[0]}, false};
   for (int step = 1; step <= kStepsPerPeriod; ++step) {
     throw_if_cancelled(context.monitor, "verifying");
@@ -70,7 +70,7 @@ VerificationCheck vibration_period(const CheckContext& context) {
   VerificationCheck check =
       described("Bar swinging along its axis, clamped at one end, ν = 0: period of the first mode",
                 "4 L √(ρ/E): a quarter wave in a uniform bar (Rayleigh, Theory of Sound, § 150)", "s", period_s(),
-                kShareTolerance * period_s());
+                kPeriodTolerance * period_s());
   const CheckCurve curve = swing(context, bar());
   const std::vector<double> times = crossings(curve);
   if (times.size() < 2) throw NotSolved("the bar does not swing through its place of rest twice");

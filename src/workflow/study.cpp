@@ -1,6 +1,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
 #include <incise/core/problem_text.hpp>
+#include <incise/cutting/tool_program.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/procedure/incision_memory.hpp>
 #include <incise/workflow/study.hpp>
@@ -165,7 +166,16 @@ class Runner {
     return true;
   }
 
+  /// The tool runs on beyond the start of a ring, but not round it again.
+  void require_overlap_on(const ToolPath& path) const {
+    const double round_mm = tip_way_mm(path);
+    if (!path.is_closed || settings_.cut.overlap_mm < round_mm) return;
+    throw CaseError("case", "cut.overlap_mm", fmt::format("{} mm", settings_.cut.overlap_mm),
+                    fmt::format("less than the {:.1f} mm of the tip's way round the ring", round_mm));
+  }
+
   SimulatedCut cut(Stage stage, CutRole role, const ToolPath& path) {
+    require_overlap_on(path);
     return load_or_make(
         stage, [&] { return store_.load_cut(role); },
         [&] {

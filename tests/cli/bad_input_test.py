@@ -298,6 +298,11 @@ class CaseTest(CommandTest):
         self.change(cut={"advance_per_step_mm": 1.5})
         self.assert_case_refused("simulate", BAD_CASE, "case.yaml: cut.advance_per_step_mm: found 1.5, expected", "at most the tool's diameter or thickness")
 
+    def test_an_overlap_that_goes_round_the_ring_again_is_refused(self):
+        self.change(cut={"overlap_mm": 50}, plan={"lateral_margin_mm": 1})
+        self.assert_case_refused("simulate", BAD_CASE, "case.yaml: cut.overlap_mm: found 50 mm", "less than the ", "round the ring",
+                                 stages=("stretched", "plan"))
+
     SURFACE_MM = 11.7  # of the stretched block
 
     def assert_path_refused(self, status, *says, stages=("stretched", "plan"), z=SURFACE_MM, **waypoint):

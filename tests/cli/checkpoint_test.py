@@ -97,8 +97,17 @@ class CheckpointTest(CommandTest):
     def test_resume_without_a_checkpoint_is_refused(self):
         new = self.folder / "new"
         done = self.incise("simulate", "case", "-o", new, "--resume")
-        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint in", str(new), "as_planned.checkpoint", "Without --resume")
+        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint as_planned.checkpoint in", str(new), "Without --resume")
         self.assert_nothing_written(new)
+
+    def test_resume_goes_on_with_the_cut_that_comes_next_and_no_other(self):
+        self.stop("run", self.out / "corrected.checkpoint", signal.SIGTERM)
+        done = self.incise("simulate", "case", "-o", self.out, "--resume")
+        self.assert_refused(done, BAD_CASE, "--resume", "the cut as planned finished", "expected as_planned.checkpoint", "Without --resume")
+        shutil.rmtree(self.out / "as_planned")
+        done = self.incise("run", "case", "-o", self.out, "--resume")
+        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint as_planned.checkpoint in")
+        self.assertTrue((self.out / "corrected.checkpoint").exists(), "it is left where it is")
 
     def test_a_checkpoint_of_other_settings_is_refused_by_resume_and_passed_over_without_it(self):
         self.stop("simulate", self.checkpoint, signal.SIGINT)

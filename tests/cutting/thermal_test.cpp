@@ -43,7 +43,7 @@ TEST(ThermalHalfWidth, IsWhereTheSampledPeakIsTheTemperatureOfDamage) {
   }
 }
 
-TEST(ThermalHalfWidth, AtMuchPowerIsThatOfTheInstantLineSource) {
+TEST(ThermalHalfWidth, AtMuchPowerIsThatOfTheInstantPlaneSource) {
   const double capacity = 1e-3 * kTissue.heat_capacity_mj_m3_k;  // J/(mm³ K)
   const double rise = kTissue.damage_c - kTissue.body_c;
   const double limit = 35.0 / 5.0 / (std::sqrt(2.0 * M_PI * M_E) * capacity * 7.0 * rise);

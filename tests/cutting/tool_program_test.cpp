@@ -54,6 +54,19 @@ TEST(ToolProgram, TheOverlapRunsOnAlongTheStart) {
   EXPECT_NEAR((program.pose_at(99.0).tip_mm - Vec3(5, 0, -5)).norm(), 0.0, 1e-12);
 }
 
+TEST(ToolProgram, AnOverlapRunsUpToOnceRoundAndNoFarther) {
+  CutSettings settings = ten_mm_per_second();
+  EXPECT_DOUBLE_EQ(tip_way_mm(square(true)), 40.0);
+  EXPECT_DOUBLE_EQ(tip_way_mm(square(false)), 30.0);
+  settings.overlap_mm = 38.0;  // on the last side, which leads back to the first corner
+  const ToolProgram program(square(true), settings, Needle{});
+  EXPECT_NEAR(program.duration_s(), 0.5 + 4.0 + 3.8 + 0.18, 1e-12);
+  EXPECT_NEAR((program.pose_at(99.0).tip_mm - Vec3(0, 2, -5)).norm(), 0.0, 1e-12);
+  settings.overlap_mm = 40.0;
+  EXPECT_THROW(ToolProgram(square(true), settings, Needle{}), InvalidArgument);
+  EXPECT_NO_THROW(ToolProgram(square(false), settings, Needle{})) << "an open cut has none";
+}
+
 TEST(ToolProgram, ItMovesAtTheSimulatedSpeedEverywhereButInTheDwell) {
   const ToolProgram program(square(true), ten_mm_per_second(), Needle{});
   for (double t = 0.005; t < 4.99; t += 0.01) {

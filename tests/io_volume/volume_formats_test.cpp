@@ -27,13 +27,13 @@ using namespace incise::testing;
 const std::string kOneMillimetre =
     "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n";
 
-ReadVolume read(const fs::path& path) {
+ReadVolume read_quietly(const fs::path& path) {
   RecordingMonitor monitor;
   return read_ct(path, {}, monitor);
 }
 
 std::string failure_of(const fs::path& path) {
-  return message_of<DataError>([&path] { (void)read(path); });
+  return message_of<DataError>([&path] { (void)read_quietly(path); });
 }
 
 /// File name, and how far a corner may move: only NIfTI holds geometry in single precision.
@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(Volumes, EveryFormat,
 TEST_P(EveryFormat, ReturnsTheCtThatWasWritten) {
   const CtVolume ct = oblique_ct();
   write_ct(file, ct);
-  const ReadVolume back = read(file);
+  const ReadVolume back = read_quietly(file);
   EXPECT_EQ(back.volume.voxels, ct.voxels);
   EXPECT_EQ(back.volume.grid.size, ct.grid.size);
   EXPECT_LT(grid_distance_mm(back.volume.grid, ct.grid), GetParam().tolerance_mm);
@@ -84,7 +84,7 @@ TEST_P(EveryFormat, KeepsAMirroredGrid) {
   CtVolume ct = oblique_ct();
   ct.grid.direction.col(0) *= -1;
   write_ct(file, ct);
-  const CtVolume back = read(file).volume;
+  const CtVolume back = read_quietly(file).volume;
   EXPECT_EQ(back.voxels, ct.voxels);
   EXPECT_LT(grid_distance_mm(back.grid, ct.grid), GetParam().tolerance_mm);
 }
@@ -94,7 +94,7 @@ TEST_P(EveryFormat, ReplacesAnOlderFileAndLeavesNothingElse) {
   write_ct(file, ct);
   ct.voxels[0] = 77;
   write_ct(file, ct);
-  EXPECT_EQ(read(file).volume.voxels[0], 77);
+  EXPECT_EQ(read_quietly(file).volume.voxels[0], 77);
   const bool has_voxel_file = file.extension() == ".mhd";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), has_voxel_file ? 2 : 1);
 }
@@ -209,7 +209,7 @@ TEST(Nrrd, HandmadeFileIsReadAsItSays) {
           "short", {2, 1, 2},
           "space: right-anterior-superior\nspace directions: (0.5,0,0) (0,2,0) (0,0,-3)\nspace origin: (10,20,30)\n",
           raw_bytes<std::int16_t>({-1024, 1, 2, 3000})));
-  const CtVolume ct = read(folder / "ct.nrrd").volume;
+  const CtVolume ct = read_quietly(folder / "ct.nrrd").volume;
   EXPECT_THAT(ct.voxels, ElementsAre(-1024, 1, 2, 3000));
   EXPECT_TRUE(ct.grid.spacing_mm.isApprox(Vec3(0.5, 2, 3)));
   EXPECT_TRUE(ct.grid.world_from_index(Vec3(1, 0, 1)).isApprox(Vec3(-10.5, -20, 27)));
@@ -251,7 +251,7 @@ TEST(Nrrd, TellsThatNoAnatomicalSpaceIsNamed) {
   const TemporaryFolder folder;
   write_bytes(folder / "ct.nrrd",
               nrrd_bytes("short", {2, 1, 2}, "spacings: 1 1 2\n", raw_bytes<std::int16_t>({0, 0, 0, 0})));
-  EXPECT_THAT(read(folder / "ct.nrrd").diagnostics.notices, ElementsAre(HasSubstr("LPS")));
+  EXPECT_THAT(read_quietly(folder / "ct.nrrd").diagnostics.notices, ElementsAre(HasSubstr("LPS")));
 }
 
 TEST(Nrrd, RefusesSkewedAxes) {

@@ -115,6 +115,49 @@ TEST_F(Incision, KeepsTheFramesThatWereAskedForFromFirstToLast) {
   EXPECT_EQ(result.frames.back().is_live, result.final_state.tissue.is_live);
 }
 
+/// Collects what is said.
+class Listener : public Monitor {
+ public:
+  void message(Severity severity, std::string_view text) override {
+    if (severity == Severity::Warning) warnings.emplace_back(text);
+  }
+  std::vector<std::string> warnings;
+};
+
+TEST_F(Incision, SaysWhenItsStepsAreTooFewForTheFrames) {
+  const auto warnings_with = [this](int frames) {
+    settings_.frames = frames;
+    Listener listener;
+    Workers workers(1);
+    const IncisionResult result = simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, listener);
+    EXPECT_LE(result.frames.size(), static_cast<std::size_t>(frames));
+    EXPECT_EQ(listener.warnings.empty(), result.frames.size() == static_cast<std::size_t>(frames)) << frames;
+    return listener.warnings;
+  };
+  EXPECT_TRUE(warnings_with(40).empty());
+  const std::vector<std::string> said = warnings_with(400);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("frames in place of 400"), std::string::npos) << said[0];
+}
+
+TEST_F(Incision, TakesWhatRoundingLeavesOfTheProgramWithItsLastStep) {
+  const double advance = settings_.cut.advance_per_step_mm;
+  const auto steps_of = [&] { return ToolProgram(ring(4.0), settings_.cut, settings_.tool).duration_s() / settings_.cut.step_s(); };
+  settings_.cut.overlap_mm += (1.0 - std::fmod(steps_of(), 1.0) + 1e-4) * advance;  // a whole number of steps and a ten-thousandth of one
+  const double whole = std::floor(steps_of());
+  ASSERT_NEAR(steps_of() - whole, 1e-4, 1e-9);
+  const IncisionResult result = cut(ring(4.0));
+  double before = 0.0;
+  std::size_t with_tool = 0;
+  for (const CutStepLog& step : result.steps) {
+    EXPECT_GT(step.time_s - before, 0.99 * settings_.cut.step_s()) << "at " << step.time_s << " s";
+    before = step.time_s;
+    if (step.time_s < (whole + 0.5) * settings_.cut.step_s()) ++with_tool;
+  }
+  EXPECT_EQ(with_tool, static_cast<std::size_t>(whole));
+  EXPECT_NEAR(result.steps[with_tool - 1].time_s, steps_of() * settings_.cut.step_s(), 1e-9) << "the program is carried out to its end";
+}
+
 TEST_F(Incision, StopsWhereItIsWhenAskedTo) {
   StopAtHalf monitor;
   Workers workers(1);

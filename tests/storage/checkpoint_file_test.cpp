@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <fstream>
 #include <limits>
@@ -34,6 +35,9 @@ class CheckpointFileTest : public testing::RingInABlock {
   }
 
   [[nodiscard]] IncisionProgress read() const { return CheckpointFile(file_).progress(model_); }
+
+  /// The progress as it is now, in the file.
+  void rewrite() const { write_checkpoint(file_, kKey, "a test", progress_); }
 
   void replace_file(const std::string& bytes) const { std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes; }
 
@@ -106,10 +110,63 @@ TEST_F(CheckpointFileTest, ReadAndWrittenAgainIsTheSameFile) {
 }
 
 TEST_F(CheckpointFileTest, KeepsWhatViscousTissueRemembers) {
-  progress_.state.tissue.memory.strains.assign(3, Mat3::Identity() * 0.25);
-  progress_.state.tissue.memory.branches.assign(2, Mat3::Constant(-1.5));
+  model_.material.prony = {{0.5, 1.0}, {0.25, 0.1}};
+  const std::size_t tets = model_.mesh.tets.size();
+  progress_.state.tissue.memory.strains.assign(tets, Mat3::Identity() * 0.25);
+  progress_.state.tissue.memory.branches.assign(2 * tets, Mat3::Constant(-1.5));
   write_checkpoint(file_, kKey, "a test", progress_);
   EXPECT_EQ(read().state.tissue.memory, progress_.state.tissue.memory);
+}
+
+TEST_F(CheckpointFileTest, AMemoryThatTheTissueDoesNotHaveIsRefused) {
+  const std::size_t tets = model_.mesh.tets.size();
+  progress_.state.tissue.memory.strains.assign(3, Mat3::Zero());
+  rewrite();
+  expect_refused("strains: found 3, expected 0, as the tissue has", "tissue that is not viscous");
+  model_.material.prony = {{0.5, 1.0}};
+  expect_refused(fmt::format("strains: found 3, expected {}", tets));
+  progress_.state.tissue.memory.strains.assign(tets, Mat3::Zero());
+  progress_.state.tissue.memory.branches.assign(2 * tets, Mat3::Zero());
+  rewrite();
+  expect_refused(fmt::format("branches: found {}, expected {}", 2 * tets, tets), "branches of another material");
+}
+
+TEST_F(CheckpointFileTest, BondsOutOfOrderOrTwiceAreRefused) {
+  std::vector<Bond>& bonds = progress_.state.bonds;
+  ASSERT_GT(bonds.size(), 1U);
+  const std::vector<Bond> whole = bonds;
+  std::swap(bonds[0], bonds[1]);
+  rewrite();
+  expect_refused(fmt::format("bonds: found tet {} behind tet {}, expected each tet once, ascending", whole[0].tet.value, whole[1].tet.value));
+  bonds = whole;
+  bonds.insert(bonds.begin(), bonds.front());
+  rewrite();
+  expect_refused(fmt::format("bonds: found tet {} behind tet {}", whole[0].tet.value, whole[0].tet.value));
+}
+
+TEST_F(CheckpointFileTest, FieldsThatContradictEachOtherAreRefused) {
+  const IncisionProgress whole = progress_;
+  const auto expect_contradiction = [&](const char* says) {
+    rewrite();
+    try {
+      static_cast<void>(read());
+      ADD_FAILURE() << "expected DataError: " << says;
+    } catch (const DataError& error) {
+      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+    }
+    progress_ = whole;
+  };
+  const TetId removed = whole.state.record.removals.front().tet;
+  progress_.state.bonds.insert(std::lower_bound(progress_.state.bonds.begin(), progress_.state.bonds.end(), removed,
+                                                [](const Bond& bond, TetId tet) { return bond.tet < tet; }),
+                               Bond{removed, Vec3::Zero()});
+  expect_contradiction("bonds: found tet");
+  progress_.state.record.removals.push_back(progress_.state.record.removals.front());
+  expect_contradiction("removals: found tet");
+  progress_.state.record.removals.pop_back();
+  expect_contradiction("is_live: found other tets");
+  progress_.steps.pop_back();
+  expect_contradiction("step: found");
 }
 
 TEST_F(CheckpointFileTest, CutShortAnywhereIsRefused) {

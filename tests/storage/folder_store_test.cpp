@@ -46,6 +46,16 @@ class FolderStoreTest : public ::testing::Test {
   /// A new store, as the next run of the program would make it.
   FolderStore open(const std::string& more = "") { return {read(more), folder_ / "out", {"incise test", 7, 2}}; }
 
+  /// With another line in the group of the tumour.
+  FolderStore open_with(const std::string& of_tumor) {
+    static_cast<void>(read());
+    std::string text = read_text(folder_ / "case.yaml");
+    const std::string contour = "contour: tumor.csv";
+    text.replace(text.find(contour), contour.size(), contour + ", " + of_tumor);
+    std::ofstream(folder_ / "case.yaml") << text;
+    return {read_case(folder_.path()), folder_ / "out", {"incise test", 7, 2}};
+  }
+
   static ToolPath small_ring() {
     ToolPath path;
     for (int i = 0; i < 12; ++i) {
@@ -320,7 +330,7 @@ TEST_F(FolderStoreTest, AChangedSettingMakesItsProductStale) {
   open().save_plan(small_ring(), 0.0);
   EXPECT_TRUE(open().is_current(Product::Plan));
   EXPECT_FALSE(open("plan: {depth_mm: 4}\n").load_plan()) << "its own group";
-  EXPECT_FALSE(open("meshing: {fine_mm: 0.5}\n").load_plan()) << "what it is made from";
+  EXPECT_FALSE(open_with("configuration: rest").load_plan()) << "where its edge is drawn";
   EXPECT_TRUE(open("plan: {depth_mm: 5}\n").load_plan()) << "the default, spelt out";
   EXPECT_TRUE(open("title: Another name\n").load_plan()) << "a setting that no product depends on";
 }
@@ -329,6 +339,81 @@ TEST_F(FolderStoreTest, ASettingOfALaterStageLeavesAProductCurrent) {
   open().save_plan(small_ring(), 0.0);
   EXPECT_TRUE(open("cut: {dullness: 4}\n").load_plan());
   EXPECT_TRUE(open("tool: {diameter_mm: 0.8}\n").load_plan());
+}
+
+TEST_F(FolderStoreTest, AGivenMeshIsStretchedAnewForItsOwnSettingsOnly) {
+  FolderStore store = open();
+  store.save_stretched(model(), stretched(), 0.1);
+  store.save_plan(small_ring(), 0.0);
+  for (const char* more : {"meshing: {fine_mm: 0.5}\n", "plan: {depth_mm: 4}\n", "ct: {smoothing_mm: 1}\n", "cut: {dullness: 4}\n"}) {
+    EXPECT_TRUE(open(more).is_current(Product::Stretched)) << more;
+  }
+  EXPECT_FALSE(open("plan: {depth_mm: 4}\n").is_current(Product::Plan));
+  EXPECT_TRUE(open("meshing: {fine_mm: 0.5}\n").is_current(Product::Plan)) << "nothing is meshed";
+}
+
+TEST_F(FolderStoreTest, ATumourSurfaceThatIsAddedMakesTheCutStaleAlone) {
+  open().save_stretched(model(), stretched(), 0.1);
+  open().save_plan(small_ring(), 0.0);
+  open().save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
+  write_ply(folder_ / "tumor.ply", boundary_surface(make_block({1, 1, 1}, {1, 1, 1})));
+  FolderStore with = open_with("surface: tumor.ply");
+  EXPECT_TRUE(with.is_current(Product::Stretched));
+  EXPECT_TRUE(with.is_current(Product::Plan));
+  EXPECT_FALSE(with.is_current(Product::AsPlanned));
+}
+
+TEST_F(FolderStoreTest, ACaseFolderThatWasMovedKeepsItsProducts) {
+  const std::filesystem::path before = folder_ / "before";
+  const std::filesystem::path after = folder_ / "after";
+  std::filesystem::create_directories(before);
+  static_cast<void>(read());
+  for (const char* name : {"block.vtu", "tumor.csv", "case.yaml"}) std::filesystem::rename(folder_ / name, before / name);
+  const auto open_in = [](const std::filesystem::path& folder) -> FolderStore {
+    return {read_case(folder), folder / "out", {"incise test", 7, 2}};
+  };
+  open_in(before).save_plan(small_ring(), 0.0);
+  std::filesystem::rename(before, after);
+  EXPECT_TRUE(open_in(after).load_plan());
+  std::filesystem::rename(after / "tumor.csv", after / "edge.csv");
+  std::string text = read_text(after / "case.yaml");
+  text.replace(text.find("tumor.csv"), 9, "edge.csv");
+  std::ofstream(after / "case.yaml") << text;
+  EXPECT_TRUE(open_in(after).load_plan()) << "a file of another name with the same content";
+}
+
+TEST_F(FolderStoreTest, WhatIsOnlyHeldAgainstACutJudgesItAnewInItsFilesToo) {
+  open().save_plan(small_ring(), 0.1);
+  const SimulatedCut made = judge(read().settings, measured_cut().incision, small_ring(), 48);
+  open().save_cut(CutRole::AsPlanned, model(), stretched(), made, 0.1);
+  const std::filesystem::path cut = folder_ / "out" / "as_planned";
+  const auto first = nlohmann::ordered_json::parse(read_text(cut / "incision.json"));
+  const std::string manifest = read_text(cut / "manifest.json");
+
+  const auto loaded = open("thermal: {absorbed_fraction: 0.25}\n").load_cut(CutRole::AsPlanned);
+  ASSERT_TRUE(loaded) << "nothing of the cut itself is another";
+  auto second = nlohmann::ordered_json::parse(read_text(cut / "incision.json"));
+  EXPECT_EQ(second["thermal_half_width_mm"], loaded->thermal_half_width_mm);
+  EXPECT_LT(loaded->thermal_half_width_mm, first["thermal_half_width_mm"].get<double>());
+  const auto settings = nlohmann::json::parse(read_text(cut / "manifest.json"))["settings"];
+  EXPECT_EQ(settings["thermal.absorbed_fraction"], "0.25");
+  EXPECT_NO_THROW(require_replaceable(cut)) << "its manifest still lists its files";
+
+  // Judged as it was again, it is what it was, to the last digit.
+  ASSERT_TRUE(open().load_cut(CutRole::AsPlanned));
+  EXPECT_EQ(nlohmann::ordered_json::parse(read_text(cut / "incision.json")), first);
+  EXPECT_EQ(read_text(cut / "manifest.json"), manifest);
+}
+
+TEST_F(FolderStoreTest, AMarginThatAWaypointKeepsMakesTheCorrectionStaleAndNotTheCut) {
+  open().save_plan(small_ring(), 0.1);
+  open().save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
+  Compensation correction;
+  correction.path = small_ring();
+  open().save_correction(correction, 0.1);
+  FolderStore other = open("plan: {close_margin_mm: 3}\n");
+  EXPECT_TRUE(other.is_current(Product::AsPlanned));
+  EXPECT_FALSE(other.is_current(Product::Correction));
 }
 
 TEST_F(FolderStoreTest, AChangedPowerIsCutAnewAndPlannedNoMore) {

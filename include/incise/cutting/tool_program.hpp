@@ -8,6 +8,9 @@
 
 namespace incise {
 
+/// Way of the tip once along a path, from its first waypoint at depth to its last or, on a ring, back to the first; mm.
+[[nodiscard]] double tip_way_mm(const ToolPath& path);
+
 /// What the simulated tool does, as a function of time: plunge along the axis at the first waypoint, follow the waypoints (straight
 /// between them), overlap beyond the start if the path is a ring, stay for the time that removes a tet of the
 /// reference tissue at the electrode's power, and leave. All motion at CutSettings::speed_mm_s: the waypoints' own speeds are the robot's. The tool heads where it goes; a blade turns on the spot before it
@@ -16,7 +19,8 @@ class ToolProgram {
  public:
   enum class Phase { Plunge, Follow, Overlap, Dwell };
 
-  /// @pre path in PathFrame::SimStretched with at least 2 waypoints (3 for a ring), finite, unit axes, depth > 0.
+  /// @pre path in PathFrame::SimStretched with at least 2 waypoints (3 for a ring), finite, unit axes, depth > 0; on a ring the overlap is
+  /// below tip_way_mm(path).
   ToolProgram(const ToolPath& path, const CutSettings& settings, const Tool& tool);
 
   [[nodiscard]] double duration_s() const { return keys_.back().time_s; }

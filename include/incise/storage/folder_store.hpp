@@ -36,7 +36,9 @@ enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Correction, Corre
 ///
 /// and while a cut is under way or interrupted, beside them, as_planned.checkpoint or corrected.checkpoint (see CheckpointFile),
 /// and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that the product depends on: a product
-/// with another key is stale and counts as absent.
+/// with another key is stale and counts as absent. The key holds what the product is made with and from, and no names of files: a case
+/// folder may be moved. A cut whose judgement alone has changed (thermal, plan.close_margin_mm) is judged anew when it is loaded, in its
+/// files too.
 class FolderStore : public Store {
  public:
   /// @param root  is made if missing. @throws DataError if that fails.
@@ -86,6 +88,11 @@ class FolderStore : public Store {
   [[nodiscard]] const std::string& key(Product product);
   [[nodiscard]] std::string settings_with(const std::vector<std::string>& prefixes, const std::vector<std::string>& but) const;
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
+  /// Hash of the settings that a cut is judged by once it is made.
+  [[nodiscard]] std::string judgement_key() const;
+  [[nodiscard]] bool is_judged_anew(Product product);
+  /// Says in the folder of a cut that it is judged by the case's settings now.
+  void note_judgement(Product product);
   /// Made, and from other settings or inputs than the case's.
   [[nodiscard]] bool is_stale(Product product);
   void remove_checkpoints_of_no_use(Product saved);
