@@ -1,6 +1,7 @@
 // What a whole incision costs: a virtual tongue from CT to stretched tissue, then the same ring cut with several settings.
-//   incise_incision_cost [--tets N] [--threads N] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE]
-// Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4).
+//   incise_incision_cost [--tets N[,N...]] [--threads N] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE] [--figure FILE]
+// Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4). Several sizes, in
+// ascending order, are drawn against each other with --figure.
 #include "process_cost.hpp"
 #include "virtual_study.hpp"
 
@@ -10,6 +11,7 @@
 #include <incise/geometry/contour.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/procedure/incision.hpp>
+#include <incise/report/line_plot.hpp>
 
 #include <fmt/format.h>
 
@@ -28,14 +30,27 @@ double load_average() {
 }
 
 struct Options {
-  int tets = 100000;
+  std::vector<int> tets{100000};  // ascending: a process remembers the most memory that it ever held
   int threads = 2;
   int runs = 1;
   double advance_mm = 0.26;
   double tolerance = 0.0;  // 0: the default
   bool is_tight = false;
   std::string csv;
+  std::string figure;
 };
+
+std::vector<int> numbers(const char* text) {
+  std::vector<int> found;
+  for (const char* at = text; *at != '\0';) {
+    char* end = nullptr;
+    found.push_back(static_cast<int>(std::strtol(at, &end, 10)));
+    INCISE_REQUIRE(end != at && found.back() > (found.size() > 1 ? found[found.size() - 2] : 0) && (*end == ',' || *end == '\0'),
+                   fmt::format("expected ascending numbers above 0 and commas, found {}", text));
+    at = *end == ',' ? end + 1 : end;
+  }
+  return found;
+}
 
 Options parse(int argc, char** argv) {
   Options options;
@@ -48,7 +63,7 @@ Options parse(int argc, char** argv) {
     INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a value after {}", name));
     const char* value = argv[++i];
     if (name == "--tets") {
-      options.tets = std::atoi(value);
+      options.tets = numbers(value);
     } else if (name == "--threads") {
       options.threads = std::atoi(value);
     } else if (name == "--runs") {
@@ -59,8 +74,11 @@ Options parse(int argc, char** argv) {
       options.tolerance = std::atof(value);
     } else if (name == "--csv") {
       options.csv = value;
+    } else if (name == "--figure") {
+      options.figure = value;
     } else {
-      throw InvalidArgument(fmt::format("expected --tets, --threads, --runs, --advance, --tolerance, --tight or --csv, found {}", name));
+      throw InvalidArgument(
+          fmt::format("expected --tets, --threads, --runs, --advance, --tolerance, --tight, --csv or --figure, found {}", name));
     }
   }
   return options;
@@ -91,16 +109,25 @@ Run cut(const Study& study, const IncisionSettings& settings, int threads) {
   return run;
 }
 
-int run(const Options& options) {
+/// What the runs at one size came to.
+struct Size {
+  double tets = 0.0;
+  double median_wall_s = 0.0;
+  double iterations_per_step = 0.0;
+  double bytes_per_tet = 0.0;  ///< the whole process at most
+};
+
+/// Cuts a tongue of about `tets` tets; appends its rows to `table`.
+Size run_size(const Options& options, const Phantom& phantom, int tets, std::string& table) {
   Monitor silent;
   Workers workers(options.threads);
-  PhantomSettings specimen;
-  const Phantom phantom = make_phantom(specimen, silent);
   Case settings;
   settings.is_virtual = true;
-  settings.meshing.tets = options.tets;
+  settings.meshing.tets = tets;
   PhantomStore store(phantom);
   const Study study = run_study(settings, store, Stage::Plan, workers, silent);
+  Size size;
+  size.tets = static_cast<double>(study.model->mesh.tets.size());
   fmt::print("{} tets, {} vertices; mesh and stretch ready, {:.0f} MB held at most so far; instruction set {}; path {:.1f} mm\n",
              study.model->mesh.tets.size(), study.model->mesh.vertices.size(), 1e-6 * peak_bytes(), to_string(active_isa()),
              length_mm(entry_contour(*study.plan)));
@@ -123,10 +150,6 @@ int run(const Options& options) {
   fmt::print("{:>7} {:>6} {:>9} {:>8} {:>9} {:>9} {:>7} {:>8} {:>9} {:>8} {:>10} {:>6}\n", "threads", "steps", "its/step", "wall s",
              "CPU s", "ms/step", "removed", "signed", "to tight", "MB", "outcome", "load");
   std::vector<double> walls;
-  std::string table = fmt::format("# {}; g++ {}, {}; {}\n", machine_description(), __VERSION__, BUILD_FLAGS, version());
-  table +=
-      "tets,vertices,threads,advance_mm,residual_tolerance,steps,iterations,wall_s,processor_s,removed,signed_error_mm,"
-      "to_tight_mm,bytes_per_tet,outcome,load,isa,commit\n";
   for (int i = 0; i < options.runs; ++i) {
     const Run run = cut(study, incision, options.threads);
     const IncisionResult& r = run.result;
@@ -140,25 +163,62 @@ int run(const Options& options) {
       if (reference) to_tight = mean_distance(*r.centerline, *reference);
     }
     const double steps = static_cast<double>(r.steps.size());
+    size.iterations_per_step = static_cast<double>(r.solver_iterations) / steps;
+    size.bytes_per_tet = peak_bytes() / size.tets;
     fmt::print("{:>7} {:>6} {:>9.1f} {:>8.2f} {:>9.2f} {:>9.2f} {:>7} {:>8.3f} {:>9.4f} {:>8.0f} {:>10} {:>6.2f}\n", options.threads,
-               r.steps.size(), static_cast<double>(r.solver_iterations) / steps, run.wall_s, run.processor_s, 1000.0 * run.wall_s / steps,
-               r.record.removals.size(), signed_mm, to_tight, 1e-6 * peak_bytes(), to_string(r.outcome), load_average());
+               r.steps.size(), size.iterations_per_step, run.wall_s, run.processor_s, 1000.0 * run.wall_s / steps, r.record.removals.size(),
+               signed_mm, to_tight, 1e-6 * peak_bytes(), to_string(r.outcome), load_average());
     std::fflush(stdout);
     table += fmt::format("{},{},{},{},{},{},{},{:.3f},{:.3f},{},{:.4f},{:.4f},{:.0f},{},{:.2f},{},{}\n", study.model->mesh.tets.size(),
                          study.model->mesh.vertices.size(), options.threads, incision.cut.advance_per_step_mm,
                          incision.cut.residual_tolerance, r.steps.size(), r.solver_iterations, run.wall_s, run.processor_s,
-                         r.record.removals.size(), signed_mm, to_tight,
-                         peak_bytes() / static_cast<double>(study.model->mesh.tets.size()), to_string(r.outcome), load_average(),
+                         r.record.removals.size(), signed_mm, to_tight, size.bytes_per_tet, to_string(r.outcome), load_average(),
                          to_string(active_isa()), source_commit());
   }
   std::sort(walls.begin(), walls.end());
-  fmt::print("median wall: {:.2f} s\n", walls[walls.size() / 2]);
-  if (options.csv.empty()) return 0;
-  std::ofstream file(options.csv);
-  file << table;
-  if (file.flush()) return 0;
-  fmt::print(stderr, "cannot write {}\n", options.csv);
-  return 3;
+  size.median_wall_s = walls[walls.size() / 2];
+  fmt::print("median wall: {:.2f} s\n", size.median_wall_s);
+  return size;
+}
+
+/// Relative to the first size, so that four quantities share one picture.
+LinePlot plot_of(const std::vector<Size>& sizes) {
+  LinePlot plot{"One simulated incision of 95 mm against the size of its mesh", "tetrahedra", "relative to the smallest mesh", true, true, {}};
+  const auto add = [&](const std::string& name, auto value) {
+    LineSeries series{name, {}, {}, true};
+    for (const Size& size : sizes) {
+      series.x.push_back(size.tets);
+      series.y.push_back(value(size) / value(sizes.front()));
+    }
+    plot.series.push_back(std::move(series));
+  };
+  add("wall time", [](const Size& s) { return s.median_wall_s; });
+  add("iterations a step", [](const Size& s) { return s.iterations_per_step; });
+  add("bytes a tet", [](const Size& s) { return s.bytes_per_tet; });
+  return plot;
+}
+
+bool write_file(const std::string& name, const std::string& text) {
+  if (name.empty()) return true;
+  std::ofstream file(name);
+  file << text;
+  if (file.flush()) return true;
+  fmt::print(stderr, "cannot write {}\n", name);
+  return false;
+}
+
+int run(const Options& options) {
+  INCISE_REQUIRE(options.runs > 0 && options.threads > 0, "expected at least one run and one thread");
+  Monitor silent;
+  const Phantom phantom = make_phantom(PhantomSettings{}, silent);
+  std::string table = fmt::format("# {}; g++ {}, {}; {}\n", machine_description(), __VERSION__, BUILD_FLAGS, version());
+  table +=
+      "tets,vertices,threads,advance_mm,residual_tolerance,steps,iterations,wall_s,processor_s,removed,signed_error_mm,"
+      "to_tight_mm,bytes_per_tet,outcome,load,isa,commit\n";
+  std::vector<Size> sizes;
+  for (const int tets : options.tets) sizes.push_back(run_size(options, phantom, tets, table));
+  const bool is_written = write_file(options.csv, table) && (options.figure.empty() || write_file(options.figure, line_plot_svg(plot_of(sizes))));
+  return is_written ? 0 : 3;
 }
 
 }  // namespace
