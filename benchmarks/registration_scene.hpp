@@ -36,8 +36,10 @@ inline TriMesh synthetic_tongue(std::uint64_t seed, double pitch_mm = 1.0) {
   for (int j = 0; j + 1 < ny; ++j) {
     for (int i = 0; i + 1 < nx; ++i) {
       const auto id = [&](int di, int dj) { return at[static_cast<std::size_t>(i + di + nx * (j + dj))]; };
-      if (id(0, 0).is_valid() && id(1, 0).is_valid() && id(1, 1).is_valid()) mesh.triangles.push_back({id(0, 0), id(1, 0), id(1, 1)});
-      if (id(0, 0).is_valid() && id(1, 1).is_valid() && id(0, 1).is_valid()) mesh.triangles.push_back({id(0, 0), id(1, 1), id(0, 1)});
+      if (id(0, 0).is_valid() && id(1, 0).is_valid() && id(1, 1).is_valid())
+        mesh.triangles.push_back({id(0, 0), id(1, 0), id(1, 1)});
+      if (id(0, 0).is_valid() && id(1, 1).is_valid() && id(0, 1).is_valid())
+        mesh.triangles.push_back({id(0, 0), id(1, 1), id(0, 1)});
     }
   }
   return mesh;
@@ -57,7 +59,8 @@ inline Mat3 random_rotation(Random& random) {
 inline PointCloud drawn(const PointCloud& cloud, std::size_t count, Random& random) {
   std::vector<std::size_t> order(cloud.points.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  for (std::size_t i = 0; i + 1 < order.size() && i < count; ++i) std::swap(order[i], order[i + random.below(order.size() - i)]);
+  for (std::size_t i = 0; i + 1 < order.size() && i < count; ++i)
+    std::swap(order[i], order[i + random.below(order.size() - i)]);
   order.resize(std::min(count, order.size()));
   return subset(cloud, order);
 }

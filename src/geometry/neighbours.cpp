@@ -2,9 +2,9 @@
 #include <incise/geometry/neighbours.hpp>
 
 #include <fmt/format.h>
+#include <nanoflann.hpp>
 
 #include <algorithm>
-#include <nanoflann.hpp>
 
 namespace incise {
 namespace {
@@ -22,7 +22,8 @@ struct PointSource {
   }
 };
 
-using KdTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSource>, PointSource, 3, std::size_t>;
+using KdTree =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSource>, PointSource, 3, std::size_t>;
 
 bool comes_first(const Neighbour& a, const Neighbour& b) {
   return a.squared_mm2 != b.squared_mm2 ? a.squared_mm2 < b.squared_mm2 : a.index < b.index;
@@ -33,7 +34,8 @@ bool comes_first(const Neighbour& a, const Neighbour& b) {
 struct NeighbourSearch::Tree {
   PointSource source;
   KdTree index;
-  explicit Tree(Points points) : source{std::move(points)}, index(3, source, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
+  explicit Tree(Points points)
+      : source{std::move(points)}, index(3, source, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
 };
 
 NeighbourSearch::NeighbourSearch(std::span<const Vec3> points) {

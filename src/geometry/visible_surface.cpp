@@ -14,10 +14,12 @@
 namespace incise {
 namespace {
 
-constexpr double kSamplesPerSpacing2 = 10.0;  // candidates per spacing²: the thinned set then has no gaps wider than twice the spacing
-constexpr double kClearance = 1e-5;           // of the surface's size: how far above itself a point's ray starts
+constexpr double kSamplesPerSpacing2 =
+    10.0;  // candidates per spacing²: the thinned set then has no gaps wider than twice the spacing
+constexpr double kClearance = 1e-5;  // of the surface's size: how far above itself a point's ray starts
 
-/// The normal at each vertex: of its triangles, weighted by their angles there, which does not depend on how a flat part is cut up.
+/// The normal at each vertex: of its triangles, weighted by their angles there, which does not depend on how a flat
+/// part is cut up.
 Points vertex_normals(const TriMesh& surface) {
   Points normals(surface.vertices.size(), Vec3::Zero());
   for (const Triangle& triangle : surface.triangles) {
@@ -48,9 +50,10 @@ Vec2 spread(std::uint64_t k) {
   return {0.5 + kA * n - std::floor(0.5 + kA * n), 0.5 + kB * n - std::floor(0.5 + kB * n)};
 }
 
-/// Points evenly spread over all triangles that face the observer, each standing for an equal share of the area of its triangle. Small
-/// triangles get a sample once the area passed since the last one asks for it.
-std::vector<Sample> samples_of(const TriMesh& surface, const Vec3& to_observer, double least_cosine, double area_per_sample) {
+/// Points evenly spread over all triangles that face the observer, each standing for an equal share of the area of its
+/// triangle. Small triangles get a sample once the area passed since the last one asks for it.
+std::vector<Sample> samples_of(const TriMesh& surface, const Vec3& to_observer, double least_cosine,
+                               double area_per_sample) {
   const Points normals = vertex_normals(surface);
   std::vector<Sample> samples;
   double owed = 0.5;  // samples
@@ -82,7 +85,8 @@ std::vector<Sample> samples_of(const TriMesh& surface, const Vec3& to_observer, 
   return samples;
 }
 
-/// Takes samples in a scattered order and keeps those that are no closer than `spacing` to one that is kept (dart throwing).
+/// Takes samples in a scattered order and keeps those that are no closer than `spacing` to one that is kept (dart
+/// throwing).
 std::vector<std::size_t> thinned(const std::vector<Sample>& samples, double spacing) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -100,7 +104,8 @@ std::vector<std::size_t> thinned(const std::vector<Sample>& samples, double spac
   };
   std::unordered_map<Cell, std::vector<std::size_t>, CellHash> cells;
   const auto cell_of = [spacing](const Vec3& p) {
-    return Cell{static_cast<std::int64_t>(std::floor(p.x() / spacing)), static_cast<std::int64_t>(std::floor(p.y() / spacing)),
+    return Cell{static_cast<std::int64_t>(std::floor(p.x() / spacing)),
+                static_cast<std::int64_t>(std::floor(p.y() / spacing)),
                 static_cast<std::int64_t>(std::floor(p.z() / spacing))};
   };
   std::vector<std::size_t> kept;

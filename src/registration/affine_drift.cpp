@@ -3,9 +3,9 @@
 
 #include <incise/core/error.hpp>
 
-#include <Eigen/LU>
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <cmath>
 
 namespace incise {
@@ -17,18 +17,18 @@ struct AffineSums {
   double count = 0.0;
   Vec3 target = Vec3::Zero();
   Vec3 source = Vec3::Zero();
-  Mat3 cross = Mat3::Zero();    // Σ P x yᵀ
-  Mat3 spread = Mat3::Zero();   // Σ P y yᵀ
+  Mat3 cross = Mat3::Zero();   // Σ P x yᵀ
+  Mat3 spread = Mat3::Zero();  // Σ P y yᵀ
   double target_squares = 0.0;
 };
 
 /// Every source point gets its share P1 and the sum of the targets that it holds, which is what an affine M-step needs.
-AffineSums match_affinely(const Points& source, const Points& target, const AffineDrift& drift, double sigma, const DriftSettings& settings,
-                          Workers& workers) {
+AffineSums match_affinely(const Points& source, const Points& target, const AffineDrift& drift, double sigma,
+                          const DriftSettings& settings, Workers& workers) {
   Points placed(source.size());
   for (std::size_t i = 0; i < source.size(); ++i) placed[i] = drift.linear * source[i] + drift.translation_mm;
-  const double noise = background(sigma, settings.outlier_weight, settings.dimensions, static_cast<double>(source.size()),
-                                  static_cast<double>(target.size()));
+  const double noise = background(sigma, settings.outlier_weight, settings.dimensions,
+                                  static_cast<double>(source.size()), static_cast<double>(target.size()));
   const std::vector<GaussSum> near = GaussField(placed, {}, sigma).at(target, workers);
   std::vector<double> shares(target.size());
   for (std::size_t i = 0; i < target.size(); ++i) {
@@ -50,8 +50,8 @@ AffineSums match_affinely(const Points& source, const Points& target, const Affi
 
 }  // namespace
 
-AffineDrift affine_drift(std::span<const Vec3> source, std::span<const Vec3> target, const DriftSettings& settings, Workers& workers,
-                         Monitor& monitor) {
+AffineDrift affine_drift(std::span<const Vec3> source, std::span<const Vec3> target, const DriftSettings& settings,
+                         Workers& workers, Monitor& monitor) {
   const std::vector<std::string> problems = validate(settings);
   INCISE_REQUIRE(problems.empty(), problems.front());
   INCISE_REQUIRE(!source.empty() && !target.empty(), "expected at least 1 point in each cloud");
@@ -60,7 +60,8 @@ AffineDrift affine_drift(std::span<const Vec3> source, std::span<const Vec3> tar
   INCISE_REQUIRE(source_measure.center.allFinite() && target_measure.center.allFinite(), "expected finite points");
   AffineDrift drift;
   const Vec3& widths = source_measure.variances;
-  if (is_line(widths) || is_line(target_measure.variances) || (settings.dimensions == 3 && widths[0] < 1e-12 * widths[2])) {
+  if (is_line(widths) || is_line(target_measure.variances) ||
+      (settings.dimensions == 3 && widths[0] < 1e-12 * widths[2])) {
     drift.outcome = DriftOutcome::Degenerate;
     return drift;
   }
@@ -68,7 +69,8 @@ AffineDrift affine_drift(std::span<const Vec3> source, std::span<const Vec3> tar
   const Points y = normalised(source, source_measure.center, length);
   const Points x = normalised(target, target_measure.center, length);
   drift.translation_mm = (source_measure.center - target_measure.center) / length;
-  double sigma = std::sqrt((measure_of(y).variances.sum() + 1.0 + drift.translation_mm.squaredNorm()) / settings.dimensions);
+  double sigma =
+      std::sqrt((measure_of(y).variances.sum() + 1.0 + drift.translation_mm.squaredNorm()) / settings.dimensions);
   while (drift.iterations < settings.max_iterations && drift.outcome != DriftOutcome::Cancelled) {
     if (monitor.is_cancelled()) {
       drift.outcome = DriftOutcome::Cancelled;

@@ -12,7 +12,8 @@ void Anderson::forget() {
 
 Anderson::Vector Anderson::next(const Vector& x, const Vector& image) {
   const Vector step = image - x;
-  if (has_last_ && step.norm() > 1.5 * last_step_.norm()) forget();  // the combination has misled: begin again from a plain step
+  if (has_last_ && step.norm() > 1.5 * last_step_.norm())
+    forget();  // the combination has misled: begin again from a plain step
   if (has_last_) {
     step_changes_.push_back(step - last_step_);
     image_changes_.push_back(image - last_image_);

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-
 #include <deque>
 
 namespace incise {
 
-/// Anderson's acceleration of a fixed-point iteration x <- F(x) in a few unknowns: the next x is the combination of the last steps' images
-/// whose combined step is least. A step that grows makes it forget. Source: [WalkerNi2011], algorithm AA.
+/// Anderson's acceleration of a fixed-point iteration x <- F(x) in a few unknowns: the next x is the combination of the
+/// last steps' images whose combined step is least. A step that grows makes it forget. Source: [WalkerNi2011],
+/// algorithm AA.
 class Anderson {
  public:
   using Vector = Eigen::Matrix<double, 8, 1>;

@@ -1,11 +1,12 @@
 #include "registration/certificate.hpp"
+
 #include "registration/icp.hpp"
 
 #include <incise/core/units.hpp>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,8 +18,9 @@ using Vec7 = Eigen::Matrix<double, 7, 1>;
 using Mat7 = Eigen::Matrix<double, 7, 7>;
 
 constexpr std::size_t kMostPoints = 3000;
-// Distances of neighbouring points share their plane's error and the bend of the surface: fewer are independent than there are pairs.
-constexpr double kPairsPerIndependent = 8.0;
+// Distances of neighbouring points share their plane's error and the bend of the surface: fewer are independent than
+// there are pairs.
+constexpr double kPairsPerIndependent = 4.0;
 constexpr double kLeastVisible = 1e-12;
 
 struct Overlap {
@@ -29,9 +31,11 @@ struct Overlap {
   double rms = 0.0;     // of the distances
 };
 
-Overlap overlap_of(const SampledSurface& source, const SampledSurface& target, const Similarity& t, double width, Workers& workers) {
+Overlap overlap_of(const SampledSurface& source, const SampledSurface& target, const Similarity& t, double width,
+                   Workers& workers) {
   Overlap overlap;
-  for (const SurfacePair& pair : pairs_of(source, spread_indices(source.cloud.points.size(), kMostPoints), target, t, workers)) {
+  for (const SurfacePair& pair :
+       pairs_of(source, spread_indices(source.cloud.points.size(), kMostPoints), target, t, workers)) {
     if (std::abs(pair.distance) > 1.2 * width) continue;  // 3 robust standard deviations
     overlap.pairs.push_back(pair);
     overlap.indices.push_back(pair.source);
@@ -55,8 +59,8 @@ Eigen::Matrix<double, 3, 7> motion_of(const Vec3& arm) {
   return m;
 }
 
-/// Mean squared distance, each capped, of those source points that still lie above the target. (Where the cloud ends says nothing: it ends
-/// where the camera's picture does.)
+/// Mean squared distance, each capped, of those source points that still lie above the target. (Where the cloud ends
+/// says nothing: it ends where the camera's picture does.)
 double mean_square(const SampledSurface& source, const std::vector<std::size_t>& indices, const SampledSurface& target,
                    const Similarity& t, double cap, Workers& workers) {
   const std::vector<SurfacePair> pairs = pairs_of(source, indices, target, t, workers);
@@ -85,8 +89,8 @@ std::string name_of(const Vec7& direction, double length) {
 
 }  // namespace
 
-Certificate certificate_of(const SampledSurface& source, const SampledSurface& target, const Similarity& t, double width,
-                           bool with_scale, Workers& workers) {
+Certificate certificate_of(const SampledSurface& source, const SampledSurface& target, const Similarity& t,
+                           double width, bool with_scale, Workers& workers) {
   Certificate certificate;
   const Overlap overlap = overlap_of(source, target, t, width, workers);
   const int motions = with_scale ? 7 : 6;
@@ -109,7 +113,8 @@ Certificate certificate_of(const SampledSurface& source, const SampledSurface& t
   Eigen::MatrixXd b = moved_by.topLeftCorner(motions, motions) / pairs;
   b.diagonal().array() += 1e-12 * b.trace();  // an overlap on a line has a turn that moves nothing
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, b);
-  const double step = std::max({2.0 * std::max(target.spacing, t.scale * source.spacing), 3.0 * overlap.rms, 0.01 * overlap.length});
+  const double step =
+      std::max({2.0 * std::max(target.spacing, t.scale * source.spacing), 3.0 * overlap.rms, 0.01 * overlap.length});
   const double cap = 3.0 * overlap.rms + step;
   const double at_rest = mean_square(source, overlap.indices, target, t, cap, workers);
   const double independent = std::max(1.0, pairs / kPairsPerIndependent);
@@ -120,8 +125,10 @@ Certificate certificate_of(const SampledSurface& source, const SampledSurface& t
     double visible = std::clamp(solver.eigenvalues()[k], 0.0, 1.0);
     certificate.visible[static_cast<std::size_t>(k)] = visible;
     if (k < 2) {
-      const double there = mean_square(source, overlap.indices, target, nudged(t, step * direction, overlap.center), cap, workers);
-      const double back = mean_square(source, overlap.indices, target, nudged(t, -step * direction, overlap.center), cap, workers);
+      const double there =
+          mean_square(source, overlap.indices, target, nudged(t, step * direction, overlap.center), cap, workers);
+      const double back =
+          mean_square(source, overlap.indices, target, nudged(t, -step * direction, overlap.center), cap, workers);
       visible = std::clamp((0.5 * (there + back) - at_rest) / (step * step), 0.0, 1.0);
       certificate.sharpness[static_cast<std::size_t>(k)] = visible;
     }

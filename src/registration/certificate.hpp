@@ -6,8 +6,9 @@
 
 namespace incise {
 
-/// How well the surfaces fix the transform: see Certificate. @param width  of the residuals' robust weight, as icp leaves it.
-[[nodiscard]] Certificate certificate_of(const SampledSurface& source, const SampledSurface& target, const Similarity& t, double width,
-                                         bool with_scale, Workers& workers);
+/// How well the surfaces fix the transform: see Certificate. @param width  of the residuals' robust weight, as icp
+/// leaves it.
+[[nodiscard]] Certificate certificate_of(const SampledSurface& source, const SampledSurface& target,
+                                         const Similarity& t, double width, bool with_scale, Workers& workers);
 
 }  // namespace incise

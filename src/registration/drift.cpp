@@ -5,9 +5,9 @@
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kChunk = 64;
 constexpr double kSlow = 0.03;        // change of the width in a step, as a share, below which steps are accelerated
 constexpr double kLeastRatio = 0.9;   // of two steps: no fit of surfaces converges faster for long
+constexpr double kWide = 0.25;        // in radii of the target
 constexpr double kLeastSigma = 1e-6;  // of the radius: the clouds lie on each other
 
 /// Adds one target point's share.
@@ -62,7 +63,8 @@ BestRotation best_rotation(const Mat3& cross, int dimensions) {
   }
   const Eigen::JacobiSVD<Mat3> svd(cross, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Vec3 signs = Vec3::Ones();
-  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs[2] = -1.0;  // a reflection is never the answer
+  if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0)
+    signs[2] = -1.0;  // a reflection is never the answer
   best.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
   best.gain = svd.singularValues().dot(signs);
   best.is_degenerate = !(svd.singularValues()[1] > 1e-12 * svd.singularValues()[0]);
@@ -70,7 +72,8 @@ BestRotation best_rotation(const Mat3& cross, int dimensions) {
 }
 
 /// Mean squared distance of all pairs over the number of dimensions: what the width starts at.
-double all_pairs_variance(const WeightedPoints& source, const WeightedPoints& target, const Similarity& t, int dimensions) {
+double all_pairs_variance(const WeightedPoints& source, const WeightedPoints& target, const Similarity& t,
+                          int dimensions) {
   const auto moments = [](const WeightedPoints& cloud) {
     double count = 0.0;
     Vec3 mean = Vec3::Zero();
@@ -85,13 +88,15 @@ double all_pairs_variance(const WeightedPoints& source, const WeightedPoints& ta
   };
   const auto [source_mean, source_spread] = moments(source);
   const auto [target_mean, target_spread] = moments(target);
-  return (t.scale * t.scale * source_spread + target_spread + (t(source_mean) - target_mean).squaredNorm()) / dimensions;
+  return (t.scale * t.scale * source_spread + target_spread + (t(source_mean) - target_mean).squaredNorm()) /
+         dimensions;
 }
 
 /// Root mean square movement between two transforms of centred points with this scatter (mean of y yᵀ).
 double rms_step(const Similarity& a, const Similarity& b, const Mat3& scatter) {
   const Mat3 change = a.scale * a.rotation - b.scale * b.rotation;
-  return std::sqrt(std::max(0.0, (change * scatter * change.transpose()).trace()) + (a.translation_mm - b.translation_mm).squaredNorm());
+  return std::sqrt(std::max(0.0, (change * scatter * change.transpose()).trace()) +
+                   (a.translation_mm - b.translation_mm).squaredNorm());
 }
 
 /// EM in normalised coordinates: the source centred, both over the target's radius.
@@ -119,12 +124,13 @@ class Expectation {
     Anderson acceleration;
     Mat3 origin = t.rotation;  // that the acceleration's rotation vectors start from
     double plain_step = 0.0;
-    double ratio = 0.0;        // of two plain steps
+    double ratio = 0.0;  // of two plain steps
     for (drift.iterations = 0; drift.iterations < settings_.max_iterations;) {
       if (monitor.is_cancelled()) return finish(drift, sigma, DriftOutcome::Cancelled);
       const WeightedPoints& source = sees_all ? source_.back() : level_for(source_, sigma / t.scale);
       const WeightedPoints& target = sees_all ? target_.back() : level_for(target_, sigma);
-      const MatchedTransform next = best_transform(match(source, target, t, sigma, settings_, workers_), settings_);
+      const MatchedTransform next =
+          best_transform(match(source, target, t, sigma, settings_, workers_), held_while_wide(t.scale, sigma));
       drift.matched_share = next.matched / target_count();
       if (next.is_degenerate) return finish(drift, sigma, DriftOutcome::Degenerate);
       ++drift.iterations;
@@ -132,9 +138,11 @@ class Expectation {
       const double new_sigma = std::sqrt(std::max(0.0, next.variance));
       const double shrinking = std::abs(new_sigma - sigma);
       drift.last_step_mm = step;
-      // EM converges linearly: what is left is a geometric series. Its ratio is that of the plain steps, which the acceleration hides.
+      // EM converges linearly: what is left is a geometric series. Its ratio is that of the plain steps, which the
+      // acceleration hides.
       if (plain_step > 0.0) ratio = std::clamp(step / plain_step, 0.0, 0.98);
-      const bool is_still = step / (1.0 - std::max(ratio, kLeastRatio)) < settings_.tolerance && shrinking < 1e-3 * sigma;
+      const bool is_still =
+          step / (1.0 - std::max(ratio, kLeastRatio)) < settings_.tolerance && shrinking < 1e-3 * sigma;
       if (new_sigma < kLeastSigma || (is_still && sees_everything(source, target))) {
         t = next.transform;
         return finish(drift, new_sigma, DriftOutcome::Converged);
@@ -151,15 +159,23 @@ class Expectation {
         continue;
       }
       plain_step = 0.0;
-      const Anderson::Vector ahead = acceleration.next(vector_of(t, sigma, origin), vector_of(next.transform, new_sigma, origin));
+      const Anderson::Vector ahead =
+          acceleration.next(vector_of(t, sigma, origin), vector_of(next.transform, new_sigma, origin));
       sigma = std::max(ahead[7], 0.5 * new_sigma);
-      t = {std::clamp(std::exp(ahead[0]), settings_.scale.low, settings_.scale.high), rotation_of(ahead.segment<3>(1)) * origin,
-           ahead.segment<3>(4)};
+      t = {std::clamp(std::exp(ahead[0]), settings_.scale.low, settings_.scale.high),
+           rotation_of(ahead.segment<3>(1)) * origin, ahead.segment<3>(4)};
     }
     finish(drift, sigma, DriftOutcome::IterationLimit);
   }
 
  private:
+  /// While the Gaussians are as wide as the clouds every point belongs to every other, and the likeliest scale is near
+  /// 0, from where EM does not come back: until they are narrower, the scale stays what it is.
+  [[nodiscard]] DriftSettings held_while_wide(double scale, double sigma) const {
+    DriftSettings settings = settings_;
+    if (sigma > kWide && !settings_.first_sigma) settings.scale = ScaleRange::fixed(scale);
+    return settings;
+  }
   /// The unknowns: logarithm of the scale, rotation vector from `origin`, translation, width.
   static Anderson::Vector vector_of(const Similarity& t, double sigma, const Mat3& origin) {
     Anderson::Vector v;
@@ -204,9 +220,12 @@ std::vector<std::string> validate(const DriftSettings& s) {
   if (!(s.outlier_weight > 0.0 && s.outlier_weight < 1.0)) {
     problems.push_back(fmt::format("outlier_weight: expected a share in (0, 1), found {}", s.outlier_weight));
   }
-  if (s.max_iterations < 1) problems.push_back(fmt::format("max_iterations: expected at least 1, found {}", s.max_iterations));
-  if (!(s.tolerance > 0.0)) problems.push_back(fmt::format("tolerance: expected a share above 0, found {}", s.tolerance));
-  if (s.dimensions != 2 && s.dimensions != 3) problems.push_back(fmt::format("dimensions: expected 2 or 3, found {}", s.dimensions));
+  if (s.max_iterations < 1)
+    problems.push_back(fmt::format("max_iterations: expected at least 1, found {}", s.max_iterations));
+  if (!(s.tolerance > 0.0))
+    problems.push_back(fmt::format("tolerance: expected a share above 0, found {}", s.tolerance));
+  if (s.dimensions != 2 && s.dimensions != 3)
+    problems.push_back(fmt::format("dimensions: expected 2 or 3, found {}", s.dimensions));
   if (s.first_sigma && !(*s.first_sigma > 0.0)) {
     problems.push_back(fmt::format("first_sigma: expected a share above 0, found {}", *s.first_sigma));
   }
@@ -215,10 +234,14 @@ std::vector<std::string> validate(const DriftSettings& s) {
 
 std::string_view to_string(DriftOutcome outcome) {
   switch (outcome) {
-    case DriftOutcome::Converged: return "converged";
-    case DriftOutcome::IterationLimit: return "iteration_limit";
-    case DriftOutcome::Degenerate: return "degenerate";
-    case DriftOutcome::Cancelled: return "cancelled";
+    case DriftOutcome::Converged:
+      return "converged";
+    case DriftOutcome::IterationLimit:
+      return "iteration_limit";
+    case DriftOutcome::Degenerate:
+      return "degenerate";
+    case DriftOutcome::Cancelled:
+      return "cancelled";
   }
   return "unknown";
 }
@@ -274,19 +297,20 @@ MatchedTransform best_transform(const MatchSums& sums, const DriftSettings& sett
   return best;
 }
 
-DriftStep drift_step(std::span<const Vec3> source, std::span<const Vec3> target, double variance_mm2, const DriftSettings& settings,
-                     Workers& workers) {
+DriftStep drift_step(std::span<const Vec3> source, std::span<const Vec3> target, double variance_mm2,
+                     const DriftSettings& settings, Workers& workers) {
   require_usable(source, "source");
   require_usable(target, "target");
-  INCISE_REQUIRE(std::isfinite(variance_mm2) && variance_mm2 > 0.0, fmt::format("expected a variance above 0, found {}", variance_mm2));
+  INCISE_REQUIRE(std::isfinite(variance_mm2) && variance_mm2 > 0.0,
+                 fmt::format("expected a variance above 0, found {}", variance_mm2));
   const WeightedPoints y{Points(source.begin(), source.end()), std::vector<double>(source.size(), 1.0), 0.0};
   const WeightedPoints x{Points(target.begin(), target.end()), std::vector<double>(target.size(), 1.0), 0.0};
   const MatchedTransform next = best_transform(match(y, x, {}, std::sqrt(variance_mm2), settings, workers), settings);
   return {next.transform, next.variance};
 }
 
-Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start, const DriftSettings& settings,
-                  Workers& workers, Monitor& monitor) {
+Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start,
+                  const DriftSettings& settings, Workers& workers, Monitor& monitor) {
   require_usable(source, "source");
   require_usable(target, "target");
   const std::vector<std::string> problems = validate(settings);
@@ -306,10 +330,18 @@ Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, co
     return Similarity{t.scale, t.rotation, (t(source_measure.center) - target_measure.center) / length};
   };
   const auto from_search = [&](const Similarity& t) {
-    return Similarity{t.scale, t.rotation, length * t.translation_mm + target_measure.center - t.scale * (t.rotation * source_measure.center)};
+    return Similarity{
+        t.scale, t.rotation,
+        length * t.translation_mm + target_measure.center - t.scale * (t.rotation * source_measure.center)};
   };
   drift.T_target_source = to_search(start);
-  Expectation(normalised(source, source_measure.center, length), normalised(target, target_measure.center, length), settings, workers)
+  if (!settings.first_sigma) {
+    // As published: middles on each other and sizes alike, as far as the range allows.
+    drift.T_target_source.scale = std::clamp(length / source_measure.radius, settings.scale.low, settings.scale.high);
+    drift.T_target_source.translation_mm = Vec3::Zero();
+  }
+  Expectation(normalised(source, source_measure.center, length), normalised(target, target_measure.center, length),
+              settings, workers)
       .run(drift, monitor);
   drift.T_target_source = from_search(drift.T_target_source);
   drift.sigma_mm *= length;

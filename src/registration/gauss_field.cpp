@@ -18,7 +18,8 @@ GaussField::GaussField(std::span<const Vec3> points, std::span<const double> wei
   for (const Vec3& p : points) box.extend(p);
   low_ = points.empty() ? Vec3(Vec3::Zero()) : Vec3(box.min());
   const Vec3 size = points.empty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes());
-  // Narrow Gaussians in a large box would ask for more cells than there are points: then the cells stay larger than they need to be.
+  // Narrow Gaussians in a large box would ask for more cells than there are points: then the cells stay larger than
+  // they need to be.
   cell_ = kReach * sigma / kCellsPerReach;
   const auto cells_for = [&size](double cell) { return ((size / cell).array().floor() + 1.0).prod(); };
   while (cells_for(cell_) > kMostCellsPerPoint * static_cast<double>(points.size()) + 64.0) cell_ *= 1.2;
@@ -81,7 +82,8 @@ GaussSum GaussField::at(const Vec3& place) const {
   for (long z = first[2]; z <= last[2]; ++z) {
     for (long y = first[1]; y <= last[1]; ++y) {
       const auto row = static_cast<std::size_t>(counts_[0] * (y + counts_[1] * z));
-      const GaussRange range{starts_[row + static_cast<std::size_t>(first[0])], starts_[row + static_cast<std::size_t>(last[0]) + 1]};
+      const GaussRange range{starts_[row + static_cast<std::size_t>(first[0])],
+                             starts_[row + static_cast<std::size_t>(last[0]) + 1]};
       if (range.begin == range.end) continue;
       ranges[count++] = range;
       if (count == kMostRanges) flush();

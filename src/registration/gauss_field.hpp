@@ -19,8 +19,8 @@ struct GaussSum {
   double second = 0.0;
 };
 
-/// A weighted cloud of Gaussians of one width, each cut off at kReach widths or a little farther, sorted into the cubes of a grid.
-/// Truncation leaves out at most weight · exp(-kReach² / 2) = weight · 4e-6 per point.
+/// A weighted cloud of Gaussians of one width, each cut off at kReach widths or a little farther, sorted into the cubes
+/// of a grid. Truncation leaves out at most weight · exp(-kReach² / 2) = weight · 4e-6 per point.
 class GaussField {
  public:
   static constexpr double kReach = 5.0;
@@ -38,8 +38,8 @@ class GaussField {
   Vec3 low_ = Vec3::Zero();
   double cell_ = 1.0;
   double steepness_ = 0.0;
-  std::array<long, 3> counts_{};          // cells along x, y, z
-  std::vector<std::uint32_t> starts_;     // first point of each cell, x fastest; one more at the end
+  std::array<long, 3> counts_{};       // cells along x, y, z
+  std::vector<std::uint32_t> starts_;  // first point of each cell, x fastest; one more at the end
   std::vector<double> x_, y_, z_, weights_;
   GaussSums sums_ = nullptr;
 };

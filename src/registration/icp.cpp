@@ -1,7 +1,6 @@
 #include "registration/icp.hpp"
 
 #include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -12,12 +11,13 @@ namespace {
 using Vec7 = Eigen::Matrix<double, 7, 1>;
 using Mat7 = Eigen::Matrix<double, 7, 7>;
 
-constexpr double kWidths = 2.5;             // robust standard deviations that the weight's width shrinks to
-constexpr double kShrink = 0.7;             // of the width, per step at most
-constexpr double kDamping = 1e-6;           // of the mean diagonal
+constexpr double kWidths = 2.5;       // robust standard deviations that the weight's width shrinks to
+constexpr double kShrink = 0.7;       // of the width, per step at most
+constexpr double kLeastWidth = 1e-6;  // of the target's spacing: identical clouds
+constexpr double kDamping = 1e-6;     // of the mean diagonal
 constexpr std::size_t kFewestPairs = 12;
-constexpr std::size_t kWatched = 4;         // motions by which convergence is judged
-constexpr double kJitter = 10.0;            // tolerances
+constexpr std::size_t kWatched = 4;  // motions by which convergence is judged
+constexpr double kJitter = 10.0;     // tolerances
 
 /// New nearest points let the pose jitter about its place: it has settled when the motions cancel.
 bool has_settled(const std::deque<Vec7>& last, double tolerance) {
@@ -70,69 +70,99 @@ Vec7 pair_gradient(const SurfacePair& pair, const Vec3& center) {
 Similarity nudged(const Similarity& t, const Vec7& motion, const Vec3& center) {
   const Mat3 turn = rotation_of(motion.head<3>());
   const double stretch = std::exp(motion[6]);
-  return {stretch * t.scale, turn * t.rotation, center + motion.segment<3>(3) + stretch * (turn * (t.translation_mm - center))};
+  return {stretch * t.scale, turn * t.rotation,
+          center + motion.segment<3>(3) + stretch * (turn * (t.translation_mm - center))};
 }
 
-Icp icp(const SampledSurface& source, const SampledSurface& target, const Similarity& start, const IcpSettings& settings,
-        Workers& workers) {
+namespace {
+
+/// The robust sums of one Gauss-Newton step.
+struct NormalEquations {
+  Mat7 system = Mat7::Zero();
+  Vec7 right = Vec7::Zero();
+  Vec3 center = Vec3::Zero();  // that turns and stretches are about
+  double length = 0.0;         // rms distance of the points from it
+  double weight = 0.0;
+};
+
+NormalEquations equations_of(const std::vector<SurfacePair>& pairs, double width) {
+  NormalEquations e;
+  std::vector<double> weights(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    weights[i] = pairs[i].weight * std::exp(-0.5 * std::pow(pairs[i].distance / width, 2));
+    e.center += weights[i] * pairs[i].place;
+    e.weight += weights[i];
+  }
+  if (!(e.weight > 0.0)) return e;
+  e.center /= e.weight;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Vec7 g = pair_gradient(pairs[i], e.center);
+    e.system += weights[i] * g * g.transpose();
+    e.right -= weights[i] * pairs[i].distance * g;
+    squares += weights[i] * (pairs[i].place - e.center).squaredNorm();
+  }
+  e.length = std::sqrt(squares / e.weight);
+  return e;
+}
+
+/// The motion that the equations ask for, with the scale kept in its range.
+Vec7 bounded_motion(const NormalEquations& e, double scale, const ScaleRange& range) {
+  const Vec7 motion = solve(e.system, e.right, e.length, !range.is_fixed());
+  const double wanted = scale * std::exp(motion[6]);
+  if (wanted >= range.low && wanted <= range.high) return motion;
+  // At the border of its range the scale is known; the rest is found for it.
+  const double change = std::log(std::clamp(wanted, range.low, range.high) / scale);
+  Vec7 bounded = solve(e.system, e.right - change * e.system.col(6), e.length, false);
+  bounded[6] = change;
+  return bounded;
+}
+
+/// Pairs sought from both clouds, the rougher one's counting more.
+std::vector<SurfacePair> mutual_pairs(const SampledSurface& source, std::span<const std::size_t> of_source,
+                                      const SampledSurface& target, std::span<const std::size_t> of_target,
+                                      const Similarity& t, Workers& workers) {
+  const double share = target_share(source, target);
+  std::vector<SurfacePair> pairs = pairs_of(source, of_source, target, t, workers);
+  for (SurfacePair& pair : pairs) pair.weight = 1.0 - share;
+  for (SurfacePair& pair : reverse_pairs_of(source, target, of_target, t, workers)) {
+    pair.weight = share;
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+Icp icp(const SampledSurface& source, const SampledSurface& target, const Similarity& start,
+        const IcpSettings& settings, Workers& workers) {
   Icp result;
-  result.transform = start;
+  Similarity& t = result.transform;
+  t = start;
   result.width = settings.first_width;
-  const std::size_t total = source.cloud.points.size();
-  const std::vector<std::size_t> indices = spread_indices(total, settings.max_points > 0 ? settings.max_points : total);
-  const std::size_t target_total = target.cloud.points.size();
-  const std::vector<std::size_t> target_indices = spread_indices(target_total, settings.max_points > 0 ? settings.max_points : target_total);
+  const auto indices = [&settings](std::size_t total) {
+    return spread_indices(total, settings.max_points > 0 ? settings.max_points : total);
+  };
+  const std::vector<std::size_t> of_source = indices(source.cloud.points.size());
+  const std::vector<std::size_t> of_target = indices(target.cloud.points.size());
   std::deque<Vec7> last;  // motions, in lengths
-  for (result.iterations = 0; result.iterations < settings.max_iterations;) {
-    Similarity& t = result.transform;
-    std::vector<SurfacePair> pairs = pairs_of(source, indices, target, t, workers);
-    std::vector<SurfacePair> reverse = reverse_pairs_of(source, target, target_indices, t, workers);
-    const double share = target_share(source, target);
-    for (SurfacePair& pair : pairs) pair.weight = 1.0 - share;
-    for (SurfacePair& pair : reverse) pair.weight = share;
-    pairs.insert(pairs.end(), reverse.begin(), reverse.end());
+  while (result.iterations < settings.max_iterations) {
+    const std::vector<SurfacePair> pairs = mutual_pairs(source, of_source, target, of_target, t, workers);
     result.pairs = pairs.size();
-    if (pairs.size() < kFewestPairs) {
-      result.is_degenerate = true;
-      return result;
-    }
-    const double wanted = kWidths * robust_sd(pairs, result.width);
+    const double wanted = std::max(kWidths * robust_sd(pairs, result.width), kLeastWidth * target.spacing);
     result.width = std::max(std::min(result.width, wanted), kShrink * result.width);
-    const double floor = 1e-9 * target.spacing;
-    result.width = std::max(result.width, floor);
-    Vec3 center = Vec3::Zero();
-    double sum = 0.0;
-    std::vector<double> weights(pairs.size());
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      weights[i] = pairs[i].weight * std::exp(-0.5 * std::pow(pairs[i].distance / result.width, 2));
-      center += weights[i] * pairs[i].place;
-      sum += weights[i];
-    }
-    center /= sum;
-    Mat7 system = Mat7::Zero();
-    Vec7 right = Vec7::Zero();
-    double squares = 0.0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const Vec7 g = pair_gradient(pairs[i], center);
-      system += weights[i] * g * g.transpose();
-      right -= weights[i] * pairs[i].distance * g;
-      squares += weights[i] * (pairs[i].place - center).squaredNorm();
-    }
-    const double length = std::sqrt(squares / sum);
-    Vec7 motion = solve(system, right, length, !settings.scale.is_fixed());
-    const double scale = t.scale * std::exp(motion[6]);
-    if (scale < settings.scale.low || scale > settings.scale.high) {
-      // At the border of its range the scale is known; the rest is found for it.
-      const double change = std::log(std::clamp(scale, settings.scale.low, settings.scale.high) / t.scale);
-      motion = solve(system, right - change * system.col(6), length, false);
-      motion[6] = change;
-    }
-    t = nudged(t, motion, center);
+    const NormalEquations e = equations_of(pairs, result.width);
+    // Nothing within reach of the robust weight: there is no motion to find.
+    result.is_degenerate = pairs.size() < kFewestPairs || !(e.weight > 1.0);
+    if (result.is_degenerate) return result;
+    Vec7 motion = bounded_motion(e, t.scale, settings.scale);
+    result.is_degenerate = !motion.allFinite();
+    if (result.is_degenerate) return result;
+    t = nudged(t, motion, e.center);
     ++result.iterations;
-    Vec7 lengths = motion;
-    lengths.head<3>() *= length;
-    lengths[6] *= length;
-    last.push_back(lengths);
+    motion.head<3>() *= e.length;
+    motion[6] *= e.length;
+    last.push_back(motion);
     if (last.size() > kWatched) last.pop_front();
     if (last.size() == kWatched && has_settled(last, settings.tolerance)) {
       result.has_converged = true;

@@ -1,7 +1,6 @@
 #include "registration/levels.hpp"
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,15 +18,17 @@ WeightedPoints clusters_of(std::span<const Vec3> points, const Vec3& low, double
   places.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 q = ((points[i] - low) / cell).array().floor();
-    places.push_back({{static_cast<std::int64_t>(q.z()), static_cast<std::int64_t>(q.y()), static_cast<std::int64_t>(q.x())},
-                      static_cast<std::uint32_t>(i)});
+    places.push_back(
+        {{static_cast<std::int64_t>(q.z()), static_cast<std::int64_t>(q.y()), static_cast<std::int64_t>(q.x())},
+         static_cast<std::uint32_t>(i)});
   }
   std::sort(places.begin(), places.end());
   WeightedPoints level;
   level.cell = cell;
   for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end) {
     Vec3 sum = Vec3::Zero();
-    for (end = begin; end < places.size() && places[end].first == places[begin].first; ++end) sum += points[places[end].second];
+    for (end = begin; end < places.size() && places[end].first == places[begin].first; ++end)
+      sum += points[places[end].second];
     const auto count = static_cast<double>(end - begin);
     level.points.emplace_back(sum / count);
     level.weights.push_back(count);
@@ -66,7 +67,8 @@ Measure measure_of(std::span<const Vec3> points) {
   measure.center /= n;
   Mat3 scatter = Mat3::Zero();
   for (const Vec3& p : points) scatter += (p - measure.center) * (p - measure.center).transpose();
-  measure.variances = Eigen::SelfAdjointEigenSolver<Mat3>(scatter / n, Eigen::EigenvaluesOnly).eigenvalues().cwiseMax(0.0);
+  measure.variances =
+      Eigen::SelfAdjointEigenSolver<Mat3>(scatter / n, Eigen::EigenvaluesOnly).eigenvalues().cwiseMax(0.0);
   measure.radius = std::sqrt(measure.variances.sum());
   return measure;
 }

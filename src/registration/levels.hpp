@@ -17,8 +17,10 @@ struct WeightedPoints {
 /// A cloud, coarse to fine: clusters of ever smaller cubes, and last the cloud itself.
 [[nodiscard]] std::vector<WeightedPoints> levels_of(std::span<const Vec3> points);
 
-/// The coarsest level whose cubes are no larger than `share` of `sigma`: a cluster then widens a Gaussian's σ² by at most share²/12.
-[[nodiscard]] const WeightedPoints& level_for(const std::vector<WeightedPoints>& levels, double sigma, double share = 0.5);
+/// The coarsest level whose cubes are no larger than `share` of `sigma`: a cluster then widens a Gaussian's σ² by at
+/// most share²/12.
+[[nodiscard]] const WeightedPoints& level_for(const std::vector<WeightedPoints>& levels, double sigma,
+                                              double share = 0.5);
 
 /// The origin and length that a cloud is measured by: its mean and root mean square distance from it.
 struct Measure {

@@ -4,9 +4,9 @@
 #include <incise/core/error.hpp>
 #include <incise/registration/nonrigid_drift.hpp>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,11 +15,12 @@ namespace incise {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-constexpr std::size_t kRows = 256;       // of the basis at a time
-constexpr double kCenterSpacing = 0.5;   // of β
+constexpr std::size_t kRows = 256;      // of the basis at a time
+constexpr double kCenterSpacing = 0.5;  // of β
 constexpr double kLeastSigma = 1e-6;
 
-/// Points spread evenly over a cloud: each next one is the farthest from those taken, until none is farther than `spacing`.
+/// Points spread evenly over a cloud: each next one is the farthest from those taken, until none is farther than
+/// `spacing`.
 Points spread_centers(const Points& points, double spacing, std::size_t most) {
   Points centers{points.front()};
   std::vector<double> squared(points.size(), std::numeric_limits<double>::infinity());
@@ -57,8 +58,8 @@ class SmoothField {
   [[nodiscard]] std::size_t rank() const { return centers_.size(); }
 
   /// (Φᵀ D Φ + λσ² G) W = Φᵀ (PX - D Y): displacements of all source points. Nothing if the system is not definite.
-  [[nodiscard]] std::optional<Matrix> displacements(const Points& source, const std::vector<GaussSum>& held, double cost,
-                                                    Workers& workers) const {
+  [[nodiscard]] std::optional<Matrix> displacements(const Points& source, const std::vector<GaussSum>& held,
+                                                    double cost, Workers& workers) const {
     const auto rank = static_cast<Eigen::Index>(centers_.size());
     const std::size_t chunks = Workers::chunk_count(source.size(), kRows);
     std::vector<Matrix> normal(chunks);
@@ -104,19 +105,22 @@ std::vector<std::string> validate(const NonrigidSettings& s) {
   const auto check = [&problems](bool is_good, std::string text) {
     if (!is_good) problems.push_back(std::move(text));
   };
-  check(s.smoothness > 0.0 && s.smoothness <= 10.0, fmt::format("smoothness: expected a share in (0, 10], found {}", s.smoothness));
+  check(s.smoothness > 0.0 && s.smoothness <= 10.0,
+        fmt::format("smoothness: expected a share in (0, 10], found {}", s.smoothness));
   check(s.stiffness > 0.0, fmt::format("stiffness: expected a number above 0, found {}", s.stiffness));
-  check(s.outlier_weight > 0.0 && s.outlier_weight < 1.0, fmt::format("outlier_weight: expected a share in (0, 1), found {}", s.outlier_weight));
+  check(s.outlier_weight > 0.0 && s.outlier_weight < 1.0,
+        fmt::format("outlier_weight: expected a share in (0, 1), found {}", s.outlier_weight));
   check(s.max_iterations >= 1, fmt::format("max_iterations: expected at least 1, found {}", s.max_iterations));
   check(s.tolerance > 0.0, fmt::format("tolerance: expected a share above 0, found {}", s.tolerance));
   check(s.dimensions == 2 || s.dimensions == 3, fmt::format("dimensions: expected 2 or 3, found {}", s.dimensions));
-  check(s.max_centers >= 4 && s.max_centers <= 2000, fmt::format("max_centers: expected 4 to 2000, found {}", s.max_centers));
+  check(s.max_centers >= 4 && s.max_centers <= 2000,
+        fmt::format("max_centers: expected 4 to 2000, found {}", s.max_centers));
   check(!s.first_sigma || *s.first_sigma > 0.0, "first_sigma: expected a share above 0");
   return problems;
 }
 
-NonrigidDrift nonrigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const NonrigidSettings& settings,
-                             Workers& workers, Monitor& monitor) {
+NonrigidDrift nonrigid_drift(std::span<const Vec3> source, std::span<const Vec3> target,
+                             const NonrigidSettings& settings, Workers& workers, Monitor& monitor) {
   const std::vector<std::string> problems = validate(settings);
   INCISE_REQUIRE(problems.empty(), problems.front());
   INCISE_REQUIRE(!source.empty() && !target.empty(), "expected at least 1 point in each cloud");
@@ -137,9 +141,10 @@ NonrigidDrift nonrigid_drift(std::span<const Vec3> source, std::span<const Vec3>
   drift.rank = static_cast<int>(field.rank());
   Points placed = y;
   const Measure x_measure = measure_of(x);
-  double sigma = settings.first_sigma
-                     ? *settings.first_sigma
-                     : std::sqrt((1.0 + x_measure.variances.sum() + x_measure.center.squaredNorm()) / settings.dimensions);
+  double sigma =
+      settings.first_sigma
+          ? *settings.first_sigma
+          : std::sqrt((1.0 + x_measure.variances.sum() + x_measure.center.squaredNorm()) / settings.dimensions);
   int still = 0;
   while (drift.iterations < settings.max_iterations) {
     if (monitor.is_cancelled()) {

@@ -1,30 +1,30 @@
+#include "registration/pose_search.hpp"
+
 #include "registration/icp.hpp"
 #include "registration/matching.hpp"
-#include "registration/pose_search.hpp"
 
 #include <incise/core/units.hpp>
 
 #include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 
 namespace incise {
 namespace {
 
-// Widths of the coarse drift, as shares of the target's radius: wide enough to pull a tongue half a turn of the spiral, narrow enough at the
-// end for the clusters.
+// Widths of the coarse drift, as shares of the target's radius: wide enough to pull a tongue half a turn of the spiral,
+// narrow enough at the end for the clusters.
 constexpr double kFirstSigma = 0.35;
 constexpr double kLastSigma = 0.07;
 constexpr int kSteps = 18;
 constexpr std::size_t kCoarsePoints = 300;
-constexpr std::size_t kScorePoints = 300;
+constexpr std::size_t kScorePoints = 500;
 constexpr std::size_t kFinePoints = 2000;
-constexpr std::size_t kRoughKept = 24;     // poses that are refined
-constexpr double kAlike = 0.08;            // rms distance, in radii, below which two poses are one
-constexpr double kLeastSide = 0.3;         // length of the mean normal above which a cloud has a side
-constexpr double kLargestSideAngle = 75.0; // degrees between the sides' normals
-constexpr double kOffset = 0.35;           // starts beside the middle, in radii of the source
+constexpr std::size_t kRoughKept = 32;      // poses that are refined
+constexpr double kAlike = 0.08;             // rms distance, in radii, below which two poses are one
+constexpr double kLeastSide = 0.3;          // length of the mean normal above which a cloud has a side
+constexpr double kLargestSideAngle = 75.0;  // degrees between the sides' normals
+constexpr double kOffset = 0.35;            // starts beside the middle, in radii of the source
 
 /// The first level with enough clusters to show the shape.
 const WeightedPoints& coarse_level(const std::vector<WeightedPoints>& levels) {
@@ -46,9 +46,10 @@ Vec3 longest_axis(const Points& points) {
   return Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors().col(2);
 }
 
-/// Every rotation, with the source's middle on the target's and a little to either side along its longest axis: where one cloud shows only
-/// a part, the middles do not correspond.
-std::vector<Similarity> starts_of(const SampledSurface& source, const SampledSurface& target, const PoseSearchSettings& settings) {
+/// Every rotation, with the source's middle on the target's and a little to either side along its longest axis: where
+/// one cloud shows only a part, the middles do not correspond.
+std::vector<Similarity> starts_of(const SampledSurface& source, const SampledSurface& target,
+                                  const PoseSearchSettings& settings) {
   const bool knows_sides = source.has_oriented_normals && target.has_oriented_normals;
   const Vec3 up = mean_of(source.cloud.normals);
   const Vec3 target_up = mean_of(target.cloud.normals);
@@ -57,19 +58,21 @@ std::vector<Similarity> starts_of(const SampledSurface& source, const SampledSur
   const Vec3 axis = longest_axis(source.cloud.points);
   const double radius = measure_of(source.cloud.points).radius;
   // With bounds the scale starts between them; without, as the sizes say.
-  const double scale = settings.scale.high < 1e6 && settings.scale.low > 0.0 ? std::sqrt(settings.scale.low * settings.scale.high)
-                                                                           : std::clamp(1.0 / radius, settings.scale.low, settings.scale.high);
+  const double scale = settings.scale.high < 1e6 && settings.scale.low > 0.0
+                           ? std::sqrt(settings.scale.low * settings.scale.high)
+                           : std::clamp(1.0 / radius, settings.scale.low, settings.scale.high);
   std::vector<Similarity> starts;
   for (const Mat3& turn : even_rotations(settings.rotations)) {
     if (has_side && (turn * up).normalized().dot(target_up.normalized()) < least_cosine) continue;
-    for (const double side : {0.0, -kOffset, kOffset}) starts.push_back({scale, turn, turn * (scale * side * radius * axis)});
+    for (const double side : {0.0, -kOffset, kOffset})
+      starts.push_back({scale, turn, turn * (scale * side * radius * axis)});
   }
   return starts;
 }
 
 /// Few steps with a width that shrinks on schedule: it cannot stall, and every start costs the same.
-Similarity coarse_drift(const WeightedPoints& source, const WeightedPoints& target, Similarity t, const DriftSettings& settings,
-                        Workers& alone) {
+Similarity coarse_drift(const WeightedPoints& source, const WeightedPoints& target, Similarity t,
+                        const DriftSettings& settings, Workers& alone) {
   const double shrink = std::pow(kLastSigma / kFirstSigma, 1.0 / (kSteps - 1));
   double sigma = kFirstSigma;
   for (int k = 0; k < kSteps; ++k, sigma *= shrink) {
@@ -85,7 +88,9 @@ std::vector<Pose> distinct(std::vector<Pose> poses, std::span<const Vec3> source
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.score > b.score; });
   std::vector<Pose> kept;
   for (const Pose& pose : poses) {
-    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Pose& other) { return !differ(pose.transform, other.transform, source, kAlike); });
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Pose& other) {
+      return !differ(pose.transform, other.transform, source, kAlike);
+    });
     if (is_new) kept.push_back(pose);
     if (kept.size() == keep) break;
   }
@@ -104,7 +109,8 @@ std::vector<Mat3> even_rotations(int count) {
     const double R = std::sqrt(1.0 - s / count);
     const double a = 2.0 * units::kPi * s / phi;
     const double b = 2.0 * units::kPi * s / kPsi;
-    rotations.push_back(Eigen::Quaterniond(R * std::cos(b), r * std::sin(a), r * std::cos(a), R * std::sin(b)).toRotationMatrix());
+    rotations.push_back(
+        Eigen::Quaterniond(R * std::cos(b), r * std::sin(a), r * std::cos(a), R * std::sin(b)).toRotationMatrix());
   }
   return rotations;
 }
@@ -116,8 +122,8 @@ bool differ(const Similarity& a, const Similarity& b, std::span<const Vec3> sour
   return rms_difference_mm(a, b, few) > limit;
 }
 
-PoseSearch search_poses(const SampledSurface& source, const SampledSurface& target, const PoseSearchSettings& settings, Workers& workers,
-                        Monitor& monitor) {
+PoseSearch search_poses(const SampledSurface& source, const SampledSurface& target, const PoseSearchSettings& settings,
+                        Workers& workers, Monitor& monitor) {
   const std::vector<Similarity> starts = starts_of(source, target, settings);
   PoseSearch search;
   search.starts = static_cast<int>(starts.size());

@@ -16,14 +16,16 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kFewestPoints = 12;
-constexpr std::size_t kCandidates = 3;        // poses that see all points
+constexpr std::size_t kCandidates = 3;  // poses that see all points
 constexpr std::size_t kScorePoints = 4000;
 constexpr std::size_t kRivalPoints = 1000;
-constexpr double kFinalSigma = 0.06;          // of the drift that starts from a pose of the search
-constexpr double kFinalWidth = 0.08;          // of the ICP after the drift
-constexpr double kDifferent = 0.08;           // rms distance, in radii, from which on a pose counts as another one
-constexpr double kLeastScoreWidth = 0.004;    // in radii: no camera sees finer
-constexpr double kUsualScale = 0.05;          // both sensors are metric
+constexpr int kDriftSteps = 60;
+constexpr int kFinishSteps = 100;
+constexpr double kFinalSigma = 0.06;        // of the drift that starts from a pose of the search
+constexpr double kFinalWidth = 0.08;        // of the ICP after the drift
+constexpr double kDifferent = 0.08;         // rms distance, in radii, from which on a pose counts as another one
+constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
+constexpr double kUsualScale = 0.05;        // both sensors are metric
 
 /// Both clouds about the target's middle, in units of its radius, and the way back.
 struct Frame {
@@ -45,9 +47,11 @@ void require_usable(const PointCloud& cloud, const char* name) {
     INCISE_REQUIRE(cloud.points[i].allFinite(), fmt::format("{}: point {} is not finite", name, i));
   }
   INCISE_REQUIRE(cloud.normals.empty() || cloud.normals.size() == cloud.points.size(),
-                 fmt::format("{}: expected no normals or one per point, found {} for {} points", name, cloud.normals.size(), cloud.points.size()));
+                 fmt::format("{}: expected no normals or one per point, found {} for {} points", name,
+                             cloud.normals.size(), cloud.points.size()));
   for (std::size_t i = 0; i < cloud.normals.size(); ++i) {
-    INCISE_REQUIRE(std::abs(cloud.normals[i].norm() - 1.0) < 1e-3, fmt::format("{}: normal {} is not of length 1", name, i));
+    INCISE_REQUIRE(std::abs(cloud.normals[i].norm() - 1.0) < 1e-3,
+                   fmt::format("{}: normal {} is not of length 1", name, i));
   }
 }
 
@@ -75,8 +79,8 @@ struct Candidate {
 
 class Registering {
  public:
-  Registering(const PointCloud& source, const PointCloud& target, const Frame& frame, const RegistrationSettings& settings, Workers& workers,
-              Monitor& monitor)
+  Registering(const PointCloud& source, const PointCloud& target, const Frame& frame,
+              const RegistrationSettings& settings, Workers& workers, Monitor& monitor)
       : frame_(frame),
         settings_(settings),
         workers_(workers),
@@ -86,7 +90,7 @@ class Registering {
         asked_(spread_indices(source.points.size(), kScorePoints)) {
     const double rough = std::hypot(roughness_mm(source_.cloud.points), roughness_mm(target_.cloud.points));
     noise_ = rough;
-    score_width_ = std::max(1.5 * rough, kLeastScoreWidth);
+    score_width_ = std::max(0.7 * rough, kLeastScoreWidth);
   }
 
   void run(Registration& result) {
@@ -99,7 +103,7 @@ class Registering {
       search.scale = settings_.scale;
       search.outlier_weight = settings_.outlier_weight;
       search.rotations = settings_.rotations;
-      search.score_width = score_width_;
+      search.score_width = 2.0 * score_width_;  // rough poses
       PoseSearch found = search_poses(source_, target_, search, workers_, monitor_);
       poses = std::move(found.poses);
       result.starts = found.starts;
@@ -110,18 +114,22 @@ class Registering {
       monitor_.progress("registering", static_cast<double>(k) / static_cast<double>(kCandidates));
       candidates.push_back(carried_through(poses[k].transform));
     }
-    std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
     monitor_.progress("registering", 1.0);
     conclude(result, candidates, poses);
   }
 
  private:
-  [[nodiscard]] double score_of(const Similarity& t) const { return overlap_score(source_, asked_, target_, t, score_width_); }
+  [[nodiscard]] double score_of(const Similarity& t) const {
+    return overlap_score(source_, asked_, target_, t, score_width_);
+  }
 
   Candidate carried_through(const Similarity& start) {
     Candidate drifted = by_drift(start);
     if (!settings_.finish_with_icp) return drifted;
-    // The drift pulls parts without a counterpart towards the rest; where that leads astray, the search's pose is the better start.
+    // The drift pulls parts without a counterpart towards the rest; where that leads astray, the search's pose is the
+    // better start.
     Candidate finished = by_icp(drifted.is_degenerate ? start : drifted.transform);
     if (!settings_.start) {
       Candidate direct = by_icp(start);
@@ -139,8 +147,11 @@ class Registering {
     drift.outlier_weight = settings_.outlier_weight;
     drift.max_iterations = settings_.max_iterations;
     if (!settings_.start) drift.first_sigma = kFinalSigma;
-    const Drift done = rigid_drift(thinned(source_.cloud.points, settings_.drift_points), thinned(target_.cloud.points, settings_.drift_points),
-                                   start, drift, workers_, monitor_);
+    // Where the finish has the last word the drift need not be followed to its end.
+    if (settings_.finish_with_icp) drift.max_iterations = std::min(drift.max_iterations, kDriftSteps);
+    const Drift done =
+        rigid_drift(thinned(source_.cloud.points, settings_.drift_points),
+                    thinned(target_.cloud.points, settings_.drift_points), start, drift, workers_, monitor_);
     if (done.outcome == DriftOutcome::Cancelled) throw_if_cancelled(monitor_, "registering");
     Candidate candidate;
     candidate.transform = done.T_target_source;
@@ -158,9 +169,10 @@ class Registering {
     IcpSettings settings;
     settings.scale = settings_.scale;
     settings.first_width = kFinalWidth;
-    settings.max_iterations = settings_.max_iterations;
+    settings.max_iterations = std::min(settings_.max_iterations, kFinishSteps);
     const Icp done = icp(source_, target_, start, settings, workers_);
-    return {done.transform, score_of(done.transform), done.has_converged, done.is_degenerate, done.iterations, 0.0, 0.0, done.width};
+    return {done.transform, score_of(done.transform), done.has_converged, done.is_degenerate, done.iterations, 0.0, 0.0,
+            done.width};
   }
 
   void conclude(Registration& result, const std::vector<Candidate>& candidates, const std::vector<Pose>& poses) {
@@ -178,7 +190,8 @@ class Registering {
     result.noise_mm = noise_ * frame_.length;
     measure_residuals(result, best);
     find_rival(result, best, candidates, poses);
-    result.certificate = certificate_of(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
+    result.certificate =
+        certificate_of(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
     judge(result, best);
     to_millimetres(result.certificate);
   }
@@ -189,20 +202,21 @@ class Registering {
     // What is farther off than a tenth of the radius lies beside the target's surface, not on it.
     constexpr double kBeside = 0.1;
     double squares = 0.0;
-    std::size_t above = 0;
     std::size_t inliers = 0;
     for (const SurfacePair& pair : pairs) {
       const double d = std::abs(pair.distance);
       inliers += d < 1.2 * best.width ? 1 : 0;
       if (d > kBeside) continue;
-      ++above;
+      result.residuals_mm.push_back(frame_.length * pair.distance);
       squares += d * d;
     }
-    result.rmse_mm = above > 0 ? frame_.length * std::sqrt(squares / static_cast<double>(above)) : 0.0;
+    const auto above = static_cast<double>(result.residuals_mm.size());
+    result.rmse_mm = above > 0.0 ? frame_.length * std::sqrt(squares / above) : 0.0;
     result.inlier_fraction = static_cast<double>(inliers) / static_cast<double>(all.size());
   }
 
-  void find_rival(Registration& result, const Candidate& best, const std::vector<Candidate>& candidates, const std::vector<Pose>& poses) {
+  void find_rival(Registration& result, const Candidate& best, const std::vector<Candidate>& candidates,
+                  const std::vector<Pose>& poses) {
     const auto consider = [&](const Similarity& t, double score) {
       if (score <= result.rival_score || !differ(t, best.transform, source_.cloud.points, kDifferent)) return;
       result.rival_score = score;
@@ -233,23 +247,29 @@ class Registering {
     fail(!best.has_converged, RegistrationOutcome::IterationLimit,
          fmt::format("still moving after {} iterations", best.iterations));
     fail(result.inlier_fraction < settings_.least_inliers, RegistrationOutcome::PoorFit,
-         fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %", 100.0 * result.inlier_fraction,
-                     100.0 * settings_.least_inliers));
+         fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %",
+                     100.0 * result.inlier_fraction, 100.0 * settings_.least_inliers));
     fail(result.rmse_mm > settings_.largest_rmse * frame_.length, RegistrationOutcome::PoorFit,
-         fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm, settings_.largest_rmse * frame_.length));
-    fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < settings_.largest_sd), RegistrationOutcome::IllDetermined,
+         fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm,
+                     settings_.largest_rmse * frame_.length));
+    fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < settings_.largest_sd),
+         RegistrationOutcome::IllDetermined,
          fmt::format("{} hardly changes the residual: its standard deviation is {:.3g} mm, and {:.2g} % of it shows",
-                     c.weakest.empty() ? "a motion" : c.weakest, c.weakest_sd_mm * frame_.length, 100.0 * c.sharpness[0]));
+                     c.weakest.empty() ? "a motion" : c.weakest, c.weakest_sd_mm * frame_.length,
+                     100.0 * c.sharpness[0]));
     fail(result.rival_score > settings_.largest_rival * result.score, RegistrationOutcome::Ambiguous,
-         fmt::format("another pose fits about as well: {:.0f} % of the score", 100.0 * result.rival_score / result.score));
+         fmt::format("another pose fits about as well: {:.0f} % of the score",
+                     100.0 * result.rival_score / result.score));
     const double scale = result.T_target_source.scale;
     const double tiny = 1e-9 * scale;
     result.scale_at_limit =
         !settings_.scale.is_fixed() && (scale <= settings_.scale.low + tiny || scale >= settings_.scale.high - tiny);
     result.is_scale_suspicious = std::abs(scale - 1.0) > kUsualScale;
-    if (result.scale_at_limit) result.reasons.push_back(fmt::format("the scale stands at the end of its range, {:.4g}", scale));
+    if (result.scale_at_limit)
+      result.reasons.push_back(fmt::format("the scale stands at the end of its range, {:.4g}", scale));
     if (result.is_scale_suspicious) {
-      result.reasons.push_back(fmt::format("the scale of {:.4g} is outside 0.95 to 1.05: if both clouds are metric, something is wrong", scale));
+      result.reasons.push_back(fmt::format(
+          "the scale of {:.4g} is outside 0.95 to 1.05: if both clouds are metric, something is wrong", scale));
     }
   }
 
@@ -290,29 +310,38 @@ std::vector<std::string> validate(const RegistrationSettings& s) {
   check(s.rotations >= 8 && s.rotations <= 2000, fmt::format("rotations: expected 8 to 2000, found {}", s.rotations));
   check(s.drift_points >= 100, fmt::format("drift_points: expected at least 100, found {}", s.drift_points));
   check(s.largest_rmse > 0.0, fmt::format("largest_rmse: expected a share above 0, found {}", s.largest_rmse));
-  check(s.least_inliers >= 0.0 && s.least_inliers <= 1.0, fmt::format("least_inliers: expected a share in [0, 1], found {}", s.least_inliers));
+  check(s.least_inliers >= 0.0 && s.least_inliers <= 1.0,
+        fmt::format("least_inliers: expected a share in [0, 1], found {}", s.least_inliers));
   check(s.largest_sd > 0.0, fmt::format("largest_sd: expected a share above 0, found {}", s.largest_sd));
   check(s.least_sharpness >= 0.0, fmt::format("least_sharpness: expected 0 or more, found {}", s.least_sharpness));
-  check(s.largest_rival > 0.0 && s.largest_rival <= 1.0, fmt::format("largest_rival: expected a share in (0, 1], found {}", s.largest_rival));
+  check(s.largest_rival > 0.0 && s.largest_rival <= 1.0,
+        fmt::format("largest_rival: expected a share in (0, 1], found {}", s.largest_rival));
   check(!s.start || s.start->scale > 0.0, "start: expected a scale above 0");
   return problems;
 }
 
 std::string_view to_string(RegistrationOutcome outcome) {
   switch (outcome) {
-    case RegistrationOutcome::Converged: return "converged";
-    case RegistrationOutcome::IterationLimit: return "iteration_limit";
-    case RegistrationOutcome::IllDetermined: return "ill_determined";
-    case RegistrationOutcome::Ambiguous: return "ambiguous";
-    case RegistrationOutcome::PoorFit: return "poor_fit";
-    case RegistrationOutcome::Degenerate: return "degenerate";
-    case RegistrationOutcome::Cancelled: return "cancelled";
+    case RegistrationOutcome::Converged:
+      return "converged";
+    case RegistrationOutcome::IterationLimit:
+      return "iteration_limit";
+    case RegistrationOutcome::IllDetermined:
+      return "ill_determined";
+    case RegistrationOutcome::Ambiguous:
+      return "ambiguous";
+    case RegistrationOutcome::PoorFit:
+      return "poor_fit";
+    case RegistrationOutcome::Degenerate:
+      return "degenerate";
+    case RegistrationOutcome::Cancelled:
+      return "cancelled";
   }
   return "unknown";
 }
 
-Registration register_clouds(const PointCloud& source, const PointCloud& target, const RegistrationSettings& settings, Workers& workers,
-                             Monitor& monitor) {
+Registration register_clouds(const PointCloud& source, const PointCloud& target, const RegistrationSettings& settings,
+                             Workers& workers, Monitor& monitor) {
   require_usable(source, "source");
   require_usable(target, "target");
   const std::vector<std::string> problems = validate(settings);
@@ -320,11 +349,14 @@ Registration register_clouds(const PointCloud& source, const PointCloud& target,
   Registration result;
   const Measure source_measure = measure_of(source.points);
   const Measure target_measure = measure_of(target.points);
-  for (const auto& [name, cloud, measure] : {std::tuple("source", &source, &source_measure), std::tuple("target", &target, &target_measure)}) {
+  for (const auto& [name, cloud, measure] :
+       {std::tuple("source", &source, &source_measure), std::tuple("target", &target, &target_measure)}) {
     if (cloud->points.size() < kFewestPoints) {
-      result.reasons.push_back(fmt::format("the {} has {} points, expected at least {}", name, cloud->points.size(), kFewestPoints));
+      result.reasons.push_back(
+          fmt::format("the {} has {} points, expected at least {}", name, cloud->points.size(), kFewestPoints));
     } else if (is_line(measure->variances)) {
-      result.reasons.push_back(fmt::format("the {}'s points lie on a line or in one place: no rotation follows from them", name));
+      result.reasons.push_back(
+          fmt::format("the {}'s points lie on a line or in one place: no rotation follows from them", name));
     }
   }
   if (!result.reasons.empty()) return result;

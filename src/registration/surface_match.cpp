@@ -32,8 +32,8 @@ double target_share(const SampledSurface& source, const SampledSurface& target) 
 namespace {
 
 /// These two points as a pair, if the one may lie above the other.
-std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t index, const Vec3& place, const SampledSurface& target,
-                                  std::size_t near, const Similarity& t) {
+std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t index, const Vec3& place,
+                                  const SampledSurface& target, std::size_t near, const Similarity& t) {
   const Vec3& target_normal = target.cloud.normals[near];
   Vec3 source_normal = t.rotation * source.cloud.normals[index];
   const double agreement = source_normal.dot(target_normal);
@@ -65,18 +65,19 @@ std::vector<SurfacePair> collected(std::size_t count, Workers& workers, const Fi
 
 }  // namespace
 
-std::optional<SurfacePair> pair_of(const SampledSurface& source, std::size_t index, const SampledSurface& target, const Similarity& t) {
+std::optional<SurfacePair> pair_of(const SampledSurface& source, std::size_t index, const SampledSurface& target,
+                                   const Similarity& t) {
   const Vec3 place = t(source.cloud.points[index]);
   return paired(source, index, place, target, target.search.nearest(place).index, t);
 }
 
-std::vector<SurfacePair> pairs_of(const SampledSurface& source, std::span<const std::size_t> indices, const SampledSurface& target,
-                                  const Similarity& t, Workers& workers) {
+std::vector<SurfacePair> pairs_of(const SampledSurface& source, std::span<const std::size_t> indices,
+                                  const SampledSurface& target, const Similarity& t, Workers& workers) {
   return collected(indices.size(), workers, [&](std::size_t i) { return pair_of(source, indices[i], target, t); });
 }
 
-std::vector<SurfacePair> reverse_pairs_of(const SampledSurface& source, const SampledSurface& target, std::span<const std::size_t> indices,
-                                          const Similarity& t, Workers& workers) {
+std::vector<SurfacePair> reverse_pairs_of(const SampledSurface& source, const SampledSurface& target,
+                                          std::span<const std::size_t> indices, const Similarity& t, Workers& workers) {
   const Similarity back = inverse(t);
   return collected(indices.size(), workers, [&](std::size_t i) {
     const std::size_t near = source.search.nearest(back(target.cloud.points[indices[i]])).index;
@@ -84,8 +85,8 @@ std::vector<SurfacePair> reverse_pairs_of(const SampledSurface& source, const Sa
   });
 }
 
-double overlap_score(const SampledSurface& source, std::span<const std::size_t> indices, const SampledSurface& target, const Similarity& t,
-                     double width) {
+double overlap_score(const SampledSurface& source, std::span<const std::size_t> indices, const SampledSurface& target,
+                     const Similarity& t, double width) {
   double sum = 0.0;
   for (const std::size_t i : indices) {
     const auto pair = pair_of(source, i, target, t);

@@ -15,8 +15,8 @@ struct Neighbour {
   double squared_mm2 = 0.0;  ///< squared distance
 };
 
-/// Nearest points in a fixed cloud (kd-tree). Copies the points. Answers come nearest first, ties by index, and may be asked for from
-/// several threads at once. Build O(n log n), query O(log n) typical.
+/// Nearest points in a fixed cloud (kd-tree). Copies the points. Answers come nearest first, ties by index, and may be
+/// asked for from several threads at once. Build O(n log n), query O(log n) typical.
 class NeighbourSearch {
  public:
   /// @pre at least one point, all finite.
