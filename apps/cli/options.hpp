@@ -79,6 +79,8 @@ void add_phantom(Application& application);
 void add_segment(Application& application);
 void add_mesh(Application& application);
 void add_stages(Application& application);   ///< deform, plan, simulate, compensate
+void add_surface(Application& application);
+void add_register(Application& application);
 void add_export(Application& application);
 void add_interchange(Application& application);
 void add_evaluate(Application& application);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "options.hpp"
+
+#include <incise/geometry/point_cloud.hpp>
+#include <incise/io/manifest.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace incise::cli {
+
+/// The points of a surface or cloud file, with its normals where it has them. @throws DataError, also for fewer than
+/// `fewest` points.
+[[nodiscard]] PointCloud read_points(const std::filesystem::path& path, std::size_t fewest);
+
+/// Three numbers of an option as a direction. @throws CaseError for one of length 0.
+[[nodiscard]] Vec3 direction_of(const std::vector<double>& numbers, const char* option);
+
+/// The manifest of a folder that a verb without a case fills.
+[[nodiscard]] Manifest manifest_of(const CommonOptions& options, std::string settings_json,
+                                   const std::vector<std::filesystem::path>& inputs, double wall_s);
+
+}  // namespace incise::cli

@@ -1,0 +1,198 @@
+#include "cloud_input.hpp"
+
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/surface_io.hpp>
+#include <incise/registration/nonrigid_drift.hpp>
+#include <incise/report/registration_figure.hpp>
+#include <incise/storage/registration_json.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <ostream>
+#include <sstream>
+
+namespace incise::cli {
+namespace {
+
+struct RegisterArguments {
+  std::filesystem::path source;
+  std::filesystem::path target;
+  std::string scale = "0.9,1.1";
+  std::string method = "rigid";
+  std::vector<double> approach{0.0, 0.0, -1.0};
+  double max_rmse_mm = 0.0;
+  bool no_icp = false;
+  bool from_identity = false;
+  RegistrationSettings settings;
+  NonrigidSettings nonrigid;
+};
+
+/// free, fixed or LO,HI.
+ScaleRange scale_of(const std::string& text) {
+  if (text == "free") return ScaleRange::free();
+  if (text == "fixed") return ScaleRange::fixed();
+  std::istringstream in(text);
+  ScaleRange range;
+  char comma = '\0';
+  std::string rest;
+  const bool is_read = static_cast<bool>(in >> range.low >> comma >> range.high) && comma == ',' && !(in >> rest);
+  if (!is_read || !(range.low > 0.0 && range.low <= range.high && range.high < 1e6)) {
+    throw CaseError("command line", "--scale", text, "free, fixed, or LO,HI with 0 < LO <= HI",
+                    "For example: --scale 0.95,1.05");
+  }
+  return range;
+}
+
+nlohmann::ordered_json settings_json(const RegisterArguments& arguments) {
+  const RegistrationSettings& s = arguments.settings;
+  const auto limit = [](double value) {
+    return value < 1e300 ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+  };
+  nlohmann::ordered_json json{
+      {"method", arguments.method},
+      {"scale", {limit(s.scale.low), limit(s.scale.high)}},
+      {"outlier_weight", s.outlier_weight},
+      {"start", s.start ? "identity" : "search"},
+      {"rotations", s.rotations},
+      {"icp", s.finish_with_icp},
+      {"max_iterations", s.max_iterations},
+      {"drift_points", s.drift_points},
+      {"largest_rmse", s.largest_rmse},
+      {"largest_rmse_mm", arguments.max_rmse_mm > 0.0 ? nlohmann::ordered_json(arguments.max_rmse_mm) : nullptr},
+      {"least_inliers", s.least_inliers},
+      {"largest_sd", s.largest_sd},
+      {"least_sharpness", s.least_sharpness},
+      {"largest_rival", s.largest_rival}};
+  if (arguments.method == "nonrigid") {
+    json["smoothness"] = arguments.nonrigid.smoothness;
+    json["stiffness"] = arguments.nonrigid.stiffness;
+  }
+  return json;
+}
+
+/// The source laid on the target, and bent to it where that is asked for.
+struct Laid {
+  PointCloud source;  // in the target's frame
+  nlohmann::ordered_json nonrigid;
+  bool is_acceptable = true;
+};
+
+Laid laid_source(const PointCloud& source, const PointCloud& target, const Registration& found,
+                 const RegisterArguments& arguments, Workers& workers, Monitor& monitor) {
+  Laid laid;
+  laid.source.points = moved(found.T_target_source, source.points);
+  for (const Vec3& n : source.normals) laid.source.normals.push_back(found.T_target_source.rotation * n);
+  if (arguments.method != "nonrigid") return laid;
+  monitor.progress("bending", 0.0);
+  NonrigidSettings settings = arguments.nonrigid;
+  settings.outlier_weight = arguments.settings.outlier_weight;
+  settings.first_sigma = 0.1;  // the clouds lie on each other but for what bending can do
+  const NonrigidDrift bent = nonrigid_drift(laid.source.points, target.points, settings, workers, monitor);
+  if (bent.outcome == DriftOutcome::Cancelled) throw Cancelled("register: stopped while bending");
+  monitor.progress("bending", 1.0);
+  laid.source.points = bent.moved_mm;
+  laid.source.normals.clear();  // they have turned with the surface
+  laid.nonrigid = {
+      {"outcome", to_string(bent.outcome)}, {"sigma_mm", bent.sigma_mm}, {"largest_move_mm", bent.largest_move_mm},
+      {"iterations", bent.iterations},      {"rank", bent.rank},         {"target_fraction", bent.matched_share}};
+  laid.is_acceptable = bent.outcome == DriftOutcome::Converged;
+  return laid;
+}
+
+int run_register(RegisterArguments arguments, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("registration");
+  require_replaceable(output);
+  RegistrationSettings& settings = arguments.settings;
+  settings.scale = scale_of(arguments.scale);
+  settings.finish_with_icp = !arguments.no_icp;
+  if (arguments.from_identity) settings.start = Similarity{std::clamp(1.0, settings.scale.low, settings.scale.high)};
+  const Vec3 approach = direction_of(arguments.approach, "--approach");
+  const PointCloud source = read_points(arguments.source, 12);
+  const PointCloud target = read_points(arguments.target, 12);
+  if (const auto problems = validate(settings); !problems.empty())
+    throw CaseError("command line", "", problems.front(), "usable settings");
+  Workers workers(options.threads);
+  Registration found = register_clouds(source, target, settings, workers, console);
+  if (found.outcome == RegistrationOutcome::Cancelled) throw Cancelled("register: stopped");
+  if (arguments.max_rmse_mm > 0.0 && found.rmse_mm > arguments.max_rmse_mm) {
+    if (found.outcome == RegistrationOutcome::Converged) found.outcome = RegistrationOutcome::PoorFit;
+    found.reasons.push_back(
+        fmt::format("the residual of {:.3g} mm (rms) is above --max-rmse-mm {}", found.rmse_mm, arguments.max_rmse_mm));
+  }
+  bool is_acceptable = found.outcome == RegistrationOutcome::Converged;
+  for (const std::string& reason : found.reasons) console.message(Severity::Warning, reason);
+
+  nlohmann::ordered_json result{{"schema", "incise.registration/1"}};
+  result.update(to_json(found));
+  AtomicFolder folder(output);
+  if (found.outcome != RegistrationOutcome::Degenerate) {
+    const Laid laid = laid_source(source, target, found, arguments, workers, console);
+    is_acceptable = is_acceptable && laid.is_acceptable;
+    if (!laid.nonrigid.is_null()) result["nonrigid"] = laid.nonrigid;
+    write_ply(folder.path() / "moved_source.ply", mesh_of(laid.source));
+    RegistrationFigure figure{
+        fmt::format("{} on {}", arguments.source.filename().string(), arguments.target.filename().string()),
+        fmt::format("{}; scale {:.4f}, rmse {:.3g} mm, {:.0f} % of the source on the target", to_string(found.outcome),
+                    found.T_target_source.scale, found.rmse_mm, 100.0 * found.inlier_fraction),
+        target.points,
+        laid.source.points,
+        found.residuals_mm,
+        approach};
+    write_atomically(folder.path() / "registration.svg",
+                     [&figure](std::ostream& out) { out << registration_figure_svg(figure); });
+  }
+  result["source"] = arguments.source.string();
+  result["target"] = arguments.target.string();
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result["wall_s"] = wall_s;
+  write_json(folder.path() / "registration.json", result);
+  write_manifest(folder.path(),
+                 manifest_of(options, settings_json(arguments).dump(), {arguments.source, arguments.target}, wall_s));
+  folder.commit();
+  result["folder"] = output.string();
+  print_result(options, result);
+  return is_acceptable ? kDone : kNotAcceptable;
+}
+
+}  // namespace
+
+void add_register(Application& application) {
+  auto arguments = std::make_shared<RegisterArguments>();
+  CLI::App* verb = application.add_verb(
+      "register",
+      "Find the similarity that lays one cloud on another, and how far it can be relied upon. Exit status 4 when it "
+      "cannot",
+      "incise register --source simulated.ply --target tissue.ply --scale 0.95,1.05 -o registration",
+      [arguments](const CommonOptions& options) { return run_register(*arguments, options); });
+  RegistrationSettings& settings = arguments->settings;
+  verb->add_option("--source", arguments->source, "Cloud or surface to be moved (.ply, .vtp, .stl, .obj)")->required();
+  verb->add_option("--target", arguments->target, "Cloud or surface that stays")->required();
+  verb->add_option("--scale", arguments->scale, "free, fixed, or LO,HI");
+  verb->add_option("--method", arguments->method, "nonrigid: also bend the source to the target (moved_source.ply)")
+      ->check(CLI::IsMember({"rigid", "nonrigid"}));
+  verb->add_option("--outlier-weight", settings.outlier_weight,
+                   "Share of the target that belongs to nothing in the source")
+      ->check(CLI::Range(0.001, 0.95));
+  verb->add_option("--rotations", settings.rotations, "Starts of the search")->check(CLI::Range(8, 2000));
+  verb->add_flag("--from-identity", arguments->from_identity, "No search: the clouds lie nearly right");
+  verb->add_flag("--no-icp", arguments->no_icp, "Coherent point drift alone");
+  verb->add_option("--max-iterations", settings.max_iterations, "Of the drift and of the finish")
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--max-rmse-mm", arguments->max_rmse_mm,
+                   "A larger residual is not acceptable; 0: 3 % of the target's radius")
+      ->check(CLI::Range(0.0, 1000.0));
+  verb->add_option("--smoothness", arguments->nonrigid.smoothness,
+                   "nonrigid: range of the bending, share of the source's radius")
+      ->check(CLI::Range(0.01, 10.0));
+  verb->add_option("--stiffness", arguments->nonrigid.stiffness, "nonrigid: cost of bending against misfit")
+      ->check(CLI::Range(1e-6, 1e6));
+  verb->add_option("--approach", arguments->approach, "Line of sight of the picture")->expected(3);
+}
+
+}  // namespace incise::cli

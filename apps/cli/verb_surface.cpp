@@ -1,0 +1,175 @@
+#include "cloud_input.hpp"
+#include "study_run.hpp"
+
+#include <incise/geometry/visible_surface.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/mesh_io.hpp>
+#include <incise/io/surface_io.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <initializer_list>
+#include <memory>
+
+namespace incise::cli {
+namespace {
+
+struct SurfaceArguments {
+  std::filesystem::path input;
+  std::vector<double> approach;
+  VisibleSurfaceSettings view;
+  CleaningSettings cleaning;
+  std::vector<double> box;
+};
+
+constexpr std::size_t kFewestPoints = 12;
+
+bool is_one_of(const std::filesystem::path& path, std::initializer_list<const char*> endings) {
+  return std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return path.extension() == ending; });
+}
+
+/// The skin of a tet mesh: where its file says that the vertices have moved to, or at rest.
+TriMesh skin_of(const TetMesh& mesh, const std::filesystem::path& file) {
+  TriMesh skin = boundary_surface(mesh);
+  const auto moved = mesh.point_data.find("position_mm");
+  if (moved == mesh.point_data.end()) return skin;
+  if (moved->second.components != 3 || moved->second.values.size() != 3 * skin.vertices.size()) {
+    throw DataError(file, "point array position_mm", "none that fits the mesh", "3 numbers for each vertex");
+  }
+  for (std::size_t i = 0; i < skin.vertices.size(); ++i)
+    skin.vertices[i] = Eigen::Map<const Vec3>(moved->second.values.data() + 3 * i);
+  return skin;
+}
+
+/// The skin of the case's stretched specimen, made or found beside the case as every verb does; the approach is the
+/// plan's.
+TriMesh stretched_skin(const std::filesystem::path& case_path, const CommonOptions& options, Monitor& monitor,
+                       Vec3& approach) {
+  CommonOptions of_study = options;
+  of_study.output.clear();
+  StudyRun run(case_path, output_of(case_path, of_study), of_study);
+  const Study study = run.run(Stage::Stretch, of_study, monitor);
+  if (!study.stretched || study.stretched->outcome != Outcome::Success) {
+    throw DataError(case_path, "stretch", study.stretched ? explain_stretch(*study.stretched) : "none",
+                    "a specimen that comes to rest");
+  }
+  approach = run.store.case_file().settings.plan.approach;
+  TriMesh skin = boundary_surface(study.model->mesh);
+  skin.vertices = study.stretched->state.positions;
+  return skin;
+}
+
+nlohmann::ordered_json seen(const TriMesh& skin, const SurfaceArguments& arguments, const Vec3& approach,
+                            Workers& workers, PointCloud& cloud) {
+  VisibleSurfaceSettings view = arguments.view;
+  view.approach = approach;
+  VisibleSurface surface = visible_surface(skin, view, workers);
+  cloud = std::move(surface.cloud);
+  return {{"points", cloud.points.size()},
+          {"area_mm2", surface.area_mm2},
+          {"spacing_mm", view.spacing_mm},
+          {"kind", "visible_surface"}};
+}
+
+nlohmann::ordered_json cleaned(const PointCloud& raw, const SurfaceArguments& arguments, const Vec3& approach,
+                               const CommonOptions& options, Workers& workers, PointCloud& cloud) {
+  CleaningSettings settings = arguments.cleaning;
+  settings.seen_along = approach;
+  if (!arguments.box.empty()) settings.box = Box3(Vec3(arguments.box.data()), Vec3(arguments.box.data() + 3));
+  if (const auto problems = validate(settings); !problems.empty())
+    throw CaseError("command line", "", problems.front(), "usable settings");
+  Random random(options.seed);
+  CleanedCloud result = clean_cloud(raw, settings, random, workers);
+  cloud = std::move(result.cloud);
+  nlohmann::ordered_json planes = nlohmann::ordered_json::array();
+  for (const PlaneFit& plane : result.planes) {
+    planes.push_back({{"normal", {plane.normal.x(), plane.normal.y(), plane.normal.z()}},
+                      {"offset_mm", plane.offset_mm},
+                      {"points", plane.inliers.size()}});
+  }
+  return {{"points", cloud.points.size()},
+          {"area_mm2", sampled_area_mm2(cloud.points)},
+          {"spacing_mm", spacing_mm(cloud.points)},
+          {"kind", "cleaned_cloud"},
+          {"points_read", raw.points.size()},
+          {"cropped", result.cropped},
+          {"planes", planes},
+          {"beneath_planes", result.beneath_planes},
+          {"outliers", result.outliers}};
+}
+
+int make_surface(const SurfaceArguments& arguments, const CommonOptions& options) {
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("surface.ply");
+  const bool is_vtp = output.extension() == ".vtp";
+  if (!is_vtp && output.extension() != ".ply")
+    throw CaseError("command line", "-o", output.string(), "a file that ends in .ply or .vtp");
+  require_writable(output);
+  Workers workers(options.threads);
+  Vec3 approach = arguments.approach.empty() ? Vec3(-Vec3::UnitZ()) : direction_of(arguments.approach, "--approach");
+  PointCloud cloud;
+  nlohmann::ordered_json result;
+  const std::filesystem::path& input = arguments.input;
+  if (std::filesystem::is_directory(input) || is_one_of(input, {".yaml", ".yml", ".json"})) {
+    Vec3 of_case;
+    const TriMesh skin = stretched_skin(input, options, console, of_case);
+    result = seen(skin, arguments, arguments.approach.empty() ? of_case : approach, workers, cloud);
+  } else if (is_one_of(input, {".vtu", ".vtk", ".msh", ".node", ".ele"})) {
+    result = seen(skin_of(read_tet_mesh(input, console), input), arguments, approach, workers, cloud);
+  } else {
+    const TriMesh read = read_cloud(input);
+    result = read.triangles.empty() ? cleaned(cloud_of(read), arguments, approach, options, workers, cloud)
+                                    : seen(read, arguments, approach, workers, cloud);
+  }
+  if (cloud.points.size() < kFewestPoints) {
+    throw DataError(input, "surface", fmt::format("{} points left", cloud.points.size()),
+                    fmt::format("at least {}", kFewestPoints), "Look at the approach, the box and the planes");
+  }
+  if (is_vtp) {
+    write_vtp(output, mesh_of(cloud));
+  } else {
+    write_ply(output, mesh_of(cloud));
+  }
+  result["surface"] = output.string();
+  print_result(options, result);
+  return kDone;
+}
+
+}  // namespace
+
+void add_surface(Application& application) {
+  auto arguments = std::make_shared<SurfaceArguments>();
+  CLI::App* verb =
+      application.add_verb("surface",
+                           "The surface that an observer sees, as an evenly sampled cloud with normals; of a camera's "
+                           "cloud, the cleaned part",
+                           "incise surface scan.ply --box -60 -80 -5 60 80 60 --planes 1 --voxel-mm 0.5 -o tissue.ply",
+                           [arguments](const CommonOptions& options) { return make_surface(*arguments, options); });
+  verb->add_option("input", arguments->input,
+                   "Case (its stretched specimen), tet mesh (.vtu, .vtk, .msh, .node), surface with triangles, or "
+                   "cloud (.ply, .vtp, .stl, .obj)")
+      ->required();
+  verb->add_option("--approach", arguments->approach, "Direction of sight; default: the case's, or 0 0 -1")
+      ->expected(3);
+  verb->add_option("--spacing-mm", arguments->view.spacing_mm, "Mesh: least distance between two points")
+      ->check(CLI::Range(0.01, 100.0));
+  verb->add_option("--max-tilt-deg", arguments->view.largest_tilt_deg, "Mesh: steeper faces are left out")
+      ->check(CLI::Range(1.0, 90.0));
+  verb->add_option("--box", arguments->box, "Cloud: keep what lies between two corners, x y z x y z")->expected(6);
+  verb->add_option("--planes", arguments->cleaning.planes,
+                   "Cloud: planes (table, holder) to take away with what lies beneath")
+      ->check(CLI::Range(0, 20));
+  verb->add_option("--plane-tolerance-mm", arguments->cleaning.plane_tolerance_mm,
+                   "Cloud: thickness of a plane to either side")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--outlier-neighbours", arguments->cleaning.outlier_neighbours, "Cloud: 0 keeps outliers")
+      ->check(CLI::Range(0, 200));
+  verb->add_option("--outlier-deviations", arguments->cleaning.outlier_deviations,
+                   "Cloud: above the mean distance, beyond which a point goes")
+      ->check(CLI::Range(0.0, 100.0));
+  verb->add_option("--voxel-mm", arguments->cleaning.voxel_mm, "Cloud: one point per cube of this size; 0: all")
+      ->check(CLI::Range(0.0, 100.0));
+}
+
+}  // namespace incise::cli

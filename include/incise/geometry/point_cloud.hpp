@@ -1,0 +1,104 @@
+#pragma once
+
+#include <incise/core/random.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/geometry/types.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// Points of a surface, in no order, mm.
+struct PointCloud {
+  Points points;   ///< N x 3
+  Points normals;  ///< N x 3, unit, outwards (towards whoever saw them); or empty: not known
+};
+
+/// The vertices of a mesh, with its point data `normals` where it has them (made unit; a file's normals of length 0
+/// count as not known: then the cloud has none).
+[[nodiscard]] PointCloud cloud_of(const TriMesh& mesh);
+/// The cloud as a mesh without triangles, with point data `normals` where it has them: what files hold.
+[[nodiscard]] TriMesh mesh_of(const PointCloud& cloud);
+
+/// The points with the given numbers, in their order.
+[[nodiscard]] PointCloud subset(const PointCloud& cloud, std::span<const std::size_t> indices);
+
+/// The points within the box, its border included.
+[[nodiscard]] PointCloud crop(const PointCloud& cloud, const Box3& box);
+
+/// One point per occupied cube of a grid: the mean of its points, and of their normals. Order: of the cubes, z slowest.
+/// The grid starts at the cloud's lowest corner, so the result moves with the cloud.
+/// @pre voxel_mm > 0.  O(n log n).
+[[nodiscard]] PointCloud downsample(const PointCloud& cloud, double voxel_mm);
+
+/// Median distance from a point to its nearest neighbour, mm; 0 for fewer than 2 points. At most 2000 points are asked.
+[[nodiscard]] double spacing_mm(std::span<const Vec3> points);
+
+/// Area, mm², of the surface that a sample stands for, from the distances to each point's 8th and 9th neighbours: to
+/// about 6 %, plus half a spacing or so along the border. 0 for fewer than 10 points.
+[[nodiscard]] double sampled_area_mm2(std::span<const Vec3> points);
+
+/// The cloud with normals of planes fitted to each point's neighbours, turned so that they look against `seen_along`.
+/// @param neighbours  that a plane is fitted to, the point included; at least 3.
+/// @param seen_along  direction in which the surface was seen (the camera's axis, the approach).
+[[nodiscard]] PointCloud with_normals(PointCloud cloud, const Vec3& seen_along, int neighbours, Workers& workers);
+
+/// Standard deviation, mm, of the points about planes fitted to their neighbours, as a median over the cloud: the noise
+/// of the cloud and the bend of its surface over that neighbourhood. 0 for fewer than 4 points. At most 2000 points are
+/// asked.
+[[nodiscard]] double roughness_mm(std::span<const Vec3> points, int neighbours = 12);
+
+/// Leaves out points whose mean distance to their `neighbours` nearest ones is more than `deviations` standard
+/// deviations above the mean of the cloud. Source: [Rusu2008, 4.1].
+[[nodiscard]] PointCloud without_outliers(const PointCloud& cloud, int neighbours, double deviations, Workers& workers);
+
+/// A plane normal · p = offset and the points near it.
+struct PlaneFit {
+  Vec3 normal = Vec3::UnitZ();
+  double offset_mm = 0.0;
+  std::vector<std::size_t> inliers;
+};
+
+/// The plane that lies within `tolerance_mm` of the most points, refitted to them by least squares; nothing for fewer
+/// than 3 points or points on a line. Source: [Fischler1981].
+/// @param trials  triples drawn.
+[[nodiscard]] std::optional<PlaneFit> find_plane(std::span<const Vec3> points, double tolerance_mm, int trials,
+                                                 Random& random);
+
+/// How a camera's cloud becomes the cloud of the tissue's surface.
+struct CleaningSettings {
+  std::optional<Box3> box;          ///< what lies outside is dropped
+  int planes = 0;                   ///< flat things (table, holder) to take away, largest first
+  double plane_tolerance_mm = 1.0;  ///< a point this near to a plane belongs to it
+  double plane_least_share = 0.1;   ///< of the points left; a smaller plane stays
+  bool drop_beneath_planes = true;  ///< also what lies behind a plane, seen along `seen_along`
+  int outlier_neighbours = 16;      ///< 0: no removal of outliers
+  double outlier_deviations = 2.0;
+  double voxel_mm = 0.0;       ///< 0: no downsampling
+  int normal_neighbours = 16;  ///< 0: no normals
+  Vec3 seen_along = -Vec3::UnitZ();
+};
+
+/// Every violation, one sentence each; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const CleaningSettings& settings);
+
+struct CleanedCloud {
+  PointCloud cloud;
+  std::size_t cropped = 0;       ///< points outside the box
+  std::vector<PlaneFit> planes;  ///< taken away; `inliers` number the points that were left at that time
+  std::size_t beneath_planes = 0;
+  std::size_t outliers = 0;
+};
+
+/// Crop, planes, outliers, downsampling, normals, in this order. The cloud may end up empty: the caller says whether
+/// that is of use.
+/// @pre points finite, settings valid.
+[[nodiscard]] CleanedCloud clean_cloud(const PointCloud& cloud, const CleaningSettings& settings, Random& random,
+                                       Workers& workers);
+
+}  // namespace incise

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/registration/similarity.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// What a registration may do with the scale: low = high fixes it.
+struct ScaleRange {
+  double low = 1.0;
+  double high = 1.0;
+  [[nodiscard]] static ScaleRange fixed(double scale = 1.0) { return {scale, scale}; }
+  [[nodiscard]] static ScaleRange free();
+  [[nodiscard]] bool is_fixed() const { return low == high; }
+};
+
+/// Settings of coherent point drift. All are free of units: lengths are shares of the target's root mean square radius.
+struct DriftSettings {
+  ScaleRange scale = ScaleRange::free();
+  double outlier_weight = 0.1;  ///< w: share of the target's points that belong to nothing in the source, (0, 1)
+  int max_iterations = 300;     ///< EM steps, on all levels together
+  double tolerance =
+      1e-4;  ///< converged when all further steps together would move the source by less than this (estimated)
+  int dimensions = 3;          ///< 2: drawings with all z equal; rotation about z only
+  bool coarse_to_fine = true;  ///< wide Gaussians see clusters in place of points; false: every step sees all points
+  std::optional<double> first_sigma;  ///< width to start with, as a share of the radius; absent: the clouds' mean
+                                      ///< squared distance says it
+};
+
+/// Every violation, one sentence each; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const DriftSettings& settings);
+
+enum class DriftOutcome {
+  Converged,
+  IterationLimit,
+  Degenerate,  ///< the points (of one cloud, or those that still match) lie on a line or in one point, so that no
+               ///< rotation follows from them
+  Cancelled,
+};
+[[nodiscard]] std::string_view to_string(DriftOutcome outcome);  ///< converged, iteration_limit, degenerate, cancelled
+
+struct Drift {
+  Similarity T_target_source;
+  DriftOutcome outcome = DriftOutcome::IterationLimit;
+  double sigma_mm = 0.0;       ///< width of the Gaussians at the end
+  double matched_share = 0.0;  ///< of the target's points, by probability
+  int iterations = 0;
+  double last_step_mm = 0.0;  ///< root mean square movement of the source in the last step
+};
+
+/// One step of the expectation maximisation from the identity, on all pairs: new transform and σ².
+struct DriftStep {
+  Similarity T_target_source;
+  double variance_mm2 = 0.0;
+};
+/// @param variance_mm2  σ² of the E-step, > 0.
+[[nodiscard]] DriftStep drift_step(std::span<const Vec3> source, std::span<const Vec3> target, double variance_mm2,
+                                   const DriftSettings& settings, Workers& workers);
+
+/// Rigid coherent point drift with scale from one start: the target is taken as drawn from Gaussians about the moved
+/// source points and a uniform background, and transform and width are those of greatest likelihood (EM). The E-step
+/// truncates the Gaussians and sees clusters while they are wide; the last steps see all points, so the fixed point is
+/// that of all pairs up to the truncation. Memory O(N + M). A scale range restricts the M-step exactly, because its
+/// objective is a parabola in the scale. Neither units nor origin matter.
+/// Without `first_sigma` only the start's rotation counts: middles and sizes are made alike first, as published.
+/// @param source, target  M x 3 and N x 3, any unit.  @param start  where the source is to begin.
+/// @pre finite points, at least one each.  @throws InvalidArgument.  Source: [Myronenko2010], Fig. 2.
+[[nodiscard]] Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start,
+                                const DriftSettings& settings, Workers& workers, Monitor& monitor);
+
+/// An affine map, p_target = linear · p_source + translation.
+struct AffineDrift {
+  Mat3 linear = Mat3::Identity();
+  Vec3 translation_mm = Vec3::Zero();
+  DriftOutcome outcome = DriftOutcome::IterationLimit;
+  double sigma_mm = 0.0;
+  int iterations = 0;
+};
+/// Affine coherent point drift, for clouds of a few thousand points: every step sees all points. Source:
+/// [Myronenko2010], Fig. 3.
+/// @pre, @throws as rigid_drift; the scale range of the settings is not used.
+[[nodiscard]] AffineDrift affine_drift(std::span<const Vec3> source, std::span<const Vec3> target,
+                                       const DriftSettings& settings, Workers& workers, Monitor& monitor);
+
+}  // namespace incise

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <incise/registration/drift.hpp>
+
+namespace incise {
+
+struct NonrigidSettings {
+  double smoothness = 0.8;      ///< β: range of the deformation, as a share of the source's root mean square radius
+  double stiffness = 30.0;      ///< λ: how much bending costs against misfit
+  double outlier_weight = 0.1;  ///< w, (0, 1)
+  int max_iterations = 300;
+  double tolerance =
+      1e-4;  ///< converged when a step moves the points by less than this share of the radius (rms), twice in a row
+  int dimensions = 3;                 ///< 2: drawings with all z equal
+  int max_centers = 400;              ///< rank of the deformation; a smoother one needs fewer
+  std::optional<double> first_sigma;  ///< as in DriftSettings; for clouds that are aligned already, say 0.1
+};
+
+/// Every violation, one sentence each; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const NonrigidSettings& settings);
+
+struct NonrigidDrift {
+  Points moved_mm;  ///< the source's points where they end
+  DriftOutcome outcome = DriftOutcome::IterationLimit;
+  double sigma_mm = 0.0;
+  double matched_share = 0.0;  ///< of the target's points
+  double largest_move_mm = 0.0;
+  int iterations = 0;
+  int rank = 0;  ///< Gaussians that the deformation is a sum of
+};
+
+/// Non-rigid coherent point drift: as rigid_drift, but each source point moves by a smooth field v(y) = Σ_c g(y, c)
+/// W_c, a sum of Gaussians of width β about `rank` centres spread evenly over the source, at a cost of λ/2 WᵀGW. The
+/// centres lie β/2 apart, where the field that they leave out is below a hundredth of that of a centre on every point.
+/// Memory O(rank · M); no matrix over pairs of points.
+/// @pre finite points, at least one each, aligned as well as a similarity can (rigid_drift first).  @throws
+/// InvalidArgument. Source: [Myronenko2010], Fig. 4; centres in place of eigenvectors of G.
+[[nodiscard]] NonrigidDrift nonrigid_drift(std::span<const Vec3> source, std::span<const Vec3> target,
+                                           const NonrigidSettings& settings, Workers& workers, Monitor& monitor);
+
+}  // namespace incise

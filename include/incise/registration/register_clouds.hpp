@@ -1,0 +1,106 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/geometry/point_cloud.hpp>
+#include <incise/registration/drift.hpp>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// Settings of register_clouds. Lengths are shares of the target's root mean square radius, so that units do not
+/// matter.
+struct RegistrationSettings {
+  ScaleRange scale{0.9, 1.1};
+  double outlier_weight = 0.3;  ///< w of the drift: share of the target that belongs to nothing in the source, (0, 1)
+  std::optional<Similarity> start;   ///< one start; absent: a search over rotations
+  int rotations = 160;               ///< starts of the search, spread evenly over all rotations; 8 to 2000
+  bool finish_with_icp = true;       ///< point to plane after the drift
+  int max_iterations = 300;          ///< of the drift, and of the finish
+  std::size_t drift_points = 20000;  ///< a larger cloud takes part in the drift as about so many clusters
+  double largest_rmse = 0.03;        ///< poorer fits are not a success
+  double least_inliers = 0.15;       ///< of the source's points; fewer are not a success
+  double largest_sd = 0.01;          ///< of the pose along its weakest direction, for a success
+  double least_sharpness = 7e-4;     ///< see Certificate::sharpness
+  double largest_rival = 0.95;       ///< score of the runner-up over that of the best, for a success
+};
+
+/// Every violation, one sentence each; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const RegistrationSettings& settings);
+
+enum class RegistrationOutcome {
+  Converged,
+  IterationLimit,  ///< still moving when the steps ran out
+  IllDetermined,   ///< the surfaces can slide along each other: some motion leaves the residual as it is
+  Ambiguous,       ///< another pose fits about as well
+  PoorFit,         ///< the residual is too large, or too little of the source finds a counterpart
+  Degenerate,      ///< a cloud is a point or a line, or has fewer than 12 points; no transform follows
+  Cancelled,
+};
+/// converged, iteration_limit, ill_determined, ambiguous, poor_fit, degenerate, cancelled
+[[nodiscard]] std::string_view to_string(RegistrationOutcome outcome);
+
+/// How well two surfaces fix the transform between them. Seven motions (three turns and three shifts about the
+/// overlap's middle, and the logarithm of the scale) are turned into the seven independent ones that the distances
+/// along the normals see least to best, each measured by how far it moves the overlap (rms). A plane leaves three of
+/// them (four with scale) at 0, a sphere three, a cylinder two. Sources: [Gelfand2003] for the slippage, [Censi2007]
+/// for the covariance.
+struct Certificate {
+  int motions = 0;                  ///< 7, or 6 with the scale fixed
+  std::array<double, 7> visible{};  ///< share of each motion that appears in the distances, ascending: eigenvalues of
+                                    ///< the Gauss-Newton matrix
+  /// The same for the two least visible ones, from moving the source to and fro and searching the nearest points anew:
+  /// rise of the mean squared distance over the squared motion. Noise in the normals, which makes a plane look fixed
+  /// above, does not show here.
+  std::array<double, 2> sharpness{};
+  double sd_mm = 0.0;          ///< standard deviation of the overlap's position from noise, all motions together (rms)
+  double weakest_sd_mm = 0.0;  ///< along the least visible motion
+  double rotation_sd_deg = 0.0;
+  double translation_sd_mm = 0.0;  ///< of the overlap's middle
+  double scale_sd = 0.0;           ///< relative
+  Eigen::Matrix<double, 7, 7> covariance =
+      Eigen::Matrix<double, 7, 7>::Zero();  ///< rotation vector (rad), translation (mm), log scale; about `center_mm`
+  Vec3 center_mm = Vec3::Zero();            ///< middle of the overlap, target frame
+  std::string weakest;                      ///< for a person: what kind of motion is least visible
+};
+
+struct Registration {
+  Similarity T_target_source;
+  RegistrationOutcome outcome = RegistrationOutcome::Degenerate;
+  std::vector<std::string> reasons;  ///< why it is not a success, or what to beware of: sentences for a person
+  double rmse_mm = 0.0;   ///< of the distances along the normals, over the source's points that lie above the target
+  double noise_mm = 0.0;  ///< what it would be if the surfaces were alike: roughness of both clouds
+  double inlier_fraction =
+      0.0;  ///< of the source's points: above the target, distance below 3 robust standard deviations
+  double target_fraction = 0.0;  ///< of the target's points, by the drift's probability
+  double drift_sigma_mm = 0.0;   ///< width of the drift's Gaussians at the end
+  int iterations = 0;            ///< of drift and finish
+  int starts = 0;
+  double score = 0.0;               ///< share of the source that lies on the target to within the noise, [0, 1]
+  double rival_score = 0.0;         ///< of the best pose that is another one; 0: none
+  std::optional<Similarity> rival;  ///< that pose
+  /// Distances along the normals, target to source, of the source's points that lie above the target (within a tenth of
+  /// its radius), mm.
+  std::vector<double> residuals_mm;
+  bool scale_at_limit = false;       ///< the scale stands at an end of its range
+  bool is_scale_suspicious = false;  ///< outside 0.95 to 1.05: both sensors are metric
+  Certificate certificate;
+};
+
+/// Finds the similarity that lays a source surface on a target surface which shows part of it, with noise, holes and
+/// points that belong to nothing. Search: rigid coherent point drift on coarse clusters from starts spread over all
+/// rotations (and three positions along the longest axis), the best few refined; then the drift on the full clouds and
+/// an ICP finish. Where both clouds come with normals, these decide which side is up. Every result that is not to be
+/// relied upon says so in `outcome` and `reasons`. The same clouds give the same bits at any thread count. A reflection
+/// is never returned.
+/// @param source, target  at least 1 point each, finite, any unit; normals of unit length or none.  @throws
+/// InvalidArgument. Sources: [Myronenko2010], [Alexa2022] (even rotations).
+[[nodiscard]] Registration register_clouds(const PointCloud& source, const PointCloud& target,
+                                           const RegistrationSettings& settings, Workers& workers, Monitor& monitor);
+
+}  // namespace incise

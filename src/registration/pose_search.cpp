@@ -1,0 +1,174 @@
+#include "registration/pose_search.hpp"
+
+#include "registration/icp.hpp"
+#include "registration/matching.hpp"
+
+#include <incise/core/units.hpp>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+// Widths of the coarse drift, as shares of the target's radius: wide enough to pull a tongue half a turn of the spiral,
+// narrow enough at the end for the clusters.
+constexpr double kFirstSigma = 0.35;
+constexpr double kLastSigma = 0.07;
+constexpr int kSteps = 18;
+constexpr std::size_t kCoarsePoints = 300;
+constexpr std::size_t kScorePoints = 500;
+constexpr std::size_t kFinePoints = 2000;
+constexpr std::size_t kRoughKept = 32;      // poses that are refined
+constexpr double kAlike = 0.08;             // rms distance, in radii, below which two poses are one
+constexpr double kLeastSide = 0.3;          // length of the mean normal above which a cloud has a side
+constexpr double kLargestSideAngle = 75.0;  // degrees between the sides' normals
+constexpr double kOffset = 0.35;            // starts beside the middle, in radii of the source
+
+/// The first level with enough clusters to show the shape.
+const WeightedPoints& coarse_level(const std::vector<WeightedPoints>& levels) {
+  for (const WeightedPoints& level : levels) {
+    if (level.points.size() >= kCoarsePoints) return level;
+  }
+  return levels.back();
+}
+
+Vec3 mean_of(const Points& points) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : points) sum += p;
+  return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
+}
+
+Vec3 longest_axis(const Points& points) {
+  Mat3 scatter = Mat3::Zero();
+  for (const Vec3& p : points) scatter += p * p.transpose();
+  return Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors().col(2);
+}
+
+/// Every rotation, with the source's middle on the target's and a little to either side along its longest axis: where
+/// one cloud shows only a part, the middles do not correspond.
+std::vector<Similarity> starts_of(const SampledSurface& source, const SampledSurface& target,
+                                  const PoseSearchSettings& settings) {
+  const bool knows_sides = source.has_oriented_normals && target.has_oriented_normals;
+  const Vec3 up = mean_of(source.cloud.normals);
+  const Vec3 target_up = mean_of(target.cloud.normals);
+  const bool has_side = knows_sides && std::min(up.norm(), target_up.norm()) > kLeastSide;
+  const double least_cosine = std::cos(units::rad_from_deg(kLargestSideAngle));
+  const Vec3 axis = longest_axis(source.cloud.points);
+  const double radius = measure_of(source.cloud.points).radius;
+  // With bounds the scale starts between them; without, as the sizes say.
+  const double scale = settings.scale.high < 1e6 && settings.scale.low > 0.0
+                           ? std::sqrt(settings.scale.low * settings.scale.high)
+                           : std::clamp(1.0 / radius, settings.scale.low, settings.scale.high);
+  std::vector<Similarity> starts;
+  for (const Mat3& turn : even_rotations(settings.rotations)) {
+    if (has_side && (turn * up).normalized().dot(target_up.normalized()) < least_cosine) continue;
+    for (const double side : {0.0, -kOffset, kOffset})
+      starts.push_back({scale, turn, turn * (scale * side * radius * axis)});
+  }
+  return starts;
+}
+
+/// Few steps with a width that shrinks on schedule: it cannot stall, and every start costs the same.
+Similarity coarse_drift(const WeightedPoints& source, const WeightedPoints& target, Similarity t,
+                        const DriftSettings& settings, Workers& alone) {
+  const double shrink = std::pow(kLastSigma / kFirstSigma, 1.0 / (kSteps - 1));
+  double sigma = kFirstSigma;
+  for (int k = 0; k < kSteps; ++k, sigma *= shrink) {
+    const MatchedTransform next = best_transform(match(source, target, t, sigma, settings, alone), settings);
+    if (next.is_degenerate) break;
+    t = next.transform;
+  }
+  return t;
+}
+
+/// The best poses of which no two are alike.
+std::vector<Pose> distinct(std::vector<Pose> poses, std::span<const Vec3> source, std::size_t keep) {
+  std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.score > b.score; });
+  std::vector<Pose> kept;
+  for (const Pose& pose : poses) {
+    const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Pose& other) {
+      return !differ(pose.transform, other.transform, source, kAlike);
+    });
+    if (is_new) kept.push_back(pose);
+    if (kept.size() == keep) break;
+  }
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Mat3> even_rotations(int count) {
+  const double phi = std::sqrt(2.0);
+  constexpr double kPsi = 1.533751168755204288118041;
+  std::vector<Mat3> rotations;
+  for (int i = 0; i < count; ++i) {
+    const double s = i + 0.5;
+    const double r = std::sqrt(s / count);
+    const double R = std::sqrt(1.0 - s / count);
+    const double a = 2.0 * units::kPi * s / phi;
+    const double b = 2.0 * units::kPi * s / kPsi;
+    rotations.push_back(
+        Eigen::Quaterniond(R * std::cos(b), r * std::sin(a), r * std::cos(a), R * std::sin(b)).toRotationMatrix());
+  }
+  return rotations;
+}
+
+bool differ(const Similarity& a, const Similarity& b, std::span<const Vec3> source, double limit) {
+  // Rough is enough: every so many points.
+  Points few;
+  for (const std::size_t i : spread_indices(source.size(), 50)) few.push_back(source[i]);
+  return rms_difference_mm(a, b, few) > limit;
+}
+
+PoseSearch search_poses(const SampledSurface& source, const SampledSurface& target, const PoseSearchSettings& settings,
+                        Workers& workers, Monitor& monitor) {
+  const std::vector<Similarity> starts = starts_of(source, target, settings);
+  PoseSearch search;
+  search.starts = static_cast<int>(starts.size());
+  const std::vector<WeightedPoints> source_levels = levels_of(source.cloud.points);
+  const std::vector<WeightedPoints> target_levels = levels_of(target.cloud.points);
+  const WeightedPoints& source_level = coarse_level(source_levels);
+  const WeightedPoints& target_level = coarse_level(target_levels);
+  DriftSettings drift;
+  drift.scale = settings.scale;
+  drift.outlier_weight = settings.outlier_weight;
+  if (!(drift.scale.low > 0.0) || drift.scale.high > 1e6) {
+    // Free scale: coarse clusters alone would let it collapse.
+    const double middle = starts.empty() ? 1.0 : starts.front().scale;
+    drift.scale = {std::max(0.5 * middle, drift.scale.low), std::min(2.0 * middle, drift.scale.high)};
+  }
+  const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), kScorePoints);
+  std::vector<Pose> poses(starts.size());
+  constexpr std::size_t kAtOnce = 32;
+  for (std::size_t first = 0; first < starts.size(); first += kAtOnce) {
+    throw_if_cancelled(monitor, "searching poses");
+    monitor.progress("searching poses", 0.6 * static_cast<double>(first) / static_cast<double>(starts.size()));
+    workers.for_each(std::min(kAtOnce, starts.size() - first), 1, [&](std::size_t k) {
+      Workers alone(1);
+      Pose& pose = poses[first + k];
+      pose.transform = coarse_drift(source_level, target_level, starts[first + k], drift, alone);
+      pose.score = overlap_score(source, asked, target, pose.transform, 3.0 * settings.score_width);
+    });
+  }
+  poses = distinct(std::move(poses), source.cloud.points, kRoughKept);
+  const std::vector<std::size_t> more = spread_indices(source.cloud.points.size(), kFinePoints);
+  IcpSettings icp_settings;
+  icp_settings.scale = settings.scale;
+  icp_settings.first_width = 2.0 * kLastSigma;
+  icp_settings.max_iterations = 40;
+  icp_settings.max_points = kFinePoints;
+  icp_settings.tolerance = 5e-4;
+  workers.for_each(poses.size(), 1, [&](std::size_t k) {
+    Workers alone(1);
+    const Icp refined = icp(source, target, poses[k].transform, icp_settings, alone);
+    if (!refined.is_degenerate) poses[k].transform = refined.transform;
+    poses[k].score = overlap_score(source, more, target, poses[k].transform, settings.score_width);
+  });
+  monitor.progress("searching poses", 1.0);
+  search.poses = distinct(std::move(poses), source.cloud.points, settings.keep);
+  return search;
+}
+
+}  // namespace incise

@@ -1,0 +1,374 @@
+#include "registration/certificate.hpp"
+#include "registration/icp.hpp"
+#include "registration/levels.hpp"
+#include "registration/pose_search.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/registration/register_clouds.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+constexpr std::size_t kFewestPoints = 12;
+constexpr std::size_t kCandidates = 3;  // poses that see all points
+constexpr std::size_t kScorePoints = 4000;
+constexpr std::size_t kRivalPoints = 1000;
+constexpr int kDriftSteps = 60;
+constexpr int kFinishSteps = 100;
+constexpr double kFinalSigma = 0.06;        // of the drift that starts from a pose of the search
+constexpr double kFinalWidth = 0.08;        // of the ICP after the drift
+constexpr double kDifferent = 0.08;         // rms distance, in radii, from which on a pose counts as another one
+constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
+constexpr double kUsualScale = 0.05;        // both sensors are metric
+
+/// Both clouds about the target's middle, in units of its radius, and the way back.
+struct Frame {
+  Vec3 source_center;
+  Vec3 target_center;
+  double length = 1.0;
+
+  [[nodiscard]] Similarity inwards(const Similarity& t) const {
+    return {t.scale, t.rotation, (t(source_center) - target_center) / length};
+  }
+  [[nodiscard]] Similarity outwards(const Similarity& t) const {
+    return {t.scale, t.rotation, length * t.translation_mm + target_center - t.scale * (t.rotation * source_center)};
+  }
+};
+
+void require_usable(const PointCloud& cloud, const char* name) {
+  INCISE_REQUIRE(!cloud.points.empty(), fmt::format("{}: expected at least 1 point, found none", name));
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    INCISE_REQUIRE(cloud.points[i].allFinite(), fmt::format("{}: point {} is not finite", name, i));
+  }
+  INCISE_REQUIRE(cloud.normals.empty() || cloud.normals.size() == cloud.points.size(),
+                 fmt::format("{}: expected no normals or one per point, found {} for {} points", name,
+                             cloud.normals.size(), cloud.points.size()));
+  for (std::size_t i = 0; i < cloud.normals.size(); ++i) {
+    INCISE_REQUIRE(std::abs(cloud.normals[i].norm() - 1.0) < 1e-3,
+                   fmt::format("{}: normal {} is not of length 1", name, i));
+  }
+}
+
+/// A cloud with too many points for the drift, as clusters of about the number asked for.
+Points thinned(const Points& points, std::size_t most) {
+  if (points.size() <= most) return points;
+  const PointCloud cloud{points, {}};
+  double voxel = spacing_mm(points) + 1e-9;
+  PointCloud few = downsample(cloud, voxel);
+  while (few.points.size() > most) few = downsample(cloud, voxel *= 1.15);
+  return few.points;
+}
+
+/// One pose carried through drift and ICP on all points.
+struct Candidate {
+  Similarity transform;
+  double score = 0.0;
+  bool has_converged = false;
+  bool is_degenerate = false;
+  int iterations = 0;
+  double sigma = 0.0;
+  double matched = 0.0;
+  double width = 0.0;
+};
+
+class Registering {
+ public:
+  Registering(const PointCloud& source, const PointCloud& target, const Frame& frame,
+              const RegistrationSettings& settings, Workers& workers, Monitor& monitor)
+      : frame_(frame),
+        settings_(settings),
+        workers_(workers),
+        monitor_(monitor),
+        source_({normalised(source.points, frame.source_center, frame.length), source.normals}, workers),
+        target_({normalised(target.points, frame.target_center, frame.length), target.normals}, workers),
+        asked_(spread_indices(source.points.size(), kScorePoints)) {
+    const double rough = std::hypot(roughness_mm(source_.cloud.points), roughness_mm(target_.cloud.points));
+    noise_ = rough;
+    score_width_ = std::max(0.7 * rough, kLeastScoreWidth);
+  }
+
+  void run(Registration& result) {
+    std::vector<Pose> poses;
+    if (settings_.start) {
+      poses.push_back({frame_.inwards(*settings_.start), 0.0});
+      result.starts = 1;
+    } else {
+      PoseSearchSettings search;
+      search.scale = settings_.scale;
+      search.outlier_weight = settings_.outlier_weight;
+      search.rotations = settings_.rotations;
+      search.score_width = 2.0 * score_width_;  // rough poses
+      PoseSearch found = search_poses(source_, target_, search, workers_, monitor_);
+      poses = std::move(found.poses);
+      result.starts = found.starts;
+    }
+    std::vector<Candidate> candidates;
+    for (std::size_t k = 0; k < std::min(poses.size(), kCandidates); ++k) {
+      throw_if_cancelled(monitor_, "registering");
+      monitor_.progress("registering", static_cast<double>(k) / static_cast<double>(kCandidates));
+      candidates.push_back(carried_through(poses[k].transform));
+    }
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+    monitor_.progress("registering", 1.0);
+    conclude(result, candidates, poses);
+  }
+
+ private:
+  [[nodiscard]] double score_of(const Similarity& t) const {
+    return overlap_score(source_, asked_, target_, t, score_width_);
+  }
+
+  Candidate carried_through(const Similarity& start) {
+    Candidate drifted = by_drift(start);
+    if (!settings_.finish_with_icp) return drifted;
+    // The drift pulls parts without a counterpart towards the rest; where that leads astray, the search's pose is the
+    // better start.
+    Candidate finished = by_icp(drifted.is_degenerate ? start : drifted.transform);
+    if (!settings_.start) {
+      Candidate direct = by_icp(start);
+      if (direct.score > finished.score) finished = direct;
+    }
+    finished.iterations += drifted.iterations;
+    finished.sigma = drifted.sigma;
+    finished.matched = drifted.matched;
+    return finished;
+  }
+
+  Candidate by_drift(const Similarity& start) {
+    DriftSettings drift;
+    drift.scale = settings_.scale;
+    drift.outlier_weight = settings_.outlier_weight;
+    drift.max_iterations = settings_.max_iterations;
+    if (!settings_.start) drift.first_sigma = kFinalSigma;
+    // Where the finish has the last word the drift need not be followed to its end.
+    if (settings_.finish_with_icp) drift.max_iterations = std::min(drift.max_iterations, kDriftSteps);
+    const Drift done =
+        rigid_drift(thinned(source_.cloud.points, settings_.drift_points),
+                    thinned(target_.cloud.points, settings_.drift_points), start, drift, workers_, monitor_);
+    if (done.outcome == DriftOutcome::Cancelled) throw_if_cancelled(monitor_, "registering");
+    Candidate candidate;
+    candidate.transform = done.T_target_source;
+    candidate.has_converged = done.outcome == DriftOutcome::Converged;
+    candidate.is_degenerate = done.outcome == DriftOutcome::Degenerate;
+    candidate.iterations = done.iterations;
+    candidate.sigma = done.sigma_mm;
+    candidate.matched = done.matched_share;
+    candidate.score = score_of(done.T_target_source);
+    candidate.width = std::max(2.5 * noise_, kLeastScoreWidth);
+    return candidate;
+  }
+
+  Candidate by_icp(const Similarity& start) {
+    IcpSettings settings;
+    settings.scale = settings_.scale;
+    settings.first_width = kFinalWidth;
+    settings.max_iterations = std::min(settings_.max_iterations, kFinishSteps);
+    const Icp done = icp(source_, target_, start, settings, workers_);
+    return {done.transform, score_of(done.transform), done.has_converged, done.is_degenerate, done.iterations, 0.0, 0.0,
+            done.width};
+  }
+
+  void conclude(Registration& result, const std::vector<Candidate>& candidates, const std::vector<Pose>& poses) {
+    if (candidates.empty() || candidates.front().is_degenerate) {
+      result.outcome = RegistrationOutcome::Degenerate;
+      result.reasons.emplace_back("too few points of the source find a counterpart on the target");
+      return;
+    }
+    const Candidate& best = candidates.front();
+    result.T_target_source = frame_.outwards(best.transform);
+    result.iterations = best.iterations;
+    result.score = best.score;
+    result.drift_sigma_mm = best.sigma * frame_.length;
+    result.target_fraction = best.matched;
+    result.noise_mm = noise_ * frame_.length;
+    measure_residuals(result, best);
+    find_rival(result, best, candidates, poses);
+    result.certificate =
+        certificate_of(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
+    judge(result, best);
+    to_millimetres(result.certificate);
+  }
+
+  void measure_residuals(Registration& result, const Candidate& best) {
+    const std::vector<std::size_t> all = spread_indices(source_.cloud.points.size(), source_.cloud.points.size());
+    const std::vector<SurfacePair> pairs = pairs_of(source_, all, target_, best.transform, workers_);
+    // What is farther off than a tenth of the radius lies beside the target's surface, not on it.
+    constexpr double kBeside = 0.1;
+    double squares = 0.0;
+    std::size_t inliers = 0;
+    for (const SurfacePair& pair : pairs) {
+      const double d = std::abs(pair.distance);
+      inliers += d < 1.2 * best.width ? 1 : 0;
+      if (d > kBeside) continue;
+      result.residuals_mm.push_back(frame_.length * pair.distance);
+      squares += d * d;
+    }
+    const auto above = static_cast<double>(result.residuals_mm.size());
+    result.rmse_mm = above > 0.0 ? frame_.length * std::sqrt(squares / above) : 0.0;
+    result.inlier_fraction = static_cast<double>(inliers) / static_cast<double>(all.size());
+  }
+
+  void find_rival(Registration& result, const Candidate& best, const std::vector<Candidate>& candidates,
+                  const std::vector<Pose>& poses) {
+    const auto consider = [&](const Similarity& t, double score) {
+      if (score <= result.rival_score || !differ(t, best.transform, source_.cloud.points, kDifferent)) return;
+      result.rival_score = score;
+      result.rival = frame_.outwards(t);
+    };
+    for (const Candidate& candidate : candidates) consider(candidate.transform, candidate.score);
+    // The search leaves its poses where they were good enough to be ranked: some of them slide on into the best one.
+    for (const Pose& pose : poses) {
+      IcpSettings settings;
+      settings.scale = settings_.scale;
+      settings.first_width = kFinalWidth;
+      settings.max_points = kRivalPoints;
+      settings.tolerance = 1e-3;
+      const Icp done = icp(source_, target_, pose.transform, settings, workers_);
+      if (!done.is_degenerate) consider(done.transform, score_of(done.transform));
+    }
+  }
+
+  /// The outcome, the gravest reason first.
+  void judge(Registration& result, const Candidate& best) const {
+    const Certificate& c = result.certificate;
+    result.outcome = RegistrationOutcome::Converged;
+    const auto fail = [&result](bool has_failed, RegistrationOutcome outcome, std::string reason) {
+      if (!has_failed) return;
+      if (result.outcome == RegistrationOutcome::Converged) result.outcome = outcome;
+      result.reasons.push_back(std::move(reason));
+    };
+    fail(!best.has_converged, RegistrationOutcome::IterationLimit,
+         fmt::format("still moving after {} iterations", best.iterations));
+    fail(result.inlier_fraction < settings_.least_inliers, RegistrationOutcome::PoorFit,
+         fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %",
+                     100.0 * result.inlier_fraction, 100.0 * settings_.least_inliers));
+    fail(result.rmse_mm > settings_.largest_rmse * frame_.length, RegistrationOutcome::PoorFit,
+         fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm,
+                     settings_.largest_rmse * frame_.length));
+    fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < settings_.largest_sd),
+         RegistrationOutcome::IllDetermined,
+         fmt::format("{} hardly changes the residual: its standard deviation is {:.3g} mm, and {:.2g} % of it shows",
+                     c.weakest.empty() ? "a motion" : c.weakest, c.weakest_sd_mm * frame_.length,
+                     100.0 * c.sharpness[0]));
+    fail(result.rival_score > settings_.largest_rival * result.score, RegistrationOutcome::Ambiguous,
+         fmt::format("another pose fits about as well: {:.0f} % of the score",
+                     100.0 * result.rival_score / result.score));
+    const double scale = result.T_target_source.scale;
+    const double tiny = 1e-9 * scale;
+    result.scale_at_limit =
+        !settings_.scale.is_fixed() && (scale <= settings_.scale.low + tiny || scale >= settings_.scale.high - tiny);
+    result.is_scale_suspicious = std::abs(scale - 1.0) > kUsualScale;
+    if (result.scale_at_limit)
+      result.reasons.push_back(fmt::format("the scale stands at the end of its range, {:.4g}", scale));
+    if (result.is_scale_suspicious) {
+      result.reasons.push_back(fmt::format(
+          "the scale of {:.4g} is outside 0.95 to 1.05: if both clouds are metric, something is wrong", scale));
+    }
+  }
+
+  void to_millimetres(Certificate& c) const {
+    const double length = frame_.length;
+    c.sd_mm *= length;
+    c.weakest_sd_mm *= length;
+    c.translation_sd_mm *= length;
+    c.center_mm = length * c.center_mm + frame_.target_center;
+    Eigen::Matrix<double, 7, 1> units = Eigen::Matrix<double, 7, 1>::Ones();
+    units.segment<3>(3).setConstant(length);
+    c.covariance = units.asDiagonal() * c.covariance * units.asDiagonal();
+  }
+
+  const Frame frame_;
+  const RegistrationSettings& settings_;
+  Workers& workers_;
+  Monitor& monitor_;
+  SampledSurface source_;
+  SampledSurface target_;
+  std::vector<std::size_t> asked_;
+  double noise_ = 0.0;
+  double score_width_ = 0.0;
+};
+
+}  // namespace
+
+std::vector<std::string> validate(const RegistrationSettings& s) {
+  std::vector<std::string> problems;
+  DriftSettings drift;
+  drift.scale = s.scale;
+  drift.outlier_weight = s.outlier_weight;
+  drift.max_iterations = s.max_iterations;
+  problems = validate(drift);
+  const auto check = [&problems](bool is_good, std::string text) {
+    if (!is_good) problems.push_back(std::move(text));
+  };
+  check(s.rotations >= 8 && s.rotations <= 2000, fmt::format("rotations: expected 8 to 2000, found {}", s.rotations));
+  check(s.drift_points >= 100, fmt::format("drift_points: expected at least 100, found {}", s.drift_points));
+  check(s.largest_rmse > 0.0, fmt::format("largest_rmse: expected a share above 0, found {}", s.largest_rmse));
+  check(s.least_inliers >= 0.0 && s.least_inliers <= 1.0,
+        fmt::format("least_inliers: expected a share in [0, 1], found {}", s.least_inliers));
+  check(s.largest_sd > 0.0, fmt::format("largest_sd: expected a share above 0, found {}", s.largest_sd));
+  check(s.least_sharpness >= 0.0, fmt::format("least_sharpness: expected 0 or more, found {}", s.least_sharpness));
+  check(s.largest_rival > 0.0 && s.largest_rival <= 1.0,
+        fmt::format("largest_rival: expected a share in (0, 1], found {}", s.largest_rival));
+  check(!s.start || s.start->scale > 0.0, "start: expected a scale above 0");
+  return problems;
+}
+
+std::string_view to_string(RegistrationOutcome outcome) {
+  switch (outcome) {
+    case RegistrationOutcome::Converged:
+      return "converged";
+    case RegistrationOutcome::IterationLimit:
+      return "iteration_limit";
+    case RegistrationOutcome::IllDetermined:
+      return "ill_determined";
+    case RegistrationOutcome::Ambiguous:
+      return "ambiguous";
+    case RegistrationOutcome::PoorFit:
+      return "poor_fit";
+    case RegistrationOutcome::Degenerate:
+      return "degenerate";
+    case RegistrationOutcome::Cancelled:
+      return "cancelled";
+  }
+  return "unknown";
+}
+
+Registration register_clouds(const PointCloud& source, const PointCloud& target, const RegistrationSettings& settings,
+                             Workers& workers, Monitor& monitor) {
+  require_usable(source, "source");
+  require_usable(target, "target");
+  const std::vector<std::string> problems = validate(settings);
+  INCISE_REQUIRE(problems.empty(), problems.front());
+  Registration result;
+  const Measure source_measure = measure_of(source.points);
+  const Measure target_measure = measure_of(target.points);
+  for (const auto& [name, cloud, measure] :
+       {std::tuple("source", &source, &source_measure), std::tuple("target", &target, &target_measure)}) {
+    if (cloud->points.size() < kFewestPoints) {
+      result.reasons.push_back(
+          fmt::format("the {} has {} points, expected at least {}", name, cloud->points.size(), kFewestPoints));
+    } else if (is_line(measure->variances)) {
+      result.reasons.push_back(
+          fmt::format("the {}'s points lie on a line or in one place: no rotation follows from them", name));
+    }
+  }
+  if (!result.reasons.empty()) return result;
+  const Frame frame{source_measure.center, target_measure.center, target_measure.radius};
+  try {
+    Registering(source, target, frame, settings, workers, monitor).run(result);
+  } catch (const Cancelled& stop) {
+    result = {};
+    result.outcome = RegistrationOutcome::Cancelled;
+    result.reasons.emplace_back(stop.what());
+  }
+  return result;
+}
+
+}  // namespace incise

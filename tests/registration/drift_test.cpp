@@ -1,0 +1,196 @@
+#include "registration/clouds.hpp"
+#include "support/data_dir.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/registration/drift.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+namespace incise {
+namespace {
+
+using testing::read_rows;
+Monitor silent;
+// Two random samples of one surface 1.3 mm apart: the drift holds point to point, not surface to surface.
+constexpr double kPullOfSinglePoints = 0.8;
+
+Points scaled(Points points, double factor) {
+  for (Vec3& p : points) p *= factor;
+  return points;
+}
+
+class Fixtures : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    INCISE_NEEDS_DATA_DIR();
+    gadomski_ = *testing::data_dir() / "registration" / "gadomski_cpd";
+    pycpd_ = *testing::data_dir() / "registration" / "pycpd";
+  }
+  std::filesystem::path gadomski_;
+  std::filesystem::path pycpd_;
+  Workers workers_{1};
+};
+
+// Known answers: README.md of the shared data, section 3.
+TEST_F(Fixtures, OneStepOnTheFishGivesThePublishedVariance) {
+  const Points fish = read_rows(gadomski_ / "fish.csv");
+  const Points distorted = read_rows(gadomski_ / "fish_distorted.csv");
+  DriftSettings settings;
+  settings.dimensions = 2;
+  settings.outlier_weight = 0.1;
+  settings.scale = ScaleRange::fixed();
+  EXPECT_NEAR(drift_step(distorted, fish, 1.0, settings, workers_).variance_mm2, 0.52384, 5e-5);
+  settings.scale = ScaleRange::free();
+  EXPECT_NEAR(drift_step(distorted, fish, 1.0, settings, workers_).variance_mm2, 0.4072, 5e-4);
+}
+
+TEST_F(Fixtures, AFishTurnedBy20DegreesComesBack) {
+  const Points fish = scaled(read_rows(gadomski_ / "fish.csv"), 10.0);
+  const Mat3 turn = rotation_of({0.0, 0.0, units::rad_from_deg(20.0)});
+  DriftSettings settings;
+  settings.dimensions = 2;
+  const Drift drift = rigid_drift(moved({1.0, turn}, fish), fish, {}, settings, workers_, silent);
+  EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
+  EXPECT_LT((drift.T_target_source.rotation - turn.transpose()).norm(), 1e-4);
+}
+
+TEST_F(Fixtures, AFishTenTimesTheSizeHasScaleTen) {
+  const Points fish = read_rows(gadomski_ / "fish.csv");
+  DriftSettings settings;
+  settings.dimensions = 2;
+  const Drift drift = rigid_drift(fish, scaled(fish, 10.0), {}, settings, workers_, silent);
+  EXPECT_NEAR(drift.T_target_source.scale, 10.0, 1e-3);
+}
+
+TEST_F(Fixtures, TheBunnyIsShiftedByOneOnEveryAxis) {
+  const Drift drift = rigid_drift(read_rows(pycpd_ / "bunny_source.txt"), read_rows(pycpd_ / "bunny_target.txt"), {},
+                                  {}, workers_, silent);
+  EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
+  EXPECT_NEAR(drift.T_target_source.scale, 1.0, 1e-6);
+  EXPECT_LT((drift.T_target_source.rotation - Mat3::Identity()).norm(), 1e-6);
+  EXPECT_LT((drift.T_target_source.translation_mm - Vec3(-1.0, -1.0, -1.0)).norm(), 1e-6);
+}
+
+TEST_F(Fixtures, AnAffineFishIsRecovered) {
+  const Points fish = read_rows(gadomski_ / "fish.csv");
+  Mat3 linear = Mat3::Identity();
+  linear.topLeftCorner<2, 2>() << 1.2688, 1.1294, 0.9169, 1.4311;  // the published matrix acts on rows
+  Points image;
+  for (const Vec3& p : fish) image.emplace_back(linear * p + Vec3(1.0, 2.0, 0.0));
+  DriftSettings settings;
+  settings.dimensions = 2;
+  settings.max_iterations = 2000;
+  const AffineDrift drift = affine_drift(fish, image, settings, workers_, silent);
+  EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
+  EXPECT_LT((drift.linear - linear).norm(), 1e-4);
+  EXPECT_LT((drift.translation_mm - Vec3(1.0, 2.0, 0.0)).norm(), 1e-4);
+}
+
+TEST_F(Fixtures, AnAffineFaceIsRecovered) {
+  const Points face = read_rows(gadomski_ / "face.csv");
+  Mat3 rows;
+  rows << 0.8240, -0.6682, 0.0845, 0.3796, 0.4136, -0.8015, 0.7927, 0.8303, 0.5005;
+  const Mat3 linear = rows.transpose();
+  Points image;
+  for (const Vec3& p : face) image.emplace_back(linear * p + Vec3(1.0, 2.0, 3.0));
+  DriftSettings settings;
+  settings.max_iterations = 2000;
+  const AffineDrift drift = affine_drift(face, image, settings, workers_, silent);
+  EXPECT_LT((drift.linear - linear).norm(), 1e-4);
+  EXPECT_LT((drift.translation_mm - Vec3(1.0, 2.0, 3.0)).norm(), 1e-4);
+}
+
+class HillDrift : public ::testing::Test {
+ protected:
+  Random random_{3};
+  Workers workers_{2};
+  Points source_ = testing::hill(1500, random_).points;
+  Similarity truth_{1.05, rotation_of({0.2, -0.1, 0.3}), {10.0, -4.0, 6.0}};
+  Points target_ = moved(truth_, testing::hill(1500, random_, 0.2).points);
+};
+
+TEST_F(HillDrift, ClustersTruncationAndAccelerationLeaveTheFixedPointAlone) {
+  DriftSettings plain;
+  plain.coarse_to_fine = false;
+  plain.max_iterations = 3000;
+  plain.tolerance = 1e-5;
+  const Drift all = rigid_drift(source_, target_, {}, plain, workers_, silent);
+  const Drift fast = rigid_drift(source_, target_, {}, {}, workers_, silent);
+  ASSERT_EQ(all.outcome, DriftOutcome::Converged);
+  ASSERT_EQ(fast.outcome, DriftOutcome::Converged);
+  EXPECT_LT(rms_difference_mm(all.T_target_source, fast.T_target_source, source_), 0.01);
+  EXPECT_LT(angle_between_deg(all.T_target_source.rotation, fast.T_target_source.rotation), 0.02);
+  EXPECT_LT(rms_difference_mm(fast.T_target_source, truth_, source_), kPullOfSinglePoints);
+}
+
+TEST_F(HillDrift, NeitherUnitsNorOriginMatter) {
+  const Drift drift = rigid_drift(source_, target_, {}, {}, workers_, silent);
+  const Similarity to_metres{0.001, Mat3::Identity(), {500.0, -200.0, 1e3}};
+  const Drift other = rigid_drift(moved(to_metres, source_), moved(to_metres, target_),
+                                  {1.0, Mat3::Identity(), Vec3::Zero()}, {}, workers_, silent);
+  EXPECT_EQ(other.outcome, DriftOutcome::Converged);
+  // 1 m of offset in 1e-5 m of noise leaves eleven digits.
+  const Similarity back = inverse(to_metres) * other.T_target_source * to_metres;
+  EXPECT_LT(rms_difference_mm(back, drift.T_target_source, source_), 0.02);
+}
+
+TEST_F(HillDrift, AnyNumberOfThreadsGivesTheSameBits) {
+  Workers one(1);
+  const Drift a = rigid_drift(source_, target_, {}, {}, one, silent);
+  const Drift b = rigid_drift(source_, target_, {}, {}, workers_, silent);
+  EXPECT_EQ(matrix_of(a.T_target_source), matrix_of(b.T_target_source));
+  EXPECT_EQ(a.iterations, b.iterations);
+}
+
+TEST_F(HillDrift, ABoundedScaleStaysInItsRange) {
+  DriftSettings settings;
+  settings.scale = {0.98, 1.02};
+  EXPECT_DOUBLE_EQ(rigid_drift(source_, target_, {}, settings, workers_, silent).T_target_source.scale, 1.02);
+  settings.scale = ScaleRange::fixed(1.05);
+  const Drift fixed = rigid_drift(source_, target_, {1.05}, settings, workers_, silent);
+  EXPECT_DOUBLE_EQ(fixed.T_target_source.scale, 1.05);
+  EXPECT_LT(rms_difference_mm(fixed.T_target_source, truth_, source_), kPullOfSinglePoints);
+}
+
+TEST_F(HillDrift, RunningOutOfStepsIsTold) {
+  DriftSettings settings;
+  settings.max_iterations = 3;
+  const Drift drift = rigid_drift(source_, target_, {}, settings, workers_, silent);
+  EXPECT_EQ(drift.outcome, DriftOutcome::IterationLimit);
+  EXPECT_EQ(drift.iterations, 3);
+}
+
+TEST_F(HillDrift, AMirrorImageIsAnsweredByARotation) {
+  Points mirrored = source_;
+  for (Vec3& p : mirrored) p.x() = -p.x();
+  const Drift drift = rigid_drift(source_, mirrored, {}, {}, workers_, silent);
+  EXPECT_NEAR(drift.T_target_source.rotation.determinant(), 1.0, 1e-9);
+  EXPECT_GT(drift.sigma_mm, 0.5);
+}
+
+TEST(RigidDrift, PointsOnALineAreDegenerate) {
+  Points line;
+  for (int i = 0; i < 50; ++i) line.emplace_back(i, 2.0 * i, -i);
+  Workers workers(1);
+  EXPECT_EQ(rigid_drift(line, line, {}, {}, workers, silent).outcome, DriftOutcome::Degenerate);
+  EXPECT_EQ(rigid_drift(Points{Vec3::Ones()}, Points{Vec3::Ones()}, {}, {}, workers, silent).outcome,
+            DriftOutcome::Degenerate);
+}
+
+TEST(RigidDrift, RefusesEmptyCloudsAndNumbersThatAreNone) {
+  Workers workers(1);
+  const Points good{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()};
+  EXPECT_THROW(static_cast<void>(rigid_drift({}, good, {}, {}, workers, silent)), InvalidArgument);
+  const Points bad{Vec3::Zero(), Vec3(0.0, std::nan(""), 0.0), Vec3::UnitY()};
+  EXPECT_THROW(static_cast<void>(rigid_drift(good, bad, {}, {}, workers, silent)), InvalidArgument);
+  DriftSettings settings;
+  settings.outlier_weight = 1.0;
+  EXPECT_THROW(static_cast<void>(rigid_drift(good, good, {}, settings, workers, silent)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,187 @@
+#include "registration/clouds.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/registration/register_clouds.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+namespace incise {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using testing::hill;
+using testing::moved_cloud;
+
+Monitor silent;
+
+class RegisterClouds : public ::testing::Test {
+ protected:
+  Registration run(const PointCloud& source, const PointCloud& target, RegistrationSettings settings = {}) {
+    return register_clouds(source, target, settings, workers_, silent);
+  }
+  Random random_{11};
+  Workers workers_{2};
+  Similarity upside_down_{0.97, rotation_of(units::kPi* Vec3(0.6, 0.0, 0.8)), {150.0, -80.0, 400.0}};
+};
+
+TEST_F(RegisterClouds, FindsAHalfTurnWithPartOfTheTargetMissingAndOutliers) {
+  const PointCloud source = hill(2000, random_);
+  PointCloud target = hill(2500, random_, 0.2);
+  target = crop(target, Box3(Vec3(-12.0, -30.0, -50.0), Vec3(40.0, 30.0, 50.0)));
+  for (int i = 0; i < 300; ++i) {
+    target.points.emplace_back(random_.uniform(-15.0, 35.0), random_.uniform(-22.0, 22.0), random_.uniform(-5.0, 25.0));
+    target.normals.emplace_back(Vec3::UnitZ());
+  }
+  const Registration found = run(source, moved_cloud(upside_down_, target));
+  EXPECT_EQ(found.outcome, RegistrationOutcome::Converged) << (found.reasons.empty() ? "" : found.reasons.front());
+  EXPECT_LT(rms_difference_mm(found.T_target_source, upside_down_, source.points), 0.4);
+  EXPECT_LT(angle_between_deg(found.T_target_source.rotation, upside_down_.rotation), 0.5);
+  EXPECT_GT(found.inlier_fraction, 0.5);
+  EXPECT_GT(found.certificate.sharpness[0], RegistrationSettings{}.least_sharpness);
+}
+
+TEST_F(RegisterClouds, NeedsNoNormals) {
+  PointCloud source = hill(2000, random_);
+  PointCloud target = moved_cloud(upside_down_, hill(2000, random_, 0.1));
+  source.normals.clear();
+  target.normals.clear();
+  const Registration found = run(source, target);
+  EXPECT_EQ(found.outcome, RegistrationOutcome::Converged) << (found.reasons.empty() ? "" : found.reasons.front());
+  EXPECT_LT(rms_difference_mm(found.T_target_source, upside_down_, source.points), 0.4);
+}
+
+TEST_F(RegisterClouds, NeitherUnitsNorOriginMatter) {
+  const PointCloud source = hill(1000, random_);
+  const PointCloud target = moved_cloud(upside_down_, hill(1000, random_, 0.1));
+  const Similarity to_metres{0.001, Mat3::Identity(), {0.3, -2.0, 1.0}};
+  const Registration in_mm = run(source, target);
+  const Registration in_m = run(moved_cloud(to_metres, source), moved_cloud(to_metres, target));
+  EXPECT_EQ(in_mm.outcome, in_m.outcome);
+  const Similarity back = inverse(to_metres) * in_m.T_target_source * to_metres;
+  EXPECT_LT(rms_difference_mm(back, in_mm.T_target_source, source.points), 0.02);
+  EXPECT_NEAR(in_m.rmse_mm * 1000.0, in_mm.rmse_mm, 0.01);
+}
+
+TEST_F(RegisterClouds, AnyNumberOfThreadsGivesTheSameBits) {
+  const PointCloud source = hill(800, random_);
+  const PointCloud target = moved_cloud(upside_down_, hill(800, random_, 0.1));
+  Workers one(1);
+  const Registration a = register_clouds(source, target, {}, one, silent);
+  const Registration b = run(source, target);
+  EXPECT_EQ(matrix_of(a.T_target_source), matrix_of(b.T_target_source));
+  EXPECT_EQ(a.rmse_mm, b.rmse_mm);
+  EXPECT_EQ(a.certificate.sd_mm, b.certificate.sd_mm);
+}
+
+TEST_F(RegisterClouds, TheOrderOfPointsDoesNotMatter) {
+  const PointCloud source = hill(1000, random_);
+  const PointCloud target = moved_cloud(upside_down_, hill(1000, random_, 0.1));
+  std::vector<std::size_t> backwards(target.points.size());
+  for (std::size_t i = 0; i < backwards.size(); ++i) backwards[i] = backwards.size() - 1 - i;
+  const Registration a = run(source, target);
+  const Registration b = run(source, subset(target, backwards));
+  EXPECT_LT(rms_difference_mm(a.T_target_source, b.T_target_source, source.points), 0.02);
+}
+
+TEST_F(RegisterClouds, IdenticalCloudsGiveTheIdentity) {
+  const PointCloud source = hill(1500, random_);
+  const Registration found = run(source, source);
+  EXPECT_EQ(found.outcome, RegistrationOutcome::Converged) << (found.reasons.empty() ? "" : found.reasons.front());
+  EXPECT_LT(rms_difference_mm(found.T_target_source, {}, source.points), 0.01);
+  EXPECT_NEAR(found.T_target_source.scale, 1.0, 1e-3);
+}
+
+TEST_F(RegisterClouds, APlaneIsIllDetermined) {
+  for (const double noise : {0.0, 0.2}) {
+    PointCloud source;
+    PointCloud target;
+    for (PointCloud* cloud : {&source, &target}) {
+      for (int i = 0; i < 1500; ++i) {
+        cloud->points.emplace_back(random_.uniform(-30.0, 30.0), random_.uniform(-20.0, 20.0),
+                                   noise * random_.normal());
+        cloud->normals.emplace_back(Vec3::UnitZ());
+      }
+    }
+    const Registration found = run(source, moved_cloud(upside_down_, target));
+    EXPECT_NE(found.outcome, RegistrationOutcome::Converged) << "noise " << noise;
+    EXPECT_THAT(found.reasons, Contains(HasSubstr("hardly changes the residual"))) << "noise " << noise;
+  }
+}
+
+TEST_F(RegisterClouds, ASphericalCapIsIllDetermined) {
+  PointCloud source;
+  PointCloud target;
+  for (PointCloud* cloud : {&source, &target}) {
+    while (cloud->points.size() < 1500) {
+      const Vec3 n = Vec3(random_.normal(), random_.normal(), random_.normal()).normalized();
+      if (n.z() < 0.4) continue;
+      cloud->points.emplace_back(30.0 * n + 0.1 * random_.normal() * n);
+      cloud->normals.push_back(n);
+    }
+  }
+  const Registration found = run(source, moved_cloud(upside_down_, target));
+  EXPECT_NE(found.outcome, RegistrationOutcome::Converged);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("hardly changes the residual")));
+}
+
+TEST_F(RegisterClouds, AMirrorImageIsNeverAReflectionAndIsFlagged) {
+  const PointCloud source = hill(2000, random_);
+  PointCloud target = hill(2000, random_, 0.1);
+  for (std::size_t i = 0; i < target.points.size(); ++i) {
+    target.points[i].x() = -target.points[i].x();
+    target.normals[i].x() = -target.normals[i].x();
+  }
+  const Registration found = run(source, target);
+  EXPECT_NEAR(found.T_target_source.rotation.determinant(), 1.0, 1e-9);
+  EXPECT_NE(found.outcome, RegistrationOutcome::Converged);
+  EXPECT_FALSE(found.reasons.empty());
+}
+
+TEST_F(RegisterClouds, TellsWhenTheScaleIsUnlikely) {
+  const PointCloud source = hill(1500, random_);
+  const Similarity truth{1.08, rotation_of({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}};
+  const Registration found = run(source, moved_cloud(truth, hill(1500, random_, 0.1)));
+  EXPECT_NEAR(found.T_target_source.scale, 1.08, 0.005);
+  EXPECT_TRUE(found.is_scale_suspicious);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("outside 0.95 to 1.05")));
+  RegistrationSettings narrow;
+  narrow.scale = {0.97, 1.03};
+  EXPECT_TRUE(run(source, moved_cloud(truth, hill(1500, random_, 0.1)), narrow).scale_at_limit);
+}
+
+TEST_F(RegisterClouds, FewPointsAndLinesAreDegenerate) {
+  const PointCloud good = hill(500, random_);
+  const Registration single = run(good, {{Vec3::Ones()}, {}});
+  EXPECT_EQ(single.outcome, RegistrationOutcome::Degenerate);
+  EXPECT_THAT(single.reasons, Contains(HasSubstr("has 1 points")));
+  PointCloud line;
+  for (int i = 0; i < 100; ++i) line.points.emplace_back(i, i, i);
+  EXPECT_EQ(run(line, good).outcome, RegistrationOutcome::Degenerate);
+}
+
+TEST_F(RegisterClouds, RefusesEmptyCloudsAndNumbersThatAreNone) {
+  const PointCloud good = hill(100, random_);
+  EXPECT_THROW(static_cast<void>(run({}, good)), InvalidArgument);
+  PointCloud bad = good;
+  bad.points[7].y() = std::nan("");
+  EXPECT_THROW(static_cast<void>(run(bad, good)), InvalidArgument);
+  RegistrationSettings settings;
+  settings.rotations = 1;
+  EXPECT_THROW(static_cast<void>(run(good, good, settings)), InvalidArgument);
+}
+
+TEST_F(RegisterClouds, StopsWhenAsked) {
+  struct Impatient : Monitor {
+    [[nodiscard]] bool is_cancelled() const override { return true; }
+  } impatient;
+  const PointCloud good = hill(200, random_);
+  EXPECT_EQ(register_clouds(good, good, {}, workers_, impatient).outcome, RegistrationOutcome::Cancelled);
+}
+
+}  // namespace
+}  // namespace incise
