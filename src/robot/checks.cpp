@@ -67,7 +67,8 @@ class Checker {
 
   void closed() {
     const double gap = (program_.poses[cut_.back()].tip_mm - program_.poses[cut_.front()].tip_mm).norm();
-    add("closed", path_.is_closed && program_.is_closed && gap <= kClosedToMm, gap, kClosedToMm, "<=", "mm", cut_.back(),
+    add("closed", path_.is_closed && program_.is_closed && gap <= kClosedToMm, gap, kClosedToMm, "<=", "mm",
+        cut_.back(),
         path_.is_closed ? "gap between the end and the beginning of the ring"
                         : "the path is open, and has to be a ring");
   }

@@ -31,8 +31,6 @@ bool is_identifier(const std::string& name) {
 void require_valid(const UrScriptSettings& s) {
   INCISE_REQUIRE(is_identifier(s.function_name),
                  fmt::format("expected a function name of letters, digits and _, found '{}'", s.function_name));
-  INCISE_REQUIRE(std::isfinite(s.acceleration_mm_s2) && s.acceleration_mm_s2 > 0.0,
-                 fmt::format("expected an acceleration above 0, found {}", s.acceleration_mm_s2));
   INCISE_REQUIRE(s.blend_fraction >= 0.0 && s.blend_fraction < 0.5,
                  fmt::format("expected a blend fraction in [0, 0.5), found {}", s.blend_fraction));
   if (s.T_flange_tool) {
@@ -62,8 +60,8 @@ std::string heading(const RobotProgram& program, const UrScriptSettings& setting
     std::istringstream lines(item);
     for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
   }
-  text += fmt::format("# {} poses, {:.2f} s without acceleration ramps, {:.2f} mm of cut, {:.2f} mm of overlap\n",
-                      program.poses.size(), program.duration_s(), program.cut_length_mm, program.overlap_mm);
+  text += fmt::format("# {} poses, {:.2f} s, {:.2f} mm of cut, {:.2f} mm of overlap\n", program.poses.size(),
+                      program.duration_s(), program.cut_length_mm, program.overlap_mm);
   return text;
 }
 
@@ -97,7 +95,7 @@ std::string to_urscript(const RobotProgram& program, const UrScriptSettings& set
   require_valid(settings);
   std::string text = heading(program, settings);
   text += fmt::format("def {}():\n", settings.function_name) + tcp_line(settings);
-  const double a = units::m_from_mm(settings.acceleration_mm_s2);
+  const double a = units::m_from_mm(program.settings.acceleration_mm_s2);
   for (std::size_t i = 0; i < program.poses.size(); ++i) {
     const ProgramPose& pose = program.poses[i];
     if (i == 0 || pose.phase != program.poses[i - 1].phase) text += fmt::format("  # {}\n", to_string(pose.phase));
@@ -142,12 +140,8 @@ std::string to_json(const RobotProgram& program, const ProgramChecks* checks) {
   if (checks != nullptr) {
     document["checks"] = ordered_json::array();
     for (const ProgramCheck& check : checks->checks) {
-      ordered_json item{{"name", check.name},
-                        {"passed", check.passed},
-                        {"value", check.value},
-                        {"limit", check.limit},
-                        {"relation", check.relation},
-                        {"unit", check.unit}};
+      ordered_json item{{"name", check.name},   {"passed", check.passed},     {"value", check.value},
+                        {"limit", check.limit}, {"relation", check.relation}, {"unit", check.unit}};
       item["pose"] = check.pose ? ordered_json(*check.pose) : ordered_json(nullptr);
       item["text"] = check.text;
       document["checks"].push_back(std::move(item));

@@ -34,7 +34,7 @@ TEST(ToUrScript, WritesMetresAndOneMovePerPose) {
   EXPECT_EQ(movel.size() + movep.size(), program.poses.size());
   EXPECT_THAT(
       movel[0],
-      HasSubstr("movel(p[0.61500000, 0.00000000, 0.13000000, 3.141593, 0.000000, 0.000000], a=0.2500, v=0.050000)"));
+      HasSubstr("movel(p[0.61500000, 0.00000000, 0.13000000, 3.141593, 0.000000, 0.000000], a=0.1000, v=0.050000)"));
   for (const auto& line : movep) EXPECT_THAT(line, HasSubstr("v=0.007000"));
 }
 

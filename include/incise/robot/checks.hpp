@@ -21,7 +21,8 @@ struct CheckSettings {
   double tool_length_mm = 150.0;  ///< from the flange to the tip, along the axis
 };
 
-/// One named check: passed when `value` keeps to `limit` as `relation` says, or, without a relation, when `text` is true.
+/// One named check: passed when `value` keeps to `limit` as `relation` says, or, without a relation, when `text` is
+/// true.
 struct ProgramCheck {
   std::string name;
   bool passed = false;

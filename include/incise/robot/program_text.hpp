@@ -12,7 +12,6 @@ namespace incise {
 /// How a program is written as URScript.
 struct UrScriptSettings {
   std::string function_name = "incise_cut";  ///< letters, digits and _, not starting with a digit
-  double acceleration_mm_s2 = 250.0;         ///< of all moves
   double blend_fraction = 0.4;  ///< blend radius of the cut's poses, as a fraction of their spacing; in [0, 0.5)
   std::vector<std::string> provenance{};  ///< lines for the heading: what it was made from, hashes, version
   std::optional<Mat4>
