@@ -1,4 +1,4 @@
-#include "robot/course.hpp"
+#include "robot/joint_motion.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
@@ -100,6 +100,19 @@ std::size_t moves_for(const TipCurve& curve, const ProgramSettings& settings) {
   return moves;
 }
 
+void write_poses(RobotProgram& program, const Course& course, const ToolFrame& frame, std::size_t moves) {
+  program.poses.clear();
+  PoseWriter poses(program, course, frame);
+  const Leg& first = course.legs().front();
+  poses.add(0.0, at_depth(first, first.from_depth_mm), ProgramPhase::Approach, 0.0);
+  for (const Leg& leg : course.legs()) {
+    if (leg.phase == ProgramPhase::Cut)
+      poses.add_cut(leg, moves);
+    else
+      poses.add(leg.end_s, at_depth(leg, leg.to_depth_mm), leg.phase, leg.nominal_speed_mm_s);
+  }
+}
+
 void require_valid(const ToolPath& path, const ProgramSettings& settings) {
   INCISE_REQUIRE(path.frame == PathFrame::Robot,
                  fmt::format("expected a path in the robot frame, found {}", to_string(path.frame)));
@@ -164,7 +177,7 @@ std::vector<std::string> validate(const ProgramSettings& s) {
     broken.push_back(
         fmt::format("approach_height_mm: found {}, expected more than clearance_mm", s.approach_height_mm));
   }
-  if (!std::isfinite(s.spin_deg)) broken.push_back("spin_deg: expected a finite angle");
+  if (s.spin_deg && !std::isfinite(*s.spin_deg)) broken.push_back("spin_deg: expected a finite angle");
   if (!s.tool_x_hint.allFinite() || s.tool_x_hint.norm() == 0.0) broken.push_back("tool_x_hint: expected a direction");
   return broken;
 }
@@ -175,28 +188,27 @@ void require_robot_frame(const ToolPath& path, const std::filesystem::path& file
                   "Project it into the robot's frame first.");
 }
 
-RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings) {
+RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings, const ArmSetup& setup) {
   require_valid(path, settings);
+  const auto broken = validate(setup);
+  INCISE_REQUIRE(broken.empty(), fmt::format("setup: {}", fmt::join(broken, "; ")));
   const Course course(path, settings);
-  const ToolFrame frame(path, settings.tool_x_hint, units::rad_from_deg(settings.spin_deg));
   RobotProgram program;
   program.kind = path.kind;
   program.is_closed = path.is_closed;
   program.settings = settings;
+  program.setup = setup;
   program.cut_length_mm = course.curve().length_mm();
   program.overlap_mm = course.overlap_mm();
   const std::size_t moves = moves_for(course.curve(), settings);
   program.spacing_mm = program.cut_length_mm / static_cast<double>(moves);
   program.chord_error_mm = course.curve().chord_error_mm(moves);
 
-  PoseWriter poses(program, course, frame);
-  poses.add(0.0, at_depth(course.legs().front(), course.legs().front().from_depth_mm), ProgramPhase::Approach, 0.0);
-  for (const Leg& leg : course.legs()) {
-    if (leg.phase == ProgramPhase::Cut)
-      poses.add_cut(leg, moves);
-    else
-      poses.add(leg.end_s, at_depth(leg, leg.to_depth_mm), leg.phase, leg.nominal_speed_mm_s);
-  }
+  write_poses(program, course, ToolFrame(path, settings.tool_x_hint, 0.0), moves);
+  const auto choice = robot_detail::choose_branch(program, setup, settings.spin_deg);
+  const ToolFrame frame(path, settings.tool_x_hint, units::rad_from_deg(choice.spin_deg));
+  write_poses(program, course, frame, moves);
+  program.motion = robot_detail::follow_branch(course, frame, choice, program, setup);
   return program;
 }
 

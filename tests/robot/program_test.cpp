@@ -139,7 +139,7 @@ TEST(MakeProgram, RefusesAxesThatPointTheOtherWay) {
 }
 
 TEST(MakeProgram, PointsTheToolAlongTheAxisOfItsWaypoint) {
-  const RobotProgram program = make_program(ring_path());
+  const RobotProgram program = make_program(ring_path(), {.spin_deg = 0.0});
   for (const auto& pose : program.poses) EXPECT_NEAR((pose.R_robot_tool.col(2) + Vec3::UnitZ()).norm(), 0.0, 1e-12);
   EXPECT_NEAR((program.poses[0].rotation_vector.cwiseAbs() - Vec3(units::kPi, 0, 0)).norm(), 0.0, 1e-9);
 }

@@ -27,7 +27,7 @@ std::vector<std::string> lines_with(const std::string& text, const std::string& 
 }
 
 TEST(ToUrScript, WritesMetresAndOneMovePerPose) {
-  const RobotProgram program = make_program(ring_path());
+  const RobotProgram program = make_program(ring_path(), {.spin_deg = 0.0});
   const std::string text = to_urscript(program);
   const auto movel = lines_with(text, "movel("), movep = lines_with(text, "movep(");
   EXPECT_EQ(movel.size(), 5u);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/geometry/tool_path.hpp>
+#include <incise/robot/joint_motion.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -35,7 +36,9 @@ struct ProgramSettings {
   double acceleration_mm_s2 = 100.0;  ///< most that the tip speeds up or slows down by
   double jerk_mm_s3 = 2000.0;         ///< most that this acceleration changes by
   Vec3 tool_x_hint = Vec3::UnitX();   ///< the tool's x axis lies as close to this direction as its mean z axis allows,
-  double spin_deg = 0.0;              ///< and is then turned by this angle about that mean axis
+  /// and is then turned by this angle about that mean axis. Not given: whatever suits the arm best, for a needle is
+  /// round.
+  std::optional<double> spin_deg{};
 };
 /// Every rule that the settings break, in words; empty: none.
 [[nodiscard]] std::vector<std::string> validate(const ProgramSettings& settings);
@@ -67,6 +70,8 @@ struct RobotProgram {
   double spacing_mm = 0.0;      ///< of the poses along the cut
   double chord_error_mm = 0.0;  ///< largest distance found between the moves and the smooth course
   ProgramSettings settings{};   ///< that it was made with
+  ArmSetup setup{};             ///< likewise
+  JointMotion motion{};         ///< the arm along the whole course; without samples where it cannot get along
   [[nodiscard]] double duration_s() const { return poses.empty() ? 0.0 : poses.back().time_s; }
 };
 
@@ -81,10 +86,12 @@ void require_robot_frame(const ToolPath& path, const std::filesystem::path& file
 /// docs/models/robot.md); poses are evenly spaced along it, as far apart as `chord_error_mm` and `max_spacing_mm`
 /// allow. Phases begin and end at rest. The tool's frame is that about the mean axis, swung by the shortest turn to the
 /// axis of the place: no turn about its own axis is added, and a ring ends as it began.
+/// Then the arm's joints along that course are found (`motion`), on one of the eight branches throughout.
 /// @param path  frame robot; at least 3 waypoints (2 if open), no two neighbours less than 1 µm apart, finite, unit
 /// axes.
 /// @throws InvalidArgument if the path or the settings break a rule, or an axis lies more than 120 degrees from the
 /// mean one.
-[[nodiscard]] RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings = {});
+[[nodiscard]] RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings = {},
+                                        const ArmSetup& setup = {});
 
 }  // namespace incise
