@@ -64,6 +64,7 @@ int run(int argc, char** argv) {
   add_interchange(application);
   add_evaluate(application);
   add_export(application);
+  add_replay(application);
   add_report(application);
   add_verify(application);
   add_schema(application);

@@ -80,6 +80,7 @@ void add_segment(Application& application);
 void add_mesh(Application& application);
 void add_stages(Application& application);   ///< deform, plan, simulate, compensate
 void add_export(Application& application);
+void add_replay(Application& application);
 void add_interchange(Application& application);
 void add_evaluate(Application& application);
 void add_report(Application& application);

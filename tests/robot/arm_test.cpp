@@ -159,7 +159,7 @@ TEST(InverseKinematics, NamesAWristSingularPoseAndTakesJoint6AsGiven) {
   ASSERT_FALSE(result.solutions.empty());
   for (const auto& solution : result.solutions) expect_same_pose(kdl_forward(solution.q_rad), T, "");
   EXPECT_NEAR(result.solutions.front().q_rad[5], 0.25, 1e-12);
-  EXPECT_LT(smallest_singular_value(ur10e(), q), 1e-12);
+  EXPECT_LT(smallest_singular_value(ur10e(), q), 1e-7);
 }
 
 TEST(InverseKinematics, NamesPosesOutOfReach) {
@@ -189,7 +189,7 @@ TEST(InverseKinematics, LosesOneWayRoundNearerThanTheArmFolds) {
 TEST(SmallestSingularValue, IsZeroForAStretchedArmAndForAWristOverTheShoulder) {
   Joints stretched;
   stretched << 0.2, -0.8, 0.0, 0.5, 1.0, 0.3;
-  EXPECT_LT(smallest_singular_value(ur10e(), stretched), 1e-12);
+  EXPECT_LT(smallest_singular_value(ur10e(), stretched), 1e-7);
   Joints ordinary;
   ordinary << 0.0, -1.57, -1.57, -1.57, 1.57, 0.0;
   EXPECT_GT(smallest_singular_value(ur10e(), ordinary), 0.1);

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 
 namespace incise {
 namespace {
@@ -122,11 +122,11 @@ TEST(JointMotion, TakesTheTurnsThatLieNearestToWhereTheArmStands) {
 }
 
 TEST(JointMotion, IsFoundWithinASecond) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of this process: a test machine may be busy with others
   const RobotProgram program = make_program(ring_path());
   EXPECT_EQ(program.motion.outcome, MotionOutcome::Found);
   EXPECT_NEAR(program.cut_length_mm, 94.2, 0.1);
-  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 1.0);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 1.0);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ struct ArmModel {
   double elbow_offset_mm = 0.0;     ///< and the forearm by this much
 };
 
-/// Universal Robots UR10e. Lengths, joint limits and speeds as published [ur-dh, ur-description]; the elbow is limited
+/// Universal Robots UR10e. Lengths, joint limits and speeds as published [UrDh, UrDescription]; the elbow is limited
 /// to half a turn either way, because the arm cannot go farther. The radii are ours, on the safe side of the drawings:
 /// nothing of the arm sticks out of them but its joints' caps.
 [[nodiscard]] const ArmModel& ur10e();
@@ -79,7 +79,7 @@ struct [[nodiscard]] InverseResult {
 /// All joint angles that bring the flange to a pose, in closed form: at most eight.
 /// With some of them out of reach, too near for the folded arm among them, `outcome` is Solved and those are missing.
 /// In a wrist-singular pose joint 6 is taken to be `wrist3_rad`. Source: geometry of the arm; the steps are those of
-/// [Hawkins 2013].
+/// [Hawkins2013].
 /// @param T_base_flange  rigid, mm.
 [[nodiscard]] InverseResult inverse_kinematics(const ArmModel& arm, const Mat4& T_base_flange, double wrist3_rad = 0.0);
 
