@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
   add_surface(application);
   add_register(application);
   add_export(application);
+  add_replay(application);
   add_report(application);
   add_verify(application);
   add_schema(application);

@@ -82,6 +82,7 @@ void add_stages(Application& application);   ///< deform, plan, simulate, compen
 void add_surface(Application& application);
 void add_register(Application& application);
 void add_export(Application& application);
+void add_replay(Application& application);
 void add_interchange(Application& application);
 void add_evaluate(Application& application);
 void add_report(Application& application);

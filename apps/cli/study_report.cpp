@@ -329,9 +329,20 @@ void add_program(const fs::path& root, const Json& study, ReportData& data) {
       data.notices.push_back({Severity::Warning, "Not checked for the robot program: " + name.get<std::string>()});
     }
   }
+  if (program.contains("replay")) {
+    const Json& replay = program.at("replay");
+    const auto number = [](const Json& value) { return value.is_null() ? std::string("-") : fmt::format("{:.4g}", value.get<double>()); };
+    const Json& speed = replay.at("tip_speed_mm_s");
+    data.replay = {{"greatest deviation from the intended course", number(replay.at("max_deviation_mm")), "mm"},
+                   {"tip speed, mean (away from the ends)", number(speed.at("mean")), "mm/s"},
+                   {"tip speed, least", number(speed.at("min")), "mm/s"},
+                   {"tip speed, greatest", number(speed.at("max")), "mm/s"},
+                   {"duration", number(replay.at("duration_s")), "s"}};
+  }
+  if (const fs::path figure = root / "program" / "replay.svg"; fs::exists(figure)) data.program_figure = read_text(figure);
   const fs::path script = root / "program" / "program.script";
   if (fs::exists(script)) {
-    constexpr std::size_t kShownCharacters = 3000;
+    constexpr std::size_t kShownCharacters = 12000;
     data.program_text = read_text(script).substr(0, kShownCharacters);
   }
 }
@@ -351,7 +362,7 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
                        {"machine", manifest.machine, ""}};
     for (const ManifestInput& input : manifest.inputs) data.provenance.push_back({"SHA-256 of " + input.path, input.sha256, ""});
   }
-  static constexpr std::array<std::array<const char*, 2>, 9> kFiles{{
+  static constexpr std::array<std::array<const char*, 2>, 10> kFiles{{
       {"mesh/mesh.vtu", "tetrahedral mesh, unstretched (ParaView)"},
       {"stretched/deformed.vtu", "clamped and stretched, with displacement and stress (ParaView)"},
       {"plan/path.json", "intended path"},
@@ -361,6 +372,7 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
       {"correction/path.json", "corrected path"},
       {"corrected/frames.pvd", "the second cut over time (ParaView)"},
       {"program/program.script", "robot program (URScript)"},
+      {"program/true_path.csv", "the tip's path as the player ran the program"},
   }};
   for (const auto& [path, meaning] : kFiles) {
     if (fs::exists(root / path)) data.files.push_back({path, meaning});

@@ -1,5 +1,6 @@
 #include "study_run.hpp"
 
+#include "replay_files.hpp"
 #include "study_report.hpp"
 
 #include <incise/core/error.hpp>
@@ -129,6 +130,12 @@ void StudyRun::remove_if_nothing_was_made() const {
 
 namespace {
 
+ArmSetup arm_setup_of(const Case& settings) {
+  ArmSetup setup;
+  if (settings.T_flange_tool) setup.T_flange_tool = *settings.T_flange_tool;
+  return setup;
+}
+
 /// The program for the corrected path (or the planned one, where nothing was corrected), if it passes the checks.
 nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor& monitor) {
   const CaseFile& file = study.store.case_file();
@@ -162,29 +169,38 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
   const ToolPath intended = in_robot_frame(*done.plan, *file.settings.T_robot_sim);
   ProgramSettings motion;
   motion.overlap_mm = file.settings.cut.overlap_mm;
-  const RobotProgram program = make_program(path, motion);
+  const RobotProgram program = make_program(path, motion, arm_setup_of(file.settings));
   CheckSettings settings;
   settings.must_be_ring = file.settings.plan.kind == PlanKind::Ring;
   settings.planned_depth_mm = file.settings.plan.depth_mm;
   settings.close_margin_mm = file.settings.close_margin_mm;
-  const ProgramChecks checks = check_program(program, path, settings, &intended);
+  CheckInputs inputs;
+  inputs.intended = &intended;
+  inputs.power_w = file.settings.plan.power_w;
+  const ProgramChecks checks = check_program(program, path, settings, inputs);
   json = nlohmann::ordered_json::parse(to_json(program, &checks));
   json.erase("poses");
+  json["motion"].erase("samples");
   json["follows"] = done.is_accepted ? "corrected path" : "uncorrected path";
   json["written"] = checks.all_passed();
   if (!checks.all_passed()) {
     for (const ProgramCheck& check : checks.checks) {
-      if (!check.passed) monitor.message(Severity::Warning, fmt::format("no program: {}: {}", check.name, check.text));
+      if (!check.passed) monitor.message(Severity::Warning, "no program: " + check.message());
     }
     return json;
   }
-  UrScriptSettings script;
-  script.provenance = {fmt::format("incise {} ({})", version(), source_commit()), file.settings.title};
-  if (file.settings.is_virtual) script.provenance.emplace_back("VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.");
+  ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())}, {"title", file.settings.title}};
+  if (file.settings.is_virtual) provenance.emplace_back("specimen", "VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.");
+  const ProgramHeader header = program_header(program, path, checks, provenance);
   AtomicFolder target(folder);
   write_tool_path(target.path() / "path.json", path);
-  write_atomically(target.path() / "program.json", [&](std::ostream& out) { out << to_json(program, &checks); });
-  write_atomically(target.path() / "program.script", [&](std::ostream& out) { out << to_urscript(program, script); });
+  const std::string script = to_urscript(program, header);
+  write_atomically(target.path() / "program.json", [&](std::ostream& out) { out << to_json(program, &checks, header); });
+  write_atomically(target.path() / "program.script", [&](std::ostream& out) { out << script; });
+  const PlayerSettings player;
+  const Replay replay = incise::play(program_from_text(script, "program.script"), program.setup.arm, player);
+  write_replay(target.path(), replay);
+  json["replay"] = to_json(replay, player);
   study.store.write_manifest_to(target.path(), 0.0);
   target.commit();
   return json;

@@ -1,72 +1,237 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
 #include <incise/core/version.hpp>
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/io/nearest_name.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/surface_io.hpp>
 #include <incise/robot/program_text.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <chrono>
+#include <cmath>
 #include <memory>
 #include <ostream>
 
 namespace incise::cli {
+namespace {
+
+struct Arguments {
+  std::filesystem::path path, intended, surface, registration;
+  std::string robot = "ur10e", format = "urscript", motion = "movep", kind;
+  CheckSettings checks;
+  ProgramSettings settings;
+  ArmSetup setup;
+  double overlap_mm = -1.0;  // not given
+  double shaft_diameter_mm = 2.0 * CheckSettings{}.shaft_radius_mm;
+  double power_w = 0.0;  // not given
+  std::vector<double> tcp, near_deg;
+  std::vector<std::string> overrides;
+  bool is_open = false;
+};
+
+void require_override_names(const std::vector<std::string>& names) {
+  std::vector<std::string> all, possible;
+  for (const char* name : check_names()) {
+    all.emplace_back(name);
+    if (can_be_overridden(name)) possible.emplace_back(name);
+  }
+  for (const std::string& name : names) {
+    if (can_be_overridden(name)) continue;
+    const bool is_check = std::find(all.begin(), all.end(), name) != all.end();
+    throw CaseError("command line", "--override", fmt::format("'{}'", name),
+                    is_check ? std::string("a check that can be overridden; this one cannot")
+                             : fmt::format("one of {}", fmt::join(possible, ", ")),
+                    is_check ? "" : fmt::format("Did you mean '{}'?", nearest_name(name, possible)));
+  }
+}
+
+void require_ending(const std::filesystem::path& output, const std::string& format) {
+  const std::string ending = output.extension().string();
+  const auto refuse = [&](const char* expected) {
+    throw CaseError("command line", "-o", output.string(),
+                    fmt::format("a name that ends in {} for --format {}", expected, format));
+  };
+  if (format == "joint-csv" && ending != ".csv") refuse(".csv");
+  if (format == "json" && ending != ".json") refuse(".json");
+  if (format == "ros-trajectory" && ending != ".yaml" && ending != ".bag") refuse(".yaml (ROS 2) or .bag (ROS 1)");
+  if (format == "urscript" && (ending == ".csv" || ending == ".json" || ending == ".yaml" || ending == ".bag"))
+    refuse(".script");
+}
+
+/// As on the pendant: place in mm and rotation vector in rad of the tool centre point in the flange.
+Mat4 tool_of(const std::vector<double>& tcp) {
+  Mat4 T = Mat4::Identity();
+  const Vec3 turn(tcp[3], tcp[4], tcp[5]);
+  if (turn.norm() > 0.0) T.topLeftCorner<3, 3>() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+  T.topRightCorner<3, 1>() = Vec3(tcp[0], tcp[1], tcp[2]);
+  return T;
+}
+
+RegistrationSummary read_registration(const std::filesystem::path& file) {
+  const nlohmann::ordered_json json = read_json(file);
+  const auto at = [&](const char* key, bool is_right_type) {
+    if (!json.is_object() || !json.contains(key) || !is_right_type)
+      throw DataError(file, key, json.is_object() && json.contains(key) ? json.at(key).dump() : "nothing",
+                      "what `incise register` writes");
+    return json.at(key);
+  };
+  const auto number = [&](const char* key) {
+    return at(key, json.is_object() && json.contains(key) && json.at(key).is_number()).get<double>();
+  };
+  RegistrationSummary summary{number("scale"), number("rmse_mm"), number("inlier_fraction"), false};
+  summary.is_converged =
+      at("converged", json.is_object() && json.contains("converged") && json.at("converged").is_boolean()).get<bool>();
+  return summary;
+}
+
+ToolPath read_robot_path(const std::filesystem::path& file) {
+  ToolPath path = read_tool_path(file);
+  require_robot_frame(path, file);
+  return path;
+}
+
+/// Settings that follow from others.
+void complete(Arguments& a, const ToolPath& path) {
+  const bool is_mark = path.kind == PathKind::Mark;
+  a.settings.overlap_mm = a.overlap_mm >= 0.0 ? a.overlap_mm : is_mark ? 0.0 : CutSettings{}.overlap_mm;
+  if (is_mark) a.settings.plunge_speed_mm_s = a.checks.mark_speed_mm_s;
+  a.checks.must_be_ring = !a.is_open;
+  a.checks.shaft_radius_mm = 0.5 * a.shaft_diameter_mm;
+  if (!a.tcp.empty()) a.setup.T_flange_tool = tool_of(a.tcp);
+  for (std::size_t i = 0; i < a.near_deg.size(); ++i)
+    a.setup.near_rad[static_cast<int>(i)] = units::rad_from_deg(a.near_deg[i]);
+}
+
+RobotProgram program_of(const ToolPath& path, const Arguments& arguments) {
+  try {
+    return make_program(path, arguments.settings, arguments.setup);
+  } catch (const InvalidArgument& error) {
+    throw DataError(arguments.path, "waypoints", error.what(), "a path that a tool can follow");
+  }
+}
+
+std::string text_of(const RobotProgram& program, const ProgramChecks& checks, const ProgramHeader& header,
+                    const Arguments& arguments, const std::filesystem::path& output) {
+  if (arguments.format == "joint-csv") return to_joint_csv(program, header);
+  if (arguments.format == "json") return to_json(program, &checks, header);
+  if (arguments.format == "ros-trajectory")
+    return output.extension() == ".bag" ? to_rosbag(program, header) : to_ros_yaml(program, header);
+  return to_urscript(program, header,
+                     {.motion = arguments.motion == "servoj" ? ScriptMotion::ServoJ : ScriptMotion::MoveP});
+}
+
+nlohmann::ordered_json summary_of(const RobotProgram& program, const ProgramChecks& checks) {
+  nlohmann::ordered_json result = nlohmann::ordered_json::parse(to_json(program, &checks));
+  result.erase("poses");
+  if (result["motion"].contains("samples")) result["motion"].erase("samples");
+  double fastest = 0.0;
+  for (const ProgramPose& pose : program.poses) fastest = std::max(fastest, pose.tip_speed_mm_s);
+  result["max_tip_speed_mm_s"] = fastest;
+  const bool has_motion = program.motion.outcome == MotionOutcome::Found;
+  result["min_singular_value"] =
+      has_motion ? nlohmann::ordered_json(program.motion.min_singular_value) : nlohmann::ordered_json(nullptr);
+  result["joint_travel_deg"] =
+      has_motion ? nlohmann::ordered_json(program.motion.travel_deg) : nlohmann::ordered_json(nullptr);
+  return result;
+}
+
+int run_export(Arguments arguments, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("cut.script");
+  require_override_names(arguments.overrides);
+  require_ending(output, arguments.format);
+  ToolPath path = read_robot_path(arguments.path);
+  if (!arguments.kind.empty()) path.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
+  complete(arguments, path);
+  CheckInputs inputs;
+  std::optional<ToolPath> intended;
+  std::optional<TriMesh> surface;
+  if (!arguments.intended.empty()) inputs.intended = &intended.emplace(read_robot_path(arguments.intended));
+  if (!arguments.surface.empty()) inputs.surface = &surface.emplace(read_cloud(arguments.surface));
+  if (!arguments.registration.empty()) inputs.registration = read_registration(arguments.registration);
+  if (arguments.power_w > 0.0) inputs.power_w = arguments.power_w;
+  require_writable(output);
+
+  const RobotProgram program = program_of(path, arguments);
+  ProgramChecks checks = check_program(program, path, arguments.checks, inputs);
+  override_checks(checks, arguments.overrides);
+  nlohmann::ordered_json result = summary_of(program, checks);
+  for (const ProgramCheck& check : checks.checks) {
+    if (check.is_overridden) console.message(Severity::Warning, "overridden: " + check.message());
+    if (!check.passed && !check.is_overridden) console.message(Severity::Warning, "not exported: " + check.message());
+  }
+  const auto elapsed = [&start] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  if (!checks.may_be_written()) {
+    result["wall_s"] = elapsed();
+    print_result(options, result);
+    return kNotAcceptable;
+  }
+  const ProgramHeader header = program_header(program, path, checks,
+                                              {{"made_by", fmt::format("incise {} ({})", version(), source_commit())},
+                                               {"made_from", arguments.path.filename().string()},
+                                               {"made_from_sha256", sha256_of_file(arguments.path)}});
+  const std::string text = text_of(program, checks, header, arguments, output);
+  write_atomically(output, [&text](std::ostream& out) { out << text; });
+  result["program"] = output.string();
+  result["wall_s"] = elapsed();
+  print_result(options, result);
+  return kDone;
+}
+
+}  // namespace
 
 void add_export(Application& application) {
-  struct Arguments {
-    std::filesystem::path path;
-    std::filesystem::path intended;
-    std::string robot = "ur10e";
-    std::string format = "urscript";
-    CheckSettings checks;
-    ProgramSettings motion{.overlap_mm = CutSettings{}.overlap_mm};
-    bool is_open = false;
-  };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = application.add_verb(
-      "export", "Turn a path in the robot's frame into a program, after the safety checks",
-      "incise export out/program/path.json --format urscript -o cut.script", [arguments](const CommonOptions& options) {
-        Console console(options.level());
-        const std::filesystem::path output = options.required_output("cut.script");
-        const ToolPath path = read_tool_path(arguments->path);
-        require_robot_frame(path, arguments->path);
-        std::optional<ToolPath> intended;
-        if (!arguments->intended.empty()) {
-          intended = read_tool_path(arguments->intended);
-          require_robot_frame(*intended, arguments->intended);
-        }
-        CheckSettings settings = arguments->checks;
-        settings.must_be_ring = !arguments->is_open;
-        const RobotProgram program = make_program(path, arguments->motion);
-        const ProgramChecks checks = check_program(program, path, settings, intended ? &*intended : nullptr);
-        nlohmann::ordered_json result = nlohmann::ordered_json::parse(to_json(program, &checks));
-        result.erase("poses");
-        if (!checks.all_passed()) {
-          for (const ProgramCheck& check : checks.checks) {
-            if (!check.passed) console.message(Severity::Warning, fmt::format("not exported: {}: {}", check.name, check.text));
-          }
-          print_result(options, result);
-          return kNotAcceptable;
-        }
-        UrScriptSettings script;
-        script.provenance = {fmt::format("incise {} ({})", version(), source_commit()),
-                             fmt::format("from {}", arguments->path.filename().string())};
-        const std::string text = arguments->format == "json" ? to_json(program, &checks) : to_urscript(program, script);
-        write_atomically(output, [&text](std::ostream& out) { out << text; });
-        result["program"] = output.string();
-        print_result(options, result);
-        return kDone;
-      });
-  verb->add_option("path", arguments->path, "path.json, frame robot")->required();
-  verb->add_option("--robot", arguments->robot, "The arm")->check(CLI::IsMember({"ur10e"}));
-  verb->add_option("--format", arguments->format, "Of the program")->check(CLI::IsMember({"urscript", "json"}));
-  verb->add_option("--intended", arguments->intended, "The path before correction, to check the deviation");
-  verb->add_option("--depth-mm", arguments->checks.planned_depth_mm, "Planned depth")->check(CLI::PositiveNumber);
-  verb->add_option("--close-margin-mm", arguments->checks.close_margin_mm, "Least distance from the tumour edge")->check(CLI::PositiveNumber);
-  verb->add_option("--overlap-mm", arguments->motion.overlap_mm, "How far a ring runs on beyond its start")->check(CLI::NonNegativeNumber);
-  verb->add_flag("--open", arguments->is_open, "The path is an open cut");
+  CLI::App* verb =
+      application.add_verb("export", "Turn a path in the robot's frame into a program, after the safety checks",
+                           "incise export out/program/path.json --robot ur10e --format urscript -o cut.script",
+                           [arguments](const CommonOptions& options) { return run_export(*arguments, options); });
+  auto& a = *arguments;
+  verb->add_option("path", a.path, "path.json, frame robot")->required();
+  verb->add_option("--robot", a.robot, "The arm")->check(CLI::IsMember({"ur10e"}));
+  verb->add_option("--format", a.format, "Of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1")
+      ->check(CLI::IsMember({"urscript", "joint-csv", "ros-trajectory", "json"}));
+  verb->add_option("--motion", a.motion, "Of URScript: movep (blends, constant speed) or servoj (timed joints)")
+      ->check(CLI::IsMember({"movep", "servoj"}));
+  verb->add_option("--kind", a.kind, "Which checks hold, in place of the path's own kind")
+      ->check(CLI::IsMember({"mark", "incise"}));
+  verb->add_option("--override", a.overrides,
+                   "Write the program although this check fails; once for each, noted in the program")
+      ->expected(1)
+      ->take_all();
+  verb->add_option("--intended", a.intended, "The path before correction, to check the deviation");
+  verb->add_option("--surface", a.surface,
+                   "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth and shaft are "
+                   "checked against it");
+  verb->add_option("--registration", a.registration, "Result of `incise register` (.json): its quality is checked");
+  verb->add_option("--power-w", a.power_w, "Power of the electrode, to check it")->check(CLI::PositiveNumber);
+  verb->add_option("--tcp", a.tcp,
+                   "Tool centre point in the flange as on the pendant: x y z (mm) rx ry rz (rad); z along the needle. "
+                   "By default 0 0 150 0 0 0")
+      ->expected(6);
+  verb->add_option("--near-joints-deg", a.near_deg, "Joints that the arm stands near")->expected(6);
+  verb->add_option("--table-z-mm", a.setup.table_z_mm, "Height of the table's plane in the base frame");
+  verb->add_option("--needle-length-mm", a.checks.needle_length_mm, "Of the needle; behind it comes the shaft")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--shaft-diameter-mm", a.shaft_diameter_mm, "Of the instrument's shaft")->check(CLI::PositiveNumber);
+  verb->add_option("--depth-mm", a.checks.planned_depth_mm, "Planned depth")->check(CLI::PositiveNumber);
+  verb->add_option("--close-margin-mm", a.checks.close_margin_mm, "Least distance from the tumour edge")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--overlap-mm", a.overlap_mm, "How far a ring runs on beyond its start; by default 8, a mark 0")
+      ->check(CLI::NonNegativeNumber)
+      ->default_str("");
+  verb->add_flag("--open", a.is_open, "The path is an open cut");
 }
 
 }  // namespace incise::cli

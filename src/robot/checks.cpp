@@ -1,16 +1,46 @@
+#include "robot/check_list.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/robot/checks.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace incise {
 namespace {
 
+using robot_detail::CheckList;
+using robot_detail::Worst;
+
 constexpr double kClosedToMm = 0.01;
+constexpr std::array<const char*, 24> kNames{"finite",
+                                             "frame",
+                                             "closed",
+                                             "self_crossing",
+                                             "speed_min",
+                                             "speed_max",
+                                             "depth",
+                                             "margin",
+                                             "edge_distance",
+                                             "deviation",
+                                             "chord_error",
+                                             "reach",
+                                             "joint_limits",
+                                             "joint_speed",
+                                             "joint_acceleration",
+                                             "singularity",
+                                             "tip_speed",
+                                             "table",
+                                             "shaft",
+                                             "power",
+                                             "registration_scale",
+                                             "registration_rmse",
+                                             "registration_inliers",
+                                             "registration_converged"};
+constexpr std::array<const char*, 3> kFixed{"finite", "frame", "reach"};
 
 /// Poses that cut, the plunge's end (where the cut begins) included, the overlap not.
 std::vector<std::size_t> cut_poses(const RobotProgram& program) {
@@ -22,30 +52,44 @@ std::vector<std::size_t> cut_poses(const RobotProgram& program) {
   return result;
 }
 
-/// The largest value over some poses and where it is.
-struct Worst {
-  double value = -std::numeric_limits<double>::infinity();
-  std::optional<std::size_t> pose;
-  void see(double candidate, std::size_t at) {
-    if (candidate > value) {
-      value = candidate;
-      pose = at;
-    }
+bool is_finite(const ProgramPose& p) {
+  return p.tip_mm.allFinite() && p.R_robot_tool.allFinite() && p.rotation_vector.allFinite() &&
+         std::isfinite(p.time_s) && std::isfinite(p.tip_speed_mm_s) && std::isfinite(p.depth_mm);
+}
+
+bool check_finite(CheckList& list) {
+  const RobotProgram& program = list.program();
+  std::optional<std::size_t> bad;
+  for (std::size_t i = program.poses.size(); i-- > 0;) {
+    if (!is_finite(program.poses[i])) bad = i;
   }
+  for (const JointSample& s : program.motion.samples) {
+    const bool is_good = s.q_rad.allFinite() && s.speed_rad_s.allFinite() && s.acceleration_rad_s2.allFinite();
+    if (!is_good && !bad) bad = s.pose;
+  }
+  list.holds("finite", !bad, "every number of the program is finite", bad);
+  return !bad;
+}
+
+/// A place on the course that is looked at: every pose of the cut and every waypoint.
+struct CoursePlace {
+  Vec3 entry_mm;
+  double depth_mm;
+  std::size_t pose;  ///< that is named for it
 };
 
-ProgramCheck check_finite(const RobotProgram& program) {
-  ProgramCheck check{"finite", true, 0.0, 0.0, "", "", std::nullopt, "every number of the program is finite"};
-  for (std::size_t i = 0; i < program.poses.size(); ++i) {
-    const ProgramPose& p = program.poses[i];
-    const bool is_finite = p.tip_mm.allFinite() && p.R_robot_tool.allFinite() && p.rotation_vector.allFinite() &&
-                           std::isfinite(p.time_s) && std::isfinite(p.tip_speed_mm_s) && std::isfinite(p.depth_mm);
-    if (is_finite) continue;
-    check.passed = false;
-    check.value += 1.0;
-    if (!check.pose) check.pose = i;
+std::vector<CoursePlace> places_of(const RobotProgram& program, const ToolPath& path,
+                                   const std::vector<std::size_t>& cut) {
+  std::vector<CoursePlace> places;
+  for (const std::size_t i : cut) places.push_back({program.poses[i].entry_mm(), program.poses[i].depth_mm, i});
+  for (std::size_t w = 0; w < path.waypoints.size(); ++w) {
+    // The first pose at or after the waypoint; a course may have fewer poses than waypoints.
+    const auto after =
+        std::find_if(cut.begin(), cut.end(), [&](std::size_t i) { return program.poses[i].waypoint >= w; });
+    const Waypoint& waypoint = path.waypoints[w];
+    places.push_back({waypoint.position_mm, waypoint.depth_mm, after == cut.end() ? cut.back() : *after});
   }
-  return check;
+  return places;
 }
 
 Vec3 mean_axis(const ToolPath& path) {
@@ -54,31 +98,41 @@ Vec3 mean_axis(const ToolPath& path) {
   return sum;
 }
 
-class Checker {
+/// What concerns the course alone, without the arm.
+class CourseChecker {
  public:
-  Checker(const RobotProgram& program, const ToolPath& path, const CheckSettings& settings)
-      : program_(program), path_(path), settings_(settings), cut_(cut_poses(program)), axis_(mean_axis(path)) {}
-
-  void frame() {
-    const bool is_robot = path_.frame == PathFrame::Robot;
-    add("frame", is_robot, is_robot ? 1.0 : 0.0, 1.0, "", "", std::nullopt,
-        fmt::format("the path's frame is {}, and has to be robot", to_string(path_.frame)));
-  }
+  CourseChecker(CheckList& list, const ToolPath& path, const CheckSettings& settings)
+      : list_(list),
+        program_(list.program()),
+        path_(path),
+        settings_(settings),
+        cut_(cut_poses(program_)),
+        places_(places_of(program_, path, cut_)),
+        axis_(mean_axis(path)) {}
 
   void closed() {
     const double gap = (program_.poses[cut_.back()].tip_mm - program_.poses[cut_.front()].tip_mm).norm();
-    add("closed", path_.is_closed && program_.is_closed && gap <= kClosedToMm, gap, kClosedToMm, "<=", "mm", cut_.back(),
-        path_.is_closed ? "gap between the end and the beginning of the ring"
-                        : "the path is open, and has to be a ring");
+    if (path_.is_closed && program_.is_closed) {
+      list_.at_most("closed", gap, kClosedToMm, "mm", cut_.back(), "gap between the end and the beginning of the ring");
+    } else {
+      list_.holds("closed", false, "the path is open, and has to be a ring", cut_.back());
+    }
   }
 
   void self_crossing() {
-    const bool crosses = crosses_itself_in_view(entry_course(), axis_);
-    add("self_crossing", !crosses, crosses ? 1.0 : 0.0, 0.0, "", "", std::nullopt,
-        "the course crosses itself nowhere, seen along the mean axis");
+    Contour course{{}, program_.is_closed};
+    for (const std::size_t i : cut_) course.points.push_back(program_.poses[i].entry_mm());
+    if (program_.is_closed && course.points.size() > 1) course.points.pop_back();  // it does not repeat its first
+    const auto place = first_crossing(course);
+    list_.holds("self_crossing", !place, "the course crosses itself nowhere, seen along the mean axis", place);
   }
 
   void speed() {
+    const bool is_mark = path_.kind == PathKind::Mark;
+    const double least =
+        is_mark ? settings_.mark_speed_mm_s * (1.0 - settings_.mark_speed_tolerance) : settings_.min_speed_mm_s;
+    const double most =
+        is_mark ? settings_.mark_speed_mm_s * (1.0 + settings_.mark_speed_tolerance) : settings_.max_speed_mm_s;
     Worst fastest, slowest;
     for (std::size_t i = 0; i < program_.poses.size(); ++i) {
       const ProgramPose& pose = program_.poses[i];
@@ -86,113 +140,179 @@ class Checker {
       fastest.see(pose.tip_speed_mm_s, i);
       slowest.see(-pose.tip_speed_mm_s, i);
     }
-    add("speed_min", -slowest.value >= settings_.min_speed_mm_s, -slowest.value, settings_.min_speed_mm_s, ">=", "mm/s",
-        slowest.pose, "least tip speed of the cut");
-    add("speed_max", fastest.value <= settings_.max_speed_mm_s, fastest.value, settings_.max_speed_mm_s, "<=", "mm/s",
-        fastest.pose, "greatest tip speed of the cut");
+    const char* what = is_mark ? "mark" : "cut";
+    list_.at_least("speed_min", -slowest.value, least, "mm/s", slowest.pose,
+                   fmt::format("least tip speed of the {}", what));
+    list_.at_most("speed_max", fastest.value, most, "mm/s", fastest.pose,
+                  fmt::format("greatest tip speed of the {}", what));
   }
 
-  void depth() {
+  void depth(const TriMesh* surface) {
+    const bool is_mark = path_.kind == PathKind::Mark;
+    const double planned = is_mark ? settings_.mark_depth_mm : settings_.planned_depth_mm;
+    const double tolerance = is_mark ? settings_.mark_depth_tolerance_mm : settings_.depth_tolerance_mm;
+    if (surface != nullptr) return robot_detail::check_depth_in(list_, *surface, planned, tolerance);
     Worst worst;
-    for (const std::size_t i : cut_) worst.see(std::abs(program_.poses[i].depth_mm - settings_.planned_depth_mm), i);
-    add("depth", worst.value <= settings_.depth_tolerance_mm, worst.value, settings_.depth_tolerance_mm, "<=", "mm",
-        worst.pose, fmt::format("greatest difference from the planned depth of {} mm", settings_.planned_depth_mm));
+    for (const CoursePlace& p : places_) worst.see(std::abs(p.depth_mm - planned), p.pose);
+    list_.at_most("depth", worst.value, tolerance, "mm", worst.pose,
+                  fmt::format("greatest difference from the planned depth of {} mm, as the path says", planned));
   }
 
   void margin() {
+    if (path_.kind == PathKind::Mark) return edge_distance();
+    if (path_.tumor_edge.points.size() < 2) return list_.not_made("margin to the tumour edge: the path holds none");
     Worst closest;  // of the negative margin
-    const bool has_inside = path_.tumor_edge.is_closed;
-    for (const std::size_t i : cut_) {
-      const Vec3 entry = program_.poses[i].entry_mm();
-      const double distance = nearest_on(path_.tumor_edge, entry).distance_mm;
-      const bool is_inside = has_inside && contains_in_view(path_.tumor_edge, entry, axis_);
-      closest.see(is_inside ? distance : -distance, i);
+    for (const CoursePlace& p : places_) {
+      const double distance = nearest_on(path_.tumor_edge, p.entry_mm).distance_mm;
+      const bool is_inside = path_.tumor_edge.is_closed && contains_in_view(path_.tumor_edge, p.entry_mm, axis_);
+      closest.see(is_inside ? distance : -distance, p.pose);
     }
-    add("margin", -closest.value >= settings_.close_margin_mm, -closest.value, settings_.close_margin_mm, ">=", "mm",
-        closest.pose, "least distance of the course from the tumour edge (negative: inside it)");
+    list_.at_least("margin", -closest.value, settings_.close_margin_mm, "mm", closest.pose,
+                   "least distance of the course from the tumour edge (negative: inside it)");
   }
 
-  void deviation(const ToolPath& intended) {
-    const Contour course = entry_contour(intended);
+  void deviation(const ToolPath* intended) {
+    if (intended == nullptr) return list_.not_made("deviation from the intended path: none was given");
+    const Contour course = entry_contour(*intended);
     Worst worst;
-    for (const std::size_t i : cut_) worst.see(nearest_on(course, program_.poses[i].entry_mm()).distance_mm, i);
-    add("deviation", worst.value <= settings_.max_deviation_mm, worst.value, settings_.max_deviation_mm, "<=", "mm",
-        worst.pose, "greatest distance of the course from the intended one");
+    for (const CoursePlace& p : places_) worst.see(nearest_on(course, p.entry_mm).distance_mm, p.pose);
+    list_.at_most("deviation", worst.value, settings_.max_deviation_mm, "mm", worst.pose,
+                  "greatest distance of the course from the intended one");
   }
 
-  void reach() {
-    Worst worst;
-    for (std::size_t i = 0; i < program_.poses.size(); ++i) {
-      const ProgramPose& pose = program_.poses[i];
-      worst.see((pose.tip_mm - settings_.tool_length_mm * pose.R_robot_tool.col(2)).norm(), i);
-    }
-    add("reach", worst.value <= settings_.max_reach_mm, worst.value, settings_.max_reach_mm, "<=", "mm", worst.pose,
-        "greatest distance of the flange from the base");
+  void chord_error() {
+    list_.at_most("chord_error", program_.chord_error_mm, settings_.max_chord_error_mm, "mm", std::nullopt,
+                  "greatest distance of the straight moves from the smooth course");
   }
-
-  std::vector<ProgramCheck> take() { return std::move(checks_); }
 
  private:
-  void add(const char* name, bool passed, double value, double limit, const char* relation, const char* unit,
-           std::optional<std::size_t> pose, std::string text) {
-    checks_.push_back({name, passed, value, limit, relation, unit, pose, std::move(text)});
+  void edge_distance() {
+    if (path_.tumor_edge.points.size() < 2) {
+      return list_.holds("edge_distance", false, "a mark follows the tumour edge, and the path holds none");
+    }
+    Worst farthest;
+    for (const CoursePlace& p : places_) farthest.see(nearest_on(path_.tumor_edge, p.entry_mm).distance_mm, p.pose);
+    list_.at_most("edge_distance", farthest.value, settings_.mark_distance_mm, "mm", farthest.pose,
+                  "greatest distance of the mark from the tumour edge");
   }
 
-  /// The entry points of the cut; a closed course does not repeat its first.
-  [[nodiscard]] Contour entry_course() const {
-    Contour contour{{}, program_.is_closed};
-    for (const std::size_t i : cut_) contour.points.push_back(program_.poses[i].entry_mm());
-    if (program_.is_closed && contour.points.size() > 1) contour.points.pop_back();
-    return contour;
+  /// A pose before the first crossing, found by taking points away from the end until no crossing is left.
+  [[nodiscard]] std::optional<std::size_t> first_crossing(const Contour& course) const {
+    if (!crosses_itself_in_view(course, axis_)) return std::nullopt;
+    std::size_t low = 3, high = course.points.size();  // the first `low` points, joined openly, do not cross
+    const auto crosses = [&](std::size_t count) {
+      return crosses_itself_in_view(
+          {{course.points.begin(), course.points.begin() + static_cast<std::ptrdiff_t>(count)}, false}, axis_);
+    };
+    while (low + 1 < high) {
+      const std::size_t middle = (low + high) / 2;
+      (crosses(middle) ? high : low) = middle;
+    }
+    return cut_[high - 1];
   }
 
+  CheckList& list_;
   const RobotProgram& program_;
   const ToolPath& path_;
   const CheckSettings& settings_;
   std::vector<std::size_t> cut_;
+  std::vector<CoursePlace> places_;
   Vec3 axis_;
-  std::vector<ProgramCheck> checks_;
 };
 
+void check_power(CheckList& list, const CheckInputs& inputs, const CheckSettings& s) {
+  if (!inputs.power_w) return list.not_made("power of the electrode: not given");
+  const bool is_low = *inputs.power_w < s.min_power_w;
+  const std::string text = fmt::format("power of the electrode, in {} to {} W", s.min_power_w, s.max_power_w);
+  if (is_low)
+    list.at_least("power", *inputs.power_w, s.min_power_w, "W", std::nullopt, text);
+  else
+    list.at_most("power", *inputs.power_w, s.max_power_w, "W", std::nullopt, text);
+}
+
+void check_registration(CheckList& list, const CheckInputs& inputs, const CheckSettings& s) {
+  if (!inputs.registration) return list.not_made("registration: none was given");
+  const RegistrationSummary& r = *inputs.registration;
+  const std::string text = fmt::format("fitted scale, in {} to {}: both sensors are metric", s.min_scale, s.max_scale);
+  if (r.scale < s.min_scale)
+    list.at_least("registration_scale", r.scale, s.min_scale, "", std::nullopt, text);
+  else
+    list.at_most("registration_scale", r.scale, s.max_scale, "", std::nullopt, text);
+  list.at_most("registration_rmse", r.rmse_mm, s.max_rmse_mm, "mm", std::nullopt, "residual of the registration");
+  list.at_least("registration_inliers", r.inlier_fraction, s.min_inlier_fraction, "", std::nullopt,
+                "share of points that the registration explains");
+  list.holds("registration_converged", r.is_converged, "the registration has converged");
+}
+
 }  // namespace
+
+std::string ProgramCheck::message() const {
+  std::string where;
+  if (waypoint) where = fmt::format(" at waypoint {} (pose {})", *waypoint, *pose);
+  if (relation.empty()) return fmt::format("{}: not so{}: {}", name, where, text);
+  const std::string with_unit = unit.empty() ? "" : " " + unit;
+  return fmt::format("{}: {:.4g}{}{}, has to be {} {:.4g}{}: {}", name, value, with_unit, where, relation, limit,
+                     with_unit, text);
+}
 
 bool ProgramChecks::all_passed() const {
   return std::all_of(checks.begin(), checks.end(), [](const ProgramCheck& check) { return check.passed; });
 }
 
+bool ProgramChecks::may_be_written() const {
+  return std::all_of(checks.begin(), checks.end(),
+                     [](const ProgramCheck& check) { return check.passed || check.is_overridden; });
+}
+
+std::span<const char* const> check_names() {
+  return kNames;
+}
+
+bool can_be_overridden(const std::string& check) {
+  return std::find(kNames.begin(), kNames.end(), check) != kNames.end() &&
+         std::find(kFixed.begin(), kFixed.end(), check) == kFixed.end();
+}
+
+void override_checks(ProgramChecks& checks, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    INCISE_REQUIRE(can_be_overridden(name), fmt::format("expected a check that can be overridden, found '{}'", name));
+    for (ProgramCheck& check : checks.checks) {
+      if (check.name == name && !check.passed) check.is_overridden = true;
+    }
+  }
+}
+
 ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, const CheckSettings& settings,
-                            const ToolPath* intended) {
+                            const CheckInputs& inputs) {
   INCISE_REQUIRE(cut_poses(program).size() >= 2, "expected a program with a cut, found none");
-  INCISE_REQUIRE(intended == nullptr || intended->frame == path.frame,
+  INCISE_REQUIRE(inputs.intended == nullptr || inputs.intended->frame == path.frame,
                  "expected the intended path in the frame of the path");
   ProgramChecks result;
-  result.not_made = {"inverse kinematics: whether each pose can be reached, and with which arm configuration",
-                     "distance from singularities",
-                     "joint limits, joint speeds and joint travel",
-                     "collisions of the arm, the tool's shaft and the cables with anything",
-                     "accelerations, jerk and path accuracy of the controller",
-                     "forces on the tissue and on the tool; the electrode's power"};
-  result.checks.push_back(check_finite(program));
-  if (!result.checks.front().passed) {
+  result.not_made = {"forces on the tissue and on the tool; switching of the electrode",
+                     "collisions with anything but the table's plane and the given surface; cables",
+                     "how well the controller keeps to the program (see the player)"};
+  CheckList list(program, result);
+  if (!check_finite(list)) {
     result.not_made.insert(result.not_made.begin(), "all others: the program holds numbers that are not finite");
     return result;
   }
-  Checker checker(program, path, settings);
-  checker.frame();
-  if (settings.must_be_ring) checker.closed();
-  checker.self_crossing();
-  checker.speed();
-  checker.depth();
-  if (path.tumor_edge.points.size() >= 2)
-    checker.margin();
+  list.holds("frame", path.frame == PathFrame::Robot,
+             fmt::format("the path's frame is {}, and has to be robot", to_string(path.frame)));
+  CourseChecker course(list, path, settings);
+  if (settings.must_be_ring) course.closed();
+  course.self_crossing();
+  course.speed();
+  course.depth(inputs.surface);
+  course.margin();
+  course.deviation(inputs.intended);
+  course.chord_error();
+  robot_detail::check_motion(list, settings);
+  if (inputs.surface != nullptr)
+    robot_detail::check_shaft(list, *inputs.surface, settings);
   else
-    result.not_made.push_back("margin to the tumour edge: the path holds none");
-  if (intended != nullptr)
-    checker.deviation(*intended);
-  else
-    result.not_made.push_back("deviation from the intended path: none was given");
-  checker.reach();
-  for (ProgramCheck& check : checker.take()) result.checks.push_back(std::move(check));
+    list.not_made("shaft against the tissue: no surface was given");
+  check_power(list, inputs, settings);
+  check_registration(list, inputs, settings);
   return result;
 }
 

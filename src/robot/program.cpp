@@ -1,4 +1,4 @@
-#include "robot/tip_curve.hpp"
+#include "robot/joint_motion.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
@@ -12,30 +12,13 @@
 namespace incise {
 namespace {
 
+using robot_detail::Course;
+using robot_detail::Leg;
 using robot_detail::TipCurve;
 using robot_detail::TipSample;
+using robot_detail::ToolFrame;
 
 constexpr double kUnitTolerance = 1e-3;
-
-/// The rotation whose z axis is `axis` and whose x axis lies as close as possible to `hint`.
-Mat3 rotation_with(const Vec3& axis, const Vec3& hint) {
-  Vec3 x = hint - hint.dot(axis) * axis;
-  if (x.norm() < 1e-3 * hint.norm()) {  // the hint lies along the axis: any direction across it will do
-    x = Vec3::UnitY() - axis.y() * axis;
-    if (x.norm() < 0.5) x = Vec3::UnitX() - axis.x() * axis;
-  }
-  Mat3 rotation;
-  rotation.col(0) = x.normalized();
-  rotation.col(2) = axis;
-  rotation.col(1) = axis.cross(rotation.col(0));
-  return rotation;
-}
-
-/// The nearest rotation to `previous` whose z axis is `axis`: no turn about the tool's own axis is added.
-Mat3 carried_to(const Mat3& previous, const Vec3& axis) {
-  const Mat3 turn = Eigen::Quaterniond::FromTwoVectors(previous.col(2), axis).toRotationMatrix();
-  return rotation_with(axis, turn * previous.col(0));
-}
 
 /// Axis times angle; of the vectors that mean the same rotation the one closest to `previous`.
 Vec3 rotation_vector_near(const Mat3& rotation, const Vec3& previous) {
@@ -45,42 +28,57 @@ Vec3 rotation_vector_near(const Mat3& rotation, const Vec3& previous) {
   return (vector - previous).norm() <= (other - previous).norm() ? vector : other;
 }
 
-/// Appends poses and keeps the time.
-class ProgramBuilder {
+/// Appends the poses of a course.
+class PoseWriter {
  public:
-  explicit ProgramBuilder(RobotProgram& program, const Vec3& hint) : poses_(program.poses), hint_(hint) {}
+  PoseWriter(RobotProgram& program, const Course& course, const ToolFrame& frame)
+      : program_(program), course_(course), frame_(frame) {}
 
-  void move_to(const TipSample& sample, double depth_mm, double speed_mm_s, ProgramPhase phase, double arc_mm = -1.0) {
+  /// A pose and the way to it.
+  void add(double time_s, const TipSample& place, ProgramPhase phase, double speed_mm_s) {
     ProgramPose pose;
-    pose.tip_mm = sample.tip_mm + (depth_mm - sample.depth_mm) * sample.axis;
-    pose.depth_mm = depth_mm;
+    pose.tip_mm = place.tip_mm;
+    pose.R_robot_tool = frame_.at(place.axis);
+    pose.rotation_vector = rotation_vector_near(
+        pose.R_robot_tool, program_.poses.empty() ? Vec3::Zero() : program_.poses.back().rotation_vector);
+    pose.time_s = time_s;
+    pose.tip_speed_mm_s = speed_mm_s;
+    pose.depth_mm = place.depth_mm;
     pose.phase = phase;
-    if (poses_.empty()) {
-      pose.R_robot_tool = rotation_with(sample.axis, hint_);
-      pose.rotation_vector = rotation_vector_near(pose.R_robot_tool, Vec3::Zero());
-    } else {
-      const ProgramPose& last = poses_.back();
-      pose.R_robot_tool = carried_to(last.R_robot_tool, sample.axis);
-      pose.rotation_vector = rotation_vector_near(pose.R_robot_tool, last.rotation_vector);
-      pose.tip_speed_mm_s = speed_mm_s;
-      const double length = arc_mm >= 0.0 ? arc_mm : (pose.tip_mm - last.tip_mm).norm();
-      pose.time_s = last.time_s + length / speed_mm_s;
-    }
-    poses_.push_back(pose);
+    pose.waypoint = place.waypoint;
+    program_.poses.push_back(pose);
   }
 
-  void rest(double seconds) {
-    ProgramPose pose = poses_.back();
-    pose.time_s += seconds;
-    pose.tip_speed_mm_s = 0.0;
-    pose.phase = ProgramPhase::Dwell;
-    poses_.push_back(pose);
+  /// Poses evenly along the cut and, apart from it, along the overlap.
+  void add_cut(const Leg& leg, std::size_t moves) {
+    const double length = course_.curve().length_mm();
+    double begin = 0.0;
+    const auto along = [&](double arc, ProgramPhase phase) {
+      add(leg.begin_s + leg.law.time_s(arc), course_.curve().at(arc), phase, course_.curve().at(begin).speed_mm_s);
+      begin = arc;
+    };
+    for (std::size_t i = 1; i <= moves; ++i)
+      along(i == moves ? length : program_.spacing_mm * static_cast<double>(i), ProgramPhase::Cut);
+    const double overlap = course_.overlap_mm();
+    const auto overlap_moves = static_cast<std::size_t>(std::ceil(overlap / program_.spacing_mm));
+    for (std::size_t i = 1; i <= overlap_moves; ++i) {
+      along(length + overlap * static_cast<double>(i) / static_cast<double>(overlap_moves), ProgramPhase::Overlap);
+    }
   }
 
  private:
-  std::vector<ProgramPose>& poses_;
-  Vec3 hint_;
+  RobotProgram& program_;
+  const Course& course_;
+  const ToolFrame& frame_;
 };
+
+/// The place of a straight leg where the tip is that deep.
+TipSample at_depth(const Leg& leg, double depth_mm) {
+  TipSample place = leg.place;
+  place.tip_mm += (depth_mm - place.depth_mm) * place.axis;
+  place.depth_mm = depth_mm;
+  return place;
+}
 
 /// The least number of equal moves that keeps to the spacing and the chord error.
 std::size_t moves_for(const TipCurve& curve, const ProgramSettings& settings) {
@@ -100,6 +98,19 @@ std::size_t moves_for(const TipCurve& curve, const ProgramSettings& settings) {
   }
   INCISE_REQUIRE(false, "expected a course that straight moves can follow");
   return moves;
+}
+
+void write_poses(RobotProgram& program, const Course& course, const ToolFrame& frame, std::size_t moves) {
+  program.poses.clear();
+  PoseWriter poses(program, course, frame);
+  const Leg& first = course.legs().front();
+  poses.add(0.0, at_depth(first, first.from_depth_mm), ProgramPhase::Approach, 0.0);
+  for (const Leg& leg : course.legs()) {
+    if (leg.phase == ProgramPhase::Cut)
+      poses.add_cut(leg, moves);
+    else
+      poses.add(leg.end_s, at_depth(leg, leg.to_depth_mm), leg.phase, leg.nominal_speed_mm_s);
+  }
 }
 
 void require_valid(const ToolPath& path, const ProgramSettings& settings) {
@@ -158,12 +169,15 @@ std::vector<std::string> validate(const ProgramSettings& s) {
   positive(s.plunge_speed_mm_s, "plunge_speed_mm_s");
   positive(s.chord_error_mm, "chord_error_mm");
   positive(s.max_spacing_mm, "max_spacing_mm");
+  positive(s.acceleration_mm_s2, "acceleration_mm_s2");
+  positive(s.jerk_mm_s3, "jerk_mm_s3");
   not_negative(s.overlap_mm, "overlap_mm");
   not_negative(s.dwell_s, "dwell_s");
   if (!(s.approach_height_mm > s.clearance_mm) || !std::isfinite(s.approach_height_mm)) {
     broken.push_back(
         fmt::format("approach_height_mm: found {}, expected more than clearance_mm", s.approach_height_mm));
   }
+  if (s.spin_deg && !std::isfinite(*s.spin_deg)) broken.push_back("spin_deg: expected a finite angle");
   if (!s.tool_x_hint.allFinite() || s.tool_x_hint.norm() == 0.0) broken.push_back("tool_x_hint: expected a direction");
   return broken;
 }
@@ -174,44 +188,27 @@ void require_robot_frame(const ToolPath& path, const std::filesystem::path& file
                   "Project it into the robot's frame first.");
 }
 
-RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings) {
+RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings, const ArmSetup& setup) {
   require_valid(path, settings);
-  const TipCurve curve(path);
+  const auto broken = validate(setup);
+  INCISE_REQUIRE(broken.empty(), fmt::format("setup: {}", fmt::join(broken, "; ")));
+  const Course course(path, settings);
   RobotProgram program;
   program.kind = path.kind;
   program.is_closed = path.is_closed;
-  program.cut_length_mm = curve.length_mm();
-  INCISE_REQUIRE(
-      !path.is_closed || settings.overlap_mm < curve.length_mm(),
-      fmt::format("expected an overlap below the path's {} mm, found {}", curve.length_mm(), settings.overlap_mm));
-  const std::size_t moves = moves_for(curve, settings);
-  program.spacing_mm = curve.length_mm() / static_cast<double>(moves);
-  program.chord_error_mm = curve.chord_error_mm(moves);
+  program.settings = settings;
+  program.setup = setup;
+  program.cut_length_mm = course.curve().length_mm();
+  program.overlap_mm = course.overlap_mm();
+  const std::size_t moves = moves_for(course.curve(), settings);
+  program.spacing_mm = program.cut_length_mm / static_cast<double>(moves);
+  program.chord_error_mm = course.curve().chord_error_mm(moves);
 
-  ProgramBuilder builder(program, settings.tool_x_hint);
-  const TipSample start = curve.at(0.0);
-  builder.move_to(start, -settings.approach_height_mm, settings.approach_speed_mm_s, ProgramPhase::Approach);
-  builder.move_to(start, -settings.clearance_mm, settings.approach_speed_mm_s, ProgramPhase::Approach);
-  builder.move_to(start, start.depth_mm, settings.plunge_speed_mm_s, ProgramPhase::Plunge);
-  for (std::size_t i = 1; i <= moves; ++i) {
-    const double begin = program.spacing_mm * static_cast<double>(i - 1);
-    const TipSample sample = curve.at(std::min(begin + program.spacing_mm, curve.length_mm()));
-    builder.move_to(sample, sample.depth_mm, curve.at(begin).speed_mm_s, ProgramPhase::Cut, program.spacing_mm);
-  }
-  if (path.is_closed && settings.overlap_mm > 0.0) {
-    program.overlap_mm = settings.overlap_mm;
-    const auto overlap_moves = static_cast<std::size_t>(std::ceil(settings.overlap_mm / program.spacing_mm));
-    const double spacing = settings.overlap_mm / static_cast<double>(overlap_moves);
-    for (std::size_t i = 1; i <= overlap_moves; ++i) {
-      const TipSample sample = curve.at(spacing * static_cast<double>(i));
-      builder.move_to(sample, sample.depth_mm, curve.at(spacing * static_cast<double>(i - 1)).speed_mm_s,
-                      ProgramPhase::Overlap, spacing);
-    }
-  }
-  if (settings.dwell_s > 0.0) builder.rest(settings.dwell_s);
-  const TipSample end = curve.at(path.is_closed ? program.overlap_mm : curve.length_mm());
-  builder.move_to(end, -settings.clearance_mm, settings.plunge_speed_mm_s, ProgramPhase::Exit);
-  builder.move_to(end, -settings.approach_height_mm, settings.approach_speed_mm_s, ProgramPhase::Retreat);
+  write_poses(program, course, ToolFrame(path, settings.tool_x_hint, 0.0), moves);
+  const auto choice = robot_detail::choose_branch(program, setup, settings.spin_deg);
+  const ToolFrame frame(path, settings.tool_x_hint, units::rad_from_deg(choice.spin_deg));
+  write_poses(program, course, frame, moves);
+  program.motion = robot_detail::follow_branch(course, frame, choice, program, setup);
   return program;
 }
 

@@ -10,21 +10,8 @@
 namespace incise::robot_detail {
 namespace {
 
-constexpr std::size_t kFinePerSegment = 64;  // chords this short deviate from the curve by less than 0.02 mm / 1000
+constexpr std::size_t kFinePerPiece = 64;  // chords this short deviate from the curve by less than 0.02 mm / 1000
 constexpr double kLeastGapMm = 1e-3;
-
-/// Tangent at b of the Catmull-Rom spline through a, b, c whose parameter is the chord length: the slope at b of the
-/// parabola through the three. [Barry and Goldman 1988]
-Vec3 tangent(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double before = (b - a).norm(), after = (c - b).norm();
-  return (after * (b - a) / before + before * (c - b) / after) / (before + after);
-}
-
-/// Cubic Hermite curve over a chord of length h.
-Vec3 hermite(const Vec3& p, const Vec3& p_slope, const Vec3& q, const Vec3& q_slope, double h, double t) {
-  const double t2 = t * t, t3 = t2 * t;
-  return (2 * t3 - 3 * t2 + 1) * p + (t3 - 2 * t2 + t) * h * p_slope + (3 * t2 - 2 * t3) * q + (t3 - t2) * h * q_slope;
-}
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 along = b - a;
@@ -33,66 +20,108 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * along).norm();
 }
 
-std::vector<Vec3> slopes_at(const std::vector<Vec3>& tips, bool is_closed) {
-  const std::size_t n = tips.size();
-  std::vector<Vec3> slopes(n);
+}  // namespace
+
+std::vector<TipCurve::Knot> TipCurve::knots(const std::vector<Vec3>& values, const std::vector<double>& chords,
+                                            bool is_closed) {
+  const std::size_t n = values.size();
+  std::vector<Knot> result(n);
   for (std::size_t i = 0; i < n; ++i) {
-    if (is_closed || (i > 0 && i + 1 < n)) {
-      slopes[i] = tangent(tips[(i + n - 1) % n], tips[i], tips[(i + 1) % n]);
-    }
+    result[i] = {values[i], Vec3::Zero(), Vec3::Zero()};
+    if (!is_closed && (i == 0 || i + 1 == n)) continue;
+    const double before = chords[(i + n - 1) % n], after = chords[i];
+    const Vec3 in = (values[i] - values[(i + n - 1) % n]) / before, out = (values[(i + 1) % n] - values[i]) / after;
+    result[i].slope = (after * in + before * out) / (before + after);
+    result[i].bend = 2.0 * (out - in) / (before + after);
   }
   if (!is_closed && n == 2) {
-    slopes[0] = slopes[1] = (tips[1] - tips[0]).normalized();
+    result[0].slope = result[1].slope = (values[1] - values[0]) / chords[0];
   } else if (!is_closed) {
-    // End slopes of the parabola through the end's three points: twice the chord's slope less the neighbour's.
-    slopes[0] = 2.0 * (tips[1] - tips[0]).normalized() - slopes[1];
-    slopes[n - 1] = 2.0 * (tips[n - 1] - tips[n - 2]).normalized() - slopes[n - 2];
+    // An end takes on the parabola of its three points.
+    result[0].bend = result[1].bend;
+    result[0].slope = result[1].slope - chords[0] * result[1].bend;
+    result[n - 1].bend = result[n - 2].bend;
+    result[n - 1].slope = result[n - 2].slope + chords[n - 2] * result[n - 2].bend;
   }
-  return slopes;
+  return result;
 }
 
-}  // namespace
+Vec3 TipCurve::value(const Knot& a, const Knot& b, double h, double t) {
+  const double t2 = t * t, t3 = t2 * t, t4 = t3 * t, t5 = t4 * t;
+  return (1 - 10 * t3 + 15 * t4 - 6 * t5) * a.value + (t - 6 * t3 + 8 * t4 - 3 * t5) * h * a.slope +
+         (t2 - 3 * t3 + 3 * t4 - t5) / 2 * h * h * a.bend + (t3 - 2 * t4 + t5) / 2 * h * h * b.bend +
+         (-4 * t3 + 7 * t4 - 3 * t5) * h * b.slope + (10 * t3 - 15 * t4 + 6 * t5) * b.value;
+}
+
+Vec3 TipCurve::slope(const Knot& a, const Knot& b, double h, double t) {
+  const double t2 = t * t, t3 = t2 * t, t4 = t3 * t;
+  return (-30 * t2 + 60 * t3 - 30 * t4) * (a.value - b.value) + (1 - 18 * t2 + 32 * t3 - 15 * t4) * h * a.slope +
+         (2 * t - 9 * t2 + 12 * t3 - 5 * t4) / 2 * h * h * a.bend + (3 * t2 - 8 * t3 + 5 * t4) / 2 * h * h * b.bend +
+         (-12 * t2 + 28 * t3 - 15 * t4) * h * b.slope;
+}
+
+TipSample TipCurve::sample(std::size_t piece, double t) const {
+  const Piece& p = pieces_[piece];
+  return {value(p.tip_from, p.tip_to, p.chord_mm, t), value(p.axis_from, p.axis_to, p.chord_mm, t).normalized(),
+          (1.0 - t) * p.depth_from_mm + t * p.depth_to_mm, p.speed_mm_s, piece};
+}
 
 TipCurve::TipCurve(const ToolPath& path) : is_closed_(path.is_closed) {
   const std::size_t n = path.waypoints.size();
-  std::vector<Vec3> tips;
-  for (const Waypoint& waypoint : path.waypoints)
+  std::vector<Vec3> tips, axes;
+  for (const Waypoint& waypoint : path.waypoints) {
     tips.push_back(waypoint.position_mm + waypoint.depth_mm * waypoint.axis);
-  const std::size_t segments = is_closed_ ? n : n - 1;
-  for (std::size_t i = 0; i < segments; ++i) {
-    const double gap = (tips[(i + 1) % n] - tips[i]).norm();
-    INCISE_REQUIRE(gap > kLeastGapMm, fmt::format("expected tips more than {} mm apart, found {} mm after waypoint {}",
-                                                  kLeastGapMm, gap, i));
+    axes.push_back(waypoint.axis);
   }
-  const std::vector<Vec3> slopes = slopes_at(tips, is_closed_);
-  for (std::size_t i = 0; i < segments; ++i) {
-    const Waypoint& from = path.waypoints[i];
-    const Waypoint& to = path.waypoints[(i + 1) % n];
+  const std::size_t pieces = is_closed_ ? n : n - 1;
+  std::vector<double> chords(n);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    chords[i] = (tips[(i + 1) % n] - tips[i]).norm();
+    INCISE_REQUIRE(
+        chords[i] > kLeastGapMm,
+        fmt::format("expected tips more than {} mm apart, found {} mm after waypoint {}", kLeastGapMm, chords[i], i));
+  }
+  const auto tip_knots = knots(tips, chords, is_closed_), axis_knots = knots(axes, chords, is_closed_);
+  for (std::size_t i = 0; i < pieces; ++i) {
     const std::size_t next = (i + 1) % n;
-    const double chord = (tips[next] - tips[i]).norm();
-    for (std::size_t k = 0; k < kFinePerSegment; ++k) {
-      const double t = static_cast<double>(k) / kFinePerSegment;
-      fine_.push_back({hermite(tips[i], slopes[i], tips[next], slopes[next], chord, t),
-                       ((1.0 - t) * from.axis + t * to.axis).normalized(), (1.0 - t) * from.depth_mm + t * to.depth_mm,
-                       from.speed_mm_s});
+    pieces_.push_back({tip_knots[i], tip_knots[next], axis_knots[i], axis_knots[next], chords[i],
+                       path.waypoints[i].depth_mm, path.waypoints[next].depth_mm, path.waypoints[i].speed_mm_s});
+  }
+  // Arc length by Simpson's rule over each short stretch.
+  double arc = 0.0;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const auto rate = [this, i](double t) {
+      const Piece& p = pieces_[i];
+      return slope(p.tip_from, p.tip_to, p.chord_mm, t).norm();
+    };
+    for (std::size_t k = 0; k < kFinePerPiece; ++k) {
+      const double step = 1.0 / kFinePerPiece, t = step * static_cast<double>(k);
+      fine_.push_back({arc, 1.0 / rate(t), 1.0 / rate(t + step), sample(i, t).tip_mm});
+      arc += step / 6.0 * (rate(t) + 4.0 * rate(t + 0.5 * step) + rate(t + step));
     }
   }
-  const Waypoint& last = is_closed_ ? path.waypoints.front() : path.waypoints.back();
-  fine_.push_back({is_closed_ ? tips.front() : tips.back(), last.axis, last.depth_mm, last.speed_mm_s});
-  arc_mm_.push_back(0.0);
-  for (std::size_t i = 1; i < fine_.size(); ++i)
-    arc_mm_.push_back(arc_mm_.back() + (fine_[i].tip_mm - fine_[i - 1].tip_mm).norm());
+  fine_.push_back({arc, 0.0, 0.0, sample(pieces - 1, 1.0).tip_mm});
+}
+
+double TipCurve::arc_at_waypoint(std::size_t i) const {
+  return fine_[i * kFinePerPiece].arc_mm;
 }
 
 TipSample TipCurve::at(double arc_mm) const {
   if (is_closed_ && arc_mm > length_mm()) arc_mm = std::fmod(arc_mm, length_mm());
-  const auto after = std::upper_bound(arc_mm_.begin() + 1, arc_mm_.end() - 1, arc_mm);
-  const auto i = static_cast<std::size_t>(after - arc_mm_.begin());
-  const double t = std::min(1.0, (arc_mm - arc_mm_[i - 1]) / (arc_mm_[i] - arc_mm_[i - 1]));
-  const TipSample& a = fine_[i - 1];
-  const TipSample& b = fine_[i];
-  return {(1.0 - t) * a.tip_mm + t * b.tip_mm, ((1.0 - t) * a.axis + t * b.axis).normalized(),
-          (1.0 - t) * a.depth_mm + t * b.depth_mm, a.speed_mm_s};
+  arc_mm = std::clamp(arc_mm, 0.0, length_mm());
+  const auto after = std::upper_bound(fine_.begin() + 1, fine_.end() - 1, arc_mm,
+                                      [](double arc, const Fine& fine) { return arc < fine.arc_mm; });
+  const auto i = static_cast<std::size_t>(after - fine_.begin()) - 1;
+  const Fine &a = fine_[i], &b = fine_[i + 1];
+  const double span = b.arc_mm - a.arc_mm, u = (arc_mm - a.arc_mm) / span;
+  // The parameter over the arc length as a cubic with the right slopes: the tip's speed has no steps.
+  const std::size_t piece = i / kFinePerPiece;
+  const auto k = static_cast<double>(i - piece * kFinePerPiece);
+  const double u2 = u * u, u3 = u2 * u;
+  const double t = (k + 3 * u2 - 2 * u3) / kFinePerPiece + (u3 - 2 * u2 + u) * span * a.t_per_mm +
+                   (u3 - u2) * span * a.t_per_mm_at_end;
+  return sample(piece, t);
 }
 
 double TipCurve::chord_error_mm(std::size_t moves) const {
@@ -102,7 +131,7 @@ double TipCurve::chord_error_mm(std::size_t moves) const {
   for (std::size_t move = 0; move < moves; ++move) {
     const double end = spacing * static_cast<double>(move + 1);
     const Vec3 a = at(spacing * static_cast<double>(move)).tip_mm, b = at(std::min(end, length_mm())).tip_mm;
-    for (; fine < fine_.size() && arc_mm_[fine] <= end; ++fine) {
+    for (; fine < fine_.size() && fine_[fine].arc_mm <= end; ++fine) {
       worst = std::max(worst, distance_to_segment(fine_[fine].tip_mm, a, b));
     }
   }

@@ -55,13 +55,12 @@ void require_consistent(const CaseFile& file, const std::string& name) {
   if (const auto length = length_mm(c.tool); length && c.plan.depth_mm > *length) {
     throw CaseError(name, "plan.depth_mm", fmt::format("{} mm", c.plan.depth_mm), fmt::format("at most tool.length_mm = {} mm", *length));
   }
-  if (c.T_robot_sim) {
-    const Mat3 rotation = c.T_robot_sim->topLeftCorner<3, 3>();
+  for (const auto& [field, transform] : {std::pair{"robot.T_robot_sim", &c.T_robot_sim}, std::pair{"robot.T_flange_tool", &c.T_flange_tool}}) {
+    if (!*transform) continue;
+    const Mat3 rotation = (*transform)->topLeftCorner<3, 3>();
     const bool is_rigid = (rotation.transpose() * rotation - Mat3::Identity()).norm() < 1e-6 && rotation.determinant() > 0.0 &&
-                          (c.T_robot_sim->row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() < 1e-9;
-    if (!is_rigid) {
-      throw CaseError(name, "robot.T_robot_sim", "a matrix that is not rigid", "a rotation, a translation and the row 0 0 0 1");
-    }
+                          ((*transform)->row(3) - Eigen::RowVector4d(0, 0, 0, 1)).norm() < 1e-9;
+    if (!is_rigid) throw CaseError(name, field, "a matrix that is not rigid", "a rotation, a translation and the row 0 0 0 1");
   }
 }
 

@@ -288,15 +288,22 @@ void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
 
 void describe_robot(CaseFile& file, FieldVisitor& v) {
   v.path({"path", "", "A path.json (frame sim_stretched) to follow in place of the planned one."}, file.inputs.tool_path);
-  v.begin_group({"robot", "", "Where the specimen lies under the robot."});
+  v.begin_group({"robot", "", "The arm, its tool, and where the specimen lies under it."});
   static constexpr std::array<const char*, 1> kModels{"ur10e"};
   std::size_t model = 0;
   v.choice({"model", "", "The arm."}, model, kModels);
-  optional_numbers<16>(
-      v, {"T_robot_sim", "mm", "Rigid 4 x 4 transform, rows, from simulation to robot coordinates; absent: no program is made."},
-      file.settings.T_robot_sim, kAny,
-      [](const Mat4& from, auto& to) { Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(to.data()) = from; },
-      [](const auto& from) { return Mat4(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(from.data())); });
+  const auto transform = [&v](const FieldInfo& info, std::optional<Mat4>& value) {
+    optional_numbers<16>(
+        v, info, value, kAny,
+        [](const Mat4& from, auto& to) { Eigen::Map<Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(to.data()) = from; },
+        [](const auto& from) { return Mat4(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(from.data())); });
+  };
+  transform({"T_robot_sim", "mm", "Rigid 4 x 4 transform, rows, from simulation to robot coordinates; absent: no program is made."},
+            file.settings.T_robot_sim);
+  transform({"T_flange_tool", "mm",
+             "Rigid 4 x 4 transform, rows, from the tool's coordinates (origin at the needle's tip, z along the needle) to those of the arm's "
+             "flange; absent: the tip lies 150 mm straight in front of it."},
+            file.settings.T_flange_tool);
   v.end_group();
 }
 

@@ -3,9 +3,11 @@
 
 #include <incise/core/error.hpp>
 #include <incise/report/figures.hpp>
+#include <incise/report/replay_figure.hpp>
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 
 namespace incise {
@@ -188,6 +190,39 @@ TEST(Histogram, DrawsOneBarPerBinThatHoldsSomething) {
 TEST(Histogram, RefusesNoBinsAndNegativeCounts) {
   EXPECT_THROW(static_cast<void>(histogram_svg({})), InvalidArgument);
   EXPECT_THROW(static_cast<void>(histogram_svg({.counts = {1.0, -1.0}})), InvalidArgument);
+}
+
+ReplayPicture circle_picture() {
+  ReplayPicture picture;
+  for (int i = 0; i <= 5000; ++i) {
+    const double angle = 2.0 * 3.14159265 * i / 5000.0;
+    picture.tip_mm.emplace_back(15.0 * std::cos(angle), 15.0 * std::sin(angle), 100.0);
+    picture.time_s.push_back(0.002 * i);
+    picture.tip_speed_mm_s.push_back(7.0);
+    picture.deviation_mm.push_back(0.01);
+  }
+  picture.intended_mm = picture.tip_mm;
+  picture.max_deviation_mm = 0.01;
+  return picture;
+}
+
+TEST(ReplayFigure, ShowsPathSpeedAndDeviationWithUnits) {
+  const std::string svg = replay_figure_svg(circle_picture());
+  expect_whole_svg(svg);
+  for (const char* text : {"5 mm", "tip speed, mm/s", "deviation, mm", "time, s"})
+    EXPECT_THAT(svg, HasSubstr(std::string(">") + text + "<"));
+  EXPECT_THAT(svg, HasSubstr("at most 0.01 mm off"));
+  EXPECT_LT(svg.size(), 200000U);  // thinned out to what can be seen
+}
+
+TEST(ReplayFigure, RefusesTooLittleAndNumbersThatAreNotFinite) {
+  ReplayPicture picture = circle_picture();
+  picture.tip_speed_mm_s[7] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(static_cast<void>(replay_figure_svg(picture)), InvalidArgument);
+  picture = circle_picture();
+  picture.time_s.pop_back();
+  EXPECT_THROW(static_cast<void>(replay_figure_svg(picture)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(replay_figure_svg({})), InvalidArgument);
 }
 
 }  // namespace

@@ -23,8 +23,8 @@ std::vector<std::string> failures(const ProgramChecks& checks) {
 }
 
 std::vector<std::string> failures_of(const ToolPath& path, const CheckSettings& settings = {},
-                                     const ToolPath* intended = nullptr) {
-  return failures(check_program(make_program(path), path, settings, intended));
+                                     const CheckInputs& inputs = {}) {
+  return failures(check_program(make_program(path), path, settings, inputs));
 }
 
 const ProgramCheck& named(const ProgramChecks& checks, const std::string& name) {
@@ -36,14 +36,18 @@ const ProgramCheck& named(const ProgramChecks& checks, const std::string& name) 
 
 TEST(CheckProgram, PassesASoundRingAndSaysWhatItFound) {
   const ToolPath path = ring_path();
-  const ProgramChecks checks = check_program(make_program(path), path, {}, &path);
+  const ProgramChecks checks = check_program(make_program(path), path, {}, {.intended = &path});
   EXPECT_TRUE(checks.all_passed()) << ::testing::PrintToString(failures(checks));
-  EXPECT_EQ(checks.checks.size(), 10u);
+  std::vector<std::string> names;
+  for (const auto& check : checks.checks) names.push_back(check.name);
+  EXPECT_THAT(names, ::testing::ElementsAre("finite", "frame", "closed", "self_crossing", "speed_min", "speed_max",
+                                            "depth", "margin", "deviation", "chord_error", "reach", "joint_limits",
+                                            "joint_speed", "joint_acceleration", "singularity", "tip_speed", "table"));
   EXPECT_NEAR(named(checks, "margin").value, 5.0, 0.05);
   EXPECT_NEAR(named(checks, "speed_max").value, 7.0, 1e-12);
   EXPECT_LT(named(checks, "deviation").value, 0.05);
-  // The flange is 150 mm above the tip; farthest at (615, 0, 130 + 150).
-  EXPECT_NEAR(named(checks, "reach").value, std::hypot(615.0, 280.0), 0.1);
+  EXPECT_LT(named(checks, "tip_speed").value, 1e-3);
+  EXPECT_LT(named(checks, "joint_speed").value, 0.1);
 }
 
 TEST(CheckProgram, SaysWhatNobodyHasLookedAt) {
@@ -51,7 +55,8 @@ TEST(CheckProgram, SaysWhatNobodyHasLookedAt) {
   const auto checks = check_program(make_program(path), path, {.must_be_ring = false});
   EXPECT_TRUE(checks.all_passed());
   const std::string all = ::testing::PrintToString(checks.not_made);
-  for (const char* word : {"kinematics", "singularities", "joint limits", "collisions", "margin", "deviation"}) {
+  for (const char* word :
+       {"forces", "collisions", "controller", "margin", "deviation", "power", "registration", "shaft"}) {
     EXPECT_THAT(all, ::testing::HasSubstr(word));
   }
 }
@@ -82,7 +87,7 @@ TEST(CheckProgram, FindsAnOpenRing) {
 TEST(CheckProgram, FindsACourseThatCrossesItself) {
   ToolPath path = ring_path();
   std::swap(path.waypoints[10].position_mm, path.waypoints[13].position_mm);
-  EXPECT_THAT(failures_of(path), ::testing::ElementsAre("self_crossing"));
+  EXPECT_THAT(failures_of(path), ::testing::Contains("self_crossing"));
 }
 
 TEST(CheckProgram, FindsSpeedsOutOfRange) {
@@ -117,15 +122,167 @@ TEST(CheckProgram, FindsADeviationBeyondTheCap) {
   const ToolPath intended = ring_path();
   ToolPath path = intended;
   for (auto& waypoint : path.waypoints) waypoint.position_mm.x() += 1.5;
-  EXPECT_TRUE(failures_of(path, {.max_deviation_mm = 1.6}, &intended).empty());
-  EXPECT_THAT(failures_of(path, {.max_deviation_mm = 1.4}, &intended), ::testing::ElementsAre("deviation"));
+  EXPECT_TRUE(failures_of(path, {.max_deviation_mm = 1.6}, {.intended = &intended}).empty());
+  EXPECT_THAT(failures_of(path, {.max_deviation_mm = 1.4}, {.intended = &intended}),
+              ::testing::ElementsAre("deviation"));
 }
 
-TEST(CheckProgram, FindsAPlaceOutOfReach) {
+TEST(CheckProgram, FindsAPlaceOutOfReachAndNamesItsWaypoint) {
   ToolPath path = ring_path();
-  for (auto& waypoint : path.waypoints) waypoint.position_mm.x() += 700.0;
-  for (auto& point : path.tumor_edge.points) point.x() += 700.0;
-  EXPECT_THAT(failures_of(path), ::testing::ElementsAre("reach"));
+  for (auto& waypoint : path.waypoints) waypoint.position_mm.x() += 855.0;
+  for (auto& point : path.tumor_edge.points) point.x() += 855.0;
+  const auto beyond = check_program(make_program(path), path);
+  EXPECT_THAT(failures(beyond), ::testing::ElementsAre("reach"));
+  EXPECT_TRUE(named(beyond, "reach").waypoint.has_value());
+  EXPECT_THAT(named(beyond, "reach").message(), ::testing::HasSubstr("reach: not so at waypoint 0 (pose 0)"));
+  EXPECT_THAT(::testing::PrintToString(beyond.not_made), ::testing::HasSubstr("there is no motion of the arm"));
+}
+
+TEST(CheckProgram, FindsAWristOverTheShoulder) {
+  // Straight above the base the arm cannot go: its shoulder is in the way.
+  ToolPath path = ring_path();
+  for (auto& waypoint : path.waypoints) waypoint.position_mm += Vec3(-600.0, 0.0, 500.0);
+  path.tumor_edge = {};
+  const auto failed = failures_of(path);
+  EXPECT_THAT(failed, ::testing::Contains("reach"));
+}
+
+TEST(CheckProgram, FindsAStretchedArmNextToASingularityBeforeItIsOutOfReach) {
+  ToolPath path = line_path();  // the needle points away from the base, at the height of the shoulder
+  for (auto& waypoint : path.waypoints) {
+    waypoint.position_mm = Vec3(1440.0, waypoint.position_mm.x() - 700.0, 250.0);
+    waypoint.axis = Vec3::UnitX();
+  }
+  std::vector<std::string> failed;
+  for (int step = 0; step < 30 && failed.empty(); ++step) {
+    failed = failures_of(path, {.must_be_ring = false});
+    for (auto& waypoint : path.waypoints) waypoint.position_mm.x() += 4.0;
+  }
+  EXPECT_THAT(failed, ::testing::Contains("singularity"));
+}
+
+TEST(CheckProgram, FindsAnArmThatWouldReachBelowTheTable) {
+  ToolPath path = ring_path();
+  const auto settings = CheckSettings{};
+  ArmSetup setup;
+  setup.table_z_mm = 400.0;
+  EXPECT_THAT(failures(check_program(make_program(path, {}, setup), path, settings)), ::testing::Contains("table"));
+}
+
+TEST(CheckProgram, FindsJointLimitsSpeedsAndAccelerations) {
+  const ToolPath path = ring_path();
+  EXPECT_THAT(failures_of(path, {.joint_margin_deg = 300.0}), ::testing::ElementsAre("joint_limits"));
+  EXPECT_THAT(failures_of(path, {.joint_speed_share = 1e-3}), ::testing::ElementsAre("joint_speed"));
+  EXPECT_THAT(failures_of(path, {.max_joint_acceleration_rad_s2 = 1e-3}), ::testing::ElementsAre("joint_acceleration"));
+}
+
+/// A flat sheet at a height, as triangles or as points 1 mm apart.
+TriMesh sheet(double z_mm, bool as_points) {
+  TriMesh mesh;
+  for (int i = 0; i <= 80; ++i) {
+    for (int j = 0; j <= 80; ++j) mesh.vertices.emplace_back(560.0 + i, -40.0 + j, z_mm);
+  }
+  if (as_points) return mesh;
+  const auto id = [](int i, int j) { return VertexId(static_cast<std::uint32_t>(81 * i + j)); };
+  for (int i = 0; i < 80; ++i) {
+    for (int j = 0; j < 80; ++j) {
+      mesh.triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+      mesh.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+TEST(CheckProgram, MeasuresDepthBelowASurfaceOfTrianglesOrPoints) {
+  const ToolPath path = ring_path();
+  for (const bool as_points : {false, true}) {
+    const TriMesh right = sheet(100.2, as_points), wrong = sheet(100.8, as_points);
+    const auto checks = check_program(make_program(path), path, {}, {.surface = &right});
+    EXPECT_TRUE(checks.all_passed()) << ::testing::PrintToString(failures(checks));
+    EXPECT_NEAR(named(checks, "depth").value, 0.2, 1e-6);
+    // The shaft begins 20 mm above the surface and is 5 mm thick to either side.
+    EXPECT_NEAR(named(checks, "shaft").value, 20.0 - 0.2 - 5.0, 1e-6);
+    EXPECT_THAT(failures_of(path, {}, {.surface = &wrong}), ::testing::ElementsAre("depth"));
+  }
+}
+
+TEST(CheckProgram, FindsAShaftThatTouchesTheTissue) {
+  const ToolPath path = ring_path();
+  TriMesh surface = sheet(100.0, false);
+  for (auto& vertex : surface.vertices) {
+    const double away = (vertex - Vec3(600.0, 0.0, 100.0)).norm();
+    if (away > 17.0) vertex.z() += 30.0;  // a wall 2 mm beside the ring, higher than the needle is long
+  }
+  EXPECT_THAT(failures_of(path, {}, {.surface = &surface}), ::testing::Contains("shaft"));
+}
+
+TEST(CheckProgram, FindsAHoleInTheSurfaceBelowTheTool) {
+  const ToolPath path = ring_path();
+  TriMesh cloud = sheet(100.0, true);
+  std::erase_if(cloud.vertices, [](const Vec3& p) { return p.x() > 605.0; });
+  const auto checks = check_program(make_program(path), path, {}, {.surface = &cloud});
+  EXPECT_THAT(failures(checks), ::testing::Contains("depth"));
+  EXPECT_THAT(named(checks, "depth").message(), ::testing::HasSubstr("gap below the tool"));
+}
+
+TEST(CheckProgram, LooksAtPowerAndRegistration) {
+  const ToolPath path = ring_path();
+  EXPECT_THAT(failures_of(path, {}, {.power_w = 80.0}), ::testing::ElementsAre("power"));
+  EXPECT_THAT(failures_of(path, {}, {.power_w = 5.0}), ::testing::ElementsAre("power"));
+  EXPECT_TRUE(
+      failures_of(path, {}, {.power_w = 35.0, .registration = RegistrationSummary{1.01, 0.4, 0.9, true}}).empty());
+  EXPECT_THAT(failures_of(path, {}, {.registration = RegistrationSummary{0.9, 2.0, 0.2, false}}),
+              ::testing::ElementsAre("registration_scale", "registration_rmse", "registration_inliers",
+                                     "registration_converged"));
+}
+
+ToolPath mark_path() {
+  ToolPath path = ring_path();
+  path.kind = PathKind::Mark;
+  for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
+    path.waypoints[i].position_mm = path.tumor_edge.points[i];
+    path.waypoints[i].depth_mm = 1.0;
+    path.waypoints[i].speed_mm_s = 2.0;
+  }
+  return path;
+}
+
+TEST(CheckProgram, HoldsAMarkToItsOwnList) {
+  const ToolPath good = mark_path();
+  const auto checks = check_program(make_program(good), good);
+  EXPECT_TRUE(checks.all_passed()) << ::testing::PrintToString(failures(checks));
+  EXPECT_LT(named(checks, "edge_distance").value, 0.05);
+  EXPECT_THROW(static_cast<void>(named(checks, "margin")), std::runtime_error);
+  ToolPath path = good;
+  for (auto& waypoint : path.waypoints) waypoint.position_mm.y() += 0.4;
+  EXPECT_THAT(failures_of(path), ::testing::ElementsAre("edge_distance"));
+  path = good;
+  path.waypoints[5].depth_mm = 1.4;
+  EXPECT_THAT(failures_of(path), ::testing::ElementsAre("depth"));
+  path = good;
+  for (auto& waypoint : path.waypoints) waypoint.speed_mm_s = 2.1;
+  EXPECT_THAT(failures_of(path), ::testing::ElementsAre("speed_max"));
+}
+
+TEST(OverrideChecks, LetsAFailedCheckPassAndKeepsItInTheRecord) {
+  ToolPath path = ring_path();
+  path.waypoints[12].position_mm = Vec3(600.0, 12.0, 100.0);
+  auto checks = check_program(make_program(path), path);
+  EXPECT_FALSE(checks.may_be_written());
+  EXPECT_THAT(named(checks, "margin").message(), ::testing::HasSubstr("mm at waypoint 12 (pose "));
+  override_checks(checks, {"margin", "depth"});
+  EXPECT_TRUE(checks.may_be_written());
+  EXPECT_FALSE(checks.all_passed());
+  EXPECT_TRUE(named(checks, "margin").is_overridden);
+  EXPECT_FALSE(named(checks, "depth").is_overridden);  // it has not failed
+}
+
+TEST(OverrideChecks, RefusesWhatCannotBeOverridden) {
+  const ToolPath path = ring_path();
+  auto checks = check_program(make_program(path), path);
+  for (const char* name : {"finite", "frame", "reach", "margins"})
+    EXPECT_THROW(override_checks(checks, {name}), InvalidArgument) << name;
+  EXPECT_EQ(check_names().size(), 24u);
 }
 
 }  // namespace

@@ -269,7 +269,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"meshing: {fine_mm: 5, coarse_mm: 3}", "meshing.fine_mm"},
         BadValue{"meshing: {tets: -5}", "meshing.tets"}, BadValue{"ct: {window_hu: [180, -20]}", "window_hu"},
         BadValue{"robot: {T_robot_sim: [[2,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}", "robot.T_robot_sim"},
-        BadValue{"robot: {T_robot_sim: [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}", "robot.T_robot_sim"}));
+        BadValue{"robot: {T_robot_sim: [[-1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}", "robot.T_robot_sim"},
+        BadValue{"robot: {T_flange_tool: [[1,0,0,0],[0,1,0,0],[0,0,2,150],[0,0,0,1]]}", "robot.T_flange_tool"}));
 
 TEST_F(CaseFileTest, ACtAndAMeshTogetherAreRefusedAndSoIsNeither) {
   EXPECT_THAT(refusal_with("ct: {volume: ct}\n"), AllOf(HasSubstr("specimen.mesh"), HasSubstr("only one of")));

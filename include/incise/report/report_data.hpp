@@ -166,6 +166,8 @@ struct ReportData {
   std::vector<ReportStage> stages;
   std::vector<ReportValue> program;  ///< summary of the robot program
   std::vector<ReportCheck> checks;
+  std::string program_figure;           ///< a complete SVG document: the program as the player ran it
+  std::vector<ReportValue> replay;      ///< numbers of that
   std::string program_text;             ///< the program, or its beginning
   std::vector<ReportTable> tables;      ///< calibration and others
   std::vector<ReportValue> settings;    ///< all settings, flattened: "cut.speed_mm_s"

@@ -1,12 +1,22 @@
 #pragma once
 
+#include <incise/geometry/tet_mesh.hpp>
 #include <incise/robot/program.hpp>
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace incise {
+
+/// What is known of the registration that put the path into the robot's frame.
+struct RegistrationSummary {
+  double scale = 1.0;
+  double rmse_mm = 0.0;
+  double inlier_fraction = 1.0;
+  bool is_converged = true;
+};
 
 /// Limits that a program is held to before it may be written for a robot.
 struct CheckSettings {
@@ -17,26 +27,65 @@ struct CheckSettings {
   double depth_tolerance_mm = 0.5;
   double close_margin_mm = 2.2;   ///< least distance of the path from the tumour edge, on its outside
   double max_deviation_mm = 4.0;  ///< of the path from the intended one: more than any correction should ask for
-  double max_reach_mm = 1300.0;   ///< UR10e: from the base axis to the wrist (Universal Robots' data sheet)
-  double tool_length_mm = 150.0;  ///< from the flange to the tip, along the axis
+
+  // Marking: in the place of the limits above.
+  double mark_distance_mm = 0.3;  ///< most that a mark leaves the tumour edge by
+  double mark_depth_mm = 1.0;
+  double mark_depth_tolerance_mm = 0.3;
+  double mark_speed_mm_s = 2.0;
+  double mark_speed_tolerance = 0.01;  ///< as a share
+
+  // The arm.
+  double min_singular_value = 0.03;            ///< see smallest_singular_value
+  double joint_margin_deg = 5.0;               ///< kept from the joints' limits
+  double joint_speed_share = 0.5;              ///< of what the maker allows
+  double max_joint_acceleration_rad_s2 = 5.0;  ///< the maker publishes none; his own programs' default is 1.4
+  double table_clearance_mm = 20.0;            ///< of the links' hulls
+  double tip_speed_tolerance = 0.01;           ///< as a share of the speed, away from the ends
+  double max_chord_error_mm = 0.02;            ///< of the moves and their blends from the smooth course
+
+  // The instrument: a needle, then a shaft up to the flange.
+  double needle_length_mm = 25.0;
+  double shaft_radius_mm = 5.0;
+  double shaft_clearance_mm = 1.0;
+
+  double min_power_w = 10.0, max_power_w = 60.0;
+
+  double min_scale = 0.95, max_scale = 1.05;  ///< of the registration; both sensors are metric
+  double max_rmse_mm = 1.0;
+  double min_inlier_fraction = 0.5;
 };
 
-/// One named check: passed when `value` keeps to `limit` as `relation` says, or, without a relation, when `text` is true.
+/// What a program is held against, as far as it is known.
+struct CheckInputs {
+  const ToolPath* intended = nullptr;  ///< the path before correction, in the robot's frame
+  const TriMesh* surface = nullptr;    ///< the tissue in the robot's frame, mm; a cloud is a mesh without triangles
+  std::optional<double> power_w{};
+  std::optional<RegistrationSummary> registration{};
+};
+
+/// One named check: passed when `value` keeps to `limit` as `relation` says, or, without a relation, when `text` is
+/// true.
 struct ProgramCheck {
   std::string name;
   bool passed = false;
   double value = 0.0;
   double limit = 0.0;
-  std::string relation = "<=";      ///< "<=", ">=", or empty for a plain yes or no
-  std::string unit;                 ///< mm, mm/s or empty
-  std::optional<std::size_t> pose;  ///< the worst pose of the program, where there is one
-  std::string text;                 ///< for a person
+  std::string relation = "<=";            ///< "<=", ">=", or empty for a plain yes or no
+  std::string unit;                       ///< mm, mm/s or empty
+  std::optional<std::size_t> pose;        ///< the worst pose of the program, where there is one
+  std::string text;                       ///< for a person
+  std::optional<std::size_t> waypoint{};  ///< of the path, at or before that pose
+  bool is_overridden = false;             ///< a person has taken it on them
+  /// "margin: 1.83 mm at waypoint 12 (pose 20), has to be >= 2.2 mm: least distance of …"
+  [[nodiscard]] std::string message() const;
 };
 
 struct ProgramChecks {
   std::vector<ProgramCheck> checks;
   std::vector<std::string> not_made;  ///< what nobody has looked at: read it before a robot moves
   [[nodiscard]] bool all_passed() const;
+  [[nodiscard]] bool may_be_written() const;  ///< every check has passed or is overridden
 };
 
 /// Checks a program and the path that it came from. Names of the checks, in this order:
@@ -45,17 +94,32 @@ struct ProgramChecks {
 ///   frame            the path is given in the robot's base frame
 ///   closed           (rings) the path is closed and the cut ends where it began, to 0.01 mm
 ///   self_crossing    the entry course crosses itself nowhere, seen along the mean axis
-///   speed_min, speed_max   tip speed while cutting
-///   depth            every waypoint's depth is the planned one within the tolerance
-///   margin           the entry course stays outside the tumour edge by `close_margin_mm` (distances to the edge's
-///   segments) deviation        no entry point farther than `max_deviation_mm` from the intended path (if given) reach
-///   the flange stays within `max_reach_mm` of the base's origin
+///   speed_min, speed_max   nominal tip speed while cutting; a mark: within its tolerance of 2 mm/s
+///   depth            every place's depth is the planned one within the tolerance: below the surface if one is given,
+///   else as the path says margin           (incisions) the entry course stays outside the tumour edge by
+///   `close_margin_mm` (distances to the edge's segments) edge_distance    (marks) the entry course follows the tumour
+///   edge within `mark_distance_mm` deviation        no entry point farther than `max_deviation_mm` from the intended
+///   path (if given) chord_error      straight moves and their blends stay near the smooth course reach            the
+///   arm reaches every pose on one branch, without a jump; if not, no check of joints is made joint_limits,
+///   joint_speed, joint_acceleration, singularity   of the arm's motion tip_speed        the tip's speed, from the
+///   joints, is the nominal one away from the ends table            the links stay clear of the table's plane shaft
+///   (with a surface) the instrument behind its needle stays clear of it power            (if given) within the
+///   generator's usual range for cutting registration_scale, registration_rmse, registration_inliers,
+///   registration_converged   (if given)
 ///
-/// This is geometry only. Inverse kinematics, singularities, joint limits and speeds, collisions, accelerations and
-/// forces are **not** checked; `not_made` lists them, together with checks that lack their input (no tumour edge, no
-/// intended path).
-/// @param intended  the path before correction, same frame; nullptr if there is none.
+/// Forces, the electrode's switching, cables, other things in the room and how well the controller keeps to its path
+/// are **not** checked; `not_made` lists them, together with checks that lack their input.
 [[nodiscard]] ProgramChecks check_program(const RobotProgram& program, const ToolPath& path,
-                                          const CheckSettings& settings = {}, const ToolPath* intended = nullptr);
+                                          const CheckSettings& settings = {}, const CheckInputs& inputs = {});
+
+/// Every name that check_program may give.
+[[nodiscard]] std::span<const char* const> check_names();
+
+/// Whether a person may take a failed check on them. Not `finite` and `frame`, whose program would be nonsense, and not
+/// `reach`, without which there is no motion to write.
+[[nodiscard]] bool can_be_overridden(const std::string& check);
+
+/// Marks failed checks of these names as overridden. @pre known names that can be overridden (InvalidArgument).
+void override_checks(ProgramChecks& checks, const std::vector<std::string>& names);
 
 }  // namespace incise

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/geometry/tool_path.hpp>
+#include <incise/robot/joint_motion.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -32,7 +33,12 @@ struct ProgramSettings {
   double dwell_s = 0.0;          ///< rest at the end of the cut, before the exit
   double chord_error_mm = 0.02;  ///< most that the straight moves between poses deviate from the smooth course
   double max_spacing_mm = 2.0;   ///< of the poses along the cut
-  Vec3 tool_x_hint = Vec3::UnitX();  ///< the tool's x axis starts as close to this direction as its z axis allows
+  double acceleration_mm_s2 = 100.0;  ///< most that the tip speeds up or slows down by
+  double jerk_mm_s3 = 2000.0;         ///< most that this acceleration changes by
+  Vec3 tool_x_hint = Vec3::UnitX();   ///< the tool's x axis lies as close to this direction as its mean z axis allows,
+  /// and is then turned by this angle about that mean axis. Not given: whatever suits the arm best, for a needle is
+  /// round.
+  std::optional<double> spin_deg{};
 };
 /// Every rule that the settings break, in words; empty: none.
 [[nodiscard]] std::vector<std::string> validate(const ProgramSettings& settings);
@@ -47,13 +53,14 @@ struct ProgramPose {
   double tip_speed_mm_s = 0.0;           ///< of the move that ends here; 0 for the first pose and the dwell
   double depth_mm = 0.0;                 ///< of the tip below the surface along the axis; negative above it
   ProgramPhase phase = ProgramPhase::Approach;
+  std::size_t waypoint = 0;  ///< of the path, at or before this pose
 
   /// Where the tool's axis meets the tissue's surface.
   [[nodiscard]] Vec3 entry_mm() const { return tip_mm - depth_mm * R_robot_tool.col(2); }
 };
 
-/// A timed list of tool poses. The times are those of constant tip speed without acceleration ramps: the controller
-/// adds its own.
+/// A timed list of tool poses. Between them the tip speeds up and slows down by S-curves (bounded acceleration and
+/// jerk) where it starts from rest, comes to rest or changes its speed, and keeps its speed elsewhere.
 struct RobotProgram {
   std::vector<ProgramPose> poses;
   PathKind kind = PathKind::Incise;
@@ -62,6 +69,9 @@ struct RobotProgram {
   double overlap_mm = 0.0;      ///< really run, equal to the setting for a closed path, else 0
   double spacing_mm = 0.0;      ///< of the poses along the cut
   double chord_error_mm = 0.0;  ///< largest distance found between the moves and the smooth course
+  ProgramSettings settings{};   ///< that it was made with
+  ArmSetup setup{};             ///< likewise
+  JointMotion motion{};         ///< the arm along the whole course; without samples where it cannot get along
   [[nodiscard]] double duration_s() const { return poses.empty() ? 0.0 : poses.back().time_s; }
 };
 
@@ -72,13 +82,16 @@ void require_robot_frame(const ToolPath& path, const std::filesystem::path& file
 /// Turns a path into a program: above the entry, down to the clearance, along the axis to depth, along the path at its
 /// own speeds, over the overlap (closed paths), rest, out along the axis, away.
 ///
-/// The tip follows a smooth curve (Catmull-Rom with the chord lengths as parameter) through the waypoints' tips; poses
-/// are evenly spaced along it, as far apart as `chord_error_mm` and `max_spacing_mm` allow, so that every move of the
-/// cut takes the time that its length and the waypoint's speed say. The tool turns about its own axis as little as
-/// possible (a needle is round).
+/// The tip follows a smooth curve through the waypoints' tips whose direction and curvature have no steps (see
+/// docs/models/robot.md); poses are evenly spaced along it, as far apart as `chord_error_mm` and `max_spacing_mm`
+/// allow. Phases begin and end at rest. The tool's frame is that about the mean axis, swung by the shortest turn to the
+/// axis of the place: no turn about its own axis is added, and a ring ends as it began.
+/// Then the arm's joints along that course are found (`motion`), on one of the eight branches throughout.
 /// @param path  frame robot; at least 3 waypoints (2 if open), no two neighbours less than 1 µm apart, finite, unit
 /// axes.
-/// @throws InvalidArgument if the path or the settings break a rule.
-[[nodiscard]] RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings = {});
+/// @throws InvalidArgument if the path or the settings break a rule, or an axis lies more than 120 degrees from the
+/// mean one.
+[[nodiscard]] RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings = {},
+                                        const ArmSetup& setup = {});
 
 }  // namespace incise

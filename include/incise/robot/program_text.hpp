@@ -5,31 +5,67 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace incise {
 
+/// What every written program says of itself, in the form's own way: comment lines `# incise.KEY: VALUE` of a script, a
+/// table or YAML, the object `header` of JSON, a message of a bag. Keys may repeat. The player reads them back.
+using ProgramHeader = std::vector<std::pair<std::string, std::string>>;
+
+/// The heading of a program: kind, closed, lengths, tool, arm, branch, the path's waypoints (so that the player knows
+/// the intended course), the checks made, those overridden and not made.
+/// @param provenance  added lines, key and value: what it was made from, hashes, version.
+[[nodiscard]] ProgramHeader program_header(const RobotProgram& program, const ToolPath& path,
+                                           const ProgramChecks& checks, const ProgramHeader& provenance = {});
+
 /// How a program is written as URScript.
-struct UrScriptSettings {
-  std::string function_name = "incise_cut";  ///< letters, digits and _, not starting with a digit
-  double acceleration_mm_s2 = 250.0;         ///< of all moves
-  double blend_fraction = 0.4;  ///< blend radius of the cut's poses, as a fraction of their spacing; in [0, 0.5)
-  std::vector<std::string> provenance{};  ///< lines for the heading: what it was made from, hashes, version
-  std::optional<Mat4>
-      T_flange_tool{};  ///< mm, a rigid transform; written as set_tcp. Without it the controller's own TCP holds
+enum class ScriptMotion {
+  MoveP,  ///< `movel` and `movep` with blends: the controller finds the joints and keeps the tip's speed
+  ServoJ  ///< a stream of joint positions at even times
 };
+struct UrScriptSettings {
+  ScriptMotion motion = ScriptMotion::MoveP;
+  std::string function_name = "incise_cut";  ///< letters, digits and _, not starting with a digit
+  double blend_fraction = 0.4;  ///< blend radius of the cut's poses, as a fraction of their spacing; in [0, 0.5)
+  double lookahead_s = 0.1;     ///< of servoj, [0.03, 0.2]: less lag, less smoothing
+  double gain = 300.0;          ///< of servoj, [100, 2000]
+  double settle_s = 0.4;        ///< of servoj: rest added where a motion ends, so that the arm has caught up
+};
+/// Every rule that the settings break, in words; empty: none.
+[[nodiscard]] std::vector<std::string> validate(const UrScriptSettings& settings);
 
 /// The program as a URScript function and a call to it: metres, seconds, axis-angle poses p[x, y, z, rx, ry, rz] of the
-/// tool's tip in the base frame; `movel` through the air, into and out of the tissue, `movep` with blends along the
-/// cut, so that the tip keeps its speed. The power of the electrode is not switched. Nothing in it opens a connection.
-/// A comment says that it comes from a simulation.
-/// @pre the program's numbers are finite, the settings are valid (InvalidArgument).
-[[nodiscard]] std::string to_urscript(const RobotProgram& program, const UrScriptSettings& settings = {});
+/// tool's tip in the base frame. It sets the tool centre point, goes to the first joint positions by `movej` (this
+/// settles the arm's branch) and then runs the course: with MoveP by `movel` through the air, into and out of the
+/// tissue, and by `movep` with blends along the cut; with ServoJ by one `servoj` per sample of the motion. The power of
+/// the electrode is not switched. Nothing in it opens a connection. A comment says that it comes from a simulation.
+/// @pre the program's numbers are finite, its motion was found, the settings are valid (InvalidArgument).
+[[nodiscard]] std::string to_urscript(const RobotProgram& program, const ProgramHeader& header,
+                                      const UrScriptSettings& settings = {});
 
-/// The program as JSON, mm, s and rad: `poses` with `phase`, `time_s`, `tip_mm`, `rotation_vector`, `tip_speed_mm_s`,
-/// `depth_mm`; with `checks` given, also every check (name, passed, value, limit, unit, pose, text) and
-/// `checks_not_made`.
+/// The motion as a table: comment lines with the header, then `time_s`, six joint positions (rad, named as in the
+/// maker's ROS description), six speeds (`…_rad_s`), six accelerations (`…_rad_s2`), `tip_x_mm`, `tip_y_mm`,
+/// `tip_z_mm`, `phase`. @pre as to_urscript
+[[nodiscard]] std::string to_joint_csv(const RobotProgram& program, const ProgramHeader& header);
+
+/// The motion as `trajectory_msgs/JointTrajectory` in YAML, as ROS 2 reads it (`ros2 topic pub --file`): rad, rad/s,
+/// rad/s²; frame_id `base`. @pre as to_urscript
+[[nodiscard]] std::string to_ros_yaml(const RobotProgram& program, const ProgramHeader& header);
+
+/// The same message as a ROS 1 bag (format 2.0, not compressed, one chunk): topic `/joint_trajectory`, and the header
+/// as `std_msgs/String` on `/incise/header`; both at time 1 s. Source: the format's published description
+/// [RosbagFormat].
+/// @pre as to_urscript
+[[nodiscard]] std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header);
+
+/// The program as JSON, mm, s and rad: `header`, `poses` with `phase`, `time_s`, `tip_mm`, `rotation_vector`,
+/// `tip_speed_mm_s`, `depth_mm`; with `checks` given, also every check (name, passed, overridden, value, limit, unit,
+/// pose, waypoint, text) and `checks_not_made`; and `motion` with the arm's branch and `samples` [time_s, six joints,
+/// six speeds].
 /// @pre the program's numbers are finite (InvalidArgument).
-[[nodiscard]] std::string to_json(const RobotProgram& program, const ProgramChecks* checks = nullptr);
+[[nodiscard]] std::string to_json(const RobotProgram& program, const ProgramChecks* checks = nullptr,
+                                  const ProgramHeader& header = {});
 
 }  // namespace incise

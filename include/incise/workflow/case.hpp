@@ -73,6 +73,7 @@ struct Case {
   double close_margin_mm = 2.2;             ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
   int frames = 24;                          ///< moments of the cut that are kept for pictures
   std::optional<Mat4> T_robot_sim;          ///< where the specimen lies under the robot, until registration finds it
+  std::optional<Mat4> T_flange_tool;        ///< the needle's tip (z along the needle) on the arm's flange; absent: 150 mm in front of it
 };
 
 /// The material of each tet, as far as the study lets it vary; nothing does: empty lists.

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <incise/robot/program_reading.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// How a program is played.
+struct PlayerSettings {
+  double speed_slider = 1.0;  ///< share in (0, 1] that the controller's slider stands at
+  double cycle_s = 0.002;     ///< of the controller: 500 Hz
+  double end_zone_mm = 2.0;   ///< of the cut at either end, where the tip speeds up and slows down
+};
+/// Every rule that the settings break, in words; empty: none.
+[[nodiscard]] std::vector<std::string> validate(const PlayerSettings& settings);
+
+enum class ReplayOutcome {
+  Completed,
+  Unreachable,   ///< a pose of a straight or blended move cannot be reached
+  Jump,          ///< a joint would have to jump: the move crosses a singularity
+  BlendsOverlap  ///< two blends of a move are longer together than the way between their poses
+};
+[[nodiscard]] std::string_view to_string(ReplayOutcome outcome);  ///< completed, unreachable, jump, blends_overlap
+
+/// The arm in one cycle.
+struct ReplaySample {
+  double time_s = 0.0;
+  Joints q_rad = Joints::Zero();
+  Vec3 tip_mm = Vec3::Zero();
+  double tip_speed_mm_s = 0.0;  ///< over the cycle before
+  double deviation_mm = 0.0;    ///< distance of the tip from the intended course; 0 where none is known
+  ProgramPhase phase = ProgramPhase::Approach;
+};
+
+struct SpeedNumbers {
+  double mean = 0.0, min = 0.0, max = 0.0;
+};
+
+/// What the arm would do.
+struct [[nodiscard]] Replay {
+  ReplayOutcome outcome = ReplayOutcome::Completed;
+  std::size_t line = 0;  ///< of the program, where it ended too early
+  std::vector<ReplaySample> samples;
+  Points intended_mm;  ///< the intended course of the tip as a fine polyline: plunge, cut with overlap, exit
+  double max_deviation_mm = 0.0;
+  double mean_deviation_mm = 0.0;  ///< in the cut
+  double max_deviation_at_s = 0.0;
+  SpeedNumbers tip_speed_mm_s;  ///< in the cut, away from its ends
+  double max_joint_speed_share = 0.0;
+  double min_singular_value = 0.0;
+  [[nodiscard]] double duration_s() const { return samples.empty() ? 0.0 : samples.back().time_s; }
+};
+
+/// Runs a program through our own kinematics and a model of the controller (docs/models/robot.md), cycle by cycle:
+/// - movej: the program begins where it ends; the way there is not played
+/// - movel, movep: straight between poses, round corners by the circle that touches both sides at the blend radius;
+/// acceleration and
+///   speed as given (trapezoid); joints by the inverse, near to the last ones. The slider slows time: the path stays
+/// - servoj: each joint follows its target as q'' = gain (q_target - q - lookahead q'). The slider slows the arm, not
+/// the stream
+/// - a timed list of joints: cubic between rows with their speeds. The slider slows time
+/// @param intended  the path that the tip should follow, frame robot; by default the one in the program's header.
+/// Without either
+///   deviations are 0 and intended_mm is empty.
+[[nodiscard]] Replay play(const WrittenProgram& program, const ArmModel& arm = ur10e(),
+                          const PlayerSettings& settings = {}, const ToolPath* intended = nullptr);
+
+}  // namespace incise

@@ -1,0 +1,94 @@
+#include "report/plot.hpp"
+#include "report/svg.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/geometry/contour.hpp>
+#include <incise/report/replay_figure.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kWidth = 860.0, kHeight = 400.0;
+constexpr double kPicture = 320.0;  // side of the square with the path
+constexpr double kScaleBarMm = 5.0;
+constexpr std::size_t kMostPoints = 1500;  // of a curve: more than the picture has pixels
+
+void require_drawable(const ReplayPicture& p) {
+  const std::size_t n = p.tip_mm.size();
+  INCISE_REQUIRE(n >= 2, fmt::format("expected at least 2 samples, found {}", n));
+  INCISE_REQUIRE(p.time_s.size() == n && p.tip_speed_mm_s.size() == n && p.deviation_mm.size() == n,
+                 "expected one time, speed and deviation for each place");
+  for (std::size_t i = 0; i < n; ++i) {
+    INCISE_REQUIRE(p.tip_mm[i].allFinite() && std::isfinite(p.time_s[i]) && std::isfinite(p.tip_speed_mm_s[i]) &&
+                       std::isfinite(p.deviation_mm[i]),
+                   fmt::format("expected finite numbers, found others at sample {}", i));
+  }
+}
+
+/// Every so many of `count` points, so that at most kMostPoints are drawn.
+std::size_t stride_of(std::size_t count) {
+  return (count + kMostPoints - 1) / kMostPoints;
+}
+
+void draw_paths(SvgWriter& svg, const ReplayPicture& picture) {
+  const ViewFrame view = view_along(picture.approach);
+  Eigen::AlignedBox2d box;
+  for (const Vec3& p : picture.tip_mm) box.extend(Vec2(view.to_view(p).head<2>()));
+  const double side = std::max(1.2 * box.sizes().maxCoeff(), 2.0 * kScaleBarMm);
+  const Vec2 corner = box.center() - Vec2::Constant(0.5 * side);
+  const auto at = [&](const Vec3& p) {
+    const Vec2 q = (view.to_view(p).head<2>() - corner) / side * kPicture;
+    return Vec2(20.0 + q.x(), 44.0 + kPicture - q.y());
+  };
+  const auto draw = [&](const Points& points, std::string_view style) {
+    std::vector<Vec2> line;
+    for (std::size_t i = 0; i < points.size(); i += stride_of(points.size())) line.push_back(at(points[i]));
+    if (!points.empty()) line.push_back(at(points.back()));
+    svg.polyline(line, false, style);
+  };
+  if (!picture.intended_mm.empty())
+    draw(picture.intended_mm, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"4\"", ink::kIntended));
+  draw(picture.tip_mm, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"", ink::kKerf));
+  const double bar = kScaleBarMm / side * kPicture;
+  svg.line({24.0, 384.0}, {24.0 + bar, 384.0}, "stroke=\"#111\" stroke-width=\"3\"");
+  svg.text({30.0 + bar, 388.0}, fmt::format("{} mm", number_text(kScaleBarMm)));
+  svg.text({20.0, 30.0}, fmt::format("tip (colour) over the intended path (black); at most {} mm off",
+                                     number_text(picture.max_deviation_mm)));
+}
+
+void draw_curve(SvgWriter& svg, const ReplayPicture& picture, const std::vector<double>& values, const Vec2& corner,
+                double height, std::string_view name, bool has_x_name) {
+  const double high = rounded_up(std::max(1e-3, 1.05 * *std::max_element(values.begin(), values.end())));
+  const PlotArea area{.corner = corner,
+                      .size = {420.0, height},
+                      .x_low = picture.time_s.front(),
+                      .x_high = picture.time_s.back(),
+                      .y_low = 0.0,
+                      .y_high = high};
+  draw_y_axis(svg, area, round_ticks(0.0, high, 4), name);
+  draw_x_axis(svg, area, round_ticks(area.x_low, area.x_high, 6), has_x_name ? "time, s" : "");
+  std::vector<Vec2> line;
+  for (std::size_t i = 0; i < values.size(); i += stride_of(values.size()))
+    line.push_back(area.at(picture.time_s[i], values[i]));
+  svg.polyline(line, false, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"", ink::kSeries[1]));
+}
+
+}  // namespace
+
+std::string replay_figure_svg(const ReplayPicture& picture) {
+  require_drawable(picture);
+  SvgWriter svg(kWidth, kHeight, "The program as the player ran it",
+                "The tip's path over the intended one, its speed and its deviation over time, while it cuts.");
+  svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
+  draw_paths(svg, picture);
+  draw_curve(svg, picture, picture.tip_speed_mm_s, {420.0, 44.0}, 130.0, "tip speed, mm/s", false);
+  draw_curve(svg, picture, picture.deviation_mm, {420.0, 222.0}, 130.0, "deviation, mm", true);
+  return svg.finish();
+}
+
+}  // namespace incise

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <incise/robot/checks.hpp>
+
+#include <limits>
+
+namespace incise::robot_detail {
+
+/// The largest value over some poses and where it is.
+struct Worst {
+  double value = -std::numeric_limits<double>::infinity();
+  std::optional<std::size_t> pose;
+  void see(double candidate, std::size_t at) {
+    if (candidate > value) {
+      value = candidate;
+      pose = at;
+    }
+  }
+};
+
+/// Collects checks of one program.
+class CheckList {
+ public:
+  CheckList(const RobotProgram& program, ProgramChecks& result) : program_(program), result_(result) {}
+
+  /// `value` has to be at most `limit`.
+  void at_most(const char* name, double value, double limit, const char* unit, std::optional<std::size_t> pose,
+               std::string text) {
+    add({name, value <= limit, value, limit, "<=", unit, pose, std::move(text)});
+  }
+  /// `value` has to be at least `limit`.
+  void at_least(const char* name, double value, double limit, const char* unit, std::optional<std::size_t> pose,
+                std::string text) {
+    add({name, value >= limit, value, limit, ">=", unit, pose, std::move(text)});
+  }
+  /// A yes or no. `pose`: where it fails.
+  void holds(const char* name, bool passed, std::string text, std::optional<std::size_t> pose = std::nullopt) {
+    add({name, passed, passed ? 1.0 : 0.0, 1.0, "", "", pose, std::move(text)});
+  }
+  void not_made(std::string what) { result_.not_made.push_back(std::move(what)); }
+
+  [[nodiscard]] const RobotProgram& program() const { return program_; }
+
+ private:
+  void add(ProgramCheck check) {
+    if (check.pose && *check.pose < program_.poses.size()) check.waypoint = program_.poses[*check.pose].waypoint;
+    result_.checks.push_back(std::move(check));
+  }
+  const RobotProgram& program_;
+  ProgramChecks& result_;
+};
+
+/// reach, joint_limits, joint_speed, joint_acceleration, singularity, tip_speed, table
+void check_motion(CheckList& list, const CheckSettings& settings);
+
+/// depth in a surface, shaft
+void check_depth_in(CheckList& list, const TriMesh& surface, double depth_mm, double tolerance_mm);
+void check_shaft(CheckList& list, const TriMesh& surface, const CheckSettings& settings);
+
+}  // namespace incise::robot_detail

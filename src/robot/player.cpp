@@ -1,0 +1,325 @@
+#include "robot/tip_curve.hpp"
+#include "robot/tip_route.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/robot/player.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+using robot_detail::TipRoute;
+
+constexpr double kJumpRad = 0.05;            // in a cycle of 2 ms: 25 rad/s, ten times what any joint can do
+constexpr double kIntendedSpacingMm = 0.05;  // chords deviate by 2e-5 mm at 15 mm radius
+
+bool is_cut(ProgramPhase phase) {
+  return phase == ProgramPhase::Cut || phase == ProgramPhase::Overlap;
+}
+
+/// Plays commands one after the other into samples.
+class Playing {
+ public:
+  Playing(const WrittenProgram& program, const ArmModel& arm, const PlayerSettings& settings, Replay& replay)
+      : program_(program),
+        arm_(arm),
+        settings_(settings),
+        replay_(replay),
+        T_tool_flange_(program.T_flange_tool.inverse()) {}
+
+  void run() {
+    if (!program_.joints.empty()) return timed_joints();
+    const auto& commands = program_.commands;
+    q_ = commands.front().q_rad;
+    phase_ = commands.front().phase;
+    keep();
+    for (std::size_t i = 1; i < commands.size() && replay_.outcome == ReplayOutcome::Completed;) {
+      using Kind = ScriptCommand::Kind;
+      phase_ = commands[i].phase;
+      if (commands[i].kind == Kind::MoveL || commands[i].kind == Kind::MoveP) {
+        i = route(i);
+      } else if (commands[i].kind == Kind::ServoJ) {
+        servo(commands[i++]);
+      } else if (commands[i].kind == Kind::Sleep) {
+        rest(commands[i++].seconds);
+      } else {
+        speed_.setZero();  // stopj: the stream has ended
+        is_streaming_ = false;
+        ++i;
+      }
+    }
+  }
+
+ private:
+  void keep() {
+    ReplaySample sample;
+    sample.time_s = time_;
+    sample.q_rad = q_;
+    sample.tip_mm = (forward_kinematics(arm_, q_) * program_.T_flange_tool).topRightCorner<3, 1>();
+    sample.phase = phase_;
+    if (!replay_.samples.empty()) {
+      const ReplaySample& last = replay_.samples.back();
+      const double cycle = time_ - last.time_s;
+      sample.tip_speed_mm_s = (sample.tip_mm - last.tip_mm).norm() / cycle;
+      const Joints share = ((q_ - last.q_rad) / cycle).cwiseAbs().cwiseQuotient(arm_.max_speed_rad_s);
+      replay_.max_joint_speed_share = std::max(replay_.max_joint_speed_share, share.maxCoeff());
+    }
+    replay_.samples.push_back(sample);
+  }
+
+  void end(ReplayOutcome outcome, std::size_t line) {
+    replay_.outcome = outcome;
+    replay_.line = line;
+  }
+
+  /// The first command behind a stop.
+  std::size_t route(std::size_t first) {
+    const auto& commands = program_.commands;
+    std::size_t last = first;
+    while (commands[last].blend_mm > 0.0 && last + 1 < commands.size() &&
+           commands[last + 1].kind == ScriptCommand::Kind::MoveP)
+      ++last;
+    const Mat4 here = forward_kinematics(arm_, q_) * program_.T_flange_tool;
+    const TipRoute way(here.topRightCorner<3, 1>(), here.topLeftCorner<3, 3>(),
+                       std::span(commands).subspan(first, last + 1 - first), settings_.speed_slider);
+    if (way.do_blends_overlap()) {
+      end(ReplayOutcome::BlendsOverlap, way.overlap_line());
+      return commands.size();
+    }
+    const double begin = time_;
+    const auto cycles = static_cast<std::size_t>(std::ceil(way.duration_s() / settings_.cycle_s - 1e-9));
+    for (std::size_t k = 1; k <= cycles; ++k) {
+      std::size_t command = 0;
+      const Mat4 T = way.at(settings_.cycle_s * static_cast<double>(k), command);
+      const std::size_t line = commands[first + command].line;
+      phase_ = commands[first + command].phase;
+      if (!follow(T, line)) return commands.size();
+      time_ = begin + settings_.cycle_s * static_cast<double>(k);
+      keep();
+    }
+    speed_.setZero();
+    return last + 1;
+  }
+
+  /// Takes the joints of a pose nearest to the present ones.
+  bool follow(const Mat4& T_base_tool, std::size_t line) {
+    const InverseResult inverse = inverse_kinematics(arm_, T_base_tool * T_tool_flange_, q_[5]);
+    double nearest = std::numeric_limits<double>::infinity();
+    Joints found = q_;
+    for (const InverseSolution& solution : inverse.solutions) {
+      const Joints q = nearest_turns(solution.q_rad, q_);
+      const double step = (q - q_).cwiseAbs().maxCoeff();
+      if (step >= nearest) continue;
+      nearest = step;
+      found = q;
+    }
+    if (inverse.solutions.empty() || nearest > kJumpRad) {
+      end(inverse.solutions.empty() ? ReplayOutcome::Unreachable : ReplayOutcome::Jump, line);
+      return false;
+    }
+    q_ = found;
+    return true;
+  }
+
+  void servo(const ScriptCommand& command) {
+    // The stream keeps its own time; the slider slows the arm.
+    if (!is_streaming_) servo_until_ = time_;
+    is_streaming_ = true;
+    servo_until_ += command.seconds;
+    const Joints& target = command.q_rad;
+    const auto pull = [&](const Joints& q, const Joints& speed) {
+      return Joints(command.gain * (target - q - command.lookahead_s * speed));
+    };
+    while (time_ + settings_.cycle_s <= servo_until_ + 1e-9) {
+      // Classical Runge and Kutta; at 2 ms and the largest gain the error is below 1e-6 of the step.
+      const double h = settings_.speed_slider * settings_.cycle_s;
+      const Joints a1 = pull(q_, speed_), v2 = speed_ + 0.5 * h * a1, a2 = pull(q_ + 0.5 * h * speed_, v2);
+      const Joints v3 = speed_ + 0.5 * h * a2, a3 = pull(q_ + 0.5 * h * v2, v3);
+      const Joints v4 = speed_ + h * a3, a4 = pull(q_ + h * v3, v4);
+      q_ += h / 6.0 * (speed_ + 2.0 * v2 + 2.0 * v3 + v4);
+      speed_ += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+      time_ += settings_.cycle_s;
+      keep();
+    }
+  }
+
+  void rest(double seconds) {
+    const auto cycles = static_cast<std::size_t>(std::lround(seconds / settings_.cycle_s));
+    for (std::size_t k = 0; k < cycles; ++k) {
+      time_ += settings_.cycle_s;
+      keep();
+    }
+  }
+
+  void timed_joints() {
+    const auto& rows = program_.joints;
+    std::size_t i = 0;
+    const double end_s = rows.back().time_s - rows.front().time_s;
+    for (std::size_t k = 0;; ++k) {
+      time_ = settings_.cycle_s * static_cast<double>(k);
+      const double at = std::min(end_s, settings_.speed_slider * time_) + rows.front().time_s;
+      while (i + 2 < rows.size() && rows[i + 1].time_s <= at) ++i;
+      const TimedJoints &a = rows[i], &b = rows[i + 1];
+      const double h = b.time_s - a.time_s, t = (at - a.time_s) / h, t2 = t * t, t3 = t2 * t;
+      q_ = (2 * t3 - 3 * t2 + 1) * a.q_rad + (t3 - 2 * t2 + t) * h * a.speed_rad_s + (3 * t2 - 2 * t3) * b.q_rad +
+           (t3 - t2) * h * b.speed_rad_s;
+      phase_ = a.phase;
+      keep();
+      if (settings_.speed_slider * time_ >= end_s) break;
+    }
+  }
+
+  const WrittenProgram& program_;
+  const ArmModel& arm_;
+  const PlayerSettings& settings_;
+  Replay& replay_;
+  Mat4 T_tool_flange_;
+  double time_ = 0.0;
+  bool is_streaming_ = false;
+  double servo_until_ = 0.0;
+  Joints q_ = Joints::Zero(), speed_ = Joints::Zero();
+  ProgramPhase phase_ = ProgramPhase::Approach;
+};
+
+/// Down along the axis at the start, along the curve and its overlap, up along the axis at the end.
+Points intended_course(const ToolPath& path, const WrittenProgram& program) {
+  const robot_detail::TipCurve curve(path);
+  const double end = curve.length_mm() + (path.is_closed ? program.overlap_mm : 0.0);
+  const auto above = [&](const robot_detail::TipSample& place) {
+    return Vec3(place.tip_mm - (place.depth_mm + program.approach_height_mm) * place.axis);
+  };
+  Points course{above(curve.at(0.0))};
+  const auto steps = static_cast<std::size_t>(std::ceil(end / kIntendedSpacingMm));
+  for (std::size_t i = 0; i <= steps; ++i)
+    course.push_back(curve.at(end * static_cast<double>(i) / static_cast<double>(steps)).tip_mm);
+  course.push_back(above(curve.at(end)));
+  return course;
+}
+
+/// Nearest distance to the polyline. Samples follow it, so the search begins where the last one ended and looks at a
+/// stretch about it; it looks everywhere when the tip is far off.
+class CourseDistance {
+ public:
+  explicit CourseDistance(const Points& course) : course_(course) {}
+  double operator()(const Vec3& p) {
+    constexpr std::size_t kWindow = 60;  // 3 mm of the curve either way
+    constexpr double kFarOffMm = 0.02;   // on a ring the overlap lies over the beginning: another stretch may be nearer
+    const std::size_t low = last_ > kWindow ? last_ - kWindow : 0;
+    double nearest = search(p, low, std::min(course_.size() - 1, last_ + kWindow));
+    if (nearest > kFarOffMm) nearest = search(p, 0, course_.size() - 1);
+    return nearest;
+  }
+
+ private:
+  double search(const Vec3& p, std::size_t low, std::size_t high) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = low; i < high; ++i) {
+      const Vec3 along = course_[i + 1] - course_[i];
+      const double length2 = along.squaredNorm();
+      const double t = length2 > 0.0 ? std::clamp((p - course_[i]).dot(along) / length2, 0.0, 1.0) : 0.0;
+      const double distance = (p - course_[i] - t * along).norm();
+      if (distance >= nearest) continue;
+      nearest = distance;
+      last_ = i;
+    }
+    return nearest;
+  }
+  const Points& course_;
+  std::size_t last_ = 0;
+};
+
+void measure_deviation(Replay& replay) {
+  if (replay.intended_mm.empty()) return;
+  CourseDistance distance(replay.intended_mm);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (ReplaySample& sample : replay.samples) {
+    sample.deviation_mm = distance(sample.tip_mm);
+    if (sample.deviation_mm > replay.max_deviation_mm) {
+      replay.max_deviation_mm = sample.deviation_mm;
+      replay.max_deviation_at_s = sample.time_s;
+    }
+    if (!is_cut(sample.phase)) continue;
+    sum += sample.deviation_mm;
+    ++count;
+  }
+  if (count > 0) replay.mean_deviation_mm = sum / static_cast<double>(count);
+}
+
+void measure_speed(Replay& replay, double end_zone_mm) {
+  std::vector<double> arc(replay.samples.size(), 0.0);
+  double length = 0.0;
+  for (std::size_t i = 1; i < replay.samples.size(); ++i) {
+    if (is_cut(replay.samples[i].phase)) length += (replay.samples[i].tip_mm - replay.samples[i - 1].tip_mm).norm();
+    arc[i] = length;
+  }
+  SpeedNumbers& speed = replay.tip_speed_mm_s;
+  speed.min = std::numeric_limits<double>::infinity();
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < replay.samples.size(); ++i) {
+    const bool is_away = arc[i - 1] > end_zone_mm && arc[i] < length - end_zone_mm;
+    if (!is_cut(replay.samples[i].phase) || !is_away) continue;
+    const double value = replay.samples[i].tip_speed_mm_s;
+    speed.mean += value;
+    speed.min = std::min(speed.min, value);
+    speed.max = std::max(speed.max, value);
+    ++count;
+  }
+  if (count > 0)
+    speed.mean /= static_cast<double>(count);
+  else
+    speed = {};
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const PlayerSettings& s) {
+  std::vector<std::string> broken;
+  if (!(s.speed_slider > 0.0 && s.speed_slider <= 1.0))
+    broken.push_back(fmt::format("expected a speed slider in (0, 1], found {}", s.speed_slider));
+  if (!(s.cycle_s >= 1e-4 && s.cycle_s <= 0.02))
+    broken.push_back(fmt::format("expected a cycle of 0.0001 to 0.02 s, found {}", s.cycle_s));
+  if (!(s.end_zone_mm >= 0.0))
+    broken.push_back(fmt::format("expected an end zone of 0 or more, found {}", s.end_zone_mm));
+  return broken;
+}
+
+std::string_view to_string(ReplayOutcome outcome) {
+  switch (outcome) {
+    case ReplayOutcome::Completed:
+      return "completed";
+    case ReplayOutcome::Unreachable:
+      return "unreachable";
+    case ReplayOutcome::Jump:
+      return "jump";
+    case ReplayOutcome::BlendsOverlap:
+      return "blends_overlap";
+  }
+  return "unknown";
+}
+
+Replay play(const WrittenProgram& program, const ArmModel& arm, const PlayerSettings& settings,
+            const ToolPath* intended) {
+  const auto broken = validate(settings);
+  INCISE_REQUIRE(broken.empty(), fmt::format("{}", fmt::join(broken, "; ")));
+  INCISE_REQUIRE(program.joints.size() >= 2 || program.commands.size() >= 2, "expected a program with motions");
+  Replay replay;
+  Playing(program, arm, settings, replay).run();
+  if (intended == nullptr && program.path) intended = &*program.path;
+  if (intended != nullptr) replay.intended_mm = intended_course(*intended, program);
+  measure_deviation(replay);
+  measure_speed(replay, settings.end_zone_mm);
+  replay.min_singular_value = std::numeric_limits<double>::infinity();
+  constexpr std::size_t kStride = 10;  // every 20 ms
+  for (std::size_t i = 0; i < replay.samples.size(); i += kStride)
+    replay.min_singular_value =
+        std::min(replay.min_singular_value, smallest_singular_value(arm, replay.samples[i].q_rad));
+  return replay;
+}
+
+}  // namespace incise

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <incise/robot/program_reading.hpp>
+
+#include <string>
+
+namespace incise::robot_detail {
+
+/// One line of a file, for messages.
+struct LinePlace {
+  const std::filesystem::path& file;
+  std::size_t line = 0;
+  [[noreturn]] void fail(const std::string& found, const std::string& expected, const std::string& hint = "") const;
+};
+
+/// Takes in a header line `# incise.KEY: VALUE`; other comments are left alone. @returns the phase that a line `#
+/// phase: NAME` names
+void read_comment(const std::string& line, WrittenProgram& program);
+
+/// Fills path, tool and lengths from the header. @throws DataError naming the file and the header's key
+void read_header(WrittenProgram& program, const std::filesystem::path& file);
+
+/// @throws DataError
+[[nodiscard]] ProgramPhase phase_of(const std::string& name, const LinePlace& place);
+
+[[nodiscard]] WrittenProgram read_urscript(std::string_view text, const std::filesystem::path& file);
+[[nodiscard]] WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path& file);
+[[nodiscard]] WrittenProgram read_program_json(std::string_view text, const std::filesystem::path& file);
+
+}  // namespace incise::robot_detail

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <incise/robot/program_text.hpp>
+
+#include <string>
+
+namespace incise::robot_detail {
+
+/// A cut's pose: reached along the path, not through the air or along the axis.
+[[nodiscard]] inline bool is_cut(const ProgramPose& pose) {
+  return pose.phase == ProgramPhase::Cut || pose.phase == ProgramPhase::Overlap;
+}
+
+/// @throws InvalidArgument naming the first pose with a number that is not finite
+void require_finite(const RobotProgram& program);
+/// @throws InvalidArgument where there are no joints to write
+void require_motion(const RobotProgram& program);
+
+/// `# incise.KEY: VALUE`, one line each.
+[[nodiscard]] std::string header_lines(const ProgramHeader& header);
+
+inline constexpr const char* kHeaderMark = "# incise.";
+
+}  // namespace incise::robot_detail

@@ -1,0 +1,207 @@
+#include "robot/ring_path.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/robot/player.hpp>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+using incise::testing::line_path;
+using incise::testing::ring_path;
+using ::testing::HasSubstr;
+
+std::string script_of(const ToolPath& path, const UrScriptSettings& settings = {}) {
+  const RobotProgram program = make_program(path);
+  return to_urscript(program, program_header(program, path, check_program(program, path)), settings);
+}
+
+ToolPath leaning_ring() {
+  ToolPath path = ring_path();
+  for (auto& waypoint : path.waypoints) {
+    const Vec3 outwards = (waypoint.position_mm - Vec3(600.0, 0.0, 100.0)).normalized();
+    waypoint.axis = (-Vec3::UnitZ() + 0.3 * outwards).normalized();
+  }
+  return path;
+}
+
+Replay replayed(const std::string& text, double slider = 1.0, const char* name = "cut.script") {
+  return play(program_from_text(text, name), ur10e(), {.speed_slider = slider});
+}
+
+TEST(Player, KeepsTheTipOnTheIntendedCourseByMovep) {
+  const Replay replay = replayed(script_of(leaning_ring()));
+  ASSERT_EQ(replay.outcome, ReplayOutcome::Completed);
+  // Chords and blends stay within 0.02 mm each.
+  EXPECT_LT(replay.max_deviation_mm, 0.025);
+  EXPECT_GT(replay.max_deviation_mm, 0.005);
+  EXPECT_NEAR(replay.tip_speed_mm_s.mean, 7.0, 0.01);
+  EXPECT_GT(replay.tip_speed_mm_s.min, 0.99 * 7.0);
+  EXPECT_LT(replay.tip_speed_mm_s.max, 1.01 * 7.0);
+  EXPECT_LT(replay.max_joint_speed_share, 0.2);
+}
+
+TEST(Player, KeepsTheTipOnTheIntendedCourseByServoj) {
+  const Replay replay = replayed(script_of(leaning_ring(), {.motion = ScriptMotion::ServoJ}));
+  ASSERT_EQ(replay.outcome, ReplayOutcome::Completed);
+  EXPECT_LT(replay.max_deviation_mm, 0.1);
+  EXPECT_NEAR(replay.tip_speed_mm_s.mean, 7.0, 0.07);
+  EXPECT_GT(replay.tip_speed_mm_s.min, 0.98 * 7.0);
+  EXPECT_LT(replay.tip_speed_mm_s.max, 1.02 * 7.0);
+}
+
+TEST(Player, PlaysTheTableAndTheJsonAsTheyWereMade) {
+  const ToolPath path = leaning_ring();
+  const RobotProgram program = make_program(path);
+  const ProgramHeader header = program_header(program, path, check_program(program, path));
+  for (const auto& [text, name] : {std::pair(to_joint_csv(program, header), "cut.csv"),
+                                   std::pair(to_json(program, nullptr, header), "cut.json")}) {
+    const Replay replay = replayed(text, 1.0, name);
+    ASSERT_EQ(replay.outcome, ReplayOutcome::Completed);
+    EXPECT_LT(replay.max_deviation_mm, 0.001) << name;
+    EXPECT_GT(replay.tip_speed_mm_s.min, 0.99 * 7.0) << name;
+    EXPECT_LT(replay.tip_speed_mm_s.max, 1.01 * 7.0) << name;
+    EXPECT_NEAR(replay.duration_s(), program.duration_s(), 0.01) << name;
+  }
+}
+
+TEST(Player, ASliderAtHalfKeepsThePathOfMovepAtHalfTheSpeed) {
+  const Replay full = replayed(script_of(ring_path())), half = replayed(script_of(ring_path()), 0.5);
+  EXPECT_NEAR(half.tip_speed_mm_s.mean, 3.5, 0.01);
+  EXPECT_NEAR(half.max_deviation_mm, full.max_deviation_mm, 1e-3);
+  EXPECT_NEAR(half.duration_s(), 2.0 * full.duration_s(), 0.1);
+}
+
+TEST(Player, ASliderAtHalfLetsAStreamTrailBehind) {
+  const std::string text = script_of(ring_path(), {.motion = ScriptMotion::ServoJ});
+  const Replay full = replayed(text), quarter = replayed(text, 0.25);
+  EXPECT_NEAR(quarter.duration_s(), full.duration_s(), 0.01);
+  // The lag of 0.1 s becomes 0.4 s: corners are cut, the ring shrinks.
+  EXPECT_GT(quarter.max_deviation_mm, 2.0 * full.max_deviation_mm);
+}
+
+/// Two straight moves with a right angle between them.
+std::string corner_script(double blend_m) {
+  const RobotProgram program = make_program(line_path(), {.spin_deg = 0.0});
+  const std::string path = to_urscript(program, program_header(program, line_path(), {}));
+  const std::string head = path.substr(0, path.find("  # phase: approach"));
+  return head + fmt::format(
+                    "  # phase: cut\n"
+                    "  movep(p[0.50000000, 0.00000000, 0.13000000, 3.1415927, 0, 0], a=1.0, v=0.02, r=0.000000)\n"
+                    "  movep(p[0.52000000, 0.00000000, 0.13000000, 3.1415927, 0, 0], a=1.0, v=0.02, r={:.6f})\n"
+                    "  movep(p[0.52000000, 0.02000000, 0.13000000, 3.1415927, 0, 0], a=1.0, v=0.02, r=0.000000)\n"
+                    "end\n\nincise_cut()\n",
+                    blend_m);
+}
+
+TEST(Player, RoundsACornerByTheCircleThatTouchesBothSides) {
+  const Replay replay = replayed(corner_script(0.005));
+  ASSERT_EQ(replay.outcome, ReplayOutcome::Completed);
+  const Vec3 corner(520.0, 0.0, 130.0);
+  double nearest = 1e9;
+  for (const auto& sample : replay.samples) nearest = std::min(nearest, (sample.tip_mm - corner).norm());
+  EXPECT_NEAR(nearest, 5.0 * (std::sqrt(2.0) - 1.0), 1e-3);  // radius 5 mm for a right angle
+}
+
+TEST(Player, SpeedsUpAsTheMoveSays) {
+  const Replay replay = replayed(corner_script(0.005));
+  // From rest at 1 m/s² to 20 mm/s in 20 ms: 2 mm/s more in each cycle.
+  for (std::size_t i = 3; i < 9; ++i)
+    EXPECT_NEAR(replay.samples[i + 1].tip_speed_mm_s - replay.samples[i].tip_speed_mm_s, 2.0, 0.01) << i;
+  EXPECT_NEAR(replay.samples[30].tip_speed_mm_s, 20.0, 0.01);
+}
+
+TEST(Player, NamesBlendsThatOverlapAndPosesOutOfReach) {
+  const Replay overlap = replayed(corner_script(0.025));
+  EXPECT_EQ(overlap.outcome, ReplayOutcome::BlendsOverlap);
+  EXPECT_GT(overlap.line, 10u);
+  std::string text = corner_script(0.005);
+  text.replace(text.find("p[0.52000000, 0.02"), 13, "p[2.52000000,");
+  const Replay far = replayed(text);
+  EXPECT_EQ(far.outcome, ReplayOutcome::Unreachable);
+  EXPECT_FALSE(far.samples.empty());
+}
+
+TEST(Player, RefusesSettingsOutOfRange) {
+  const WrittenProgram program = program_from_text(script_of(line_path()), "cut.script");
+  EXPECT_THROW(static_cast<void>(play(program, ur10e(), {.speed_slider = 0.0})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(play(program, ur10e(), {.speed_slider = 1.5})), InvalidArgument);
+}
+
+TEST(ProgramFromText, ReadsBackWhatWasWritten) {
+  const ToolPath path = leaning_ring();
+  const WrittenProgram read = program_from_text(script_of(path), "cut.script");
+  ASSERT_TRUE(read.path.has_value());
+  ASSERT_EQ(read.path->waypoints.size(), path.waypoints.size());
+  EXPECT_LT((read.path->waypoints[7].position_mm - path.waypoints[7].position_mm).norm(), 1e-5);
+  EXPECT_TRUE(read.path->is_closed);
+  EXPECT_EQ(read.T_flange_tool(2, 3), 150.0);
+  const RobotProgram program = make_program(path);
+  EXPECT_EQ(read.commands.size(), program.poses.size());
+  EXPECT_LT((read.commands[9].tip_mm - program.poses[9].tip_mm).norm(), 1e-5);
+  EXPECT_EQ(read.commands[1].phase, ProgramPhase::Approach);
+  EXPECT_EQ(read.commands.back().phase, ProgramPhase::Retreat);
+  for (auto motion : {ScriptMotion::MoveP, ScriptMotion::ServoJ})
+    EXPECT_FALSE(program_from_text(script_of(path, {.motion = motion}), "a").commands.empty());
+}
+
+std::string message_of(const std::string& text, const char* name = "cut.script") {
+  try {
+    static_cast<void>(program_from_text(text, name));
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(ProgramFromText, NamesTheLineOfAForeignOrDamagedStatement) {
+  const std::string good = script_of(line_path());
+  const auto with = [&](const std::string& old, const std::string& now) {
+    std::string text = good;
+    const std::size_t at = text.find(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    return text.replace(at, old.size(), now);
+  };
+  const auto line_of = [&](const std::string& word) {
+    const std::size_t at = good.find(word);
+    return "line " + std::to_string(std::count(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(at), '\n') + 1);
+  };
+  const std::string place = "cut.script: " + line_of("  movep(");
+  EXPECT_THAT(message_of(with("  movep(", "  set_digital_out(")),
+              HasSubstr(place + ": found 'set_digital_out', expected set_tcp, movej"));
+  EXPECT_THAT(message_of(with("  movep(p[", "  movep([")), HasSubstr(place + ": found '[0.5"));
+  EXPECT_THAT(message_of(with("  movep(p[0.5", "  movep(p[nan")), HasSubstr("expected a number"));
+  EXPECT_THAT(message_of(with(", v=0.004000", "")), HasSubstr("expected 'v='"));
+  EXPECT_THAT(message_of(with("v=0.004000", "v=-0.004000")), HasSubstr("expected v above 0"));
+  EXPECT_THAT(message_of(with("  movel(", "  movej(")), HasSubstr(line_of("  movel(")));
+  EXPECT_THAT(message_of(with("end\n", "")), HasSubstr("expected"));
+  EXPECT_THAT(message_of(good.substr(0, good.find("end\n"))), HasSubstr("cut short"));
+  EXPECT_THAT(message_of(good.substr(0, good.size() / 2)), HasSubstr("line "));
+  EXPECT_THAT(message_of(good + "popup(\"x\")\n"), HasSubstr("expected nothing after the function's call"));
+  EXPECT_THAT(message_of("This is a letter.\n"), HasSubstr("line 1: found 'This is a letter.', expected def NAME():"));
+  EXPECT_THAT(message_of(""), HasSubstr("expected def NAME():"));
+  EXPECT_THAT(message_of(with("0.15000000, 0.0000000", "0.16000000, 0.0000000")),
+              HasSubstr("another tool than in the header"));
+  EXPECT_THAT(message_of(with("# phase: plunge", "# phase: plungge")), HasSubstr("phase 'plungge'"));
+}
+
+TEST(ProgramFromText, NamesTheRowOfADamagedTableAndTheKeyOfADamagedJson) {
+  const ToolPath path = line_path();
+  const RobotProgram program = make_program(path);
+  const ProgramHeader header = program_header(program, path, check_program(program, path));
+  std::string csv = to_joint_csv(program, header);
+  EXPECT_THAT(message_of(csv.substr(0, csv.size() - 40), "cut.csv"), HasSubstr("columns, expected 23"));
+  std::string json = to_json(program, nullptr, header);
+  EXPECT_THAT(message_of(json.substr(0, 500), "cut.json"), HasSubstr("not JSON"));
+  EXPECT_THAT(message_of("{}", "cut.json"), HasSubstr("schema"));
+  csv.replace(csv.find("elbow_joint_rad"), 5, "elbov");
+  EXPECT_THAT(message_of(csv, "cut.csv"), HasSubstr("the columns that `incise export` writes"));
+}
+
+}  // namespace
+}  // namespace incise
