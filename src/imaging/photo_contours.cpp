@@ -41,16 +41,17 @@ cv::Mat widened(const cv::Mat& mask) {
   return result;
 }
 
+/// The size comes first: where the scale is wrong, so is the length of a gap.
 void require_tumor(const MarkedLine& green, const Contour& edge, const std::filesystem::path& name) {
-  if (!green.is_closed) {
-    throw DataError(name, "",
-                    fmt::format("an open tumour edge: the green line has a gap of {:.2f} mm", green.max_gap_mm()),
-                    "a closed green line round the tumour");
-  }
   const double extent = extent_mm(edge);
   if (extent < kSmallestTumorMm || extent > kLargestTumorMm) {
     throw DataError(name, "", fmt::format("a tumour {:.4g} mm across", extent),
                     fmt::format("{} to {} mm", kSmallestTumorMm, kLargestTumorMm), "Is the scale right?");
+  }
+  if (!green.is_closed) {
+    throw DataError(name, "",
+                    fmt::format("an open tumour edge: the green line has a gap of {:.2f} mm", green.max_gap_mm()),
+                    "a closed green line round the tumour");
   }
 }
 

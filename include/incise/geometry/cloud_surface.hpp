@@ -10,7 +10,7 @@
 namespace incise {
 
 struct CloudSurfaceSettings {
-  double radius_mm = 1.5;     ///< of the points that one place rests on, > 0; doubled where they are too few
+  double radius_mm = 2.5;     ///< of the points that one place rests on, > 0; doubled where they are too few
   double max_reach_mm = 6.0;  ///< no farther than this, >= radius_mm
 };
 
