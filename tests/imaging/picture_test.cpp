@@ -11,7 +11,8 @@ using ::testing::HasSubstr;
 ColorPicture small_picture() {
   ColorPicture picture{5, 4, {}};
   for (int i = 0; i < 5 * 4; ++i) {
-    picture.rgb.insert(picture.rgb.end(), {static_cast<std::uint8_t>(10 * i), static_cast<std::uint8_t>(255 - 10 * i), 77});
+    picture.rgb.insert(picture.rgb.end(),
+                       {static_cast<std::uint8_t>(10 * i), static_cast<std::uint8_t>(255 - 10 * i), 77});
   }
   return picture;
 }
@@ -36,7 +37,8 @@ TEST(DecodePicture, GivesBackWhatWasEncoded) {
 TEST(DecodePicture, RefusesFilesThatAreCutShortAtAnyByte) {
   for (const std::string& whole : {encode_png(small_picture()), encode_jpeg(small_picture(), 90)}) {
     EXPECT_EQ(refusal(whole), "");
-    for (std::size_t length = 0; length + 2 < whole.size(); length += 3) EXPECT_NE(refusal(whole.substr(0, length)), "") << length;
+    for (std::size_t length = 0; length + 2 < whole.size(); length += 3)
+      EXPECT_NE(refusal(whole.substr(0, length)), "") << length;
   }
   EXPECT_THAT(refusal(encode_jpeg(small_picture(), 90).substr(0, 400)), HasSubstr("the end of the file"));
 }
@@ -87,8 +89,10 @@ TEST(PhotoScale, OfARectangleTakesItsCornersThere) {
   const PhotoScale scale = scale_from_rectangle(corners, 40.0, 30.0);
   const std::array<Vec2, 4> plane{Vec2(0, 0), Vec2(40, 0), Vec2(40, 30), Vec2(0, 30)};
   for (std::size_t i = 0; i < 4; ++i) EXPECT_LT((scale.plane_mm(corners[i]) - plane[i]).norm(), 1e-9);
-  EXPECT_THROW(static_cast<void>(scale_from_rectangle({corners[0], corners[2], corners[1], corners[3]}, 40, 30)), InvalidArgument);
-  EXPECT_THROW(static_cast<void>(scale_from_rectangle({corners[3], corners[2], corners[1], corners[0]}, 40, 30)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(scale_from_rectangle({corners[0], corners[2], corners[1], corners[3]}, 40, 30)),
+               InvalidArgument);
+  EXPECT_THROW(static_cast<void>(scale_from_rectangle({corners[3], corners[2], corners[1], corners[0]}, 40, 30)),
+               InvalidArgument);
 }
 
 /// A white ruler at a slant, with a tick each millimetre, every fifth longer.
@@ -100,10 +104,12 @@ ColorPicture photo_with_ruler(double mm_per_pixel, double angle) {
   const Vec3 along(std::cos(angle), std::sin(angle), 0.0), across(-std::sin(angle), std::cos(angle), 0.0);
   const Vec3 corner(4.0, 5.0, 0.0);
   const double length = 20.0;
-  photo.lines.push_back({.course = {{corner, corner + length * along}, false}, .width_mm = 5.0, .color = {235, 235, 230}});
+  photo.lines.push_back(
+      {.course = {{corner, corner + length * along}, false}, .width_mm = 5.0, .color = {235, 235, 230}});
   for (int i = 0; i <= 18; ++i) {
     const Vec3 foot = corner + (1.0 + i) * along - 2.3 * across;
-    photo.lines.push_back({.course = {{foot, foot + (i % 5 == 0 ? 3.0 : 1.8) * across}, false}, .width_mm = 0.15, .color = {25, 25, 28}});
+    photo.lines.push_back(
+        {.course = {{foot, foot + (i % 5 == 0 ? 3.0 : 1.8) * across}, false}, .width_mm = 0.15, .color = {25, 25, 28}});
   }
   return decode_picture(encode_jpeg(testing::paint_photo(photo), 80), "ruler.jpg");
 }
@@ -121,11 +127,14 @@ TEST(FindRuler, MeasuresASolidBar) {
   for (const testing::Rgb& color : {testing::Rgb{15, 15, 15}, testing::Rgb{252, 252, 252}}) {
     testing::PaintedPhoto photo;
     photo.width = photo.height = 700;
-    photo.glare_spots = 3;
+    photo.glare_spots = 0;  // one on an end would change the bar
     photo.shading = 0.0;
-    photo.lines.push_back({.course = {{Vec3(3, 4, 0), Vec3(8, 4.6, 0)}, false}, .width_mm = 0.5, .color = color, .gaps_mm = {{0.0, 1e-9}}});
-    // Round caps would lengthen it: the bar's ends are where the course ends, plus half its width.
-    const double length = (Vec2(5, 0.6)).norm() + 0.5;
+    photo.lines.push_back({.course = {{Vec3(3, 4, 0), Vec3(8, 4.6, 0)}, false},
+                           .width_mm = 0.5,
+                           .color = color,
+                           .gaps_mm = {{0.0, 1e-9}}});
+    // The start is cut square, the end is round: half the width longer than the course.
+    const double length = Vec2(5, 0.6).norm() + 0.25;
     const Ruler ruler = find_ruler(testing::paint_photo(photo), RulerKind::Bar, length, "bar.png");
     EXPECT_NEAR(ruler.mm_per_pixel / 0.03, 1.0, 0.02);
   }
