@@ -128,8 +128,7 @@ void add_evaluate(Application& application) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb =
       application.add_verb("evaluate", "Measure an incision against the tumour edge, in a photograph or as contours",
-                           "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json\n"
-                           "  incise evaluate --incision aic.csv --tumor tec.csv --contour centerline",
+                           "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json",
                            [arguments](const CommonOptions& options) {
                              require_one_source(*arguments);
                              const EvaluationSettings settings = settings_of(*arguments);
