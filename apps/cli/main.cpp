@@ -65,6 +65,8 @@ int run(int argc, char** argv) {
   add_evaluate(application);
   add_surface(application);
   add_register(application);
+  add_track(application);
+  add_project(application);
   add_export(application);
   add_replay(application);
   add_report(application);

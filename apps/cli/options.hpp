@@ -23,7 +23,8 @@ inline constexpr int kBadData = 3;
 inline constexpr int kNotAcceptable = 4;
 inline constexpr int kInterrupted = 130;
 
-/// The person asked to stop and something is kept, by default the finished stages; of a plain Cancelled main says that nothing was written.
+/// The person asked to stop and something is kept, by default the finished stages; of a plain Cancelled main says that
+/// nothing was written.
 class StagesKept : public Cancelled {
  public:
   explicit StagesKept(const std::string& what, const std::string& kept = "the stages that were finished are kept")
@@ -81,6 +82,9 @@ void add_mesh(Application& application);
 void add_stages(Application& application);   ///< deform, plan, simulate, compensate
 void add_surface(Application& application);
 void add_register(Application& application);
+void add_stages(Application& application);  ///< deform, plan, simulate, compensate
+void add_track(Application& application);
+void add_project(Application& application);
 void add_export(Application& application);
 void add_replay(Application& application);
 void add_interchange(Application& application);

@@ -1,0 +1,153 @@
+#include "camera_options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
+#include <incise/io/json_text.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace incise::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const Json& member(const Json& document, const std::string& key, const std::filesystem::path& file,
+                   const std::string& at) {
+  if (!document.is_object()) throw DataError(file, at, "no JSON object", "an object with " + key);
+  const auto found = document.find(key);
+  if (found == document.end()) throw DataError(file, at + "/" + key, "nothing", "this key");
+  return *found;
+}
+
+double number(const Json& document, const std::string& key, const std::filesystem::path& file, const std::string& at,
+              bool above_zero) {
+  const Json& value = member(document, key, file, at);
+  if (!value.is_number()) throw DataError(file, at + "/" + key, value.dump(), "a number");
+  const double result = value.get<double>();
+  if (!std::isfinite(result) || (above_zero && result <= 0.0))
+    throw DataError(file, at + "/" + key, value.dump(), above_zero ? "a number above 0" : "a finite number");
+  return result;
+}
+
+CameraIntrinsics intrinsics_in(const Json& document, const std::filesystem::path& file, const std::string& at) {
+  CameraIntrinsics camera;
+  camera.width = static_cast<int>(number(document, "width", file, at, true));
+  camera.height = static_cast<int>(number(document, "height", file, at, true));
+  camera.fx = number(document, "fx", file, at, true);
+  camera.fy = number(document, "fy", file, at, true);
+  camera.cx = number(document, "cx", file, at, false);
+  camera.cy = number(document, "cy", file, at, false);
+  const auto distortion = document.find("distortion");
+  if (distortion == document.end()) return camera;
+  const bool is_list = distortion->is_array() && distortion->size() == 5 &&
+                       std::all_of(distortion->begin(), distortion->end(), [](const Json& k) { return k.is_number(); });
+  if (!is_list) throw DataError(file, at + "/distortion", distortion->dump(), "[k1, k2, p1, p2, k3]");
+  for (std::size_t i = 0; i < 5; ++i) camera.distortion[i] = (*distortion)[i].get<double>();
+  return camera;
+}
+
+}  // namespace
+
+Mat4 transform_in(const Json& document, const std::string& key, const std::filesystem::path& file) {
+  const Json& rows = member(document, key, file, "");
+  const std::string expected = "4 rows of 4 numbers";
+  if (!rows.is_array() || rows.size() != 4) throw DataError(file, "/" + key, "something else", expected);
+  Mat4 T;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!rows[i].is_array() || rows[i].size() != 4)
+      throw DataError(file, fmt::format("/{}/{}", key, i), "something else", expected);
+    for (std::size_t j = 0; j < 4; ++j) {
+      if (!rows[i][j].is_number())
+        throw DataError(file, fmt::format("/{}/{}/{}", key, i, j), rows[i][j].dump(), "a number");
+      T(static_cast<int>(i), static_cast<int>(j)) = rows[i][j].get<double>();
+    }
+  }
+  if (!T.allFinite() || T.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+    throw DataError(file, "/" + key, "another last row", "0 0 0 1 as the last row");
+  const double determinant = T.topLeftCorner<3, 3>().determinant();
+  if (!(determinant > 0.0))
+    throw DataError(file, "/" + key, fmt::format("a determinant of {:.4g}", determinant),
+                    "a positive determinant (no mirror image)");
+  return T;
+}
+
+Mat4 rigid_transform_in(const Json& document, const std::string& key, const std::filesystem::path& file) {
+  const Mat4 T = transform_in(document, key, file);
+  const Mat3 R = T.topLeftCorner<3, 3>();
+  if ((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff() > 1e-4) {
+    throw DataError(file, "/" + key,
+                    fmt::format("a determinant of {:.6g}, or axes that are not perpendicular", R.determinant()),
+                    "a rotation and a shift in mm, without scale");
+  }
+  return T;
+}
+
+DepthCamera read_depth_camera(const std::filesystem::path& file) {
+  constexpr double kMmPerMetre = 1000.0;
+  const Json document = read_json(file);
+  DepthCamera camera;
+  camera.color = intrinsics_in(document, file, "");
+  camera.depth = document.contains("depth") ? intrinsics_in(document["depth"], file, "/depth") : camera.color;
+  camera.depth_unit_mm = kMmPerMetre * number(document, "depth_scale", file, "", true);
+  if (document.contains("T_color_depth")) camera.T_color_depth = rigid_transform_in(document, "T_color_depth", file);
+  return camera;
+}
+
+void add_scale_options(CLI::App& verb, ScaleOptions& options) {
+  verb.add_option("--mm-per-pixel", options.mm_per_pixel, "Scale of the photograph")->check(CLI::PositiveNumber);
+  verb.add_option("--ruler", options.ruler, "Find the scale in the photograph: a ruler's ticks, or a solid scale bar")
+      ->check(CLI::IsMember({"ticks", "bar"}));
+  verb.add_option("--ruler-mm", options.ruler_mm,
+                  "From one of the ruler's finest ticks to the next; of a bar: its length")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--two-points", options.two_points, "Scale from two pixels and their distance: U V U V MM")
+      ->expected(5);
+  verb.add_option("--rectangle", options.rectangle,
+                  "Scale and perspective from the corners of a rectangle: lower left, lower right, upper right, upper "
+                  "left, as U V pairs")
+      ->expected(8);
+  verb.add_option("--rectangle-mm", options.rectangle_mm, "Its width and height")->expected(2);
+}
+
+FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture, const std::filesystem::path& name) {
+  const int ways =
+      (options.mm_per_pixel > 0.0) + !options.ruler.empty() + !options.two_points.empty() + !options.rectangle.empty();
+  if (ways != 1) {
+    throw CaseError("command line", "scale", ways == 0 ? "no scale" : fmt::format("{} scales", ways),
+                    "one of --mm-per-pixel, --ruler, --two-points, --rectangle");
+  }
+  FoundScale found;
+  try {
+    if (options.mm_per_pixel > 0.0) {
+      found.scale = scale_from_mm_per_pixel(options.mm_per_pixel, picture.height);
+      found.summary["source"] = "mm_per_pixel";
+    } else if (!options.two_points.empty()) {
+      const auto& p = options.two_points;
+      found.marks_px = {{p[0], p[1]}, {p[2], p[3]}};
+      found.scale = scale_from_two_points(found.marks_px[0], found.marks_px[1], p[4], picture.height);
+      found.summary["source"] = "two_points";
+    } else if (!options.rectangle.empty()) {
+      if (options.rectangle_mm.size() != 2)
+        throw CaseError("command line", "--rectangle-mm", "nothing", "the rectangle's width and height");
+      for (std::size_t i = 0; i < 4; ++i)
+        found.marks_px.emplace_back(options.rectangle[2 * i], options.rectangle[2 * i + 1]);
+      found.scale = scale_from_rectangle({found.marks_px[0], found.marks_px[1], found.marks_px[2], found.marks_px[3]},
+                                         options.rectangle_mm[0], options.rectangle_mm[1]);
+      found.summary["source"] = "rectangle";
+    }
+  } catch (const InvalidArgument& error) {
+    throw CaseError("command line", "scale", without_function_name(error), "points and lengths that give a scale");
+  }
+  if (options.ruler.empty()) return found;
+  const Ruler ruler =
+      find_ruler(picture, options.ruler == "bar" ? RulerKind::Bar : RulerKind::Ticks, options.ruler_mm, name);
+  found.scale = scale_from_mm_per_pixel(ruler.mm_per_pixel, picture.height);
+  found.marks_px = ruler.marks_px;
+  found.summary = {{"source", "ruler"}, {"marks", ruler.marks_px.size()}, {"error_percent", ruler.error_percent}};
+  return found;
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,322 @@
+#include "camera_options.hpp"
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+#include <incise/core/problem_text.hpp>
+#include <incise/core/version.hpp>
+#include <incise/imaging/photo_contours.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/io/path_io.hpp>
+#include <incise/io/surface_io.hpp>
+#include <incise/planning/plan_marked_path.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <ostream>
+
+namespace incise::cli {
+namespace {
+
+struct Arguments {
+  std::filesystem::path color;
+  std::filesystem::path depth;
+  std::filesystem::path intrinsics;
+  std::filesystem::path camera;
+  std::string mark = "green";
+  std::string edge = "middle";
+  std::string axis = "approach";
+  int ply_width = 0;
+  double ply_unit_mm = 1.0;
+  double max_gap_mm = LineSettings{}.max_gap_mm;
+  double margin_mm = PlanSettings{}.lateral_margin_mm;
+  LiftSettings lift;
+  PlanSettings plan;
+  bool is_open = false;
+  bool has_plan = false;
+};
+
+struct Scene {
+  ColorPicture picture;
+  OrganizedCloud cloud;
+  std::filesystem::path depth_name;
+  std::vector<std::filesystem::path> inputs;
+};
+
+/// PCL writes `obj_info num_cols W`; other programs leave it to the user.
+int columns_of(const std::filesystem::path& file, int given) {
+  if (given > 0) return given;
+  const std::string text = read_text(file);
+  const std::string header = text.substr(0, text.find("end_header"));
+  const std::string key = "num_cols ";
+  const std::size_t place = header.find(key);
+  if (place != std::string::npos) {
+    try {
+      return std::stoi(header.substr(place + key.size()));
+    } catch (const std::exception&) {  // told below, with the other reason for not knowing
+    }
+  }
+  throw DataError(file, "header", "no obj_info num_cols", "an organised cloud (rows and columns of a picture)",
+                  "Give its width with --ply-width.");
+}
+
+Scene scene_from_ply(const Arguments& arguments) {
+  const TriMesh cloud = read_cloud(arguments.color);
+  const int width = columns_of(arguments.color, arguments.ply_width);
+  const std::size_t count = cloud.vertices.size();
+  if (width < 2 || count % static_cast<std::size_t>(width) != 0) {
+    throw DataError(arguments.color, "vertices", fmt::format("{} points in rows of {}", count, width), "whole rows");
+  }
+  Scene scene{{}, {}, arguments.color, {arguments.color}};
+  const int height = static_cast<int>(count / static_cast<std::size_t>(width));
+  scene.picture = {width, height, {}};
+  scene.cloud = {width, height, {}, {}};
+  const char* const names[] = {"red", "green", "blue"};
+  for (const char* name : names) {
+    if (!cloud.point_data.contains(name))
+      throw DataError(arguments.color, "header", fmt::format("no property {}", name),
+                      "a coloured cloud: red, green, blue");
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const char* name : names)
+      scene.picture.rgb.push_back(
+          static_cast<std::uint8_t>(std::clamp(cloud.point_data.at(name).values[i], 0.0, 255.0)));
+    const Vec3 p = arguments.ply_unit_mm * cloud.vertices[i];
+    scene.cloud.points.push_back(p);
+    scene.cloud.is_measured.push_back(p.z() != 0.0 ? 1 : 0);
+  }
+  return scene;
+}
+
+Scene scene_from_pictures(const Arguments& arguments) {
+  if (arguments.intrinsics.empty())
+    throw CaseError("command line", "--intrinsics", "nothing", "the cameras' intrinsics (JSON)");
+  const DepthCamera camera = read_depth_camera(arguments.intrinsics);
+  Scene scene{decode_picture(read_text(arguments.color), arguments.color),
+              {},
+              arguments.depth,
+              {arguments.color, arguments.depth, arguments.intrinsics}};
+  if (scene.picture.width != camera.color.width || scene.picture.height != camera.color.height) {
+    throw DataError(
+        arguments.color, "", fmt::format("{} x {} pixels", scene.picture.width, scene.picture.height),
+        fmt::format("{} x {}, as {} says", camera.color.width, camera.color.height, arguments.intrinsics.string()));
+  }
+  const DepthPicture depth = decode_depth(read_text(arguments.depth), arguments.depth);
+  try {
+    scene.cloud = cloud_seen_in_color(depth, camera);
+  } catch (const InvalidArgument& error) {
+    throw DataError(arguments.depth, "", without_function_name(error),
+                    "a depth picture that fits " + arguments.intrinsics.string());
+  }
+  return scene;
+}
+
+/// Median distance between neighbours in a row, in the middle of the picture: what one pixel covers of the tissue.
+double mm_per_pixel(const OrganizedCloud& cloud, const std::filesystem::path& name) {
+  std::vector<double> steps;
+  for (int v = cloud.height / 5; v < cloud.height - cloud.height / 5; v += 3) {
+    for (int u = cloud.width / 5; u + 1 < cloud.width - cloud.width / 5; u += 3) {
+      const std::size_t i = cloud.index(u, v);
+      if (cloud.is_measured[i] != 0 && cloud.is_measured[i + 1] != 0)
+        steps.push_back((cloud.points[i + 1] - cloud.points[i]).head<2>().norm());
+    }
+  }
+  if (steps.size() < 100)
+    throw DataError(name, "", fmt::format("{} pixels with depth", cloud.measured()),
+                    "depth over most of the picture's middle");
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  constexpr double kFinestMm = 0.005, kCoarsestMm = 1.5;
+  if (*middle < kFinestMm || *middle > kCoarsestMm) {
+    throw DataError(name, "", fmt::format("pixels {:.4g} mm wide on the tissue", *middle),
+                    fmt::format("{} to {} mm", kFinestMm, kCoarsestMm), "Is depth_scale (metres for one count) right?");
+  }
+  return *middle;
+}
+
+struct Tracked {
+  MarkedLine line;
+  LiftedLine lifted;
+  TriMesh cloud;  ///< with the pixels' colours
+  Vec3 approach = Vec3::UnitZ();
+  Vec3 start = -Vec3::UnitY();  ///< the picture's top
+};
+
+Tracked tracked(const Scene& scene, const Arguments& arguments) {
+  Tracked result;
+  const LineSettings line{.edge = arguments.edge == "inner" ? LineEdge::Inner : LineEdge::Middle,
+                          .mm_per_pixel = mm_per_pixel(scene.cloud, scene.depth_name),
+                          .max_gap_mm = arguments.max_gap_mm};
+  result.line =
+      find_marked_line(scene.picture, arguments.mark == "red" ? InkColor::Red : InkColor::Green, line, arguments.color);
+  result.lifted =
+      lift_to_space(result.line.points_px, result.line.is_closed, scene.cloud, arguments.lift, scene.depth_name);
+  DataArray red{1, {}}, green{1, {}}, blue{1, {}};
+  for (std::size_t i = 0; i < scene.cloud.points.size(); ++i) {
+    if (scene.cloud.is_measured[i] == 0) continue;
+    result.cloud.vertices.push_back(scene.cloud.points[i]);
+    red.values.push_back(scene.picture.rgb[3 * i]);
+    green.values.push_back(scene.picture.rgb[3 * i + 1]);
+    blue.values.push_back(scene.picture.rgb[3 * i + 2]);
+  }
+  result.cloud.point_data = {{"red", red}, {"green", green}, {"blue", blue}};
+  if (result.line.is_closed)
+    result.lifted.contour =
+        start_farthest_along(counter_clockwise(result.lifted.contour, result.approach), result.start);
+  return result;
+}
+
+void move_to_robot(Tracked& tracked, const Mat4& T_robot_camera) {
+  const Mat3 R = T_robot_camera.topLeftCorner<3, 3>();
+  const Vec3 t = T_robot_camera.topRightCorner<3, 1>();
+  for (Vec3& p : tracked.lifted.contour.points) p = R * p + t;
+  for (Vec3& p : tracked.cloud.vertices) p = R * p + t;
+  tracked.approach = R * tracked.approach;
+  tracked.start = R * tracked.start;
+}
+
+ToolPath planned(const Tracked& tracked, const Arguments& arguments, const std::filesystem::path& name) {
+  MarkedPlan plan;
+  plan.settings = arguments.plan;
+  plan.settings.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
+  plan.settings.approach = tracked.approach;
+  plan.settings.start_direction = tracked.start;
+  plan.margin_mm = arguments.margin_mm;
+  try {
+    return plan_marked_path(tracked.lifted.contour, tracked.cloud.vertices, plan);
+  } catch (const CaseError& error) {
+    throw DataError(name, "", error.what(), "a measured surface all round the path");
+  } catch (const InvalidArgument& error) {
+    throw DataError(name, "", without_function_name(error), "a measured surface all round the path");
+  }
+}
+
+int run(const Arguments& arguments, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Console console(options.level());
+  const std::filesystem::path folder = options.required_output("tracked");
+  if (arguments.has_plan && arguments.camera.empty()) {
+    throw CaseError("command line", "--plan", "no --camera",
+                    "T_robot_camera: a path for the robot must be in the robot's frame");
+  }
+  if (arguments.is_open && arguments.has_plan && arguments.margin_mm > 0.0) {
+    throw CaseError("command line", "--margin-mm", fmt::format("{} mm for an open mark", arguments.margin_mm),
+                    "0: an open mark is cut along");
+  }
+  Scene scene = arguments.depth.empty() ? scene_from_ply(arguments) : scene_from_pictures(arguments);
+  Tracked found = tracked(scene, arguments);
+  if (!arguments.camera.empty()) {
+    move_to_robot(found, rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera));
+    scene.inputs.push_back(arguments.camera);
+  }
+  const bool is_wanted = found.line.is_closed != arguments.is_open;
+  std::optional<ToolPath> path;
+  if (arguments.has_plan && is_wanted) path = planned(found, arguments, scene.depth_name);
+
+  require_replaceable(folder);
+  AtomicFolder target(folder);
+  write_contour_csv(target.path() / "contour.csv", found.lifted.contour);
+  write_ply(target.path() / "cloud.ply", found.cloud);
+  const std::string png = encode_png(draw_found(scene.picture, {&found.line}));
+  write_atomically(target.path() / "found.png", [&](std::ostream& out) { out << png; });
+  nlohmann::ordered_json result;
+  result["outcome"] = to_string(is_wanted ? Outcome::Success : Outcome::OpenLoop);
+  result["points"] = found.lifted.contour.points.size();
+  result["length_mm"] = length_mm(found.lifted.contour);
+  result["closed_loop"] = found.line.is_closed;
+  result["frame"] = arguments.camera.empty() ? "camera" : "robot";
+  result["mark"] = arguments.mark;
+  result["width_px"] = found.line.width_px;
+  result["max_gap_mm"] = found.line.max_gap_mm();
+  result["max_hole_mm"] = found.lifted.max_hole_mm;
+  result["bridged_points"] = found.lifted.bridged_points;
+  result["cloud_points"] = found.cloud.vertices.size();
+  result["contour"] = (folder / "contour.csv").string();
+  result["cloud"] = (folder / "cloud.ply").string();
+  result["figure"] = (folder / "found.png").string();
+  result["path"] = nullptr;
+  if (path) {
+    path->source_sha256 = sha256_of_file(target.path() / "contour.csv");
+    write_tool_path(target.path() / "path.json", *path);
+    result["path"] = (folder / "path.json").string();
+    result["waypoints"] = path->waypoints.size();
+    result["path_length_mm"] = length_mm(entry_contour(*path));
+    result["duration_s"] = duration_s(*path);
+  }
+  Manifest manifest;
+  manifest.version = version();
+  manifest.commit = source_commit();
+  manifest.command = options.command_line;
+  manifest.settings_json = nlohmann::json{
+      {"mark", arguments.mark},
+      {"edge", arguments.edge},
+      {"max_gap_mm", arguments.max_gap_mm},
+      {"max_hole_mm", arguments.lift.max_hole_mm},
+      {"open", arguments.is_open},
+      {"margin_mm", arguments.margin_mm},
+      {"depth_mm", arguments.plan.depth_mm},
+      {"speed_mm_s", arguments.plan.speed_mm_s},
+      {"waypoints", arguments.plan.waypoints},
+      {"axis", arguments.axis}}.dump();
+  manifest.instruction_set = to_string(active_isa());
+  for (const auto& input : scene.inputs) manifest.inputs.push_back({input.string(), sha256_of_file(input)});
+  manifest.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  manifest.machine = machine_description();
+  write_manifest(target.path(), manifest);
+  target.commit();
+  if (!is_wanted) {
+    console.message(Severity::Warning,
+                    arguments.is_open
+                        ? "the mark is a closed ring, an open line was asked for"
+                        : fmt::format("the mark is not closed: a gap of {:.2f} mm, at most {} mm is bridged",
+                                      found.line.max_gap_mm(), arguments.max_gap_mm));
+  }
+  print_result(options, result);
+  return is_wanted ? kDone : kNotAcceptable;
+}
+
+}  // namespace
+
+void add_track(Application& application) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      application.add_verb("track", "Find a marked line with a colour and depth camera, and plan an incision on it",
+                           "incise track color.png depth.png --intrinsics d405.json --mark green --camera "
+                           "robot_camera.json --plan -o tracked",
+                           [arguments](const CommonOptions& options) { return run(*arguments, options); });
+  verb->add_option("rgb", arguments->color, "Colour picture (.png, .jpg, .tif), or an organised coloured cloud (.ply)")
+      ->required();
+  verb->add_option("depth", arguments->depth, "Depth picture, 16 bits (.png, .tif); none with a cloud");
+  verb->add_option("--intrinsics", arguments->intrinsics,
+                   "JSON: width, height, fx, fy, cx, cy, depth_scale (m), distortion, depth {...}, T_color_depth");
+  verb->add_option("--camera", arguments->camera,
+                   "JSON with T_robot_camera: results in the robot's frame; without it: in the colour camera's");
+  verb->add_option("--mark", arguments->mark, "Colour of the mark")->check(CLI::IsMember({"red", "green"}));
+  verb->add_option("--edge", arguments->edge, "Contour of the mark: its middle, or its inner border")
+      ->check(CLI::IsMember({"middle", "inner"}));
+  verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A ring with a longer gap is open")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--max-hole-mm", arguments->lift.max_hole_mm, "Longest stretch without depth that is bridged")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_flag("--open", arguments->is_open, "The mark is an open line");
+  verb->add_flag("--plan", arguments->has_plan, "Plan an incision: path.json in the robot's frame");
+  verb->add_option("--margin-mm", arguments->margin_mm, "From the mark to the incision; 0: along the mark")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--depth-mm", arguments->plan.depth_mm, "Of the incision")->check(CLI::PositiveNumber);
+  verb->add_option("--speed-mm-s", arguments->plan.speed_mm_s, "Of the tip")->check(CLI::PositiveNumber);
+  verb->add_option("--waypoints", arguments->plan.waypoints, "Of the path")->check(CLI::Range(8, 100000));
+  verb->add_option("--axis", arguments->axis, "Tool axis: along the camera's view, or against the surface's normal")
+      ->check(CLI::IsMember({"approach", "normal"}));
+  verb->add_option("--ply-width", arguments->ply_width, "Columns of an organised cloud whose header does not tell")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--ply-unit-mm", arguments->ply_unit_mm, "Its unit: 1000 for metres")->check(CLI::PositiveNumber);
+}
+
+}  // namespace incise::cli

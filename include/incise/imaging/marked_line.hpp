@@ -1,0 +1,60 @@
+#pragma once
+
+#include <incise/geometry/types.hpp>
+#include <incise/imaging/picture.hpp>
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+enum class InkColor { Red, Green };
+[[nodiscard]] std::string_view to_string(InkColor color);  ///< red, green
+
+/// Which part of a painted line is its contour.
+enum class LineEdge {
+  Middle,  ///< the centre line of a thin line
+  Inner,   ///< the border towards the middle of the ring: of a painted band
+};
+
+struct LineSettings {
+  LineEdge edge = LineEdge::Middle;
+  double mm_per_pixel = 0.03;  ///< near the line, > 0
+  double max_gap_mm = 1.0;     ///< a ring with a longer gap is open, >= 0
+};
+
+/// A place where the line is not to be seen.
+struct LineGap {
+  Vec2 from_px = Vec2::Zero();
+  Vec2 to_px = Vec2::Zero();
+  double length_mm = 0.0;
+  bool is_hidden = false;  ///< the other colour lies over it: not counted as an opening
+};
+
+/// A line found in a picture, with sub-pixel points in order, about two pixels apart.
+struct MarkedLine {
+  /// A ring: counter-clockwise as seen on a screen, so also counter-clockwise once y runs up. An open ring
+  /// starts behind its widest gap and ends before it; other gaps are bridged.
+  std::vector<Vec2> points_px;
+  bool is_closed = false;
+  std::vector<LineGap> gaps;                ///< longest first, those bridged in a closed ring included
+  double width_px = 0.0;                    ///< median width of the painted line
+  double contrast = 0.0;                    ///< of ink to tissue, chroma over lightness
+  [[nodiscard]] double max_gap_mm() const;  ///< longest that is not hidden; 0 without one
+};
+
+/// Finds the one ring (or, when nothing encloses anything, the one open line) of a colour.
+///
+/// Colour: OKLab chroma over lightness along the hue of the ink, less the median around: uneven light divides out, and
+/// reddish tissue is the zero. Ring: a disc of half the largest gap rolls along the inside of the mask; where it
+/// cannot pass, the ring is closed. Contour: the centre of mass of the colour across the line, or the place where half
+/// of the band's colour is reached, both along the normal; repeated until it rests. docs/models/photograph.md
+/// @param picture  finite size; @param name  stands for the file in messages.
+/// @throws InvalidArgument for settings out of range; DataError where no line of that colour is found, or more than one
+/// ring, or a ring that crosses itself.
+[[nodiscard]] MarkedLine find_marked_line(const ColorPicture& picture, InkColor color, const LineSettings& settings,
+                                          const std::filesystem::path& name);
+
+}  // namespace incise

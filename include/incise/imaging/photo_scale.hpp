@@ -1,0 +1,48 @@
+#pragma once
+
+#include <incise/geometry/types.hpp>
+#include <incise/imaging/picture.hpp>
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// From a picture to the plane that it shows, in mm, x to the right and y up. Straight lines stay straight.
+struct PhotoScale {
+  Mat3 T_plane_picture = Mat3::Identity();  ///< homography: (x, y, 1) ~ T (u, v, 1)
+  [[nodiscard]] Vec2 plane_mm(const Vec2& pixel) const;
+  /// Side of a square as large as one pixel at this place.
+  [[nodiscard]] double mm_per_pixel(const Vec2& pixel) const;
+};
+
+/// One scale everywhere; the origin is the picture's lower left pixel. @throws InvalidArgument unless both are above 0.
+[[nodiscard]] PhotoScale scale_from_mm_per_pixel(double mm_per_pixel, int picture_height);
+
+/// From two pixels whose distance is known. @throws InvalidArgument for points less than 10 pixels apart.
+[[nodiscard]] PhotoScale scale_from_two_points(const Vec2& a, const Vec2& b, double distance_mm, int picture_height);
+
+/// Perspective correction: four pixels that are the corners of a rectangle of known size, in order round it, starting
+/// at the corner that becomes the lower left: lower left, lower right, upper right, upper left.
+/// @throws InvalidArgument where three of them lie on a line, they are crossed, or run the other way round.
+[[nodiscard]] PhotoScale scale_from_rectangle(const std::array<Vec2, 4>& corners, double width_mm, double height_mm);
+
+enum class RulerKind {
+  Ticks,  ///< a comb of parallel dark lines on something light and colourless, evenly spaced
+  Bar,    ///< a solid straight bar without colour
+};
+/// A ruler or scale bar found in a picture.
+struct Ruler {
+  double mm_per_pixel = 0.0;
+  double error_percent = 0.0;  ///< standard error of the scale
+  std::vector<Vec2> marks_px;  ///< the ticks' middles in order, or the bar's two ends
+};
+
+/// Finds a ruler. @param length_mm  from tick to tick (of the finest ticks), or of the whole bar.
+/// @throws DataError where none is found (fewer than 8 evenly spaced ticks; no solid bar), naming what was seen.
+[[nodiscard]] Ruler find_ruler(const ColorPicture& picture, RulerKind kind, double length_mm,
+                               const std::filesystem::path& name);
+
+}  // namespace incise

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <incise/geometry/cloud_surface.hpp>
+#include <incise/geometry/surface_query.hpp>
+#include <incise/geometry/tool_path.hpp>
+#include <incise/planning/plan_path.hpp>
+
+#include <filesystem>
+#include <optional>
+
+namespace incise {
+
+/// How a simulated path is laid on the measured tissue. Defaults are the paper's (II-D.2).
+struct ProjectSettings {
+  PathKind kind = PathKind::Incise;
+  double mark_depth_mm = 1.0;    ///< of a marking path below the surface (the paper's inferior offset), > 0
+  double mark_speed_mm_s = 2.0;  ///< > 0
+  int mark_waypoints = 96;       ///< along the tumour edge, >= 8
+  std::optional<double> incise_depth_mm = std::nullopt;    ///< of an incision, > 0; absent: as the path says
+  std::optional<double> incise_speed_mm_s = std::nullopt;  ///< > 0; absent: as the path says
+  double max_gap_mm = 2.0;    ///< farthest from a waypoint to the nearest measured point, in the picture, >= 0
+  double max_shift_mm = 5.0;  ///< farthest along the approach that a point is moved onto the surface, >= 0
+  AxisMode axis_mode = AxisMode::Approach;  ///< the tool as the path holds it, or against the measured surface's normal
+};
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const ProjectSettings& settings);
+
+/// The measured tissue: a cloud or a mesh of triangles, in the robot's frame, seen along an approach.
+class MeasuredSurface {
+ public:
+  /// A mesh without triangles is a cloud. @throws InvalidArgument as CloudSurface and SurfaceQuery.
+  MeasuredSurface(const TriMesh& surface, const Vec3& approach);
+  [[nodiscard]] const Vec3& approach() const { return approach_; }
+  /// The surface seen at p; nullopt where there is none. A mesh has no gaps where it has triangles.
+  [[nodiscard]] std::optional<CloudPlace> at(const Vec3& p) const;
+
+ private:
+  Vec3 approach_;
+  std::optional<CloudSurface> cloud_;
+  std::optional<SurfaceQuery> mesh_;
+};
+
+/// A path in the robot's frame, and how well it is founded on what was measured.
+struct ProjectedPath {
+  ToolPath path;
+  double max_gap_mm = 0.0;    ///< farthest from any point of path or edge to the nearest measured point, in the picture
+  double max_shift_mm = 0.0;  ///< farthest that a point was moved along the approach
+  double mean_shift_mm = 0.0;  ///< signed: positive = the measured surface lies above the simulated one
+  std::size_t bridged = 0;     ///< points more than 0.5 mm from a measured one
+};
+
+/// Mean of the waypoints' axes after a similarity: the direction along which a path is laid down. @pre as project_path.
+[[nodiscard]] Vec3 approach_of(const ToolPath& path, const Mat4& T_robot_sim);
+
+/// Takes path and tumour edge through a similarity and lays them along the approach onto the measured surface.
+/// A marking path follows the tumour edge, an incision the path; depth and speed are lengths of the real world and are
+/// not scaled.
+/// @param path         frame sim_stretched; for a marking path with a tumour edge.
+/// @param T_robot_sim  rotation, one positive scale and a shift, mm.
+/// @param name         stands for the surface in messages.
+/// @throws InvalidArgument with every violation of the settings, for another frame or a T that is no similarity;
+/// DataError naming the first point that misses the surface, lies beyond its rim, in a gap that is too large, or too
+/// far above or below it.
+[[nodiscard]] ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const MeasuredSurface& surface,
+                                         const ProjectSettings& settings, const std::filesystem::path& name);
+
+}  // namespace incise

@@ -1,0 +1,162 @@
+#include "imaging/ink.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace incise::imaging_detail {
+namespace {
+
+/// Hue angles of red and green ink in OKLab's (a, b) plane, and how fast strength falls beside them: to 0 at 59
+/// degrees.
+constexpr double kRedHueDeg = 22.0;
+constexpr double kGreenHueDeg = 145.0;
+constexpr float kHueFall = 0.6F;
+/// How far strength follows the opposite colour: a thin green line that a lens and JPEG have mixed with red tissue may
+/// end up grey, which is greener than the tissue.
+constexpr float kBeyondGrey = 0.05F;
+/// Added to the lightness that chroma is divided by: in deep shadow a colour is noise.
+constexpr float kShadow = 0.05F;
+constexpr int kGlareLevel = 238;  // of 255, in the darkest channel
+constexpr int kGlareSkirtPx = 4;
+constexpr double kSmoothingPx = 0.8;
+
+class Tables {
+ public:
+  Tables() {
+    for (int i = 0; i < 256; ++i) {
+      const double c = i / 255.0;
+      linear_[static_cast<std::size_t>(i)] =
+          static_cast<float>(c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4));
+    }
+    for (int i = 0; i <= kSteps + 1; ++i)
+      root_[static_cast<std::size_t>(i)] = static_cast<float>(std::cbrt(static_cast<double>(i) / kSteps));
+  }
+  /// Of the sRGB curve.
+  [[nodiscard]] float linear(std::uint8_t value) const { return linear_[value]; }
+  /// Cube root on [0, 1].
+  [[nodiscard]] float root(float x) const {
+    const float place = x * kSteps;
+    const int i = static_cast<int>(place);
+    const float share = place - static_cast<float>(i);
+    return (1.0F - share) * root_[static_cast<std::size_t>(i)] + share * root_[static_cast<std::size_t>(i) + 1];
+  }
+
+ private:
+  static constexpr int kSteps = 8192;
+  std::array<float, 256> linear_{};
+  std::array<float, kSteps + 2> root_{};
+};
+
+struct Direction {
+  explicit Direction(double deg)
+      : c(static_cast<float>(std::cos(deg * std::numbers::pi / 180.0))),
+        s(static_cast<float>(std::sin(deg * std::numbers::pi / 180.0))) {}
+  [[nodiscard]] float strength(float a, float b) const {
+    return std::max(-kBeyondGrey, a * c + b * s - kHueFall * std::abs(b * c - a * s));
+  }
+  float c, s;
+};
+
+/// What the surroundings have of the colour: the median over about a quarter of the picture.
+cv::Mat local_background(const cv::Mat& strength) {
+  constexpr int kWidth = 200;
+  constexpr double kFullScale = 0.6;  // of 255 steps from kBeyondGrey below 0; strengths beyond belong to no tissue
+  const int step = std::max(1, std::min(strength.cols, strength.rows) / kWidth);
+  cv::Mat small, bytes;
+  cv::resize(strength, small, {std::max(1, strength.cols / step), std::max(1, strength.rows / step)}, 0, 0,
+             cv::INTER_AREA);
+  small.convertTo(bytes, CV_8U, 255.0 / kFullScale, kBeyondGrey * 255.0 / kFullScale);
+  const int window = std::clamp(std::min(bytes.cols, bytes.rows) / 4, 3, 61) | 1;
+  cv::medianBlur(bytes, bytes, window);
+  bytes.convertTo(small, CV_32F, kFullScale / 255.0, -kBeyondGrey);
+  cv::GaussianBlur(small, small, {0, 0}, 2.0);  // no steps of 1/255 of full scale
+  cv::Mat result;
+  cv::resize(small, result, strength.size(), 0, 0, cv::INTER_LINEAR);
+  return result;
+}
+
+/// Standard deviation of the bulk, from the median absolute value of every seventh pixel of the difference to the
+/// median.
+double spread_of(const cv::Mat& difference) {
+  std::vector<float> values;
+  values.reserve(difference.total() / 7 + 1);
+  std::size_t count = 0;
+  for (int v = 0; v < difference.rows; ++v) {
+    const auto* row = difference.ptr<float>(v);
+    for (int u = 0; u < difference.cols; ++u) {
+      if (count++ % 7 == 0) values.push_back(std::abs(row[u]));
+    }
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return 1.4826 * *middle;
+}
+
+/// The value that `count` pixels exceed.
+double level_exceeded_by(const cv::Mat& values, std::size_t count) {
+  constexpr int kBins = 4096;
+  std::vector<std::size_t> bins(kBins, 0);
+  for (int v = 0; v < values.rows; ++v) {
+    const auto* row = values.ptr<float>(v);
+    for (int u = 0; u < values.cols; ++u)
+      ++bins[static_cast<std::size_t>(std::clamp(static_cast<int>(row[u] * kBins), 0, kBins - 1))];
+  }
+  std::size_t above = 0;
+  for (int i = kBins - 1; i > 0; --i) {
+    above += bins[static_cast<std::size_t>(i)];
+    if (above >= count) return static_cast<double>(i) / kBins;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+InkStrengths ink_strengths(const ColorPicture& picture) {
+  static const Tables tables;
+  static const Direction red(kRedHueDeg);
+  static const Direction green(kGreenHueDeg);
+  InkStrengths result{cv::Mat(picture.height, picture.width, CV_32F), cv::Mat(picture.height, picture.width, CV_32F),
+                      cv::Mat(picture.height, picture.width, CV_8U)};
+  for (int y = 0; y < picture.height; ++y) {
+    const std::uint8_t* rgb =
+        picture.rgb.data() + 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width);
+    auto* red_row = result.red.ptr<float>(y);
+    auto* green_row = result.green.ptr<float>(y);
+    auto* glare_row = result.glare.ptr<std::uint8_t>(y);
+    for (int x = 0; x < picture.width; ++x, rgb += 3) {
+      // OKLab (Ottosson 2020). A change of light multiplies L, a and b alike, so that a/L and b/L do not see it.
+      const float r = tables.linear(rgb[0]), g = tables.linear(rgb[1]), b = tables.linear(rgb[2]);
+      const float l = tables.root(0.4122214708F * r + 0.5363325363F * g + 0.0514459929F * b);
+      const float m = tables.root(0.2119034982F * r + 0.6806995451F * g + 0.1073969566F * b);
+      const float s = tables.root(0.0883024619F * r + 0.2817188376F * g + 0.6299787005F * b);
+      const float lightness = 0.2104542553F * l + 0.7936177850F * m - 0.0040720468F * s + kShadow;
+      const float along_a = (1.9779984951F * l - 2.4285922050F * m + 0.4505937099F * s) / lightness;
+      const float along_b = (0.0259040371F * l + 0.7827717662F * m - 0.8086757660F * s) / lightness;
+      red_row[x] = red.strength(along_a, along_b);
+      green_row[x] = green.strength(along_a, along_b);
+      glare_row[x] = std::min({rgb[0], rgb[1], rgb[2]}) >= kGlareLevel ? 255 : 0;
+    }
+  }
+  // A highlight's skirt is not burnt out, but has lost its colour, too.
+  const int width = 2 * kGlareSkirtPx + 1;
+  cv::dilate(result.glare, result.glare, cv::getStructuringElement(cv::MORPH_RECT, {width, width}));
+  return result;
+}
+
+InkMap ink_map(const cv::Mat& strength, double least_contrast, double mm_per_pixel) {
+  constexpr double kShortestLineMm = 8.0;
+  constexpr double kNoises = 7.0;
+  InkMap result;
+  cv::GaussianBlur(strength, result.likelihood, {0, 0}, kSmoothingPx);
+  result.likelihood -= local_background(strength);
+  result.noise = spread_of(result.likelihood);
+  const auto pixels = static_cast<std::size_t>(std::max(24.0, kShortestLineMm / mm_per_pixel));
+  result.contrast = level_exceeded_by(result.likelihood, pixels);
+  result.is_present = result.contrast > least_contrast && result.contrast > kNoises * result.noise;
+  if (result.is_present) result.likelihood *= 1.0 / result.contrast;
+  return result;
+}
+
+}  // namespace incise::imaging_detail

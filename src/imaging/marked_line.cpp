@@ -1,0 +1,234 @@
+#include "imaging/line_tracing.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/imaging/marked_line.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace incise {
+namespace imaging_detail {
+namespace {
+
+constexpr double kStepPx = 2.0;  // between the points of a line
+constexpr double kLeastDiscPx = 2.0;
+constexpr double kDiscOfGap = 0.65;      // of the rolling disc's radius to the gap that it must not pass
+constexpr double kWidestHiddenMm = 8.0;  // a painted band that crosses the other line hides at most this much of it
+constexpr double kLeastRingRadiusMm = 1.0;
+constexpr double kLeastLineMm = 8.0;
+constexpr double kGapToleranceMm = 0.18;  // where a gap's ends are not known better: blur eats at them,
+constexpr double kGapTolerancePx = 2.0;   // and the line has points only so often
+constexpr int kPasses = 4;
+
+struct Start {
+  Line line;
+  bool is_ring = false;
+};
+
+[[noreturn]] void refuse(const std::filesystem::path& name, const std::string& found, const std::string& expected,
+                         const std::string& hint = "") {
+  throw DataError(name, "", found, expected, hint);
+}
+
+void require_one_ring(const RollingResult& rolled, InkColor color, double mm_per_pixel,
+                      const std::filesystem::path& name) {
+  if (rolled.rings < 2) return;
+  const std::string sizes = fmt::format("{:.1f} and {:.1f} mm across", 2.0 * rolled.radius_px * mm_per_pixel,
+                                        2.0 * rolled.second_radius_px * mm_per_pixel);
+  if (rolled.rings_touch) {
+    refuse(name, fmt::format("a {} line that crosses itself (it encloses places {})", to_string(color), sizes),
+           "one simple ring");
+  }
+  refuse(name, fmt::format("{} {} rings ({})", rolled.rings, to_string(color), sizes), "one",
+         color == InkColor::Green ? "Two tumours? Cut the picture so that it shows one."
+                                  : "Cut the picture so that it shows one incision.");
+}
+
+/// The ring that the ink encloses, tried with wider and wider discs; without one, the longest line.
+Start start_of(const cv::Mat& mask, InkColor color, const LineSettings& settings, const std::filesystem::path& name) {
+  const double gap_px = std::max(settings.max_gap_mm, 0.3) / settings.mm_per_pixel;
+  const std::array<double, 3> discs{std::max(kLeastDiscPx, kDiscOfGap * gap_px),
+                                    std::max(2.0 * kLeastDiscPx, 2.0 * kDiscOfGap * gap_px),
+                                    std::max(4.0 * kLeastDiscPx, 4.0 * kDiscOfGap * gap_px)};
+  const std::optional<MaskWindow> window = window_of(mask, static_cast<int>(discs.back()) + 3);
+  if (!window) return {};
+  const double extent = 0.5 * std::max(window->mask.cols, window->mask.rows) - discs.back();
+  RollingResult best;
+  for (const double disc : discs) {
+    const RollingResult rolled = roll_inside(*window, disc);
+    if (rolled.inner_border.size() < 8 || rolled.radius_px * settings.mm_per_pixel < kLeastRingRadiusMm) continue;
+    // A wider disc only counts where the narrower ones found nothing but small loops.
+    if (rolled.radius_px < 2.0 * best.radius_px) continue;
+    best = rolled;
+    require_one_ring(rolled, color, settings.mm_per_pixel, name);
+    if (rolled.radius_px > 0.5 * extent) break;
+  }
+  if (!best.inner_border.empty()) return {best.inner_border, true};
+  return {longest_way(*window, discs.front()), false};
+}
+
+RefinedLine refined(Start& start, const InkMap& map, const cv::Mat& mask, const cv::Mat& glare,
+                    const LineSettings& settings) {
+  const double length = length_px(start.line, start.is_ring);
+  const double band = std::max(2.0, cv::countNonZero(mask) / length);
+  RefineSettings pass{.edge = settings.edge, .width_px = band, .reach_px = 0.0, .reject_outliers = false};
+  if (settings.edge == LineEdge::Inner && !start.is_ring) {  // the way runs along the middle of the band
+    for (std::size_t i = 0; i < start.line.size(); ++i)
+      start.line[i] -= 0.5 * band * outward(tangent_at(start.line, false, i, 8));
+  }
+  RefinedLine result{resampled(start.line, start.is_ring, kStepPx), {}, band};
+  for (int k = 0; k < kPasses; ++k) {
+    pass.reach_px = settings.edge == LineEdge::Inner ? (k < 2 ? 20.0 : 14.0)
+                                                     : (k < 2 ? 1.3 * band + 8.0 : 0.8 * result.width_px + 6.0);
+    pass.reject_outliers = k >= 2;
+    if (k > 0) result.points = resampled(result.points, start.is_ring, kStepPx);
+    result = refine(result.points, start.is_ring, map.likelihood, glare, pass);
+    smooth(result.points, start.is_ring, k + 1 < kPasses ? 4 : 2);
+    if (settings.edge == LineEdge::Middle && result.width_px > 0.0) pass.width_px = result.width_px;
+  }
+  return result;
+}
+
+/// Runs of points that were not seen. On a ring they may run over its start.
+struct Run {
+  std::size_t first = 0;
+  std::size_t count = 0;
+};
+std::vector<Run> unseen_runs(const std::vector<bool>& is_seen, bool is_closed) {
+  const std::size_t n = is_seen.size();
+  std::vector<Run> runs;
+  std::size_t begin = 0;
+  if (is_closed) {  // start behind a point that was seen
+    begin = static_cast<std::size_t>(std::find(is_seen.begin(), is_seen.end(), true) - is_seen.begin());
+    if (begin == n) return {{0, n}};
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t i = (begin + k) % n;
+    if (is_seen[i]) continue;
+    const bool continues = k > 0 && !is_seen[(i + n - 1) % n] && !runs.empty();
+    if (continues) {
+      ++runs.back().count;
+    } else {
+      runs.push_back({i, 1});
+    }
+  }
+  return runs;
+}
+
+LineGap gap_of(const Run& run, const Line& line, const cv::Mat& hidden, double mm_per_pixel) {
+  const std::size_t n = line.size();
+  LineGap gap{line[run.first], line[(run.first + run.count - 1) % n], 0.0, false};
+  double length = kStepPx;
+  std::size_t under = 0;
+  for (std::size_t k = 0; k < run.count; ++k) {
+    const Vec2& p = line[(run.first + k) % n];
+    if (k > 0) length += (p - line[(run.first + k - 1) % n]).norm();
+    const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+    if (!hidden.empty() && cv::Rect(0, 0, hidden.cols, hidden.rows).contains(at) && hidden.at<std::uint8_t>(at) != 0)
+      ++under;
+  }
+  gap.length_mm = length * mm_per_pixel;
+  gap.is_hidden = 2 * under >= run.count && gap.length_mm <= kWidestHiddenMm;
+  return gap;
+}
+
+void open_behind(Line& line, const Run& gap) {
+  const std::size_t n = line.size();
+  Line open;
+  for (std::size_t k = gap.count; k < n; ++k) open.push_back(line[(gap.first + k) % n]);
+  line = open;
+}
+
+void trim_unseen_ends(RefinedLine& line) {
+  const auto first = std::find(line.is_seen.begin(), line.is_seen.end(), true) - line.is_seen.begin();
+  const auto last = line.is_seen.rend() - std::find(line.is_seen.rbegin(), line.is_seen.rend(), true);
+  if (first >= last) {
+    line = {};
+    return;
+  }
+  line.points = Line(line.points.begin() + first, line.points.begin() + last);
+  line.is_seen = std::vector<bool>(line.is_seen.begin() + first, line.is_seen.begin() + last);
+}
+
+}  // namespace
+
+MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::Mat& glare, const cv::Mat& hidden,
+                             InkColor color, const LineSettings& settings, const std::filesystem::path& name) {
+  const std::string none = fmt::format("no {} line", to_string(color));
+  const std::string expected = fmt::format("a {} line on the tissue", to_string(color));
+  if (!map.is_present) {
+    refuse(
+        name,
+        fmt::format("{} (the strongest {} stands {:.3f} above its surroundings)", none, to_string(color), map.contrast),
+        expected);
+  }
+  Start start = start_of(mask, color, settings, name);
+  if (start.line.size() < 2 || length_px(start.line, start.is_ring) * settings.mm_per_pixel < kLeastLineMm) {
+    refuse(name, fmt::format("{} longer than {} mm", none, kLeastLineMm), expected, "Is the scale right?");
+  }
+  RefinedLine line = refined(start, map, mask, glare, settings);
+  if (!start.is_ring) trim_unseen_ends(line);
+  if (line.points.size() < 4) refuse(name, fmt::format("{}, only spots", none), expected);
+
+  MarkedLine result{.points_px = line.points,
+                    .is_closed = start.is_ring,
+                    .gaps = {},
+                    .width_px = line.width_px,
+                    .contrast = map.contrast};
+  std::vector<Run> runs = unseen_runs(line.is_seen, start.is_ring);
+  std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.count > b.count; });
+  const double allowed_mm = settings.max_gap_mm + kGapToleranceMm + kGapTolerancePx * settings.mm_per_pixel;
+  std::optional<Run> opening;
+  for (const Run& run : runs) {
+    const LineGap gap = gap_of(run, line.points, hidden, settings.mm_per_pixel);
+    if (run.count > 1) result.gaps.push_back(gap);
+    if (!opening && !gap.is_hidden && gap.length_mm > allowed_mm) opening = run;
+  }
+  if (start.is_ring && opening) {
+    result.is_closed = false;
+    open_behind(result.points_px, *opening);
+  }
+  if (!start.is_ring) {
+    const double across = (line.points.front() - line.points.back()).norm() * settings.mm_per_pixel;
+    result.gaps.push_back({line.points.back(), line.points.front(), across, false});
+  }
+  std::stable_sort(result.gaps.begin(), result.gaps.end(),
+                   [](const LineGap& a, const LineGap& b) { return a.length_mm > b.length_mm; });
+  return result;
+}
+
+}  // namespace imaging_detail
+
+std::string_view to_string(InkColor color) {
+  return color == InkColor::Red ? "red" : "green";
+}
+
+double MarkedLine::max_gap_mm() const {
+  double longest = 0.0;
+  for (const LineGap& gap : gaps) {
+    if (!gap.is_hidden) longest = std::max(longest, gap.length_mm);
+  }
+  return longest;
+}
+
+MarkedLine find_marked_line(const ColorPicture& picture, InkColor color, const LineSettings& settings,
+                            const std::filesystem::path& name) {
+  INCISE_REQUIRE(settings.mm_per_pixel > 0.0 && std::isfinite(settings.mm_per_pixel),
+                 fmt::format("expected mm_per_pixel above 0, found {}", settings.mm_per_pixel));
+  INCISE_REQUIRE(settings.max_gap_mm >= 0.0 && std::isfinite(settings.max_gap_mm),
+                 fmt::format("expected max_gap_mm of 0 or more, found {}", settings.max_gap_mm));
+  imaging_detail::hold_opencv_threads();
+  const imaging_detail::InkStrengths strengths = imaging_detail::ink_strengths(picture);
+  const imaging_detail::InkMap map =
+      color == InkColor::Red
+          ? imaging_detail::ink_map(strengths.red, imaging_detail::kLeastRed, settings.mm_per_pixel)
+          : imaging_detail::ink_map(strengths.green, imaging_detail::kLeastGreen, settings.mm_per_pixel);
+  return imaging_detail::trace_marked_line(map, map.is_present ? imaging_detail::ink_mask(map) : cv::Mat(),
+                                           strengths.glare, {}, color, settings, name);
+}
+
+}  // namespace incise

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <incise/imaging/picture.hpp>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace incise::imaging_detail {
+
+/// The pixels of a picture, in the order R, G, B, not copied. @pre as encode_png.
+[[nodiscard]] inline cv::Mat pixels_of(const ColorPicture& picture) {
+  // OpenCV has no read-only matrix; nobody writes through this one.
+  return {picture.height, picture.width, CV_8UC3, const_cast<std::uint8_t*>(picture.rgb.data())};
+}
+
+/// Keeps OpenCV to the thread that called it: the library's own `Workers` are the only threads.
+inline void hold_opencv_threads() {
+  cv::setNumThreads(1);
+}
+
+}  // namespace incise::imaging_detail

@@ -1,0 +1,180 @@
+#include "planning/surface_walk.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/planning/project_path.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kBridgedMm = 0.5;
+
+/// One rotation and one scale: p -> scale R p + t.
+struct Similarity {
+  explicit Similarity(const Mat4& T) : t(T.topRightCorner<3, 1>()) {
+    const Mat3 A = T.topLeftCorner<3, 3>();
+    const double determinant = A.determinant();
+    INCISE_REQUIRE(T.allFinite() && determinant > 0.0,
+                   fmt::format("expected a transform with a positive determinant, found {:.4g}", determinant));
+    scale = std::cbrt(determinant);
+    R = A / scale;
+    const double shear = (R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff();
+    INCISE_REQUIRE(
+        shear < 1e-4,
+        fmt::format(
+            "expected a rotation times one scale, found axes that are {:.2g} off being perpendicular and equally long",
+            shear));
+  }
+  [[nodiscard]] Vec3 operator*(const Vec3& p) const { return scale * (R * p) + t; }
+  double scale = 1.0;
+  Mat3 R;
+  Vec3 t;
+};
+
+/// Lays points down one after the other and keeps the books.
+class LayDown {
+ public:
+  LayDown(const MeasuredSurface& surface, const ProjectSettings& settings, const std::filesystem::path& name)
+      : surface_(surface), settings_(settings), name_(name) {}
+
+  CloudPlace operator()(const Vec3& p, const std::string& what) {
+    const std::optional<CloudPlace> place = surface_.at(p);
+    const auto refuse = [&](const std::string& found, const std::string& expected) {
+      throw DataError(name_, fmt::format("{} at {} mm", what, in_words(p)), found, expected,
+                      "Is the transform the one of this surface, and is all of the path in view?");
+    };
+    if (!place) refuse("no measured surface", "the whole path on the measured surface, seen along the approach");
+    if (place->is_extrapolated) refuse("a place beyond the measured surface's rim", "measured points all round");
+    if (place->gap_mm > settings_.max_gap_mm) {
+      refuse(fmt::format("a gap: the nearest measured point is {:.2f} mm away", place->gap_mm),
+             fmt::format("at most {} mm", settings_.max_gap_mm));
+    }
+    const double shift = (p - place->position_mm).dot(surface_.approach());  // positive: p lies below the surface
+    if (std::abs(shift) > settings_.max_shift_mm) {
+      refuse(fmt::format("a point {:.2f} mm {} the measured surface", std::abs(shift), shift > 0.0 ? "below" : "above"),
+             fmt::format("at most {} mm", settings_.max_shift_mm));
+    }
+    result.max_gap_mm = std::max(result.max_gap_mm, place->gap_mm);
+    result.max_shift_mm = std::max(result.max_shift_mm, std::abs(shift));
+    result.mean_shift_mm += shift;
+    result.bridged += place->gap_mm > kBridgedMm ? 1 : 0;
+    ++count_;
+    return *place;
+  }
+  ProjectedPath finish() {
+    if (count_ > 0) result.mean_shift_mm /= static_cast<double>(count_);
+    return result;
+  }
+  ProjectedPath result;
+
+ private:
+  const MeasuredSurface& surface_;
+  const ProjectSettings& settings_;
+  const std::filesystem::path& name_;
+  std::size_t count_ = 0;
+};
+
+/// What the tool is to follow before it is laid down, in the robot's frame.
+std::vector<Waypoint> course_of(const ToolPath& path, const Similarity& similarity, const Vec3& approach,
+                                const ProjectSettings& settings) {
+  std::vector<Waypoint> course;
+  if (settings.kind == PathKind::Mark) {
+    const Contour even = resample(path.tumor_edge, static_cast<std::size_t>(settings.mark_waypoints));
+    for (const Vec3& p : even.points)
+      course.push_back({similarity * p, approach, settings.mark_depth_mm, settings.mark_speed_mm_s});
+    return course;
+  }
+  for (const Waypoint& w : path.waypoints) {
+    course.push_back({similarity * w.position_mm, (similarity.R * w.axis).normalized(),
+                      settings.incise_depth_mm.value_or(w.depth_mm),
+                      settings.incise_speed_mm_s.value_or(w.speed_mm_s)});
+  }
+  return course;
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const ProjectSettings& s) {
+  std::vector<std::string> violations;
+  const auto positive = [&](const char* field, double value) {
+    if (!(std::isfinite(value) && value > 0.0))
+      violations.push_back(fmt::format("{}: expected above 0, found {}", field, value));
+  };
+  positive("mark_depth_mm", s.mark_depth_mm);
+  positive("mark_speed_mm_s", s.mark_speed_mm_s);
+  if (s.incise_depth_mm) positive("incise_depth_mm", *s.incise_depth_mm);
+  if (s.incise_speed_mm_s) positive("incise_speed_mm_s", *s.incise_speed_mm_s);
+  if (s.mark_waypoints < 8)
+    violations.push_back(fmt::format("mark_waypoints: expected 8 or more, found {}", s.mark_waypoints));
+  if (!(std::isfinite(s.max_gap_mm) && s.max_gap_mm >= 0.0))
+    violations.push_back(fmt::format("max_gap_mm: expected 0 or more, found {}", s.max_gap_mm));
+  if (!(std::isfinite(s.max_shift_mm) && s.max_shift_mm >= 0.0))
+    violations.push_back(fmt::format("max_shift_mm: expected 0 or more, found {}", s.max_shift_mm));
+  return violations;
+}
+
+MeasuredSurface::MeasuredSurface(const TriMesh& surface, const Vec3& approach) : approach_(approach.normalized()) {
+  if (surface.triangles.empty()) {
+    cloud_.emplace(surface.vertices, approach_);
+  } else {
+    mesh_.emplace(surface);
+  }
+}
+
+std::optional<CloudPlace> MeasuredSurface::at(const Vec3& p) const {
+  if (cloud_) return cloud_->at(cloud_->frame().to_view(p).head<2>());
+  const std::optional<SurfacePoint> seen = mesh_->seen_at(p, approach_);
+  if (!seen) return std::nullopt;
+  const Vec3 normal =
+      seen->normal.dot(approach_) > 0.0 ? Vec3(-seen->normal) : seen->normal;  // an open mesh may be turned either way
+  return CloudPlace{seen->position_mm, normal, 0.0, false};
+}
+
+Vec3 approach_of(const ToolPath& path, const Mat4& T_robot_sim) {
+  INCISE_REQUIRE(!path.waypoints.empty(), "expected a path with waypoints");
+  const Similarity similarity(T_robot_sim);
+  Vec3 sum = Vec3::Zero();
+  for (const Waypoint& w : path.waypoints) sum += similarity.R * w.axis;
+  INCISE_REQUIRE(sum.norm() > 0.5 * static_cast<double>(path.waypoints.size()),
+                 "expected axes that point into the tissue from one side");
+  return sum.normalized();
+}
+
+ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const MeasuredSurface& surface,
+                           const ProjectSettings& settings, const std::filesystem::path& name) {
+  const std::vector<std::string> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  INCISE_REQUIRE(path.frame == PathFrame::SimStretched,
+                 fmt::format("expected a path in frame sim_stretched, found {}", to_string(path.frame)));
+  INCISE_REQUIRE(settings.kind == PathKind::Incise || path.tumor_edge.points.size() >= 3,
+                 "expected a path with a tumour edge to mark");
+  const Similarity similarity(T_robot_sim);
+  LayDown lay_down(surface, settings, name);
+  ToolPath& result = lay_down.result.path;
+  result.frame = PathFrame::Robot;
+  result.kind = settings.kind;
+  result.is_closed = settings.kind == PathKind::Mark ? path.tumor_edge.is_closed : path.is_closed;
+  result.T_robot_sim = T_robot_sim;
+  result.tumor_edge.is_closed = path.tumor_edge.is_closed;
+  for (std::size_t i = 0; i < path.tumor_edge.points.size(); ++i) {
+    result.tumor_edge.points.push_back(
+        lay_down(similarity * path.tumor_edge.points[i], fmt::format("tumour edge point {}", i)).position_mm);
+  }
+  const std::vector<Waypoint> course = course_of(path, similarity, surface.approach(), settings);
+  for (std::size_t i = 0; i < course.size(); ++i) {
+    const CloudPlace place = lay_down(course[i].position_mm, fmt::format("waypoint {}", i));
+    Waypoint w = course[i];
+    w.position_mm = place.position_mm;
+    if (settings.axis_mode == AxisMode::SurfaceNormal) w.axis = -place.normal;
+    result.waypoints.push_back(w);
+  }
+  return lay_down.finish();
+}
+
+}  // namespace incise

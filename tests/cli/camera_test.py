@@ -1,0 +1,286 @@
+"""Photographs and camera pictures: evaluate PHOTO, track, project."""
+
+import csv
+import json
+import math
+import unittest
+
+import small_photo
+from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest
+from small_photo import GREEN, RED
+
+SCALE = 0.06  # mm per pixel
+TUMOR = (6.0 / SCALE, 4.0, GREEN, 0.0)
+
+
+class PhotoTest(CommandTest):
+    def photo(self, *rings, name="cut.png", **more):
+        return small_photo.ring_photo(self.folder / name, rings=rings, **more)
+
+    def ring(self, radius_mm, opening_deg=0.0, width_px=4.0):
+        return (radius_mm / SCALE, width_px, RED, opening_deg)
+
+    def refused(self, photo, status, *says, scale=SCALE):
+        self.assert_refused(self.incise("evaluate", photo, "--mm-per-pixel", scale), status, *says)
+
+    def test_a_good_cut_is_measured_and_drawn(self):
+        photo = self.photo(TUMOR, self.ring(10.0))
+        result = self.json_of("evaluate", photo, "--mm-per-pixel", SCALE, "--figure", "found.png", "-o", "evaluation.json")
+        self.assertEqual(result["outcome"], "success")
+        self.assertEqual(result["contour"], "inner_edge")
+        self.assertAlmostEqual(result["target_mm"], 4.5)
+        self.assertAlmostEqual(result["abs_error_mm"]["mean"], 0.5, delta=0.02)
+        self.assertAlmostEqual(result["signed_error_mm"]["mean"], -0.5, delta=0.02)
+        self.assertAlmostEqual(result["centroid_shift_mm"], 0.0, delta=0.02)
+        self.assertTrue(result["closed_loop"])
+        self.assertTrue((self.folder / "found.png").is_file())
+        self.assertEqual(json.loads((self.folder / "evaluation.json").read_text()), result)
+
+    def test_16_bits_and_alpha_give_the_same_answer(self):
+        rings = (TUMOR, self.ring(10.0))
+        plain = self.json_of("evaluate", self.photo(*rings), "--mm-per-pixel", SCALE)
+        for more in ({"bits": 16}, {"channels": 4}):
+            other = self.json_of("evaluate", self.photo(*rings, name="other.png", **more), "--mm-per-pixel", SCALE)
+            self.assertEqual(other["abs_error_mm"], plain["abs_error_mm"])
+
+    def test_the_inner_border_of_a_painted_kerf_is_measured(self):
+        width_px = 20.0
+        photo = self.photo(TUMOR, self.ring(10.5 + 0.5 * width_px * SCALE, width_px=width_px))
+        result = self.json_of("evaluate", photo, "--mm-per-pixel", SCALE, "--red", "kerf")
+        self.assertAlmostEqual(result["signed_error_mm"]["mean"], 0.0, delta=0.02)
+        middle = self.json_of("evaluate", photo, "--mm-per-pixel", SCALE, "--red", "kerf", "--contour", "centerline")
+        self.assertAlmostEqual(middle["signed_error_mm"]["mean"], -0.5 + 0.5 * width_px * SCALE, delta=0.02)
+
+    def test_an_open_ring_and_a_positive_margin_are_results(self):
+        opened = self.json_of("evaluate", self.photo(TUMOR, self.ring(10.0, opening_deg=15.0)), "--mm-per-pixel", SCALE, status=NOT_ACCEPTABLE)
+        self.assertEqual(opened["outcome"], "open_loop")
+        self.assertFalse(opened["closed_loop"])
+        self.assertAlmostEqual(opened["red_line"]["max_gap_mm"], 10.0 * math.radians(15.0), delta=0.3)
+        inside = self.json_of("evaluate", self.photo(TUMOR, self.ring(4.0)), "--mm-per-pixel", SCALE, status=NOT_ACCEPTABLE)
+        self.assertEqual(inside["outcome"], "positive_margin")
+        self.assertFalse(inside["negative_margin"])
+
+    def test_two_points_give_the_scale(self):
+        photo = self.photo(TUMOR, self.ring(10.0))
+        result = self.json_of("evaluate", photo, "--two-points", 0, 0, 300, 400, 30)
+        self.assertAlmostEqual(result["mm_per_pixel"], SCALE, places=9)
+
+    def test_a_photograph_that_cannot_be_measured_is_refused(self):
+        self.refused(self.photo(TUMOR), BAD_DATA, "cut.png", "no red line")
+        self.refused(self.photo(self.ring(10.0)), BAD_DATA, "no green line")
+        self.refused(self.photo((100.0, 4.0, GREEN, 20.0), self.ring(10.0)), BAD_DATA, "open tumour edge", "gap of")
+        self.refused(self.photo(TUMOR, self.ring(10.0)), BAD_DATA, "Is the scale right?", scale=1.0)
+
+    def test_files_that_are_no_colour_photograph_are_refused(self):
+        self.refused(self.photo(TUMOR, channels=1), BAD_DATA, "greyscale")
+        whole = self.photo(TUMOR, self.ring(10.0))
+        cut = self.folder / "short.png"
+        cut.write_bytes(whole.read_bytes()[:5000])
+        self.refused(cut, BAD_DATA, "short.png", "byte 5000", "the end of the file")
+        self.refused(self.folder / "nowhere.png", BAD_DATA, "nowhere.png")
+        text = self.folder / "letter.jpg"
+        text.write_text("Dear colleague,")
+        self.refused(text, BAD_DATA, "another kind of file")
+
+    def test_a_scale_is_asked_for_once(self):
+        photo = self.photo(TUMOR, self.ring(10.0))
+        self.assert_refused(self.incise("evaluate", photo), BAD_CASE, "no scale", "--mm-per-pixel")
+        self.assert_refused(self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--ruler", "ticks"), BAD_CASE, "2 scales")
+        self.assert_refused(self.incise("evaluate", photo, "--ruler", "ticks"), BAD_DATA, "no ruler")
+        self.assert_refused(self.incise("evaluate"), BAD_CASE, "no input")
+
+
+CAMERA = {"width": 320, "height": 240, "fx": 500.0, "fy": 500.0, "cx": 160.0, "cy": 120.0, "depth_scale": 0.0001}
+Z_MM = 150.0
+PIXEL_MM = Z_MM / 500.0
+T_ROBOT_CAMERA = [[1, 0, 0, 500], [0, -1, 0, 100], [0, 0, -1, 300], [0, 0, 0, 1]]
+
+
+class TrackTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "camera.json").write_text(json.dumps(CAMERA))
+        (self.folder / "mount.json").write_text(json.dumps({"T_robot_camera": T_ROBOT_CAMERA}))
+
+    def scene(self, opening_deg=0.0, hole=None):
+        """A ring of 10 mm radius on a flat plate 150 mm away."""
+        small_photo.ring_photo(
+            self.folder / "color.png", 320, 240, (160.0, 120.0), [(10.0 / PIXEL_MM, 4.0, GREEN, opening_deg)]
+        )
+
+        def counts(u, v):
+            return 0 if hole and abs(u - hole[0]) <= hole[2] and abs(v - hole[1]) <= hole[2] else round(Z_MM * 10)
+
+        small_photo.depth_picture(self.folder / "depth.png", 320, 240, counts)
+        return ["track", "color.png", "depth.png", "--intrinsics", "camera.json", "-o", "out"]
+
+    def test_a_ring_becomes_a_contour_in_space(self):
+        result = self.json_of(*self.scene())
+        self.assertTrue(result["closed_loop"])
+        self.assertEqual(result["frame"], "camera")
+        self.assertAlmostEqual(result["length_mm"], 2 * math.pi * 10.0, delta=0.3)
+        with open(self.out / "contour.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), result["points"])
+        for row in rows:
+            self.assertAlmostEqual(math.hypot(float(row["x_mm"]), float(row["y_mm"])), 10.0, delta=0.08)
+            self.assertAlmostEqual(float(row["z_mm"]), Z_MM, delta=0.06)
+        for name in ("cloud.ply", "found.png", "manifest.json"):
+            self.assertTrue((self.out / name).is_file(), name)
+        self.assertFalse((self.out / "path.json").exists())
+
+    def test_a_plan_is_made_in_the_robots_frame(self):
+        result = self.json_of(*self.scene(), "--camera", "mount.json", "--plan", "--margin-mm", 5)
+        path = json.loads((self.out / "path.json").read_text())
+        self.assertEqual((path["frame"], path["kind"], path["closed"]), ("robot", "incise", True))
+        self.assertEqual(result["waypoints"], len(path["waypoints"]))
+        for w in path["waypoints"]:
+            x, y, z = w["position_mm"]
+            self.assertAlmostEqual(math.hypot(x - 500, y - 100), 15.0, delta=0.15)
+            self.assertAlmostEqual(z, 300 - Z_MM, delta=0.1)
+            self.assertEqual((w["depth_mm"], w["speed_mm_s"]), (5, 7))
+            for found, expected in zip(w["axis"], (0, 0, -1)):
+                self.assertAlmostEqual(found, expected, places=9)
+
+    def test_a_mark_with_a_gap_is_no_ring(self):
+        done = self.incise(*self.scene(opening_deg=25.0), "--camera", "mount.json", "--plan", "--json")
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        self.assertIn("the mark is not closed: a gap of", done.stderr)
+        result = json.loads(done.stdout)
+        self.assertFalse(result["closed_loop"])
+        self.assertEqual(result["outcome"], "open_loop")
+        self.assertIsNone(result["path"])
+        self.assertTrue((self.out / "contour.csv").is_file())
+        self.assertFalse((self.out / "path.json").exists())
+
+    def test_an_open_mark_can_be_asked_for(self):
+        result = self.json_of(*self.scene(opening_deg=90.0), "--open", "--margin-mm", 0, "--camera", "mount.json", "--plan")
+        self.assertFalse(result["closed_loop"])
+        self.assertFalse(json.loads((self.out / "path.json").read_text())["closed"])
+        self.assertAlmostEqual(result["length_mm"], 1.5 * math.pi * 10.0, delta=1.0)
+
+    def test_a_hole_in_the_depth_is_bridged_or_told(self):
+        ring_px = round(10.0 / PIXEL_MM)
+        result = self.json_of(*self.scene(hole=(160 + ring_px, 120, 4)), "--max-hole-mm", 3)
+        self.assertGreater(result["max_hole_mm"], 0.3)
+        self.assertAlmostEqual(result["length_mm"], 2 * math.pi * 10.0, delta=0.3)
+        done = self.incise(*self.scene(hole=(160 + ring_px, 120, 16))[:-1], "other")
+        self.assert_refused(done, BAD_DATA, "depth.png", "a hole in the depth under the mark", "mm wide")
+        self.assert_nothing_written(self.folder / "other")
+
+    def test_bad_input_is_told(self):
+        arguments = self.scene()
+        self.assert_refused(self.incise(*arguments, "--plan"), BAD_CASE, "--camera")
+        self.assert_refused(self.incise(*arguments, "--mark", "red"), BAD_DATA, "no red line")
+        (self.folder / "camera.json").write_text(json.dumps({**CAMERA, "fx": -1}))
+        self.assert_refused(self.incise(*arguments), BAD_DATA, "camera.json", "/fx")
+        (self.folder / "camera.json").write_text(json.dumps({**CAMERA, "width": 640}))
+        self.assert_refused(self.incise(*arguments), BAD_DATA, "color.png", "320 x 240")
+        (self.folder / "camera.json").write_text(json.dumps({**CAMERA, "depth_scale": 1.0}))
+        self.assert_refused(self.incise(*arguments), BAD_DATA, "depth_scale")
+        self.assert_nothing_written()
+
+    def test_an_organised_cloud_is_tracked_too(self):
+        self.scene()
+        lines = ["ply", "format ascii 1.0", "obj_info num_cols 320", "obj_info num_rows 240", f"element vertex {320 * 240}"]
+        lines += [f"property float {c}" for c in "xyz"] + [f"property uchar {c}" for c in ("red", "green", "blue")] + ["end_header"]
+        for v in range(240):
+            for u in range(320):
+                r = math.hypot(u - 160, v - 120)
+                color = GREEN if abs(r - 10.0 / PIXEL_MM) <= 2.0 else small_photo.TISSUE
+                lines.append("%.4f %.4f %.4f %d %d %d" % ((u - 160) * PIXEL_MM / 1000, (v - 120) * PIXEL_MM / 1000, Z_MM / 1000, *color))
+        (self.folder / "scan.ply").write_text("\n".join(lines) + "\n")
+        result = self.json_of("track", "scan.ply", "--ply-unit-mm", 1000, "-o", "out")
+        self.assertTrue(result["closed_loop"])
+        self.assertAlmostEqual(result["length_mm"], 2 * math.pi * 10.0, delta=0.3)
+
+
+class ProjectTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.write_transform()
+        self.write_path()
+        self.write_cloud()
+
+    def write_transform(self, scale=1.0, **more):
+        matrix = [[0, -scale, 0, 400], [scale, 0, 0, 50], [0, 0, scale, 100], [0, 0, 0, 1]]
+        (self.folder / "registration.json").write_text(json.dumps({"T_target_source": matrix, "scale": scale, "converged": True, **more}))
+
+    def write_path(self, frame="sim_stretched"):
+        def circle(radius, count):
+            return [[radius * math.cos(2 * math.pi * i / count), radius * math.sin(2 * math.pi * i / count), 0.0] for i in range(count)]
+
+        waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in circle(15.0, 48)]
+        (self.folder / "path.json").write_text(
+            json.dumps({"frame": frame, "kind": "incise", "closed": True, "waypoints": waypoints, "tumor_edge": circle(10.0, 60)})
+        )
+
+    def write_cloud(self, half_mm=25, hole_mm=0.0):
+        """A slope through the sim's origin, 0.5 mm above it, in the robot's frame."""
+        points = []
+        for i in range(-2 * half_mm, 2 * half_mm + 1):
+            for j in range(-2 * half_mm, 2 * half_mm + 1):
+                x, y = 0.5 * i, 0.5 * j
+                if math.hypot(x - 15.0, y) >= hole_mm:
+                    points.append((400 + x, 50 + y, 100.5 + 0.1 * x))
+        lines = ["ply", "format ascii 1.0", f"element vertex {len(points)}"] + [f"property double {c}" for c in "xyz"] + ["end_header"]
+        (self.folder / "cloud.ply").write_text("\n".join(lines + ["%r %r %r" % p for p in points]) + "\n")
+
+    ARGUMENTS = ["project", "path.json", "--transform", "registration.json", "--surface", "cloud.ply", "-o", "robot.json"]
+
+    def test_the_incision_lies_on_the_measured_surface(self):
+        result = self.json_of(*self.ARGUMENTS)
+        path = json.loads((self.folder / "robot.json").read_text())
+        self.assertEqual((path["frame"], path["kind"]), ("robot", "incise"))
+        self.assertEqual(result["waypoints"], 48)
+        self.assertLess(result["max_gap_mm"], 0.5)
+        self.assertAlmostEqual(result["mean_shift_mm"], 0.5, delta=0.01)
+        for w in path["waypoints"]:
+            x, y, z = w["position_mm"]
+            self.assertAlmostEqual(math.hypot(x - 400, y - 50), 15.0, places=6)
+            self.assertAlmostEqual(z, 100.5 + 0.1 * (x - 400), places=4)
+            self.assertEqual((w["depth_mm"], w["speed_mm_s"]), (5, 7))
+
+    def test_a_mark_follows_the_edge_a_millimetre_deep(self):
+        result = self.json_of(*self.ARGUMENTS, "--kind", "mark")
+        path = json.loads((self.folder / "robot.json").read_text())
+        self.assertEqual(path["kind"], "mark")
+        self.assertEqual(result["waypoints"], len(path["waypoints"]))
+        for w in path["waypoints"]:
+            self.assertEqual((w["depth_mm"], w["speed_mm_s"]), (1, 2))
+            self.assertAlmostEqual(math.hypot(w["position_mm"][0] - 400, w["position_mm"][1] - 50), 10.0, delta=0.06)
+
+    def refused(self, *says, status=BAD_DATA):
+        self.assert_refused(self.incise(*self.ARGUMENTS), status, *says)
+        self.assert_nothing_written(self.folder / "robot.json")
+
+    def test_gaps_are_reported_and_large_ones_refused(self):
+        self.write_cloud(hole_mm=1.4)
+        self.assertAlmostEqual(self.json_of(*self.ARGUMENTS)["max_gap_mm"], 1.4, delta=0.3)
+        (self.folder / "robot.json").unlink()
+        self.write_cloud(hole_mm=4.0)
+        self.refused("cloud.ply", "waypoint", "a gap")
+
+    def test_a_surface_that_ends_is_refused(self):
+        self.write_cloud(half_mm=12)
+        self.refused("cloud.ply", "waypoint")
+
+    def test_registrations_that_cannot_be_trusted_are_refused_or_told(self):
+        self.write_transform(converged=False)
+        self.refused("registration.json", "converged")
+        self.write_transform(scale=1.08)
+        done = self.incise(*self.ARGUMENTS)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("the scale is 1.0800", done.stderr)
+        (self.folder / "robot.json").unlink()
+        (self.folder / "registration.json").write_text(json.dumps({"T_target_source": [[1, 0], [0, 1]]}))
+        self.refused("registration.json", "T_target_source", "4 rows")
+
+    def test_paths_of_other_frames_are_refused(self):
+        for frame in ("sim_rest", "robot"):
+            self.write_path(frame)
+            self.refused("path.json", frame, "sim_stretched")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,270 @@
+#include "support/contour_shapes.hpp"
+#include "support/photo_painter.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/evaluation/evaluation.hpp>
+#include <incise/evaluation/level_loop.hpp>
+#include <incise/imaging/photo_contours.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+namespace incise {
+namespace {
+
+using testing::PaintedLine;
+using testing::PaintedPhoto;
+
+constexpr double kScale = 0.03;      // mm per pixel, as the paper's photographs
+constexpr double kContourMm = 0.03;  // the bar: mean absolute error of a contour
+constexpr double kMeasureMm = 0.02;  // of a measure in mm
+constexpr double kHu = 0.01;         // of a Hu score
+const char* const kName = "photo.jpg";
+
+/// A tumour of 12 mm with its incision 4.5 mm outside, moved a little, as a photograph with everything that photographs
+/// suffer from.
+struct Scene {
+  PaintedPhoto photo;
+  Contour tumor;
+  Contour incision;
+};
+
+Scene scene(double width_px, bool is_kerf, std::uint64_t seed = 1) {
+  Scene s;
+  s.photo.width = s.photo.height = 1000;
+  s.photo.mm_per_pixel = kScale;
+  s.photo.seed = seed;
+  s.photo.glare_spots = 10;
+  const Vec3 middle(15.0, 15.0, 0.0);
+  s.tumor = testing::moved(testing::irregular_tumor(720), 0.4 * static_cast<double>(seed), 0.6, middle);
+  s.incision = testing::moved(outer_offset(s.tumor, 4.5, -Vec3::UnitZ()), 0.0, 1.0, Vec3(0.4, -0.3, 0.0));
+  const PaintedLine green{.course = s.tumor, .width_mm = (is_kerf ? 5.0 : width_px) * kScale};
+  const PaintedLine red{.course = s.incision,
+                        .width_mm = width_px * kScale,
+                        .color = seed % 2 == 1 ? testing::Rgb{205, 20, 35} : testing::Rgb{225, 45, 20},
+                        .is_outside = is_kerf};
+  s.photo.lines = {green, red};
+  return s;
+}
+
+/// Through JPEG at quality 70, as a camera would deliver it.
+ColorPicture photographed(const Scene& s) {
+  return decode_picture(encode_jpeg(testing::paint_photo(s.photo), 70), kName);
+}
+
+PhotoContours found_in(const ColorPicture& picture, RedLine red = RedLine::Annotation) {
+  return find_photo_contours(picture, scale_from_mm_per_pixel(kScale, picture.height), {.red = red}, kName);
+}
+
+double mean_error(const Contour& found, const Contour& truth) {
+  double sum = 0.0;
+  const Contour even = resample(found, 600);
+  for (const Vec3& p : even.points) sum += nearest_on(truth, p).distance_mm;
+  return sum / 600.0;
+}
+
+/// Ways round both: a contour that is right but covers half the ring would otherwise pass.
+void expect_contour(const Contour& found, const Contour& truth) {
+  EXPECT_LT(mean_error(found, truth), kContourMm);
+  EXPECT_LT(mean_error(truth, found), kContourMm);
+}
+
+void expect_same_measures(const PhotoContours& found, const Scene& truth) {
+  EvaluationSettings settings;
+  settings.contour = ContourKind::InnerEdge;
+  const Evaluation seen = evaluate(found.incision, found.tumor_edge, settings);
+  const Evaluation real = evaluate(truth.incision, truth.tumor, settings);
+  EXPECT_EQ(seen.outcome, real.outcome);
+  EXPECT_NEAR(seen.abs_error_mm->mean, real.abs_error_mm->mean, kMeasureMm);
+  EXPECT_NEAR(seen.abs_error_mm->sd, real.abs_error_mm->sd, kMeasureMm);
+  EXPECT_NEAR(seen.signed_error_mm->mean, real.signed_error_mm->mean, kMeasureMm);
+  EXPECT_NEAR(*seen.centroid_shift_mm, *real.centroid_shift_mm, kMeasureMm);
+  if (!seen.hu_unstable && !real.hu_unstable) {
+    EXPECT_NEAR(*seen.hu_score, *real.hu_score, kHu);
+  }
+}
+
+struct Kind {
+  double width_px;
+  bool is_kerf;
+};
+class EveryLine : public ::testing::TestWithParam<Kind> {};
+
+TEST_P(EveryLine, IsMeasuredToAFractionOfAPixel) {
+  const auto [width_px, is_kerf] = GetParam();
+  for (const std::uint64_t seed : {1U, 2U}) {
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    const Scene truth = scene(width_px, is_kerf, seed);
+    const PhotoContours found = found_in(photographed(truth), is_kerf ? RedLine::Kerf : RedLine::Annotation);
+    EXPECT_TRUE(found.incision.is_closed);
+    EXPECT_TRUE(found.tumor_edge.is_closed);
+    expect_contour(found.tumor_edge, truth.tumor);
+    expect_contour(found.incision, truth.incision);
+    expect_same_measures(found, truth);
+  }
+}
+
+TEST_P(EveryLine, GapsUpToAMillimetreAreClosedAndWiderOnesAreOpen) {
+  const auto [width_px, is_kerf] = GetParam();
+  const RedLine red = is_kerf ? RedLine::Kerf : RedLine::Annotation;
+  for (const double gap_mm : {1.0, 1.6}) {
+    SCOPED_TRACE(fmt::format("gap {} mm", gap_mm));
+    Scene truth = scene(width_px, is_kerf);
+    truth.photo.glare_spots = 0;
+    truth.photo.lines[1].gaps_mm = {{20.0, gap_mm}};
+    const PhotoContours found = found_in(photographed(truth), red);
+    EXPECT_EQ(found.incision.is_closed, gap_mm <= 1.0);
+    EXPECT_NEAR(found.red.max_gap_mm(), gap_mm, 0.25);
+    EXPECT_LT(mean_error(found.incision, truth.incision), kContourMm);
+    if (gap_mm <= 1.0) expect_same_measures(found, truth);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(FindPhotoContours, EveryLine,
+                         ::testing::Values(Kind{2, false}, Kind{4, false}, Kind{12, false}, Kind{30, true},
+                                           Kind{100, true}),
+                         [](const auto& kind) {
+                           return fmt::format("{}Of{}Pixels", kind.param.is_kerf ? "Kerf" : "Line",
+                                              kind.param.width_px);
+                         });
+
+TEST(FindPhotoContours, RunCounterClockwiseFromTheTop) {
+  const PhotoContours found = found_in(photographed(scene(6, false)));
+  for (const Contour* contour : {&found.tumor_edge, &found.incision}) {
+    EXPECT_GT(signed_area_mm2(*contour, -Vec3::UnitZ()), 0.0);
+    for (const Vec3& p : contour->points) EXPECT_LE(p.y(), contour->points.front().y());
+  }
+}
+
+TEST(FindPhotoContours, AnOpenTumorEdgeIsRefusedWithItsGap) {
+  Scene truth = scene(6, false);
+  truth.photo.glare_spots = 0;
+  truth.photo.lines[0].gaps_mm = {{5.0, 2.5}};
+  try {
+    static_cast<void>(found_in(photographed(truth)));
+    FAIL() << "an open edge was taken for a closed one";
+  } catch (const DataError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("open tumour edge"));
+    EXPECT_THAT(error.what(), ::testing::AnyOf(::testing::HasSubstr("2.4"), ::testing::HasSubstr("2.5"),
+                                               ::testing::HasSubstr("2.6")));
+  }
+}
+
+TEST(FindPhotoContours, HalfARingIsOpen) {
+  Scene truth = scene(6, false);
+  truth.photo.lines[1].gaps_mm = {{0.0, 0.5 * length_mm(truth.incision)}};
+  const PhotoContours found = found_in(photographed(truth));
+  EXPECT_FALSE(found.incision.is_closed);
+  EXPECT_GT(found.red.max_gap_mm(), 10.0);
+  EXPECT_LT(mean_error(found.incision, truth.incision), kContourMm);
+  EXPECT_NEAR(length_mm(found.incision), 0.5 * length_mm(truth.incision), 1.0);
+}
+
+TEST(FindPhotoContours, AnIncisionThatCutsIntoTheTumorIsAResult) {
+  Scene truth = scene(8, false);
+  truth.incision = testing::moved(truth.incision, 0.0, 1.0, Vec3(7.0, 0.0, 0.0));
+  truth.photo.width = 1200;
+  truth.photo.lines[1].course = truth.incision;
+  const ColorPicture picture = photographed(truth);
+  const PhotoContours found = found_in(picture);
+  EXPECT_TRUE(found.incision.is_closed);
+  expect_contour(found.incision, truth.incision);
+  expect_contour(found.tumor_edge, truth.tumor);
+  EvaluationSettings settings;
+  settings.contour = ContourKind::InnerEdge;
+  EXPECT_EQ(evaluate(found.incision, found.tumor_edge, settings).outcome, Outcome::PositiveMargin);
+}
+
+/// What the refusal of a scene says.
+std::string refusal(const Scene& s, double mm_per_pixel = kScale) {
+  const ColorPicture picture = photographed(s);
+  try {
+    static_cast<void>(find_photo_contours(picture, scale_from_mm_per_pixel(mm_per_pixel, picture.height), {}, kName));
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FindPhotoContours, RefusesWhatItCannotMeasure) {
+  Scene no_red = scene(6, false);
+  no_red.photo.lines.pop_back();
+  EXPECT_THAT(refusal(no_red), ::testing::HasSubstr("no red line"));
+  Scene no_green = scene(6, false);
+  no_green.photo.lines.erase(no_green.photo.lines.begin());
+  EXPECT_THAT(refusal(no_green), ::testing::HasSubstr("no green line"));
+  Scene bare = scene(6, false);
+  bare.photo.lines.clear();
+  EXPECT_THAT(refusal(bare), ::testing::HasSubstr("no green line"));
+
+  Scene two = scene(6, false);
+  two.photo.lines.clear();
+  for (const double x : {8.0, 21.0}) {
+    two.photo.lines.push_back({.course = testing::circle(4.0, 200, Vec3(x, 15.0, 0.0)), .width_mm = 0.2});
+  }
+  EXPECT_THAT(refusal(two), ::testing::HasSubstr("2 green rings"));
+
+  Scene eight = scene(6, false);
+  Contour crossing{.points = {}, .is_closed = true};
+  for (int i = 0; i < 400; ++i) {
+    const double t = 2.0 * std::numbers::pi * i / 400.0;
+    crossing.points.emplace_back(15.0 + 11.0 * std::sin(t), 15.0 + 6.0 * std::sin(2.0 * t), 0.0);
+  }
+  eight.photo.lines[1].course = crossing;
+  EXPECT_THAT(refusal(eight), ::testing::HasSubstr("crosses itself"));
+
+  EXPECT_THAT(refusal(scene(6, false), 0.5), ::testing::HasSubstr("Is the scale right?"));
+}
+
+TEST(FindPhotoContours, UndoesPerspective) {
+  // The painted plane seen at a slant: the corners of its 30 x 30 mm land where a camera would put them.
+  const Scene truth = scene(8, false);
+  const ColorPicture flat = testing::paint_photo(truth.photo);
+  const std::array<Vec2, 4> corners{Vec2(60, 930), Vec2(950, 960), Vec2(850, 80), Vec2(130, 50)};
+  const double side = 999.0 * kScale;
+  const PhotoScale scale = scale_from_rectangle(corners, side, side);
+  ColorPicture slanted{1000, 1000, std::vector<std::uint8_t>(flat.rgb.size(), 120)};
+  for (int v = 0; v < 1000; ++v) {
+    for (int u = 0; u < 1000; ++u) {
+      const Vec2 q = scale.plane_mm(Vec2(u, v)) / kScale;
+      const double x = q.x(), y = 999.0 - q.y();
+      if (x < 0.0 || y < 0.0 || x >= 998.0 || y >= 998.0) continue;
+      const int iu = static_cast<int>(x), iv = static_cast<int>(y);
+      const double a = x - iu, b = y - iv;
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto at = [&](int du, int dv) {
+          return flat.rgb[3 * static_cast<std::size_t>((iv + dv) * 1000 + iu + du) + c];
+        };
+        slanted.rgb[3 * static_cast<std::size_t>(v * 1000 + u) + c] = static_cast<std::uint8_t>(
+            (1 - b) * ((1 - a) * at(0, 0) + a * at(1, 0)) + b * ((1 - a) * at(0, 1) + a * at(1, 1)));
+      }
+    }
+  }
+  const PhotoContours found = find_photo_contours(slanted, scale, {}, kName);
+  expect_contour(found.tumor_edge, truth.tumor);
+  expect_contour(found.incision, truth.incision);
+  expect_same_measures(found, truth);
+}
+
+TEST(FindPhotoContours, GivesTheSameAnswerTwice) {
+  const ColorPicture picture = photographed(scene(6, false));
+  const PhotoContours a = found_in(picture), b = found_in(picture);
+  ASSERT_EQ(a.incision.points.size(), b.incision.points.size());
+  for (std::size_t i = 0; i < a.incision.points.size(); ++i) EXPECT_EQ(a.incision.points[i], b.incision.points[i]);
+}
+
+TEST(DrawFound, KeepsThePictureAndShowsTheLines) {
+  const ColorPicture picture = photographed(scene(6, false));
+  const PhotoContours found = found_in(picture);
+  const ColorPicture drawn = draw_found(picture, {&found.green, &found.red});
+  ASSERT_EQ(drawn.rgb.size(), picture.rgb.size());
+  const Vec2 p = found.red.points_px[10];
+  const auto k =
+      3 * (static_cast<std::size_t>(std::lround(p.y())) * 1000 + static_cast<std::size_t>(std::lround(p.x())));
+  EXPECT_GT(int{drawn.rgb[k + 1]} + drawn.rgb[k + 2], 250) << "white was drawn where there was red";
+  EXPECT_EQ(drawn.rgb[0], picture.rgb[0] * 3 / 4);
+}
+
+}  // namespace
+}  // namespace incise
