@@ -23,23 +23,4 @@ Vec3 direction_of(const std::vector<double>& numbers, const char* option) {
   return direction;
 }
 
-Manifest manifest_of(const CommonOptions& options, std::string settings_json,
-                     const std::vector<std::filesystem::path>& inputs, double wall_s) {
-  Manifest manifest;
-  manifest.version = version();
-  manifest.commit = source_commit();
-  manifest.command = options.command_line;
-  manifest.settings_json = std::move(settings_json);
-  manifest.seed = options.seed;
-  manifest.threads = options.context().threads;
-  manifest.instruction_set = to_string(active_isa());
-  for (const std::filesystem::path& path : inputs) {
-    manifest.inputs.push_back(
-        {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path)});
-  }
-  manifest.wall_s = wall_s;
-  manifest.machine = machine_description();
-  return manifest;
-}
-
 }  // namespace incise::cli

@@ -3,7 +3,6 @@
 #include "options.hpp"
 
 #include <incise/geometry/point_cloud.hpp>
-#include <incise/io/manifest.hpp>
 
 #include <filesystem>
 #include <string>
@@ -17,9 +16,5 @@ namespace incise::cli {
 
 /// Three numbers of an option as a direction. @throws CaseError for one of length 0.
 [[nodiscard]] Vec3 direction_of(const std::vector<double>& numbers, const char* option);
-
-/// The manifest of a folder that a verb without a case fills.
-[[nodiscard]] Manifest manifest_of(const CommonOptions& options, std::string settings_json,
-                                   const std::vector<std::filesystem::path>& inputs, double wall_s);
 
 }  // namespace incise::cli

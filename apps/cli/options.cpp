@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
 #include <incise/core/isa.hpp>
 
 #include <fmt/format.h>
@@ -24,6 +25,26 @@ RunContext CommonOptions::context() const {
   const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   return {command_line, seed, threads > 0 ? threads : all};
 }
+
+Manifest manifest_of(const CommonOptions& options, std::string settings_json,
+                     const std::vector<std::filesystem::path>& inputs, double wall_s) {
+  Manifest manifest;
+  manifest.version = version();
+  manifest.commit = source_commit();
+  manifest.command = options.command_line;
+  manifest.settings_json = std::move(settings_json);
+  manifest.seed = options.seed;
+  manifest.threads = options.context().threads;
+  manifest.instruction_set = to_string(active_isa());
+  for (const std::filesystem::path& path : inputs) {
+    manifest.inputs.push_back(
+        {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path)});
+  }
+  manifest.wall_s = wall_s;
+  manifest.machine = machine_description();
+  return manifest;
+}
+
 
 std::filesystem::path CommonOptions::required_output(const char* example) const {
   if (output.empty()) throw CaseError("command line", "-o", "nothing", "where to write", fmt::format("For example: -o {}", example));

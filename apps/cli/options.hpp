@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/io/manifest.hpp>
+
 #include "console.hpp"
 
 #include <incise/core/error.hpp>
@@ -49,6 +51,10 @@ struct CommonOptions {
   /// The output, or CaseError where a verb needs one and none was given.
   [[nodiscard]] std::filesystem::path required_output(const char* example) const;
 };
+
+/// The manifest of a folder that a verb without a case fills.
+[[nodiscard]] Manifest manifest_of(const CommonOptions& options, std::string settings_json,
+                                   const std::vector<std::filesystem::path>& inputs, double wall_s);
 
 /// A verb is added to the application together with what it does: a function that returns the exit status.
 class Application {

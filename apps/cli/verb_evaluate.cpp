@@ -18,7 +18,7 @@
 namespace incise::cli {
 namespace {
 
-struct Arguments {
+struct EvaluateArguments {
   std::filesystem::path photo;
   std::filesystem::path incision;
   std::filesystem::path tumor;
@@ -44,7 +44,7 @@ Evaluation measured(const Contour& incision, const Contour& tumor_edge, const Ev
 }
 
 /// A photograph shows the inner edge unless told otherwise, contour files hold the mid-line.
-EvaluationSettings settings_of(const Arguments& arguments) {
+EvaluationSettings settings_of(const EvaluateArguments& arguments) {
   EvaluationSettings settings = arguments.settings;
   const std::string fallback = arguments.photo.empty() ? "centerline" : "inner_edge";
   settings.contour = (arguments.contour.empty() ? fallback : arguments.contour) == "centerline"
@@ -58,7 +58,7 @@ EvaluationSettings settings_of(const Arguments& arguments) {
   return settings;
 }
 
-void require_one_source(const Arguments& arguments) {
+void require_one_source(const EvaluateArguments& arguments) {
   const bool has_files = !arguments.incision.empty() || !arguments.tumor.empty();
   const auto refuse = [](const char* field, const char* found, const char* expected) {
     throw CaseError("command line", field, found, expected);
@@ -91,7 +91,7 @@ struct Measured {
   nlohmann::ordered_json json;
 };
 
-Measured from_photo(const Arguments& arguments, const EvaluationSettings& settings) {
+Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
   const ColorPicture picture = decode_picture(read_text(arguments.photo), arguments.photo);
   const FoundScale scale = scale_of(arguments.scale, picture, arguments.photo);
   // The mid-line of a painted band is the middle of a line.
@@ -115,7 +115,7 @@ Measured from_photo(const Arguments& arguments, const EvaluationSettings& settin
   return result;
 }
 
-Measured from_files(const Arguments& arguments, const EvaluationSettings& settings) {
+Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
   const Contour incision = read_contour(arguments.incision, !arguments.is_open);
   Measured result{measured(incision, read_contour(arguments.tumor, true), settings, arguments.tumor), {}};
   result.json = to_json(result.evaluation);
@@ -125,7 +125,7 @@ Measured from_files(const Arguments& arguments, const EvaluationSettings& settin
 }  // namespace
 
 void add_evaluate(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* verb =
       application.add_verb("evaluate", "Measure an incision against the tumour edge, in a photograph or as contours",
                            "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json",

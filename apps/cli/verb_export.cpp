@@ -23,7 +23,7 @@
 namespace incise::cli {
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::filesystem::path path, intended, surface, registration;
   std::string robot = "ur10e", format = "urscript", motion = "movep", kind;
   CheckSettings checks;
@@ -99,7 +99,7 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
 }
 
 /// Settings that follow from others.
-void complete(Arguments& a, const ToolPath& path) {
+void complete(ExportArguments& a, const ToolPath& path) {
   const bool is_mark = path.kind == PathKind::Mark;
   a.settings.overlap_mm = a.overlap_mm >= 0.0 ? a.overlap_mm : is_mark ? 0.0 : CutSettings{}.overlap_mm;
   if (is_mark) a.settings.plunge_speed_mm_s = a.checks.mark_speed_mm_s;
@@ -110,7 +110,7 @@ void complete(Arguments& a, const ToolPath& path) {
     a.setup.near_rad[static_cast<int>(i)] = units::rad_from_deg(a.near_deg[i]);
 }
 
-RobotProgram program_of(const ToolPath& path, const Arguments& arguments) {
+RobotProgram program_of(const ToolPath& path, const ExportArguments& arguments) {
   try {
     return make_program(path, arguments.settings, arguments.setup);
   } catch (const InvalidArgument& error) {
@@ -119,7 +119,7 @@ RobotProgram program_of(const ToolPath& path, const Arguments& arguments) {
 }
 
 std::string text_of(const RobotProgram& program, const ProgramChecks& checks, const ProgramHeader& header,
-                    const Arguments& arguments, const std::filesystem::path& output) {
+                    const ExportArguments& arguments, const std::filesystem::path& output) {
   if (arguments.format == "joint-csv") return to_joint_csv(program, header);
   if (arguments.format == "json") return to_json(program, &checks, header);
   if (arguments.format == "ros-trajectory")
@@ -143,7 +143,7 @@ nlohmann::ordered_json summary_of(const RobotProgram& program, const ProgramChec
   return result;
 }
 
-int run_export(Arguments arguments, const CommonOptions& options) {
+int run_export(ExportArguments arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("cut.script");
@@ -192,7 +192,7 @@ int run_export(Arguments arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_export(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportArguments>();
   CLI::App* verb =
       application.add_verb("export", "Turn a path in the robot's frame into a program, after the safety checks",
                            "incise export out/program/path.json --robot ur10e --format urscript -o cut.script",

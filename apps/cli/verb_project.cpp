@@ -19,7 +19,7 @@ namespace {
 constexpr double kLowScale = 0.95;  // both sensors are metric
 constexpr double kHighScale = 1.05;
 
-struct Arguments {
+struct ProjectArguments {
   std::filesystem::path path;
   std::filesystem::path transform;
   std::filesystem::path surface;
@@ -49,7 +49,7 @@ Mat4 registration(const std::filesystem::path& file, Console& console) {
   return T;
 }
 
-ProjectSettings settings_of(const Arguments& arguments) {
+ProjectSettings settings_of(const ProjectArguments& arguments) {
   ProjectSettings settings = arguments.settings;
   settings.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
   settings.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
@@ -76,7 +76,7 @@ ToolPath simulated_path(const std::filesystem::path& file, PathKind kind) {
   return path;
 }
 
-int run(const Arguments& arguments, const CommonOptions& options) {
+int run(const ProjectArguments& arguments, const CommonOptions& options) {
   Console console(options.level());
   const std::filesystem::path output = options.required_output("robot_path.json");
   const ProjectSettings settings = settings_of(arguments);
@@ -118,7 +118,7 @@ int run(const Arguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_project(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ProjectArguments>();
   CLI::App* verb = application.add_verb(
       "project", "Lay a simulated path and tumour edge onto the measured tissue, in the robot's frame",
       "incise project out/after/path.json --transform registration.json --surface cloud.ply --kind incise -o "

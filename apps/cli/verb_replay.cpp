@@ -16,32 +16,25 @@
 namespace incise::cli {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::filesystem::path program, path;
   double slider_percent = 100.0;
 };
 
-void write_folder(const Arguments& arguments, const CommonOptions& options, const Replay& replay,
+void write_folder(const ReplayArguments& arguments, const CommonOptions& options, const Replay& replay,
                   const nlohmann::ordered_json& result) {
   require_replaceable(options.output);
   AtomicFolder target(options.output);
   write_replay(target.path(), replay);
   write_json(target.path() / "replay.json", result);
-  const RunContext context = options.context();
-  Manifest manifest{.version = version(), .commit = source_commit(), .command = context.command};
-  manifest.settings_json = nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent}}.dump();
-  manifest.seed = context.seed;
-  manifest.threads = context.threads;
-  manifest.instruction_set = to_string(active_isa());
-  manifest.inputs.push_back({arguments.program.string(), sha256_of_file(arguments.program)});
-  if (!arguments.path.empty()) manifest.inputs.push_back({arguments.path.string(), sha256_of_file(arguments.path)});
-  manifest.wall_s = result.at("wall_s").get<double>();
-  manifest.machine = machine_description();
-  write_manifest(target.path(), manifest);
+  std::vector<std::filesystem::path> inputs{arguments.program};
+  if (!arguments.path.empty()) inputs.push_back(arguments.path);
+  write_manifest(target.path(), manifest_of(options, nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent}}.dump(), inputs,
+                                            result.at("wall_s").get<double>()));
   target.commit();
 }
 
-int run_replay(const Arguments& arguments, const CommonOptions& options) {
+int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   if (!options.output.empty()) require_replaceable(options.output);
@@ -71,7 +64,7 @@ int run_replay(const Arguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_replay(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* verb =
       application.add_verb("replay", "Play a program: what the tip of the tool would do",
                            "incise replay cut.script --speed-slider 50 -o replay",

@@ -25,7 +25,7 @@
 namespace incise::cli {
 namespace {
 
-struct Arguments {
+struct TrackArguments {
   std::filesystem::path color;
   std::filesystem::path depth;
   std::filesystem::path intrinsics;
@@ -67,7 +67,7 @@ int columns_of(const std::filesystem::path& file, int given) {
                   "Give its width with --ply-width.");
 }
 
-Scene scene_from_ply(const Arguments& arguments) {
+Scene scene_from_ply(const TrackArguments& arguments) {
   const TriMesh cloud = read_cloud(arguments.color);
   const int width = columns_of(arguments.color, arguments.ply_width);
   const std::size_t count = cloud.vertices.size();
@@ -95,7 +95,7 @@ Scene scene_from_ply(const Arguments& arguments) {
   return scene;
 }
 
-Scene scene_from_pictures(const Arguments& arguments) {
+Scene scene_from_pictures(const TrackArguments& arguments) {
   if (arguments.intrinsics.empty())
     throw CaseError("command line", "--intrinsics", "nothing", "the cameras' intrinsics (JSON)");
   const DepthCamera camera = read_depth_camera(arguments.intrinsics);
@@ -149,7 +149,7 @@ struct Tracked {
   Vec3 start = -Vec3::UnitY();  ///< the picture's top
 };
 
-Tracked tracked(const Scene& scene, const Arguments& arguments) {
+Tracked tracked(const Scene& scene, const TrackArguments& arguments) {
   Tracked result;
   const LineSettings line{.edge = arguments.edge == "inner" ? LineEdge::Inner : LineEdge::Middle,
                           .mm_per_pixel = mm_per_pixel(scene.cloud, scene.depth_name),
@@ -182,7 +182,7 @@ void move_to_robot(Tracked& tracked, const Mat4& T_robot_camera) {
   tracked.start = R * tracked.start;
 }
 
-ToolPath planned(const Tracked& tracked, const Arguments& arguments, const std::filesystem::path& name) {
+ToolPath planned(const Tracked& tracked, const TrackArguments& arguments, const std::filesystem::path& name) {
   MarkedPlan plan;
   plan.settings = arguments.plan;
   plan.settings.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
@@ -198,7 +198,7 @@ ToolPath planned(const Tracked& tracked, const Arguments& arguments, const std::
   }
 }
 
-int run(const Arguments& arguments, const CommonOptions& options) {
+int run(const TrackArguments& arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path folder = options.required_output("tracked");
@@ -250,11 +250,7 @@ int run(const Arguments& arguments, const CommonOptions& options) {
     result["path_length_mm"] = length_mm(entry_contour(*path));
     result["duration_s"] = duration_s(*path);
   }
-  Manifest manifest;
-  manifest.version = version();
-  manifest.commit = source_commit();
-  manifest.command = options.command_line;
-  manifest.settings_json = nlohmann::json{
+  const std::string settings = nlohmann::json{
       {"mark", arguments.mark},
       {"edge", arguments.edge},
       {"max_gap_mm", arguments.max_gap_mm},
@@ -265,11 +261,8 @@ int run(const Arguments& arguments, const CommonOptions& options) {
       {"speed_mm_s", arguments.plan.speed_mm_s},
       {"waypoints", arguments.plan.waypoints},
       {"axis", arguments.axis}}.dump();
-  manifest.instruction_set = to_string(active_isa());
-  for (const auto& input : scene.inputs) manifest.inputs.push_back({input.string(), sha256_of_file(input)});
-  manifest.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  manifest.machine = machine_description();
-  write_manifest(target.path(), manifest);
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_manifest(target.path(), manifest_of(options, settings, {scene.inputs.begin(), scene.inputs.end()}, wall_s));
   target.commit();
   if (!is_wanted) {
     console.message(Severity::Warning,
@@ -285,7 +278,7 @@ int run(const Arguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_track(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TrackArguments>();
   CLI::App* verb =
       application.add_verb("track", "Find a marked line with a colour and depth camera, and plan an incision on it",
                            "incise track color.png depth.png --intrinsics d405.json --mark green --camera "

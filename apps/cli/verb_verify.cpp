@@ -18,7 +18,7 @@
 namespace incise::cli {
 namespace {
 
-struct Arguments {
+struct VerifyArguments {
   VerificationSettings settings;
   std::filesystem::path figures;
 };
@@ -74,7 +74,7 @@ void write_figure(const std::filesystem::path& folder, const VerificationCheck& 
   write_atomically(folder / (check.name + ".svg"), [&svg](std::ostream& out) { out << svg; });
 }
 
-int run_verify(const Arguments& arguments, const CommonOptions& options) {
+int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
   require_a_check(arguments.settings.only);
   if (!options.output.empty()) require_writable(options.output);
   if (!arguments.figures.empty()) std::filesystem::create_directories(arguments.figures);
@@ -110,7 +110,7 @@ int run_verify(const Arguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_verify(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* verb =
       application.add_verb("verify", "Put questions with known answers to the solver on this machine",
                            "incise verify --only cantilever --figures figures",

@@ -9,22 +9,6 @@
 namespace incise {
 namespace {
 
-/// What nanoflann asks of a set of points.
-struct PointSource {
-  Points points;
-  [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return points[index][static_cast<Eigen::Index>(axis)];
-  }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-
-using KdTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSource>, PointSource, 3, std::size_t>;
-
 bool comes_first(const Neighbour& a, const Neighbour& b) {
   return a.squared_mm2 != b.squared_mm2 ? a.squared_mm2 < b.squared_mm2 : a.index < b.index;
 }
@@ -32,8 +16,20 @@ bool comes_first(const Neighbour& a, const Neighbour& b) {
 }  // namespace
 
 struct NeighbourSearch::Tree {
+  /// What nanoflann asks of a set of points.
+  struct PointSource {
+    Points points;
+    [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
+    [[nodiscard]] double kdtree_get_pt(std::size_t index, std::size_t axis) const { return points[index][static_cast<Eigen::Index>(axis)]; }
+    template <class Box>
+    bool kdtree_get_bbox(Box&) const {
+      return false;
+    }
+  };
+  using Index = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSource>, PointSource, 3, std::size_t>;
+
   PointSource source;
-  KdTree index;
+  Index index;
   explicit Tree(Points points)
       : source{std::move(points)}, index(3, source, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
 };

@@ -17,7 +17,7 @@ constexpr double kStepMm = 0.5;        // of the triangles that stand for the cl
 constexpr double kAroundMm = 4.0;      // of surface beyond the path
 constexpr double kMaxGapMm = 2.0;      // in the cloud, under the path
 constexpr double kFloorMm = 100.0;     // below the surface: deeper than any cut
-constexpr double kOffSurfaceMm = 2.0;  // of the mark, which was measured on this very surface
+constexpr double kMarkOffSurfaceMm = 2.0;  // of the mark, which was measured on this very surface
 
 [[noreturn]] void throw_off(std::size_t i, const Vec3& p) {
   throw CaseError("plan", "mark",
@@ -73,7 +73,7 @@ ToolPath plan_marked_path(const Contour& mark, std::span<const Vec3> cloud, cons
   if (body.triangles.empty())
     throw CaseError("plan", "mark", "no measured surface about the mark", "measured tissue under the whole path");
   const SurfaceQuery query(body);
-  ToolPath path = plan_ring(query, project_tumor_edge(mark, query, settings.approach, kOffSurfaceMm), settings);
+  ToolPath path = plan_ring(query, project_tumor_edge(mark, query, settings.approach, kMarkOffSurfaceMm), settings);
   path.frame = PathFrame::Robot;
   return path;
 }
