@@ -51,9 +51,13 @@ void require_one_ring(const RollingResult& rolled, InkColor color, double mm_per
 /// The ring that the ink encloses, tried with wider and wider discs; without one, the longest line.
 Start start_of(const cv::Mat& mask, InkColor color, const LineSettings& settings, const std::filesystem::path& name) {
   const double gap_px = std::max(settings.max_gap_mm, 0.3) / settings.mm_per_pixel;
-  const std::array<double, 3> discs{std::max(kLeastDiscPx, kDiscOfGap * gap_px),
-                                    std::max(2.0 * kLeastDiscPx, 2.0 * kDiscOfGap * gap_px),
-                                    std::max(4.0 * kLeastDiscPx, 4.0 * kDiscOfGap * gap_px)};
+  std::array<double, 3> discs{std::max(kLeastDiscPx, kDiscOfGap * gap_px),
+                              std::max(2.0 * kLeastDiscPx, 2.0 * kDiscOfGap * gap_px),
+                              std::max(4.0 * kLeastDiscPx, 4.0 * kDiscOfGap * gap_px)};
+  const double bridge_px = discs.front();
+  // An opening of a band may be narrow at its outer end only: a disc that enters it would take its walls for the
+  // border.
+  if (settings.edge == LineEdge::Inner) std::swap(discs[0], discs[1]);
   const std::optional<MaskWindow> window = window_of(mask, static_cast<int>(discs.back()) + 3);
   if (!window) return {};
   const double extent = 0.5 * std::max(window->mask.cols, window->mask.rows) - discs.back();
@@ -68,7 +72,7 @@ Start start_of(const cv::Mat& mask, InkColor color, const LineSettings& settings
     if (rolled.radius_px > 0.5 * extent) break;
   }
   if (!best.inner_border.empty()) return {best.inner_border, true};
-  return {longest_way(*window, discs.front()), false};
+  return {longest_way(*window, bridge_px), false};
 }
 
 RefinedLine refined(Start& start, const InkMap& map, const cv::Mat& mask, const cv::Mat& glare,
