@@ -73,7 +73,9 @@ std::vector<Offence> forbidden_includes(const Layers& layers, const std::string&
 
 std::set<std::string> linked_modules(const std::string& list_file_text) {
   std::set<std::string> modules;
-  std::istringstream words(std::regex_replace(list_file_text, std::regex("#[^\n]*|[()]"), " "));
+  // A closing bracket ends the list: it stays, as a word of its own.
+  const std::string plain = std::regex_replace(list_file_text, std::regex("#[^\n]*|[(]"), " ");
+  std::istringstream words(std::regex_replace(plain, std::regex("[)]"), " ) "));
   bool is_in_uses = false;
   for (std::string word; words >> word;) {
     if (word == "USES") {

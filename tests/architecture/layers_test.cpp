@@ -162,6 +162,7 @@ TEST(LinkedModules, AreThoseAfterUses) {
   EXPECT_THAT(
       linked_modules("incise_module(io\n  SOURCES a.cpp\n  USES geometry core  # both\n  PRIVATE fmt::fmt zlib)\n"),
       ElementsAre("core", "geometry"));
+  EXPECT_THAT(linked_modules("incise_module(io USES geometry)\nif(X)\nendif()\n"), ElementsAre("geometry"));
 }
 
 }  // namespace
