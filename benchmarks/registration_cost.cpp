@@ -69,7 +69,7 @@ bool measure_cost(const Options& options, std::size_t count, double bar_s, bool 
   bool is_good = drift.outcome == DriftOutcome::Converged && best_wall <= bar_s && megabytes <= kMegabytes;
   if (with_dense) {
     const double wall = wall_seconds();
-    const DenseDrift dense = dense_drift(source.points, target.points, {}, DriftSettings{}.outlier_weight, 2e-5, 1000);
+    const DenseDrift dense = dense_drift(source.points, target.points, {}, DriftSettings{}.outlier_weight, 2e-4, 1000);
     const double apart = rms_difference_mm(drift.T_target_source, dense.transform, source.points);
     const double turned = angle_between_deg(drift.T_target_source.rotation, dense.transform.rotation);
     dense_text = fmt::format("{:.5f},{:.5f},{:.2f},{}", apart, turned, wall_seconds() - wall, dense.iterations);

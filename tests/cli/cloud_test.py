@@ -81,7 +81,9 @@ class RegisterTest(CommandTest):
         write_ply(self.folder / "settled.ply", settled)
         result = self.json_of(*self.register("--method", "nonrigid", target="settled.ply"))
         self.assertEqual(result["nonrigid"]["outcome"], "converged")
-        self.assertLess(result["nonrigid"]["largest_move_mm"], 4.0)
+        # Points 1.4 mm apart: those at the border may slide by a few of these.
+        self.assertLess(result["nonrigid"]["largest_move_mm"], 6.0)
+        self.assertLess(result["nonrigid"]["sigma_mm"], 1.4)
 
     def assert_register_refused(self, status, *says, **files):
         self.assert_refused(self.incise(*self.register(**files)), status, *says)
