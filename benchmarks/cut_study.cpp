@@ -194,10 +194,10 @@ Result study_meshes(Workers& workers) {
       jobs.back().cut.dullness = 5.0;
     }
   }
-  Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh", "edge length in the band, mm",
+  Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh (mm/s x dullness)", "edge length in the band, mm",
                                            "mean signed error, mm", true, false, {}}};
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    add_point(result.plot, fmt::format("{}, 13 mm/s x {}", name_of(jobs[i].tissue), jobs[i].cut.dullness), jobs[i].body->edge_mm,
+    add_point(result.plot, fmt::format("{}, 13 x {}", name_of(jobs[i].tissue), jobs[i].cut.dullness), jobs[i].body->edge_mm,
               result.done[i]);
   }
   return result;
