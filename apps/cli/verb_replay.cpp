@@ -28,7 +28,10 @@ void write_folder(const Arguments& arguments, const CommonOptions& options, cons
   write_replay(target.path(), replay);
   write_json(target.path() / "replay.json", result);
   const RunContext context = options.context();
-  Manifest manifest{.version = version(), .commit = source_commit(), .command = context.command};
+  Manifest manifest;
+  manifest.version = version();
+  manifest.commit = source_commit();
+  manifest.command = context.command;
   manifest.settings_json = nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent}}.dump();
   manifest.seed = context.seed;
   manifest.threads = context.threads;
