@@ -18,3 +18,14 @@ if(NOT TARGET incise_cholmod)
   target_include_directories(incise_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
   target_link_libraries(incise_cholmod INTERFACE ${OPENBLAS_LIBRARY} ${CHOLMOD_LIBRARY} OpenMP::OpenMP_CXX)
 endif()
+
+find_package(Boost 1.74 REQUIRED)     # headers of Boost.Math only: distributions, in evaluation
+
+# librsvg has a pkg-config file only. It turns figures into PNG, in report.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(RSVG REQUIRED librsvg-2.0>=2.52)
+if(NOT TARGET incise_rsvg)
+  add_library(incise_rsvg INTERFACE IMPORTED GLOBAL)
+  target_include_directories(incise_rsvg SYSTEM INTERFACE ${RSVG_INCLUDE_DIRS})
+  target_link_libraries(incise_rsvg INTERFACE ${RSVG_LINK_LIBRARIES})
+endif()

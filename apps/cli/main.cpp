@@ -63,6 +63,8 @@ int run(int argc, char** argv) {
   add_stages(application);
   add_interchange(application);
   add_evaluate(application);
+  add_compare(application);
+  add_audit(application);
   add_export(application);
   add_report(application);
   add_verify(application);
