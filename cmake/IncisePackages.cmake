@@ -30,3 +30,13 @@ if(NOT TARGET incise_opencv)
   target_include_directories(incise_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
   target_link_libraries(incise_opencv INTERFACE ${OPENCV_IMGCODECS_LIBRARY} ${OPENCV_IMGPROC_LIBRARY} ${OPENCV_CORE_LIBRARY})
 endif()
+find_package(Boost 1.74 REQUIRED)     # headers of Boost.Math only: distributions, in evaluation
+
+# librsvg has a pkg-config file only. It turns figures into PNG, in report.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(RSVG REQUIRED librsvg-2.0>=2.52)
+if(NOT TARGET incise_rsvg)
+  add_library(incise_rsvg INTERFACE IMPORTED GLOBAL)
+  target_include_directories(incise_rsvg SYSTEM INTERFACE ${RSVG_INCLUDE_DIRS})
+  target_link_libraries(incise_rsvg INTERFACE ${RSVG_LINK_LIBRARIES})
+endif()

@@ -67,6 +67,8 @@ int run(int argc, char** argv) {
   add_register(application);
   add_track(application);
   add_project(application);
+  add_compare(application);
+  add_audit(application);
   add_export(application);
   add_replay(application);
   add_report(application);

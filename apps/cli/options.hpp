@@ -95,6 +95,8 @@ void add_export(Application& application);
 void add_replay(Application& application);
 void add_interchange(Application& application);
 void add_evaluate(Application& application);
+void add_compare(Application& application);
+void add_audit(Application& application);
 void add_report(Application& application);
 void add_verify(Application& application);
 void add_schema(Application& application);

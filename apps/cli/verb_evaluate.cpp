@@ -1,4 +1,6 @@
 #include "camera_options.hpp"
+#include "evaluation_figure.hpp"
+#include "figure_file.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -8,6 +10,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>
@@ -31,6 +34,8 @@ struct EvaluateArguments {
   ScaleOptions scale;
   bool is_open = false;
   std::vector<double> approach;
+  std::vector<double> twelve;
+  std::string colors = "safe";
 };
 
 /// The settings are known to be valid here, so what `evaluate` refuses is the contours' fault.
@@ -52,6 +57,7 @@ EvaluationSettings settings_of(const EvaluateArguments& arguments) {
                          : ContourKind::InnerEdge;
   if (arguments.target_mm > 0.0) settings.target_mm = arguments.target_mm;
   if (!arguments.approach.empty()) settings.approach = Vec3(arguments.approach.data());
+  if (!arguments.twelve.empty()) settings.twelve_o_clock = Vec3(arguments.twelve.data());
   if (const auto violations = validate(settings); !violations.empty()) {
     throw CaseError("command line", "", violations.front(), "usable settings");
   }
@@ -73,7 +79,7 @@ void require_one_source(const EvaluateArguments& arguments) {
   }
   if (arguments.incision.empty() || arguments.tumor.empty())
     refuse("PHOTO", "no input", "a photograph, or --incision and --tumor");
-  if (!arguments.figure.empty()) refuse("--figure", "no photograph to draw over", "PHOTO");
+  if (!arguments.figure.empty()) require_figure_file(arguments.figure, "--figure");
 }
 
 nlohmann::ordered_json line_json(const MarkedLine& line) {
@@ -101,6 +107,7 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   const PhotoContours found = find_photo_contours(picture, scale.scale, photo, arguments.photo);
   Measured result{measured(found.incision, found.tumor_edge, settings, arguments.photo), {}};
   result.json = to_json(result.evaluation);
+  result.json["points"] = points_json(result.evaluation);
   result.json["photo"] = arguments.photo.string();
   result.json["mm_per_pixel"] = found.mm_per_pixel;
   result.json["scale"] = scale.summary;
@@ -117,8 +124,16 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
 
 Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
   const Contour incision = read_contour(arguments.incision, !arguments.is_open);
-  Measured result{measured(incision, read_contour(arguments.tumor, true), settings, arguments.tumor), {}};
+  const Contour tumor_edge = read_contour(arguments.tumor, true);
+  Measured result{measured(incision, tumor_edge, settings, arguments.tumor), {}};
   result.json = to_json(result.evaluation);
+  result.json["points"] = points_json(result.evaluation);
+  if (!arguments.figure.empty()) {
+    const ErrorColors colors = arguments.colors == "jet" ? ErrorColors::Jet : ErrorColors::Safe;
+    const std::string name = arguments.incision.stem().string();
+    write_figure(arguments.figure, evaluation_figure_svg(result.evaluation, tumor_edge, settings, name, colors));
+    result.json["figure"] = arguments.figure.string();
+  }
   return result;
 }
 
@@ -151,12 +166,15 @@ void add_evaluate(Application& application) {
   add_scale_options(*verb, arguments->scale);
   verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A red or green ring with a longer gap is open")
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--figure", arguments->figure, "Write the photograph with what was found drawn over it (.png)");
   verb->add_option("--target-mm", arguments->target_mm,
                    "Distance aimed at; default: 5.0 for a mid-line, 4.5 for an inner edge")
       ->check(CLI::PositiveNumber);
   verb->add_option("--close-margin-mm", arguments->settings.close_margin_mm, "Clinical cut-off");
   verb->add_option("--approach", arguments->approach, "Direction in which the camera looks")->expected(3);
+  verb->add_option("--twelve-o-clock", arguments->twelve, "Direction of 12 o'clock in by_clock; default: up in the picture")->expected(3);
+  verb->add_option("--figure", arguments->figure, "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
+  verb->add_option("--colors", arguments->colors, "Of the figure: told apart with any colour vision, or as in the paper")
+      ->check(CLI::IsMember({"safe", "jet"}));
   verb->add_flag("--open", arguments->is_open, "The incision is an open curve");
 }
 

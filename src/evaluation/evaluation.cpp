@@ -48,8 +48,17 @@ void measure_errors(const EvaluationSettings& settings, Evaluation& result) {
   for (const double distance : distances) {
     if (distance - allowance <= settings.close_margin_mm) ++close.points;
   }
-  close.fraction = static_cast<double>(close.points) / static_cast<double>(distances.size());
+  const auto count = static_cast<double>(distances.size());
+  close.fraction = static_cast<double>(close.points) / count;
   result.close_margin = close;
+  const auto reached = static_cast<std::size_t>(
+      std::count_if(distances.begin(), distances.end(), [&](double distance) { return distance <= allowance; }));
+  result.positive_zone = ErrorZone{.at_or_below_mm = allowance - result.target_mm,
+                                   .points = reached,
+                                   .fraction = static_cast<double>(reached) / count};
+  result.too_close_zone = ErrorZone{.at_or_below_mm = settings.close_margin_mm + allowance - result.target_mm,
+                                    .points = close.points - reached,
+                                    .fraction = static_cast<double>(close.points - reached) / count};
   result.n_points = distances.size();
   result.signed_error_mm = summarize(result.errors.signed_error_mm);
   result.abs_error_mm = summarize(magnitudes(result.errors.signed_error_mm));
@@ -61,17 +70,35 @@ void measure_errors(const EvaluationSettings& settings, Evaluation& result) {
   result.paper_success = result.closed_loop.value() && paper.max <= paper_target;
 }
 
+/// Where on the clock face the errors lie.
+void measure_clock(const Vec2& center, const EvaluationSettings& settings, Evaluation& result) {
+  const ViewFrame view = view_along(settings.approach);
+  const Vec3 middle = view.from_view({center.x(), center.y(), 0.0});
+  result.clock_h =
+      clock_hours(result.errors.points.points, middle, settings.approach, settings.twelve_o_clock.value_or(view.y));
+  const auto sectors = errors_by_clock(result.clock_h, result.errors.signed_error_mm);
+  result.by_clock.assign(sectors.begin(), sectors.end());
+}
+
 void measure_shape(const Contour& incision, const Contour& edge, const EvaluationSettings& settings,
                    Evaluation& result) {
   const FilledMoments edge_moments = filled_moments(edge, settings.approach);
   const Contour ideal = outer_offset(edge, result.target_mm, settings.approach);
-  result.hu_score_ideal = hu_score(edge_moments.hu, filled_moments(ideal, settings.approach).hu).opencv;
+  const FilledMoments ideal_moments = filled_moments(ideal, settings.approach);
+  const HuScore floor = hu_score(edge_moments.hu, ideal_moments.hu);
+  result.hu_score_ideal = floor.opencv;
+  result.hu_ideal_unstable = floor.is_unstable;
+  if (incision.points.size() >= 2) {
+    result.hausdorff = hausdorff_distance(incision, ideal, settings.approach, settings.step_mm);
+  }
   if (!incision.is_closed || signed_area_mm2(incision, settings.approach) == 0.0) return;
   const FilledMoments incision_moments = filled_moments(incision, settings.approach);
   const HuScore score = hu_score(edge_moments.hu, incision_moments.hu);
   result.hu_score = score.opencv;
   result.hu_score_seven = score.seven;
   result.hu_unstable = score.is_unstable;
+  if (score.opencv && floor.opencv) result.hu_excess = *score.opencv - *floor.opencv;
+  result.hu_score_to_ideal = hu_score(ideal_moments.hu, incision_moments.hu).opencv;
   result.centroid_shift_mm = (incision_moments.centroid_mm - edge_moments.centroid_mm).norm();
 }
 
@@ -95,6 +122,11 @@ std::vector<std::string> validate(const EvaluationSettings& s) {
   if (s.target_mm) expect(*s.target_mm > 0.0, violations, "target_mm", *s.target_mm, "a distance above 0 mm");
   expect(s.close_margin_mm > 0.0, violations, "close_margin_mm", s.close_margin_mm, "a distance above 0 mm");
   expect(s.approach.norm() > 0.0, violations, "approach", s.approach.norm(), "a vector of length above 0");
+  if (s.twelve_o_clock) {
+    const double across = s.twelve_o_clock->cross(s.approach).norm();
+    expect(across > 1e-6 * s.approach.norm() * s.twelve_o_clock->norm(), violations, "twelve_o_clock", across,
+           "a direction across the approach");
+  }
   expect(s.step_mm > 0.0, violations, "step_mm", s.step_mm, "a distance above 0 mm");
   expect(s.end_tolerance_mm >= 0.0, violations, "end_tolerance_mm", s.end_tolerance_mm, "0 mm or more");
   return violations;
@@ -120,6 +152,7 @@ Evaluation evaluate(const std::optional<Contour>& incision, const Contour& tumor
   measure_shape(*incision, tumor_edge, settings, result);
   const Vec2 center = filled_moments(tumor_edge, settings.approach).centroid_mm;
   result.coverage = angular_coverage(*incision, center, settings.approach);
+  measure_clock(center, settings, result);
 
   const double least = least_distance_mm(*incision, tumor_edge, result.errors.signed_distance_mm);
   const bool is_clear = least > kerf_allowance_mm(settings) && !meet_in_view(*incision, tumor_edge, settings.approach);

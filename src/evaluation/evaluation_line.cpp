@@ -74,6 +74,7 @@ Evaluation evaluate_line(const std::optional<Contour>& incision, const Contour& 
   const double length = arc.back();
   const Vec3 up = -settings.approach.normalized();
   const Contour points = resample_by_step(*incision, settings.step_mm);
+  result.hausdorff = hausdorff_distance(*incision, intended, settings.approach, settings.step_mm);
   result.errors.points.is_closed = false;
   double first = length;
   double last = 0.0;

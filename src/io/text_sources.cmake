@@ -22,6 +22,7 @@ set(text_sources
   table_io.cpp
   tetgen_reader.cpp
   text_cursor.cpp
+  text_table.cpp
   vtk_bytes.cpp
   vtk_legacy_reader.cpp
   vtk_xml_reader.cpp

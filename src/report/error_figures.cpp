@@ -1,3 +1,4 @@
+#include "report/error_drawing.hpp"
 #include "report/plot.hpp"
 #include "report/svg.hpp"
 
@@ -54,22 +55,9 @@ std::vector<PlacedError> by_arc(const ReportIncision& incision) {
   return result;
 }
 
-/// Shades what is too close and what has reached the tumour edge, as far as the plot shows it.
 void draw_zones(SvgWriter& svg, const PlotArea& area, const ReportIncision& incision) {
-  const auto band = [&](double from, double to, std::string_view color, const std::string& label) {
-    const double low = std::max(from, area.y_low);
-    const double high = std::min(to, area.y_high);
-    if (high <= low) return;
-    svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(low) - area.y(high)},
-                  fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
-    if (area.y(low) - area.y(high) > 14.0) {
-      svg.text({area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, label, "end",
-               fmt::format("font-size=\"11\" fill=\"{}\"", color));
-    }
-  };
-  band(incision.reached_error_mm(), incision.close_error_mm(), ink::kTooClose,
-       fmt::format("closer than {} mm", number_text(incision.close_margin_mm)));
-  band(-1e9, incision.reached_error_mm(), ink::kReached, "tumour edge reached");
+  draw_error_zones(svg, area, incision.reached_error_mm(), incision.close_error_mm(),
+                   fmt::format("closer than {} mm", number_text(incision.close_margin_mm)));
 }
 
 void draw_series_legend(SvgWriter& svg, std::span<const ReportIncision> incisions, Vec2 at) {
@@ -87,26 +75,6 @@ double quantile(const std::vector<double>& sorted, double p) {
   const auto low = static_cast<std::size_t>(position);
   const std::size_t high = std::min(low + 1, sorted.size() - 1);
   return sorted[low] + (position - static_cast<double>(low)) * (sorted[high] - sorted[low]);
-}
-
-void draw_box(SvgWriter& svg, const PlotArea& area, double center_px, const BoxNumbers& box, std::string_view color) {
-  constexpr double kHalf = 24.0;
-  const std::string stroke = fmt::format("stroke=\"{}\" stroke-width=\"1.6\"", color);
-  const auto at = [&](double dx, double value) { return Vec2(center_px + dx, area.y(value)); };
-  svg.line(at(0.0, box.low_whisker), at(0.0, box.lower_quartile), stroke);
-  svg.line(at(0.0, box.upper_quartile), at(0.0, box.high_whisker), stroke);
-  svg.line(at(-kHalf / 2, box.low_whisker), at(kHalf / 2, box.low_whisker), stroke);
-  svg.line(at(-kHalf / 2, box.high_whisker), at(kHalf / 2, box.high_whisker), stroke);
-  svg.rectangle(at(-kHalf, box.upper_quartile),
-                {2.0 * kHalf, std::max(1.0, area.y(box.lower_quartile) - area.y(box.upper_quartile))},
-                fmt::format("fill=\"{}\" fill-opacity=\"0.18\" {}", color, stroke));
-  svg.line(at(-kHalf, box.median), at(kHalf, box.median), fmt::format("stroke=\"{}\" stroke-width=\"3\"", color));
-  const Vec2 mean = at(0.0, box.mean);
-  const std::array<Vec2, 4> diamond{mean + Vec2(-5, 0), mean + Vec2(0, -5), mean + Vec2(5, 0), mean + Vec2(0, 5)};
-  svg.polyline(diamond, true, fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.5\"", color));
-  for (const double outlier : box.outliers) {
-    svg.circle(at(0.0, outlier), 2.2, fmt::format("fill=\"none\" stroke=\"{}\"", color));
-  }
 }
 
 void require_incisions(std::span<const ReportIncision> incisions) {

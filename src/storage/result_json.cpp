@@ -13,7 +13,32 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vector_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json zone_json(const std::optional<ErrorZone>& zone) {
+  if (!zone) return nullptr;
+  return {{"at_or_below_mm", zone->at_or_below_mm}, {"points", zone->points}, {"fraction", zone->fraction}};
+}
+
+/// Hour by hour; a sector that no point lies in says so by null.
+Json clock_json(const std::vector<ClockSector>& sectors) {
+  Json json = Json::array();
+  for (const ClockSector& sector : sectors) {
+    json.push_back({{"hour", sector.hour},
+                    {"points", sector.points},
+                    {"mean_mm", or_null(sector.mean_mm)},
+                    {"min_mm", or_null(sector.min_mm)},
+                    {"max_mm", or_null(sector.max_mm)}});
+  }
+  return json;
+}
+
+Json vector_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 }  // namespace
 
@@ -25,9 +50,9 @@ Json to_json(const Evaluation& e) {
   json["contour"] = to_string(e.contour);
   json["target_mm"] = e.target_mm;
   json["n_points"] = e.n_points;
-  json["abs_error_mm"] = e.abs_error_mm
-                             ? Json{{"mean", e.abs_error_mm->mean}, {"sd", e.abs_error_mm->sd}, {"max", e.abs_error_mm->max}}
-                             : Json(nullptr);
+  json["abs_error_mm"] =
+      e.abs_error_mm ? Json{{"mean", e.abs_error_mm->mean}, {"sd", e.abs_error_mm->sd}, {"max", e.abs_error_mm->max}}
+                     : Json(nullptr);
   json["signed_error_mm"] = e.signed_error_mm ? Json{{"mean", e.signed_error_mm->mean},
                                                      {"sd", e.signed_error_mm->sd},
                                                      {"min", e.signed_error_mm->min},
@@ -39,9 +64,18 @@ Json to_json(const Evaluation& e) {
   json["hu_score_ideal"] = or_null(e.hu_score_ideal);
   json["hu_score_seven"] = or_null(e.hu_score_seven);
   json["hu_unstable"] = e.hu_unstable;
+  json["hu_excess"] = or_null(e.hu_excess);
+  json["hu_score_to_ideal"] = or_null(e.hu_score_to_ideal);
+  json["hu_ideal_unstable"] = e.hu_ideal_unstable;
   json["centroid_shift_mm"] = or_null(e.centroid_shift_mm);
-  json["close_margin"] = e.close_margin ? Json{{"points", e.close_margin->points}, {"fraction", e.close_margin->fraction}}
-                                        : Json(nullptr);
+  json["close_margin"] =
+      e.close_margin ? Json{{"points", e.close_margin->points}, {"fraction", e.close_margin->fraction}} : Json(nullptr);
+  json["zones"] = {{"positive_margin", zone_json(e.positive_zone)}, {"too_close", zone_json(e.too_close_zone)}};
+  json["hausdorff_mm"] = e.hausdorff ? Json{{"symmetric", e.hausdorff->symmetric_mm()},
+                                            {"from_incision", e.hausdorff->from_first_mm},
+                                            {"from_ideal", e.hausdorff->from_second_mm}}
+                                     : Json(nullptr);
+  json["by_clock"] = clock_json(e.by_clock);
   json["coverage"] = e.coverage;
   if (e.start_gap_mm) json["start_gap_mm"] = *e.start_gap_mm;
   if (e.end_gap_mm) json["end_gap_mm"] = *e.end_gap_mm;
@@ -73,7 +107,8 @@ Json to_json(const SimulatedCut& cut) {
   json["thermal_half_width_mm"] = cut.thermal_half_width_mm;
   json["thermal_margin_mm"] = or_null(cut.thermal_margin_mm);
   json["wall_s"] = incision.wall_s;
-  json["ms_per_step"] = incision.steps.empty() ? 0.0 : 1e3 * incision.wall_s / static_cast<double>(incision.steps.size());
+  json["ms_per_step"] =
+      incision.steps.empty() ? 0.0 : 1e3 * incision.wall_s / static_cast<double>(incision.steps.size());
   return json;
 }
 

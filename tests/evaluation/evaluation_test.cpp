@@ -57,6 +57,69 @@ TEST(Evaluate, AShiftedRingHasTheErrorsThatGeometrySays) {
   EXPECT_NEAR(result.centroid_shift_mm.value(), 1.0, 1e-9);
 }
 
+TEST(Evaluate, TellsWhereOnTheClockTheErrorsLie) {
+  // Moved by 1 mm to the right of the picture: farther at 3 o'clock, closer at 9.
+  const Evaluation result = evaluate(ring(15.0, Vec3(1, 0, 0)), ring(10.0));
+  ASSERT_EQ(result.by_clock.size(), 12U);
+  ASSERT_EQ(result.clock_h.size(), result.n_points);
+  const double sector = std::sin(std::numbers::pi / 12.0) / (std::numbers::pi / 12.0);  // mean of cos over ±15 degrees
+  EXPECT_EQ(result.by_clock[2].hour, 3);
+  EXPECT_NEAR(result.by_clock[2].mean_mm.value(), sector, 0.01);
+  EXPECT_NEAR(result.by_clock[8].mean_mm.value(), -sector, 0.02);
+  EXPECT_NEAR(result.by_clock[11].mean_mm.value(), 0.0, 0.05);
+  // The same cut with 12 o'clock to the right.
+  const Evaluation turned = evaluate(ring(15.0, Vec3(1, 0, 0)), ring(10.0), {.twelve_o_clock = Vec3(1, 0, 0)});
+  EXPECT_NEAR(turned.by_clock[11].mean_mm.value(), sector, 0.01);
+  EXPECT_FALSE(validate(EvaluationSettings{.twelve_o_clock = Vec3(0, 0, 1)}).empty());
+}
+
+TEST(Evaluate, TheZonesOfThePaperBeginAtMinusFourAndAHalfAndMinusTwoPointThree) {
+  for (const ContourKind kind : {ContourKind::InnerEdge, ContourKind::Centerline}) {
+    const double radius = kind == ContourKind::InnerEdge ? 14.5 : 15.0;
+    const Evaluation result = evaluate(ring(radius, Vec3(3, 0, 0)), ring(10.0), {.contour = kind});
+    EXPECT_NEAR(result.positive_zone->at_or_below_mm, -4.5, 1e-12);
+    EXPECT_NEAR(result.too_close_zone->at_or_below_mm, -2.3, 1e-12);
+    EXPECT_EQ(result.positive_zone->points, 0U);
+    EXPECT_EQ(result.too_close_zone->points, result.close_margin->points);
+    EXPECT_GT(result.too_close_zone->points, 0U);
+  }
+  const Evaluation failed = evaluate(ring(14.5, Vec3(6, 0, 0)), ring(10.0), {.contour = ContourKind::InnerEdge});
+  EXPECT_GT(failed.positive_zone->points, 0U);
+  EXPECT_EQ(failed.positive_zone->points + failed.too_close_zone->points, failed.close_margin->points);
+}
+
+TEST(Evaluate, SeesAMissingArcThatTheErrorsDoNot) {
+  Contour arc = ring(15.0);
+  arc.points.resize(1080);  // the last quarter was not cut
+  arc.is_closed = false;
+  const Evaluation result = evaluate(arc, ring(10.0));
+  EXPECT_NEAR(result.abs_error_mm->max, 0.0, kPolygonMm);
+  EXPECT_NEAR(result.coverage, 0.75, 1e-3);
+  ASSERT_TRUE(result.hausdorff.has_value());
+  EXPECT_NEAR(result.hausdorff->from_first_mm, 0.0, 2e-3);
+  EXPECT_NEAR(result.hausdorff->from_second_mm, 30.0 * std::sin(std::numbers::pi / 8.0), 0.05);
+  EXPECT_EQ(result.by_clock[3].points, 0U);  // 4 o'clock: the last quarter lies between 3 and 6
+  EXPECT_FALSE(result.by_clock[3].mean_mm.has_value());
+}
+
+TEST(Evaluate, APerfectOffsetHasNoHuExcessWhateverTheTumour) {
+  Contour tumor;
+  for (int k = 0; k < 720; ++k) {
+    const double angle = 2.0 * std::numbers::pi * k / 720.0;
+    tumor.points.emplace_back(10.0 * std::cos(angle), 8.0 * std::sin(angle), 0.0);
+  }
+  const EvaluationSettings settings{.contour = ContourKind::InnerEdge};
+  const Evaluation perfect = evaluate(outer_offset(tumor, 4.5, kDown), tumor, settings);
+  EXPECT_NEAR(perfect.hu_score.value(), 0.048, 1e-3);
+  EXPECT_NEAR(perfect.hu_excess.value(), 0.0, 1e-12);
+  EXPECT_NEAR(perfect.hu_score_to_ideal.value(), 0.0, 1e-12);
+  EXPECT_NEAR(perfect.hausdorff->symmetric_mm(), 0.0, 1e-9);
+  // A round cut about the same tumour is not the ideal one.
+  const Evaluation round = evaluate(ring(14.5), tumor, settings);
+  EXPECT_GT(round.hu_score_to_ideal.value(), 0.005);
+  EXPECT_DOUBLE_EQ(round.hu_excess.value(), round.hu_score.value() - round.hu_score_ideal.value());
+}
+
 TEST(Evaluate, CountsCloseMarginsAsTissueLeftBesideTheTumour) {
   // A mid-line at 2.6 mm leaves 2.1 mm of tissue, one at 2.8 mm leaves 2.3.
   EXPECT_EQ(evaluate(ring(12.6), ring(10.0)).close_margin->fraction, 1.0);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <incise/core/outcome.hpp>
+#include <incise/evaluation/clock.hpp>
 #include <incise/evaluation/contour_errors.hpp>
+#include <incise/evaluation/hausdorff.hpp>
 #include <incise/evaluation/statistics.hpp>
 
 #include <optional>
@@ -28,7 +30,9 @@ struct EvaluationSettings {
   double close_margin_mm = 2.2;    ///< clinical cut-off of the tissue left beside the tumour, > 0 (paper III-A.1, [30])
   Vec3 approach = -Vec3::UnitZ();  ///< direction in which the camera looks
   double step_mm = 0.25;           ///< spacing of the points at which errors are taken, > 0
-  double end_tolerance_mm = 1.0;   ///< an open cut is complete if it ends within this of the intended ends, >= 0
+  /// 12 o'clock of the clock face over the tumour; absent: up in the picture (view_along(approach).y).
+  std::optional<Vec3> twelve_o_clock = std::nullopt;
+  double end_tolerance_mm = 1.0;  ///< an open cut is complete if it ends within this of the intended ends, >= 0
 };
 
 /// Every violation, one sentence each with the field's name; empty: valid.
@@ -44,7 +48,16 @@ struct CloseMargin {
   double fraction = 0.0;  ///< of all points, [0, 1]
 };
 
-/// The measures of one incision (paper III-A.1, III-A.2; docs/models/measures.md). What could not be measured is absent.
+/// Points in one of the zones of the paper's Fig. 6. Borders are signed errors of the contour that was measured: -4.5
+/// and -2.3 mm for an inner edge at 4.5 mm and a cut-off of 2.2 mm, and for a mid-line at 5.0 mm just the same.
+struct ErrorZone {
+  double at_or_below_mm = 0.0;  ///< upper border, which belongs to the zone
+  std::size_t points = 0;
+  double fraction = 0.0;  ///< of all points, [0, 1]
+};
+
+/// The measures of one incision (paper III-A.1, III-A.2; docs/models/measures.md). What could not be measured is
+/// absent.
 struct Evaluation {
   /// Success, PositiveMargin or OpenLoop (for an open cut: it does not reach both its ends).
   Outcome outcome = Outcome::OpenLoop;
@@ -64,14 +77,26 @@ struct Evaluation {
   std::optional<double> hu_score;     ///< tumour edge against incision, as OpenCV's I1; needs a closed contour
   std::optional<double> hu_score_ideal;  ///< what the edge's perfect offset by target_mm would score
   std::optional<double> hu_score_seven;
-  bool hu_unstable = false;                 ///< see HuScore::is_unstable; of edge and incision
+  bool hu_unstable = false;  ///< see HuScore::is_unstable; of edge and incision
+  /// hu_score − hu_score_ideal: what the score holds against the cut, and not against the shape of the tumour. May be
+  /// negative: the score is no distance to the ideal.
+  std::optional<double> hu_excess;
+  /// The ideal offset against the incision, as OpenCV's I1: 0 for a perfect cut, whatever the tumour's shape.
+  std::optional<double> hu_score_to_ideal;
+  bool hu_ideal_unstable = false;           ///< of edge and ideal offset, on which hu_excess and hu_score_to_ideal rest
   std::optional<double> centroid_shift_mm;  ///< between the centres of the two filled regions, in the picture plane
   std::optional<CloseMargin> close_margin;
+  std::optional<ErrorZone> positive_zone;   ///< no tissue left beside the tumour edge; of a ring
+  std::optional<ErrorZone> too_close_zone;  ///< some, but no more than close_margin_mm; of a ring
+  /// The incision (first) against the perfect offset of the edge (second), of an open cut against the intended line.
+  std::optional<HausdorffDistance> hausdorff;
   /// [0, 1]: share of directions from the tumour's centre that meet the incision; of an open cut: share of the line.
   double coverage = 0.0;
   std::optional<double> start_gap_mm;  ///< open cut: by how much it falls short of the line's start (0: reaches it)
   std::optional<double> end_gap_mm;    ///< open cut: the same at the line's end
   ContourErrors errors;                ///< point by point, in the order of the incision
+  std::vector<double> clock_h;         ///< of each of these points, see clock_hours; empty for an open cut
+  std::vector<ClockSector> by_clock;   ///< hours 1 … 12; empty for an open cut and where nothing was measured
 };
 
 /// Measures a ring-shaped incision against the tumour edge that it was to keep clear of.

@@ -18,6 +18,26 @@ using NamedColumn = std::pair<std::string, std::vector<double>>;
 [[nodiscard]] std::vector<std::vector<double>> read_csv_columns(const std::filesystem::path& path,
                                                                 const std::vector<std::string>& names);
 
+/// A table of text, as in a file: a header, and rows of as many cells as it has.
+struct TextTable {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::size_t> lines;  ///< of the file, from 1: where each row stands
+};
+
+/// Reads every cell of a `.csv` as text, blanks round it removed; for columns whose printed digits matter. Cells in
+/// double quotes may hold commas; a quote inside is doubled; a line end is not known there.
+/// @throws DataError naming the line: a row of another width, a quote that does not end, a column name given twice or
+/// empty, an empty file.
+[[nodiscard]] TextTable read_csv_text(const std::filesystem::path& path);
+
+/// The table as CSV (LF; cells with comma or quote are quoted). @pre rows as wide as the header, no line ends.
+[[nodiscard]] std::string csv_text(const TextTable& table);
+
+/// The table as a LaTeX `tabular` for the booktabs package; every cell is text, its special characters escaped, and
+/// "a ± b" set as $a \pm b$. @pre as csv_text.
+[[nodiscard]] std::string latex_text(const TextTable& table);
+
 /// Writes a header and rows, LF line ends. Numbers are the shortest text that reads back to the same double.
 /// @pre all numbers finite; columns equally long; names without comma, quote or line end.
 /// @throws DataError if the file cannot be written.

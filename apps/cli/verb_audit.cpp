@@ -1,0 +1,100 @@
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/storage/published_table_file.hpp>
+
+#include <fmt/format.h>
+
+#include <map>
+#include <memory>
+
+namespace incise::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::filesystem::path table;
+  AuditSettings settings;
+  double grain = 0.0;
+};
+
+Json finding_json(const Finding& finding) {
+  return {{"rule", to_string(finding.rule)},
+          {"of", finding.group.empty() ? Json(nullptr) : Json(finding.group)},
+          {"printed", finding.printed},
+          {"bound", finding.bound},
+          {"text", to_text(finding)}};
+}
+
+Json audit_json(const Audit& audit) {
+  Json json;
+  json["impossible_rows"] = audit.impossible_rows;
+  json["checked_rows"] = audit.rows.size();
+  std::map<std::string, std::size_t> rules;
+  json["rows"] = Json::array();
+  for (const AuditedRow& row : audit.rows) {
+    Json findings = Json::array();
+    for (const Finding& finding : row.findings) {
+      findings.push_back(finding_json(finding));
+      ++rules[std::string(to_string(finding.rule))];
+    }
+    json["rows"].push_back({{"name", row.name}, {"possible", row.findings.empty()}, {"findings", std::move(findings)}});
+  }
+  json["findings_by_rule"] = Json::object();
+  for (const auto& [rule, count] : rules) json["findings_by_rule"][rule] = count;
+  json["score_baseline_mm"] = audit.baseline_mm ? Json{{"low", audit.baseline_mm->low_mm},
+                                                       {"high", audit.baseline_mm->high_mm},
+                                                       {"rows", audit.rows_on_baseline},
+                                                       {"of", audit.scored_rows}}
+                                                : Json(nullptr);
+  return json;
+}
+
+void print_audit(const Audit& audit) {
+  for (const AuditedRow& row : audit.rows) {
+    for (const Finding& finding : row.findings) fmt::print("{:<32} {}\n", row.name, to_text(finding));
+  }
+  fmt::print("{} of {} rows impossible\n", audit.impossible_rows, audit.rows.size());
+  if (audit.baseline_mm) {
+    fmt::print("score baseline {:.3f} to {:.3f} mm explains {} of {} rows\n", audit.baseline_mm->low_mm,
+               audit.baseline_mm->high_mm, audit.rows_on_baseline, audit.scored_rows);
+  }
+}
+
+int run(Arguments arguments, const CommonOptions& options) {
+  if (arguments.grain > 0.0) arguments.settings.grain = arguments.grain;
+  if (const auto violations = validate(arguments.settings); !violations.empty()) {
+    throw CaseError("command line", "", violations.front(), "usable settings");
+  }
+  const Audit result = audit(read_published_table(arguments.table), arguments.settings);
+  const Json json = audit_json(result);
+  if (!options.output.empty()) write_json(options.output, json);
+  if (options.json) {
+    print_result(options, json);
+  } else {
+    print_audit(result);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_audit(Application& application) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb = application.add_verb("audit", "Tell which rows of a published table cannot be",
+                                        "incise audit data/published_tables/table_1.csv",
+                                        [arguments](const CommonOptions& options) { return run(*arguments, options); });
+  verb->add_option("table", arguments->table,
+                   "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
+                   "PART_mean_mm, PART_sd_mm of what a row was pooled from")
+      ->required();
+  verb->add_option("--least", arguments->settings.least, "No value can be smaller: 0 for absolute errors");
+  verb->add_option("--n-at-least", arguments->settings.n_at_least, "Values behind a mean where the table does not say")
+      ->check(CLI::Range(2, 1000000000));
+  verb->add_option("--grain", arguments->grain, "Values are whole multiples of this (1 for counts); 0: any number")
+      ->check(CLI::NonNegativeNumber);
+}
+
+}  // namespace incise::cli

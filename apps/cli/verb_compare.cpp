@@ -1,0 +1,105 @@
+#include "comparison_output.hpp"
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/storage/evaluation_file.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <set>
+
+namespace incise::cli {
+namespace {
+
+struct Arguments {
+  std::vector<std::filesystem::path> before;
+  std::vector<std::filesystem::path> after;
+  std::string measure = "absolute";
+  ComparisonSettings settings;
+};
+
+std::vector<EvaluationFile> read_all(const std::vector<std::filesystem::path>& paths) {
+  std::vector<EvaluationFile> files;
+  for (const auto& path : paths) files.push_back(read_evaluation_file(path));
+  return files;
+}
+
+/// Like is compared with like: the same line of the cut, against the same target, with the same zones.
+void require_alike(const Arguments& arguments, const ComparedFiles& files) {
+  const EvaluationFile& first = files.before.front();
+  const auto check = [&](const std::filesystem::path& path, const EvaluationFile& file) {
+    const auto refuse = [&](const char* key, const std::string& found, const std::string& expected) {
+      throw DataError(path, key, found, fmt::format("{} as in {}", expected, arguments.before.front().string()),
+                      "Only like is compared with like");
+    };
+    if (file.contour != first.contour) refuse("contour", file.contour, first.contour);
+    if (file.target_mm != first.target_mm) {
+      refuse("target_mm", fmt::format("{}", file.target_mm), fmt::format("{}", first.target_mm));
+    }
+  };
+  for (std::size_t i = 0; i < arguments.before.size(); ++i) check(arguments.before[i], files.before[i]);
+  for (std::size_t i = 0; i < arguments.after.size(); ++i) check(arguments.after[i], files.after[i]);
+}
+
+/// A file that stands for two specimens would make two of one.
+void require_different(const Arguments& arguments) {
+  std::set<std::filesystem::path> seen;
+  for (const auto* side : {&arguments.before, &arguments.after}) {
+    for (const auto& path : *side) {
+      if (!seen.insert(std::filesystem::weakly_canonical(path)).second) {
+        throw CaseError("command line", side == &arguments.before ? "--before" : "--after", path.string() + " again",
+                        "every evaluation once");
+      }
+    }
+  }
+}
+
+int run(Arguments arguments, const CommonOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  arguments.settings.measure = arguments.measure == "signed" ? ErrorMeasure::Signed : ErrorMeasure::Absolute;
+  arguments.settings.bootstrap.seed = options.seed;
+  if (const auto violations = validate(arguments.settings); !violations.empty()) {
+    throw CaseError("command line", "", violations.front(), "usable settings");
+  }
+  if (arguments.settings.is_paired && arguments.before.size() != arguments.after.size()) {
+    throw CaseError("command line", "--paired",
+                    fmt::format("{} before and {} after", arguments.before.size(), arguments.after.size()),
+                    "as many before as after, in the same order");
+  }
+  require_different(arguments);
+  ComparedFiles files{read_all(arguments.before), read_all(arguments.after)};
+  require_alike(arguments, files);
+  ComparisonOutput output = compared(std::move(files), arguments.settings);
+  if (!options.output.empty()) {
+    std::vector<std::filesystem::path> inputs = arguments.before;
+    inputs.insert(inputs.end(), arguments.after.begin(), arguments.after.end());
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+    write_comparison(options.output, output, inputs, options.context(), wall.count());
+  }
+  print_result(options, output.json);
+  return kDone;
+}
+
+}  // namespace
+
+void add_compare(Application& application) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* verb =
+      application.add_verb("compare", "Test whether incisions after a change miss by less than those before it",
+                           "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison",
+                           [arguments](const CommonOptions& options) { return run(*arguments, options); });
+  verb->add_option("--before", arguments->before, "Files of `incise evaluate -o`, one for each specimen")->required();
+  verb->add_option("--after", arguments->after, "The same, after the change")->required();
+  verb->add_option("--measure", arguments->measure, "Which error")->check(CLI::IsMember({"absolute", "signed"}));
+  verb->add_flag("--paired", arguments->settings.is_paired,
+                 "The n-th file before and the n-th file after are the same specimen");
+  verb->add_option("--alpha", arguments->settings.alpha, "Level of the tests; intervals are at 1 - alpha");
+  verb->add_option("--power", arguments->settings.power,
+                   "Chance to see the effect that is wanted of the next experiment");
+  verb->add_option("--replicates", arguments->settings.bootstrap.replicates, "Of the block bootstrap")
+      ->check(CLI::Range(99, 1000000));
+}
+
+}  // namespace incise::cli

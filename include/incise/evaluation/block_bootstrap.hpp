@@ -1,0 +1,56 @@
+#pragma once
+
+#include <incise/evaluation/t_tests.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace incise {
+
+/// Values at points evenly spaced along a contour, in its order.
+struct ContourValues {
+  std::vector<double> values;
+  bool is_ring = true;  ///< the last point is the first one's neighbour
+};
+
+/// How much the neighbours on a contour tell the same thing twice.
+struct ContourCorrelation {
+  /// Points in a block: long enough for blocks to be nearly independent. 1 for independent points; at most
+  /// min(3√n, n/3), which an error that varies once round the ring would exceed.
+  std::size_t block = 1;
+  double standard_error = 0.0;  ///< of the mean, from the means of blocks of this length
+  /// Independent values that would give this standard error; about n for independent points. Absent without spread.
+  std::optional<double> n_effective;
+};
+
+/// Block length for the circular bootstrap, from the autocovariance: [PolitisWhite2004] as corrected in
+/// [PattonPolitisWhite2009]; on a ring the autocovariance goes round. @pre at least 3 values, all finite. O(n^1.5).
+[[nodiscard]] ContourCorrelation contour_correlation(const ContourValues& contour);
+
+struct BootstrapSettings {
+  int replicates = 9999;   ///< >= 99
+  std::uint64_t seed = 1;  ///< same seed: same result, bit for bit
+  double level = 0.95;     ///< of the interval, (0, 1)
+};
+
+/// Two-tailed test of "the means over all points are equal" for these very contours, from circular block bootstrap
+/// [PolitisRomano1992]. It asks whether the points say more than chance along a contour would; it does not make
+/// specimens of them.
+struct BootstrapTest {
+  TestVerdict verdict = TestVerdict::TooFew;
+  double difference = 0.0;  ///< after minus before, of the means over all points
+  std::optional<double> standard_error;
+  std::optional<double>
+      p;  ///< (1 + replicates that stray from the difference as far as it is from 0) / (1 + replicates)
+  std::optional<Interval> confidence;  ///< percentiles of the replicates
+};
+
+/// Draws each contour anew from its own blocks, which wrap round. One random engine, contours in order: serial.
+/// @pre at least one contour on each side, 3 values on each, all finite. O(replicates · points / block).
+[[nodiscard]] BootstrapTest block_bootstrap_test(std::span<const ContourValues> before,
+                                                 std::span<const ContourValues> after,
+                                                 const BootstrapSettings& settings = {});
+
+}  // namespace incise

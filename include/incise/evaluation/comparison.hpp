@@ -1,0 +1,79 @@
+#pragma once
+
+#include <incise/evaluation/block_bootstrap.hpp>
+#include <incise/evaluation/effect_size.hpp>
+#include <incise/evaluation/statistics.hpp>
+
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// The errors of one specimen's incision, in the order of the contour.
+struct MeasuredSpecimen {
+  std::string name;
+  std::vector<double> signed_error_mm;  ///< at evenly spaced points, at least 3
+  bool is_ring = true;
+};
+
+/// Which error is compared.
+enum class ErrorMeasure { Absolute, Signed };
+
+struct ComparisonSettings {
+  ErrorMeasure measure = ErrorMeasure::Absolute;
+  /// before[i] and after[i] are the same specimen; otherwise the specimens are strangers to each other.
+  bool is_paired = false;
+  double alpha = 0.05;  ///< (0, 1); intervals are at 1 - alpha
+  double power = 0.8;   ///< (alpha, 1): wanted of the next experiment
+  BootstrapSettings bootstrap;
+};
+
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const ComparisonSettings& settings);
+
+/// One incision in a comparison.
+struct SpecimenRow {
+  std::string name;
+  bool is_after = false;
+  SampleMoments error_mm;  ///< of the measure that is compared
+  ContourCorrelation correlation;
+};
+
+/// By contour point, as the paper tests: all points of all specimens in one pool, as if each were a specimen.
+struct PooledTests {
+  SampleMoments before, after;
+  TTest student;  ///< the paper's
+  TTest welch;
+  std::optional<EffectSize> effect;
+  BootstrapTest bootstrap;          ///< the same question, but neighbours on a contour count as such
+  double n_effective_before = 0.0;  ///< independent values that the points are worth, summed over contours
+  double n_effective_after = 0.0;
+};
+
+/// By specimen: one value each, its mean error.
+struct SpecimenTests {
+  SampleMoments before, after;
+  TTest student;
+  TTest welch;
+  std::optional<TTest> paired;  ///< only where the specimens are pairs
+  std::optional<EffectSize> effect;
+  /// Specimens in each group (or pairs) with which the effect found here would show at alpha with the power asked for.
+  std::optional<std::size_t> fewest;
+  [[nodiscard]] const TTest& main() const { return paired ? *paired : welch; }
+};
+
+/// Whether incisions after a change miss by less than those before it.
+struct Comparison {
+  std::vector<SpecimenRow> rows;  ///< before, then after, in the order given
+  PooledTests points;
+  SpecimenTests specimens;
+};
+
+/// @pre at least one specimen on each side; as many before as after where they are pairs.
+/// @throws InvalidArgument with every violation of the settings, and for errors that are too few or not finite.
+/// Source: [Paper, III-A.1] for the test by point; departs from it by all the others: the points of one incision are
+/// not independent, and specimens, not points, are what a new patient is like.
+[[nodiscard]] Comparison compare(std::span<const MeasuredSpecimen> before, std::span<const MeasuredSpecimen> after,
+                                 const ComparisonSettings& settings = {});
+
+}  // namespace incise

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <incise/evaluation/t_tests.hpp>
+
+#include <optional>
+#include <span>
+
+namespace incise {
+
+/// How large a difference is, in standard deviations of what varies; after minus before.
+struct EffectSize {
+  double cohens_d = 0.0;  ///< difference / sd; too large on average for few values
+  double hedges_g = 0.0;  ///< d without that bias
+  Interval confidence;    ///< of g, at the level asked for, from the noncentral t distribution
+};
+
+/// Of two samples: difference over their common standard deviation, times Γ(f/2) / (√(f/2) Γ((f−1)/2)) with
+/// f = n_before + n_after − 2. Absent for f < 2, without spread, and for |t| > 300, where
+/// the interval cannot be computed. Source: [Hedges1981].
+/// @pre as student_t_test.
+[[nodiscard]] std::optional<EffectSize> hedges_g(const SampleMoments& before, const SampleMoments& after,
+                                                 double level = 0.95);
+
+/// Of pairs: mean difference over the standard deviation of the differences, f = pairs − 1. Absent for fewer than 3
+/// pairs or without spread. @pre as paired_t_test.
+[[nodiscard]] std::optional<EffectSize> hedges_g_paired(std::span<const double> before, std::span<const double> after,
+                                                        double level = 0.95);
+
+enum class TestDesign {
+  Unpaired,  ///< two groups of equal size
+  Paired,    ///< each specimen before and after
+};
+
+/// Probability that a two-tailed t-test finds a true effect of `effect` standard deviations. `n`: specimens in each
+/// group, or pairs. @pre n >= 2, alpha in (0, 1), effect finite. Source: [Cohen1988], noncentral t distribution.
+[[nodiscard]] double t_test_power(double effect, std::size_t n, TestDesign design, double alpha = 0.05);
+
+/// Fewest specimens in each group (or pairs) for which t_test_power reaches `power`. Absent for an effect of 0 and for
+/// more than a million. @pre power in (alpha, 1).
+[[nodiscard]] std::optional<std::size_t> fewest_specimens(double effect, TestDesign design, double power = 0.8,
+                                                          double alpha = 0.05);
+
+}  // namespace incise

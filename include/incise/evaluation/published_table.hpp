@@ -1,0 +1,91 @@
+#pragma once
+
+#include <incise/evaluation/registration_score.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// A number as printed ("1.20": 1.2 ± 0.005). Absent for text that is no finite decimal number.
+[[nodiscard]] std::optional<PrintedNumber> printed_number(std::string_view text);
+
+/// What a table prints about one set of numbers.
+struct PrintedGroup {
+  std::string name;  ///< of the columns; empty for the row's own
+  PrintedNumber mean;
+  PrintedNumber sd;  ///< taken for the sample standard deviation (n - 1)
+  std::optional<PrintedNumber> max;
+  std::optional<PrintedNumber> min;
+  std::optional<std::size_t> n;
+};
+
+/// A row: a set of numbers, and perhaps the sets that it was pooled from.
+struct PrintedRow {
+  std::string name;
+  std::optional<PrintedGroup> total;
+  std::vector<PrintedGroup> parts;             ///< a part without max lies, as all do, below the total's
+  std::optional<PrintedNumber> score_percent;  ///< 0.75 mean + 0.25 max of the total, as per cent of some baseline
+};
+
+struct AuditSettings {
+  double least = 0.0;  ///< no value can be smaller: 0 for absolute errors
+  /// Where the table gives no n: how few values there may be. Few values may stray more, so this is what the benefit of
+  /// the doubt costs. >= 2.
+  std::size_t n_at_least = 10;
+  std::optional<double> grain;  ///< values are whole multiples of this (1 for counts): the GRIM test; needs n
+};
+
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const AuditSettings& settings);
+
+/// What no set of numbers can do. Each holds for every choice of digits behind the printed ones.
+enum class AuditRule {
+  MeanBelowLeast,  ///< mean < least possible value
+  NegativeSd,
+  MaxBelowMean,
+  MinAboveMean,
+  SdTooLarge,         ///< sd² > n/(n−1) (max − mean)(mean − min): [BhatiaDavis2000]
+  SdTooSmall,         ///< sd² < n/(n−1)² (max − mean)²: the greatest value alone strays more; needs n
+  MeanTooSmall,       ///< n · mean < max + (n − 1) · least: the greatest value alone needs more; needs n
+  MeanNotOnGrain,     ///< no sum of n multiples of the grain has this mean: [BrownHeathers2017]; needs n and grain
+  PooledMeanOutside,  ///< below every part's mean, or above
+  PooledSdTooLarge,   ///< sd² > greatest part's sd² + what the parts' means can add
+  PooledSdTooSmall,   ///< sd² < least part's sd²
+  ScoreOffBaseline,   ///< the per cent does not follow from mean, max and the baseline that most rows agree on
+};
+
+[[nodiscard]] std::string_view to_string(AuditRule rule);  ///< mean_below_least, negative_sd, …
+
+struct Finding {
+  AuditRule rule = AuditRule::SdTooLarge;
+  std::string group;     ///< whose; empty: the row's own columns
+  double printed = 0.0;  ///< the number that cannot be
+  double bound = 0.0;    ///< what it would have to keep to, rounding allowed for
+};
+
+/// One sentence for a person: rule, numbers, bound.
+[[nodiscard]] std::string to_text(const Finding& finding);
+
+struct AuditedRow {
+  std::string name;
+  std::vector<Finding> findings;  ///< empty: nothing impossible
+};
+
+struct Audit {
+  std::vector<AuditedRow> rows;  ///< as given
+  std::size_t impossible_rows = 0;
+  /// Baselines that explain the per cents of as many rows as any does; absent where no row has one.
+  std::optional<BaselineRange> baseline_mm;
+  std::size_t rows_on_baseline = 0;
+  std::size_t scored_rows = 0;  ///< rows with a per cent above 0, mean and max
+};
+
+/// Tells which rows of a published table cannot be. A row that passes is possible, which is less than right.
+/// @throws InvalidArgument with every violation of the settings; for a number that is not finite.
+[[nodiscard]] Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings = {});
+
+}  // namespace incise

@@ -1,0 +1,145 @@
+#include "evaluation/audit_rules.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise::audit_rules {
+namespace {
+
+/// Rounding of our own arithmetic: a printed number that meets its bound exactly is possible.
+constexpr double kSlack = 1e-9;
+
+double low(const PrintedNumber& number) {
+  return number.value - number.half_unit;
+}
+double high(const PrintedNumber& number) {
+  return number.value + number.half_unit;
+}
+
+void require_finite(const PrintedNumber& number, const std::string& name) {
+  INCISE_REQUIRE(std::isfinite(number.value) && number.half_unit >= 0.0,
+                 fmt::format("a number of \"{}\" is not finite", name));
+}
+
+std::size_t count_of(const PrintedGroup& group, const AuditSettings& settings) {
+  return std::max<std::size_t>(2, group.n.value_or(settings.n_at_least));
+}
+
+/// Greatest product (top - m)(m - bottom) for m in [from, to].
+double greatest_product(double bottom, double top, double from, double to) {
+  const double m = std::clamp(0.5 * (top + bottom), from, to);
+  return std::max(0.0, (top - m) * (m - bottom));
+}
+
+/// [BhatiaDavis2000], for the sample variance.
+double greatest_sd(const PrintedGroup& group, double bottom, double top, const AuditSettings& settings) {
+  const auto n = static_cast<double>(count_of(group, settings));
+  return std::sqrt(n / (n - 1.0) * greatest_product(bottom, top, low(group.mean), high(group.mean)));
+}
+
+/// Rules that need to know how many values there were.
+void check_counted(const PrintedGroup& group, const AuditSettings& settings, std::vector<Finding>& findings) {
+  const auto n = static_cast<double>(*group.n);
+  if (settings.grain) {
+    const double step = *settings.grain / n;
+    const double nearest = std::round(group.mean.value / step) * step;
+    if (std::abs(nearest - group.mean.value) > group.mean.half_unit + kSlack) {
+      findings.push_back({AuditRule::MeanNotOnGrain, group.name, group.mean.value, nearest});
+    }
+  }
+  if (!group.max || *group.n < 2) return;
+  const double least_mean = (low(*group.max) + (n - 1.0) * settings.least) / n;
+  if (high(group.mean) < least_mean - kSlack) {
+    findings.push_back({AuditRule::MeanTooSmall, group.name, group.mean.value, least_mean});
+  }
+  const double reach = std::max(0.0, low(*group.max) - high(group.mean));
+  const double least_sd = reach * std::sqrt(n) / (n - 1.0);
+  if (high(group.sd) < least_sd - kSlack) {
+    findings.push_back({AuditRule::SdTooSmall, group.name, group.sd.value, least_sd});
+  }
+}
+
+}  // namespace
+
+void check_group(const PrintedGroup& group, const std::optional<PrintedNumber>& max, const AuditSettings& settings,
+                 std::vector<Finding>& findings) {
+  for (const auto& number : {std::optional(group.mean), std::optional(group.sd), max, group.min}) {
+    if (number) require_finite(*number, group.name);
+  }
+  const auto find = [&](AuditRule rule, double printed, double bound) {
+    findings.push_back({rule, group.name, printed, bound});
+  };
+  const std::size_t before = findings.size();
+  if (high(group.mean) < settings.least - kSlack) find(AuditRule::MeanBelowLeast, group.mean.value, settings.least);
+  if (high(group.sd) < -kSlack) find(AuditRule::NegativeSd, group.sd.value, 0.0);
+  if (max && high(*max) < low(group.mean) - kSlack) find(AuditRule::MaxBelowMean, max->value, low(group.mean));
+  if (group.min && low(*group.min) > high(group.mean) + kSlack) {
+    find(AuditRule::MinAboveMean, group.min->value, high(group.mean));
+  }
+  // Bounds on the spread mean nothing round a mean that is itself impossible.
+  if (findings.size() > before) return;
+  if (max) {
+    const double bottom = group.min ? std::max(settings.least, low(*group.min)) : settings.least;
+    const double bound = greatest_sd(group, bottom, high(*max), settings);
+    if (low(group.sd) > bound + kSlack) find(AuditRule::SdTooLarge, group.sd.value, bound);
+  }
+  if (group.n) check_counted(group, settings, findings);
+}
+
+void check_pooling(const PrintedGroup& total, const std::vector<PrintedGroup>& parts, const AuditSettings& settings,
+                   std::vector<Finding>& findings) {
+  if (parts.size() < 2) return;
+  double bottom = low(parts[0].mean), top = high(parts[0].mean);
+  double least_sd = low(parts[0].sd), greatest = high(parts[0].sd);
+  double count = 0.0;
+  for (const PrintedGroup& part : parts) {
+    bottom = std::min(bottom, low(part.mean));
+    top = std::max(top, high(part.mean));
+    least_sd = std::min(least_sd, low(part.sd));
+    greatest = std::max(greatest, high(part.sd));
+    count += static_cast<double>(count_of(part, settings));
+  }
+  if (high(total.mean) < bottom - kSlack || low(total.mean) > top + kSlack) {
+    findings.push_back(
+        {AuditRule::PooledMeanOutside, total.name, total.mean.value, total.mean.value < bottom ? bottom : top});
+    return;
+  }
+  // (N − 1) sd² = Σ (n_i − 1) sd_i² + Σ n_i (m_i − mean)², and the last sum is that of values within [bottom, top].
+  const double from = std::max(bottom, low(total.mean));
+  const double to = std::min(top, high(total.mean));
+  const double between = count / (count - 1.0) * greatest_product(bottom, top, from, to);
+  const double most = std::sqrt(greatest * greatest + between);
+  const double share = (count - static_cast<double>(parts.size())) / (count - 1.0);
+  const double fewest = std::sqrt(share) * std::max(0.0, least_sd);
+  if (low(total.sd) > most + kSlack) {
+    findings.push_back({AuditRule::PooledSdTooLarge, total.name, total.sd.value, most});
+  }
+  if (high(total.sd) < fewest - kSlack) {
+    findings.push_back({AuditRule::PooledSdTooSmall, total.name, total.sd.value, fewest});
+  }
+}
+
+std::optional<PrintedScore> printed_score(const PrintedRow& row) {
+  if (!row.total || !row.total->max || !row.score_percent) return std::nullopt;
+  if (row.score_percent->value <= row.score_percent->half_unit) return std::nullopt;
+  return PrintedScore{row.total->mean, *row.total->max, *row.score_percent};
+}
+
+void check_score(const PrintedRow& row, const BaselineRange& baseline_mm, std::vector<Finding>& findings) {
+  const auto score = printed_score(row);
+  if (!score) return;
+  const BaselineRange own = baseline_range(*score);
+  if (own.low_mm <= baseline_mm.high_mm && own.high_mm >= baseline_mm.low_mm) return;
+  // The per cent nearest to the printed one that mean, max and the baseline could give.
+  const bool is_high = own.low_mm > baseline_mm.high_mm;
+  const double baseline = is_high ? baseline_mm.high_mm : baseline_mm.low_mm;
+  const double edge = is_high ? own.low_mm * (score->percent.value + score->percent.half_unit)
+                              : own.high_mm * (score->percent.value - score->percent.half_unit);
+  findings.push_back({AuditRule::ScoreOffBaseline, row.total->name, score->percent.value, edge / baseline});
+}
+
+}  // namespace incise::audit_rules

@@ -1,0 +1,106 @@
+#include <incise/core/error.hpp>
+#include <incise/evaluation/comparison.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// One side of the comparison in the shapes that the tests ask for.
+struct Side {
+  std::vector<ContourValues> contours;
+  std::vector<double> pooled;
+  std::vector<double> means;  ///< by specimen
+  double n_effective = 0.0;
+};
+
+Side side_of(std::span<const MeasuredSpecimen> specimens, ErrorMeasure measure, bool is_after,
+             std::vector<SpecimenRow>& rows) {
+  Side side;
+  for (const MeasuredSpecimen& specimen : specimens) {
+    INCISE_REQUIRE(specimen.signed_error_mm.size() >= 3,
+                   fmt::format("specimen \"{}\": found errors at {} points, expected at least 3", specimen.name,
+                               specimen.signed_error_mm.size()));
+    ContourValues contour{.values = specimen.signed_error_mm, .is_ring = specimen.is_ring};
+    if (measure == ErrorMeasure::Absolute) {
+      for (double& value : contour.values) value = std::abs(value);
+    }
+    SpecimenRow row{.name = specimen.name, .is_after = is_after};
+    row.error_mm = moments_of(contour.values);
+    row.correlation = contour_correlation(contour);
+    side.means.push_back(row.error_mm.mean);
+    // A contour without spread tells one number.
+    side.n_effective += row.correlation.n_effective.value_or(1.0);
+    side.pooled.insert(side.pooled.end(), contour.values.begin(), contour.values.end());
+    side.contours.push_back(std::move(contour));
+    rows.push_back(std::move(row));
+  }
+  return side;
+}
+
+PooledTests pooled_tests(const Side& before, const Side& after, const ComparisonSettings& settings) {
+  const double level = 1.0 - settings.alpha;
+  PooledTests tests{.before = moments_of(before.pooled), .after = moments_of(after.pooled)};
+  tests.student = student_t_test(tests.before, tests.after, level);
+  tests.welch = welch_t_test(tests.before, tests.after, level);
+  tests.effect = hedges_g(tests.before, tests.after, level);
+  BootstrapSettings bootstrap = settings.bootstrap;
+  bootstrap.level = level;
+  tests.bootstrap = block_bootstrap_test(before.contours, after.contours, bootstrap);
+  tests.n_effective_before = before.n_effective;
+  tests.n_effective_after = after.n_effective;
+  return tests;
+}
+
+SpecimenTests specimen_tests(const Side& before, const Side& after, const ComparisonSettings& settings) {
+  const double level = 1.0 - settings.alpha;
+  SpecimenTests tests{.before = moments_of(before.means), .after = moments_of(after.means)};
+  tests.student = student_t_test(tests.before, tests.after, level);
+  tests.welch = welch_t_test(tests.before, tests.after, level);
+  if (settings.is_paired) {
+    tests.paired = paired_t_test(before.means, after.means, level);
+    tests.effect = hedges_g_paired(before.means, after.means, level);
+  } else {
+    tests.effect = hedges_g(tests.before, tests.after, level);
+  }
+  if (tests.effect) {
+    const TestDesign design = settings.is_paired ? TestDesign::Paired : TestDesign::Unpaired;
+    tests.fewest = fewest_specimens(tests.effect->hedges_g, design, settings.power, settings.alpha);
+  }
+  return tests;
+}
+
+}  // namespace
+
+std::vector<std::string> validate(const ComparisonSettings& settings) {
+  std::vector<std::string> violations;
+  if (!(settings.alpha > 0.0 && settings.alpha < 1.0)) {
+    violations.push_back(fmt::format("alpha: found {}, expected a level in (0, 1)", settings.alpha));
+  }
+  if (!(settings.power > settings.alpha && settings.power < 1.0)) {
+    violations.push_back(fmt::format("power: found {}, expected more than alpha and less than 1", settings.power));
+  }
+  if (settings.bootstrap.replicates < 99) {
+    violations.push_back(fmt::format("replicates: found {}, expected at least 99", settings.bootstrap.replicates));
+  }
+  return violations;
+}
+
+Comparison compare(std::span<const MeasuredSpecimen> before, std::span<const MeasuredSpecimen> after,
+                   const ComparisonSettings& settings) {
+  const std::vector<std::string> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  INCISE_REQUIRE(!before.empty() && !after.empty(), "expected at least one specimen before and one after");
+  INCISE_REQUIRE(!settings.is_paired || before.size() == after.size(),
+                 fmt::format("found {} specimens before and {} after, expected pairs", before.size(), after.size()));
+  Comparison comparison;
+  const Side first = side_of(before, settings.measure, false, comparison.rows);
+  const Side second = side_of(after, settings.measure, true, comparison.rows);
+  comparison.points = pooled_tests(first, second, settings);
+  comparison.specimens = specimen_tests(first, second, settings);
+  return comparison;
+}
+
+}  // namespace incise

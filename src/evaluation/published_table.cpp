@@ -1,0 +1,128 @@
+#include "evaluation/audit_rules.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// The baseline that most rows agree on: one of their lower ends lies in it.
+void find_baseline(const std::vector<PrintedRow>& rows, Audit& audit) {
+  std::vector<BaselineRange> ranges;
+  for (const PrintedRow& row : rows) {
+    if (const auto score = audit_rules::printed_score(row)) ranges.push_back(baseline_range(*score));
+  }
+  audit.scored_rows = ranges.size();
+  for (const BaselineRange& candidate : ranges) {
+    BaselineRange common = candidate;
+    std::size_t count = 0;
+    for (const BaselineRange& range : ranges) {
+      if (range.low_mm > candidate.low_mm || range.high_mm < candidate.low_mm) continue;
+      ++count;
+      common.high_mm = std::min(common.high_mm, range.high_mm);
+    }
+    if (count <= audit.rows_on_baseline) continue;
+    audit.rows_on_baseline = count;
+    audit.baseline_mm = common;
+  }
+}
+
+}  // namespace
+
+std::optional<PrintedNumber> printed_number(std::string_view text) {
+  // A sign and digits with at most one point: "1e3" or "inf" are not how a table prints a length.
+  const bool is_plain = !text.empty() && text.find_first_not_of("+-.0123456789") == std::string_view::npos;
+  if (!is_plain) return std::nullopt;
+  std::string_view digits = text;
+  if (digits.front() == '+') digits.remove_prefix(1);
+  PrintedNumber number;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number.value);
+  if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(number.value)) return std::nullopt;
+  const std::size_t point = text.find('.');
+  const std::size_t places = point == std::string_view::npos ? 0 : text.size() - point - 1;
+  number.half_unit = 0.5 * std::pow(10.0, -static_cast<double>(places));
+  return number;
+}
+
+std::vector<std::string> validate(const AuditSettings& settings) {
+  std::vector<std::string> violations;
+  if (!std::isfinite(settings.least)) violations.push_back("least: expected a finite number");
+  if (settings.n_at_least < 2) {
+    violations.push_back(fmt::format("n_at_least: found {}, expected at least 2", settings.n_at_least));
+  }
+  if (settings.grain && !(*settings.grain > 0.0 && std::isfinite(*settings.grain))) {
+    violations.push_back(fmt::format("grain: found {}, expected a step above 0", *settings.grain));
+  }
+  return violations;
+}
+
+std::string_view to_string(AuditRule rule) {
+  static constexpr std::array<std::string_view, 12> kNames{
+      "mean_below_least",    "negative_sd",         "max_below_mean",      "min_above_mean",
+      "sd_too_large",        "sd_too_small",        "mean_too_small",      "mean_not_on_grain",
+      "pooled_mean_outside", "pooled_sd_too_large", "pooled_sd_too_small", "score_off_baseline"};
+  return kNames.at(static_cast<std::size_t>(rule));
+}
+
+std::string to_text(const Finding& finding) {
+  const std::string whose = finding.group.empty() ? "" : finding.group + ": ";
+  const auto say = [&](const char* pattern) {
+    return whose +
+           fmt::format(fmt::runtime(pattern), fmt::arg("found", finding.printed), fmt::arg("bound", finding.bound));
+  };
+  switch (finding.rule) {
+    case AuditRule::MeanBelowLeast:
+      return say("mean {found:g} lies below the least possible value, {bound:g}");
+    case AuditRule::NegativeSd:
+      return say("sd {found:g} is negative");
+    case AuditRule::MaxBelowMean:
+      return say("max {found:g} lies below the mean, at least {bound:.4g}");
+    case AuditRule::MinAboveMean:
+      return say("min {found:g} lies above the mean, at most {bound:.4g}");
+    case AuditRule::SdTooLarge:
+      return say("sd {found:g} is more than mean and max allow, {bound:.4g}");
+    case AuditRule::SdTooSmall:
+      return say("sd {found:g} is less than the greatest value alone makes, {bound:.4g}");
+    case AuditRule::MeanTooSmall:
+      return say("mean {found:g} is less than the greatest value alone makes, {bound:.4g}");
+    case AuditRule::MeanNotOnGrain:
+      return say("mean {found:g} is no mean of n such values; the nearest that is: {bound:.6g}");
+    case AuditRule::PooledMeanOutside:
+      return say("pooled mean {found:g} lies outside its parts, whose nearest reaches {bound:.4g}");
+    case AuditRule::PooledSdTooLarge:
+      return say("pooled sd {found:g} is more than its parts allow, {bound:.4g}");
+    case AuditRule::PooledSdTooSmall:
+      return say("pooled sd {found:g} is less than its parts allow, {bound:.4g}");
+    case AuditRule::ScoreOffBaseline:
+      break;
+  }
+  return say("score {found:g} % does not follow from mean, max and the baseline: nearest {bound:.4g} %");
+}
+
+Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings) {
+  const std::vector<std::string> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  Audit result;
+  find_baseline(rows, result);
+  for (const PrintedRow& row : rows) {
+    AuditedRow audited{.name = row.name, .findings = {}};
+    if (row.total) audit_rules::check_group(*row.total, row.total->max, settings, audited.findings);
+    for (const PrintedGroup& part : row.parts) {
+      const auto max = part.max || !row.total ? part.max : row.total->max;
+      audit_rules::check_group(part, max, settings, audited.findings);
+    }
+    if (row.total) audit_rules::check_pooling(*row.total, row.parts, settings, audited.findings);
+    if (result.baseline_mm) audit_rules::check_score(row, *result.baseline_mm, audited.findings);
+    if (!audited.findings.empty()) ++result.impossible_rows;
+    result.rows.push_back(std::move(audited));
+  }
+  return result;
+}
+
+}  // namespace incise

@@ -1,0 +1,197 @@
+#include "report/error_drawing.hpp"
+#include "report/plot.hpp"
+#include "report/svg.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/report/comparison_figures.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr std::string_view kBefore = ink::kSeries[0];
+constexpr std::string_view kAfter = ink::kSeries[1];
+/// Of the incisions of one side, told apart by lightness within the side's hue.
+constexpr std::array<std::string_view, 4> kBeforeShades{"#6b6b6b", "#a3a39c", "#3d3d3d", "#8a7f6d"};
+constexpr std::array<std::string_view, 4> kAfterShades{"#0072b2", "#56b4e9", "#013f66", "#009e73"};
+
+void require_series(std::span<const ErrorSeries> series) {
+  INCISE_REQUIRE(!series.empty(), "expected at least one incision");
+  for (const ErrorSeries& one : series) {
+    INCISE_REQUIRE(!one.signed_error_mm.empty(), fmt::format("incision \"{}\": expected errors", one.name));
+    for (const double error : one.signed_error_mm) {
+      INCISE_REQUIRE(std::isfinite(error), fmt::format("incision \"{}\": an error is not finite", one.name));
+    }
+  }
+}
+
+/// Covers all errors and shows a little of every zone.
+double limit_of(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
+  double largest = -zones.positive_mm + 0.4;
+  for (const ErrorSeries& one : series) {
+    for (const double error : one.signed_error_mm) largest = std::max(largest, std::abs(error));
+  }
+  return std::ceil(2.0 * largest) / 2.0;
+}
+
+struct Box {
+  std::string name;
+  std::string_view color;
+  std::vector<double> signed_error_mm;
+};
+
+std::vector<Box> boxes_of(std::span<const ErrorSeries> series) {
+  std::vector<Box> boxes;
+  for (const bool is_after : {false, true}) {
+    Box all{.name = is_after ? "after" : "before", .color = is_after ? kAfter : kBefore, .signed_error_mm = {}};
+    for (const ErrorSeries& one : series) {
+      if (one.is_after != is_after) continue;
+      all.signed_error_mm.insert(all.signed_error_mm.end(), one.signed_error_mm.begin(), one.signed_error_mm.end());
+    }
+    if (!all.signed_error_mm.empty()) boxes.push_back(std::move(all));
+  }
+  for (const ErrorSeries& one : series) {
+    boxes.push_back({one.name, one.is_after ? kAfter : kBefore, one.signed_error_mm});
+  }
+  return boxes;
+}
+
+/// A name as wide as its box allows.
+std::string shortened(const std::string& name, std::size_t most) {
+  return name.size() <= most ? name : name.substr(0, most - 1) + "…";
+}
+
+/// Half of a panel: signed errors mirrored to be read as "towards the tumour" have the same zones upwards.
+void draw_absolute_zones(SvgWriter& svg, const PlotArea& area, const ZoneBorders& zones) {
+  const auto band = [&](double from, double to, std::string_view color, const char* label) {
+    const double high = std::min(to, area.y_high);
+    if (high <= from) return;
+    svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(from) - area.y(high)},
+                  fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
+    svg.text({area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, label, "end",
+             fmt::format("font-size=\"11\" fill=\"{}\"", color));
+  };
+  band(-zones.too_close_mm, -zones.positive_mm, ink::kTooClose, "too close, if towards the tumour");
+  band(-zones.positive_mm, 1e9, ink::kReached, "failed, if towards the tumour");
+}
+
+void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& boxes, bool is_signed,
+                const ZoneBorders& zones) {
+  if (is_signed) {
+    draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
+  } else {
+    draw_absolute_zones(svg, area, zones);
+  }
+  draw_y_axis(svg, area, round_ticks(area.y_low, area.y_high, 10), is_signed ? "signed error, mm" : "|error|, mm");
+  if (is_signed)
+    svg.line({area.corner.x(), area.y(0.0)}, {area.corner.x() + area.size.x(), area.y(0.0)}, "stroke=\"#555\"");
+  draw_x_axis(svg, area, {}, "");
+  svg.text(area.corner + Vec2(0.0, -10.0), is_signed ? "b) with sign: negative = closer to the tumour" : "a) absolute",
+           "start", "font-weight=\"600\"");
+  const double pitch = area.size.x() / static_cast<double>(boxes.size());
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    std::vector<double> values = boxes[k].signed_error_mm;
+    if (!is_signed) {
+      for (double& value : values) value = std::abs(value);
+    }
+    const double center = area.corner.x() + pitch * (static_cast<double>(k) + 0.5);
+    draw_box(svg, area, center, box_numbers(values), boxes[k].color, std::min(24.0, 0.36 * pitch));
+    svg.text({center, area.corner.y() + area.size.y() + 17.0},
+             shortened(boxes[k].name, static_cast<std::size_t>(pitch / 7.0)), "middle", "font-size=\"11\"");
+  }
+}
+
+/// Errors in the order of the clock, both ends at 12 o'clock.
+std::vector<Vec2> round_the_clock(const ErrorSeries& series) {
+  INCISE_REQUIRE(series.clock_h.size() == series.signed_error_mm.size(),
+                 fmt::format("incision \"{}\": found {} clock positions for {} errors, expected one each", series.name,
+                             series.clock_h.size(), series.signed_error_mm.size()));
+  std::vector<Vec2> curve;
+  for (std::size_t i = 0; i < series.clock_h.size(); ++i) {
+    INCISE_REQUIRE(series.clock_h[i] >= 0.0 && series.clock_h[i] < 12.0, "expected clock positions in [0, 12)");
+    curve.emplace_back(series.clock_h[i], series.signed_error_mm[i]);
+  }
+  std::stable_sort(curve.begin(), curve.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x(); });
+  return curve;
+}
+
+/// Drawn in pieces: where the cut is missing for more than a third of an hour, so is the line.
+void draw_curve(SvgWriter& svg, const PlotArea& area, std::vector<Vec2> curve, const std::string& style) {
+  constexpr double kGapHours = 0.34;
+  const Vec2 first = curve.front();
+  const Vec2 last = curve.back();
+  if (first.x() + 12.0 - last.x() <= kGapHours) {
+    curve.insert(curve.begin(), Vec2(last.x() - 12.0, last.y()));
+    curve.emplace_back(first.x() + 12.0, first.y());
+  }
+  std::vector<Vec2> piece;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    if (i > 0 && curve[i].x() - curve[i - 1].x() > kGapHours) {
+      svg.polyline(piece, false, style);
+      piece.clear();
+    }
+    piece.push_back(area.at(curve[i].x(), curve[i].y()));
+  }
+  svg.polyline(piece, false, style);
+}
+
+}  // namespace
+
+std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
+  require_series(series);
+  const double limit = limit_of(series, zones);
+  const std::vector<Box> boxes = boxes_of(series);
+  const double panel = std::max(250.0, 62.0 * static_cast<double>(boxes.size()));
+  const double width = 70.0 + panel + 80.0 + panel + 16.0;
+  constexpr double kHeight = 400.0;
+  SvgWriter svg(width, kHeight, "Distribution of the errors before and after",
+                "Box plots of the absolute and of the signed error; line: median, diamond: mean, box: quartiles.");
+  svg.rectangle({0.0, 0.0}, {width, kHeight}, "fill=\"#fff\"");
+  for (const bool is_signed : {false, true}) {
+    const PlotArea area{.corner = {is_signed ? 150.0 + panel : 70.0, 36.0},
+                        .size = {panel, 300.0},
+                        .y_low = is_signed ? -limit : 0.0,
+                        .y_high = limit};
+    draw_panel(svg, area, boxes, is_signed, zones);
+  }
+  svg.text({width / 2.0, kHeight - 14.0},
+           "line: median · diamond: mean · box: quartiles · whiskers: 1.5 interquartile ranges", "middle",
+           "font-size=\"11\" fill=\"#555\"");
+  return svg.finish();
+}
+
+std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
+  require_series(series);
+  const double limit = limit_of(series, zones);
+  const PlotArea area{.corner = {70.0, 50.0}, .size = {670.0, 280.0}, .x_high = 12.0, .y_low = -limit, .y_high = limit};
+  SvgWriter svg(760.0, 390.0, "Signed error by clock position",
+                "The error of each point against where it lies on a clock face over the tumour.");
+  svg.rectangle({0.0, 0.0}, {760.0, 390.0}, "fill=\"#fff\"");
+  draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
+  draw_y_axis(svg, area, round_ticks(-limit, limit, 10), "signed error, mm");
+  svg.line(area.at(0.0, 0.0), area.at(12.0, 0.0), "stroke=\"#555\" stroke-width=\"1.2\"");
+  draw_x_axis(svg, area, {}, "clock position, h (12: up in the picture unless set)");
+  for (int hour = 0; hour <= 12; ++hour) {
+    svg.line(area.at(hour, -limit), area.at(hour, -limit) + Vec2(0.0, 5.0), "stroke=\"#555\"");
+    svg.text(area.at(hour, -limit) + Vec2(0.0, 19.0), std::to_string(hour == 0 ? 12 : hour), "middle");
+  }
+  Vec2 legend(70.0, 24.0);
+  std::array<std::size_t, 2> used{};
+  for (const ErrorSeries& one : series) {
+    const auto& shades = one.is_after ? kAfterShades : kBeforeShades;
+    const std::string_view color = shades[used[one.is_after ? 1 : 0]++ % shades.size()];
+    const std::string style = fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}", color,
+                                          one.is_after ? "" : " stroke-dasharray=\"6 3\"");
+    draw_curve(svg, area, round_the_clock(one), style);
+    svg.line(legend, legend + Vec2(22.0, 0.0), style);
+    svg.text(legend + Vec2(28.0, 4.0), one.name);
+    legend.x() += 50.0 + 7.0 * static_cast<double>(one.name.size());
+  }
+  return svg.finish();
+}
+
+}  // namespace incise

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "report/plot.hpp"
+#include "report/svg.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace incise {
+
+/// Shades the errors that leave too little tissue and those that reach the tumour edge, as far as the plot shows them.
+void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm,
+                      const std::string& close_label);
+
+/// A box of a box plot, `2 * half_px` wide.
+void draw_box(SvgWriter& svg, const PlotArea& area, double center_px, const BoxNumbers& box, std::string_view color,
+              double half_px = 24.0);
+
+}  // namespace incise

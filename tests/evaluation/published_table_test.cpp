@@ -1,0 +1,166 @@
+#include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
+#include <incise/evaluation/published_table.hpp>
+#include <incise/evaluation/statistics.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace incise {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+PrintedNumber printed(const char* text) {
+  return printed_number(text).value();
+}
+
+PrintedGroup group(const char* mean, const char* sd, const char* max) {
+  return {.name = "", .mean = printed(mean), .sd = printed(sd), .max = printed(max)};
+}
+
+std::vector<AuditRule> rules_of(const PrintedRow& row, const AuditSettings& settings = {}) {
+  std::vector<AuditRule> rules;
+  const Audit found = audit({row}, settings);
+  for (const Finding& finding : found.rows.at(0).findings) {
+    rules.push_back(finding.rule);
+    EXPECT_FALSE(to_text(finding).empty());
+  }
+  return rules;
+}
+
+std::vector<AuditRule> rules_of(const PrintedGroup& total, const AuditSettings& settings = {}) {
+  return rules_of(PrintedRow{.name = "row", .total = total, .parts = {}, .score_percent = {}}, settings);
+}
+
+TEST(PrintedNumber, KnowsItsLastPlace) {
+  EXPECT_EQ(printed("1.20").value, 1.2);
+  EXPECT_DOUBLE_EQ(printed("1.20").half_unit, 0.005);
+  EXPECT_DOUBLE_EQ(printed("12").half_unit, 0.5);
+  EXPECT_EQ(printed("-0.5").value, -0.5);
+  for (const char* text : {"", "-", "1e3", "nan", "inf", "1.2.3", "1-2", "1,2", " 1", "0x1"}) {
+    EXPECT_FALSE(printed_number(text).has_value()) << text;
+  }
+}
+
+TEST(Audit, PassesWhateverNumbersReallyGive) {
+  // Property: tables made from numbers, printed to one place, never hold an impossible row.
+  Random random(1);
+  std::vector<PrintedRow> rows;
+  for (int k = 0; k < 300; ++k) {
+    const std::size_t n = 2 + random.below(40);
+    std::vector<double> all;
+    PrintedRow row{.name = "made", .total = {}, .parts = {}, .score_percent = {}};
+    const auto print = [&](const std::vector<double>& values) {
+      const Summary summary = summarize(values);
+      const auto rounded = [](double value) { return PrintedNumber{std::round(10.0 * value) / 10.0, 0.05}; };
+      return PrintedGroup{.name = "",
+                          .mean = rounded(summary.mean),
+                          .sd = rounded(summary.sd),
+                          .max = rounded(summary.max),
+                          .min = rounded(summary.min),
+                          .n = values.size()};
+    };
+    for (int part = 0; part < 2; ++part) {
+      std::vector<double> values;
+      const double scale = random.uniform(0.1, 3.0);
+      const double power = random.uniform(0.5, 6.0);  // some pile up at 0 or have far outliers
+      for (std::size_t i = 0; i < n; ++i) values.push_back(scale * std::pow(random.uniform(), power));
+      row.parts.push_back(print(values));
+      all.insert(all.end(), values.begin(), values.end());
+    }
+    row.total = print(all);
+    rows.push_back(std::move(row));
+  }
+  for (const AuditedRow& row : audit(rows).rows) {
+    EXPECT_THAT(row.findings, IsEmpty()) << to_text(row.findings.front());
+  }
+}
+
+TEST(Audit, KnowsThatTheSpreadIsBoundByMeanAndMax) {
+  // Half of many values at 0 and half at 2 have a mean of 1 and an sd of 1; nothing in [0, 2] has more.
+  EXPECT_THAT(rules_of(group("1.00", "1.00", "2.00"), {.n_at_least = 1000}), IsEmpty());
+  EXPECT_THAT(rules_of(group("1.00", "1.02", "2.00"), {.n_at_least = 1000}), ElementsAre(AuditRule::SdTooLarge));
+  EXPECT_THAT(rules_of(group("1.00", "1.02", "2.00"), {.n_at_least = 10}), IsEmpty());  // √(10/9) more
+  PrintedGroup bounded = group("1.00", "0.90", "2.00");
+  bounded.min = printed("0.50");
+  EXPECT_THAT(rules_of(bounded), ElementsAre(AuditRule::SdTooLarge));  // √(10/9 · 1 · 0.5) = 0.75
+}
+
+TEST(Audit, KnowsWhatTheGreatestValueAloneMakes) {
+  PrintedGroup ten = group("0.50", "1.00", "6.00");
+  ten.n = 10;
+  EXPECT_THAT(rules_of(ten), ElementsAre(AuditRule::MeanTooSmall, AuditRule::SdTooSmall));  // 6/10 alone
+  ten.mean = printed("1.00");
+  ten.sd = printed("1.75");  // one at 6, the others at 4/9: sd = 5 √10 / 9 = 1.757
+  EXPECT_THAT(rules_of(ten), IsEmpty());
+  ten.sd = printed("1.70");
+  EXPECT_THAT(rules_of(ten), ElementsAre(AuditRule::SdTooSmall));
+}
+
+TEST(Audit, KnowsTheMeansThatCountsCanHave) {
+  // [BrownHeathers2017]: of 28 whole numbers, 5.18 can be the mean (145/28) and 5.19 cannot.
+  PrintedGroup counts{.name = "", .mean = printed("5.18"), .sd = printed("1.00"), .max = {}, .min = {}, .n = 28};
+  EXPECT_THAT(rules_of(counts, {.grain = 1.0}), IsEmpty());
+  counts.mean = printed("5.19");
+  EXPECT_THAT(rules_of(counts, {.grain = 1.0}), ElementsAre(AuditRule::MeanNotOnGrain));
+  EXPECT_THAT(rules_of(counts), IsEmpty());  // lengths are no counts
+}
+
+TEST(Audit, KnowsTheOrderOfLeastMeanAndMax) {
+  EXPECT_THAT(rules_of(group("1.2", "0.1", "1.0")), ElementsAre(AuditRule::MaxBelowMean));
+  EXPECT_THAT(rules_of(group("1.2", "0.0", "1.1")), IsEmpty());  // 1.15 always, rounded
+  EXPECT_THAT(rules_of(group("-0.2", "0.1", "1.0")), ElementsAre(AuditRule::MeanBelowLeast));
+  EXPECT_THAT(rules_of(group("0.2", "-0.2", "1.0")), ElementsAre(AuditRule::NegativeSd));
+  PrintedGroup high = group("1.0", "0.1", "2.0");
+  high.min = printed("1.2");
+  EXPECT_THAT(rules_of(high), ElementsAre(AuditRule::MinAboveMean));
+}
+
+TEST(Audit, KnowsWhatPoolingCanGive) {
+  PrintedRow row{.name = "pooled", .total = group("0.8", "0.9", "9.0"), .parts = {}, .score_percent = {}};
+  row.parts = {group("0.4", "0.9", "9.0"), group("0.6", "1.0", "9.0")};
+  EXPECT_THAT(rules_of(row), ElementsAre(AuditRule::PooledMeanOutside));
+  row.total = group("0.5", "0.9", "9.0");
+  EXPECT_THAT(rules_of(row), IsEmpty());
+  row.total = group("0.5", "1.3", "9.0");
+  EXPECT_THAT(rules_of(row), ElementsAre(AuditRule::PooledSdTooLarge));
+  row.total = group("0.5", "0.7", "9.0");
+  EXPECT_THAT(rules_of(row), ElementsAre(AuditRule::PooledSdTooSmall));
+  row.parts.pop_back();
+  EXPECT_THAT(rules_of(row), IsEmpty());  // one part: nothing was pooled
+}
+
+TEST(Audit, FindsTheScoreThatFollowsFromNoCommonBaseline) {
+  const auto row = [](const char* mean, const char* max, const char* percent) {
+    return PrintedRow{
+        .name = percent, .total = group(mean, "0.5", max), .parts = {}, .score_percent = printed(percent)};
+  };
+  // Baseline 2 mm: 0.75 · 1 + 0.25 · 2 = 1.25 mm, 62.5 %.
+  const Audit found = audit({row("1.00", "2.00", "62.5"), row("2.00", "4.00", "125.0"), row("1.00", "2.00", "75.0"),
+                             row("1.00", "2.00", "0.0")});
+  EXPECT_EQ(found.impossible_rows, 1U);
+  ASSERT_EQ(found.rows[2].findings.size(), 1U);
+  EXPECT_EQ(found.rows[2].findings[0].rule, AuditRule::ScoreOffBaseline);
+  EXPECT_NEAR(found.rows[2].findings[0].bound, 62.5, 0.6);
+  EXPECT_EQ(found.rows_on_baseline, 2U);
+  EXPECT_EQ(found.scored_rows, 3U);  // 0 % is a failure and says nothing about a baseline
+  EXPECT_LE(found.baseline_mm->low_mm, 2.0);
+  EXPECT_GE(found.baseline_mm->high_mm, 2.0);
+}
+
+TEST(Audit, RefusesSettingsAndNumbersThatAreNone) {
+  EXPECT_THROW(static_cast<void>(audit({}, {.n_at_least = 1})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(audit({}, {.grain = 0.0})), InvalidArgument);
+  PrintedGroup broken = group("1.0", "1.0", "2.0");
+  broken.mean.value = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(static_cast<void>(rules_of(broken)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise

@@ -1,0 +1,103 @@
+#include "report/markup.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/report/comparison_figures.hpp>
+#include <incise/report/svg_png.hpp>
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::nesting_problem;
+using ::testing::Not;
+using ::testing::StartsWith;
+using testing::texts_between;
+
+ErrorSeries series(const char* name, bool is_after, double offset) {
+  ErrorSeries result{.name = name, .is_after = is_after, .signed_error_mm = {}, .clock_h = {}};
+  for (int k = 0; k < 120; ++k) {
+    result.clock_h.push_back(0.1 * k);
+    result.signed_error_mm.push_back(offset + std::cos(0.1 * k));
+  }
+  return result;
+}
+
+const std::vector<ErrorSeries> kFour{series("s1", false, -1.5), series("s2", false, -1.0), series("s3", true, 0.2),
+                                     series("s4", true, 0.0)};
+
+void expect_whole(const std::string& svg) {
+  EXPECT_THAT(svg, StartsWith("<svg xmlns="));
+  EXPECT_EQ(nesting_problem(svg), "");
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+}
+
+TEST(ComparisonBoxPlot, ShowsBothSidesEachSpecimenAndBothZonesInBothPanels) {
+  const std::string svg = comparison_box_plot_svg(kFour);
+  expect_whole(svg);
+  for (const char* text :
+       {"a) absolute", "before", "after", "s1", "s4", "|error|, mm", "signed error, mm", "too close",
+        "tumour edge reached", "too close, if towards the tumour", "failed, if towards the tumour"}) {
+    EXPECT_THAT(svg, HasSubstr(std::string(">") + text + "<"));
+  }
+  // A box for each of 2 sides and 4 incisions in 2 panels, each with its diamond.
+  EXPECT_EQ(texts_between(svg, "<polygon points=\"", "\"").size(), 12U);
+}
+
+TEST(ComparisonBoxPlot, ZonesLieWhereTheirBordersSay) {
+  // The limit is 5 mm: 300 px show 10 mm with sign, so the zones meet 30 px a millimetre below the middle.
+  const std::string svg = comparison_box_plot_svg(kFour);
+  const double middle = 36.0 + 150.0;
+  EXPECT_THAT(svg, HasSubstr("y=\"" + std::to_string(static_cast<int>(middle + 2.3 * 30.0)) + ".00\""));
+  EXPECT_THAT(svg, HasSubstr("y=\"" + std::to_string(static_cast<int>(middle + 4.5 * 30.0)) + ".00\""));
+}
+
+TEST(ErrorByClock, GoesFromTwelveToTwelveAndLeavesGapsOpen) {
+  EXPECT_EQ(texts_between(error_by_clock_svg(kFour), "<polyline", "/>").size(), 4U);
+  ErrorSeries gap = series("gap", true, 0.0);
+  gap.clock_h.erase(gap.clock_h.begin() + 40, gap.clock_h.begin() + 60);
+  gap.signed_error_mm.erase(gap.signed_error_mm.begin() + 40, gap.signed_error_mm.begin() + 60);
+  const std::string svg = error_by_clock_svg({&gap, 1});
+  expect_whole(svg);
+  EXPECT_EQ(texts_between(svg, "<polyline", "/>").size(), 2U);
+  EXPECT_EQ(texts_between(svg, "middle\" >", "<").front(), "12");
+}
+
+TEST(ComparisonFigures, RefuseWhatCannotBeDrawn) {
+  EXPECT_THROW(static_cast<void>(comparison_box_plot_svg({})), InvalidArgument);
+  ErrorSeries broken = series("broken", false, 0.0);
+  broken.signed_error_mm[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(static_cast<void>(comparison_box_plot_svg({&broken, 1})), InvalidArgument);
+  ErrorSeries open = series("open", false, 0.0);
+  open.clock_h.clear();
+  EXPECT_THROW(static_cast<void>(error_by_clock_svg({&open, 1})), InvalidArgument);
+}
+
+/// Big-endian number in a PNG's header.
+int header_number(const std::string& png, std::size_t at) {
+  int value = 0;
+  for (std::size_t k = 0; k < 4; ++k) value = 256 * value + static_cast<unsigned char>(png[at + k]);
+  return value;
+}
+
+TEST(PngOfSvg, HasTheFiguresSizeTimesTheScale) {
+  const std::string svg = error_by_clock_svg(kFour);  // 760 x 390
+  const std::string png = png_of_svg(svg, 1.5);
+  EXPECT_THAT(png, StartsWith("\x89PNG\r\n\x1a\n"));
+  EXPECT_EQ(header_number(png, 16), 1140);
+  EXPECT_EQ(header_number(png, 20), 585);
+  EXPECT_GT(png.size(), 10'000U);  // more than white
+}
+
+TEST(PngOfSvg, RefusesWhatIsNoFigure) {
+  EXPECT_THROW(static_cast<void>(png_of_svg("no figure")), Error);
+  EXPECT_THROW(static_cast<void>(png_of_svg("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"10\"")), Error);
+  EXPECT_THROW(static_cast<void>(png_of_svg(error_by_clock_svg(kFour), 0.0)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise
