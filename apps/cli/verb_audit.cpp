@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Arguments {
+struct AuditArguments {
   std::filesystem::path table;
   AuditSettings settings;
   double grain = 0.0;
@@ -63,7 +63,7 @@ void print_audit(const Audit& audit) {
   }
 }
 
-int run(Arguments arguments, const CommonOptions& options) {
+int run(AuditArguments arguments, const CommonOptions& options) {
   if (arguments.grain > 0.0) arguments.settings.grain = arguments.grain;
   if (const auto violations = validate(arguments.settings); !violations.empty()) {
     throw CaseError("command line", "", violations.front(), "usable settings");
@@ -82,7 +82,7 @@ int run(Arguments arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_audit(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<AuditArguments>();
   CLI::App* verb = application.add_verb("audit", "Tell which rows of a published table cannot be",
                                         "incise audit data/published_tables/table_1.csv",
                                         [arguments](const CommonOptions& options) { return run(*arguments, options); });

@@ -13,7 +13,7 @@
 namespace incise::cli {
 namespace {
 
-struct Arguments {
+struct CompareArguments {
   std::vector<std::filesystem::path> before;
   std::vector<std::filesystem::path> after;
   std::string measure = "absolute";
@@ -27,7 +27,7 @@ std::vector<EvaluationFile> read_all(const std::vector<std::filesystem::path>& p
 }
 
 /// Like is compared with like: the same line of the cut, against the same target, with the same zones.
-void require_alike(const Arguments& arguments, const ComparedFiles& files) {
+void require_alike(const CompareArguments& arguments, const ComparedFiles& files) {
   const EvaluationFile& first = files.before.front();
   const auto check = [&](const std::filesystem::path& path, const EvaluationFile& file) {
     const auto refuse = [&](const char* key, const std::string& found, const std::string& expected) {
@@ -44,7 +44,7 @@ void require_alike(const Arguments& arguments, const ComparedFiles& files) {
 }
 
 /// A file that stands for two specimens would make two of one.
-void require_different(const Arguments& arguments) {
+void require_different(const CompareArguments& arguments) {
   std::set<std::filesystem::path> seen;
   for (const auto* side : {&arguments.before, &arguments.after}) {
     for (const auto& path : *side) {
@@ -56,7 +56,7 @@ void require_different(const Arguments& arguments) {
   }
 }
 
-int run(Arguments arguments, const CommonOptions& options) {
+int run(CompareArguments arguments, const CommonOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   arguments.settings.measure = arguments.measure == "signed" ? ErrorMeasure::Signed : ErrorMeasure::Absolute;
   arguments.settings.bootstrap.seed = options.seed;
@@ -85,7 +85,7 @@ int run(Arguments arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_compare(Application& application) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CompareArguments>();
   CLI::App* verb =
       application.add_verb("compare", "Test whether incisions after a change miss by less than those before it",
                            "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison",

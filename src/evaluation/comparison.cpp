@@ -9,16 +9,16 @@ namespace incise {
 namespace {
 
 /// One side of the comparison in the shapes that the tests ask for.
-struct Side {
+struct ComparedSide {
   std::vector<ContourValues> contours;
   std::vector<double> pooled;
   std::vector<double> means;  ///< by specimen
   double n_effective = 0.0;
 };
 
-Side side_of(std::span<const MeasuredSpecimen> specimens, ErrorMeasure measure, bool is_after,
+ComparedSide side_of(std::span<const MeasuredSpecimen> specimens, ErrorMeasure measure, bool is_after,
              std::vector<SpecimenRow>& rows) {
-  Side side;
+  ComparedSide side;
   for (const MeasuredSpecimen& specimen : specimens) {
     INCISE_REQUIRE(specimen.signed_error_mm.size() >= 3,
                    fmt::format("specimen \"{}\": found errors at {} points, expected at least 3", specimen.name,
@@ -40,7 +40,7 @@ Side side_of(std::span<const MeasuredSpecimen> specimens, ErrorMeasure measure, 
   return side;
 }
 
-PooledTests pooled_tests(const Side& before, const Side& after, const ComparisonSettings& settings) {
+PooledTests pooled_tests(const ComparedSide& before, const ComparedSide& after, const ComparisonSettings& settings) {
   const double level = 1.0 - settings.alpha;
   PooledTests tests{.before = moments_of(before.pooled), .after = moments_of(after.pooled)};
   tests.student = student_t_test(tests.before, tests.after, level);
@@ -54,7 +54,7 @@ PooledTests pooled_tests(const Side& before, const Side& after, const Comparison
   return tests;
 }
 
-SpecimenTests specimen_tests(const Side& before, const Side& after, const ComparisonSettings& settings) {
+SpecimenTests specimen_tests(const ComparedSide& before, const ComparedSide& after, const ComparisonSettings& settings) {
   const double level = 1.0 - settings.alpha;
   SpecimenTests tests{.before = moments_of(before.means), .after = moments_of(after.means)};
   tests.student = student_t_test(tests.before, tests.after, level);
@@ -96,8 +96,8 @@ Comparison compare(std::span<const MeasuredSpecimen> before, std::span<const Mea
   INCISE_REQUIRE(!settings.is_paired || before.size() == after.size(),
                  fmt::format("found {} specimens before and {} after, expected pairs", before.size(), after.size()));
   Comparison comparison;
-  const Side first = side_of(before, settings.measure, false, comparison.rows);
-  const Side second = side_of(after, settings.measure, true, comparison.rows);
+  const ComparedSide first = side_of(before, settings.measure, false, comparison.rows);
+  const ComparedSide second = side_of(after, settings.measure, true, comparison.rows);
   comparison.points = pooled_tests(first, second, settings);
   comparison.specimens = specimen_tests(first, second, settings);
   return comparison;

@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kHint = "Write the file with `incise evaluate … -o FILE.json`";
+constexpr const char* kEvaluationHint = "Write the file with `incise evaluate … -o FILE.json`";
 
 /// A file, and where in it one is.
 struct Place {
@@ -21,7 +21,7 @@ struct Place {
   std::string prefix;
 
   [[noreturn]] void refuse(const std::string& key, const std::string& found, const std::string& expected) const {
-    throw DataError(path, prefix + key, found, expected, kHint);
+    throw DataError(path, prefix + key, found, expected, kEvaluationHint);
   }
   [[nodiscard]] const Json& at(const std::string& key, const char* expected) const {
     const auto found = object.find(key);
@@ -116,7 +116,7 @@ Json points_json(const Evaluation& evaluation) {
 
 EvaluationFile read_evaluation_file(const std::filesystem::path& path) {
   const Json json = read_json(path);
-  if (!json.is_object()) throw DataError(path, "", "no object", "the result of an evaluation", kHint);
+  if (!json.is_object()) throw DataError(path, "", "no object", "the result of an evaluation", kEvaluationHint);
   const Place file{path, json, ""};
   EvaluationFile result;
   result.specimen.name = path.stem().string();

@@ -84,7 +84,7 @@ Columns columns_of(const TextTable& table, const std::filesystem::path& path) {
 }
 
 /// One row of the file, where errors can say so.
-struct Row {
+struct TableRow {
   const std::filesystem::path& path;
   const TextTable& table;
   std::size_t index;
@@ -102,7 +102,7 @@ struct Row {
   }
 };
 
-std::optional<PrintedGroup> group_of(const Row& row, const std::string& part,
+std::optional<PrintedGroup> group_of(const TableRow& row, const std::string& part,
                                      const std::map<std::string, std::size_t>& places) {
   std::map<std::string, std::optional<PrintedNumber>> cells;
   for (const auto& [quantity, column] : places) cells[quantity] = row.number(column);
@@ -126,7 +126,7 @@ std::vector<PrintedRow> read_published_table(const std::filesystem::path& path) 
   if (table.rows.empty()) throw DataError(path, "", "a header without rows", "at least one row");
   std::vector<PrintedRow> rows;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
-    const Row row{path, table, i};
+    const TableRow row{path, table, i};
     PrintedRow printed;
     for (const std::size_t column : columns.names) {
       printed.name += (printed.name.empty() ? "" : ", ") + table.header[column] + " " + table.rows[i][column];

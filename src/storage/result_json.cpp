@@ -13,11 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json zone_json(const std::optional<ErrorZone>& zone) {
   if (!zone) return nullptr;
   return {{"at_or_below_mm", zone->at_or_below_mm}, {"points", zone->points}, {"fraction", zone->fraction}};
