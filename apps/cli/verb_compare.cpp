@@ -1,4 +1,5 @@
 #include "comparison_output.hpp"
+#include "comparison_tables.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -56,6 +57,30 @@ void require_different(const CompareArguments& arguments) {
   }
 }
 
+/// For a person: the two means and the tests, one a line.
+void print_tests(const nlohmann::ordered_json& json) {
+  const auto mean = [&](const char* key) {
+    return json[key].is_number() ? fmt::format("{:.3f} mm", json[key].get<double>()) : std::string("-");
+  };
+  fmt::print("mean {} error by point: before {}, after {}\n\n", json["measure"].get<std::string>(),
+             mean("mean_before_mm"), mean("mean_after_mm"));
+  const TextTable tests = test_table(json);
+  constexpr const char* kLine = "{:<36} {:>8} {:>9} {:>8} {:>14} {:>24}  {}\n";
+  const auto print = [&](const std::vector<std::string>& r) {
+    fmt::print(kLine, r[0], r[1], r[2], r[3], r[4], r[5], r[6]);
+  };
+  print(tests.header);
+  for (const auto& row : tests.rows) print(row);
+  for (const auto& left_out : json["left_out"]) {
+    fmt::print("left out, no incision was found: {}\n", left_out["name"].get<std::string>());
+  }
+  if (const auto& specimens = json["specimens"]; specimens.is_object() && specimens["fewest_specimens"].is_number()) {
+    fmt::print("\nspecimens in each group (or pairs) that would show this effect: {}\n",
+               specimens["fewest_specimens"].get<long>());
+  }
+  fmt::print("every figure: --json, or compare.json in the folder that -o names\n");
+}
+
 int run(CompareArguments arguments, const CommonOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   arguments.settings.measure = arguments.measure == "signed" ? ErrorMeasure::Signed : ErrorMeasure::Absolute;
@@ -78,7 +103,11 @@ int run(CompareArguments arguments, const CommonOptions& options) {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
     write_comparison(options.output, output, inputs, options.context(), wall.count());
   }
-  print_result(options, output.json);
+  if (options.json) {
+    print_result(options, output.json);
+  } else {
+    print_tests(output.json);
+  }
   return kDone;
 }
 

@@ -124,9 +124,11 @@ void draw_curve(SvgWriter& svg, const PlotArea& area, std::vector<Vec2> curve, c
   constexpr double kGapHours = 0.34;
   const Vec2 first = curve.front();
   const Vec2 last = curve.back();
-  if (first.x() + 12.0 - last.x() <= kGapHours) {
-    curve.insert(curve.begin(), Vec2(last.x() - 12.0, last.y()));
-    curve.emplace_back(first.x() + 12.0, first.y());
+  const double seam = first.x() + 12.0 - last.x();
+  if (seam <= kGapHours) {
+    const double at_twelve = last.y() + (12.0 - last.x()) / seam * (first.y() - last.y());
+    curve.insert(curve.begin(), Vec2(0.0, at_twelve));
+    curve.emplace_back(12.0, at_twelve);
   }
   std::vector<Vec2> piece;
   for (std::size_t i = 0; i < curve.size(); ++i) {
@@ -167,10 +169,10 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
 std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
   require_series(series);
   const double limit = limit_of(series, zones);
-  const PlotArea area{.corner = {70.0, 50.0}, .size = {670.0, 280.0}, .x_high = 12.0, .y_low = -limit, .y_high = limit};
-  SvgWriter svg(760.0, 390.0, "Signed error by clock position",
+  const PlotArea area{.corner = {70.0, 50.0}, .size = {670.0, 310.0}, .x_high = 12.0, .y_low = -limit, .y_high = limit};
+  SvgWriter svg(760.0, 420.0, "Signed error by clock position",
                 "The error of each point against where it lies on a clock face over the tumour.");
-  svg.rectangle({0.0, 0.0}, {760.0, 390.0}, "fill=\"#fff\"");
+  svg.rectangle({0.0, 0.0}, {760.0, 420.0}, "fill=\"#fff\"");
   draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
   draw_y_axis(svg, area, round_ticks(-limit, limit, 10), "signed error, mm");
   svg.line(area.at(0.0, 0.0), area.at(12.0, 0.0), "stroke=\"#555\" stroke-width=\"1.2\"");
@@ -191,6 +193,7 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBo
     svg.text(legend + Vec2(28.0, 4.0), one.name);
     legend.x() += 50.0 + 7.0 * static_cast<double>(one.name.size());
   }
+  svg.text({740.0, 28.0}, "dashed: before · full: after", "end", "font-size=\"11\" fill=\"#555\"");
   return svg.finish();
 }
 
