@@ -15,30 +15,32 @@
 namespace incise {
 namespace {
 
-constexpr int kRenewalSteps = 20;              // what a workspace carries over, the coarse matrix of the preconditioner, may be this stale
+constexpr int kRenewalSteps =
+    20;  // what a workspace carries over, the coarse matrix of the preconditioner, may be this stale
 constexpr int kVerticesPerAggregate = 140;
-constexpr double kForceFloorMn = 5.0;          // scale of the stopping test when hardly anything is held
-constexpr double kLeastShare = 0.02;           // of a touched tet's volume that the tool holds: a corner is still held
-constexpr double kFragmentShare = 0.01;        // of the body's volume at rest: smaller loose parts are cut away with the kerf
-constexpr int kIntervalsPerStep = 4;           // after each of which the distance to the tool is looked at within a step
-constexpr double kLeastDecrease = 1e-4;       // of the energy on the way to rest, as a share of what the slope promises (Armijo)
-constexpr int kMaxHalvings = 12;               // of such a step
-constexpr double kFullDose = 1.0 - 1e-9;       // a dose is a sum over steps: what rounding may leave it short of 1
+constexpr double kForceFloorMn = 5.0;    // scale of the stopping test when hardly anything is held
+constexpr double kLeastShare = 0.02;     // of a touched tet's volume that the tool holds: a corner is still held
+constexpr double kFragmentShare = 0.01;  // of the body's volume at rest: smaller loose parts are cut away with the kerf
+constexpr int kIntervalsPerStep = 4;     // after each of which the distance to the tool is looked at within a step
+constexpr double kLeastDecrease =
+    1e-4;                         // of the energy on the way to rest, as a share of what the slope promises (Armijo)
+constexpr int kMaxHalvings = 12;  // of such a step
+constexpr double kFullDose = 1.0 - 1e-9;  // a dose is a sum over steps: what rounding may leave it short of 1
 
 }  // namespace
 
 struct CutWorkspace::Data {
   std::vector<std::array<std::int32_t, 4>> neighbours;
-  std::vector<std::uint8_t> is_anchored;   // vertices that a constraint holds
+  std::vector<std::uint8_t> is_anchored;  // vertices that a constraint holds
   StepStiffness stiffness;
   TwoLevelPcg solver;
   Points right_side;
   Points increment;
   Points before;
-  double body_volume_mm3 = 0.0;            // at rest, uncut
-  int next_step = -1;                      // the one that may build on what is kept here
-  std::vector<std::uint8_t> is_orphan;     // vertices without a live tet: nothing holds them, so they stay where they are
-  std::size_t carved_then = 0;             // tets carved when that was found
+  double body_volume_mm3 = 0.0;         // at rest, uncut
+  int next_step = -1;                   // the one that may build on what is kept here
+  std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they stay where they are
+  std::size_t carved_then = 0;          // tets carved when that was found
 
   Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
       : neighbours(face_neighbours(model.mesh)),
@@ -69,13 +71,18 @@ CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPo
   return state;
 }
 
-bool is_renewal_step(const CutState& state) { return state.step % kRenewalSteps == 0; }
+bool is_renewal_step(const CutState& state) {
+  return state.step % kRenewalSteps == 0;
+}
 
 std::string_view to_string(RemovalCause cause) {
   switch (cause) {
-    case RemovalCause::Dwell: return "dwell";
-    case RemovalCause::LooseFragment: return "loose_fragment";
-    case RemovalCause::Tear: return "tear";
+    case RemovalCause::Dwell:
+      return "dwell";
+    case RemovalCause::LooseFragment:
+      return "loose_fragment";
+    case RemovalCause::Tear:
+      return "tear";
   }
   return "unknown";
 }
@@ -83,9 +90,13 @@ std::string_view to_string(RemovalCause cause) {
 namespace {
 
 /// The contact criterion: a tet is touched while its distance from the tool's core is at most this, mm.
-double touching_distance_mm(const Tool& tool, const CutSettings& settings) { return radius_mm(tool) + settings.reach_mm; }
+double touching_distance_mm(const Tool& tool, const CutSettings& settings) {
+  return radius_mm(tool) + settings.reach_mm;
+}
 
-Vec3 centroid(const std::array<Vec3, 4>& corners) { return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]); }
+Vec3 centroid(const std::array<Vec3, 4>& corners) {
+  return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+}
 
 /// Root mean square of the edges.
 double mean_edge_mm(const std::array<Vec3, 4>& corners) {
@@ -110,13 +121,14 @@ double norm_of_sums(std::vector<std::pair<VertexId, Vec3>> pulls) {
   return std::sqrt(squared);
 }
 
-/// Adds the pull of the tool on bonded tets and its exact (constant) tangent. The tool pulls from where it stood when contact was last looked
-/// at: what it holds and where it holds it belong to one moment. From `next` it would pull tissue that it has let go on the way there, and
-/// the drag would grow with the step (docs/models/cutting.md).
-/// The share of a tet that is held is that of the last pose, so the pull is linear in the step.
-/// @returns the stiffness of each bond, mN/mm, in their order; `scale` receives the norm of the pulls over all vertices, mN.
-std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Tool& tool, const CutState& state,
-                              std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
+/// Adds the pull of the tool on bonded tets and its exact (constant) tangent. The tool pulls from where it stood when
+/// contact was last looked at: what it holds and where it holds it belong to one moment. From `next` it would pull
+/// tissue that it has let go on the way there, and the drag would grow with the step (docs/models/cutting.md). The
+/// share of a tet that is held is that of the last pose, so the pull is linear in the step.
+/// @returns the stiffness of each bond, mN/mm, in their order; `scale` receives the norm of the pulls over all
+/// vertices, mN.
+std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Tool& tool,
+                              const CutState& state, std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
   std::vector<double> stiffnesses;
   std::vector<std::pair<VertexId, Vec3>> pulls;  // on vertices, one entry per tet that shares the vertex
   const double limit = touching_distance_mm(tool, settings);
@@ -126,8 +138,9 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
     const auto corners = corners_of(model.mesh, state.tissue.positions, bond.tet.index());
     const double share = share_within(corners, core, limit);
     const double edge_mm = mean_edge_mm(corners_of(model.mesh, model.mesh.vertices, bond.tet.index()));
-    const double stiffness = resolved_bond_stiffness(settings.bond_stiffness_kpa_mm2, model.lame[bond.tet.index()].mu_kpa, edge_mm) *
-                             model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
+    const double stiffness =
+        resolved_bond_stiffness(settings.bond_stiffness_kpa_mm2, model.lame[bond.tet.index()].mu_kpa, edge_mm) *
+        model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
     const Vec3 pull = -stiffness * (held * (centroid(corners) - state.tool.tip_mm - bond.offset_mm));
     stiffnesses.push_back(stiffness);
     const Mat3 block = stiffness / 16.0 * held;
@@ -159,7 +172,8 @@ void slip(const TissueModel& model, const Tool& tool, double slip_mm, CutState& 
 }
 
 /// What the held tissue, where it came to lie, does to the tool: force, mN, and torque about the tip, mN mm.
-/// @returns for each bond the work that the tool did on its tet in this step per rest volume, kPa, from that pull and the way to
+/// @returns for each bond the work that the tool did on its tet in this step per rest volume, kPa, from that pull and
+/// the way to
 ///          `next` of the place of the tool that holds it; 0 where the tet did work on the tool.
 std::vector<double> load_tool(const TissueModel& model, const CutState& state, const Tool& tool, const ToolPose& next,
                               std::span<const double> stiffnesses, CutStepReport& report) {
@@ -178,12 +192,24 @@ std::vector<double> load_tool(const TissueModel& model, const CutState& state, c
   return works_kpa;
 }
 
-void find_orphans(const TissueModel& model, const TissueState& tissue, std::vector<std::uint8_t>& is_orphan) {
-  is_orphan.assign(model.mesh.vertices.size(), 1);
-  for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
-    if (tissue.is_live[tet] == 0) continue;
-    for (const VertexId v : model.mesh.tets[tet]) is_orphan[v.index()] = 0;
+/// Of the vertices of tets that were carved since it was asked last; at first of all.
+void find_orphans(const TissueModel& model, const CutState& state, CutWorkspace::Data& scratch) {
+  const auto has_live_tet = [&](std::size_t v) {
+    const auto begin = model.vertex_tets.begin() + model.vertex_tet_start[v];
+    const auto end = model.vertex_tets.begin() + model.vertex_tet_start[v + 1];
+    return std::any_of(
+        begin, end, [&](std::int32_t place) { return state.tissue.is_live[static_cast<std::size_t>(place / 4)] != 0; });
+  };
+  if (scratch.is_orphan.empty()) {
+    scratch.is_orphan.resize(model.mesh.vertices.size());
+    for (std::size_t v = 0; v < scratch.is_orphan.size(); ++v) scratch.is_orphan[v] = has_live_tet(v) ? 0 : 1;
+  } else {
+    for (std::size_t i = scratch.carved_then; i < state.record.removals.size(); ++i) {
+      for (const VertexId v : model.mesh.tets[state.record.removals[i].tet.index()])
+        scratch.is_orphan[v.index()] = has_live_tet(v.index()) ? 0 : 1;
+    }
   }
+  scratch.carved_then = state.record.removals.size();
 }
 
 /// What the tissue strives to lower once the tool is out, µJ.
@@ -193,9 +219,12 @@ double potential_energy_uj(const TissueModel& model, const TissueState& tissue) 
   return elastic_energy_uj(model, tissue) + support_energy_uj(model, tissue) - work_uj;
 }
 
-/// Halves a step towards rest until it lowers the energy; crushed tets would throw each other about for ever without it.
-/// @param pull_mn  what is out of balance where the step begins. @returns the share of the step that is taken; 0: none lowers the energy.
-double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_mn, std::span<const Vec3> increment, TissueState& tissue) {
+/// Halves a step towards rest until it lowers the energy; crushed tets would throw each other about for ever without
+/// it.
+/// @param pull_mn  what is out of balance where the step begins. @returns the share of the step that is taken; 0: none
+/// lowers the energy.
+double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_mn, std::span<const Vec3> increment,
+                           TissueState& tissue) {
   const std::vector<Vec3> start = tissue.positions;
   const double before_uj = potential_energy_uj(model, tissue);
   double promised_uj = 0.0;
@@ -209,16 +238,17 @@ double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_
   return 0.0;
 }
 
-/// Moves the tissue by one linearised quasi-static step. The mass term is far below the stiffness and only steadies loose bits.
+/// Moves the tissue by one linearised quasi-static step. The mass term is far below the stiffness and only steadies
+/// loose bits.
 /// @returns the stiffness of each bond, mN/mm, in their order.
-std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
-                                CutWorkspace::Data& scratch, const std::optional<ToolPose>& next, double step_s, Workers& workers,
-                                CutStepReport& report) {
+std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool,
+                                CutState& state, CutWorkspace::Data& scratch, const std::optional<ToolPose>& next,
+                                double step_s, Workers& workers, CutStepReport& report) {
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
-  // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension overshoots by more than it
-  // was off and swings for ever.
+  // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension
+  // overshoots by more than it was off and swings for ever.
   const Tangent tangent = next ? Tangent::FrozenRotations : Tangent::Projected;
   scratch.stiffness.begin(model, state.tissue, step_s, is_fresh, tangent, scratch.right_side, workers);
   double bond_scale = 0.0;
@@ -227,10 +257,7 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
     for (const Bond& bond : state.bonds) scratch.stiffness.lend(model, bond.tet);
     stiffnesses = add_bonds(model, settings, tool, state, scratch.right_side, scratch.stiffness.matrix(), bond_scale);
   }
-  if (is_fresh || state.record.removals.size() != scratch.carved_then) {
-    find_orphans(model, state.tissue, scratch.is_orphan);
-    scratch.carved_then = state.record.removals.size();
-  }
+  find_orphans(model, state, scratch);
   scratch.stiffness.hold(model, scratch.right_side, scratch.is_orphan, workers);
   scratch.solver.update(scratch.stiffness.matrix(), is_fresh, workers, scratch.stiffness.changed_rows());
   PcgSettings pcg;
@@ -263,10 +290,11 @@ struct Contact {
   Vec3 offset_mm = Vec3::Zero();  ///< of its centroid from the tool's tip where contact began
 };
 
-/// Follows the contact of the candidates with the tool through the step; `cores` are the tool's at evenly spaced moments.
-std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, const CutState& state, std::span<const Vec3> before,
-                                   const ToolPose& next, std::span<const ToolCore> cores, double limit_mm,
-                                   std::span<const TetId> candidates, Workers& workers) {
+/// Follows the contact of the candidates with the tool through the step; `cores` are the tool's at evenly spaced
+/// moments.
+std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, const CutState& state,
+                                   std::span<const Vec3> before, const ToolPose& next, std::span<const ToolCore> cores,
+                                   double limit_mm, std::span<const TetId> candidates, Workers& workers) {
   std::vector<Contact> contacts(candidates.size());
   workers.for_each(candidates.size(), 64, [&](std::size_t c) {
     const std::size_t tet = candidates[c].index();
@@ -281,20 +309,23 @@ std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, c
     for (std::size_t m = 0; m < distances.size(); ++m) {
       distances[m] = distance_to_core(at(static_cast<double>(m) / kIntervalsPerStep), cores[m]);
     }
-    const auto distance = [&](double t) { return distance_to_core(at(t), ToolCore(tool, between(state.tool, next, t))); };
+    const auto distance = [&](double t) {
+      return distance_to_core(at(t), ToolCore(tool, between(state.tool, next, t)));
+    };
     Contact& contact = contacts[c];
     contact.interval = contact_interval(distances, distance, limit_mm);
-    contact.offset_mm =
-        centroid(at(contact.interval.first)) - between(state.tool, next, contact.interval.first).tip_mm;
+    contact.offset_mm = centroid(at(contact.interval.first)) - between(state.tool, next, contact.interval.first).tip_mm;
   });
   return contacts;
 }
 
-/// Follows the contact of the tissue with the tool through the step: adds to the dose of what is touched, makes bonds where contact begins
-/// and drops them where it ends. @param works_kpa  per bond: the tool's work in this step per rest volume.
-void follow_contact(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
-                    std::span<const Vec3> before, const ToolPose& next, double step_s, std::span<const double> works_kpa,
-                    Workers& workers, CutStepReport& report) {
+/// Follows the contact of the tissue with the tool through the step: adds to the dose of what is touched, makes bonds
+/// where contact begins and drops them where it ends. @param works_kpa  per bond: the tool's work in this step per rest
+/// volume.
+/// @returns the tets whose dose is full now, ascending.
+std::vector<TetId> follow_contact(const TissueModel& model, const CutSettings& settings, const Tool& tool,
+                                  CutState& state, std::span<const Vec3> before, const ToolPose& next, double step_s,
+                                  std::span<const double> works_kpa, Workers& workers, CutStepReport& report) {
   const double limit = touching_distance_mm(tool, settings);
   std::vector<ToolCore> cores;
   for (int m = 0; m <= kIntervalsPerStep; ++m) {
@@ -302,9 +333,11 @@ void follow_contact(const TissueModel& model, const CutSettings& settings, const
   }
   const std::vector<TetId> candidates =
       contact_candidates(model, state.tissue.is_live, before, state.tissue.positions, cores, limit, workers);
-  const std::vector<Contact> contacts = find_contacts(model, tool, state, before, next, cores, limit, candidates, workers);
+  const std::vector<Contact> contacts =
+      find_contacts(model, tool, state, before, next, cores, limit, candidates, workers);
 
   const double dwell_rate = settings.dwell_rate_per_s();
+  std::vector<TetId> due;
   std::vector<Bond> bonds;
   auto held = state.bonds.begin();
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -323,10 +356,12 @@ void follow_contact(const TissueModel& model, const CutSettings& settings, const
       state.tear_dose[tet] += torn;
       state.dose[tet] += contact.interval.fraction * step_s * dwell_rate / toughness + torn;
       ++report.tets_in_contact;
+      if (state.dose[tet] >= kFullDose) due.push_back(candidates[c]);
     }
     if (contact.interval.at_end) bonds.push_back(was_held ? *held : Bond{candidates[c], contact.offset_mm});
   }
   state.bonds = std::move(bonds);
+  return due;
 }
 
 void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause cause) {
@@ -336,8 +371,10 @@ void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause c
                                    model.volumes_mm3[tet.index()]});
 }
 
-/// Removes tets (live, ascending), then what is left hanging by no face. @returns how many fragments' tets went with them.
-std::size_t carve(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch, const std::vector<TetId>& due) {
+/// Removes tets (live, ascending), then what is left hanging by no face. @returns how many fragments' tets went with
+/// them.
+std::size_t carve(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch,
+                  const std::vector<TetId>& due) {
   if (due.empty()) return 0;
   for (const TetId tet : due) {
     const bool is_torn = state.tear_dose[tet.index()] > 0.5 * state.dose[tet.index()];
@@ -351,18 +388,10 @@ std::size_t carve(const TissueModel& model, CutState& state, const CutWorkspace:
   return loose.size();
 }
 
-/// The live tets whose dose is full.
-std::vector<TetId> fully_dosed(const CutState& state) {
-  std::vector<TetId> due;
-  for (std::size_t tet = 0; tet < state.dose.size(); ++tet) {
-    if (state.tissue.is_live[tet] != 0 && state.dose[tet] >= kFullDose) due.emplace_back(tet);
-  }
-  return due;
-}
-
 }  // namespace
 
-std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace, std::span<const TetId> tets) {
+std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace,
+                        std::span<const TetId> tets) {
   std::vector<TetId> due;
   for (const TetId tet : tets) {
     INCISE_REQUIRE(tet.is_valid() && tet.index() < model.mesh.tets.size(),
@@ -381,7 +410,8 @@ CutStepReport advance(const TissueModel& model, const CutSettings& settings, con
   CutStepReport report;
   scratch.before = state.tissue.positions;
   if (!next) state.bonds.clear();
-  const std::vector<double> stiffnesses = move_tissue(model, settings, tool, state, scratch, next, step_s, workers, report);
+  const std::vector<double> stiffnesses =
+      move_tissue(model, settings, tool, state, scratch, next, step_s, workers, report);
   state.time_s += step_s;
   ++state.step;
   if (!next || !report.is_finite) return report;
@@ -390,9 +420,9 @@ CutStepReport advance(const TissueModel& model, const CutSettings& settings, con
   // What the tool holds turns with it.
   const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, *next);
   for (Bond& bond : state.bonds) bond.offset_mm = turn * bond.offset_mm;
-  follow_contact(model, settings, tool, state, scratch.before, *next, step_s, works_kpa, workers, report);
+  const std::vector<TetId> due =
+      follow_contact(model, settings, tool, state, scratch.before, *next, step_s, works_kpa, workers, report);
   state.tool = *next;
-  const std::vector<TetId> due = fully_dosed(state);
   report.loose_removed = carve(model, state, scratch, due);
   report.removed = due.size();
   return report;

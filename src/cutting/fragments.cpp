@@ -1,7 +1,6 @@
 #include "fragments.hpp"
 
 #include <algorithm>
-#include <unordered_map>
 
 namespace incise {
 
@@ -21,9 +20,8 @@ std::vector<std::array<std::int32_t, 4>> face_neighbours(const TetMesh& mesh) {
       faces.push_back({key, static_cast<std::int32_t>(tet), face});
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
-    return a.key != b.key ? a.key < b.key : a.tet < b.tet;
-  });
+  std::sort(faces.begin(), faces.end(),
+            [](const Face& a, const Face& b) { return a.key != b.key ? a.key < b.key : a.tet < b.tet; });
   std::vector<std::array<std::int32_t, 4>> neighbours(mesh.tets.size(), {-1, -1, -1, -1});
   for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
     const Face& a = faces[i];
@@ -40,14 +38,15 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
                                    std::span<const std::uint8_t> is_live, std::span<const std::uint8_t> is_anchored,
                                    std::span<const TetId> removed, double least_mm3) {
   enum class Part : std::uint8_t { Unknown, Visited, Held };
-  std::unordered_map<std::int32_t, Part> parts;
+  std::vector<Part> parts(is_live.size(), Part::Unknown);
   std::vector<std::int32_t> part;
   std::vector<TetId> loose;
 
-  // A part that became loose touches what was removed. The search in it ends as soon as it is known to be large or held.
+  // A part that became loose touches what was removed. The search in it ends as soon as it is known to be large or
+  // held.
   const auto search = [&](std::int32_t seed) {
     part.assign(1, seed);
-    parts[seed] = Part::Visited;
+    parts[static_cast<std::size_t>(seed)] = Part::Visited;
     double volume = 0.0;
     bool is_held = false;
     for (std::size_t next = 0; next < part.size() && !is_held; ++next) {
@@ -57,7 +56,7 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
       for (const VertexId v : mesh.tets[tet]) is_held = is_held || is_anchored[v.index()] != 0;
       for (const std::int32_t neighbour : neighbours[tet]) {
         if (neighbour < 0 || is_live[static_cast<std::size_t>(neighbour)] == 0) continue;
-        Part& known = parts[neighbour];
+        Part& known = parts[static_cast<std::size_t>(neighbour)];
         is_held = is_held || known == Part::Held;
         if (known != Part::Unknown) continue;
         known = Part::Visited;
@@ -65,13 +64,15 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
       }
     }
     for (const std::int32_t tet : part) {
-      parts[tet] = Part::Held;  // of a loose part, too: it is dealt with
+      parts[static_cast<std::size_t>(tet)] = Part::Held;  // of a loose part, too: it is dealt with
       if (!is_held) loose.emplace_back(static_cast<std::size_t>(tet));
     }
   };
   for (const TetId gone : removed) {
     for (const std::int32_t seed : neighbours[gone.index()]) {
-      if (seed >= 0 && is_live[static_cast<std::size_t>(seed)] != 0 && parts[seed] == Part::Unknown) search(seed);
+      if (seed >= 0 && is_live[static_cast<std::size_t>(seed)] != 0 &&
+          parts[static_cast<std::size_t>(seed)] == Part::Unknown)
+        search(seed);
     }
   }
   std::sort(loose.begin(), loose.end());

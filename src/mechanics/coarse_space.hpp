@@ -15,7 +15,7 @@ namespace incise {
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 
 /// Rows of the dense coarse inverse that one thread takes at a time.
-inline constexpr std::size_t kCoarseRowsPerChunk = 192;
+inline constexpr std::size_t kCoarseRowsPerChunk = 256;
 
 /// Rigid motions of groups of vertices: u_v = t + ω × arm_v for each vertex of an aggregate, without the axes that are
 /// held. The second level of the preconditioner: C = T (Tᵀ Pᵀ A P T)⁻¹ Tᵀ, where T drops the motions that an aggregate

@@ -10,7 +10,7 @@
 namespace incise {
 
 /// Aggregates that one thread takes at a time in a sweep of conjugate gradients.
-inline constexpr std::size_t kAggregatesPerChunk = 4;
+inline constexpr std::size_t kAggregatesPerChunk = 2;
 
 /// Sums of the chunks, added in their order: the same bits at any thread count.
 inline double sum_of(const std::vector<double>& of_chunks) {

@@ -5,17 +5,29 @@
 #include "mechanics/pcg_iteration.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace incise {
 namespace {
 
-constexpr std::size_t kLoadBeyondEnd = 4;
+constexpr std::uint8_t kRowChanged = 1;
+constexpr std::uint8_t kScaleChanged = 2;
+
+/// The power of two at or above the root; 1 for a row of zeros.
+float scale_for(double largest_on_diagonal) {
+  if (!(largest_on_diagonal > 0.0)) return 1.0F;
+  int exponent = 0;
+  const double fraction = std::frexp(std::sqrt(largest_on_diagonal), &exponent);  // in [1/2, 1)
+  return std::ldexp(1.0F, fraction == 0.5 ? exponent - 1 : exponent);
+}
 
 }  // namespace
 
 SinglePcg::SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSpace& coarse)
-    : pattern_(std::move(pattern)), vertex_(coarse.aggregates().vertices), start_(coarse.aggregates().start),
+    : pattern_(std::move(pattern)),
+      vertex_(coarse.aggregates().vertices),
+      start_(coarse.aggregates().start),
       is_coarse_dense_(coarse.is_dense()) {
   const std::size_t count = pattern_->rows();
   std::vector<std::int32_t> own(count);
@@ -36,9 +48,13 @@ SinglePcg::SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSp
     }
     row_start_.push_back(static_cast<std::int32_t>(column_.size()));
   }
-  values_ = zeros_in_large_pages<float>(9 * column_.size() + kLoadBeyondEnd);
+  values_ = zeros_in_large_pages<std::int16_t>(9 * column_.size() + kBeyondBlocks);
+  scale_.assign(count, 0.0F);
+  is_stale_.assign(count, 1);
+  left_.assign(9 * count + kBeyondBlocks, 0.0F);
   inverse_diagonal_.assign(12 * count, 0.0F);
-  for (std::vector<float>* vector : {&arm_, &is_free_, &x_, &r_, &z_, &p_, &q_}) vector->assign(4 * count, 0.0F);
+  for (std::vector<float>* vector : {&arm_, &is_free_, &x_, &r_, &z_, &p_, &q_, &scaled_p_})
+    vector->assign(4 * count, 0.0F);
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3& arm = coarse.arm(static_cast<std::size_t>(vertex_[i]));
     for (std::size_t k = 0; k < 3; ++k) arm_[4 * i + k] = static_cast<float>(arm[static_cast<int>(k)]);
@@ -55,24 +71,72 @@ void SinglePcg::for_aggregates(Workers& workers, const Body& body) const {
   workers.for_chunks(start_.size() - 1, kAggregatesPerChunk, body);
 }
 
-void SinglePcg::update(const BlockMatrix& matrix, std::span<const Mat3> inverse_diagonal, const CoarseSpace& coarse,
-                       bool has_new_coarse, std::span<const std::uint8_t> changed_rows, Workers& workers) {
+/// The scales of the rows that changed, and which rows have to be rounded anew: those, and all that share a block with
+/// one whose scale changed.
+void SinglePcg::rescale(const BlockMatrix& matrix, std::span<const std::uint8_t> changed_rows, Workers& workers) {
+  std::fill(is_stale_.begin(), is_stale_.end(), std::uint8_t{0});
+  std::atomic<bool> has_new_scale = false;
   for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (auto i = static_cast<std::size_t>(start_[begin]); i < static_cast<std::size_t>(start_[end]); ++i) {
       const auto v = static_cast<std::size_t>(vertex_[i]);
       if (!changed_rows.empty() && changed_rows[v] == 0) continue;
-      float* to = values_.data() + 9 * static_cast<std::size_t>(row_start_[i]);
-      for (auto slot = row_start_[i]; slot < row_start_[i + 1]; ++slot, to += 9) {
-        const double* from = matrix.block(source_slot_[static_cast<std::size_t>(slot)]);
-        for (int k = 0; k < 9; ++k) to[k] = static_cast<float>(from[k]);
-      }
+      const double* diagonal = matrix.block(pattern_->diagonal[v]);
+      const float scale = scale_for(std::max({diagonal[0], diagonal[4], diagonal[8]}));
+      is_stale_[i] = scale == scale_[i] ? kRowChanged : kScaleChanged;
+      if (scale != scale_[i]) has_new_scale = true;
+      scale_[i] = scale;
+    }
+  });
+  if (!has_new_scale) return;
+  for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<std::size_t>(start_[begin]); i < static_cast<std::size_t>(start_[end]); ++i) {
+      if (is_stale_[i] != 0) continue;
+      const auto row = std::span(column_).subspan(static_cast<std::size_t>(row_start_[i]),
+                                                  static_cast<std::size_t>(row_start_[i + 1] - row_start_[i]));
+      const bool has_rescaled = std::any_of(row.begin(), row.end(), [&](std::int32_t j) {
+        return is_stale_[static_cast<std::size_t>(j)] == kScaleChanged;
+      });
+      if (has_rescaled) is_stale_[i] = kRowChanged;
+    }
+  });
+}
+
+/// What rounding took from the row goes to the diagonal block, made symmetric: where neighbours move alike no energy is
+/// lost or made up, and soft modes of a body keep their stiffness. @returns whether all numbers are as small as they
+/// have to be.
+bool SinglePcg::round_row(const BlockMatrix& matrix, std::size_t row) {
+  bool is_small = true;
+  std::array<float, 9> left{};
+  std::int16_t* to = values_.data() + 9 * static_cast<std::size_t>(row_start_[row]);
+  for (auto slot = row_start_[row]; slot < row_start_[row + 1]; ++slot, to += 9) {
+    const auto column = static_cast<std::size_t>(column_[static_cast<std::size_t>(slot)]);
+    const float factor = kWholeOne / (scale_[row] * scale_[column]);
+    const double* block = matrix.block(source_slot_[static_cast<std::size_t>(slot)]);
+    is_small = kernels().round_block(block, factor, scale_[column] / scale_[row], to, left.data()) && is_small;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) left_[9 * row + 3 * i + j] = 0.5F * (left[3 * i + j] + left[3 * j + i]);
+  }
+  return is_small;
+}
+
+void SinglePcg::update(const BlockMatrix& matrix, std::span<const Mat3> inverse_diagonal, const CoarseSpace& coarse,
+                       bool has_new_coarse, std::span<const std::uint8_t> changed_rows, Workers& workers) {
+  rescale(matrix, changed_rows, workers);
+  is_indefinite_ = false;
+  for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (auto i = static_cast<std::size_t>(start_[begin]); i < static_cast<std::size_t>(start_[end]); ++i) {
+      if (is_stale_[i] == 0) continue;
+      if (!round_row(matrix, i)) is_indefinite_ = true;
+      const auto v = static_cast<std::size_t>(vertex_[i]);
       for (std::size_t column = 0; column < 3; ++column) {
         for (std::size_t k = 0; k < 3; ++k) {
           inverse_diagonal_[12 * i + 4 * column + k] =
               static_cast<float>(inverse_diagonal[v](static_cast<int>(k), static_cast<int>(column)));
         }
       }
-      for (std::size_t k = 0; k < 3; ++k) is_free_[4 * i + k] = static_cast<float>(coarse.is_free(v)[static_cast<int>(k)]);
+      for (std::size_t k = 0; k < 3; ++k)
+        is_free_[4 * i + k] = static_cast<float>(coarse.is_free(v)[static_cast<int>(k)]);
     }
   });
   if (!has_new_coarse) return;
@@ -85,12 +149,18 @@ void SinglePcg::update(const BlockMatrix& matrix, std::span<const Mat3> inverse_
   workers.for_each(inverse.size(), 65536, [&](std::size_t i) { coarse_[i] = static_cast<float>(inverse[i]); });
 }
 
+PcgVectors SinglePcg::vectors() {
+  return {x_.data(),   r_.data(),       z_.data(),        p_.data(),     q_.data(),   inverse_diagonal_.data(),
+          arm_.data(), is_free_.data(), scaled_p_.data(), scale_.data(), left_.data()};
+}
+
 /// r = b, x = p = q = 0.
 void SinglePcg::load(std::span<const Vec3> b, Workers& workers) {
   for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto first = static_cast<std::size_t>(start_[begin]);
     const auto last = static_cast<std::size_t>(start_[end]);
-    for (std::vector<float>* vector : {&x_, &p_, &q_}) std::fill(vector->data() + 4 * first, vector->data() + 4 * last, 0.0F);
+    for (std::vector<float>* vector : {&x_, &p_, &q_})
+      std::fill(vector->data() + 4 * first, vector->data() + 4 * last, 0.0F);
     for (std::size_t i = first; i < last; ++i) {
       const Vec3& from = b[static_cast<std::size_t>(vertex_[i])];
       for (std::size_t k = 0; k < 3; ++k) r_[4 * i + k] = static_cast<float>(from[static_cast<int>(k)]);
@@ -100,12 +170,12 @@ void SinglePcg::load(std::span<const Vec3> b, Workers& workers) {
 
 /// x += alpha p, r -= alpha q, z = D⁻¹ r and Pᵀ r.
 void SinglePcg::move(float alpha, Workers& workers) {
-  const PcgVectors vectors{x_.data(), r_.data(), z_.data(), p_.data(), q_.data(), inverse_diagonal_.data(), arm_.data(), is_free_.data()};
+  const PcgVectors v = vectors();
   for_aggregates(workers, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     double rr = 0.0;
     double rz = 0.0;
     for (std::size_t a = begin; a < end; ++a) {
-      kernels().move_four(vectors, alpha, static_cast<std::size_t>(start_[a]), static_cast<std::size_t>(start_[a + 1]),
+      kernels().move_four(v, alpha, static_cast<std::size_t>(start_[a]), static_cast<std::size_t>(start_[a + 1]),
                           restricted_.data() + 6 * a, &rr, &rz);
     }
     partial_rr_[chunk] = rr;
@@ -130,26 +200,33 @@ double SinglePcg::precondition(Workers& workers) {
 
 /// q = A p; returns p · q.
 double SinglePcg::multiply(Workers& workers) {
-  const BlockRows<float> rows{row_start_.data(), column_.data(), values_.data()};
+  const BlockRows<std::int16_t> rows{row_start_.data(), column_.data(), values_.data()};
+  const PcgVectors v = vectors();
   for_aggregates(workers, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    partial_pq_[chunk] = kernels().multiply_four(rows, p_.data(), q_.data(), static_cast<std::size_t>(start_[begin]),
-                                                 static_cast<std::size_t>(start_[end]));
+    partial_pq_[chunk] = kernels().multiply_whole(rows, v, static_cast<std::size_t>(start_[begin]),
+                                                  static_cast<std::size_t>(start_[end]));
   });
   return sum_of(partial_pq_);
 }
 
 /// p = z + P y + beta p.
 void SinglePcg::turn(float beta, Workers& workers) {
-  const PcgVectors vectors{x_.data(), r_.data(), z_.data(), p_.data(), q_.data(), inverse_diagonal_.data(), arm_.data(), is_free_.data()};
+  const PcgVectors v = vectors();
   for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t a = begin; a < end; ++a) {
-      kernels().turn_four(vectors, beta, motion_.data() + 6 * a, static_cast<std::size_t>(start_[a]),
+      kernels().turn_four(v, beta, motion_.data() + 6 * a, static_cast<std::size_t>(start_[a]),
                           static_cast<std::size_t>(start_[a + 1]));
     }
   });
 }
 
 PcgReport SinglePcg::solve(std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings, Workers& workers) {
+  if (is_indefinite_) {
+    std::fill(x.begin(), x.end(), Vec3::Zero());
+    PcgReport report;
+    report.is_indefinite = true;
+    return report;
+  }
   load(b, workers);
   struct Sweeps {
     SinglePcg& pcg;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include "mechanics/coarse_space.hpp"
+#include "mechanics/kernels/kernels.hpp"
 
 #include <incise/core/workers.hpp>
 #include <incise/mechanics/block_matrix.hpp>
 #include <incise/mechanics/solvers.hpp>
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -13,14 +15,17 @@
 
 namespace incise {
 
-/// The iteration of TwoLevelPcg in single precision: half the bytes, and it is the bytes that take the time. Vertices are renumbered so that those of an
-/// aggregate stand together. What it can reach: Precision::Single.
+/// The iteration of TwoLevelPcg in single precision, with a matrix of 16 bits a number: it is the bytes that take the
+/// time. Block (i, j) is kept as whole numbers of s_i s_j / kWholeOne, where s_i is the power of two at or above the
+/// root of the largest number on the diagonal of block (i, i): no number of a positive semi-definite matrix is larger
+/// than s_i s_j. Vertices are renumbered so that those of an aggregate stand together. What it can reach:
+/// Precision::Single.
 class SinglePcg {
  public:
   SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSpace& coarse);
 
-  /// Rounds the rows of the matrix that changed (all, where no flags are given), the inverse of their diagonal blocks and, with
-  /// `has_new_coarse`, the coarse inverse.
+  /// Rounds the rows of the matrix that changed (all, where no flags are given), the inverse of their diagonal blocks
+  /// and, with `has_new_coarse`, the coarse inverse.
   void update(const BlockMatrix& matrix, std::span<const Mat3> inverse_diagonal, const CoarseSpace& coarse,
               bool has_new_coarse, std::span<const std::uint8_t> changed_rows, Workers& workers);
   /// As TwoLevelPcg::solve, for the matrix of the last update.
@@ -29,6 +34,9 @@ class SinglePcg {
  private:
   template <class Body>
   void for_aggregates(Workers& workers, const Body& body) const;
+  void rescale(const BlockMatrix& matrix, std::span<const std::uint8_t> changed_rows, Workers& workers);
+  bool round_row(const BlockMatrix& matrix, std::size_t row);
+  PcgVectors vectors();
   void load(std::span<const Vec3> b, Workers& workers);
   void move(float alpha, Workers& workers);
   double precondition(Workers& workers);
@@ -36,18 +44,22 @@ class SinglePcg {
   void turn(float beta, Workers& workers);
 
   std::shared_ptr<const BlockPattern> pattern_;
-  std::vector<std::int32_t> vertex_;       ///< own number -> vertex
-  std::vector<std::int32_t> start_;        ///< aggregates + 1, into own numbers
+  std::vector<std::int32_t> vertex_;  ///< own number -> vertex
+  std::vector<std::int32_t> start_;   ///< aggregates + 1, into own numbers
   std::vector<std::int32_t> row_start_, column_;
   std::vector<std::int32_t> source_slot_;  ///< own slot -> slot of the pattern
-  std::vector<float> values_;              ///< 9 per own slot, and room for one load beyond the end
-  std::vector<float> inverse_diagonal_;    ///< 12 per vertex: three columns of four
-  std::vector<float> arm_, is_free_;       ///< 4 per vertex
+  std::vector<std::int16_t> values_;       ///< 9 per own slot, and room beyond the end
+  std::vector<float> scale_;               ///< s, per vertex
+  std::vector<float> left_;  ///< 9 per vertex: what rounding left of the row, in units of s_i s_i / kWholeOne
+  std::vector<std::uint8_t> is_stale_;       ///< per vertex: its row is to be rounded anew
+  std::atomic<bool> is_indefinite_ = false;  ///< a number was too large for a positive semi-definite matrix
+  std::vector<float> inverse_diagonal_;      ///< 12 per vertex: three columns of four
+  std::vector<float> arm_, is_free_;         ///< 4 per vertex
   bool is_coarse_dense_;
-  std::vector<float> coarse_;              ///< n x n, where the coarse inverse is dense
-  CoarseCycle<float> cycle_;               ///< where it is not
-  std::vector<float> x_, r_, z_, p_, q_;   ///< 4 per vertex
-  std::vector<float> restricted_, motion_; ///< n
+  std::vector<float> coarse_;                        ///< n x n, where the coarse inverse is dense
+  CoarseCycle<float> cycle_;                         ///< where it is not
+  std::vector<float> x_, r_, z_, p_, q_, scaled_p_;  ///< 4 per vertex
+  std::vector<float> restricted_, motion_;           ///< n
   std::vector<double> partial_rr_, partial_rz_, partial_pq_;
 };
 

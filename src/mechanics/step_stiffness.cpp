@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTurnRad = 1e-2;  // below it a tet's blocks stay: docs/models/solvers.md
 constexpr std::size_t kRowsPerChunk = 512;
+constexpr std::size_t kBatchesPerChunk = 64;
 
 }  // namespace
 
@@ -24,7 +25,7 @@ struct StepStiffness::Data {
   };
 
   BlockMatrix matrix;
-  std::vector<double> rotations;  // 9 per tet: those with which it was assembled
+  std::vector<double> rotations;  // those with which tets were assembled, in the order of the kernels' batches
   std::vector<std::uint8_t> is_in;
   std::vector<std::uint8_t> is_changed;
   std::vector<std::uint8_t> next_changed;  // rows that differ again when what was lent is taken back
@@ -45,8 +46,9 @@ struct StepStiffness::Data {
         is_supported(model.pattern->rows(), 0),
         held(model.pattern->rows(), 0) {
     if (is_plain_corotational(model)) {
-      rotations.assign(9 * model.mesh.tets.size(), 0.0);
-      is_in.assign(model.mesh.tets.size(), 0);
+      const std::size_t places = kBatchTets * model.batches->batches.size();
+      rotations.assign(9 * places, 0.0);
+      is_in.assign(places, 0);
     }
     for (const SupportPlane& support : model.supports) {
       for (const VertexId v : support.vertices) {
@@ -109,16 +111,24 @@ void StepStiffness::Data::assemble_all(const TissueModel& model, TissueState& st
     for (const int i : {0, 4, 8}) diagonal[i] += inertia;
   }
   if (is_in.empty()) return;
-  is_in = state.is_live;
-  const double* from = state.rotations.data()->data();
-  std::copy(from, from + rotations.size(), rotations.begin());
+  workers.for_each(model.batches->batches.size(), kBatchesPerChunk, [&](std::size_t b) {
+    const TetBatch& batch = model.batches->batches[b];
+    for (std::size_t lane = 0; lane < kBatchTets; ++lane) {
+      const std::int32_t tet = batch.tets[lane];
+      if (tet < 0) continue;
+      is_in[kBatchTets * b + lane] = state.is_live[static_cast<std::size_t>(tet)];
+      const double* rotation = state.rotations[static_cast<std::size_t>(tet)].data();
+      for (std::size_t k = 0; k < 9; ++k) rotations[9 * kBatchTets * b + kBatchTets * k + lane] = rotation[k];
+    }
+  });
 }
 
 /// Assembles what changed.
 void StepStiffness::Data::renew(const TissueModel& model, TissueState& state, std::span<Vec3> forces,
                                 Workers& workers) {
   is_changed.swap(next_changed);
-  const AssembledTets assembled{rotations.data(), is_in.data(), is_changed.data(), 2.0 * kTurnRad * kTurnRad};
+  const AssembledTets assembled{model.batches->batches.data(), rotations.data(), is_in.data(), is_changed.data(),
+                                2.0 * kTurnRad * kTurnRad};
   renew_corotational_tangent(model, state, forces, matrix, assembled, workers);
   workers.for_each(matrix.pattern->rows(), kRowsPerChunk, [&](std::size_t row) {
     if (is_changed[row] != 0) mirror_row(matrix, model.batches->mirror, row);
@@ -129,7 +139,8 @@ void StepStiffness::begin(const TissueModel& model, TissueState& state, double s
                           std::span<Vec3> forces, Workers& workers) {
   Data& d = *data_;
   d.take_back();
-  if (is_fresh || tangent != Tangent::FrozenRotations || d.tangent != Tangent::FrozenRotations || step_s != d.step_s || d.is_in.empty()) {
+  if (is_fresh || tangent != Tangent::FrozenRotations || d.tangent != Tangent::FrozenRotations || step_s != d.step_s ||
+      d.is_in.empty()) {
     d.step_s = step_s;
     d.tangent = tangent;
     d.assemble_all(model, state, forces, workers);

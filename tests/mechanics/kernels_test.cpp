@@ -145,6 +145,29 @@ TEST_P(Kernels, MultiplyInSinglePrecisionToItsRounding) {
   }
 }
 
+TEST_P(Kernels, SolveWithAMatrixOfSixteenBits) {
+  const TissueModel model = clamped_block({5, 4, 3}, 0.49);
+  Response r = response(model, rest_state(model), GetParam());
+  Points right(model.mesh.vertices.size(), Vec3::Zero());
+  for (const VertexId v : select(model.mesh, EndRegion{Vec3::UnitX(), 4.0})) right[v.index()] = Vec3(3, -1, 2);
+  hold_constrained(model, r.stiffness, right);
+  Workers workers(2);
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-6;
+  Points exact(right.size());
+  Points rounded(right.size());
+  for (const Precision precision : {Precision::Double, Precision::Single}) {
+    TwoLevelPcg solver(model.pattern, model.mesh.vertices, 20, precision);
+    solver.update(r.stiffness, true, workers);
+    settings.relative_tolerance = precision == Precision::Double ? 1e-8 : 1e-4;
+    EXPECT_TRUE(solver.solve(r.stiffness, right, precision == Precision::Double ? exact : rounded, settings, workers)
+                    .converged);
+  }
+  for (std::size_t v = 0; v < right.size(); ++v) {
+    ASSERT_LE((rounded[v] - exact[v]).norm(), 5e-3 * testing::largest(exact)) << "vertex " << v;
+  }
+}
+
 TEST_P(Kernels, FindTheSameEquilibrium) {
   const TissueModel model = make_tissue_model(
       make_block(Vec3(40, 20, 12), {8, 4, 3}), {},

@@ -33,8 +33,10 @@ struct PcgReport {
 /// The numbers that an iteration works with.
 enum class Precision {
   Double,
-  Single,  ///< half the bytes and half the time. Solves for the matrix rounded to 6e-8 of its entries: the true residual
-           ///< stays above some 6e-8 |A| |x|, for nearly incompressible tissue 1e-3 |b|. For steps that are put right by the next.
+  Single,  ///< Half the bytes and less: single precision, the matrix in 16 bits a number. Solves for a matrix rounded
+           ///< to 2e-5 of its diagonal whose rows sum to what they did, so that soft motions of the body keep their
+           ///< stiffness; the solution is off by some 3e-3, the residual by 2e-5 |A| |x|. For steps that are put right
+           ///< by the next.
 };
 
 /// Two-level preconditioned conjugate gradients: block-Jacobi plus an additive coarse space of rigid-body modes, one
@@ -49,10 +51,11 @@ class TwoLevelPcg {
   TwoLevelPcg(TwoLevelPcg&&) noexcept;
   TwoLevelPcg& operator=(TwoLevelPcg&&) noexcept;
 
-  /// Takes the diagonal blocks of `matrix` (in single precision: all of it), and with `refresh_coarse` its coarse matrix too. Throws InvalidArgument if
-  /// not positive definite.
+  /// Takes the diagonal blocks of `matrix` (in single precision: all of it), and with `refresh_coarse` its coarse
+  /// matrix too. Throws InvalidArgument if not positive definite.
   /// @param changed_rows  per row of blocks: 0 where it is that of the last update(); empty: all may have changed.
-  void update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers, std::span<const std::uint8_t> changed_rows = {});
+  void update(const BlockMatrix& matrix, bool refresh_coarse, Workers& workers,
+              std::span<const std::uint8_t> changed_rows = {});
   /// Solves matrix * x = b from x = 0. Deterministic for any thread count. In single precision `matrix` has to be that
   /// of the last update().
   PcgReport solve(const BlockMatrix& matrix, std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings,

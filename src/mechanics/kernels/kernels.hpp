@@ -27,10 +27,11 @@ enum class SweepTangent { None, FrozenRotations, Exact, Projected };
 
 /// What of the tangent of frozen rotations is in the matrix already.
 struct AssembledTets {
-  double* rotations = nullptr;        ///< 9 per tet, by columns: those with which its blocks were made
-  std::uint8_t* is_in = nullptr;      ///< per tet: 1 where its blocks are in the matrix
-  std::uint8_t* is_changed = nullptr; ///< per vertex: set to 1 for the corners of tets whose blocks are changed
-  double turn_limit = 0.0;            ///< |R - R before|² (Frobenius) above which a tet's blocks are made anew
+  const TetBatch* first_batch;
+  double* rotations;    ///< per batch nine times eight numbers: those with which its tets' blocks were made, by columns
+  std::uint8_t* is_in;  ///< eight per batch: 1 where the tet's blocks are in the matrix
+  std::uint8_t* is_changed;  ///< per vertex: set to 1 for the corners of tets whose blocks are changed
+  double turn_limit;         ///< |R - R before|² (Frobenius) above which a tet's blocks are made anew
 };
 
 /// One pass over some batches: rotations, and what is asked for of forces, tangent and energy.
@@ -44,8 +45,8 @@ struct TetSweep {
   double* forces;               ///< 3 per vertex, added to, mN; null: not wanted
   double* values;  ///< 9 per block, by rows, those on and above the diagonal added to, mN/mm; null: not wanted
   SweepTangent tangent;
-  /// Null: every live tet's tangent is added. Else (frozen rotations only) the difference to what is in the matrix: tets that turned,
-  /// went or came; kept up to date.
+  /// Null: every live tet's tangent is added. Else (frozen rotations only) the difference to what is in the matrix:
+  /// tets that turned, went or came; kept up to date.
   const AssembledTets* assembled;
   /// Rotation of one tet (f and r by rows, r holds the guess) where Newton's method is not sure to find the maximum.
   void (*robust_rotation)(const double* f, double* r);
@@ -59,6 +60,11 @@ struct BlockRows {
   const Real* values;
 };
 
+/// Of a matrix of whole numbers: block (i, j) is s_i s_j / kWholeOne times what is stored, to which on the diagonal
+/// comes what rounding left of the row.
+inline constexpr float kWholeOne = 32000.0F;     // below the largest of 16 bits
+inline constexpr std::size_t kBeyondBlocks = 8;  ///< numbers that a load may read behind the last block
+
 /// The vectors of conjugate gradients in single precision, four numbers per vertex, the last one 0.
 struct PcgVectors {
   float* x;
@@ -69,6 +75,9 @@ struct PcgVectors {
   const float* inverse_diagonal;  ///< 12 per vertex: three columns of four
   const float* arm;               ///< from the aggregate's centre, over its radius
   const float* is_free;           ///< 1 along free axes, 0 along held ones
+  float* scaled_p;                ///< s p
+  const float* scale;             ///< s, one per vertex
+  const float* left;              ///< 9 per vertex, by rows: what rounding left of the row, in the same units
 };
 
 /// One entry per kernel. All work on [begin, end) of their rows and nothing else.
@@ -80,18 +89,25 @@ struct KernelTable {
                          std::size_t end);
   /// q = A p; returns p · q. The matrix needs room for 4 numbers beyond its last.
   double (*multiply_four)(const BlockRows<float>&, const float* p, float* q, std::size_t begin, std::size_t end);
+  /// q = A p for a matrix of whole numbers, from s p and s; returns p · q.
+  double (*multiply_whole)(const BlockRows<std::int16_t>&, const PcgVectors&, std::size_t begin, std::size_t end);
+  /// A block of whole numbers: each number times `factor`, rounded to the nearest; adds what rounding left, times
+  /// `weight`, to the nine numbers of `left`. @returns whether none is above kWholeOne; else they mean nothing.
+  bool (*round_block)(const double* block, float factor, float weight, std::int16_t* whole, float* left);
   /// x += alpha p, r -= alpha q, z = D⁻¹ r; the six numbers of Pᵀ r; adds to |r|² and r · z.
   void (*move_four)(const PcgVectors&, float alpha, std::size_t begin, std::size_t end, float* restricted, double* rr,
                     double* rz);
-  /// p = z + (t + ω x arm) on free axes + beta p, with the six numbers (t, ω).
+  /// p = z + (t + ω x arm) on free axes + beta p, with the six numbers (t, ω); and s p.
   void (*turn_four)(const PcgVectors&, float beta, const float* motion, std::size_t begin, std::size_t end);
   /// y = C c for a dense n x n matrix stored by rows.
   void (*multiply_dense_rows)(const float* matrix, std::size_t n, const float* c, float* y, std::size_t begin,
                               std::size_t end);
-  /// Sum of 6 x 6 blocks (six columns of eight numbers) times six of the eight numbers of x at each block's column; eight numbers, the
-  /// last two 0.
-  void (*sum_blocks_double)(const double* blocks, const std::int32_t* column, std::size_t count, const double* x, double* sum);
-  void (*sum_blocks_single)(const float* blocks, const std::int32_t* column, std::size_t count, const float* x, float* sum);
+  /// Sum of 6 x 6 blocks (six columns of eight numbers) times six of the eight numbers of x at each block's column;
+  /// eight numbers, the last two 0.
+  void (*sum_blocks_double)(const double* blocks, const std::int32_t* column, std::size_t count, const double* x,
+                            double* sum);
+  void (*sum_blocks_single)(const float* blocks, const std::int32_t* column, std::size_t count, const float* x,
+                            float* sum);
 };
 
 /// The kernels of active_isa().
