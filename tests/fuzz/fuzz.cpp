@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <map>
 #include <string_view>
@@ -20,6 +21,7 @@ struct Options {
   std::uint64_t seed = 1;
   std::size_t removals = 100000;  // over all bodies
   int paths = 200;
+  int threads = 0;  // all
 };
 
 Options parse(int argc, char** argv) {
@@ -35,8 +37,10 @@ Options parse(int argc, char** argv) {
       options.removals = static_cast<std::size_t>(value);
     } else if (name == "--paths") {
       options.paths = static_cast<int>(value);
+    } else if (name == "--threads") {
+      options.threads = static_cast<int>(value);
     } else {
-      throw InvalidArgument(fmt::format("expected --seed, --removals or --paths, found {}", name));
+      throw InvalidArgument(fmt::format("expected --seed, --removals, --paths or --threads, found {}", name));
     }
   }
   return options;
@@ -64,11 +68,13 @@ Tally remove_at_random(const FuzzBody& body, std::size_t count, Random& random) 
     CutState state = begin_cut(body.model, rest_state(body.model), far);
     CutWorkspace workspace(body.model, state.tissue.positions);
     const std::size_t tets = body.model.mesh.tets.size();
-    while (state.record.removals.size() < tets && tally.removed + state.record.removals.size() < count && tally.failures == 0) {
+    while (state.record.removals.size() < tets && tally.removed + state.record.removals.size() < count &&
+           tally.failures == 0) {
       std::vector<TetId> batch;
       const std::size_t first = random.below(tets);
       const bool is_run = random.below(2) == 0;
-      for (std::size_t i = random.below(60) + 1; i > 0; --i) batch.emplace_back(is_run ? (first + i) % tets : random.below(tets));
+      for (std::size_t i = random.below(60) + 1; i > 0; --i)
+        batch.emplace_back(is_run ? (first + i) % tets : random.below(tets));
       remove_tets(body.model, state, workspace, batch);
       const CutStepReport report = advance(body.model, settings, Needle{}, state, workspace, far, 0.02, alone);
       if (!report.is_finite) {
@@ -82,8 +88,13 @@ Tally remove_at_random(const FuzzBody& body, std::size_t count, Random& random) 
   return tally;
 }
 
-/// One random cut, checked after every step, then once more as a whole. @returns how much did not hold.
-std::size_t cut_at_random(const TissueModel& model, std::uint64_t seed, std::map<std::string, int>& endings) {
+struct Ending {
+  std::string name;
+  std::size_t failures = 0;
+};
+
+/// One random cut, checked after every step, then once more as a whole.
+Ending cut_at_random(const TissueModel& model, std::uint64_t seed) {
   const FuzzCut cut = random_cut(seed);
   const std::string name = fmt::format("path {} ({})", seed, cut.kind);
   Workers alone(1);
@@ -101,28 +112,48 @@ std::size_t cut_at_random(const TissueModel& model, std::uint64_t seed, std::map
   }
   const IncisionResult result = simulate_incision(model, rest_state(model), cut.path, cut.settings, alone, silent);
   failures += report_violations(name + ", at the end", model, result.final_state);
-  ++endings[fmt::format("{}: {}", cut.kind, to_string(result.outcome))];
+  return {fmt::format("{}: {}", cut.kind, to_string(result.outcome)), failures};
+}
+
+/// Bodies side by side. @returns how much did not hold.
+std::size_t remove_from_all(const Options& options, Workers& workers) {
+  const char* data = std::getenv("INCISE_DATA_DIR");
+  const std::vector<FuzzBody> bodies = fuzz_bodies(data == nullptr ? "" : data);
+  std::vector<Tally> tallies(bodies.size());
+  workers.for_each(bodies.size(), 1, [&](std::size_t b) {
+    Random random(options.seed + b);
+    tallies[b] = remove_at_random(bodies[b], (options.removals + bodies.size() - 1) / bodies.size(), random);
+    fmt::print("{}: {} tets, {} removals, {} failures\n", bodies[b].name, bodies[b].model.mesh.tets.size(),
+               tallies[b].removed, tallies[b].failures);
+  });
+  std::size_t failures = 0;
+  for (const Tally& tally : tallies) failures += tally.failures;
+  return failures;
+}
+
+/// Paths side by side. @returns how much did not hold.
+std::size_t cut_all(const Options& options, Workers& workers) {
+  const TissueModel block = fuzz_block();
+  std::vector<Ending> endings(static_cast<std::size_t>(options.paths));
+  std::atomic<std::size_t> done = 0;
+  workers.for_each(endings.size(), 1, [&](std::size_t i) {
+    endings[i] = cut_at_random(block, options.seed + i);
+    if (++done % 10 == 0) fmt::print(stderr, "{} of {} paths\n", done.load(), options.paths);
+  });
+  std::map<std::string, int> counts;
+  std::size_t failures = 0;
+  for (const Ending& ending : endings) {
+    ++counts[ending.name];
+    failures += ending.failures;
+  }
+  for (const auto& [ending, count] : counts) fmt::print("{} {}\n", count, ending);
   return failures;
 }
 
 int run(const Options& options) {
-  const char* data = std::getenv("INCISE_DATA_DIR");
-  std::size_t failures = 0;
-  if (options.removals > 0) {
-    const std::vector<FuzzBody> bodies = fuzz_bodies(data == nullptr ? "" : data);
-    for (std::size_t b = 0; b < bodies.size() && failures == 0; ++b) {
-      Random random(options.seed + b);
-      const Tally tally = remove_at_random(bodies[b], (options.removals + bodies.size() - 1) / bodies.size(), random);
-      fmt::print("{}: {} tets, {} removals, {} failures\n", bodies[b].name, bodies[b].model.mesh.tets.size(), tally.removed, tally.failures);
-      failures += tally.failures;
-    }
-  }
-  const TissueModel block = fuzz_block();
-  std::map<std::string, int> endings;
-  for (int i = 0; i < options.paths && failures == 0; ++i) {
-    failures += cut_at_random(block, options.seed + static_cast<std::uint64_t>(i), endings);
-  }
-  for (const auto& [ending, count] : endings) fmt::print("{} {}\n", count, ending);
+  Workers workers(options.threads);
+  std::size_t failures = options.removals > 0 ? remove_from_all(options, workers) : 0;
+  failures += options.paths > 0 ? cut_all(options, workers) : 0;
   fmt::print("{} failures\n", failures);
   return failures == 0 ? 0 : 1;
 }
