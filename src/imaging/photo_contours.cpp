@@ -49,9 +49,14 @@ void require_tumor(const MarkedLine& green, const Contour& edge, const std::file
                     fmt::format("{} to {} mm", kSmallestTumorMm, kLargestTumorMm), "Is the scale right?");
   }
   if (!green.is_closed) {
+    // The widest gap that is not hidden is the first of them.
+    const auto widest =
+        std::find_if(green.gaps.begin(), green.gaps.end(), [](const LineGap& g) { return !g.is_hidden; });
+    const bool is_glare = widest != green.gaps.end() && widest->is_glare;
     throw DataError(name, "",
                     fmt::format("an open tumour edge: the green line has a gap of {:.2f} mm", green.max_gap_mm()),
-                    "a closed green line round the tumour");
+                    "a closed green line round the tumour",
+                    is_glare ? "A highlight hides it there: light the tissue from another side." : "");
   }
 }
 
@@ -74,8 +79,8 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   const imaging_detail::InkStrengths strengths = imaging_detail::ink_strengths(picture);
   // The line's scale is that of the picture's middle; with perspective, gaps elsewhere are judged a little off.
   result.mm_per_pixel = scale.mm_per_pixel({0.5 * picture.width, 0.5 * picture.height});
-  const InkMap green = imaging_detail::ink_map(strengths.green, imaging_detail::kLeastGreen, result.mm_per_pixel);
-  const InkMap red = imaging_detail::ink_map(strengths.red, imaging_detail::kLeastRed, result.mm_per_pixel);
+  const InkMap green = imaging_detail::ink_map(strengths, InkColor::Green, result.mm_per_pixel);
+  const InkMap red = imaging_detail::ink_map(strengths, InkColor::Red, result.mm_per_pixel);
   const cv::Mat green_mask = green.is_present ? imaging_detail::ink_mask(green) : cv::Mat();
   const cv::Mat red_mask = red.is_present ? imaging_detail::ink_mask(red) : cv::Mat();
 
