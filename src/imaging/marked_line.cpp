@@ -58,6 +58,13 @@ Start start_of(const cv::Mat& mask, InkColor color, const LineSettings& settings
   // An opening of a band may be narrow at its outer end only: a disc that enters it would take its walls for the
   // border.
   if (settings.edge == LineEdge::Inner) std::swap(discs[0], discs[1]);
+  // A disc as large as the picture rolls nowhere; a picture with a rim for it might not fit into memory.
+  const double largest = 0.5 * std::max(mask.cols, mask.rows);
+  if (bridge_px > largest) {
+    refuse(name, fmt::format("a picture {:.3g} mm wide", mask.cols * settings.mm_per_pixel),
+           fmt::format("one much wider than the largest gap, {} mm", settings.max_gap_mm), "Is the scale right?");
+  }
+  for (double& disc : discs) disc = std::min(disc, largest);
   const std::optional<MaskWindow> window = window_of(mask, static_cast<int>(discs.back()) + 3);
   if (!window) return {};
   const double extent = 0.5 * std::max(window->mask.cols, window->mask.rows) - discs.back();

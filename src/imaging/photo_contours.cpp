@@ -60,6 +60,39 @@ void require_tumor(const MarkedLine& green, const Contour& edge, const std::file
   }
 }
 
+/// A ring that is cut off by the picture's rim is not open: nobody knows.
+void require_in_view(const MarkedLine& line, const char* color, const ColorPicture& picture,
+                     const std::filesystem::path& name) {
+  if (line.is_closed) return;
+  const double near = 6.0 + line.width_px;
+  for (const Vec2& end : {line.points_px.front(), line.points_px.back()}) {
+    const bool is_at_rim =
+        end.x() < near || end.y() < near || end.x() > picture.width - 1 - near || end.y() > picture.height - 1 - near;
+    if (!is_at_rim) continue;
+    throw DataError(
+        name, "",
+        fmt::format("a {} line that runs out of the picture, at pixel {:.0f}, {:.0f}", color, end.x(), end.y()),
+        "the whole line in view");
+  }
+}
+
+/// Ink that the ring found does not explain: a second line, or a second loop of one that crosses itself.
+void require_nothing_else(const MarkedLine& line, LineEdge edge, const cv::Mat& mask, const char* color,
+                          const std::filesystem::path& name) {
+  constexpr double kMostElse = 0.4;  // share of the ink: blood and specks are less
+  if (!line.is_closed) return;
+  constexpr int kBesidePx = 12;
+  const int reach = (edge == LineEdge::Inner ? 2 : 1) * static_cast<int>(line.width_px) + kBesidePx;
+  cv::Mat elsewhere = mask.clone();
+  std::vector<cv::Point> points;
+  for (const Vec2& p : line.points_px) points.emplace_back(cvRound(p.x()), cvRound(p.y()));
+  cv::polylines(elsewhere, points, true, cv::Scalar(0), reach);
+  const double share = cv::countNonZero(elsewhere) / std::max(1.0, static_cast<double>(cv::countNonZero(mask)));
+  if (share <= kMostElse) return;
+  throw DataError(name, "", fmt::format("much {0} beside the {0} ring ({1:.0f} % of it)", color, 100.0 * share),
+                  "one simple ring", "A second line, or one that crosses itself? Something else of that colour?");
+}
+
 Vec2 middle_of(const std::vector<Vec2>& points) {
   Vec2 sum = Vec2::Zero();
   for (const Vec2& p : points) sum += p;
@@ -87,6 +120,8 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   LineSettings line{.edge = LineEdge::Middle, .mm_per_pixel = result.mm_per_pixel, .max_gap_mm = settings.max_gap_mm};
   result.green = imaging_detail::trace_marked_line(green, green_mask, strengths.glare, widened(red_mask),
                                                    InkColor::Green, line, name);
+  require_in_view(result.green, "green", picture, name);
+  require_nothing_else(result.green, line.edge, green_mask, "green", name);
   result.tumor_edge = in_plane(result.green, scale);
   require_tumor(result.green, result.tumor_edge, name);
   result.mm_per_pixel = scale.mm_per_pixel(middle_of(result.green.points_px));
@@ -95,6 +130,8 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   line.edge = settings.red == RedLine::Kerf ? LineEdge::Inner : LineEdge::Middle;
   result.red =
       imaging_detail::trace_marked_line(red, red_mask, strengths.glare, widened(green_mask), InkColor::Red, line, name);
+  require_in_view(result.red, "red", picture, name);
+  require_nothing_else(result.red, line.edge, red_mask, "red", name);
   result.incision = in_plane(result.red, scale);
   return result;
 }
