@@ -89,9 +89,10 @@ int run(AuditArguments arguments, const CommonOptions& options) {
 
 void add_audit(Application& application) {
   auto arguments = std::make_shared<AuditArguments>();
-  CLI::App* verb = application.add_verb("audit", "Tell which rows of a published table cannot be; exit status 4 if there are any",
-                                        "incise audit data/published_tables/table_1.csv",
-                                        [arguments](const CommonOptions& options) { return run(*arguments, options); });
+  CLI::App* verb =
+      application.add_verb("audit", "Tell which rows of a published table cannot be; exit status 4 if there are any",
+                           "incise audit data/published_tables/table_1.csv",
+                           [arguments](const CommonOptions& options) { return run(*arguments, options); });
   verb->add_option("table", arguments->table,
                    "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
                    "PART_mean_mm, PART_sd_mm of what a row was pooled from")

@@ -90,7 +90,8 @@ void require_one_source(const EvaluateArguments& arguments) {
   if (!arguments.photo.empty() && has_files) refuse("PHOTO", "a photograph and contour files", "one of the two");
   if (!arguments.photo.empty()) {
     if (arguments.is_open)
-      refuse("--open", "an open cut in a photograph", "a ring round the tumour; what was cut of one is measured as it is");
+      refuse("--open", "an open cut in a photograph",
+             "a ring round the tumour; what was cut of one is measured as it is");
     if (!arguments.approach.empty())
       refuse("--approach", "a direction for a photograph", "none: a photograph is seen from above");
     if (!arguments.figure.empty() && arguments.figure.extension() != ".png")
@@ -110,7 +111,8 @@ nlohmann::ordered_json line_json(const MarkedLine& line) {
   json["closed"] = line.is_closed;
   json["gaps"] = line.gaps.size();
   json["max_gap_mm"] = line.max_gap_mm();
-  const auto widest = std::find_if(line.gaps.begin(), line.gaps.end(), [](const LineGap& gap) { return !gap.is_hidden; });
+  const auto widest =
+      std::find_if(line.gaps.begin(), line.gaps.end(), [](const LineGap& gap) { return !gap.is_hidden; });
   json["max_gap_is_highlight"] = widest != line.gaps.end() && widest->is_glare;
   return json;
 }
@@ -196,9 +198,14 @@ void add_evaluate(Application& application) {
       ->check(CLI::PositiveNumber);
   verb->add_option("--close-margin-mm", arguments->settings.close_margin_mm, "Clinical cut-off");
   verb->add_option("--approach", arguments->approach, "Direction in which the camera looks")->expected(3);
-  verb->add_option("--twelve-o-clock", arguments->twelve, "Direction of 12 o'clock in by_clock; default: up in the picture")->expected(3);
-  verb->add_option("--figure", arguments->figure, "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
-  verb->add_option("--colors", arguments->colors, "Of the figure: told apart with any colour vision, or as in the paper")
+  verb->add_option("--twelve-o-clock", arguments->twelve,
+                   "Direction of 12 o'clock in by_clock; default: up in the picture")
+      ->expected(3);
+  verb->add_option(
+      "--figure", arguments->figure,
+      "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
+  verb->add_option("--colors", arguments->colors,
+                   "Of the figure: told apart with any colour vision, or as in the paper")
       ->check(CLI::IsMember({"safe", "jet"}));
   verb->add_flag("--open", arguments->is_open, "The incision is an open curve");
 }

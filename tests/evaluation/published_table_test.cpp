@@ -103,6 +103,17 @@ TEST(Audit, KnowsWhatTheGreatestValueAloneMakes) {
   EXPECT_THAT(rules_of(ten), ElementsAre(AuditRule::SdTooSmall));
 }
 
+TEST(Audit, KnowsThatOneValueIsItsOwnMeanAndMax) {
+  PrintedGroup one = group("1.00", "0.00", "1.00");
+  one.n = 1;
+  EXPECT_THAT(rules_of(one), IsEmpty());
+  one.sd = printed("0.50");
+  EXPECT_THAT(rules_of(one), ElementsAre(AuditRule::SdTooLarge));
+  one = group("1.00", "0.00", "2.00");
+  one.n = 1;
+  EXPECT_THAT(rules_of(one), ElementsAre(AuditRule::MeanTooSmall));
+}
+
 TEST(Audit, KnowsTheMeansThatCountsCanHave) {
   // By hand: of 28 whole numbers 5.18 can be the mean (145/28 = 5.179), the next is 146/28 = 5.214: 5.19 cannot.
   PrintedGroup counts{.name = "", .mean = printed("5.18"), .sd = printed("1.00"), .max = {}, .min = {}, .n = 28};
