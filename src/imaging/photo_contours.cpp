@@ -76,18 +76,27 @@ void require_in_view(const MarkedLine& line, const char* color, const ColorPictu
   }
 }
 
-/// Ink that the ring found does not explain: a second line, or a second loop of one that crosses itself.
+/// Ink that the ring found does not explain: a second line, or a second loop of one that crosses itself. Specks, as
+/// noise paints them in the dark, are no line.
 void require_nothing_else(const MarkedLine& line, LineEdge edge, const cv::Mat& mask, const char* color,
                           const std::filesystem::path& name) {
-  constexpr double kMostElse = 0.4;  // share of the ink: blood and specks are less
-  if (!line.is_closed) return;
+  constexpr double kMostElse = 0.4;     // share of the ink: blood is less
+  constexpr double kLeastPiece = 0.05;  // of the ring's own ink
   constexpr int kBesidePx = 12;
+  if (!line.is_closed) return;
   const int reach = (edge == LineEdge::Inner ? 2 : 1) * static_cast<int>(line.width_px) + kBesidePx;
-  cv::Mat elsewhere = mask.clone();
+  cv::Mat elsewhere = mask.clone(), labels, stats, centers;
   std::vector<cv::Point> points;
   for (const Vec2& p : line.points_px) points.emplace_back(cvRound(p.x()), cvRound(p.y()));
   cv::polylines(elsewhere, points, true, cv::Scalar(0), reach);
-  const double share = cv::countNonZero(elsewhere) / std::max(1.0, static_cast<double>(cv::countNonZero(mask)));
+  const double own = cv::countNonZero(mask) - cv::countNonZero(elsewhere);
+  double other = 0.0;
+  const int count = cv::connectedComponentsWithStats(elsewhere, labels, stats, centers, 8, CV_32S);
+  for (int i = 1; i < count; ++i) {
+    const double area = stats.at<int>(i, cv::CC_STAT_AREA);
+    if (area >= kLeastPiece * own) other += area;
+  }
+  const double share = other / std::max(1.0, own + other);
   if (share <= kMostElse) return;
   throw DataError(name, "", fmt::format("much {0} beside the {0} ring ({1:.0f} % of it)", color, 100.0 * share),
                   "one simple ring", "A second line, or one that crosses itself? Something else of that colour?");

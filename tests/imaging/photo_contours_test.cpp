@@ -135,6 +135,22 @@ TEST(FindPhotoContours, RefusesWhatItCannotMeasure) {
   eight.photo.lines[1].course = crossing;
   EXPECT_THAT(refusal(eight), ::testing::HasSubstr("crosses itself"));
 
+  // The second loop is not enclosed, because the red ring lies over it.
+  Scene half_hidden = scene(6, false);
+  half_hidden.photo.lines[0].course = crossing;
+  EXPECT_THAT(refusal(half_hidden), ::testing::AnyOf(::testing::HasSubstr("much green beside the green ring"),
+                                                     ::testing::HasSubstr("crosses itself")));
+
+  Scene cut_off = scene(6, false);
+  for (PaintedLine& line : cut_off.photo.lines) {
+    for (Vec3& p : line.course.points) p -= Vec3(8.0, 0.0, 0.0);
+  }
+  EXPECT_THAT(refusal(cut_off), ::testing::HasSubstr("a red line that runs out of the picture"));
+
+  Scene charred = scene(6, false);
+  charred.photo.lines[1].color = {60, 38, 30};
+  EXPECT_THAT(refusal(charred), ::testing::HasSubstr("no red line"));
+
   EXPECT_THAT(refusal(scene(6, false), 0.5), ::testing::HasSubstr("Is the scale right?"));
 }
 
