@@ -30,6 +30,7 @@ if(NOT TARGET incise_opencv)
   target_include_directories(incise_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
   target_link_libraries(incise_opencv INTERFACE ${OPENCV_IMGCODECS_LIBRARY} ${OPENCV_IMGPROC_LIBRARY} ${OPENCV_CORE_LIBRARY})
 endif()
+find_package(JPEG REQUIRED)           # tells whether a photograph is damaged, which OpenCV passes over, in imaging
 find_package(Boost 1.74 REQUIRED)     # headers of Boost.Math only: distributions, in evaluation
 
 # librsvg has a pkg-config file only. It turns figures into PNG, in report.

@@ -112,9 +112,12 @@ void add_scale_options(CLI::App& verb, ScaleOptions& options) {
   verb.add_option("--rectangle-mm", options.rectangle_mm, "Its width and height")->expected(2);
 }
 
+int ScaleOptions::ways() const {
+  return (mm_per_pixel > 0.0) + !ruler.empty() + !two_points.empty() + !rectangle.empty();
+}
+
 FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture, const std::filesystem::path& name) {
-  const int ways =
-      (options.mm_per_pixel > 0.0) + !options.ruler.empty() + !options.two_points.empty() + !options.rectangle.empty();
+  const int ways = options.ways();
   if (ways != 1) {
     throw CaseError("command line", "scale", ways == 0 ? "no scale" : fmt::format("{} scales", ways),
                     "one of --mm-per-pixel, --ruler, --two-points, --rectangle");
@@ -139,7 +142,7 @@ FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture, co
       found.summary["source"] = "rectangle";
     }
   } catch (const InvalidArgument& error) {
-    throw CaseError("command line", "scale", without_function_name(error), "points and lengths that give a scale");
+    throw CaseError("command line", "scale", "points or lengths that give none", "ones that do", as_sentence(error));
   }
   if (options.ruler.empty()) return found;
   const Ruler ruler =

@@ -34,6 +34,8 @@ struct ScaleOptions {
   std::vector<double> two_points;
   std::vector<double> rectangle;
   std::vector<double> rectangle_mm;
+  [[nodiscard]] int ways() const;
+  [[nodiscard]] bool is_given() const { return ways() > 0; }
 };
 void add_scale_options(CLI::App& verb, ScaleOptions& options);
 struct FoundScale {

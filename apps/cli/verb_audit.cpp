@@ -5,6 +5,7 @@
 #include <incise/storage/published_table_file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 #include <memory>
@@ -28,10 +29,11 @@ Json finding_json(const Finding& finding) {
           {"text", to_text(finding)}};
 }
 
-Json audit_json(const Audit& audit) {
+Json audit_json(const Audit& audit, const PublishedTable& table) {
   Json json;
   json["impossible_rows"] = audit.impossible_rows;
   json["checked_rows"] = audit.rows.size();
+  json["columns"] = {{"read", table.number_columns}, {"names", table.name_columns}};
   std::map<std::string, std::size_t> rules;
   json["rows"] = Json::array();
   for (const AuditedRow& row : audit.rows) {
@@ -52,7 +54,10 @@ Json audit_json(const Audit& audit) {
   return json;
 }
 
-void print_audit(const Audit& audit) {
+void print_audit(const Audit& audit, const PublishedTable& table) {
+  // A rule whose column was not understood finds nothing, which is not the same as nothing to find.
+  fmt::print("columns read: {}\n", fmt::join(table.number_columns, ", "));
+  if (!table.name_columns.empty()) fmt::print("names, not numbers: {}\n", fmt::join(table.name_columns, ", "));
   for (const AuditedRow& row : audit.rows) {
     for (const Finding& finding : row.findings) fmt::print("{:<32} {}\n", row.name, to_text(finding));
   }
@@ -68,24 +73,26 @@ int run(AuditArguments arguments, const CommonOptions& options) {
   if (const auto violations = validate(arguments.settings); !violations.empty()) {
     throw CaseError("command line", "", violations.front(), "usable settings");
   }
-  const Audit result = audit(read_published_table(arguments.table), arguments.settings);
-  const Json json = audit_json(result);
+  const PublishedTable table = read_published_table(arguments.table);
+  const Audit result = audit(table.rows, arguments.settings);
+  const Json json = audit_json(result, table);
   if (!options.output.empty()) write_json(options.output, json);
   if (options.json) {
     print_result(options, json);
   } else {
-    print_audit(result);
+    print_audit(result, table);
   }
-  return kDone;
+  return result.impossible_rows == 0 ? kDone : kNotAcceptable;
 }
 
 }  // namespace
 
 void add_audit(Application& application) {
   auto arguments = std::make_shared<AuditArguments>();
-  CLI::App* verb = application.add_verb("audit", "Tell which rows of a published table cannot be",
-                                        "incise audit data/published_tables/table_1.csv",
-                                        [arguments](const CommonOptions& options) { return run(*arguments, options); });
+  CLI::App* verb =
+      application.add_verb("audit", "Tell which rows of a published table cannot be; exit status 4 if there are any",
+                           "incise audit data/published_tables/table_1.csv",
+                           [arguments](const CommonOptions& options) { return run(*arguments, options); });
   verb->add_option("table", arguments->table,
                    "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
                    "PART_mean_mm, PART_sd_mm of what a row was pooled from")

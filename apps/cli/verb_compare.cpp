@@ -108,7 +108,8 @@ int run(CompareArguments arguments, const CommonOptions& options) {
   } else {
     print_tests(output.json);
   }
-  return kDone;
+  // Where a whole side holds no incision nothing was compared.
+  return output.json["points"].is_null() ? kNotAcceptable : kDone;
 }
 
 }  // namespace

@@ -14,7 +14,9 @@
 #include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
 
@@ -38,6 +40,22 @@ struct EvaluateArguments {
   std::string colors = "safe";
 };
 
+/// Refuses what `evaluate` would measure without a sense: each contour by its own name.
+void require_usable(const Contour& contour, const Vec3& approach, const std::filesystem::path& file) {
+  constexpr double kSmallestMm = 2.0;
+  constexpr double kLargestMm = 200.0;
+  Box3 box;
+  for (const Vec3& p : contour.points) box.extend(p);
+  const double extent = box.sizes().maxCoeff();
+  if (!(extent >= kSmallestMm && extent <= kLargestMm)) {
+    throw DataError(file, "", fmt::format("a contour {:.4g} mm across", extent),
+                    fmt::format("{} to {} mm", kSmallestMm, kLargestMm), "Are its numbers in mm?");
+  }
+  if (contour.is_closed && crosses_itself_in_view(contour, approach)) {
+    throw DataError(file, "", "a contour that crosses itself, seen along the approach", "one simple ring");
+  }
+}
+
 /// The settings are known to be valid here, so what `evaluate` refuses is the contours' fault.
 Evaluation measured(const Contour& incision, const Contour& tumor_edge, const EvaluationSettings& settings,
                     const std::filesystem::path& file) {
@@ -59,7 +77,7 @@ EvaluationSettings settings_of(const EvaluateArguments& arguments) {
   if (!arguments.approach.empty()) settings.approach = Vec3(arguments.approach.data());
   if (!arguments.twelve.empty()) settings.twelve_o_clock = Vec3(arguments.twelve.data());
   if (const auto violations = validate(settings); !violations.empty()) {
-    throw CaseError("command line", "", violations.front(), "usable settings");
+    throw CaseError("command line", "", fmt::format("{}", fmt::join(violations, "; ")), "usable settings");
   }
   return settings;
 }
@@ -72,13 +90,17 @@ void require_one_source(const EvaluateArguments& arguments) {
   if (!arguments.photo.empty() && has_files) refuse("PHOTO", "a photograph and contour files", "one of the two");
   if (!arguments.photo.empty()) {
     if (arguments.is_open)
-      refuse("--open", "an open cut in a photograph", "a ring: photographs of open cuts cannot be measured yet");
+      refuse("--open", "an open cut in a photograph",
+             "a ring round the tumour; what was cut of one is measured as it is");
     if (!arguments.approach.empty())
       refuse("--approach", "a direction for a photograph", "none: a photograph is seen from above");
+    if (!arguments.figure.empty() && arguments.figure.extension() != ".png")
+      refuse("--figure", "another kind of file", "a name that ends in .png: the photograph is drawn over");
     return;
   }
   if (arguments.incision.empty() || arguments.tumor.empty())
     refuse("PHOTO", "no input", "a photograph, or --incision and --tumor");
+  if (arguments.scale.is_given()) refuse("scale", "a scale for contour files", "none: they are in mm");
   if (!arguments.figure.empty()) require_figure_file(arguments.figure, "--figure");
 }
 
@@ -89,6 +111,9 @@ nlohmann::ordered_json line_json(const MarkedLine& line) {
   json["closed"] = line.is_closed;
   json["gaps"] = line.gaps.size();
   json["max_gap_mm"] = line.max_gap_mm();
+  const auto widest =
+      std::find_if(line.gaps.begin(), line.gaps.end(), [](const LineGap& gap) { return !gap.is_hidden; });
+  json["max_gap_is_highlight"] = widest != line.gaps.end() && widest->is_glare;
   return json;
 }
 
@@ -125,6 +150,8 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
 Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
   const Contour incision = read_contour(arguments.incision, !arguments.is_open);
   const Contour tumor_edge = read_contour(arguments.tumor, true);
+  require_usable(incision, settings.approach, arguments.incision);
+  require_usable(tumor_edge, settings.approach, arguments.tumor);
   Measured result{measured(incision, tumor_edge, settings, arguments.tumor), {}};
   result.json = to_json(result.evaluation);
   result.json["points"] = points_json(result.evaluation);
@@ -165,15 +192,20 @@ void add_evaluate(Application& application) {
       ->check(CLI::IsMember({"annotation", "kerf"}));
   add_scale_options(*verb, arguments->scale);
   verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A red or green ring with a longer gap is open")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 10.0));
   verb->add_option("--target-mm", arguments->target_mm,
                    "Distance aimed at; default: 5.0 for a mid-line, 4.5 for an inner edge")
       ->check(CLI::PositiveNumber);
   verb->add_option("--close-margin-mm", arguments->settings.close_margin_mm, "Clinical cut-off");
   verb->add_option("--approach", arguments->approach, "Direction in which the camera looks")->expected(3);
-  verb->add_option("--twelve-o-clock", arguments->twelve, "Direction of 12 o'clock in by_clock; default: up in the picture")->expected(3);
-  verb->add_option("--figure", arguments->figure, "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
-  verb->add_option("--colors", arguments->colors, "Of the figure: told apart with any colour vision, or as in the paper")
+  verb->add_option("--twelve-o-clock", arguments->twelve,
+                   "Direction of 12 o'clock in by_clock; default: up in the picture")
+      ->expected(3);
+  verb->add_option(
+      "--figure", arguments->figure,
+      "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
+  verb->add_option("--colors", arguments->colors,
+                   "Of the figure: told apart with any colour vision, or as in the paper")
       ->check(CLI::IsMember({"safe", "jet"}));
   verb->add_flag("--open", arguments->is_open, "The incision is an open curve");
 }

@@ -37,6 +37,7 @@ double greatest_product(double bottom, double top, double from, double to) {
 
 /// [BhatiaDavis2000], for the sample variance.
 double greatest_sd(const PrintedGroup& group, double bottom, double top, const AuditSettings& settings) {
+  if (group.n == 1U) return 0.0;  // one value does not stray from itself
   const auto n = static_cast<double>(count_of(group, settings));
   return std::sqrt(n / (n - 1.0) * greatest_product(bottom, top, low(group.mean), high(group.mean)));
 }
@@ -51,11 +52,12 @@ void check_counted(const PrintedGroup& group, const AuditSettings& settings, std
       findings.push_back({AuditRule::MeanNotOnGrain, group.name, group.mean.value, nearest});
     }
   }
-  if (!group.max || *group.n < 2) return;
+  if (!group.max) return;
   const double least_mean = (low(*group.max) + (n - 1.0) * settings.least) / n;
   if (high(group.mean) < least_mean - kSlack) {
     findings.push_back({AuditRule::MeanTooSmall, group.name, group.mean.value, least_mean});
   }
+  if (*group.n < 2) return;
   const double reach = std::max(0.0, low(*group.max) - high(group.mean));
   const double least_sd = reach * std::sqrt(n) / (n - 1.0);
   if (high(group.sd) < least_sd - kSlack) {

@@ -19,7 +19,7 @@ constexpr float kBeyondGrey = 0.05F;
 /// Added to the lightness that chroma is divided by: in deep shadow a colour is noise.
 constexpr float kShadow = 0.05F;
 constexpr int kGlareLevel = 238;  // of 255, in the darkest channel
-constexpr int kGlareSkirtPx = 4;
+constexpr int kGlareSkirtPx = 2;
 constexpr double kSmoothingPx = 0.8;
 
 class Tables {
@@ -59,16 +59,51 @@ struct Direction {
   float c, s;
 };
 
-/// What the surroundings have of the colour: the median over about a quarter of the picture.
-cv::Mat local_background(const cv::Mat& strength) {
+/// The picture made small, and which of its pixels are tissue.
+struct Tissue {
+  cv::Mat mask;  ///< 8 bits, 255 = tissue
+  int step = 1;  ///< pixels of the picture to one of the mask, in each direction
+};
+
+/// Tissue is reddish; paper, steel, gloves and char are not. Where next to nothing is, everything counts as tissue.
+Tissue tissue_in(const cv::Mat& red) {
   constexpr int kWidth = 200;
-  constexpr double kFullScale = 0.6;  // of 255 steps from kBeyondGrey below 0; strengths beyond belong to no tissue
-  const int step = std::max(1, std::min(strength.cols, strength.rows) / kWidth);
-  cv::Mat small, bytes;
-  cv::resize(strength, small, {std::max(1, strength.cols / step), std::max(1, strength.rows / step)}, 0, 0,
+  constexpr double kLeastRedness = 0.025;
+  constexpr double kLeastShare = 0.05;
+  Tissue tissue{{}, std::max(1, std::min(red.cols, red.rows) / kWidth)};
+  cv::Mat small;
+  cv::resize(red, small, {std::max(1, red.cols / tissue.step), std::max(1, red.rows / tissue.step)}, 0, 0,
              cv::INTER_AREA);
+  tissue.mask = small > kLeastRedness;
+  if (cv::countNonZero(tissue.mask) < kLeastShare * static_cast<double>(tissue.mask.total())) tissue.mask.setTo(255);
+  return tissue;
+}
+
+/// What is no tissue takes the mean of the tissue in a window around it, or of all tissue where there is none.
+void fill_from_tissue(cv::Mat& values, const Tissue& tissue, int window) {
+  cv::Mat weight, sum, share;
+  tissue.mask.convertTo(weight, CV_32F, 1.0 / 255.0);
+  cv::boxFilter(values.mul(weight), sum, -1, {window, window}, {-1, -1}, true, cv::BORDER_REPLICATE);
+  cv::boxFilter(weight, share, -1, {window, window}, {-1, -1}, true, cv::BORDER_REPLICATE);
+  const auto overall = static_cast<float>(cv::mean(values, tissue.mask)[0]);
+  const float least = 0.5F / static_cast<float>(window * window);
+  for (int v = 0; v < values.rows; ++v) {
+    for (int u = 0; u < values.cols; ++u) {
+      if (tissue.mask.at<std::uint8_t>(v, u) != 0) continue;
+      const float found = share.at<float>(v, u);
+      values.at<float>(v, u) = found > least ? sum.at<float>(v, u) / found : overall;
+    }
+  }
+}
+
+/// What the tissue around has of the colour: the median over about a quarter of the picture.
+cv::Mat local_background(const cv::Mat& strength, const Tissue& tissue) {
+  constexpr double kFullScale = 0.6;  // of 255 steps from kBeyondGrey below 0; strengths beyond belong to no tissue
+  cv::Mat small, bytes;
+  cv::resize(strength, small, tissue.mask.size(), 0, 0, cv::INTER_AREA);
+  const int window = std::clamp(std::min(small.cols, small.rows) / 4, 3, 61) | 1;
+  fill_from_tissue(small, tissue, window);
   small.convertTo(bytes, CV_8U, 255.0 / kFullScale, kBeyondGrey * 255.0 / kFullScale);
-  const int window = std::clamp(std::min(bytes.cols, bytes.rows) / 4, 3, 61) | 1;
   cv::medianBlur(bytes, bytes, window);
   bytes.convertTo(small, CV_32F, kFullScale / 255.0, -kBeyondGrey);
   cv::GaussianBlur(small, small, {0, 0}, 2.0);  // no steps of 1/255 of full scale
@@ -77,16 +112,17 @@ cv::Mat local_background(const cv::Mat& strength) {
   return result;
 }
 
-/// Standard deviation of the bulk, from the median absolute value of every seventh pixel of the difference to the
-/// median.
-double spread_of(const cv::Mat& difference) {
+/// Standard deviation of the tissue's bulk, from the median absolute value of every seventh of its pixels.
+double spread_of(const cv::Mat& difference, const Tissue& tissue) {
   std::vector<float> values;
   values.reserve(difference.total() / 7 + 1);
   std::size_t count = 0;
   for (int v = 0; v < difference.rows; ++v) {
     const auto* row = difference.ptr<float>(v);
+    const auto* is_tissue = tissue.mask.ptr<std::uint8_t>(std::min(v / tissue.step, tissue.mask.rows - 1));
     for (int u = 0; u < difference.cols; ++u) {
-      if (count++ % 7 == 0) values.push_back(std::abs(row[u]));
+      if (is_tissue[std::min(u / tissue.step, tissue.mask.cols - 1)] != 0 && count++ % 7 == 0)
+        values.push_back(std::abs(row[u]));
     }
   }
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -145,16 +181,23 @@ InkStrengths ink_strengths(const ColorPicture& picture) {
   return result;
 }
 
-InkMap ink_map(const cv::Mat& strength, double least_contrast, double mm_per_pixel) {
+InkMap ink_map(const InkStrengths& strengths, InkColor color, double mm_per_pixel) {
+  // Least contrast that counts as a line: tissue itself varies in redness, by about half of it; nothing on it is green,
+  // but grey stands 0.05 above it.
+  constexpr double kLeastRed = 0.07;
+  constexpr double kLeastGreen = 0.07;
   constexpr double kShortestLineMm = 8.0;
-  constexpr double kNoises = 7.0;
+  constexpr double kNoises = 8.0;
+  const cv::Mat& strength = color == InkColor::Red ? strengths.red : strengths.green;
+  const Tissue tissue = tissue_in(strengths.red);
   InkMap result;
   cv::GaussianBlur(strength, result.likelihood, {0, 0}, kSmoothingPx);
-  result.likelihood -= local_background(strength);
-  result.noise = spread_of(result.likelihood);
+  result.likelihood -= local_background(strength, tissue);
+  result.noise = spread_of(result.likelihood, tissue);
   const auto pixels = static_cast<std::size_t>(std::max(24.0, kShortestLineMm / mm_per_pixel));
   result.contrast = level_exceeded_by(result.likelihood, pixels);
-  result.is_present = result.contrast > least_contrast && result.contrast > kNoises * result.noise;
+  result.is_present =
+      result.contrast > (color == InkColor::Red ? kLeastRed : kLeastGreen) && result.contrast > kNoises * result.noise;
   if (result.is_present) result.likelihood *= 1.0 / result.contrast;
   return result;
 }

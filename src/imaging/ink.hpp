@@ -21,11 +21,9 @@ struct InkMap {
   double noise = 0.0;     ///< of the tissue, same units
   bool is_present = false;
 };
-/// Least contrast that counts as a line: tissue itself varies in redness, by about half of it; nothing on it is green.
-inline constexpr double kLeastRed = 0.06;
-inline constexpr double kLeastGreen = 0.07;  ///< grey on red tissue stands 0.05 above it
-/// @param strength  of that ink.  @param mm_per_pixel  > 0: 8 mm of line, one pixel wide, are the least that counts.
-[[nodiscard]] InkMap ink_map(const cv::Mat& strength, double least_contrast, double mm_per_pixel);
+/// Against the tissue around: what is not reddish (paper, instruments, char) is no tissue, and not looked at.
+/// @param mm_per_pixel  > 0: 8 mm of line, one pixel wide, are the least that counts.
+[[nodiscard]] InkMap ink_map(const InkStrengths& strengths, InkColor color, double mm_per_pixel);
 
 /// Likelihood between pixels, bilinear; 0 outside the picture.
 [[nodiscard]] inline double sampled(const cv::Mat& map, double u, double v) {

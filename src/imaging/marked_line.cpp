@@ -58,6 +58,13 @@ Start start_of(const cv::Mat& mask, InkColor color, const LineSettings& settings
   // An opening of a band may be narrow at its outer end only: a disc that enters it would take its walls for the
   // border.
   if (settings.edge == LineEdge::Inner) std::swap(discs[0], discs[1]);
+  // A disc as large as the picture rolls nowhere; a picture with a rim for it might not fit into memory.
+  const double largest = 0.5 * std::max(mask.cols, mask.rows);
+  if (bridge_px > largest) {
+    refuse(name, fmt::format("a picture {:.3g} mm wide", mask.cols * settings.mm_per_pixel),
+           fmt::format("one much wider than the largest gap, {} mm", settings.max_gap_mm), "Is the scale right?");
+  }
+  for (double& disc : discs) disc = std::min(disc, largest);
   const std::optional<MaskWindow> window = window_of(mask, static_cast<int>(discs.back()) + 3);
   if (!window) return {};
   const double extent = 0.5 * std::max(window->mask.cols, window->mask.rows) - discs.back();
@@ -123,20 +130,25 @@ std::vector<Run> unseen_runs(const std::vector<bool>& is_seen, bool is_closed) {
   return runs;
 }
 
-LineGap gap_of(const Run& run, const Line& line, const cv::Mat& hidden, double mm_per_pixel) {
+bool covers(const cv::Mat& mask, const Vec2& p) {
+  const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+  return !mask.empty() && cv::Rect(0, 0, mask.cols, mask.rows).contains(at) && mask.at<std::uint8_t>(at) != 0;
+}
+
+LineGap gap_of(const Run& run, const Line& line, const cv::Mat& hidden, const cv::Mat& glare, double mm_per_pixel) {
   const std::size_t n = line.size();
-  LineGap gap{line[run.first], line[(run.first + run.count - 1) % n], 0.0, false};
+  LineGap gap{.from_px = line[run.first], .to_px = line[(run.first + run.count - 1) % n]};
   double length = kStepPx;
-  std::size_t under = 0;
+  std::size_t under = 0, burnt = 0;
   for (std::size_t k = 0; k < run.count; ++k) {
     const Vec2& p = line[(run.first + k) % n];
     if (k > 0) length += (p - line[(run.first + k - 1) % n]).norm();
-    const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
-    if (!hidden.empty() && cv::Rect(0, 0, hidden.cols, hidden.rows).contains(at) && hidden.at<std::uint8_t>(at) != 0)
-      ++under;
+    under += covers(hidden, p) ? 1 : 0;
+    burnt += covers(glare, p) ? 1 : 0;
   }
   gap.length_mm = length * mm_per_pixel;
   gap.is_hidden = 2 * under >= run.count && gap.length_mm <= kWidestHiddenMm;
+  gap.is_glare = 2 * burnt >= run.count;
   return gap;
 }
 
@@ -168,7 +180,9 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
     refuse(
         name,
         fmt::format("{} (the strongest {} stands {:.3f} above its surroundings)", none, to_string(color), map.contrast),
-        expected);
+        expected,
+        fmt::format("Brown, black or faint lines are not seen: draw it {}, and thicker.",
+                    color == InkColor::Red ? "bright red" : "bright green"));
   }
   Start start = start_of(mask, color, settings, name);
   if (start.line.size() < 2 || length_px(start.line, start.is_ring) * settings.mm_per_pixel < kLeastLineMm) {
@@ -188,7 +202,7 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
   const double allowed_mm = settings.max_gap_mm + kGapToleranceMm + kGapTolerancePx * settings.mm_per_pixel;
   std::optional<Run> opening;
   for (const Run& run : runs) {
-    const LineGap gap = gap_of(run, line.points, hidden, settings.mm_per_pixel);
+    const LineGap gap = gap_of(run, line.points, hidden, glare, settings.mm_per_pixel);
     if (run.count > 1) result.gaps.push_back(gap);
     if (!opening && !gap.is_hidden && gap.length_mm > allowed_mm) opening = run;
   }
@@ -198,7 +212,7 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
   }
   if (!start.is_ring) {
     const double across = (line.points.front() - line.points.back()).norm() * settings.mm_per_pixel;
-    result.gaps.push_back({line.points.back(), line.points.front(), across, false});
+    result.gaps.push_back({.from_px = line.points.back(), .to_px = line.points.front(), .length_mm = across});
   }
   std::stable_sort(result.gaps.begin(), result.gaps.end(),
                    [](const LineGap& a, const LineGap& b) { return a.length_mm > b.length_mm; });
@@ -227,10 +241,7 @@ MarkedLine find_marked_line(const ColorPicture& picture, InkColor color, const L
                  fmt::format("expected max_gap_mm of 0 or more, found {}", settings.max_gap_mm));
   imaging_detail::hold_opencv_threads();
   const imaging_detail::InkStrengths strengths = imaging_detail::ink_strengths(picture);
-  const imaging_detail::InkMap map =
-      color == InkColor::Red
-          ? imaging_detail::ink_map(strengths.red, imaging_detail::kLeastRed, settings.mm_per_pixel)
-          : imaging_detail::ink_map(strengths.green, imaging_detail::kLeastGreen, settings.mm_per_pixel);
+  const imaging_detail::InkMap map = imaging_detail::ink_map(strengths, color, settings.mm_per_pixel);
   return imaging_detail::trace_marked_line(map, map.is_present ? imaging_detail::ink_mask(map) : cv::Mat(),
                                            strengths.glare, {}, color, settings, name);
 }

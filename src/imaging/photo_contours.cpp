@@ -49,10 +49,57 @@ void require_tumor(const MarkedLine& green, const Contour& edge, const std::file
                     fmt::format("{} to {} mm", kSmallestTumorMm, kLargestTumorMm), "Is the scale right?");
   }
   if (!green.is_closed) {
+    // The widest gap that is not hidden is the first of them.
+    const auto widest =
+        std::find_if(green.gaps.begin(), green.gaps.end(), [](const LineGap& g) { return !g.is_hidden; });
+    const bool is_glare = widest != green.gaps.end() && widest->is_glare;
     throw DataError(name, "",
                     fmt::format("an open tumour edge: the green line has a gap of {:.2f} mm", green.max_gap_mm()),
-                    "a closed green line round the tumour");
+                    "a closed green line round the tumour",
+                    is_glare ? "A highlight hides it there: light the tissue from another side." : "");
   }
+}
+
+/// A ring that is cut off by the picture's rim is not open: nobody knows.
+void require_in_view(const MarkedLine& line, const char* color, const ColorPicture& picture,
+                     const std::filesystem::path& name) {
+  if (line.is_closed) return;
+  const double near = 6.0 + line.width_px;
+  for (const Vec2& end : {line.points_px.front(), line.points_px.back()}) {
+    const bool is_at_rim =
+        end.x() < near || end.y() < near || end.x() > picture.width - 1 - near || end.y() > picture.height - 1 - near;
+    if (!is_at_rim) continue;
+    throw DataError(
+        name, "",
+        fmt::format("a {} line that runs out of the picture, at pixel {:.0f}, {:.0f}", color, end.x(), end.y()),
+        "the whole line in view");
+  }
+}
+
+/// Ink that the ring found does not explain: a second line, or a second loop of one that crosses itself. Specks, as
+/// noise paints them in the dark, are no line.
+void require_nothing_else(const MarkedLine& line, LineEdge edge, const cv::Mat& mask, const char* color,
+                          const std::filesystem::path& name) {
+  constexpr double kMostElse = 0.4;     // share of the ink: blood is less
+  constexpr double kLeastPiece = 0.05;  // of the ring's own ink
+  constexpr int kBesidePx = 12;
+  if (!line.is_closed) return;
+  const int reach = (edge == LineEdge::Inner ? 2 : 1) * static_cast<int>(line.width_px) + kBesidePx;
+  cv::Mat elsewhere = mask.clone(), labels, stats, centers;
+  std::vector<cv::Point> points;
+  for (const Vec2& p : line.points_px) points.emplace_back(cvRound(p.x()), cvRound(p.y()));
+  cv::polylines(elsewhere, points, true, cv::Scalar(0), reach);
+  const double own = cv::countNonZero(mask) - cv::countNonZero(elsewhere);
+  double other = 0.0;
+  const int count = cv::connectedComponentsWithStats(elsewhere, labels, stats, centers, 8, CV_32S);
+  for (int i = 1; i < count; ++i) {
+    const double area = stats.at<int>(i, cv::CC_STAT_AREA);
+    if (area >= kLeastPiece * own) other += area;
+  }
+  const double share = other / std::max(1.0, own + other);
+  if (share <= kMostElse) return;
+  throw DataError(name, "", fmt::format("much {0} beside the {0} ring ({1:.0f} % of it)", color, 100.0 * share),
+                  "one simple ring", "A second line, or one that crosses itself? Something else of that colour?");
 }
 
 Vec2 middle_of(const std::vector<Vec2>& points) {
@@ -74,14 +121,16 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   const imaging_detail::InkStrengths strengths = imaging_detail::ink_strengths(picture);
   // The line's scale is that of the picture's middle; with perspective, gaps elsewhere are judged a little off.
   result.mm_per_pixel = scale.mm_per_pixel({0.5 * picture.width, 0.5 * picture.height});
-  const InkMap green = imaging_detail::ink_map(strengths.green, imaging_detail::kLeastGreen, result.mm_per_pixel);
-  const InkMap red = imaging_detail::ink_map(strengths.red, imaging_detail::kLeastRed, result.mm_per_pixel);
+  const InkMap green = imaging_detail::ink_map(strengths, InkColor::Green, result.mm_per_pixel);
+  const InkMap red = imaging_detail::ink_map(strengths, InkColor::Red, result.mm_per_pixel);
   const cv::Mat green_mask = green.is_present ? imaging_detail::ink_mask(green) : cv::Mat();
   const cv::Mat red_mask = red.is_present ? imaging_detail::ink_mask(red) : cv::Mat();
 
   LineSettings line{.edge = LineEdge::Middle, .mm_per_pixel = result.mm_per_pixel, .max_gap_mm = settings.max_gap_mm};
   result.green = imaging_detail::trace_marked_line(green, green_mask, strengths.glare, widened(red_mask),
                                                    InkColor::Green, line, name);
+  require_in_view(result.green, "green", picture, name);
+  require_nothing_else(result.green, line.edge, green_mask, "green", name);
   result.tumor_edge = in_plane(result.green, scale);
   require_tumor(result.green, result.tumor_edge, name);
   result.mm_per_pixel = scale.mm_per_pixel(middle_of(result.green.points_px));
@@ -90,6 +139,8 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   line.edge = settings.red == RedLine::Kerf ? LineEdge::Inner : LineEdge::Middle;
   result.red =
       imaging_detail::trace_marked_line(red, red_mask, strengths.glare, widened(green_mask), InkColor::Red, line, name);
+  require_in_view(result.red, "red", picture, name);
+  require_nothing_else(result.red, line.edge, red_mask, "red", name);
   result.incision = in_plane(result.red, scale);
   return result;
 }

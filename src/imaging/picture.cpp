@@ -10,9 +10,8 @@
 namespace incise {
 namespace {
 
+using imaging_detail::kMostPixels;
 using imaging_detail::pixels_of;
-
-constexpr double kMostPixels = 2e8;
 
 cv::Mat decoded(std::string_view bytes, int flags, const std::filesystem::path& name) {
   imaging_detail::hold_opencv_threads();

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdint>
 
 namespace incise::imaging_detail {
@@ -11,6 +12,22 @@ namespace {
 
 constexpr const char* kWhole = "a complete picture";
 constexpr const char* kCutShort = "Was the file cut short when it was copied?";
+
+/// The checksum of PNG's blocks (ISO 3309), bit by bit from a table of bytes.
+std::uint32_t crc32_of(std::string_view bytes) {
+  static const std::array<std::uint32_t, 256> table = [] {
+    std::array<std::uint32_t, 256> result{};
+    for (std::uint32_t i = 0; i < result.size(); ++i) {
+      std::uint32_t value = i;
+      for (int bit = 0; bit < 8; ++bit) value = (value & 1U) != 0 ? 0xEDB88320U ^ (value >> 1U) : value >> 1U;
+      result[i] = value;
+    }
+    return result;
+  }();
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (const char c : bytes) crc = table[(crc ^ static_cast<std::uint8_t>(c)) & 0xFFU] ^ (crc >> 8U);
+  return ~crc;
+}
 
 /// Numbers of a file, with the end of the file watched.
 class Bytes {
@@ -31,6 +48,15 @@ class Bytes {
   [[noreturn]] void end_at(std::size_t place) const {
     throw DataError(name_, fmt::format("byte {}", place), "the end of the file", kWhole, kCutShort);
   }
+  void require_checksum(std::size_t place, std::size_t length, std::uint32_t expected) const {
+    if (crc32_of(bytes_.substr(place, length)) == expected) return;
+    throw DataError(name_, fmt::format("byte {}", place), "a block whose checksum does not match", "a sound PNG file",
+                    "Was the file damaged when it was copied?");
+  }
+  void require_size(double width, double height) const {
+    if (width * height <= kMostPixels) return;
+    throw DataError(name_, "", fmt::format("{:.0f} x {:.0f} pixels", width, height), "at most 200 million pixels");
+  }
   [[noreturn]] void cmyk() const {
     throw DataError(name_, "", "a CMYK picture (made for printing)", "an RGB picture",
                     "Save it again as RGB; the colours of the lines must be those that the camera saw.");
@@ -48,6 +74,8 @@ void check_png(const Bytes& file) {
     const std::uint32_t length = file.at(place, 4, true);
     const std::uint32_t kind = file.at(place + 4, 4, true);
     if (file.size() - place < 12 + static_cast<std::size_t>(length)) file.end_at(file.size());
+    file.require_checksum(place + 4, 4 + static_cast<std::size_t>(length), file.at(place + 8 + length, 4, true));
+    if (place == 8) file.require_size(file.at(16, 4, true), file.at(20, 4, true));
     if (kind == kEnd) return;
     place += 12 + static_cast<std::size_t>(length);
   }
@@ -63,6 +91,7 @@ void check_jpeg(const Bytes& file) {
     const bool is_frame =
         marker >= 0xFFC0 && marker <= 0xFFCF && marker != 0xFFC4 && marker != 0xFFC8 && marker != 0xFFCC;
     if (is_frame && file.at(place + 9, 1, true) == 4) file.cmyk();
+    if (is_frame) file.require_size(file.at(place + 7, 2, true), file.at(place + 5, 2, true));
     if (marker == 0xFFDA || marker >> 8 != 0xFF) break;
     place += 2 + length;
   }
@@ -107,7 +136,10 @@ void check_tiff(const Bytes& file) {
 void require_whole_picture(std::string_view bytes, const std::filesystem::path& name) {
   const Bytes file(bytes, name);
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return check_png(file);
-  if (bytes.starts_with("\xFF\xD8\xFF")) return check_jpeg(file);
+  if (bytes.starts_with("\xFF\xD8\xFF")) {
+    check_jpeg(file);
+    return require_sound_jpeg(bytes, name);
+  }
   if (bytes.starts_with(std::string_view("II*\0", 4)) || bytes.starts_with(std::string_view("MM\0*", 4)))
     return check_tiff(file);
   throw DataError(name, "", bytes.empty() ? "an empty file" : "another kind of file", "a picture: PNG, JPEG or TIFF");

@@ -73,7 +73,7 @@ void draw_absolute_zones(SvgWriter& svg, const PlotArea& area, const ZoneBorders
     svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(from) - area.y(high)},
                   fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
     svg.text({area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, label, "end",
-             fmt::format("font-size=\"11\" fill=\"{}\"", color));
+             fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
   };
   band(-zones.too_close_mm, -zones.positive_mm, ink::kTooClose, "too close, if towards the tumour");
   band(-zones.positive_mm, 1e9, ink::kReached, "failed, if towards the tumour");

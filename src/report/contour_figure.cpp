@@ -57,29 +57,56 @@ void draw_path(SvgWriter& svg, const Picture& picture, const Contour& path, std:
   svg.polyline(picture.at(path), path.is_closed, fmt::format("fill=\"none\" stroke=\"{}\" {}", color, more));
 }
 
+/// Pieces of the incision that are marked by one broad stroke each: runs of points that are too close, or have reached
+/// the edge.
+void draw_marks(SvgWriter& svg, const std::vector<Vec2>& points, const ReportIncision& incision) {
+  const std::size_t n = points.size();
+  const bool is_closed = incision.incision.is_closed;
+  const auto color_of = [&](std::size_t i) {
+    const double error = incision.signed_error_mm[i];
+    return error > incision.close_error_mm()      ? std::string_view()
+           : error <= incision.reached_error_mm() ? ink::kReached
+                                                  : ink::kTooClose;
+  };
+  const auto draw = [&](const std::vector<Vec2>& line, std::string_view color, bool is_ring) {
+    svg.polyline(line, is_ring,
+                 fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"13\" stroke-linejoin=\"round\"", color));
+  };
+  // On a ring, runs are looked for from a place where the mark changes.
+  std::size_t start = 0;
+  while (is_closed && start < n && color_of(start) == color_of((start + n - 1) % n)) ++start;
+  if (start == n) {
+    if (!color_of(0).empty()) draw(points, color_of(0), true);
+    return;
+  }
+  for (std::size_t k = 0; k < n;) {
+    const std::size_t first = (start + k) % n;
+    const std::string_view color = color_of(first);
+    std::vector<Vec2> line;
+    if (is_closed || first > 0) line.push_back(0.5 * (points[(first + n - 1) % n] + points[first]));
+    std::size_t i = first;
+    for (; k < n && color_of((start + k) % n) == color; ++k) line.push_back(points[i = (start + k) % n]);
+    if (is_closed || i + 1 < n) line.push_back(0.5 * (points[i] + points[(i + 1) % n]));
+    if (!color.empty() && line.size() > 1) draw(line, color, false);
+  }
+}
+
 /// Each point's half segments carry its colour; broad strokes below mark what is too close or has reached the edge.
 void draw_incision(SvgWriter& svg, const Picture& picture, const ReportIncision& incision, double limit_mm,
                    ErrorColors colors) {
   const std::vector<Vec2> points = picture.at(incision.incision);
   const std::size_t n = points.size();
   const bool is_closed = incision.incision.is_closed;
-  const auto part = [&](std::size_t i) {
+  draw_marks(svg, points, incision);
+  svg.polyline(points, is_closed, "fill=\"none\" stroke=\"#333\" stroke-width=\"6\" stroke-linejoin=\"round\"");
+  for (std::size_t i = 0; i < n; ++i) {
+    // Each piece runs on under the next one, so that no seam shows between them.
     std::vector<Vec2> line;
     if (is_closed || i > 0) line.push_back(0.5 * (points[(i + n - 1) % n] + points[i]));
     line.push_back(points[i]);
-    if (is_closed || i + 1 < n) line.push_back(0.5 * (points[i] + points[(i + 1) % n]));
-    return line;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const double error = incision.signed_error_mm[i];
-    if (error > incision.close_error_mm()) continue;
-    const std::string_view color = error <= incision.reached_error_mm() ? ink::kReached : ink::kTooClose;
-    svg.polyline(part(i), false, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"13\"", color));
-  }
-  svg.polyline(points, is_closed, "fill=\"none\" stroke=\"#333\" stroke-width=\"6\" stroke-linejoin=\"round\"");
-  for (std::size_t i = 0; i < n; ++i) {
+    if (is_closed || i + 1 < n) line.push_back(points[(i + 1) % n]);
     const std::string color = hex_color(error_color(incision.signed_error_mm[i] / limit_mm, colors));
-    svg.polyline(part(i), false,
+    svg.polyline(line, false,
                  fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"4.4\" stroke-linejoin=\"round\"", color));
   }
 }
@@ -89,7 +116,7 @@ void draw_color_bar(SvgWriter& svg, const Vec2& corner, const Vec2& size, double
   for (int k = 0; k < kSteps; ++k) {
     const double share = 1.0 - 2.0 * (k + 0.5) / kSteps;
     svg.rectangle(corner + Vec2(0.0, size.y() * k / kSteps), {size.x(), size.y() / kSteps + 0.6},
-                  fmt::format("fill=\"{}\"", hex_color(error_color(share, colors))));
+                  fmt::format("fill=\"{}\" shape-rendering=\"crispEdges\"", hex_color(error_color(share, colors))));
   }
   svg.rectangle(corner, size, "fill=\"none\" stroke=\"#333\" stroke-width=\"0.8\"");
   for (const double tick : round_ticks(-limit_mm, limit_mm, 6)) {

@@ -17,7 +17,7 @@ void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, d
                   fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
     if (area.y(low) - area.y(high) > 14.0) {
       svg.text({area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, label, "end",
-               fmt::format("font-size=\"11\" fill=\"{}\"", color));
+               fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
     }
   };
   band(reached_mm, close_mm, ink::kTooClose, close_label);

@@ -45,6 +45,7 @@ inline constexpr std::string_view kIntended = "#111111";
 inline constexpr std::string_view kCorrected = "#0072b2";
 inline constexpr std::string_view kKerf = "#e69f00";
 inline constexpr std::string_view kTooClose = "#cc79a7";
+inline constexpr std::string_view kTooCloseText = "#8f3f70";  // words in its shade are read on it
 inline constexpr std::string_view kReached = "#b3123f";
 inline constexpr std::array<std::string_view, 4> kSeries{"#6b6b6b", "#0072b2", "#d55e00", "#009e73"};
 }  // namespace ink

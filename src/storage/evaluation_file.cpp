@@ -125,6 +125,9 @@ EvaluationFile read_evaluation_file(const std::filesystem::path& path) {
   result.specimen.is_ring = file.flag_or_null("closed_loop").value_or(false);
   result.negative_margin = file.flag_or_null("negative_margin");
   result.contour = file.text("contour");
+  if (result.contour != to_string(ContourKind::Centerline) && result.contour != to_string(ContourKind::InnerEdge)) {
+    file.refuse("contour", result.contour.substr(0, 40), "centerline or inner_edge");
+  }
   result.target_mm = file.number("target_mm");
   result.hu_score = file.number_or_null("hu_score");
   result.hu_score_ideal = file.number_or_null("hu_score_ideal");

@@ -120,11 +120,15 @@ std::optional<PrintedGroup> group_of(const TableRow& row, const std::string& par
 
 }  // namespace
 
-std::vector<PrintedRow> read_published_table(const std::filesystem::path& path) {
+PublishedTable read_published_table(const std::filesystem::path& path) {
   const TextTable table = read_csv_text(path);
   const Columns columns = columns_of(table, path);
   if (table.rows.empty()) throw DataError(path, "", "a header without rows", "at least one row");
-  std::vector<PrintedRow> rows;
+  PublishedTable result;
+  for (std::size_t k = 0; k < table.header.size(); ++k) {
+    const bool is_name = std::find(columns.names.begin(), columns.names.end(), k) != columns.names.end();
+    (is_name ? result.name_columns : result.number_columns).push_back(table.header[k]);
+  }
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const TableRow row{path, table, i};
     PrintedRow printed;
@@ -142,9 +146,9 @@ std::vector<PrintedRow> read_published_table(const std::filesystem::path& path) 
       }
     }
     if (columns.score) printed.score_percent = row.number(*columns.score);
-    rows.push_back(std::move(printed));
+    result.rows.push_back(std::move(printed));
   }
-  return rows;
+  return result;
 }
 
 }  // namespace incise

@@ -82,6 +82,42 @@ class PhotoTest(CommandTest):
         text.write_text("Dear colleague,")
         self.refused(text, BAD_DATA, "another kind of file")
 
+    def test_damage_within_a_file_is_refused(self):
+        whole = self.photo(TUMOR, self.ring(10.0)).read_bytes()
+        broken = self.folder / "broken.png"
+        for place in (40, len(whole) // 2, len(whole) - 20):
+            with self.subTest(place=place):
+                broken.write_bytes(whole[:place] + bytes([whole[place] ^ 0xFF]) + whole[place + 1 :])
+                done = self.incise("evaluate", broken, "--mm-per-pixel", SCALE, "-o", "out")
+                self.assert_refused(done, BAD_DATA, "broken.png", "checksum")
+                self.assert_nothing_written()
+        broken.write_bytes(b"")
+        self.refused(broken, BAD_DATA, "an empty file")
+        self.refused(self.folder, BAD_DATA, "a folder")
+
+    def test_a_ring_that_runs_out_of_the_picture_is_not_called_open(self):
+        self.refused(self.photo(TUMOR, self.ring(10.0), center=(250.0, 130.0)), BAD_DATA, "cut.png", "runs out of the picture")
+
+    def test_a_straight_cut_beside_the_tumour_is_an_open_ring(self):
+        # A band of a very wide circle is as good as a line.
+        photo = small_photo.ring_photo(self.folder / "cut.png", rings=(TUMOR, (170.0, 4.0, RED, 290.0)))
+        result = self.json_of("evaluate", photo, "--mm-per-pixel", SCALE, status=NOT_ACCEPTABLE)
+        self.assertEqual(result["outcome"], "open_loop")
+        self.assertLess(result["coverage"], 0.25)
+        self.assertIsNone(result["hu_score"])
+
+    def test_gaps_as_large_as_the_picture_are_refused(self):
+        photo = self.photo(TUMOR, self.ring(10.0))
+        done = self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--max-gap-mm", 1000)
+        self.assertEqual(done.returncode, BAD_CASE)
+        self.assertIn("--max-gap-mm", done.stderr)
+
+    def test_a_figure_over_a_photograph_is_a_png(self):
+        photo = self.photo(TUMOR, self.ring(10.0))
+        done = self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--figure", "found.svg")
+        self.assert_refused(done, BAD_CASE, "--figure", ".png")
+        self.assertFalse((self.folder / "found.svg").exists())
+
     def test_a_scale_is_asked_for_once(self):
         photo = self.photo(TUMOR, self.ring(10.0))
         self.assert_refused(self.incise("evaluate", photo), BAD_CASE, "no scale", "--mm-per-pixel")

@@ -1,6 +1,7 @@
 """`evaluate`, `compare` and `audit`: results, files, and what is refused."""
 
 import json
+import math
 import pathlib
 import unittest
 
@@ -63,6 +64,34 @@ class EvaluateTest(ContourTest):
         self.assert_refused(self.incise(*common, "--figure", "f.bmp"), BAD_CASE, "--figure", "f.bmp", ".svg or .png")
         self.assert_refused(self.incise(*common, "--figure", "nowhere/f.png"), BAD_DATA, "nowhere")
         self.assert_nothing_written()
+
+
+    def test_contours_that_cannot_be_meant_are_refused_by_their_own_names(self):
+        write = lambda name, points: small_case.write_contour(self.folder / name, points)
+        eight = [(12 * math.sin(t / 50), 8 * math.sin(t / 25), 0.0) for t in range(314)]
+        for name, points, says in (("eight.csv", eight, "crosses itself"),
+                                   ("metres.csv", small_case.ring((0, 0), 0.0145, 0.0, 360), "Are its numbers in mm?"),
+                                   ("huge.csv", small_case.ring((0, 0), 145.0, 0.0, 360), "290 mm across"),
+                                   ("same.csv", [(1.0, 2.0, 3.0)] * 20, "0 mm across")):
+            write(name, points)
+            with self.subTest(name=name):
+                done = self.incise("evaluate", "--incision", name, "--tumor", "tumor.csv", "-o", "out")
+                self.assert_refused(done, BAD_DATA, name, says)
+                done = self.incise("evaluate", "--incision", "tumor.csv", "--tumor", name, "-o", "out")
+                self.assert_refused(done, BAD_DATA, name, says)
+                self.assert_nothing_written()
+
+    def test_a_scale_is_for_photographs(self):
+        done = self.incise("evaluate", "--incision", "tumor.csv", "--tumor", "tumor.csv", "--mm-per-pixel", "0.03")
+        self.assert_refused(done, BAD_CASE, "a scale for contour files")
+
+    def test_points_given_twice_change_nothing(self):
+        ring = small_case.ring((1.0, 0.0), 14.5, 0.0, 720)
+        small_case.write_contour(self.folder / "twice.csv", [p for q in ring for p in (q, q)] + [ring[0]])
+        once = self.evaluate("s1", 1.0)
+        twice = self.json_of("evaluate", "--incision", "twice.csv", "--tumor", "tumor.csv", "--contour", "inner_edge")
+        for key in ("abs_error_mm", "hu_score", "centroid_shift_mm", "n_points"):
+            self.assertEqual(twice[key], once[key], key)
 
 
 class CompareTest(ContourTest):
@@ -131,14 +160,15 @@ class CompareTest(ContourTest):
         self.assertEqual(result["left_out"], [{"name": "failed", "outcome": "open_loop"}])
         self.assertEqual(result["specimens"]["n_before"], 1)
         self.assertIn("failed,open_loop,0,-", (self.out / "table.csv").read_text())
-        alone = self.json_of("compare", "--before", "failed.json", "--after", "s3.json", "-o", "alone")
+        alone = self.json_of("compare", "--before", "failed.json", "--after", "s3.json", "-o", "alone", status=NOT_ACCEPTABLE)
+        self.assertTrue((self.folder / "alone" / "compare.json").is_file())
         self.assertEqual(alone["verdict"], "too_few")
         self.assertIsNone(alone["points"])
 
     def test_damaged_files_are_named_with_the_place(self):
         self.four()
         good = json.loads((self.folder / "s1.json").read_text())
-        for key, value, says in (("points", None, "points"), ("target_mm", "far", "target_mm"), ("outcome", "fine", "outcome"),
+        for key, value, says in (("points", None, "points"), ("target_mm", "far", "target_mm"), ("outcome", "fine", "outcome"), ("contour", "middle", "contour"),
                                  ("n_points", 7, "points.signed_error_mm")):
             with self.subTest(key=key):
                 (self.folder / "bad.json").write_text(json.dumps({**good, key: value}))
@@ -165,12 +195,15 @@ class CompareTest(ContourTest):
 
 class AuditTest(CommandTest):
     def test_the_papers_table(self):
-        result = self.json_of("audit", TABLES / "table_1.csv")
+        result = self.json_of("audit", TABLES / "table_1.csv", "-o", "audit.json", status=NOT_ACCEPTABLE)
+        self.assertEqual(json.loads((self.folder / "audit.json").read_text()), result)
         self.assertEqual(len(result["rows"]), 25)
         self.assertEqual(result["findings_by_rule"]["sd_too_large"], 22)
         self.assertEqual(result["findings_by_rule"]["pooled_mean_outside"], 1)
         self.assertEqual(result["score_baseline_mm"]["rows"], 20)
-        said = self.incise("audit", TABLES / "table_1.csv").stdout
+        done = self.incise("audit", TABLES / "table_1.csv")
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE)
+        said = done.stdout
         self.assertIn("speed_mm_s 17, dullness 5", said)
         self.assertIn("pooled mean 0.8 lies outside its parts", said)
 
@@ -183,7 +216,26 @@ class AuditTest(CommandTest):
     def test_counts_by_their_grain(self):
         (self.folder / "t.csv").write_text("mean,sd,n\n5.18,1,28\n5.19,1,28\n")
         self.assertEqual(self.json_of("audit", "t.csv")["impossible_rows"], 0)
-        self.assertEqual(self.json_of("audit", "t.csv", "--grain", "1")["impossible_rows"], 1)
+        self.assertEqual(self.json_of("audit", "t.csv", "--grain", "1", status=NOT_ACCEPTABLE)["impossible_rows"], 1)
+
+    def test_a_column_that_was_not_understood_is_named(self):
+        (self.folder / "t.csv").write_text("trial,mean_mm,sd_mm,maximum_mm\n1,1.0,9.0,2.0\n")
+        result = self.json_of("audit", "t.csv")
+        self.assertEqual(result["columns"], {"read": ["mean_mm", "sd_mm"], "names": ["trial", "maximum_mm"]})
+        said = self.incise("audit", "t.csv").stdout
+        self.assertIn("names, not numbers: trial, maximum_mm", said)
+
+    def test_numbers_that_are_none_are_refused(self):
+        for cell in ("nan", "inf", "1e3", "1,2", "1.2.3", "0x1"):
+            with self.subTest(cell=cell):
+                (self.folder / "t.csv").write_text(f'mean_mm,sd_mm\n"{cell}",1\n')
+                self.assert_refused(self.incise("audit", "t.csv", "-o", "out"), BAD_DATA, "t.csv", "line 2, column mean_mm", cell)
+                self.assert_nothing_written()
+        for text, says in (("mean_mm,sd_mm,n\n1,1,2.5\n", "a whole number"), ("mean_mm,sd_mm,n\n1,1,0\n", "a whole number"),
+                           ("mean_mm,sd_mm,mean\n1,1,1\n", "one column for each"), ("mean_mm,sd_mm\n1\n", "line 2"), ("", "empty")):
+            with self.subTest(text=text):
+                (self.folder / "t.csv").write_text(text)
+                self.assert_refused(self.incise("audit", "t.csv"), BAD_DATA, "t.csv", says)
 
     def test_missing_columns_and_words_are_refused(self):
         (self.folder / "t.csv").write_text("mean_mm,max_mm\n1,2\n")

@@ -10,8 +10,9 @@
 namespace incise {
 namespace {
 
-TEST(HedgesG, OfBorensteinsExampleIsAsPublished) {
-  // [Borenstein2009], chapter 4: means 103 and 100, standard deviations 5.5 and 4.5, 50 in each group.
+TEST(HedgesG, IsAsComputedByHand) {
+  // Means 103 and 100, standard deviations 5.5 and 4.5, 50 in each group: s² = (5.5² + 4.5²)/2 = 25.25, d = 3/5.02494;
+  // the usual approximation of the factor, 1 − 3/(4·98 − 1) = 0.99233, holds here to five digits.
   const auto effect = hedges_g({50, 100.0, 4.5}, {50, 103.0, 5.5});
   ASSERT_TRUE(effect.has_value());
   EXPECT_NEAR(effect->cohens_d, 0.5970, 5e-5);
@@ -55,7 +56,7 @@ TEST(HedgesG, OfNothingThatSpreadsIsAbsent) {
 }
 
 TEST(TTestPower, IsAsRPrintsIt) {
-  // The examples of R's power.t.test: n = 20, delta = 1, sd = 1; and the n for which the power is 0.90.
+  // The examples in the manual of R's power.t.test [RCore]: n = 20, delta = 1, sd = 1; and n for a power of 0.90.
   EXPECT_NEAR(t_test_power(1.0, 20, TestDesign::Unpaired), 0.8689528, 5e-7);
   EXPECT_EQ(fewest_specimens(1.0, TestDesign::Unpaired, 0.90), 23U);  // 22.02110
   EXPECT_DOUBLE_EQ(t_test_power(0.0, 7, TestDesign::Unpaired, 0.05), 0.05);
@@ -67,6 +68,10 @@ TEST(FewestSpecimens, AreThoseOfPrintedTables) {
   EXPECT_EQ(fewest_specimens(0.5, TestDesign::Unpaired), 64U);
   EXPECT_EQ(fewest_specimens(0.8, TestDesign::Unpaired), 26U);
   EXPECT_EQ(fewest_specimens(0.5, TestDesign::Paired), 34U);
+  EXPECT_EQ(fewest_specimens(0.8, TestDesign::Paired), 15U);           // 14.303, power.t.test
+  EXPECT_EQ(fewest_specimens(1.0, TestDesign::Unpaired, 0.80), 17U);   // 16.715, power.t.test
+  EXPECT_EQ(fewest_specimens(1.50, TestDesign::Paired, 0.95), 8U);     // [Lakens2013], its two worked examples
+  EXPECT_EQ(fewest_specimens(1.13, TestDesign::Unpaired, 0.95), 22U);  // 44 in both groups
   EXPECT_FALSE(fewest_specimens(0.0, TestDesign::Paired).has_value());
   EXPECT_FALSE(fewest_specimens(1e-4, TestDesign::Paired).has_value());
   EXPECT_EQ(fewest_specimens(50.0, TestDesign::Unpaired), 2U);

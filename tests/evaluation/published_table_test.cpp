@@ -103,13 +103,41 @@ TEST(Audit, KnowsWhatTheGreatestValueAloneMakes) {
   EXPECT_THAT(rules_of(ten), ElementsAre(AuditRule::SdTooSmall));
 }
 
+TEST(Audit, KnowsThatOneValueIsItsOwnMeanAndMax) {
+  PrintedGroup one = group("1.00", "0.00", "1.00");
+  one.n = 1;
+  EXPECT_THAT(rules_of(one), IsEmpty());
+  one.sd = printed("0.50");
+  EXPECT_THAT(rules_of(one), ElementsAre(AuditRule::SdTooLarge));
+  one = group("1.00", "0.00", "2.00");
+  one.n = 1;
+  EXPECT_THAT(rules_of(one), ElementsAre(AuditRule::MeanTooSmall));
+}
+
 TEST(Audit, KnowsTheMeansThatCountsCanHave) {
-  // [BrownHeathers2017]: of 28 whole numbers, 5.18 can be the mean (145/28) and 5.19 cannot.
+  // By hand: of 28 whole numbers 5.18 can be the mean (145/28 = 5.179), the next is 146/28 = 5.214: 5.19 cannot.
   PrintedGroup counts{.name = "", .mean = printed("5.18"), .sd = printed("1.00"), .max = {}, .min = {}, .n = 28};
   EXPECT_THAT(rules_of(counts, {.grain = 1.0}), IsEmpty());
   counts.mean = printed("5.19");
   EXPECT_THAT(rules_of(counts, {.grain = 1.0}), ElementsAre(AuditRule::MeanNotOnGrain));
   EXPECT_THAT(rules_of(counts), IsEmpty());  // lengths are no counts
+}
+
+/// Means and counts that the R package scrutiny, which holds the authors' test, publishes as examples with its
+/// verdicts.
+TEST(Audit, AgreesWithPublishedVerdictsOnCounts) {
+  struct Case {
+    const char* mean;
+    std::size_t n;
+    bool is_possible;
+  };
+  for (const Case& c : {Case{"7.22", 32, true}, Case{"4.74", 25, false}, Case{"5.23", 29, false},
+                        Case{"2.57", 24, false}, Case{"6.77", 27, false}, Case{"5.27", 43, false},
+                        Case{"3.48", 20, false}, Case{"3.47", 15, true}, Case{"3.53", 10, false}}) {
+    const PrintedGroup counts{
+        .name = "", .mean = printed(c.mean), .sd = printed("1.00"), .max = {}, .min = {}, .n = c.n};
+    EXPECT_EQ(rules_of(counts, {.grain = 1.0}).empty(), c.is_possible) << c.mean << " of " << c.n;
+  }
 }
 
 TEST(Audit, KnowsTheOrderOfLeastMeanAndMax) {

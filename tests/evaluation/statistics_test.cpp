@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -22,6 +23,23 @@ TEST(Summary, DividesTheSpreadByOneLessThanTheCount) {
 TEST(Summary, KeepsTheDigitsOfASmallSpreadAboutALargeMean) {
   const std::vector<double> values{1e9 - 1.0, 1e9, 1e9 + 1.0};
   EXPECT_DOUBLE_EQ(summarize(values).sd, 1.0);
+}
+
+/// [NistStrd], univariate sets NumAcc1 to NumAcc4: 1001 values, and their certified mean and standard deviation.
+TEST(Summary, HasTheCertifiedDigitsOfTheReferenceSets) {
+  EXPECT_EQ(summarize(std::vector<double>{10000001, 10000003, 10000002}).mean, 10000002.0);
+  EXPECT_EQ(summarize(std::vector<double>{10000001, 10000003, 10000002}).sd, 1.0);
+  for (const double large : {1.0, 1e6, 1e7}) {
+    std::vector<double> values{large + 0.2};
+    for (int i = 0; i < 500; ++i) {
+      values.push_back(large + 0.1);
+      values.push_back(large + 0.3);
+    }
+    const Summary summary = summarize(values);
+    EXPECT_NEAR(summary.mean / (large + 0.2), 1.0, 1e-14);
+    // The data themselves are rounded to 1e-16 of `large`.
+    EXPECT_NEAR(summary.sd, 0.1, std::max(1e-14, 1e-16 * large * 10.0));
+  }
 }
 
 TEST(Summary, OfASingleValueHasNoSpread) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 namespace incise {
@@ -47,6 +49,35 @@ TEST(PairedTTest, OfTheSleepDataIsAsPublished) {
   EXPECT_NEAR(*test.p, 0.002833, 5e-7);
   EXPECT_NEAR(test.confidence->low, 0.7001142, 5e-8);
   EXPECT_NEAR(test.confidence->high, 2.4598858, 5e-8);
+}
+
+/// Miles per gallon of 249 American and 79 Japanese cars: the example of [NistHandbook], 1.3.5.3, which gives mean,
+/// standard deviation and T; p and Welch's figures are those that Boost's own example prints for the same numbers.
+TEST(StudentTTest, OfTheHandbooksCarsIsAsPublished) {
+  const SampleMoments american{.n = 249, .mean = 20.14458, .sd = 6.414700};
+  const SampleMoments japanese{.n = 79, .mean = 30.48101, .sd = 6.107710};
+  const TTest student = student_t_test(japanese, american);
+  EXPECT_NEAR(*student.t, -12.62059, 5e-6);
+  EXPECT_EQ(*student.df, 326.0);
+  EXPECT_NEAR(*student.p / (2.0 * 2.637e-30), 1.0, 1e-3);
+  const TTest welch = welch_t_test(japanese, american);
+  EXPECT_NEAR(*welch.t, -12.946, 5e-4);
+  EXPECT_NEAR(*welch.df, 136.87, 5e-3);
+  EXPECT_NEAR(*welch.p / (2.0 * 7.855e-26), 1.0, 1e-3);
+}
+
+/// Two and two values: with f = 1 and f = 2 Student's distribution has closed forms, so that all is by hand.
+TEST(TTests, OfTwoAndTwoValuesFollowFromClosedForms) {
+  const std::vector<double> before{1.0, 3.0}, after{2.0, 6.0};
+  const TTest paired = paired_t_test(before, after);  // differences 1, 3: mean 2, standard error 1
+  EXPECT_DOUBLE_EQ(*paired.t, 2.0);
+  EXPECT_NEAR(*paired.p, 1.0 - 2.0 / std::numbers::pi * std::atan(2.0), 1e-14);
+  const TTest student = student_t_test(moments_of(before), moments_of(after));  // variances 2, 8: standard error √5
+  EXPECT_NEAR(*student.t, 2.0 / std::sqrt(5.0), 1e-14);
+  EXPECT_NEAR(*student.p, 1.0 - *student.t / std::sqrt(2.0 + *student.t * *student.t), 1e-14);
+  const TTest welch = welch_t_test(moments_of(before), moments_of(after));
+  EXPECT_NEAR(*welch.df, 25.0 / 17.0, 1e-14);  // (1 + 4)² / (1² + 4²)
+  EXPECT_DOUBLE_EQ(*welch.t, *student.t);      // equal counts
 }
 
 TEST(TTests, ChangeSignAndNothingElseWhenTheSidesChangePlaces) {

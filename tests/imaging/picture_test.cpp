@@ -43,6 +43,19 @@ TEST(DecodePicture, RefusesFilesThatAreCutShortAtAnyByte) {
   EXPECT_THAT(refusal(encode_jpeg(small_picture(), 90).substr(0, 400)), HasSubstr("the end of the file"));
 }
 
+TEST(DecodePicture, RefusesDamageThatDecodersPaintOver) {
+  testing::PaintedPhoto photo;
+  photo.width = photo.height = 128;
+  const ColorPicture picture = testing::paint_photo(photo);
+  std::string jpeg = encode_jpeg(picture, 70);
+  EXPECT_EQ(refusal(jpeg), "");
+  for (std::size_t i = jpeg.size() / 2; i < jpeg.size() / 2 + 60; ++i) jpeg[i] = 0;
+  EXPECT_THAT(refusal(jpeg), HasSubstr("a damaged picture"));
+  std::string png = encode_png(picture);
+  png[png.size() / 2] = static_cast<char>(png[png.size() / 2] ^ 0x10);
+  EXPECT_THAT(refusal(png), HasSubstr("a block whose checksum does not match"));
+}
+
 TEST(DecodePicture, RefusesOtherFiles) {
   EXPECT_THAT(refusal("This is a letter."), HasSubstr("another kind of file"));
   EXPECT_THAT(refusal(""), HasSubstr("an empty file"));

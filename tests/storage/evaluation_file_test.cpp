@@ -100,7 +100,7 @@ class PublishedTableTest : public ::testing::Test {
  protected:
   std::vector<PrintedRow> read(const std::string& text) {
     std::ofstream(path(), std::ios::binary) << text;
-    return read_published_table(path());
+    return read_published_table(path()).rows;
   }
   void expect_refused(const std::string& text, const char* what) {
     EXPECT_THAT([&] { static_cast<void>(read(text)); },
@@ -141,7 +141,7 @@ TEST_F(PublishedTableTest, ThatIsDamagedIsRefusedWithThePlace) {
 }
 
 std::vector<PrintedRow> published(const char* name) {
-  return read_published_table(std::filesystem::path(INCISE_SOURCE_DIR) / "data/published_tables" / name);
+  return read_published_table(std::filesystem::path(INCISE_SOURCE_DIR) / "data/published_tables" / name).rows;
 }
 
 std::size_t rows_with(const Audit& audit, AuditRule rule, const char* group) {

@@ -31,6 +31,7 @@ struct LineGap {
   Vec2 to_px = Vec2::Zero();
   double length_mm = 0.0;
   bool is_hidden = false;  ///< the other colour lies over it: not counted as an opening
+  bool is_glare = false;   ///< a highlight lies over it: counts as an opening, for nobody can see what is under it
 };
 
 /// A line found in a picture, with sub-pixel points in order, about two pixels apart.

@@ -3,9 +3,16 @@
 #include <incise/evaluation/published_table.hpp>
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace incise {
+
+struct PublishedTable {
+  std::vector<PrintedRow> rows;
+  std::vector<std::string> number_columns;  ///< headers of those that were read as numbers
+  std::vector<std::string> name_columns;    ///< headers of all others, which tell the rows apart
+};
 
 /// Reads a published table, digits as printed. Columns, in any order; a unit after the name (`mean_mm`) may be left
 /// out:
@@ -18,6 +25,6 @@ namespace incise {
 /// a set without mean or sd is left out.
 /// @throws DataError naming line and column: neither mean nor sd among the columns, a part with one of the two,
 /// a cell that is no decimal number, a count that is not whole or below 1.
-[[nodiscard]] std::vector<PrintedRow> read_published_table(const std::filesystem::path& path);
+[[nodiscard]] PublishedTable read_published_table(const std::filesystem::path& path);
 
 }  // namespace incise
