@@ -2,6 +2,7 @@
 #include "registration/icp.hpp"
 #include "registration/levels.hpp"
 #include "registration/pose_search.hpp"
+#include "registration/settling.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/registration/register_clouds.hpp>
@@ -181,7 +182,8 @@ class Registering {
       result.reasons.emplace_back("too few points of the source find a counterpart on the target");
       return;
     }
-    const Candidate& best = candidates.front();
+    Candidate best = candidates.front();
+    const std::optional<SettledPose> settled = settled_from(best);
     result.T_target_source = frame_.outwards(best.transform);
     result.iterations = best.iterations;
     result.score = best.score;
@@ -192,8 +194,29 @@ class Registering {
     find_rival(result, best, candidates, poses);
     result.certificate =
         certificate_of(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
+    if (settled) take_over(result, *settled);
     judge(result, best);
     to_millimetres(result.certificate);
+  }
+
+  /// The best pose once more, together with the settling. Its score stays that of the shapes as they are.
+  std::optional<SettledPose> settled_from(Candidate& best) const {
+    if (!(settings_.settling > 0.0)) return std::nullopt;
+    SettlingSettings settings;
+    settings.scale = settings_.scale;
+    settings.largest = settings_.settling;
+    SettledPose settled = settled_pose(source_, target_, best.transform, settings, workers_);
+    best.iterations += settled.iterations;
+    best.has_converged = best.has_converged && settled.has_converged && !settled.is_degenerate;
+    if (!settled.is_degenerate) best.transform = settled.transform;
+    return settled;
+  }
+
+  /// What noise and settling leave open, in place of what noise alone does.
+  void take_over(Registration& result, const SettledPose& settled) const {
+    result.settled_rms_mm = frame_.length * settled.settled_rms;
+    result.settled_max_mm = frame_.length * settled.settled_largest;
+    set_covariance(result.certificate, settled.covariance, settled.center, settled.length);
   }
 
   void measure_residuals(Registration& result, const Candidate& best) {

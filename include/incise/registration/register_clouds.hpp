@@ -23,6 +23,7 @@ struct RegistrationSettings {
   bool finish_with_icp = true;       ///< point to plane after the drift
   int max_iterations = 300;          ///< of the drift, and of the finish
   std::size_t drift_points = 20000;  ///< a larger cloud takes part in the drift as about so many clusters
+  double settling = 0.0;  ///< how far the tissue may have settled along the source's mean normal since; 0: not looked for
   double largest_rmse = 0.03;        ///< poorer fits are not a success
   double least_inliers = 0.15;       ///< of the source's points; fewer are not a success
   double largest_sd = 0.01;          ///< of the pose along its weakest direction, for a success
@@ -87,6 +88,8 @@ struct Registration {
   /// Distances along the normals, target to source, of the source's points that lie above the target (within a tenth of
   /// its radius), mm.
   std::vector<double> residuals_mm;
+  double settled_rms_mm = 0.0;   ///< of the settling that was found beside the pose; 0 where none was looked for
+  double settled_max_mm = 0.0;
   bool scale_at_limit = false;       ///< the scale stands at an end of its range
   bool is_scale_suspicious = false;  ///< outside 0.95 to 1.05: both sensors are metric
   Certificate certificate;
@@ -96,7 +99,8 @@ struct Registration {
 /// points that belong to nothing. Search: rigid coherent point drift on coarse clusters from starts spread over all
 /// rotations (and three positions along the longest axis), the best few refined; then the drift on the full clouds and
 /// an ICP finish. Where both clouds come with normals, these decide which side is up. Every result that is not to be
-/// relied upon says so in `outcome` and `reasons`. The same clouds give the same bits at any thread count. A reflection
+/// relied upon says so in `outcome` and `reasons`. With `settling` the pose is, last, found together with a smooth
+/// displacement along the source's mean normal, so that a dip is not taken for a shift. The same clouds give the same bits at any thread count. A reflection
 /// is never returned.
 /// @param source, target  at least 1 point each, finite, any unit; normals of unit length or none.  @throws
 /// InvalidArgument. Sources: [Myronenko2010], [Alexa2022] (even rotations).
