@@ -20,13 +20,13 @@ using Vec7 = Eigen::Matrix<double, 7, 1>;
 
 constexpr std::size_t kMostPoints = 3000;
 constexpr std::size_t kMostCenters = 200;
-constexpr double kCenterSpacing = 0.6;    // of the range
-constexpr double kPatch = 3.5;            // radius of a fitted patch, in spacings of the target
+constexpr double kCenterSpacing = 0.6;  // of the range
+constexpr double kPatch = 3.5;          // radius of a fitted patch, in spacings of the target
 constexpr std::size_t kFewestInPatch = 10;
-constexpr double kRim = 0.35;             // how far a patch's middle may lie from its place, in its radii
-constexpr double kLeastAgreement = 0.3;   // cosine between a point's normal and those of its patch
-constexpr double kFarthest = 0.15;        // from the target, in the clouds' unit: beyond lies something else
-constexpr double kWidths = 2.5;           // robust standard deviations of Welsch's weight
+constexpr double kRim = 0.35;            // how far a patch's middle may lie from its place, in its radii
+constexpr double kLeastAgreement = 0.3;  // cosine between a point's normal and those of its patch
+constexpr double kFarthest = 0.15;       // from the target, in the clouds' unit: beyond lies something else
+constexpr double kWidths = 2.5;          // robust standard deviations of Welsch's weight
 constexpr double kPairsPerIndependent = 1.2;
 constexpr double kRidge = 1e-6;
 constexpr std::size_t kChunk = 32;
@@ -125,7 +125,11 @@ class Settling {
  public:
   Settling(const SampledSurface& source, const SampledSurface& target, const Similarity& start,
            const SettlingSettings& settings, Workers& workers)
-      : source_(source), target_(target), settings_(settings), workers_(workers), asked_(asked_of(source.cloud, settings.range)) {
+      : source_(source),
+        target_(target),
+        settings_(settings),
+        workers_(workers),
+        asked_(asked_of(source.cloud, settings.range)) {
     result_.transform = start;
     weights_ = Vector::Zero(static_cast<Eigen::Index>(asked_.centers.size()));
   }
