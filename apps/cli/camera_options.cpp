@@ -3,10 +3,10 @@
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/transform_json.hpp>
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <cmath>
 
 namespace incise::cli {
@@ -50,40 +50,6 @@ CameraIntrinsics intrinsics_in(const Json& document, const std::filesystem::path
 }
 
 }  // namespace
-
-Mat4 transform_in(const Json& document, const std::string& key, const std::filesystem::path& file) {
-  const Json& rows = member(document, key, file, "");
-  const std::string expected = "4 rows of 4 numbers";
-  if (!rows.is_array() || rows.size() != 4) throw DataError(file, "/" + key, "something else", expected);
-  Mat4 T;
-  for (std::size_t i = 0; i < 4; ++i) {
-    if (!rows[i].is_array() || rows[i].size() != 4)
-      throw DataError(file, fmt::format("/{}/{}", key, i), "something else", expected);
-    for (std::size_t j = 0; j < 4; ++j) {
-      if (!rows[i][j].is_number())
-        throw DataError(file, fmt::format("/{}/{}/{}", key, i, j), rows[i][j].dump(), "a number");
-      T(static_cast<int>(i), static_cast<int>(j)) = rows[i][j].get<double>();
-    }
-  }
-  if (!T.allFinite() || T.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    throw DataError(file, "/" + key, "another last row", "0 0 0 1 as the last row");
-  const double determinant = T.topLeftCorner<3, 3>().determinant();
-  if (!(determinant > 0.0))
-    throw DataError(file, "/" + key, fmt::format("a determinant of {:.4g}", determinant),
-                    "a positive determinant (no mirror image)");
-  return T;
-}
-
-Mat4 rigid_transform_in(const Json& document, const std::string& key, const std::filesystem::path& file) {
-  const Mat4 T = transform_in(document, key, file);
-  const Mat3 R = T.topLeftCorner<3, 3>();
-  if ((R.transpose() * R - Mat3::Identity()).cwiseAbs().maxCoeff() > 1e-4) {
-    throw DataError(file, "/" + key,
-                    fmt::format("a determinant of {:.6g}, or axes that are not perpendicular", R.determinant()),
-                    "a rotation and a shift in mm, without scale");
-  }
-  return T;
-}
 
 DepthCamera read_depth_camera(const std::filesystem::path& file) {
   constexpr double kMmPerMetre = 1000.0;

@@ -14,13 +14,6 @@
 
 namespace incise::cli {
 
-/// A 4 x 4 matrix, rows, last row 0 0 0 1, finite, positive determinant. @throws DataError naming the key.
-[[nodiscard]] Mat4 transform_in(const nlohmann::ordered_json& document, const std::string& key,
-                                const std::filesystem::path& file);
-/// The same without scale. @throws DataError
-[[nodiscard]] Mat4 rigid_transform_in(const nlohmann::ordered_json& document, const std::string& key,
-                                      const std::filesystem::path& file);
-
 /// Intrinsics as JSON: width, height, fx, fy, cx, cy, depth_scale (metres for one count, as librealsense has it);
 /// optional: distortion [k1, k2, p1, p2, k3], depth {the same without depth_scale} and T_color_depth where the depth
 /// picture is not laid onto the colour picture. @throws DataError naming the key.

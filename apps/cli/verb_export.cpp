@@ -5,12 +5,12 @@
 #include <incise/core/version.hpp>
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/nearest_name.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/robot/program_text.hpp>
+#include <incise/storage/registration_json.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -75,21 +75,16 @@ Mat4 tool_of(const std::vector<double>& tcp) {
   return T;
 }
 
-RegistrationSummary read_registration(const std::filesystem::path& file) {
-  const nlohmann::ordered_json json = read_json(file);
-  const auto at = [&](const char* key, bool is_right_type) {
-    if (!json.is_object() || !json.contains(key) || !is_right_type)
-      throw DataError(file, key, json.is_object() && json.contains(key) ? json.at(key).dump() : "nothing",
-                      "what `incise register` writes");
-    return json.at(key);
+/// The checks need more than the transform.
+RegistrationSummary registration_summary(const std::filesystem::path& file) {
+  const RegistrationRecord record = read_registration(file);
+  const auto require = [&](bool is_there, const char* key) {
+    if (!is_there) throw DataError(file, key, "nothing", "what `incise register` writes");
   };
-  const auto number = [&](const char* key) {
-    return at(key, json.is_object() && json.contains(key) && json.at(key).is_number()).get<double>();
-  };
-  RegistrationSummary summary{number("scale"), number("rmse_mm"), number("inlier_fraction"), false};
-  summary.is_converged =
-      at("converged", json.is_object() && json.contains("converged") && json.at("converged").is_boolean()).get<bool>();
-  return summary;
+  require(record.rmse_mm.has_value(), "rmse_mm");
+  require(record.inlier_fraction.has_value(), "inlier_fraction");
+  require(record.is_converged.has_value(), "converged");
+  return {record.scale, *record.rmse_mm, *record.inlier_fraction, *record.is_converged};
 }
 
 ToolPath read_robot_path(const std::filesystem::path& file) {
@@ -157,7 +152,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   std::optional<TriMesh> surface;
   if (!arguments.intended.empty()) inputs.intended = &intended.emplace(read_robot_path(arguments.intended));
   if (!arguments.surface.empty()) inputs.surface = &surface.emplace(read_cloud(arguments.surface));
-  if (!arguments.registration.empty()) inputs.registration = read_registration(arguments.registration);
+  if (!arguments.registration.empty()) inputs.registration = registration_summary(arguments.registration);
   if (arguments.power_w > 0.0) inputs.power_w = arguments.power_w;
   require_writable(output);
 

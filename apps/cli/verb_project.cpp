@@ -1,16 +1,21 @@
-#include "camera_options.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/transform_json.hpp>
 #include <incise/planning/project_path.hpp>
+#include <incise/storage/registration_json.hpp>
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+#include <chrono>
+#include <cmath>
 #include <memory>
 
 namespace incise::cli {
@@ -18,6 +23,7 @@ namespace {
 
 constexpr double kLowScale = 0.95;  // both sensors are metric
 constexpr double kHighScale = 1.05;
+constexpr double kTipMm = 0.3;  // what an uncertain scale may move the tip by before a person is told
 
 struct ProjectArguments {
   std::filesystem::path path;
@@ -26,27 +32,94 @@ struct ProjectArguments {
   std::filesystem::path camera;
   std::string kind = "incise";
   std::string axis = "path";
+  std::string metric = "ct";
+  std::vector<double> scale_center;
   double depth_mm = 0.0;
   double speed_mm_s = 0.0;
   ProjectSettings settings;
 };
 
 /// What `register` wrote. A search that did not end well is no ground for moving a robot.
-Mat4 registration(const std::filesystem::path& file, Console& console) {
-  const nlohmann::ordered_json document = read_json(file);
-  if (const auto converged = document.find("converged");
-      converged != document.end() && converged->is_boolean() && !converged->get<bool>()) {
-    throw DataError(file, "/converged", "false", "a registration that converged",
+RegistrationRecord trusted_registration(const std::filesystem::path& file, Console& console) {
+  RegistrationRecord record = read_registration(file);
+  if (!record.is_converged.value_or(true) || !record.T_target_source) {
+    throw DataError(file, record.T_target_source ? "/converged" : "/T_target_source",
+                    record.T_target_source ? "false" : "null", "a registration that converged",
                     "Register again: with more starts, or with the cloud cropped to the tissue.");
   }
-  const Mat4 T = transform_in(document, "T_target_source", file);
-  const double scale = std::cbrt(T.topLeftCorner<3, 3>().determinant());
-  if (scale < kLowScale || scale > kHighScale) {
+  record.scale = std::cbrt(record.T_target_source->topLeftCorner<3, 3>().determinant());
+  if (record.scale < kLowScale || record.scale > kHighScale) {
     console.message(Severity::Warning,
                     fmt::format("{}: the scale is {:.4f}; both sensors are metric, so that {} to {} is expected",
-                                file.string(), scale, kLowScale, kHighScale));
+                                file.string(), record.scale, kLowScale, kHighScale));
   }
-  return T;
+  return record;
+}
+
+/// Simulation and measured tissue in the robot's frame, and what became of the scale between them.
+struct Placement {
+  Mat4 T_robot_sim;
+  TriMesh measured;
+  nlohmann::ordered_json summary;
+};
+
+void move(TriMesh& mesh, const Mat4& T) {
+  for (Vec3& p : mesh.vertices) p = (T * p.homogeneous()).head<3>();
+}
+
+Vec3 middle_of(const ToolPath& path, const Mat4& T) {
+  Vec3 sum = Vec3::Zero();
+  for (const Waypoint& w : path.waypoints) sum += w.position_mm;
+  return (T * (sum / static_cast<double>(path.waypoints.size())).homogeneous()).head<3>();
+}
+
+/// Takes the fitted scale out of the camera's lengths. What stands still is told by the user, or the camera's origin,
+/// or, where no one knows it, the middle of the path.
+void take_true_size(Placement& placement, const ToolPath& path, const RegistrationRecord& registration,
+                    const ProjectArguments& arguments, Console& console) {
+  const Vec3 middle = middle_of(path, placement.T_robot_sim);
+  const bool is_given = !arguments.scale_center.empty();
+  const bool has_camera = !arguments.camera.empty();
+  Vec3 center = is_given ? Vec3(arguments.scale_center.data()) : middle;
+  if (has_camera && !is_given) {
+    const Mat4 T = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
+    center = T.topRightCorner<3, 1>();
+  }
+  const Mat4 shrink = at_true_size(registration.scale, center);
+  placement.T_robot_sim = shrink * placement.T_robot_sim;
+  move(placement.measured, shrink);
+  const double arm_mm = (middle - center).norm();
+  const Vec3 moved = (shrink * middle.homogeneous()).head<3>();
+  const double shift_mm = (moved - middle).norm();
+  placement.summary["scale_center_mm"] = {center.x(), center.y(), center.z()};
+  placement.summary["scale_center"] = is_given ? "given" : has_camera ? "camera" : "path";
+  placement.summary["scale_shift_mm"] = shift_mm;
+  placement.summary["scale_shift_sd_mm"] = nullptr;
+  if (!registration.scale_sd) return;
+  const double sd_mm = *registration.scale_sd * arm_mm;
+  placement.summary["scale_shift_sd_mm"] = sd_mm;
+  if (sd_mm > kTipMm) {
+    console.message(
+        Severity::Warning,
+        fmt::format("the scale of {:.4f} is uncertain by {:.4f}, which is {:.2f} mm at {:.0f} mm from where "
+                    "lengths are right: hold it by a known length (register --scale K,K), or name a place "
+                    "near the tissue whose position the robot has confirmed (--scale-center)",
+                    registration.scale, *registration.scale_sd, sd_mm, arm_mm));
+  }
+}
+
+Placement placed(const ToolPath& path, const ProjectArguments& arguments, Console& console) {
+  const RegistrationRecord registration = trusted_registration(arguments.transform, console);
+  Placement placement{*registration.T_target_source, read_cloud(arguments.surface), {}};
+  if (!arguments.camera.empty()) {
+    const Mat4 T_robot_camera = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
+    placement.T_robot_sim = T_robot_camera * placement.T_robot_sim;
+    move(placement.measured, T_robot_camera);
+  }
+  placement.summary["metric"] = arguments.metric;
+  placement.summary["scale"] = registration.scale;
+  if (arguments.metric == "ct") take_true_size(placement, path, registration, arguments, console);
+  return placement;
 }
 
 ProjectSettings settings_of(const ProjectArguments& arguments) {
@@ -76,30 +149,74 @@ ToolPath simulated_path(const std::filesystem::path& file, PathKind kind) {
   return path;
 }
 
-int run(const ProjectArguments& arguments, const CommonOptions& options) {
-  Console console(options.level());
-  const std::filesystem::path output = options.required_output("robot_path.json");
-  const ProjectSettings settings = settings_of(arguments);
-  const ToolPath path = simulated_path(arguments.path, settings.kind);
-  Mat4 T_robot_sim = registration(arguments.transform, console);
-  TriMesh measured = read_cloud(arguments.surface);
-  if (!arguments.camera.empty()) {
-    const Mat4 T_robot_camera = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
-    T_robot_sim = T_robot_camera * T_robot_sim;
-    for (Vec3& p : measured.vertices) p = (T_robot_camera * p.homogeneous()).head<3>();
-  }
-  ProjectedPath projected;
+ProjectedPath laid_down(const ToolPath& path, const Placement& placement, const ProjectSettings& settings,
+                        const ProjectArguments& arguments) {
   try {
-    const MeasuredSurface surface(measured, approach_of(path, T_robot_sim));
-    projected = project_path(path, T_robot_sim, surface, settings, arguments.surface);
+    const MeasuredSurface surface(placement.measured, approach_of(path, placement.T_robot_sim));
+    ProjectedPath projected = project_path(path, placement.T_robot_sim, surface, settings, arguments.surface);
+    projected.path.source_sha256 = sha256_of_file(arguments.path);
+    return projected;
   } catch (const InvalidArgument& error) {
     throw DataError(arguments.surface, "", without_function_name(error),
                     "a path, a transform and a surface that fit each other");
   }
-  projected.path.source_sha256 = sha256_of_file(arguments.path);
-  write_tool_path(output, projected.path);
+}
+
+nlohmann::ordered_json settings_json(const ProjectArguments& arguments, const ProjectSettings& s) {
+  const auto if_given = [](const std::optional<double>& value) {
+    return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+  };
+  return {{"kind", arguments.kind},
+          {"axis", arguments.axis},
+          {"metric", arguments.metric},
+          {"scale_center_mm", arguments.scale_center.empty() ? nlohmann::ordered_json(nullptr)
+                                                             : nlohmann::ordered_json(arguments.scale_center)},
+          {"mark_depth_mm", s.mark_depth_mm},
+          {"mark_speed_mm_s", s.mark_speed_mm_s},
+          {"mark_waypoints", s.mark_waypoints},
+          {"incise_depth_mm", if_given(s.incise_depth_mm)},
+          {"incise_speed_mm_s", if_given(s.incise_speed_mm_s)},
+          {"smoothing_mm", s.smoothing_mm},
+          {"max_gap_mm", s.max_gap_mm},
+          {"max_shift_mm", s.max_shift_mm}};
+}
+
+/// A folder with path, tissue and manifest, or the path as one file with its manifest beside it.
+void write(const std::filesystem::path& output, const ProjectedPath& projected, const Placement& placement,
+           const Manifest& manifest, nlohmann::ordered_json& result) {
+  if (output.extension() == ".json") {
+    write_tool_path(output, projected.path);
+    write_manifest_beside(output, manifest);
+    result["path"] = output.string();
+    return;
+  }
+  AtomicFolder folder(output);
+  write_tool_path(folder.path() / "path.json", projected.path);
+  write_ply(folder.path() / "surface.ply", placement.measured);
+  write_manifest(folder.path(), manifest);
+  folder.commit();
+  result["path"] = (output / "path.json").string();
+  result["surface"] = (output / "surface.ply").string();
+}
+
+int run(const ProjectArguments& arguments, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("projected");
+  if (output.extension() == ".json") {
+    require_writable(output);
+  } else {
+    require_replaceable(output);
+  }
+  if (arguments.metric == "camera" && !arguments.scale_center.empty()) {
+    throw CaseError("command line", "--scale-center", "--metric camera", "--metric ct: else nothing is scaled");
+  }
+  const ProjectSettings settings = settings_of(arguments);
+  const ToolPath path = simulated_path(arguments.path, settings.kind);
+  const Placement placement = placed(path, arguments, console);
+  const ProjectedPath projected = laid_down(path, placement, settings, arguments);
   nlohmann::ordered_json result;
-  result["path"] = output.string();
+  result["path"] = nullptr;
   result["frame"] = to_string(projected.path.frame);
   result["kind"] = to_string(projected.path.kind);
   result["closed"] = projected.path.is_closed;
@@ -110,7 +227,14 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   result["bridged_points"] = projected.bridged;
   result["max_shift_mm"] = projected.max_shift_mm;
   result["mean_shift_mm"] = projected.mean_shift_mm;
-  result["scale"] = std::cbrt(T_robot_sim.topLeftCorner<3, 3>().determinant());
+  result["shift_noise_mm"] = projected.shift_noise_mm;
+  result.update(placement.summary);
+  std::vector<std::filesystem::path> inputs{arguments.path, arguments.transform, arguments.surface};
+  if (!arguments.camera.empty()) inputs.push_back(arguments.camera);
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write(output, projected, placement, manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s),
+        result);
+  result["wall_s"] = wall_s;
   print_result(options, result);
   return kDone;
 }
@@ -122,7 +246,7 @@ void add_project(Application& application) {
   CLI::App* verb = application.add_verb(
       "project", "Lay a simulated path and tumour edge onto the measured tissue, in the robot's frame",
       "incise project out/after/path.json --transform registration.json --surface cloud.ply --kind incise -o "
-      "robot_path.json",
+      "projected",
       [arguments](const CommonOptions& options) { return run(*arguments, options); });
   verb->add_option("path", arguments->path, "path.json, frame sim_stretched")->required();
   verb->add_option("--transform", arguments->transform,
@@ -133,6 +257,15 @@ void add_project(Application& application) {
   verb->add_option(
       "--camera", arguments->camera,
       "JSON with T_robot_camera, where the surface is given in a camera's frame; without it: in the robot's");
+  verb->add_option("--metric", arguments->metric,
+                   "Whose lengths are true. ct: the scale that register fitted is taken out of the cloud, so that the "
+                   "simulation keeps its size; camera: the simulation takes the cloud's size")
+      ->check(CLI::IsMember({"ct", "camera"}));
+  verb->add_option(
+          "--scale-center", arguments->scale_center,
+          "ct: a place (mm, robot's frame) where the cloud is right; else the camera's origin (--camera), else "
+          "the middle of the path")
+      ->expected(3);
   verb->add_option("--kind", arguments->kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s")
       ->check(CLI::IsMember({"incise", "mark"}));
   verb->add_option("--axis", arguments->axis,
@@ -147,6 +280,9 @@ void add_project(Application& application) {
   verb->add_option("--max-gap-mm", arguments->settings.max_gap_mm,
                    "Farthest from a waypoint to the nearest measured point")
       ->check(CLI::NonNegativeNumber);
+  verb->add_option("--smoothing-mm", arguments->settings.smoothing_mm,
+                   "Radius over which the shift onto the surface is averaged; 0: every point by itself")
+      ->check(CLI::Range(0.0, 100.0));
   verb->add_option("--max-shift-mm", arguments->settings.max_shift_mm,
                    "Farthest that a point is moved onto the surface")
       ->check(CLI::NonNegativeNumber);

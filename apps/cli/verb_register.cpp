@@ -25,6 +25,7 @@ struct RegisterArguments {
   std::string method = "rigid";
   std::vector<double> approach{0.0, 0.0, -1.0};
   double max_rmse_mm = 0.0;
+  double settling_mm = 0.0;
   bool no_icp = false;
   bool from_identity = false;
   RegistrationSettings settings;
@@ -62,8 +63,10 @@ nlohmann::ordered_json settings_json(const RegisterArguments& arguments) {
       {"max_iterations", s.max_iterations},
       {"drift_points", s.drift_points},
       {"largest_rmse", s.largest_rmse},
+      {"settling_mm", arguments.settling_mm},
       {"largest_rmse_mm", arguments.max_rmse_mm > 0.0 ? nlohmann::ordered_json(arguments.max_rmse_mm) : nullptr},
       {"least_inliers", s.least_inliers},
+      {"least_fit", s.least_fit},
       {"largest_sd", s.largest_sd},
       {"least_sharpness", s.least_sharpness},
       {"largest_rival", s.largest_rival}};
@@ -115,6 +118,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   const Vec3 approach = direction_of(arguments.approach, "--approach");
   const PointCloud source = read_points(arguments.source, 12);
   const PointCloud target = read_points(arguments.target, 12);
+  settings.settling_mm = arguments.settling_mm;
   if (const auto problems = validate(settings); !problems.empty())
     throw CaseError("command line", "", problems.front(), "usable settings");
   Workers workers(options.threads);
@@ -187,6 +191,10 @@ void add_register(Application& application) {
   verb->add_option("--max-rmse-mm", arguments->max_rmse_mm,
                    "A larger residual is not acceptable; 0: 3 % of the target's radius")
       ->check(CLI::Range(0.0, 1000.0));
+  verb->add_option("--settling-mm", arguments->settling_mm,
+                   "How far the tissue may have settled, up or down, since it was simulated: pose and settling are then "
+                   "found together; 0: the pose alone")
+      ->check(CLI::Range(0.0, 20.0));
   verb->add_option("--smoothness", arguments->nonrigid.smoothness,
                    "nonrigid: range of the bending, share of the source's radius")
       ->check(CLI::Range(0.01, 10.0));

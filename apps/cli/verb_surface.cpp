@@ -1,16 +1,21 @@
 #include "cloud_input.hpp"
 #include "study_run.hpp"
 
+#include <incise/core/units.hpp>
 #include <incise/geometry/visible_surface.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/transform_json.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 
 namespace incise::cli {
 namespace {
@@ -21,6 +26,8 @@ struct SurfaceArguments {
   VisibleSurfaceSettings view;
   CleaningSettings cleaning;
   std::vector<double> box;
+  std::filesystem::path camera;
+  std::optional<double> plane_z_mm;  // of the largest plane, in the robot's frame
 };
 
 constexpr std::size_t kFewestPoints = 12;
@@ -99,9 +106,41 @@ nlohmann::ordered_json cleaned(const PointCloud& raw, const SurfaceArguments& ar
           {"outliers", result.outliers}};
 }
 
+/// A camera's scale, from a plane whose height in the robot's frame is known, is taken out of its cloud: all lengths
+/// from the camera's origin, that to the plane too, are too long by the same factor.
+nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::ordered_json& planes,
+                                        const SurfaceArguments& arguments) {
+  constexpr double kLow = 0.9, kHigh = 1.1, kLargestTiltDeg = 3.0;
+  const Mat4 T = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
+  if (planes.empty()) {
+    throw DataError(arguments.input, "planes", "none", "the plane that --plane-z-mm gives the height of",
+                    "Is it within the box, and is --planes at least 1?");
+  }
+  const nlohmann::ordered_json& plane = planes.front();
+  const Vec3 normal(plane["normal"][0].get<double>(), plane["normal"][1].get<double>(),
+                    plane["normal"][2].get<double>());
+  const double tilt_deg =
+      units::deg_from_rad(std::acos(std::min(1.0, std::abs((T.topLeftCorner<3, 3>() * normal).z()))));
+  const double found_mm = std::abs(plane["offset_mm"].get<double>());
+  const double true_mm = std::abs(T(2, 3) - *arguments.plane_z_mm);
+  const double scale = found_mm / true_mm;
+  if (!(scale > kLow && scale < kHigh) || tilt_deg > kLargestTiltDeg) {
+    throw DataError(arguments.input, "the largest plane",
+                    fmt::format("{:.2f} mm from the camera and {:.2f} degrees from level", found_mm, tilt_deg),
+                    fmt::format("{:.2f} mm and level, as T_robot_camera and --plane-z-mm say", true_mm),
+                    "Another plane may be larger, or the camera's pose is not this one.");
+  }
+  for (Vec3& p : cloud.points) p /= scale;
+  return {{"camera_scale", scale}, {"plane_tilt_deg", tilt_deg}};
+}
+
 int make_surface(const SurfaceArguments& arguments, const CommonOptions& options) {
   Console console(options.level());
   const std::filesystem::path output = options.required_output("surface.ply");
+  if (arguments.plane_z_mm.has_value() != !arguments.camera.empty()) {
+    throw CaseError("command line", arguments.plane_z_mm ? "--camera" : "--plane-z-mm", "nothing",
+                    "both --camera and --plane-z-mm, or none");
+  }
   const bool is_vtp = output.extension() == ".vtp";
   if (!is_vtp && output.extension() != ".ply")
     throw CaseError("command line", "-o", output.string(), "a file that ends in .ply or .vtp");
@@ -121,6 +160,13 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
     const TriMesh read = read_cloud(input);
     result = read.triangles.empty() ? cleaned(cloud_of(read), arguments, approach, options, workers, cloud)
                                     : seen(read, arguments, approach, workers, cloud);
+    if (arguments.plane_z_mm) {
+      if (!read.triangles.empty())
+        throw CaseError("command line", "--plane-z-mm", "a surface with triangles", "a camera's cloud");
+      result.update(take_plane_scale(cloud, result["planes"], arguments));
+      result["area_mm2"] = sampled_area_mm2(cloud.points);
+      result["spacing_mm"] = spacing_mm(cloud.points);
+    }
   }
   if (cloud.points.size() < kFewestPoints) {
     throw DataError(input, "surface", fmt::format("{} points left", cloud.points.size()),
@@ -163,6 +209,12 @@ void add_surface(Application& application) {
   verb->add_option("--plane-tolerance-mm", arguments->cleaning.plane_tolerance_mm,
                    "Cloud: thickness of a plane to either side")
       ->check(CLI::PositiveNumber);
+  verb->add_option("--camera", arguments->camera,
+                   "Cloud in a camera's frame: JSON with T_robot_camera; with --plane-z-mm");
+  verb->add_option(
+      "--plane-z-mm", arguments->plane_z_mm,
+      "Height of the largest plane in the robot's frame: the camera's scale follows from it and is taken out "
+      "of the cloud; with --camera and --planes");
   verb->add_option("--outlier-neighbours", arguments->cleaning.outlier_neighbours, "Cloud: 0 keeps outliers")
       ->check(CLI::Range(0, 200));
   verb->add_option("--outlier-deviations", arguments->cleaning.outlier_deviations,

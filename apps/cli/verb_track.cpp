@@ -12,6 +12,7 @@
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/transform_json.hpp>
 #include <incise/planning/plan_marked_path.hpp>
 
 #include <fmt/format.h>

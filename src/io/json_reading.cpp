@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 
@@ -74,6 +76,25 @@ Vec3 JsonValue::point() const {
   if (!value_->is_array() || value_->size() != 3) expected("three numbers [x, y, z]");
   const auto numbers = items();
   return {numbers[0].number(), numbers[1].number(), numbers[2].number()};
+}
+
+Mat4 JsonValue::transform() const {
+  if (!value_->is_array() || value_->size() != 4) expected("4 rows of 4 numbers");
+  const auto rows = items();
+  Mat4 matrix;
+  for (int i = 0; i < 4; ++i) {
+    const JsonValue& row = rows[static_cast<std::size_t>(i)];
+    if (!row.value_->is_array() || row.value_->size() != 4) row.expected("4 numbers");
+    const auto numbers = row.items();
+    for (int j = 0; j < 4; ++j) matrix(i, j) = numbers[static_cast<std::size_t>(j)].number();
+  }
+  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) rows[3].expected("[0, 0, 0, 1]");
+  const double determinant = matrix.topLeftCorner<3, 3>().determinant();
+  if (!(determinant > 0.0)) {
+    fail(fmt::format("a rotation part with determinant {:.6g}", determinant),
+         "a positive determinant (no mirror image)");
+  }
+  return matrix;
 }
 
 }  // namespace incise::io_detail

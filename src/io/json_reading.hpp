@@ -30,6 +30,7 @@ class JsonValue {
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::string text() const;
   [[nodiscard]] Vec3 point() const;  ///< [x, y, z]
+  [[nodiscard]] Mat4 transform() const;  ///< 4 rows of 4 numbers, last row 0 0 0 1, positive determinant
 
   [[nodiscard]] bool is_text() const { return value_->is_string(); }
   /// What is here, short, for a message.

@@ -33,7 +33,9 @@ std::uint64_t whole_number(const ordered_json& document, const JsonValue& root, 
 
 }  // namespace
 
-void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
+namespace {
+
+void write_to(const std::filesystem::path& file, const Manifest& manifest) {
   INCISE_REQUIRE(std::isfinite(manifest.wall_s) && manifest.wall_s >= 0.0,
                  fmt::format("expected wall_s of 0 or more, found {}", manifest.wall_s));
   ordered_json inputs = ordered_json::array();
@@ -49,7 +51,18 @@ void write_manifest(const std::filesystem::path& folder, const Manifest& manifes
   document["inputs"] = inputs;
   document["wall_s"] = manifest.wall_s;
   document["machine"] = manifest.machine;
-  write_json(folder / "manifest.json", document);
+  write_json(file, document);
+}
+
+}  // namespace
+
+void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {
+  write_to(folder / "manifest.json", manifest);
+}
+
+void write_manifest_beside(const std::filesystem::path& file, const Manifest& manifest) {
+  std::filesystem::path beside = file;
+  write_to(beside.replace_extension(".manifest.json"), manifest);
 }
 
 Manifest read_manifest(const std::filesystem::path& folder) {

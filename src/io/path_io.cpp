@@ -49,23 +49,6 @@ Waypoint read_waypoint(const JsonValue& place) {
   return waypoint;
 }
 
-Mat4 read_transform(const JsonValue& place) {
-  const auto rows = place.items();
-  if (rows.size() != 4) place.fail(fmt::format("{} rows", rows.size()), "4 rows of 4 numbers");
-  Mat4 matrix;
-  for (int i = 0; i < 4; ++i) {
-    const auto numbers = rows[static_cast<std::size_t>(i)].items();
-    if (numbers.size() != 4) rows[static_cast<std::size_t>(i)].expected("4 numbers");
-    for (int j = 0; j < 4; ++j) matrix(i, j) = numbers[static_cast<std::size_t>(j)].number();
-  }
-  if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1)) rows[3].expected("[0, 0, 0, 1]");
-  const double determinant = matrix.topLeftCorner<3, 3>().determinant();
-  if (!(determinant > 0.0)) {
-    place.fail(fmt::format("a rotation part with determinant {:.6g}", determinant), "a positive determinant");
-  }
-  return matrix;
-}
-
 std::string read_hash(const JsonValue& place) {
   const std::string text = place.text();
   const bool is_hash = text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
@@ -90,7 +73,7 @@ ToolPath read_path(const JsonValue& root) {
     for (const JsonValue& item : edge->items()) path.tumor_edge.points.push_back(item.point());
   }
   if (const auto closed = root.find("tumor_edge_closed")) path.tumor_edge.is_closed = closed->boolean();
-  if (const auto transform = root.find("T_robot_sim")) path.T_robot_sim = read_transform(*transform);
+  if (const auto transform = root.find("T_robot_sim")) path.T_robot_sim = transform->transform();
   if (const auto hash = root.find("source_sha256")) path.source_sha256 = read_hash(*hash);
   return path;
 }

@@ -23,6 +23,7 @@ set(text_sources
   tetgen_reader.cpp
   text_cursor.cpp
   text_table.cpp
+  transform_json.cpp
   vtk_bytes.cpp
   vtk_legacy_reader.cpp
   vtk_xml_reader.cpp

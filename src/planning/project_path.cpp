@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ namespace incise {
 namespace {
 
 constexpr double kBridgedMm = 0.5;
+constexpr double kMostAsideMm = 1.0;  // from the local average of the shifts: the surfaces differ in shape
 
 /// One rotation and one scale: p -> scale R p + t.
 struct Similarity {
@@ -65,18 +67,60 @@ class LayDown {
     result.mean_shift_mm += shift;
     result.bridged += place->gap_mm > kBridgedMm ? 1 : 0;
     ++count_;
+    in_picture_.push_back(frame_.to_view(p).head<2>());
+    before_.push_back(p);
+    shifts_.push_back(shift);
+    names_.push_back(what);
     return *place;
   }
+  /// Where the k-th point goes with the average of the shifts around it.
+  Vec3 smoothed(std::size_t k) {
+    if (settings_.smoothing_mm == 0.0 || !surface_.is_cloud()) return before_[k] - shifts_[k] * surface_.approach();
+    const double average = average_shift(k);
+    const double aside = shifts_[k] - average;
+    if (std::abs(aside) > kMostAsideMm) {
+      throw DataError(name_, fmt::format("{} at {} mm", names_[k], in_words(before_[k])),
+                      fmt::format("a surface {:.2f} mm beside that around it, measured from the simulated one", aside),
+                      fmt::format("at most {} mm", kMostAsideMm),
+                      "Is this the same tissue? --smoothing-mm 0 lays every point down by itself.");
+    }
+    result.shift_noise_mm += aside * aside;
+    return before_[k] - average * surface_.approach();
+  }
   ProjectedPath finish() {
-    if (count_ > 0) result.mean_shift_mm /= static_cast<double>(count_);
+    if (count_ > 0) {
+      result.mean_shift_mm /= static_cast<double>(count_);
+      result.shift_noise_mm = std::sqrt(result.shift_noise_mm / static_cast<double>(count_));
+    }
     return result;
   }
   ProjectedPath result;
 
  private:
+  [[nodiscard]] double average_shift(std::size_t k) const {
+    Mat3 system = Mat3::Zero();
+    Vec3 right = Vec3::Zero();
+    const double radius = settings_.smoothing_mm;
+    for (std::size_t i = 0; i < shifts_.size(); ++i) {
+      const Vec2 d = (in_picture_[i] - in_picture_[k]) / radius;
+      if (d.squaredNorm() >= 1.0) continue;
+      const double weight = std::pow(1.0 - d.squaredNorm(), 2);
+      const Vec3 basis(1.0, d.x(), d.y());
+      system += weight * basis * basis.transpose();
+      right += weight * shifts_[i] * basis;
+    }
+    system.diagonal().tail<2>().array() += 1e-9 * system(0, 0);  // points on a line leave the slope across it open
+    return system.ldlt().solve(right).x();
+  }
+
   const MeasuredSurface& surface_;
   const ProjectSettings& settings_;
   const std::filesystem::path& name_;
+  ViewFrame frame_ = view_along(surface_.approach());
+  std::vector<Vec2> in_picture_;
+  Points before_;
+  std::vector<double> shifts_;  // along the approach, mm
+  std::vector<std::string> names_;
   std::size_t count_ = 0;
 };
 
@@ -114,6 +158,8 @@ std::vector<std::string> validate(const ProjectSettings& s) {
     violations.push_back(fmt::format("mark_waypoints: expected 8 or more, found {}", s.mark_waypoints));
   if (!(std::isfinite(s.max_gap_mm) && s.max_gap_mm >= 0.0))
     violations.push_back(fmt::format("max_gap_mm: expected 0 or more, found {}", s.max_gap_mm));
+  if (!(std::isfinite(s.smoothing_mm) && s.smoothing_mm >= 0.0))
+    violations.push_back(fmt::format("smoothing_mm: expected 0 or more, found {}", s.smoothing_mm));
   if (!(std::isfinite(s.max_shift_mm) && s.max_shift_mm >= 0.0))
     violations.push_back(fmt::format("max_shift_mm: expected 0 or more, found {}", s.max_shift_mm));
   return violations;
@@ -146,6 +192,15 @@ Vec3 approach_of(const ToolPath& path, const Mat4& T_robot_sim) {
   return sum.normalized();
 }
 
+Mat4 at_true_size(double scale, const Vec3& center_mm) {
+  INCISE_REQUIRE(std::isfinite(scale) && scale > 0.0 && center_mm.allFinite(),
+                 fmt::format("expected a scale above 0 and a finite centre, found a scale of {}", scale));
+  Mat4 T = Mat4::Identity();
+  T.topLeftCorner<3, 3>() /= scale;
+  T.topRightCorner<3, 1>() = (1.0 - 1.0 / scale) * center_mm;
+  return T;
+}
+
 ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const MeasuredSurface& surface,
                            const ProjectSettings& settings, const std::filesystem::path& name) {
   const std::vector<std::string> violations = validate(settings);
@@ -162,18 +217,17 @@ ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const 
   result.is_closed = settings.kind == PathKind::Mark ? path.tumor_edge.is_closed : path.is_closed;
   result.T_robot_sim = T_robot_sim;
   result.tumor_edge.is_closed = path.tumor_edge.is_closed;
-  for (std::size_t i = 0; i < path.tumor_edge.points.size(); ++i) {
-    result.tumor_edge.points.push_back(
-        lay_down(similarity * path.tumor_edge.points[i], fmt::format("tumour edge point {}", i)).position_mm);
+  const std::size_t edge = path.tumor_edge.points.size();
+  for (std::size_t i = 0; i < edge; ++i)
+    static_cast<void>(lay_down(similarity * path.tumor_edge.points[i], fmt::format("tumour edge point {}", i)));
+  for (const Waypoint& wanted : course_of(path, similarity, surface.approach(), settings)) {
+    const CloudPlace place = lay_down(wanted.position_mm, fmt::format("waypoint {}", result.waypoints.size()));
+    result.waypoints.push_back(wanted);
+    if (settings.axis_mode == AxisMode::SurfaceNormal) result.waypoints.back().axis = -place.normal;
   }
-  const std::vector<Waypoint> course = course_of(path, similarity, surface.approach(), settings);
-  for (std::size_t i = 0; i < course.size(); ++i) {
-    const CloudPlace place = lay_down(course[i].position_mm, fmt::format("waypoint {}", i));
-    Waypoint w = course[i];
-    w.position_mm = place.position_mm;
-    if (settings.axis_mode == AxisMode::SurfaceNormal) w.axis = -place.normal;
-    result.waypoints.push_back(w);
-  }
+  for (std::size_t i = 0; i < edge; ++i) result.tumor_edge.points.push_back(lay_down.smoothed(i));
+  for (std::size_t i = 0; i < result.waypoints.size(); ++i)
+    result.waypoints[i].position_mm = lay_down.smoothed(edge + i);
   return lay_down.finish();
 }
 

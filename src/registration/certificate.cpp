@@ -141,11 +141,21 @@ Certificate certificate_of(const SampledSurface& source, const SampledSurface& t
     certificate.weakest_sd_mm = std::max(certificate.weakest_sd_mm, std::sqrt(variance));
     certificate.covariance += variance * direction * direction.transpose();
   }
+  set_covariance(certificate, certificate.covariance, certificate.center_mm, overlap.length);
   certificate.sd_mm = std::sqrt(total);
-  certificate.rotation_sd_deg = units::deg_from_rad(std::sqrt(certificate.covariance.diagonal().head<3>().sum()));
-  certificate.translation_sd_mm = std::sqrt(certificate.covariance.diagonal().segment<3>(3).sum());
-  certificate.scale_sd = std::sqrt(certificate.covariance(6, 6));
   return certificate;
+}
+
+void set_covariance(Certificate& certificate, const Mat7& covariance, const Vec3& center, double length) {
+  certificate.covariance = covariance;
+  certificate.center_mm = center;
+  const Vec7 variances = covariance.diagonal();
+  certificate.rotation_sd_deg = units::deg_from_rad(std::sqrt(variances.head<3>().sum()));
+  certificate.translation_sd_mm = std::sqrt(variances.segment<3>(3).sum());
+  certificate.scale_sd = std::sqrt(variances[6]);
+  // A turn about any axis moves a point by two thirds of its squared arm, on the average over all directions.
+  certificate.sd_mm =
+      std::sqrt(variances.segment<3>(3).sum() + length * length * (variances.head<3>().sum() * 2.0 / 3.0 + variances[6]));
 }
 
 }  // namespace incise

@@ -11,4 +11,9 @@ namespace incise {
 [[nodiscard]] Certificate certificate_of(const SampledSurface& source, const SampledSurface& target,
                                          const Similarity& t, double width, bool with_scale, Workers& workers);
 
+/// Puts another covariance (about `center`, rms arm `length`) in the place of the one from noise alone, and the standard
+/// deviations that follow from it. What the shapes alone say (visible, sharpness, weakest) stays.
+void set_covariance(Certificate& certificate, const Eigen::Matrix<double, 7, 7>& covariance, const Vec3& center,
+                    double length);
+
 }  // namespace incise

@@ -2,6 +2,7 @@
 #include "registration/icp.hpp"
 #include "registration/levels.hpp"
 #include "registration/pose_search.hpp"
+#include "registration/settling.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/registration/register_clouds.hpp>
@@ -181,7 +182,8 @@ class Registering {
       result.reasons.emplace_back("too few points of the source find a counterpart on the target");
       return;
     }
-    const Candidate& best = candidates.front();
+    Candidate best = candidates.front();
+    const std::optional<SettledPose> settled = settled_from(best);
     result.T_target_source = frame_.outwards(best.transform);
     result.iterations = best.iterations;
     result.score = best.score;
@@ -192,8 +194,29 @@ class Registering {
     find_rival(result, best, candidates, poses);
     result.certificate =
         certificate_of(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
+    if (settled) take_over(result, *settled);
     judge(result, best);
     to_millimetres(result.certificate);
+  }
+
+  /// The best pose once more, together with the settling. Its score stays that of the shapes as they are.
+  std::optional<SettledPose> settled_from(Candidate& best) const {
+    if (!(settings_.settling_mm > 0.0)) return std::nullopt;
+    SettlingSettings settings;
+    settings.scale = settings_.scale;
+    settings.largest = settings_.settling_mm / frame_.length;
+    SettledPose settled = settled_pose(source_, target_, best.transform, settings, workers_);
+    best.iterations += settled.iterations;
+    best.has_converged = best.has_converged && settled.has_converged && !settled.is_degenerate;
+    if (!settled.is_degenerate) best.transform = settled.transform;
+    return settled;
+  }
+
+  /// What noise and settling leave open, in place of what noise alone does.
+  void take_over(Registration& result, const SettledPose& settled) const {
+    result.settled_rms_mm = frame_.length * settled.settled_rms;
+    result.settled_max_mm = frame_.length * settled.settled_largest;
+    set_covariance(result.certificate, settled.covariance, settled.center, settled.length);
   }
 
   void measure_residuals(Registration& result, const Candidate& best) {
@@ -213,6 +236,7 @@ class Registering {
     const auto above = static_cast<double>(result.residuals_mm.size());
     result.rmse_mm = above > 0.0 ? frame_.length * std::sqrt(squares / above) : 0.0;
     result.inlier_fraction = static_cast<double>(inliers) / static_cast<double>(all.size());
+    result.fit_fraction = pairs.empty() ? 0.0 : static_cast<double>(inliers) / static_cast<double>(pairs.size());
   }
 
   void find_rival(Registration& result, const Candidate& best, const std::vector<Candidate>& candidates,
@@ -249,6 +273,10 @@ class Registering {
     fail(result.inlier_fraction < settings_.least_inliers, RegistrationOutcome::PoorFit,
          fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %",
                      100.0 * result.inlier_fraction, 100.0 * settings_.least_inliers));
+    fail(result.fit_fraction < settings_.least_fit, RegistrationOutcome::PoorFit,
+         fmt::format("only {:.0f} % of the source's points above the target lie on it, expected at least {:.0f} %: another "
+                     "shape, or its mirror image",
+                     100.0 * result.fit_fraction, 100.0 * settings_.least_fit));
     fail(result.rmse_mm > settings_.largest_rmse * frame_.length, RegistrationOutcome::PoorFit,
          fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm,
                      settings_.largest_rmse * frame_.length));
@@ -312,10 +340,14 @@ std::vector<std::string> validate(const RegistrationSettings& s) {
   check(s.largest_rmse > 0.0, fmt::format("largest_rmse: expected a share above 0, found {}", s.largest_rmse));
   check(s.least_inliers >= 0.0 && s.least_inliers <= 1.0,
         fmt::format("least_inliers: expected a share in [0, 1], found {}", s.least_inliers));
+  check(s.least_fit >= 0.0 && s.least_fit <= 1.0,
+        fmt::format("least_fit: expected a share in [0, 1], found {}", s.least_fit));
   check(s.largest_sd > 0.0, fmt::format("largest_sd: expected a share above 0, found {}", s.largest_sd));
   check(s.least_sharpness >= 0.0, fmt::format("least_sharpness: expected 0 or more, found {}", s.least_sharpness));
   check(s.largest_rival > 0.0 && s.largest_rival <= 1.0,
         fmt::format("largest_rival: expected a share in (0, 1], found {}", s.largest_rival));
+  check(std::isfinite(s.settling_mm) && s.settling_mm >= 0.0,
+        fmt::format("settling_mm: expected 0 or more, found {}", s.settling_mm));
   check(!s.start || s.start->scale > 0.0, "start: expected a scale above 0");
   return problems;
 }

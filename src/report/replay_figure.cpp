@@ -61,20 +61,33 @@ void draw_paths(SvgWriter& svg, const ReplayPicture& picture) {
                                      number_text(picture.max_deviation_mm)));
 }
 
-void draw_curve(SvgWriter& svg, const ReplayPicture& picture, const std::vector<double>& values, const Vec2& corner,
-                double height, std::string_view name, bool has_x_name) {
+/// What the curves run over.
+struct Course {
+  std::string name;
+  std::vector<double> at;
+};
+
+/// Way of the tip, mm.
+std::vector<double> along(const Points& tip_mm) {
+  std::vector<double> way{0.0};
+  for (std::size_t i = 1; i < tip_mm.size(); ++i) way.push_back(way.back() + (tip_mm[i] - tip_mm[i - 1]).norm());
+  return way;
+}
+
+void draw_curve(SvgWriter& svg, const Course& course, const std::vector<double>& values, const Vec2& corner,
+                double height, std::string_view name) {
   const double high = rounded_up(std::max(1e-3, 1.05 * *std::max_element(values.begin(), values.end())));
   const PlotArea area{.corner = corner,
                       .size = {420.0, height},
-                      .x_low = picture.time_s.front(),
-                      .x_high = picture.time_s.back(),
+                      .x_low = course.at.front(),
+                      .x_high = course.at.back(),
                       .y_low = 0.0,
                       .y_high = high};
   draw_y_axis(svg, area, round_ticks(0.0, high, 4), name);
-  draw_x_axis(svg, area, round_ticks(area.x_low, area.x_high, 6), has_x_name ? "time, s" : "");
+  draw_x_axis(svg, area, round_ticks(area.x_low, area.x_high, 6), course.name);
   std::vector<Vec2> line;
   for (std::size_t i = 0; i < values.size(); i += stride_of(values.size()))
-    line.push_back(area.at(picture.time_s[i], values[i]));
+    line.push_back(area.at(course.at[i], values[i]));
   svg.polyline(line, false, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"", ink::kSeries[1]));
 }
 
@@ -83,11 +96,12 @@ void draw_curve(SvgWriter& svg, const ReplayPicture& picture, const std::vector<
 std::string replay_figure_svg(const ReplayPicture& picture) {
   require_drawable(picture);
   SvgWriter svg(kWidth, kHeight, "The program as the player ran it",
-                "The tip's path over the intended one, its speed and its deviation over time, while it cuts.");
+                "The tip's path over the intended one, its speed over time and its deviation along the way, while it cuts.");
   svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
   draw_paths(svg, picture);
-  draw_curve(svg, picture, picture.tip_speed_mm_s, {420.0, 44.0}, 130.0, "tip speed, mm/s", false);
-  draw_curve(svg, picture, picture.deviation_mm, {420.0, 222.0}, 130.0, "deviation, mm", true);
+  draw_curve(svg, {"time, s", picture.time_s}, picture.tip_speed_mm_s, {420.0, 44.0}, 110.0, "tip speed, mm/s");
+  draw_curve(svg, {"way of the tip, mm", along(picture.tip_mm)}, picture.deviation_mm, {420.0, 226.0}, 110.0,
+             "deviation, mm");
   return svg.finish();
 }
 

@@ -1,7 +1,11 @@
+#include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/transform_json.hpp>
 #include <incise/storage/registration_json.hpp>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <cmath>
 
 namespace incise {
@@ -69,7 +73,10 @@ Json to_json(const Registration& r) {
       json[key] = nullptr;
     }
   }
+  json["settled_rms_mm"] = number(r.settled_rms_mm);
+  json["settled_max_mm"] = number(r.settled_max_mm);
   json["noise_mm"] = number(r.noise_mm);
+  json["fit_fraction"] = number(r.fit_fraction);
   json["target_fraction"] = number(r.target_fraction);
   json["drift_sigma_mm"] = number(r.drift_sigma_mm);
   json["iterations"] = r.iterations;
@@ -81,6 +88,39 @@ Json to_json(const Registration& r) {
   json["scale_suspicious"] = r.is_scale_suspicious;
   json["certificate"] = has_transform ? certificate_json(r.certificate) : Json(nullptr);
   return json;
+}
+
+namespace {
+
+/// A finite number of an object; nothing where the key is missing or null.
+std::optional<double> number_of(const Json& object, const char* key, const std::filesystem::path& file,
+                                const std::string& at = "") {
+  const auto found = object.find(key);
+  if (found == object.end() || found->is_null()) return std::nullopt;
+  if (!found->is_number()) throw DataError(file, at + "/" + key, found->dump(), "a number");
+  return found->get<double>();
+}
+
+}  // namespace
+
+RegistrationRecord read_registration(const std::filesystem::path& file) {
+  const Json document = read_json(file);
+  if (!document.is_object()) throw DataError(file, "", "no JSON object", "what `incise register` writes");
+  RegistrationRecord record;
+  if (const auto found = document.find("converged"); found != document.end()) {
+    if (!found->is_boolean()) throw DataError(file, "/converged", found->dump(), "true or false");
+    record.is_converged = found->get<bool>();
+  }
+  if (const auto found = document.find("T_target_source"); found == document.end() || !found->is_null()) {
+    record.T_target_source = transform_in(document, "T_target_source", file);
+    record.scale = std::cbrt(record.T_target_source->topLeftCorner<3, 3>().determinant());
+  }
+  if (const auto scale = number_of(document, "scale", file)) record.scale = *scale;
+  record.rmse_mm = number_of(document, "rmse_mm", file);
+  record.inlier_fraction = number_of(document, "inlier_fraction", file);
+  if (const auto found = document.find("certificate"); found != document.end() && found->is_object())
+    record.scale_sd = number_of(*found, "scale_sd", file, "/certificate");
+  return record;
 }
 
 }  // namespace incise

@@ -6,7 +6,7 @@ import math
 import unittest
 
 import small_photo
-from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest
+from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, files_below
 from small_photo import GREEN, RED
 
 SCALE = 0.06  # mm per pixel
@@ -285,6 +285,64 @@ class ProjectTest(CommandTest):
         for w in path["waypoints"]:
             self.assertEqual((w["depth_mm"], w["speed_mm_s"]), (1, 2))
             self.assertAlmostEqual(math.hypot(w["position_mm"][0] - 400, w["position_mm"][1] - 50), 10.0, delta=0.06)
+
+    def test_a_folder_holds_path_tissue_and_manifest_and_a_file_has_its_manifest_beside_it(self):
+        result = self.json_of(*self.ARGUMENTS[:-1], "projected")
+        self.assertEqual(files_below(self.folder / "projected"), ["manifest.json", "path.json", "surface.ply"])
+        self.assertEqual(result["path"], "projected/path.json")
+        self.json_of(*self.ARGUMENTS)
+        for manifest in (self.folder / "projected" / "manifest.json", self.folder / "robot.manifest.json"):
+            kept = json.loads(manifest.read_text())
+            self.assertEqual(kept["settings"]["metric"], "ct")
+            self.assertEqual([entry["path"] for entry in kept["inputs"]], ["path.json", "registration.json", "cloud.ply"])
+        self.assertEqual((self.folder / "projected" / "path.json").read_text(), (self.folder / "robot.json").read_text())
+
+    def radii(self):
+        path = json.loads((self.folder / "robot.json").read_text())
+        points = [w["position_mm"] for w in path["waypoints"]]
+        middle = [sum(p[i] for p in points) / len(points) for i in range(3)]
+        determinant = path["T_robot_sim"][0][1] * -path["T_robot_sim"][1][0] * path["T_robot_sim"][2][2]
+        return middle, [math.hypot(p[0] - middle[0], p[1] - middle[1]) for p in points], determinant
+
+    def test_the_simulation_keeps_its_size_and_the_path_its_middle(self):
+        self.write_transform(scale=1.02)
+        result = self.json_of(*self.ARGUMENTS)
+        middle, radii, determinant = self.radii()
+        self.assertEqual((result["metric"], result["scale_center"]), ("ct", "path"))
+        self.assertAlmostEqual(determinant, 1.0, places=9)
+        for radius in radii:
+            self.assertAlmostEqual(radius, 15.0, places=6)
+        self.assertAlmostEqual(middle[0], 400.0, places=6)
+        self.json_of(*self.ARGUMENTS, "--metric", "camera")
+        _, radii, determinant = self.radii()
+        self.assertAlmostEqual(determinant, 1.02**3, places=9)
+        for radius in radii:
+            self.assertAlmostEqual(radius, 15.3, places=6)
+
+    def test_the_cameras_lengths_are_shortened_about_its_origin_or_a_given_place(self):
+        self.write_transform(scale=1.02)
+        # A camera whose frame is the robot's, but for a shift.
+        (self.folder / "camera.json").write_text(json.dumps({"T_robot_camera": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 400], [0, 0, 0, 1]]}))
+        result = self.json_of(*self.ARGUMENTS, "--camera", "camera.json")
+        self.assertEqual(result["scale_center"], "camera")
+        self.assertEqual(result["scale_center_mm"], [0, 0, 400])
+        middle, radii, _ = self.radii()
+        self.assertAlmostEqual(middle[0], 400.0 / 1.02, places=6)
+        self.assertAlmostEqual(middle[1], 50.0 / 1.02, places=6)
+        self.assertAlmostEqual(middle[2], 400.0 + 100.5 / 1.02, delta=0.01)
+        self.assertAlmostEqual(result["scale_shift_mm"], (1 - 1 / 1.02) * math.hypot(400, 50, 100), places=6)
+        self.assertAlmostEqual(max(radii), 15.0, places=6)
+        result = self.json_of(*self.ARGUMENTS, "--scale-center", 400, 50, 100.5)
+        self.assertEqual(result["scale_center"], "given")
+        self.assertLess(result["scale_shift_mm"], 0.02)
+        self.assert_refused(self.incise(*self.ARGUMENTS, "--metric", "camera", "--scale-center", 0, 0, 0), BAD_CASE, "--scale-center")
+
+    def test_an_uncertain_scale_far_from_its_center_is_told(self):
+        self.write_transform(scale=1.02, certificate={"scale_sd": 0.003})
+        (self.folder / "camera.json").write_text(json.dumps({"T_robot_camera": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 400], [0, 0, 0, 1]]}))
+        done = self.incise(*self.ARGUMENTS, "--camera", "camera.json")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("is uncertain by 0.0030", done.stderr)
 
     def refused(self, *says, status=BAD_DATA):
         self.assert_refused(self.incise(*self.ARGUMENTS), status, *says)

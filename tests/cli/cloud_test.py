@@ -98,6 +98,66 @@ class RegisterTest(CommandTest):
         self.assert_register_refused(BAD_DATA, "nan.ply", "line 28", "nan", target="nan.ply")
         self.assert_register_refused(BAD_DATA, "missing.ply", target="missing.ply")
 
+    def assert_chain_ends(self, *says):
+        """No path, and so no program, follows from a registration that failed."""
+        path = {"frame": "sim_stretched", "kind": "incise", "closed": True, "tumor_edge": []}
+        path["waypoints"] = [{"position_mm": [8 * math.cos(a), 8 * math.sin(a), 10], "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for a in range(6)]
+        (self.folder / "path.json").write_text(json.dumps(path))
+        done = self.incise("project", "path.json", "--transform", self.out / "registration.json", "--surface", "b.ply", "-o", "projected")
+        self.assert_refused(done, BAD_DATA, "registration.json", "a registration that converged", *says)
+        self.assert_nothing_written(self.folder / "projected")
+
+    def test_no_path_follows_from_a_planar_cloud(self):
+        numbers = random.Random(5)
+        write_ply(self.folder / "flat.ply", [(numbers.uniform(-30, 30), numbers.uniform(-20, 20), 0.0) for _ in range(600)])
+        self.json_of(*self.register(source="flat.ply"), status=NOT_ACCEPTABLE)
+        self.assert_chain_ends("/converged", "false")
+
+    def test_no_path_follows_from_points_in_one_place(self):
+        write_ply(self.folder / "place.ply", [(1.0, 2.0, 3.0)] * 50)
+        result = self.json_of(*self.register(source="place.ply"), status=NOT_ACCEPTABLE)
+        self.assertEqual(result["outcome"], "degenerate")
+        self.assert_chain_ends("/T_target_source", "null")
+
+    def test_a_mirror_image_is_no_registration(self):
+        write_ply(self.folder / "mirror.ply", turned([(-x, y, z) for x, y, z in hill(1200, 2)]))
+        result = self.json_of(*self.register(target="mirror.ply"), status=NOT_ACCEPTABLE)
+        self.assertFalse(result["converged"])
+        self.assertTrue(any("mirror image" in reason for reason in result["reasons"]), result["reasons"])
+        self.assert_chain_ends("/converged", "false")
+
+    def test_identical_clouds_stay_where_they_are(self):
+        result = self.json_of(*self.register(target="a.ply"))
+        self.assertAlmostEqual(result["scale"], 1.0, places=4)
+        self.assertLess(result["rotation_deg"], 0.01)
+        self.assertLess(result["rmse_mm"], 0.001)
+
+    def test_the_order_of_the_points_does_not_matter(self):
+        points = hill(1200, 1)
+        ordered = self.json_of(*self.register())
+        random.Random(9).shuffle(points)
+        write_ply(self.folder / "a.ply", points)
+        shuffled = self.json_of(*self.register())
+        self.assertTrue(shuffled["converged"])
+        self.assertAlmostEqual(shuffled["scale"], ordered["scale"], delta=5e-4)
+        for row, other in zip(ordered["T_target_source"][:3], shuffled["T_target_source"][:3]):
+            self.assertAlmostEqual(row[3], other[3], delta=0.1)
+
+    def test_settling_is_told_and_not_taken_for_a_shift(self):
+        settled = [(x, y, z - 1.0 * math.exp(-((x - 6) ** 2 + y * y) / 200)) for x, y, z in hill(2500, 4)]
+        write_ply(self.folder / "settled.ply", settled)
+        write_ply(self.folder / "a.ply", hill(2500, 1))
+        rigid = self.json_of(*self.register("--scale", "fixed", target="settled.ply"))
+        found = self.json_of(*self.register("--scale", "fixed", "--settling-mm", 1, target="settled.ply"))
+        self.assertEqual(rigid["settled_max_mm"], 0)
+        self.assertAlmostEqual(found["settled_max_mm"], 1.0, delta=0.4)
+
+        # Another centre of the turn would hide the shift: it is told at the hill's middle.
+        def shift(result):
+            return math.hypot(*(row[2] * 14.0 + row[3] for row in result["T_target_source"][:2]))
+
+        self.assertLess(shift(found), 0.6 * shift(rigid))
+
     def test_a_scale_that_is_none_is_the_command_lines_fault(self):
         for scale in ("some", "1.1,0.9", "0,1", "0.9", "0.9,1.1,2"):
             with self.subTest(scale=scale):
@@ -126,6 +186,25 @@ class SurfaceTest(CommandTest):
         self.assertEqual(len(result["planes"]), 1)
         self.assertEqual(result["planes"][0]["points"], len(table))
         self.assertTrue((self.folder / "tissue.vtp").is_file())
+
+    def test_a_plane_of_known_height_gives_the_cameras_scale(self):
+        scale = 1.02
+        table = [(float(i), float(j), 300.0) for i in range(-40, 41, 2) for j in range(-30, 31, 2)]
+        scan = [(scale * x, scale * y, scale * z) for x, y, z in [(x, y, 297.0 - z) for x, y, z in hill(1500, 1) if z > 0] + table]
+        write_ply(self.folder / "scan.ply", scan)
+        (self.folder / "camera.json").write_text(json.dumps({"T_robot_camera": [[1, 0, 0, 500], [0, -1, 0, 0], [0, 0, -1, 310], [0, 0, 0, 1]]}))
+        arguments = ("surface", "scan.ply", "-o", "tissue.ply", "--planes", "1", "--plane-tolerance-mm", "0.5", "--approach", 0, 0, 1)
+        result = self.json_of(*arguments, "--camera", "camera.json", "--plane-z-mm", 10)
+        self.assertAlmostEqual(result["camera_scale"], scale, places=5)
+        self.assertLess(result["plane_tilt_deg"], 0.01)
+        (self.folder / "tissue.ply").unlink()
+        for more, status, says in (
+            (("--camera", "camera.json", "--plane-z-mm", 100), BAD_DATA, "the largest plane"),
+            (("--camera", "camera.json"), BAD_CASE, "--plane-z-mm"),
+            (("--plane-z-mm", 10), BAD_CASE, "--camera"),
+        ):
+            self.assert_refused(self.incise(*arguments, *more), status, says)
+            self.assert_nothing_written(self.folder / "tissue.ply")
 
     def test_a_box_without_points_is_told(self):
         write_ply(self.folder / "scan.ply", hill(100, 1))

@@ -45,6 +45,22 @@ Mat4 registration(double scale = 1.02) {
   return T;
 }
 
+TEST(AtTrueSize, TakesTheScaleOutOfSimulationAndCloudAlike) {
+  const double scale = 1.02;
+  const Mat4 T = registration(scale);
+  const Vec3 camera(10.0, -20.0, 400.0);
+  const Mat4 shrink = at_true_size(scale, camera);
+  const Mat4 rigid = shrink * T;
+  const Mat3 R = rigid.topLeftCorner<3, 3>();
+  EXPECT_LT((R.transpose() * R - Mat3::Identity()).norm(), 1e-12);
+  EXPECT_NEAR(R.determinant(), 1.0, 1e-12);
+  EXPECT_LT(((shrink * camera.homogeneous()).head<3>() - camera).norm(), 1e-12) << "the centre stands still";
+  const Vec3 p(3.0, 4.0, 5.0);
+  const Vec3 seen = (T * p.homogeneous()).head<3>();
+  EXPECT_LT(((rigid * p.homogeneous()).head<3>() - (camera + (seen - camera) / scale)).norm(), 1e-12);
+  EXPECT_THROW(static_cast<void>(at_true_size(0.0, camera)), InvalidArgument);
+}
+
 TEST(ProjectPath, LaysTheIncisionOntoTheMeasuredSurface) {
   const Mat4 T = registration();
   const ToolPath path = simulated(T.inverse());

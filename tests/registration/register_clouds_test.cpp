@@ -183,5 +183,54 @@ TEST_F(RegisterClouds, StopsWhenAsked) {
   EXPECT_EQ(register_clouds(good, good, {}, workers_, impatient).outcome, RegistrationOutcome::Cancelled);
 }
 
+/// A dip of 1 mm beside the middle, seen by a camera with noise.
+PointCloud dipped_hill(std::size_t count, Random& random) {
+  PointCloud cloud = testing::hill(count, random);
+  for (Vec3& p : cloud.points) p.z() -= std::exp(-((p.x() - 6.0) * (p.x() - 6.0) + p.y() * p.y()) / 200.0);
+  for (Vec3& p : cloud.points) p += 0.1 * Vec3(random.normal(), random.normal(), random.normal());
+  cloud.normals.clear();
+  return cloud;
+}
+
+TEST(Settling, ADipIsNotTakenForAShiftWhereSettlingIsLookedFor) {
+  Random random(21);
+  Workers workers(2);
+  const PointCloud source = testing::hill(2500, random);
+  PointCloud target = with_normals(dipped_hill(4000, random), -Vec3::UnitZ(), 16, workers);
+  RegistrationSettings settings;
+  settings.scale = ScaleRange::fixed();
+  settings.start = Similarity{};
+  const Registration rigid = register_clouds(source, target, settings, workers, silent);
+  settings.settling_mm = 1.0;
+  const Registration settled = register_clouds(source, target, settings, workers, silent);
+  ASSERT_EQ(settled.outcome, RegistrationOutcome::Converged);
+  EXPECT_EQ(rigid.settled_max_mm, 0.0);
+  EXPECT_NEAR(settled.settled_max_mm, 1.0, 0.4);
+  const auto shift = [](const Registration& r) { return r.T_target_source(Vec3(0.0, 0.0, 10.0)).head<2>().norm(); };
+  EXPECT_LT(shift(settled), 0.5 * shift(rigid)) << shift(settled) << " and " << shift(rigid) << " mm";
+  EXPECT_GT(settled.certificate.sd_mm, rigid.certificate.sd_mm) << "what settling leaves open is told";
+}
+
+TEST(Settling, IsFoundBitForBitOnAnyNumberOfThreads) {
+  Random random(22);
+  Workers one(1);
+  Workers three(3);
+  const PointCloud source = testing::hill(800, random);
+  const PointCloud target = with_normals(dipped_hill(1500, random), -Vec3::UnitZ(), 16, one);
+  RegistrationSettings settings;
+  settings.start = Similarity{};
+  settings.settling_mm = 1.0;
+  const Registration a = register_clouds(source, target, settings, one, silent);
+  const Registration b = register_clouds(source, target, settings, three, silent);
+  EXPECT_EQ(matrix_of(a.T_target_source), matrix_of(b.T_target_source));
+  EXPECT_EQ(a.settled_rms_mm, b.settled_rms_mm);
+}
+
+TEST(Settling, RefusesALengthBelowZero) {
+  RegistrationSettings settings;
+  settings.settling_mm = -1.0;
+  EXPECT_EQ(validate(settings).size(), 1U);
+}
+
 }  // namespace
 }  // namespace incise

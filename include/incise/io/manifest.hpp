@@ -32,6 +32,9 @@ struct Manifest {
 /// @throws DataError if the file cannot be written.
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
+/// The same for a result that is one file: `FILE.manifest.json` beside it, FILE without its ending.
+void write_manifest_beside(const std::filesystem::path& file, const Manifest& manifest);
+
 /// Reads `folder/manifest.json`; keys that this version does not know are ignored. @throws DataError naming the place.
 [[nodiscard]] Manifest read_manifest(const std::filesystem::path& folder);
 

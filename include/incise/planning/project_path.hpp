@@ -18,7 +18,9 @@ struct ProjectSettings {
   int mark_waypoints = 96;       ///< along the tumour edge, >= 8
   std::optional<double> incise_depth_mm = std::nullopt;    ///< of an incision, > 0; absent: as the path says
   std::optional<double> incise_speed_mm_s = std::nullopt;  ///< > 0; absent: as the path says
-  double max_gap_mm = 2.0;    ///< farthest from a waypoint to the nearest measured point, in the picture, >= 0
+  double max_gap_mm = 2.0;  ///< farthest from a waypoint to the nearest measured point, in the picture, >= 0
+  double smoothing_mm =
+      10.0;  ///< radius over which the shift onto the surface is averaged, >= 0; 0: every point by itself
   double max_shift_mm = 5.0;  ///< farthest along the approach that a point is moved onto the surface, >= 0
   AxisMode axis_mode = AxisMode::Approach;  ///< the tool as the path holds it, or against the measured surface's normal
 };
@@ -31,6 +33,9 @@ class MeasuredSurface {
   /// A mesh without triangles is a cloud. @throws InvalidArgument as CloudSurface and SurfaceQuery.
   MeasuredSurface(const TriMesh& surface, const Vec3& approach);
   [[nodiscard]] const Vec3& approach() const { return approach_; }
+  [[nodiscard]] bool is_cloud() const {
+    return cloud_.has_value();
+  }  ///< noisy points; else triangles, taken as they are
   /// The surface seen at p; nullopt where there is none. A mesh has no gaps where it has triangles.
   [[nodiscard]] std::optional<CloudPlace> at(const Vec3& p) const;
 
@@ -45,22 +50,31 @@ struct ProjectedPath {
   ToolPath path;
   double max_gap_mm = 0.0;    ///< farthest from any point of path or edge to the nearest measured point, in the picture
   double max_shift_mm = 0.0;  ///< farthest that a point was moved along the approach
-  double mean_shift_mm = 0.0;  ///< signed: positive = the measured surface lies above the simulated one
-  std::size_t bridged = 0;     ///< points more than 0.5 mm from a measured one
+  double mean_shift_mm = 0.0;   ///< signed: positive = the measured surface lies above the simulated one
+  double shift_noise_mm = 0.0;  ///< rms of the shifts about their local averages
+  std::size_t bridged = 0;      ///< points more than 0.5 mm from a measured one
 };
 
 /// Mean of the waypoints' axes after a similarity: the direction along which a path is laid down. @pre as project_path.
 [[nodiscard]] Vec3 approach_of(const ToolPath& path, const Mat4& T_robot_sim);
 
-/// Takes path and tumour edge through a similarity and lays them along the approach onto the measured surface.
-/// A marking path follows the tumour edge, an incision the path; depth and speed are lengths of the real world and are
-/// not scaled.
+/// The map p -> center + (p - center) / scale, robot's frame. A camera whose lengths are all `scale` times too long
+/// about `center` sees true places through its inverse: applied after T_robot_sim (whose scale is `scale`) it gives the
+/// rigid transform of a simulation at true size, applied to the measured points the tissue at true size.
+/// @pre scale > 0, finite.
+[[nodiscard]] Mat4 at_true_size(double scale, const Vec3& center_mm);
+
+/// Takes path and tumour edge through a similarity and lays them along the approach onto the measured surface. The
+/// simulated surface knows the shape, the measured one where it lies: how far a point is moved is a smooth function of
+/// its place (a local plane in the picture, weights (1 - d²/r²)²), so that a cloud's noise is averaged over more
+/// than the patch under each point. A marking path follows the tumour edge, an incision the path; depth and speed are
+/// lengths of the real world and are not scaled.
 /// @param path         frame sim_stretched; for a marking path with a tumour edge.
 /// @param T_robot_sim  rotation, one positive scale and a shift, mm.
 /// @param name         stands for the surface in messages.
 /// @throws InvalidArgument with every violation of the settings, for another frame or a T that is no similarity;
-/// DataError naming the first point that misses the surface, lies beyond its rim, in a gap that is too large, or too
-/// far above or below it.
+/// DataError naming the first point that misses the surface, lies beyond its rim, in a gap that is too large, too
+/// far above or below it, or more than 1 mm from where the points around it are moved to.
 [[nodiscard]] ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const MeasuredSurface& surface,
                                          const ProjectSettings& settings, const std::filesystem::path& name);
 

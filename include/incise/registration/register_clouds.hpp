@@ -14,7 +14,7 @@
 namespace incise {
 
 /// Settings of register_clouds. Lengths are shares of the target's root mean square radius, so that units do not
-/// matter.
+/// matter; but for `settling_mm`, which is in the clouds' unit.
 struct RegistrationSettings {
   ScaleRange scale{0.9, 1.1};
   double outlier_weight = 0.3;  ///< w of the drift: share of the target that belongs to nothing in the source, (0, 1)
@@ -23,11 +23,13 @@ struct RegistrationSettings {
   bool finish_with_icp = true;       ///< point to plane after the drift
   int max_iterations = 300;          ///< of the drift, and of the finish
   std::size_t drift_points = 20000;  ///< a larger cloud takes part in the drift as about so many clusters
-  double largest_rmse = 0.03;        ///< poorer fits are not a success
-  double least_inliers = 0.15;       ///< of the source's points; fewer are not a success
-  double largest_sd = 0.01;          ///< of the pose along its weakest direction, for a success
-  double least_sharpness = 7e-4;     ///< see Certificate::sharpness
-  double largest_rival = 0.95;       ///< score of the runner-up over that of the best, for a success
+  double settling_mm = 0.0;       ///< how far tissue may have settled along the source's mean normal; 0: not looked for
+  double largest_rmse = 0.03;     ///< poorer fits are not a success
+  double least_inliers = 0.15;    ///< of the source's points; fewer are not a success
+  double least_fit = 0.7;            ///< share of the source's points above the target that lie on it, for a success
+  double largest_sd = 0.01;       ///< of the pose along its weakest direction, for a success
+  double least_sharpness = 7e-4;  ///< see Certificate::sharpness
+  double largest_rival = 0.95;    ///< score of the runner-up over that of the best, for a success
 };
 
 /// Every violation, one sentence each; empty: valid.
@@ -77,6 +79,7 @@ struct Registration {
   double noise_mm = 0.0;  ///< what it would be if the surfaces were alike: roughness of both clouds
   double inlier_fraction =
       0.0;  ///< of the source's points: above the target, distance below 3 robust standard deviations
+  double fit_fraction = 0.0;     ///< the same of those points alone that lie above the target: low for another shape
   double target_fraction = 0.0;  ///< of the target's points, by the drift's probability
   double drift_sigma_mm = 0.0;   ///< width of the drift's Gaussians at the end
   int iterations = 0;            ///< of drift and finish
@@ -87,6 +90,8 @@ struct Registration {
   /// Distances along the normals, target to source, of the source's points that lie above the target (within a tenth of
   /// its radius), mm.
   std::vector<double> residuals_mm;
+  double settled_rms_mm = 0.0;  ///< of the settling that was found beside the pose; 0 where none was looked for
+  double settled_max_mm = 0.0;
   bool scale_at_limit = false;       ///< the scale stands at an end of its range
   bool is_scale_suspicious = false;  ///< outside 0.95 to 1.05: both sensors are metric
   Certificate certificate;
@@ -96,8 +101,9 @@ struct Registration {
 /// points that belong to nothing. Search: rigid coherent point drift on coarse clusters from starts spread over all
 /// rotations (and three positions along the longest axis), the best few refined; then the drift on the full clouds and
 /// an ICP finish. Where both clouds come with normals, these decide which side is up. Every result that is not to be
-/// relied upon says so in `outcome` and `reasons`. The same clouds give the same bits at any thread count. A reflection
-/// is never returned.
+/// relied upon says so in `outcome` and `reasons`. With `settling_mm` the pose is, last, found together with a smooth
+/// displacement along the source's mean normal, so that a dip is not taken for a shift. The same clouds give the same
+/// bits at any thread count. A reflection is never returned.
 /// @param source, target  at least 1 point each, finite, any unit; normals of unit length or none.  @throws
 /// InvalidArgument. Sources: [Myronenko2010], [Alexa2022] (even rotations).
 [[nodiscard]] Registration register_clouds(const PointCloud& source, const PointCloud& target,

@@ -19,7 +19,7 @@ struct ReplayPicture {
 };
 
 /// Left: the tip's true path (colour) over the intended one (black), seen along the approach, with a scale bar. Right:
-/// tip speed and deviation over time. A complete SVG document. @throws InvalidArgument for fewer than two samples,
+/// tip speed over time, and the deviation along the tip's way. A complete SVG document. @throws InvalidArgument for fewer than two samples,
 /// lengths that differ, or a number that is not finite.
 [[nodiscard]] std::string replay_figure_svg(const ReplayPicture& picture);
 

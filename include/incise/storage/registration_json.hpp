@@ -4,6 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+#include <optional>
+
 namespace incise {
 
 /// What `registration.json` and `incise register --json` hold: T_target_source (4 x 4 row-major, scale included; null
@@ -11,5 +14,19 @@ namespace incise {
 /// when nothing speaks against the transform), outcome, reasons, and under `certificate` how well it is determined.
 /// Numbers that are not finite become null.
 [[nodiscard]] nlohmann::ordered_json to_json(const Registration& registration);
+
+/// What a file says of a registration. Another program's may hold the transform alone.
+struct RegistrationRecord {
+  std::optional<Mat4> T_target_source;  ///< similarity, mm; absent where the file has null: none was found
+  double scale = 1.0;                   ///< as the key says, else that of the matrix
+  std::optional<double> rmse_mm;
+  std::optional<double> inlier_fraction;
+  std::optional<bool> is_converged;
+  std::optional<double> scale_sd;  ///< relative
+};
+
+/// Reads registration.json. @throws DataError for a file that is missing or damaged, without the key T_target_source,
+/// or with a number that is none.
+[[nodiscard]] RegistrationRecord read_registration(const std::filesystem::path& file);
 
 }  // namespace incise

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <incise/geometry/types.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace incise {
+
+/// The 4 x 4 matrix under a key of a JSON object: rows, the last one 0 0 0 1, finite, positive determinant; shifts in mm.
+/// @param file  stands for the document in messages.  @throws DataError naming key, row or number.
+[[nodiscard]] Mat4 transform_in(const nlohmann::ordered_json& document, const std::string& key,
+                                const std::filesystem::path& file);
+
+/// The same without scale or shear: a rotation (to 1e-4) and a shift. @throws DataError
+[[nodiscard]] Mat4 rigid_transform_in(const nlohmann::ordered_json& document, const std::string& key,
+                                      const std::filesystem::path& file);
+
+}  // namespace incise
