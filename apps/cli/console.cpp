@@ -28,6 +28,9 @@ std::string time_text(double seconds) {
 Console::Console(Level level) : level_(level), is_terminal_(::isatty(STDERR_FILENO) == 1) {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+#ifdef SIGXFSZ
+  std::signal(SIGXFSZ, SIG_IGN);  // a file above the limit is a write that fails, and told as one
+#endif
 }
 
 Console::~Console() { clear_bar(); }

@@ -34,11 +34,18 @@ void add_demo(Application& application) {
       [cut](const CommonOptions& options) {
         Console console(options.level());
         const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
-        StudyRun study(specimen_for(root / "specimen", options.seed, console), root, Stage::Verify, options, *cut);
-        nlohmann::ordered_json result;
-        const int status = run_whole_loop(study, options, console, result);
-        print_study(options, result);
-        return status;
+        const std::filesystem::path specimen = specimen_for(root / "specimen", options.seed, console);
+        try {
+          StudyRun study(specimen, root, Stage::Verify, options, *cut);
+          nlohmann::ordered_json result;
+          const int status = run_whole_loop(study, options, console, result);
+          print_study(options, result);
+          return status;
+        } catch (const StagesKept&) {
+          throw;
+        } catch (const Cancelled& error) {
+          throw StagesKept(error.what(), fmt::format("the specimen in {} is kept", specimen.string()));
+        }
       });
   add_cut_options(*verb, *cut);
 }

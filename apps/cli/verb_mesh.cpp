@@ -30,6 +30,7 @@ void add_mesh(Application& application) {
     double coarse_mm = SizingSettings{}.coarse_mm;
     double depth_mm = 5.0;
     int tets = 0;
+    CLI::Option* fine_option = nullptr;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
@@ -38,6 +39,16 @@ void add_mesh(Application& application) {
         Console console(options.level());
         const std::filesystem::path output = options.required_output("tongue.vtu");
         MeshingSettings settings;
+        if (arguments->tets > 0 && arguments->tets < kFewestTets) {
+          throw CaseError("command line", "--tets", fmt::format("{}", arguments->tets),
+                          fmt::format("0, or {} and more", kFewestTets));
+        }
+        if (arguments->around.empty() && arguments->fine_option->count() > 0) {
+          throw CaseError("command line", "--fine-mm", "no --around", "a planned cut to be fine around", "Edges are at most --coarse-mm without it");
+        }
+        if (output.extension() != ".vtu") {
+          throw CaseError("command line", "-o", output.string(), "a file that ends in .vtu");
+        }
         if (arguments->tets > 0) settings.target_tets = arguments->tets;
         SizingField sizing = SizingField::uniform(arguments->coarse_mm);
         if (!arguments->around.empty()) {
@@ -70,7 +81,7 @@ void add_mesh(Application& application) {
       });
   verb->add_option("input", arguments->input, "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")->required();
   verb->add_option("--around", arguments->around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
-  verb->add_option("--fine-mm", arguments->fine_mm, "Edge length around the cut")->check(CLI::Range(0.05, 50.0));
+  arguments->fine_option = verb->add_option("--fine-mm", arguments->fine_mm, "Edge length around the cut")->check(CLI::Range(0.05, 50.0));
   verb->add_option("--coarse-mm", arguments->coarse_mm, "Longest edge length")->check(CLI::Range(0.05, 100.0));
   verb->add_option("--depth-mm", arguments->depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
   verb->add_option("--tets", arguments->tets, "Count to aim for; 0: as the lengths give")->check(CLI::Range(0, 5000000));

@@ -8,11 +8,28 @@
 namespace incise {
 namespace {
 
+constexpr std::size_t kLongestFound = 300;
+
+/// Fit to be shown: what a file holds may be long, and not text.
+std::string shown(const std::string& found) {
+  std::string text;
+  for (const char c : found.substr(0, kLongestFound)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F) {
+      text += fmt::format("\\x{:02x}", byte);
+    } else {
+      text += c;
+    }
+  }
+  if (found.size() > kLongestFound) text += fmt::format("... ({} characters)", found.size());
+  return text;
+}
+
 std::string compose(const std::string& where, const std::string& place, const std::string& found,
                     const std::string& expected, const std::string& hint) {
   std::string text = where;
   if (!place.empty()) text += fmt::format(": {}", place);
-  text += fmt::format(": found {}, expected {}", found, expected);
+  text += fmt::format(": found {}, expected {}", shown(found), expected);
   if (!hint.empty()) text += fmt::format(". {}", hint);
   return text;
 }

@@ -277,7 +277,8 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   }
   if (!report.is_finite) return stiffnesses;
   if (!next) {
-    report.max_step_mm *= take_lowering_share(model, scratch.right_side, scratch.increment, state.tissue);
+    const double share = take_lowering_share(model, scratch.right_side, scratch.increment, state.tissue);
+    if (share > 0.0) report.max_step_mm *= share;  // where no share lowers the energy it is stuck, which is not rest
     return stiffnesses;
   }
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) state.tissue.positions[v] += scratch.increment[v];

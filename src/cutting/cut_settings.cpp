@@ -3,6 +3,12 @@
 #include <incise/cutting/cut_settings.hpp>
 
 namespace incise {
+namespace {
+
+constexpr double kMaxContactS = 600.0;      // until tissue is cut: beyond it no cut ends in any time worth waiting for
+constexpr double kLeastAdvanceMm = 1e-4;    // a step: below it a cut takes a million steps
+
+}  // namespace
 
 double CutSettings::dwell_rate_per_s() const { return std::pow(power_w / reference_power_w, power_exponent) / dwell_s(); }
 
@@ -14,10 +20,18 @@ std::vector<std::string> validate(const CutSettings& s, double tool_diameter_mm)
   expect(s.power_w > 0.0, violations, "power_w", s.power_w, "a power above 0 W");
   expect(s.reference_power_w > 0.0, violations, "reference_power_w", s.reference_power_w, "a power above 0 W");
   expect(s.power_exponent >= 0.0 && s.power_exponent <= 10.0, violations, "power_exponent", s.power_exponent, "a number in [0, 10]");
+  if (s.dullness > 0.0 && s.reference_step_s > 0.0 && s.power_w > 0.0 && s.reference_power_w > 0.0) {
+    const double contact_s = 1.0 / s.dwell_rate_per_s();
+    if (!(contact_s <= kMaxContactS)) {
+      violations.push_back(fmt::format(
+          "power_w: found {} with power_exponent {}, dullness {} and reference_step_s {}: {:.3g} s of contact until tissue is cut, expected at most {} s",
+          s.power_w, s.power_exponent, s.dullness, s.reference_step_s, contact_s, kMaxContactS));
+    }
+  }
   if (s.tear_energy_kpa) expect(*s.tear_energy_kpa > 0.0, violations, "tear_energy_kpa", *s.tear_energy_kpa, "an energy above 0 kPa");
   if (s.slip_mm) expect(*s.slip_mm > 0.0, violations, "slip_mm", *s.slip_mm, "a distance above 0 mm");
-  expect(s.advance_per_step_mm > 0.0 && s.advance_per_step_mm <= tool_diameter_mm, violations, "advance_per_step_mm",
-         s.advance_per_step_mm, "a step above 0 mm and at most the tool's diameter or thickness");
+  expect(s.advance_per_step_mm >= kLeastAdvanceMm && s.advance_per_step_mm <= tool_diameter_mm, violations, "advance_per_step_mm",
+         s.advance_per_step_mm, "a step of 0.0001 mm or more and at most the tool's diameter or thickness");
   expect(s.reach_mm >= 0.0, violations, "reach_mm", s.reach_mm, "0 mm or more");
   expect(s.bond_stiffness_kpa_mm2 >= 0.0, violations, "bond_stiffness_kpa_mm2", s.bond_stiffness_kpa_mm2, "0 kPa/mm² or more");
   expect(s.overlap_mm >= 0.0, violations, "overlap_mm", s.overlap_mm, "0 mm or more");

@@ -39,7 +39,7 @@ struct TwoLevelPcg::Data {
 
   std::unique_ptr<SinglePcg> single;  // does the iterations in single precision
 
-  // Vectors of one solve, and one partial sum per chunk; empty in single precision.
+  // Vectors of one solve, and one partial sum per chunk; empty in single precision until a system has to be solved again.
   Points r, z, p, q;
   std::vector<double> restricted, corrected;
   std::vector<double> partial_rr, partial_rz, partial_pq;
@@ -176,7 +176,12 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
   INCISE_REQUIRE(
       b.size() == d.pattern->rows() && x.size() == d.pattern->rows(),
       fmt::format("expected vectors of {} vertices, found {} and {}", d.pattern->rows(), b.size(), x.size()));
-  if (d.single) return d.single->solve(b, x, settings, workers);
+  PcgReport in_single;
+  if (d.single) {
+    in_single = d.single->solve(b, x, settings, workers);
+    if (in_single.converged) return in_single;
+    for (Points* vector : {&d.r, &d.z, &d.p, &d.q}) vector->resize(d.pattern->rows());
+  }
   std::copy(b.begin(), b.end(), d.r.begin());
   std::fill(x.begin(), x.end(), Vec3::Zero());
   std::fill(d.p.begin(), d.p.end(), Vec3::Zero());
@@ -194,7 +199,10 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
     void turn(double beta) { data.turn_direction(beta, workers); }
     double multiply() { return data.apply_matrix(matrix, workers); }
   } sweeps{d, matrix, x, workers};
-  return iterate(sweeps, settings);
+  PcgReport report = iterate(sweeps, settings);
+  report.is_redone = d.single != nullptr;
+  report.iterations += in_single.iterations;
+  return report;
 }
 
 }  // namespace incise

@@ -25,7 +25,6 @@ void require_count(std::vector<std::string>& violations, const char* name, int v
 }  // namespace
 
 std::vector<std::string> validate(const MeshingSettings& s) {
-  constexpr int kFewestTets = 100;
   constexpr double kSteepestAngleDeg = 30.0;  // beyond it refinement need not end
   constexpr double kLargestTolerance = 0.999;
   std::vector<std::string> violations;

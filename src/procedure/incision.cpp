@@ -14,8 +14,9 @@ namespace incise {
 namespace {
 
 constexpr double kRelaxedMm = 1e-3;  // the tissue counts as at rest when no vertex moves farther in a step
-constexpr double kSingleTolerance =
-    5e-2;  // of a step's residual: from here up a rounded matrix and single precision suffice
+constexpr double kSingleTolerance = 5e-2;   // of a step's residual: from here up a rounded matrix suffices
+constexpr double kSingleBulkRatio = 500.0;  // λ/μ up to which it does
+constexpr double kUnsolvedShare = 0.01;     // of the steps: with more, the cut did not converge
 constexpr double kTimeRoundingS = 1e-9;   // the program counts as over when less than this is left of it
 constexpr double kLeastStepShare = 0.01;  // of a step: less than this at the program's end goes with the step before it
 constexpr int kMaxRelaxationSteps = 60;   // after the tool is out
@@ -82,8 +83,11 @@ void require_same_mesh(const TissueModel& model, const CutState& state) {
                   state.dose.size()));
 }
 
-Precision precision_for(const CutSettings& cut) {
-  return cut.residual_tolerance >= kSingleTolerance ? Precision::Single : Precision::Double;
+Precision precision_for(const TissueModel& model, const CutSettings& cut) {
+  const bool is_soft_in_shear = std::any_of(model.lame.begin(), model.lame.end(), [](const LameParameters& lame) {
+    return lame.lambda_kpa > kSingleBulkRatio * lame.mu_kpa;
+  });
+  return cut.residual_tolerance >= kSingleTolerance && !is_soft_in_shear ? Precision::Single : Precision::Double;
 }
 
 /// Takes an incision step by step to the end of its program and then to rest.
@@ -96,7 +100,7 @@ class IncisionRun {
         program_(program),
         settings_(settings),
         progress_(progress),
-        workspace_(model, stretched.positions, precision_for(settings.cut)),
+        workspace_(model, stretched.positions, precision_for(model, settings.cut)),
         workers_(workers),
         monitor_(monitor),
         keep_(keep),
@@ -119,7 +123,7 @@ class IncisionRun {
       const CutStepReport report = step(std::nullopt, settings_.cut.step_s());
       ++progress_.relaxation_steps;
       if (!report.is_finite) return Outcome::NotConverged;
-      is_at_rest_ = report.max_step_mm < kRelaxedMm;
+      is_at_rest_ = report.solve.converged && report.max_step_mm < kRelaxedMm;
       if (is_at_rest_) return Outcome::Success;
     }
     monitor_.message(
@@ -231,6 +235,14 @@ void sum_up(const std::vector<CutStepLog>& steps, IncisionResult& result) {
   }
 }
 
+/// A step that was not solved is put right by the next; many are not.
+void judge_solves(IncisionResult& result, std::size_t steps, Monitor& monitor) {
+  if (result.unconverged_steps == 0) return;
+  monitor.message(Severity::Warning, fmt::format("{} of {} steps were not solved to the tolerance", result.unconverged_steps, steps));
+  const bool is_too_many = static_cast<double>(result.unconverged_steps) > kUnsolvedShare * static_cast<double>(steps);
+  if (result.outcome == Outcome::Success && is_too_many) result.outcome = Outcome::NotConverged;
+}
+
 std::size_t count_inverted(const TissueModel& model, const TissueState& tissue) {
   std::size_t count = 0;
   for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
@@ -271,6 +283,7 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
     tell_missing_frames(settings, result.outcome, progress, monitor);
   }  // its workspace is large
   sum_up(progress.steps, result);
+  judge_solves(result, progress.steps.size(), monitor);
   result.steps = std::move(progress.steps);
   result.frames = std::move(progress.frames);
   result.record = progress.state.record;

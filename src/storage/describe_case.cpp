@@ -224,8 +224,8 @@ void describe_tool(CaseFile& file, FieldVisitor& v) {
   static constexpr std::array<Field, 4> kFields{{
       {{"diameter_mm", "mm", "Of needle or ball."}, &ToolDimensions::diameter_mm, {0.05, 10.0}},
       {{"length_mm", "mm", "Of needle or blade, from its tip."}, &ToolDimensions::length_mm, {0.0, 200.0, true, false}},
-      {{"thickness_mm", "mm", "Of a blade."}, &ToolDimensions::thickness_mm, {0.05, 10.0}},
-      {{"width_mm", "mm", "Of a blade, in the direction of travel."}, &ToolDimensions::width_mm, {0.05, 50.0}},
+      {{"thickness_mm", "mm", "Of a blade; 0.5 unless given."}, &ToolDimensions::thickness_mm, {0.05, 10.0}},
+      {{"width_mm", "mm", "Of a blade, in the direction of travel; 2.4 unless given."}, &ToolDimensions::width_mm, {0.05, 50.0}},
   }};
   for (const Field& field : kFields) {
     v.optional_number(field.info, given.*field.dimension, field.range);

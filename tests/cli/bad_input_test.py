@@ -547,6 +547,15 @@ class CommandLineTest(CommandTest):
     def test_a_fine_length_above_the_coarse_one_is_told(self):
         self.assert_misuse("mesh", "box.stl", "--around", "cut.csv", "--fine-mm", "5", "--coarse-mm", "3", "-o", "out.vtu", says="--fine-mm")
 
+    def test_a_fine_length_without_a_cut_to_be_fine_around_is_told(self):
+        self.assert_misuse("mesh", "box.stl", "--fine-mm", "2", "-o", "out.vtu", says="--fine-mm: found no --around")
+
+    def test_a_count_that_no_mesh_has_is_told(self):
+        self.assert_misuse("mesh", "box.stl", "--tets", "99", "-o", "out.vtu", says="--tets: found 99, expected 0, or 100 and more")
+
+    def test_a_mesh_under_the_name_of_another_kind_of_file_is_refused(self):
+        self.assert_misuse("mesh", "box.stl", "-o", "out.xyz", says="expected a file that ends in .vtu")
+
 
 if __name__ == "__main__":
     unittest.main()

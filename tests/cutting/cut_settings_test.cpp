@@ -39,6 +39,21 @@ TEST(CutSettings, AStepLongerThanTheNeedleIsWideIsRefused) {
   EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("advance_per_step_mm: found 1.01")));
 }
 
+TEST(CutSettings, APowerThatTakesForEverIsRefused) {
+  CutSettings settings;
+  settings.power_exponent = 3.0;
+  for (const double power_w : {1e-3, 1e-200}) {
+    settings.power_w = power_w;
+    EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("s of contact until tissue is cut, expected at most 600 s"))) << power_w;
+  }
+}
+
+TEST(CutSettings, AStepThatNoCutEndsWithIsRefused) {
+  CutSettings settings;
+  settings.advance_per_step_mm = 1e-9;
+  EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("advance_per_step_mm: found 1e-09")));
+}
+
 TEST(CutSettings, APowerOfTheLawOutOfRangeIsRefused) {
   CutSettings settings;
   settings.power_w = 0.0;

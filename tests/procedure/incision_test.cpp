@@ -29,6 +29,18 @@ TEST_F(Incision, HeldTissueDriftsInwards) {
   EXPECT_TRUE(result.is_at_rest);
 }
 
+TEST_F(Incision, EveryStepIsSolvedInTissueThatHardlyChangesItsVolume) {
+  for (const double poissons_ratio : {0.499, 0.4999, 0.49999}) {
+    Material stiff;
+    stiff.poissons_ratio = poissons_ratio;
+    model_ = make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), stiff, {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
+    const IncisionResult result = cut(ring(4.0));
+    EXPECT_EQ(result.unconverged_steps, 0U) << poissons_ratio;
+    EXPECT_EQ(result.outcome, Outcome::Success) << poissons_ratio;
+    EXPECT_LT(result.held_back_vertices, 100U) << poissons_ratio;
+  }
+}
+
 TEST_F(Incision, AnArcThatDoesNotGoRoundIsAnOpenLoop) {
   ToolPath path = ring(4.0);
   path.waypoints.resize(20);  // the way back from the last waypoint to the first is straight and misses the middle

@@ -28,15 +28,17 @@ struct PcgReport {
   int iterations = 0;
   double residual_mn = 0.0;    ///< |r| at the end
   bool is_indefinite = false;  ///< a direction of no or negative stiffness was met
+  bool is_redone = false;      ///< single precision did not get there: solved again in double precision; the iterations of both are counted
 };
 
 /// The numbers that an iteration works with.
 enum class Precision {
   Double,
-  Single,  ///< Half the bytes and less: single precision, the matrix in 16 bits a number. Solves for a matrix rounded
-           ///< to 2e-5 of its diagonal whose rows sum to what they did, so that soft motions of the body keep their
-           ///< stiffness; the solution is off by some 3e-3, the residual by 2e-5 |A| |x|. For steps that are put right
-           ///< by the next.
+  Single,  ///< Half the bytes and less: single precision, the matrix in 16 bits a number. Solves for a matrix rounded to
+           ///< 2e-5 of its diagonal whose rows sum to what they did, so that soft motions of the body keep their stiffness:
+           ///< the solution is off by some 3e-3, the residual by 2e-5 |A| |x|. For steps that are put right by the next, of
+           ///< tissue with λ up to some hundred μ: beyond, the shear stiffness is lost in the rounding. What does not
+           ///< converge is solved again in double precision.
 };
 
 /// Two-level preconditioned conjugate gradients: block-Jacobi plus an additive coarse space of rigid-body modes, one

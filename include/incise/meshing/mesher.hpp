@@ -11,6 +11,8 @@
 
 namespace incise {
 
+inline constexpr int kFewestTets = 100;  ///< that may be aimed for
+
 /// How tetrahedra are made. Lengths in mm, angles in degrees; h is the local edge length that the sizing field asks
 /// for.
 struct MeshingSettings {
