@@ -23,6 +23,7 @@ constexpr double kTolerance = 0.1;
 constexpr double kLeastContact = 0.02;  // wet tissue never keeps off altogether
 constexpr double kAheadMm = 5.0;       // skin this far ahead of the tool counts as pushed up by it
 constexpr double kAsideMm = 3.0;       // and this far beside its course
+constexpr double kBridgeMm = 0.5;      // radius: a strip of skin narrower than 1 mm does not hold the plug (as in photographs)
 constexpr double kSettleTolerance = 0.02;
 // Rosenthal's moving line source in a thick-plate limit: peak rise at distance y is kPeak q / (rho c v y), q power per
 // length.
@@ -279,7 +280,9 @@ void Cut::read_edges() {
     surface.triangles.push_back(face.corners);
     surface.is_skin.push_back(std::binary_search(skin.begin(), skin.end(), key) ? 1 : 0);
   }
-  result_.inner_edge = inner_edge_contour(surface);
+  InnerEdgeSettings settings;
+  settings.opening_mm = kBridgeMm;
+  result_.inner_edge = inner_edge_contour(surface, settings);
 }
 
 BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& workers, Monitor& monitor) {

@@ -6,7 +6,7 @@ import unittest
 
 from command import DONE, CommandTest
 
-VERBS = ["demo", "run", "phantom", "segment", "mesh", "deform", "plan", "simulate", "compensate", "evaluate", "export", "report", "schema", "verify"]
+VERBS = ["bench", "demo", "run", "phantom", "segment", "mesh", "deform", "plan", "simulate", "compensate", "evaluate", "export", "report", "schema", "verify"]
 
 
 class HelpTest(CommandTest):

@@ -37,7 +37,7 @@ struct Specimen {
   double rupture_percent = 0.6;
   double full_arc_w = 45.0;
   double adhesion_kpa_s_mm2 = 300.0;
-  double adhesion_limit_kpa_mm = 750.0;
+  double adhesion_limit_kpa_mm = 720.0;
   double heat_percent = 55.0;
 
   // How it is held.
@@ -81,7 +81,7 @@ struct ParameterSpec {
   double a, b;               ///< of the spread
   double low, high;          ///< what a specimen file may say, both included
   std::string_view meaning;
-  std::string_view source;   ///< of value and spread, as keys of docs/references.bib or "chosen: why"
+  std::string_view source;   ///< of value and spread; "chosen" where nobody has published one
   std::string_view shows_in; ///< the reading through which it shows; "none"
 };
 /// All of them, in the order of Specimen.
