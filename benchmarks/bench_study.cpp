@@ -33,7 +33,8 @@ using namespace incise;
 
 namespace {
 
-constexpr double kTargetMm = 4.5;  // Paper III-A.1: of an inner edge
+constexpr double kTargetMm = 4.5;       // Paper III-A.1: of an inner edge
+constexpr double kRingOverlapMm = 8.0;  // as `incise export` has it
 
 /// Time that this thread has computed, s: other work on the machine does not count.
 double cpu_s() {
@@ -148,6 +149,7 @@ Row run(std::uint64_t seed, const Options& options) {
   path.frame = PathFrame::Robot;
   ProgramSettings settings;
   settings.plunge_speed_mm_s = plan.speed_mm_s;
+  settings.overlap_mm = kRingOverlapMm;
   const RobotProgram program = make_program(path, settings);
   row.cut = cut_specimen(body, tip_course(asked_course(program), specimen, Mat4::Identity()), options.given.at("power_w"), workers, monitor);
   row.cut_s = cpu_s() - start - row.body_s;

@@ -22,8 +22,8 @@ constexpr int kMoments = 3;            // of a step at which the steam's dose is
 constexpr int kMostSolutions = 4;      // per step; one is enough where no vertex had to be held back (what is left over is put right by the next)
 constexpr double kTolerance = 0.1;
 constexpr double kLeastContact = 0.02;  // wet tissue never keeps off altogether
-constexpr double kAheadMm = 5.0;       // skin this far ahead of the tool counts as pushed up by it
-constexpr double kAsideMm = 3.0;       // and this far beside its course
+constexpr double kAheadMm = 10.0;      // skin this far ahead of the tool counts as pushed up by it
+constexpr double kAsideMm = 4.0;       // and this far beside its course
 constexpr double kBridgeMm = 0.5;      // radius: a strip of skin narrower than 1 mm does not hold the plug (as in photographs)
 constexpr double kSettleTolerance = 0.02;
 // Rosenthal's moving line source in a thick-plate limit: peak rise at distance y is kPeak q / (rho c v y), q power per
@@ -320,10 +320,7 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
   if (is_finite_) settle(workers, monitor);
   result_.thermal_width_mm = kPeak * power_w * 1000.0 * 0.01 * body_.specimen.heat_percent /
                              (kImmersedMm * kHeatCapacityMjMm3K * speed * kDamageRiseK);
-  if (!bulges_mm_.empty()) {
-    std::sort(bulges_mm_.begin(), bulges_mm_.end());
-    result_.bulge_mm = bulges_mm_[bulges_mm_.size() * 9 / 10];
-  }
+  for (const double bulge : bulges_mm_) result_.bulge_mm += bulge / static_cast<double>(bulges_mm_.size());
   for (const double force : forces_mn_) result_.mean_force_mn += force / static_cast<double>(forces_mn_.size());
   if (is_finite_) read_edges();
   result_.outcome = !is_finite_                ? Outcome::NotConverged

@@ -24,7 +24,7 @@ struct BenchCut {
   Contour tumor_edge;                  ///< where it lies after the cut
   std::size_t removed_tets = 0;
   std::size_t loose_tets = 0;          ///< of these: fragments that hung on nothing
-  double bulge_mm = 0.0;               ///< height of the tissue pushed up ahead of the tool: 0.9 quantile over the cut
+  double bulge_mm = 0.0;               ///< height to which skin is pushed up ahead of the tool, mean over the cut
   double max_drag_mm = 0.0;            ///< farthest that the tool took a piece of skin along
   double mean_force_mn = 0.0;          ///< of the drag, over the cut
   double thermal_width_mm = 0.0;       ///< how far beside the tool's axis tissue reached 60 degrees C

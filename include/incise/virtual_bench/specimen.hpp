@@ -34,10 +34,10 @@ struct Specimen {
   double toughness_j_m2 = 300.0;
   double toughness_spread = 0.12;
   double lost_power_w = 15.0;
-  double rupture_percent = 0.6;
+  double rupture_percent = 1.2;
   double full_arc_w = 45.0;
   double adhesion_kpa_s_mm2 = 300.0;
-  double adhesion_limit_kpa_mm = 720.0;
+  double adhesion_limit_kpa_mm = 560.0;
   double heat_percent = 55.0;
 
   // How it is held.
