@@ -22,8 +22,8 @@ constexpr int kMoments = 3;            // of a step at which the steam's dose is
 constexpr int kMostSolutions = 4;      // per step; one is enough where no vertex had to be held back (what is left over is put right by the next)
 constexpr double kTolerance = 0.1;
 constexpr double kLeastContact = 0.02;  // wet tissue never keeps off altogether
-constexpr double kAheadMm = 10.0;      // skin this far ahead of the tool counts as pushed up by it
-constexpr double kAsideMm = 4.0;       // and this far beside its course
+constexpr double kAheadMm = 15.0;      // skin this far ahead of the tool counts as pushed up by it
+constexpr double kAsideMm = 5.0;       // and this far beside its course
 constexpr double kBridgeMm = 0.5;      // radius: a strip of skin narrower than 1 mm does not hold the plug (as in photographs)
 constexpr double kSettleTolerance = 0.02;
 // Rosenthal's moving line source in a thick-plate limit: peak rise at distance y is kPeak q / (rho c v y), q power per
@@ -200,7 +200,8 @@ void Cut::watch_skin(const Vec3& tip, const Vec3& velocity) {
   if (flat.norm() < 0.5 * velocity.norm() || flat.norm() < 1e-9) return;  // plunging or at rest
   const Vec3 heading = flat.normalized();
   const Vec3 aside = heading.cross(body_.approach);
-  double highest = 0.0;
+  double shoved = 0.0;
+  std::size_t count = 0;
   for (std::size_t v = 0; v < is_on_skin_.size(); ++v) {
     if (is_on_skin_[v] == 0) continue;
     const Vec3 from_tip = state_.positions[v] - tip;
@@ -208,10 +209,11 @@ void Cut::watch_skin(const Vec3& tip, const Vec3& velocity) {
     if (ahead < 0.0 || ahead > kAheadMm || std::abs(from_tip.dot(aside)) > kAsideMm) continue;
     if (from_tip.dot(body_.approach) > 0.0) continue;  // on the underside
     const Vec3 moved = state_.positions[v] - body_.stretched.positions[v];
-    highest = std::max(highest, -moved.dot(body_.approach));
+    shoved += moved.norm();
+    ++count;
     result_.max_drag_mm = std::max(result_.max_drag_mm, moved.cross(body_.approach).norm());
   }
-  bulges_mm_.push_back(highest);
+  if (count > 0) bulges_mm_.push_back(shoved / static_cast<double>(count));
 }
 
 void Cut::step(const TipPose& from, const TipPose& to, double step_s, Workers& workers) {
@@ -323,9 +325,10 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
   for (const double bulge : bulges_mm_) result_.bulge_mm += bulge / static_cast<double>(bulges_mm_.size());
   for (const double force : forces_mn_) result_.mean_force_mn += force / static_cast<double>(forces_mn_.size());
   if (is_finite_) read_edges();
-  result_.outcome = !is_finite_                ? Outcome::NotConverged
-                    : !result_.inner_edge      ? Outcome::OpenLoop
-                                               : Outcome::Success;
+  const bool is_at_rest = is_finite_ && result_.unrest_mm < kSettleTolerance;
+  result_.outcome = !is_at_rest           ? Outcome::NotConverged
+                    : !result_.inner_edge ? Outcome::OpenLoop
+                                          : Outcome::Success;
   result_.after = std::move(state_);
   result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return std::move(result_);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kVisibleHeatMm = 1.0;   // the electrode's diameter: heat that reaches farther is seen
 constexpr double kNeedleMm = 0.5;
-constexpr double kCoarsePixels = 4.0;    // heat is painted on a grid this much coarser
+constexpr double kWallMm = 1.2;          // from the rim of the kerf to where it is darkest
+constexpr double kCoarsePixels = 4.0;    // distances from the rim are taken on a grid this much coarser
 constexpr int kRays = 720;               // in which an open kerf's inner edge is looked for
 constexpr double kMostJumpMm = 1.2;      // between neighbouring rays along one piece of it
 constexpr double kHandMm = 0.03;         // standard deviation of the hand that draws the red line
@@ -129,6 +130,14 @@ class Painter {
   }
   std::uint8_t* pixel(int i, int j) { return pixel_at(picture_, i, grid_.height - 1 - j); }
 
+  [[nodiscard]] RasterGrid coarse_grid() const {
+    RasterGrid coarse = grid_;
+    coarse.pixel_mm = kCoarsePixels * grid_.pixel_mm;
+    coarse.width = static_cast<int>(std::ceil(grid_.width / kCoarsePixels));
+    coarse.height = static_cast<int>(std::ceil(grid_.height / kCoarsePixels));
+    return coarse;
+  }
+
   /// Cut within the specimen's outline: not skin, whether a wall or the ground is seen.
   [[nodiscard]] Raster kerf(const RasterGrid& grid) const {
     Raster raster(grid, 0);
@@ -147,6 +156,7 @@ class Painter {
 
   void tissue() {
     Random random(body_.specimen.seed ^ 0x85ebca6bULL);
+    const ScalarRaster within = distance_to(kerf(coarse_grid()), 0);
     for (int j = 0; j < grid_.height; ++j) {
       for (int i = 0; i < grid_.width; ++i) {
         const std::int32_t n = seen_.triangles[grid_.offset(i, j)];
@@ -164,9 +174,15 @@ class Painter {
         const Vec3 normal =
             (scene_.in_view[t[1].index()] - a).cross(scene_.in_view[t[2].index()] - a).normalized();
         const double light = 0.6 + 0.4 * std::abs(normal.z());
-        const bool is_skin = scene_.is_skin[static_cast<std::size_t>(n)] != 0;
-        const Paint paint = is_skin ? Paint(kTissuePaint * grain_.at(rest)) : Paint(std::abs(normal.z()) < 0.5 ? kWallPaint : kDeepPaint);
-        put(pixel(i, j), paint * light + 2.5 * noise);
+        if (scene_.is_skin[static_cast<std::size_t>(n)] != 0) {
+          put(pixel(i, j), kTissuePaint * (grain_.at(rest) * light) + 2.5 * noise);
+          continue;
+        }
+        // Walls of cut muscle, darker the farther from the rim: flat facets of tets are no sight of tissue.
+        const Vec2 place = grid_.centre(i, j);
+        const double depth = std::clamp(sample(within, place) / kWallMm, 0.0, 1.0);
+        const double grain = grain_.at(2.0 * Vec3(place.x(), place.y(), 0.0));
+        put(pixel(i, j), ((1.0 - depth) * kWallPaint + depth * kDeepPaint) * grain + 2.5 * noise);
       }
     }
   }
@@ -174,11 +190,7 @@ class Painter {
   /// Tissue beside the kerf that was heated past denaturation, where that is farther than the eye takes for granted.
   void cooked_rim() {
     if (cut_.thermal_width_mm <= kVisibleHeatMm) return;
-    RasterGrid coarse = grid_;
-    coarse.pixel_mm = kCoarsePixels * grid_.pixel_mm;
-    coarse.width = static_cast<int>(std::ceil(grid_.width / kCoarsePixels));
-    coarse.height = static_cast<int>(std::ceil(grid_.height / kCoarsePixels));
-    const ScalarRaster away = distance_to(kerf(coarse), 1);
+    const ScalarRaster away = distance_to(kerf(coarse_grid()), 1);
     const double reach = cut_.thermal_width_mm - kNeedleMm;
     for (int j = 0; j < grid_.height; ++j) {
       for (int i = 0; i < grid_.width; ++i) {

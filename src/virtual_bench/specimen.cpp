@@ -69,7 +69,7 @@ constexpr std::array kSpecs{
     ParameterSpec{"adhesion_kpa_s_mm2", &S::adhesion_kpa_s_mm2, DrawnAs::LogNormal, 300.0, 0.15, 0.1, 3000.0,
                   "drag of the electrode on tissue per volume and speed", "chosen: fits Paper Table II, S1 and S2",
                   kNone},
-    ParameterSpec{"adhesion_limit_kpa_mm", &S::adhesion_limit_kpa_mm, DrawnAs::LogNormal, 560.0, 0.10, 1.0, 5000.0,
+    ParameterSpec{"adhesion_limit_kpa_mm", &S::adhesion_limit_kpa_mm, DrawnAs::LogNormal, 740.0, 0.10, 1.0, 5000.0,
                   "what that drag cannot exceed while electrode and tissue touch",
                   "chosen: fits Paper Table II, S1 and S2", kNone},
     ParameterSpec{"heat_percent", &S::heat_percent, DrawnAs::Normal, 55.0, 1.5, 5.0, 100.0,

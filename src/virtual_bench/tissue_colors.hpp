@@ -15,7 +15,7 @@ namespace incise {
 /// Linear mixture of paints, 0 to 255 a channel.
 using Paint = Vec3;
 inline const Paint kTissuePaint(196.0, 138.0, 130.0);
-inline const Paint kWallPaint(96.0, 38.0, 34.0);    // cut muscle
+inline const Paint kWallPaint(70.0, 40.0, 38.0);    // cut muscle, in the shadow of the kerf
 inline const Paint kDeepPaint(46.0, 18.0, 18.0);    // the bottom of the kerf
 inline const Paint kCookedPaint(226.0, 212.0, 190.0);
 inline const Paint kRedInk(208.0, 22.0, 30.0);

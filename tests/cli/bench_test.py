@@ -14,33 +14,23 @@ def specimen_file(path, **given):
     return path
 
 
-def program_round(edge_csv, T_robot_specimen, speed_mm_s=7.0):
-    """Poses 5 mm outside a contour and 5 mm deep, straight down: a plan without any finesse."""
+def path_round(edge_csv, T_robot_specimen, moved_mm=0.0):
+    """A path 5 mm outside a contour and 5 mm deep, straight down: a plan without any finesse."""
     with open(edge_csv, newline="") as file:
         points = [tuple(float(row[key]) for key in ("x_mm", "y_mm", "z_mm")) for row in csv.DictReader(file)]
     middle = [sum(p[i] for p in points) / len(points) for i in range(3)]
-    points = points[::3]
-    poses, time_s, last = [], 0.0, None
 
-    def add(phase, point, depth):
-        nonlocal time_s, last
-        tip = [sum(row[i] * (*point, 1.0)[i] for i in range(4)) for row in T_robot_specimen[:3]]
-        if last:
-            time_s += math.dist(last, tip) / speed_mm_s
-        last = tip
-        poses.append({"phase": phase, "time_s": time_s, "tip_mm": tip, "rotation_vector": [math.pi, 0, 0],
-                      "tip_speed_mm_s": speed_mm_s, "depth_mm": depth})
+    def in_robot(point):
+        place = [sum(row[i] * (*point, 1.0)[i] for i in range(4)) for row in T_robot_specimen[:3]]
+        return [place[0] + moved_mm, place[1], place[2]]
 
-    def at(n, depth):
-        p = points[n % len(points)]
+    def outside(p):
         out = math.hypot(p[0] - middle[0], p[1] - middle[1])
-        return (p[0] + 5 * (p[0] - middle[0]) / out, p[1] + 5 * (p[1] - middle[1]) / out, p[2] - 1.0 - depth)
+        return (p[0] + 5 * (p[0] - middle[0]) / out, p[1] + 5 * (p[1] - middle[1]) / out, p[2] - 1.0)
 
-    add("approach", at(0, -10), -10)
-    for n in range(len(points) + 4):
-        add("plunge" if n == 0 else "cut" if n <= len(points) else "overlap", at(n, 5), 5)
-    add("exit", at(3, -10), -10)
-    return {"schema": "incise.program/1", "frame": "robot", "closed": True, "poses": poses}
+    points = points[:: max(1, len(points) // 40)]
+    waypoints = [{"position_mm": in_robot(outside(p)), "axis": [0, 0, -1], "depth_mm": 5.0, "speed_mm_s": 7.0} for p in points]
+    return {"frame": "robot", "kind": "incise", "closed": True, "waypoints": waypoints, "tumor_edge": [in_robot(p) for p in points]}
 
 
 class SchemaTest(CommandTest):
@@ -85,19 +75,17 @@ class BadInputTest(CommandTest):
         self.assert_refused(done, BAD_CASE, "--truth", "apart from the output")
         self.assert_nothing_written(self.out)
 
-    def test_a_program_without_poses_is_refused_before_any_computing(self):
+    def test_a_program_that_is_none_is_refused_before_any_computing(self):
         program = self.folder / "program.json"
-        program.write_text(json.dumps({"schema": "incise.program/1", "frame": "robot", "poses": []}))
+        program.write_text(json.dumps({"schema": "incise.program/9"}))
         done = self.incise("bench", "cut", specimen_file(self.folder / "specimen.json"), program, "-o", self.out)
-        self.assert_refused(done, BAD_DATA, "program.json", "poses", "at least two poses")
+        self.assert_refused(done, BAD_DATA, "program.json", "schema", "incise.program/1")
         self.assert_nothing_written(self.out)
-
-    def test_a_program_with_an_unknown_phase_names_the_pose(self):
-        program = self.folder / "program.json"
-        pose = {"phase": "dance", "time_s": 0, "tip_mm": [0, 0, 0], "rotation_vector": [0, 0, 0], "tip_speed_mm_s": 0, "depth_mm": 0}
-        program.write_text(json.dumps({"schema": "incise.program/1", "frame": "robot", "poses": [pose, pose]}))
+        program = self.folder / "cut.script"
+        program.write_text("def incise_cut():\n  dance()\nend\n")
         done = self.incise("bench", "cut", specimen_file(self.folder / "specimen.json"), program, "-o", self.out)
-        self.assert_refused(done, BAD_DATA, "poses[0].phase", "dance")
+        self.assert_refused(done, BAD_DATA, "cut.script", "dance")
+        self.assert_nothing_written(self.out)
 
 
 class LoopTest(CommandTest):
@@ -114,18 +102,23 @@ class LoopTest(CommandTest):
         self.assertEqual(struct.unpack(">IIBB", depth[16:26]), (1280, 720, 16, 0))
 
         transform = json.loads((truth / "truth.json").read_text())["T_robot_specimen"]
-        program = self.folder / "program.json"
-        program.write_text(json.dumps(program_round(truth / "tumor_edge_stretched.csv", transform)))
-        cut = self.json_of("bench", "cut", truth / "specimen.json", program, "-o", self.folder / "cut")
+        path = self.folder / "path.json"
+        path.write_text(json.dumps(path_round(truth / "tumor_edge_stretched.csv", transform)))
+        self.json_of("export", path, "-o", self.folder / "cut.script")
+        cut = self.json_of("bench", "cut", truth / "specimen.json", self.folder / "cut.script", "-o", self.folder / "cut", "--truth", self.folder / "cut_truth")
         self.assertEqual(files_below(self.folder / "cut"), ["manifest.json", "photo.json", "photo.png"])
         self.assertEqual(cut["mm_per_pixel"], 0.03)
         width, height = struct.unpack(">II", (self.folder / "cut" / "photo.png").read_bytes()[16:24])
         self.assertGreater(min(width, height), 1000)
+        # What the photograph shows is what happened.
+        true_mean = json.loads((self.folder / "cut_truth" / "cut_truth.json").read_text())["mean_abs_error_mm"]
+        seen = self.json_of("evaluate", self.folder / "cut" / "photo.png", "--mm-per-pixel", 0.03)
+        self.assertAlmostEqual(seen["abs_error_mm"]["mean"], true_mean, delta=0.05)
 
-        moved = [row[:3] + [row[3] + (60.0 if i == 0 else 0.0)] for i, row in enumerate(transform)]
-        program.write_text(json.dumps(program_round(truth / "tumor_edge_stretched.csv", moved)))
-        done = self.incise("bench", "cut", truth / "specimen.json", program, "-o", self.folder / "other")
-        self.assert_refused(done, BAD_DATA, "program.json", "program of another specimen?")
+        path.write_text(json.dumps(path_round(truth / "tumor_edge_stretched.csv", transform, moved_mm=60.0)))
+        self.json_of("export", path, "-o", self.folder / "other.json", "--format", "json")
+        done = self.incise("bench", "cut", truth / "specimen.json", self.folder / "other.json", "-o", self.folder / "other")
+        self.assert_refused(done, BAD_DATA, "other.json", "program of another specimen?")
         self.assertFalse((self.folder / "other").exists())
 
 

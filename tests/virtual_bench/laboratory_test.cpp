@@ -7,6 +7,7 @@
 namespace incise {
 namespace {
 
+/// Placed and seen otherwise: the body is the same.
 Specimen seen_specimen() {
   Specimen specimen = test::middle_specimen();
   specimen.placement_x_mm = 6.0;
@@ -19,7 +20,11 @@ Specimen seen_specimen() {
 }
 
 const BenchBody& body() {
-  static const BenchBody made = test::coarse_body(seen_specimen());
+  static const BenchBody made = [] {
+    BenchBody copy = test::middle_body();
+    copy.specimen = seen_specimen();
+    return copy;
+  }();
   return made;
 }
 const Readings& readings() {

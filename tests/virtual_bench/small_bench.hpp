@@ -24,6 +24,12 @@ inline BenchBody coarse_body(const Specimen& specimen) {
   return make_body(specimen, kCoarse, workers, monitor);
 }
 
+/// The body of the middle of every spread: made once.
+inline const BenchBody& middle_body() {
+  static const BenchBody made = coarse_body(middle_specimen());
+  return made;
+}
+
 /// Once round the stretched tumour, 5 mm outside its edge and 5 mm deep, with 8 mm of overlap.
 inline std::vector<TipPose> ring_course(const BenchBody& body, double speed_mm_s) {
   const Contour edge = resample(tumor_edge_at(body, body.stretched.positions), 96);

@@ -18,13 +18,14 @@ struct TipPose {
 
 /// What really happened. Of this only the photograph leaves the bench; the rest is truth, for tests.
 struct BenchCut {
-  Outcome outcome = Outcome::Success;  ///< Success, OpenLoop (no closed inner edge) or NotConverged
+  Outcome outcome = Outcome::Success;  ///< Success, OpenLoop (no closed inner edge) or NotConverged (numbers
+                                       ///< that are not finite, or tissue that does not come to rest: see unrest_mm)
   TissueState after;                   ///< tool out, tissue still stretched, at rest
   std::optional<Contour> inner_edge;   ///< of the kerf, on the skin, as seen along the approach; nullopt: open
   Contour tumor_edge;                  ///< where it lies after the cut
   std::size_t removed_tets = 0;
   std::size_t loose_tets = 0;          ///< of these: fragments that hung on nothing
-  double bulge_mm = 0.0;               ///< height to which skin is pushed up ahead of the tool, mean over the cut
+  double bulge_mm = 0.0;               ///< how far skin in the 15 x 10 mm ahead of the tool is shoved from its place, up and along: mean over place and cut
   double max_drag_mm = 0.0;            ///< farthest that the tool took a piece of skin along
   double mean_force_mn = 0.0;          ///< of the drag, over the cut
   double thermal_width_mm = 0.0;       ///< how far beside the tool's axis tissue reached 60 degrees C

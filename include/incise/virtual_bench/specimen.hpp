@@ -37,7 +37,7 @@ struct Specimen {
   double rupture_percent = 1.2;
   double full_arc_w = 45.0;
   double adhesion_kpa_s_mm2 = 300.0;
-  double adhesion_limit_kpa_mm = 560.0;
+  double adhesion_limit_kpa_mm = 740.0;
   double heat_percent = 55.0;
 
   // How it is held.
