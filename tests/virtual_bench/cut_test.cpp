@@ -27,7 +27,16 @@ double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-TEST(BenchBody, IsInEquilibriumAndItsPullGrowsWithItsStiffness) {
+void expect_suture_drawn_and_clamp_slipped() {
+  const TissueModel& model = *body().tissue;
+  const Box3 rest = bounding_box(model.mesh.vertices);
+  const Box3 now = bounding_box(body().stretched.positions);
+  EXPECT_NEAR(rest.min().y() - now.min().y(), 20.0, 0.05);
+  EXPECT_NEAR(rest.max().y() - now.max().y(), middle_specimen().clamp_slip_mm, 0.05);
+}
+
+TEST(BenchBody, IsStretchedAsDrawnInEquilibriumAndItsPullGrowsWithItsStiffness) {
+  expect_suture_drawn_and_clamp_slipped();
   EXPECT_EQ(body().outcome, Outcome::Success);
   EXPECT_EQ(body().inverted_tets, 0U);
   EXPECT_LE(body().equilibrium_residual, 1e-4);
@@ -40,28 +49,23 @@ TEST(BenchBody, IsInEquilibriumAndItsPullGrowsWithItsStiffness) {
   EXPECT_LT(body().stretch_force_n, 20.0);
 }
 
-TEST(BenchBody, StretchesAsTheSutureIsDrawnAndTheClampSlips) {
-  const TissueModel& model = *body().tissue;
-  const Box3 rest = bounding_box(model.mesh.vertices);
-  const Box3 now = bounding_box(body().stretched.positions);
-  EXPECT_NEAR(rest.min().y() - now.min().y(), 20.0, 0.05);
-  EXPECT_NEAR(rest.max().y() - now.max().y(), middle_specimen().clamp_slip_mm, 0.05);
+void expect_the_same_again() {
+  const BenchCut again = coarse_cut(body(), 35.0);
+  EXPECT_EQ(again.after.is_live, cut_at_35().after.is_live);
+  for (std::size_t v = 0; v < again.after.positions.size(); ++v)
+    ASSERT_EQ(again.after.positions[v], cut_at_35().after.positions[v]) << "vertex " << v;
 }
 
-TEST(BenchCut, ClosesTheRingAndLeavesThePlugInside) {
+TEST(BenchCut, ClosesTheRingRoundThePlugComesToRestAndIsTheSameTwice) {
   ASSERT_EQ(cut_at_35().outcome, Outcome::Success);
   const Contour& edge = *cut_at_35().inner_edge;
   EXPECT_TRUE(contains_in_view(edge, curve_centroid(cut_at_35().tumor_edge), body().approach));
   EXPECT_GT(cut_at_35().removed_tets, 200U);
   // The drag takes the cut towards the tumour.
   EXPECT_LT(mean(true_errors_mm(body(), cut_at_35(), 4.5)), -0.3);
-}
-
-TEST(BenchCut, IsTheSameTwice) {
-  const BenchCut again = coarse_cut(body(), 35.0);
-  EXPECT_EQ(again.after.is_live, cut_at_35().after.is_live);
-  for (std::size_t v = 0; v < again.after.positions.size(); ++v)
-    ASSERT_EQ(again.after.positions[v], cut_at_35().after.positions[v]) << "vertex " << v;
+  EXPECT_GT(cut_at_35().unrest_mm, 0.0);
+  EXPECT_LT(cut_at_35().unrest_mm, 0.02);
+  expect_the_same_again();
 }
 
 TEST(BenchCut, AnElectrodeThatDragsLessCutsNearerToThePlan) {
@@ -87,22 +91,14 @@ TEST(BenchCut, ThePowerSeriesHasThePapersOrder) {
   EXPECT_GT(at_40.thermal_width_mm, 1.0) << "discoloured at 40 W";
 }
 
-TEST(BenchCut, ComesToRestBeforeThePhotograph) {
-  EXPECT_GT(cut_at_35().unrest_mm, 0.0);
-  EXPECT_LT(cut_at_35().unrest_mm, 0.02);
-}
-
-TEST(BenchCut, RefusesACourseThatDoesNotCut) {
+TEST(BenchCut, ACourseThatDoesNotCutIsRefusedAndOneBesideTheSpecimenIsNamed) {
   Workers workers(1);
   Monitor monitor;
   std::vector<TipPose> course = test::ring_course(body(), 7.0);
   EXPECT_THROW(static_cast<void>(cut_specimen(body(), course, -5.0, workers, monitor)), InvalidArgument);
   for (TipPose& pose : course) pose.is_cutting = false;
   EXPECT_THROW(static_cast<void>(cut_specimen(body(), course, 35.0, workers, monitor)), InvalidArgument);
-}
-
-TEST(FindMisfit, TellsACourseBesideTheSpecimenFromOneThatFits) {
-  std::vector<TipPose> course = test::ring_course(body(), 7.0);
+  course = test::ring_course(body(), 7.0);
   EXPECT_FALSE(find_misfit(body(), course));
   std::vector<TipPose> high = course;
   for (TipPose& pose : high) pose.tip_mm.z() += 8.0;
@@ -143,7 +139,7 @@ double mean_radius_mm(const Contour& contour) {
   return sum;
 }
 
-TEST(Photograph, ShowsBothLinesAtTheirScale) {
+void expect_both_lines_at_their_scale() {
   PhotographSettings settings;
   settings.mm_per_pixel = 0.06;
   const ColorPicture picture = photograph(body(), cut_at_35(), settings);
@@ -154,7 +150,8 @@ TEST(Photograph, ShowsBothLinesAtTheirScale) {
   EXPECT_NEAR(0.06 * 0.06 * static_cast<double>(green.pixels) / length_mm(cut_at_35().tumor_edge), settings.green_line_mm, 0.12);
 }
 
-TEST(Photograph, ShowsAnOpenRingAsAnOpenLine) {
+TEST(Photograph, ShowsBothLinesAtTheirScaleAndAnOpenRingAsAnOpenLine) {
+  expect_both_lines_at_their_scale();
   BenchCut open = cut_at_35();
   // The tissue of one side is put back: no kerf there.
   const Vec3 middle = curve_centroid(open.tumor_edge);

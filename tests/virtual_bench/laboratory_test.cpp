@@ -35,7 +35,8 @@ const Readings& readings() {
   return made;
 }
 
-TEST(Readings, TheCloudLiesOnTheStretchedSkinOnceTheDepthsScaleIsUndone) {
+// Every test makes the body anew where each runs in a process of its own: few tests, more in each.
+void expect_cloud_on_the_stretched_skin() {
   const SurfaceQuery skin(skin_at(body(), body().stretched.positions));
   const Mat4 T_specimen_camera = T_robot_specimen(seen_specimen()).inverse() * readings().T_robot_camera;
   ASSERT_GT(readings().cloud_mm.size(), 2000U);
@@ -52,12 +53,12 @@ TEST(Readings, TheCloudLiesOnTheStretchedSkinOnceTheDepthsScaleIsUndone) {
   EXPECT_GT(wrong / count, 1.0) << "the scale's error of 1 % at 200 mm is seen";
 }
 
-TEST(Readings, TheForceIsThePullWithinTheLoadCellsNoise) {
+void expect_force_within_the_load_cells_noise() {
   EXPECT_NE(readings().stretch_force_n, body().stretch_force_n);
   EXPECT_NEAR(readings().stretch_force_n, body().stretch_force_n, 0.2 * body().stretch_force_n);
 }
 
-TEST(Readings, HolesTakeTheirShareOfTheSpecimen) {
+void expect_holes_of_their_share() {
   const FrameShot& frame = readings().frame;
   std::size_t seen = 0;
   std::size_t empty = 0;
@@ -71,7 +72,7 @@ TEST(Readings, HolesTakeTheirShareOfTheSpecimen) {
   EXPECT_LT(share, 0.15) << "beside the holes only skin seen at grazing angles";
 }
 
-TEST(Readings, TheMarkIsGreenAndLiesOnTheTumoursEdge) {
+void expect_green_mark_on_the_tumours_edge() {
   FrameShot frame = readings().frame;
   const Mat4 T_camera_specimen = readings().T_robot_camera.inverse() * T_robot_specimen(seen_specimen());
   int green = 0;
@@ -86,7 +87,14 @@ TEST(Readings, TheMarkIsGreenAndLiesOnTheTumoursEdge) {
   EXPECT_GT(green, static_cast<int>(0.95 * static_cast<double>(edge.points.size())));
 }
 
-TEST(Readings, TheElasticityMapShowsStiffnessWithItsNoise) {
+TEST(Readings, FrameAndCloudShowTheStretchedSkinItsMarkAndTheHoles) {
+  expect_cloud_on_the_stretched_skin();
+  expect_green_mark_on_the_tumours_edge();
+  expect_holes_of_their_share();
+}
+
+TEST(Readings, ForceAndElasticityShowStiffnessWithTheirNoise) {
+  expect_force_within_the_load_cells_noise();
   ASSERT_TRUE(readings().elasticity_kpa);
   double sum = 0.0;
   std::size_t count = 0;

@@ -33,7 +33,7 @@ struct FrameShot {
 /// What the photograph shows.
 struct PhotographSettings {
   double mm_per_pixel = 0.03;    ///< > 0
-  double border_mm = 9.0;        ///< around kerf and tumour, >= 6: room for the ruler
+  double border_mm = 12.0;       ///< around inner edge and tumour, >= 6: room for the kerf and the ruler
   double line_mm = 0.35;         ///< of the red line, > 0
   double green_line_mm = 0.5;    ///< of the green line, > 0
 };
