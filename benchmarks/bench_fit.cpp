@@ -25,9 +25,9 @@ using namespace incise;
 
 namespace {
 
-constexpr double kTargetMm = 4.5;       // Paper III-A.1: of an inner edge
-constexpr double kRingOverlapMm = 8.0;  // as `incise export` has it
-constexpr std::size_t kBins = 36;       // of the angle about the tumour's middle, seen from above
+constexpr double kTargetMm = 4.5;                           // Paper III-A.1: of an inner edge
+constexpr double kRingOverlapMm = 8.0;                      // as `incise export` has it
+constexpr std::size_t kBins = 36;                           // of the angle about the tumour's middle, seen from above
 constexpr std::array kDullness{3.0, 6.0, 9.0, 12.0, 15.0};  // at 13 mm/s
 constexpr std::array kModulusKpa{70.0, 35.0};
 
@@ -66,7 +66,8 @@ struct Fit {
 };
 
 /// Least squares of seen = a + t (b - a) + bias over t in [0, 1] and the bias.
-void fit_between(const Profile& seen, const Profile& a, const Profile& b, double from, double to, double modulus_kpa, Fit& best) {
+void fit_between(const Profile& seen, const Profile& a, const Profile& b, double from, double to, double modulus_kpa,
+                 Fit& best) {
   Profile way{};
   Profile rest{};
   for (std::size_t i = 0; i < kBins; ++i) {
@@ -136,7 +137,8 @@ void run(std::uint64_t seed, int tets) {
     double last_dullness = 0.0;
     for (const double dullness : kDullness) {
       settings.cut.dullness = dullness;
-      const SimulatedCut done = cut_and_judge(settings, *study.model, study.stretched->state, *study.plan, *study.plan, workers, silent);
+      const SimulatedCut done =
+          cut_and_judge(settings, *study.model, study.stretched->state, *study.plan, *study.plan, workers, silent);
       if (!done.incision.inner_edge) {
         ++open;
         last.reset();
@@ -155,8 +157,8 @@ void run(std::uint64_t seed, int tets) {
     seen_mean_abs += std::abs(e) / kBins;
     seen_squares += std::pow(e - mean_of(*seen), 2) / kBins;
   }
-  fmt::print("{},{:.3f},{:.3f},{:.3f},{:.1f},{:.0f},{:.3f},{}\n", seed, seen_mean_abs, std::sqrt(seen_squares), best.rms_mm,
-             best.dullness, best.modulus_kpa, best.bias_mm, open);
+  fmt::print("{},{:.3f},{:.3f},{:.3f},{:.1f},{:.0f},{:.3f},{}\n", seed, seen_mean_abs, std::sqrt(seen_squares),
+             best.rms_mm, best.dullness, best.modulus_kpa, best.bias_mm, open);
   std::fflush(stdout);
 }
 
@@ -166,6 +168,7 @@ int main(int argc, char** argv) {
   const std::uint64_t first = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const std::uint64_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 2;
   const int tets = argc > 3 ? std::atoi(argv[3]) : 25000;
-  fmt::print("seed,bench_mean_abs_mm,bench_sd_mm,residual_rms_mm,dullness_at_13_mm_s,modulus_kpa,bias_mm,open_simulations\n");
+  fmt::print(
+      "seed,bench_mean_abs_mm,bench_sd_mm,residual_rms_mm,dullness_at_13_mm_s,modulus_kpa,bias_mm,open_simulations\n");
   for (std::uint64_t seed = first; seed < first + count; ++seed) run(seed, tets);
 }

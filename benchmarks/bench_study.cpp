@@ -3,7 +3,8 @@
 // figures that the bench's parameters are chosen by.
 //   incise_bench_study [first seed] [specimens] [key=value ...]
 // Keys: speed_mm_s, power_w, fine_mm, coarse_mm, way_mm, threads, draw_only (1: bodies are made and not cut),
-// photo (1: photographs are taken and read), pictures (a folder for them, made before), and every parameter of a specimen (then not drawn).
+// photo (1: photographs are taken and read), pictures (a folder for them, made before), and every parameter of a
+// specimen (then not drawn).
 #include <incise/core/error.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/geometry/kerf_contours.hpp>
@@ -69,7 +70,7 @@ struct Row {
   std::uint64_t seed = 0;
   std::size_t tets = 0;
   double body_s = 0.0, cut_s = 0.0, photo_s = 0.0;  // of computing
-  double gap_deg = 0.0;                              // of a ring that is open
+  double gap_deg = 0.0;                             // of a ring that is open
   double pull_n = 0.0;
   std::string outcome;
   BenchCut cut;
@@ -77,7 +78,8 @@ struct Row {
 };
 
 struct Options {
-  std::map<std::string, double> given{{"speed_mm_s", 7.0}, {"power_w", 35.0}, {"threads", 1.0}, {"draw_only", 0.0}, {"photo", 0.0}};
+  std::map<std::string, double> given{
+      {"speed_mm_s", 7.0}, {"power_w", 35.0}, {"threads", 1.0}, {"draw_only", 0.0}, {"photo", 0.0}};
   BenchResolution resolution;
   std::string pictures;
 };
@@ -113,7 +115,8 @@ std::optional<Errors> read_photo(const BenchBody& body, const BenchCut& cut, con
     return std::nullopt;
   }
   if (!found.incision.is_closed) {
-    fmt::print(stderr, "photograph of {}: the red line is open by {:.1f} mm\n", body.specimen.seed, found.red.max_gap_mm());
+    fmt::print(stderr, "photograph of {}: the red line is open by {:.1f} mm\n", body.specimen.seed,
+               found.red.max_gap_mm());
     return std::nullopt;
   }
   std::vector<double> errors;
@@ -151,11 +154,14 @@ Row run(std::uint64_t seed, const Options& options) {
   settings.plunge_speed_mm_s = plan.speed_mm_s;
   settings.overlap_mm = kRingOverlapMm;
   const RobotProgram program = make_program(path, settings);
-  row.cut = cut_specimen(body, tip_course(asked_course(program), specimen, Mat4::Identity()), options.given.at("power_w"), workers, monitor);
+  row.cut = cut_specimen(body, tip_course(asked_course(program), specimen, Mat4::Identity()),
+                         options.given.at("power_w"), workers, monitor);
   row.cut_s = cpu_s() - start - row.body_s;
   row.outcome = to_string(row.cut.outcome);
-  if (row.cut.inner_edge) row.truth = measure(true_errors_mm(body, row.cut, kTargetMm));
-  else row.gap_deg = find_gap_deg(body, row.cut);
+  if (row.cut.inner_edge)
+    row.truth = measure(true_errors_mm(body, row.cut, kTargetMm));
+  else
+    row.gap_deg = find_gap_deg(body, row.cut);
   if (options.given.at("photo") != 0.0) {
     const double before = cpu_s();
     row.photo = read_photo(body, row.cut, options.pictures);
@@ -168,10 +174,13 @@ void print(const Row& r) {
   const Errors none;
   const Errors& t = r.truth ? *r.truth : none;
   const Errors& p = r.photo ? *r.photo : none;
-  fmt::print("{},{},{:.2f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.2f},{},{},{},{},{:.3f},{},{:.1f},{:.1f},{:.1f},{:.1f}\n",
-             r.seed, r.tets, r.pull_n, r.outcome, t.mean_abs, t.sd_abs, t.mean, t.sd, t.least, t.most, p.mean_abs, p.sd_abs,
-             r.cut.bulge_mm, r.cut.max_drag_mm, r.cut.mean_force_mn, r.cut.thermal_width_mm, r.cut.removed_tets,
-             r.cut.loose_tets, r.cut.steps, r.cut.solutions, r.cut.unrest_mm, r.cut.linear_iterations, r.body_s, r.cut_s, r.photo_s, r.gap_deg);
+  fmt::print(
+      "{},{},{:.2f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.2f},{},{},{},{},"
+      "{:.3f},{},{:.1f},{:.1f},{:.1f},{:.1f}\n",
+      r.seed, r.tets, r.pull_n, r.outcome, t.mean_abs, t.sd_abs, t.mean, t.sd, t.least, t.most, p.mean_abs, p.sd_abs,
+      r.cut.bulge_mm, r.cut.max_drag_mm, r.cut.mean_force_mn, r.cut.thermal_width_mm, r.cut.removed_tets,
+      r.cut.loose_tets, r.cut.steps, r.cut.solutions, r.cut.unrest_mm, r.cut.linear_iterations, r.body_s, r.cut_s,
+      r.photo_s, r.gap_deg);
   std::fflush(stdout);
 }
 
@@ -186,8 +195,10 @@ void print_summary(const char* name, const std::vector<Row>& rows, std::optional
   if (means.size() < 2) return;
   const Errors m = measure(means);
   const Errors s = measure(sds);
-  fmt::print("# {}, {} closed rings: mean |error| {:.3f} mm (sd over specimens {:.3f}, {:.2f} to {:.2f}); sd along the contour {:.3f} mm ({:.2f} to {:.2f})\n",
-             name, means.size(), m.mean, m.sd, m.least, m.most, s.mean, s.least, s.most);
+  fmt::print(
+      "# {}, {} closed rings: mean |error| {:.3f} mm (sd over specimens {:.3f}, {:.2f} to {:.2f}); sd along the "
+      "contour {:.3f} mm ({:.2f} to {:.2f})\n",
+      name, means.size(), m.mean, m.sd, m.least, m.most, s.mean, s.least, s.most);
 }
 
 bool read_option(const std::string& argument, Options& options) {
@@ -195,13 +206,18 @@ bool read_option(const std::string& argument, Options& options) {
   if (equals == std::string::npos) return false;
   const std::string key = argument.substr(0, equals);
   const double value = std::atof(argument.c_str() + equals + 1);
-  if (key == "pictures") options.pictures = argument.substr(equals + 1);
-  else if (key == "fine_mm") options.resolution.fine_mm = value;
-  else if (key == "coarse_mm") options.resolution.coarse_mm = value;
-  else if (key == "way_mm") options.resolution.way_mm = value;
+  if (key == "pictures")
+    options.pictures = argument.substr(equals + 1);
+  else if (key == "fine_mm")
+    options.resolution.fine_mm = value;
+  else if (key == "coarse_mm")
+    options.resolution.coarse_mm = value;
+  else if (key == "way_mm")
+    options.resolution.way_mm = value;
   else {
     const auto specs = parameter_specs();
-    const bool is_parameter = std::any_of(specs.begin(), specs.end(), [&key](const ParameterSpec& s) { return s.name == key; });
+    const bool is_parameter =
+        std::any_of(specs.begin(), specs.end(), [&key](const ParameterSpec& s) { return s.name == key; });
     if (!is_parameter && options.given.count(key) == 0) return false;
     options.given[key] = value;
   }
@@ -221,8 +237,10 @@ int main(int argc, char** argv) {
   }
   std::vector<Row> rows(count);
   std::mutex printing;
-  fmt::print("seed,tets,pull_n,outcome,mean_abs_mm,sd_abs_mm,mean_mm,sd_mm,least_mm,most_mm,photo_mean_abs_mm,photo_sd_abs_mm,bulge_mm,drag_mm,"
-             "force_mn,thermal_mm,removed,loose,steps,solutions,unrest_mm,cg,body_s,cut_s,photo_s,gap_deg\n");
+  fmt::print(
+      "seed,tets,pull_n,outcome,mean_abs_mm,sd_abs_mm,mean_mm,sd_mm,least_mm,most_mm,photo_mean_abs_mm,photo_sd_abs_mm,"
+      "bulge_mm,drag_mm,"
+      "force_mn,thermal_mm,removed,loose,steps,solutions,unrest_mm,cg,body_s,cut_s,photo_s,gap_deg\n");
   Workers workers(static_cast<int>(options.given.at("threads")));
   workers.for_each(count, 1, [&](std::size_t i) {
     rows[i] = run(first + i, options);

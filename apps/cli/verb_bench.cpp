@@ -73,10 +73,11 @@ void require_apart(const std::filesystem::path& truth, const std::filesystem::pa
 /// A specimen that cannot be held and stretched is a result: it is told, and there is nothing to read or to cut.
 bool is_held(const BenchBody& body, Console& console) {
   if (body.inverted_tets > 0)
-    console.message(Severity::Detail, fmt::format("{} tets of the stretched specimen are turned inside out", body.inverted_tets));
+    console.message(Severity::Detail,
+                    fmt::format("{} tets of the stretched specimen are turned inside out", body.inverted_tets));
   if (body.outcome != Outcome::NotConverged) return true;
-  console.message(Severity::Warning, fmt::format("the specimen could not be stretched: {}, residual {:.2g}", to_string(body.outcome),
-                                                 body.equilibrium_residual));
+  console.message(Severity::Warning, fmt::format("the specimen could not be stretched: {}, residual {:.2g}",
+                                                 to_string(body.outcome), body.equilibrium_residual));
   return false;
 }
 
@@ -85,7 +86,8 @@ int make(const CommonOptions& options, const MakeArguments& arguments) {
   Console console(options.level());
   const std::filesystem::path output = options.required_output("specimen7");
   require_apart(arguments.truth, output);
-  const Specimen specimen = arguments.specimen.empty() ? draw_specimen(options.seed) : read_specimen(arguments.specimen);
+  const Specimen specimen =
+      arguments.specimen.empty() ? draw_specimen(options.seed) : read_specimen(arguments.specimen);
   make_parent(output);
   if (!arguments.truth.empty()) make_parent(arguments.truth);
   Workers workers(options.context().threads);
@@ -144,7 +146,8 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
   const WrittenProgram program = program_from_text(read_text(arguments.program), arguments.program);
   const Replay replay = play(program);
   if (replay.outcome != ReplayOutcome::Completed) {
-    throw DataError(arguments.program, fmt::format("line {}", replay.line), fmt::format("a motion that ends early: {}", to_string(replay.outcome)),
+    throw DataError(arguments.program, fmt::format("line {}", replay.line),
+                    fmt::format("a motion that ends early: {}", to_string(replay.outcome)),
                     "a program that the arm can run to its end", "`incise replay` shows how far it gets.");
   }
   make_parent(output);
@@ -152,7 +155,8 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
   Workers workers(options.context().threads);
   const BenchBody body = make_body(specimen, {}, workers, console);
   if (!is_held(body, console)) return kNotAcceptable;
-  const std::vector<TipPose> course = tip_course(asked_course(replay, program.T_flange_tool), specimen, T_robot_specimen(specimen).inverse());
+  const std::vector<TipPose> course =
+      tip_course(asked_course(replay, program.T_flange_tool), specimen, T_robot_specimen(specimen).inverse());
   if (const auto misfit = find_misfit(body, course)) {
     throw DataError(arguments.program, "poses", *misfit, "a course in this specimen's tissue round its tumour",
                     "Is it the program of another specimen?");
@@ -190,15 +194,18 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
 }  // namespace
 
 void add_bench(Application& application) {
-  CLI::App* bench = application.add_group("bench", "The virtual laboratory: make a specimen's readings, cut it by a robot program",
-                                          "incise bench make --seed 7 -o specimen7 --truth hidden7");
+  CLI::App* bench =
+      application.add_group("bench", "The virtual laboratory: make a specimen's readings, cut it by a robot program",
+                            "incise bench make --seed 7 -o specimen7 --truth hidden7");
   auto made = std::make_shared<MakeArguments>();
   CLI::App* verb = application.add_verb_to(
-      *bench, "make", "Seed or specimen file -> what a laboratory would have: CT, camera cloud, RGB-D frame, pull force",
+      *bench, "make",
+      "Seed or specimen file -> what a laboratory would have: CT, camera cloud, RGB-D frame, pull force",
       "incise bench make --seed 7 -o specimen7 --truth hidden7",
       [made](const CommonOptions& options) { return make(options, *made); });
   verb->add_option("specimen", made->specimen, "Specimen file (incise schema bench); without it the seed draws one");
-  verb->add_option("--truth", made->truth, "Folder for the hidden truth; it holds the specimen.json that `bench cut` needs");
+  verb->add_option("--truth", made->truth,
+                   "Folder for the hidden truth; it holds the specimen.json that `bench cut` needs");
   verb->add_flag("--elasticity", made->elasticity, "Also a noisy elasticity map");
 
   auto run = std::make_shared<CutArguments>();
@@ -206,7 +213,8 @@ void add_bench(Application& application) {
                                  "incise bench cut hidden7/specimen.json cut.script -o cut7",
                                  [run](const CommonOptions& options) { return cut(options, *run); });
   verb->add_option("specimen", run->specimen, "The hidden specimen.json")->required();
-  verb->add_option("program", run->program, "A program that `incise export` wrote: URScript, .csv or .json")->required();
+  verb->add_option("program", run->program, "A program that `incise export` wrote: URScript, .csv or .json")
+      ->required();
   verb->add_option("--power-w", run->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
   verb->add_option("--mm-per-pixel", run->mm_per_pixel, "Of the photograph")->check(CLI::Range(0.01, 0.2));
   verb->add_option("--truth", run->truth, "Folder for what really happened, for tests");

@@ -1,6 +1,6 @@
 #include <incise/core/error.hpp>
-#include <incise/io/atomic_file.hpp>
 #include <incise/imaging/picture.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
@@ -30,9 +30,12 @@ Json matrix(const Mat4& T) {
 
 std::string spread_text(const ParameterSpec& spec) {
   switch (spec.drawn_as) {
-    case DrawnAs::Uniform: return fmt::format("uniform in [{}, {}]", spec.a, spec.b);
-    case DrawnAs::Normal: return fmt::format("normal, mean {}, sd {}", spec.a, spec.b);
-    case DrawnAs::LogNormal: return fmt::format("lognormal, median {}, sd of the logarithm {}", spec.a, spec.b);
+    case DrawnAs::Uniform:
+      return fmt::format("uniform in [{}, {}]", spec.a, spec.b);
+    case DrawnAs::Normal:
+      return fmt::format("normal, mean {}, sd {}", spec.a, spec.b);
+    case DrawnAs::LogNormal:
+      return fmt::format("lognormal, median {}, sd of the logarithm {}", spec.a, spec.b);
   }
   return "";
 }
@@ -41,7 +44,8 @@ void require_schema(const Json& document, const char* expected, const std::files
   if (!document.is_object()) throw DataError(file, "", document.type_name(), "an object");
   const auto found = document.find("schema");
   if (found == document.end() || *found != expected)
-    throw DataError(file, "schema", found == document.end() ? "nothing" : found->dump(), fmt::format("\"{}\"", expected));
+    throw DataError(file, "schema", found == document.end() ? "nothing" : found->dump(),
+                    fmt::format("\"{}\"", expected));
 }
 
 double number_in(const Json& object, const std::string& key, const std::filesystem::path& file) {
@@ -58,12 +62,15 @@ std::string bench_schema_json() {
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = kSpecimenSchema;
   schema["description"] =
-      "A virtual specimen: all that is hidden from whoever plans. Parameters that are not given are drawn from the seed.";
+      "A virtual specimen: all that is hidden from whoever plans. Parameters that are not given are drawn from the "
+      "seed.";
   schema["type"] = "object";
   Json& properties = schema["properties"];
   properties["schema"] = {{"const", kSpecimenSchema}};
-  properties["seed"] = {{"type", "integer"}, {"minimum", 0},
-                        {"description", "Of the shape, of the fields inside, of all noise and of every parameter that is not given"}};
+  properties["seed"] = {
+      {"type", "integer"},
+      {"minimum", 0},
+      {"description", "Of the shape, of the fields inside, of all noise and of every parameter that is not given"}};
   const Specimen defaults;
   for (const ParameterSpec& spec : parameter_specs()) {
     properties[std::string(spec.name)] = {{"type", "number"},
@@ -100,7 +107,8 @@ Specimen read_specimen(const std::filesystem::path& file) {
   for (const auto& [key, value] : document.items()) {
     if (key == "schema" || key == "seed") continue;
     const auto specs = parameter_specs();
-    const auto spec = std::find_if(specs.begin(), specs.end(), [&key = key](const ParameterSpec& s) { return s.name == key; });
+    const auto spec =
+        std::find_if(specs.begin(), specs.end(), [&key = key](const ParameterSpec& s) { return s.name == key; });
     if (spec == specs.end())
       throw DataError(file, key, "an unknown key", "a parameter of a specimen",
                       fmt::format("Did you mean '{}'? `incise schema bench` lists all.", nearest_name(key, names)));

@@ -16,15 +16,17 @@ namespace incise {
 namespace {
 
 constexpr const char* kStage = "cutting the virtual specimen";
-constexpr int kKeptSteps = 10;         // for so many the tangent of tissue away from the tool is kept
-constexpr double kLivelyMm = 3.0;      // about the tool's way in these steps: tissue whose tangent is always new
-constexpr int kMoments = 3;            // of a step at which the steam's dose is taken
-constexpr int kMostSolutions = 4;      // per step; one is enough where no vertex had to be held back (what is left over is put right by the next)
+constexpr int kKeptSteps = 10;     // for so many the tangent of tissue away from the tool is kept
+constexpr double kLivelyMm = 3.0;  // about the tool's way in these steps: tissue whose tangent is always new
+constexpr int kMoments = 3;        // of a step at which the steam's dose is taken
+constexpr int kMostSolutions =
+    4;  // per step; one is enough where no vertex had to be held back (what is left over is put right by the next)
 constexpr double kTolerance = 0.1;
 constexpr double kLeastContact = 0.02;  // wet tissue never keeps off altogether
-constexpr double kAheadMm = 15.0;      // skin this far ahead of the tool counts as pushed up by it
-constexpr double kAsideMm = 5.0;       // and this far beside its course
-constexpr double kBridgeMm = 0.5;      // radius: a strip of skin narrower than 1 mm does not hold the plug (as in photographs)
+constexpr double kAheadMm = 15.0;       // skin this far ahead of the tool counts as pushed up by it
+constexpr double kAsideMm = 5.0;        // and this far beside its course
+constexpr double kBridgeMm =
+    0.5;  // radius: a strip of skin narrower than 1 mm does not hold the plug (as in photographs)
 constexpr double kSettleTolerance = 0.02;
 // Rosenthal's moving line source in a thick-plate limit: peak rise at distance y is kPeak q / (rho c v y), q power per
 // length.
@@ -132,7 +134,7 @@ class Cut {
   std::vector<double> bulges_mm_;
   std::vector<double> forces_mn_;
   double steam_kpa_s_ = 0.0;
-  double contact_share_ = 1.0;     // of the time that no arc keeps electrode and tissue apart
+  double contact_share_ = 1.0;  // of the time that no arc keeps electrode and tissue apart
   bool is_finite_ = true;
   BenchCut result_;
 };
@@ -142,10 +144,11 @@ std::vector<DragPoint> Cut::drags(const std::vector<std::size_t>& touched, const
   std::vector<DragPoint> points;
   for (const std::size_t tet : touched) {
     // The adhesion's strength bounds the drag: viscosity falls with the speed at which the tool slips past.
-    const double viscosity =
-        contact_share_ * s.adhesion_kpa_s_mm2 / (1.0 + s.adhesion_kpa_s_mm2 * slip_mm_s_[tet] / s.adhesion_limit_kpa_mm);
+    const double viscosity = contact_share_ * s.adhesion_kpa_s_mm2 /
+                             (1.0 + s.adhesion_kpa_s_mm2 * slip_mm_s_[tet] / s.adhesion_limit_kpa_mm);
     for (const auto& weights : quadrature()) {
-      const double share = kernel(tool.distance_mm(point_in(mesh_, state_.positions, tet, weights)), Electrode::kDragReachMm);
+      const double share =
+          kernel(tool.distance_mm(point_in(mesh_, state_.positions, tet, weights)), Electrode::kDragReachMm);
       if (share > 0.0) points.push_back({tet, weights, viscosity * share * 0.25 * body_.tissue->volumes_mm3[tet]});
     }
   }
@@ -168,7 +171,8 @@ void Cut::dose(const std::vector<std::size_t>& touched, const std::vector<DragPo
       const double t = (m + 0.5) / kMoments;
       const Electrode tool{from.tip_mm + t * (to.tip_mm - from.tip_mm), to.axis};
       for (const auto& weights : quadrature()) {
-        const Vec3 p = (1.0 - t) * point_in(mesh_, before_, tet, weights) + t * point_in(mesh_, state_.positions, tet, weights);
+        const Vec3 p =
+            (1.0 - t) * point_in(mesh_, before_, tet, weights) + t * point_in(mesh_, state_.positions, tet, weights);
         share += 0.25 / kMoments * kernel(tool.distance_mm(p), Electrode::kSteamReachMm);
       }
     }
@@ -236,7 +240,8 @@ void Cut::step(const TipPose& from, const TipPose& to, double step_s, Workers& w
   }
   Vec3 force = Vec3::Zero();
   for (const DragPoint& point : points) {
-    const Vec3 moved = point_in(mesh_, state_.positions, point.tet, point.weights) - point_in(mesh_, before_, point.tet, point.weights);
+    const Vec3 moved = point_in(mesh_, state_.positions, point.tet, point.weights) -
+                       point_in(mesh_, before_, point.tet, point.weights);
     force += point.viscosity_mn_s_mm * (velocity - moved / step_s);
   }
   forces_mn_.push_back(force.norm());
@@ -251,7 +256,9 @@ std::vector<std::uint8_t> Cut::lively_tets(const std::vector<TipPose>& way) cons
   std::vector<std::uint8_t> is_lively(mesh_.tets.size(), 0);
   for (std::size_t t = 0; t < is_lively.size(); ++t) {
     const Vec3& corner = state_.positions[mesh_.tets[t][0].index()];
-    const auto is_near = [&](const TipPose& pose) { return Electrode{pose.tip_mm, pose.axis}.distance_mm(corner) < kLivelyMm; };
+    const auto is_near = [&](const TipPose& pose) {
+      return Electrode{pose.tip_mm, pose.axis}.distance_mm(corner) < kLivelyMm;
+    };
     is_lively[t] = std::any_of(way.begin(), way.end(), is_near) ? 1 : 0;
   }
   return is_lively;
@@ -326,9 +333,7 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
   for (const double force : forces_mn_) result_.mean_force_mn += force / static_cast<double>(forces_mn_.size());
   if (is_finite_) read_edges();
   const bool is_at_rest = is_finite_ && result_.unrest_mm < kSettleTolerance;
-  result_.outcome = !is_at_rest           ? Outcome::NotConverged
-                    : !result_.inner_edge ? Outcome::OpenLoop
-                                          : Outcome::Success;
+  result_.outcome = !is_at_rest ? Outcome::NotConverged : !result_.inner_edge ? Outcome::OpenLoop : Outcome::Success;
   result_.after = std::move(state_);
   result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return std::move(result_);

@@ -19,18 +19,18 @@ namespace incise {
 namespace {
 
 constexpr const char* kStage = "making the virtual specimen";
-constexpr double kRingMarginMm = 5.0;      // Paper II-A: where a path is to be expected
+constexpr double kRingMarginMm = 5.0;  // Paper II-A: where a path is to be expected
 constexpr double kDepthMm = 5.0;
-constexpr double kClampMm = 14.0;          // of the root that the clamp takes hold of
-constexpr double kSutureMm = 8.0;          // of the tip that the suture takes along
-constexpr double kStretchMm = 20.0;        // Paper II-A
-constexpr double kStretchTolerance = 1e-4;  // of the residual, relative to the reactions
+constexpr double kClampMm = 14.0;             // of the root that the clamp takes hold of
+constexpr double kSutureMm = 8.0;             // of the tip that the suture takes along
+constexpr double kStretchMm = 20.0;           // Paper II-A
+constexpr double kStretchTolerance = 1e-4;    // of the residual, relative to the reactions
 constexpr std::size_t kSutureConstraint = 1;  // its place in constraints_of
 constexpr double kStiffnessWaveMm = 15.0;
 constexpr double kToughnessWaveMm = 12.0;
-constexpr double kPartedLayerMm = 1.0;     // tissue as thick as the needle parts along one surface
-constexpr double kVoxelMm = 0.7;           // of the shape when it is meshed
-constexpr int kColumns = 3;                // sub-columns of a voxel across
+constexpr double kPartedLayerMm = 1.0;  // tissue as thick as the needle parts along one surface
+constexpr double kVoxelMm = 0.7;        // of the shape when it is meshed
+constexpr int kColumns = 3;             // sub-columns of a voxel across
 constexpr std::uint64_t kFieldStream = 0x5bd1e995ULL;
 
 /// The exact shape as occupancy: nothing of the CT goes into the body.

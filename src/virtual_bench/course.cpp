@@ -47,12 +47,14 @@ std::vector<TipPose> asked_course(const Replay& replay, const Mat4& T_flange_too
     const bool is_end = i == 0 || i + 1 == replay.samples.size() || replay.samples[i + 1].phase != sample.phase;
     if (!is_end && sample.time_s < course.back().time_s + kCoursePeriodS) continue;
     const Mat4 T_robot_tool = forward_kinematics(arm, sample.q_rad) * T_flange_tool;
-    course.push_back({sample.time_s, T_robot_tool.topRightCorner<3, 1>(), T_robot_tool.block<3, 1>(0, 2), cuts(sample.phase)});
+    course.push_back(
+        {sample.time_s, T_robot_tool.topRightCorner<3, 1>(), T_robot_tool.block<3, 1>(0, 2), cuts(sample.phase)});
   }
   return course;
 }
 
-std::vector<TipPose> tip_course(const std::vector<TipPose>& asked, const Specimen& specimen, const Mat4& T_specimen_robot) {
+std::vector<TipPose> tip_course(const std::vector<TipPose>& asked, const Specimen& specimen,
+                                const Mat4& T_specimen_robot) {
   Random random(specimen.seed ^ kWanderStream);
   const std::array<SmoothField, 3> wander{SmoothField(kWanderWaveMm, random), SmoothField(kWanderWaveMm, random),
                                           SmoothField(kWanderWaveMm, random)};
@@ -64,8 +66,7 @@ std::vector<TipPose> tip_course(const std::vector<TipPose>& asked, const Specime
     ++count;
   }
   if (count > 0) middle /= static_cast<double>(count);
-  const Mat3 turn =
-      Eigen::AngleAxisd(units::rad_from_deg(specimen.robot_turn_deg), Vec3::UnitZ()).toRotationMatrix();
+  const Mat3 turn = Eigen::AngleAxisd(units::rad_from_deg(specimen.robot_turn_deg), Vec3::UnitZ()).toRotationMatrix();
   const Vec3 offset(specimen.robot_offset_x_mm, specimen.robot_offset_y_mm, specimen.robot_offset_z_mm);
   const Mat3 R = T_specimen_robot.topLeftCorner<3, 3>();
   const Vec3 t = T_specimen_robot.topRightCorner<3, 1>();

@@ -21,7 +21,8 @@ void LineDistance::add(const Vec2& a, const Vec2& b) {
     for (int u = first(std::min(a.x(), b.x())); u <= u1; ++u) {
       const Vec2 p(u, v);
       const double t = std::clamp((p - a).dot(along) / squared, 0.0, 1.0);
-      float& least = distance_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
+      float& least =
+          distance_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u)];
       least = std::min(least, static_cast<float>((p - a - t * along).norm()));
     }
   }

@@ -19,7 +19,8 @@ double kernel(double distance_mm, double reach_mm) {
 const std::array<std::array<double, 4>, 4>& quadrature() {
   constexpr double a = 0.58541019662496845446;  // (5 + 3 sqrt 5) / 20
   constexpr double b = 0.13819660112501051518;  // (5 - sqrt 5) / 20
-  static constexpr std::array<std::array<double, 4>, 4> kPoints{{{a, b, b, b}, {b, a, b, b}, {b, b, a, b}, {b, b, b, a}}};
+  static constexpr std::array<std::array<double, 4>, 4> kPoints{
+      {{a, b, b, b}, {b, a, b, b}, {b, b, a, b}, {b, b, b, a}}};
   return kPoints;
 }
 

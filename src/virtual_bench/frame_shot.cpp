@@ -12,15 +12,15 @@ namespace incise {
 namespace {
 
 constexpr std::uint64_t kNoiseStream = 0x165667b1ULL;
-constexpr double kMarkMm = 1.0;           // width of the felt pen's line
-constexpr double kGrazingCosine = 0.25;   // flatter than this the sensor sees nothing
-constexpr double kSlowNoiseShare = 0.5;   // of the depth noise that changes slowly over the picture
+constexpr double kMarkMm = 1.0;          // width of the felt pen's line
+constexpr double kGrazingCosine = 0.25;  // flatter than this the sensor sees nothing
+constexpr double kSlowNoiseShare = 0.5;  // of the depth noise that changes slowly over the picture
 constexpr double kColorNoise = 3.0;
 
 /// What each pixel of a pinhole sees: perspective depth buffer.
 struct View {
-  std::vector<double> depth_mm;          // along the optical axis; infinite: nothing
-  std::vector<std::int32_t> triangle;    // of the skin; -1: none
+  std::vector<double> depth_mm;        // along the optical axis; infinite: nothing
+  std::vector<std::int32_t> triangle;  // of the skin; -1: none
 };
 
 Vec2 pixel_of(const Pinhole& camera, const Vec3& p) {
@@ -55,8 +55,10 @@ View look(const Pinhole& camera, const std::vector<BoundaryFace>& skin, const Po
     if (std::abs(area) < 1e-12) continue;
     const auto [u0, u1] = std::minmax({px[0].x(), px[1].x(), px[2].x()});
     const auto [v0, v1] = std::minmax({px[0].y(), px[1].y(), px[2].y()});
-    for (int v = std::max(0, static_cast<int>(std::ceil(v0))); v <= std::min(camera.height - 1, static_cast<int>(v1)); ++v) {
-      for (int u = std::max(0, static_cast<int>(std::ceil(u0))); u <= std::min(camera.width - 1, static_cast<int>(u1)); ++u) {
+    for (int v = std::max(0, static_cast<int>(std::ceil(v0))); v <= std::min(camera.height - 1, static_cast<int>(v1));
+         ++v) {
+      for (int u = std::max(0, static_cast<int>(std::ceil(u0))); u <= std::min(camera.width - 1, static_cast<int>(u1));
+           ++u) {
         const Vec2 p(u, v);
         bool is_inside = true;
         for (std::size_t c = 0; c < 3; ++c)
@@ -152,8 +154,9 @@ FrameShot shoot_frame(const BenchBody& body, const Mat4& T_camera_specimen) {
       std::uint8_t* pixel = pixel_at(shot.color, u, v);
       put(pixel, paint + Paint(random.normal(), random.normal(), random.normal()) * kColorNoise);
       if (view.triangle[n] >= 0) lay(pixel, kGreenInk, std::clamp(half_px + 0.5 - mark.at(u, v), 0.0, 1.0));
-      const double noise = specimen.depth_noise_mm * (std::sqrt(1.0 - kSlowNoiseShare * kSlowNoiseShare) * random.normal() +
-                                                      kSlowNoiseShare * slow.at(Vec3(u, v, 0.0)));
+      const double noise =
+          specimen.depth_noise_mm * (std::sqrt(1.0 - kSlowNoiseShare * kSlowNoiseShare) * random.normal() +
+                                     kSlowNoiseShare * slow.at(Vec3(u, v, 0.0)));
       const double measured = (depth * specimen.depth_scale + noise) / shot.depth_unit_mm;
       if (is_hole[n] != 0 || cosine < kGrazingCosine || !(measured > 0.0 && measured < 65535.0)) continue;
       shot.depth.counts[n] = static_cast<std::uint16_t>(std::lround(measured));

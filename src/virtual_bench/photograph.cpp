@@ -15,15 +15,15 @@
 namespace incise {
 namespace {
 
-constexpr double kVisibleHeatMm = 1.0;   // the electrode's diameter: heat that reaches farther is seen
+constexpr double kVisibleHeatMm = 1.0;  // the electrode's diameter: heat that reaches farther is seen
 constexpr double kNeedleMm = 0.5;
-constexpr double kWallMm = 1.2;          // from the rim of the kerf to where it is darkest
-constexpr double kCoarsePixels = 4.0;    // distances from the rim are taken on a grid this much coarser
-constexpr int kRays = 720;               // in which an open kerf's inner edge is looked for
-constexpr double kMostJumpMm = 1.2;      // between neighbouring rays along one piece of it
-constexpr double kHandMm = 0.03;         // standard deviation of the hand that draws the red line
+constexpr double kWallMm = 1.2;        // from the rim of the kerf to where it is darkest
+constexpr double kCoarsePixels = 4.0;  // distances from the rim are taken on a grid this much coarser
+constexpr int kRays = 720;             // in which an open kerf's inner edge is looked for
+constexpr double kMostJumpMm = 1.2;    // between neighbouring rays along one piece of it
+constexpr double kHandMm = 0.03;       // standard deviation of the hand that draws the red line
 constexpr double kRulerMm = 40.0;
-constexpr double kTickMm = 0.25;         // width of a tick
+constexpr double kTickMm = 0.25;  // width of a tick
 
 /// What is seen from above: triangles of what is left, in view coordinates.
 struct Scene {
@@ -98,11 +98,17 @@ std::vector<std::vector<Vec2>> open_inner_edge(const Raster& kerf, const Vec2& m
 class Painter {
  public:
   Painter(const BenchBody& body, const BenchCut& cut, const PhotographSettings& settings)
-      : body_(body), cut_(cut), settings_(settings), view_(view_along(body.approach)),
-        scene_(scene_of(body, cut, view_)), grain_(body.specimen.seed) {
+      : body_(body),
+        cut_(cut),
+        settings_(settings),
+        view_(view_along(body.approach)),
+        scene_(scene_of(body, cut, view_)),
+        grain_(body.specimen.seed) {
     Box3 box = bounding_box(flat(cut.tumor_edge, view_));
-    if (cut.inner_edge) box.extend(bounding_box(flat(*cut.inner_edge, view_)));
-    else box = Box3(box.min() - Vec3::Constant(6.0), box.max() + Vec3::Constant(6.0));
+    if (cut.inner_edge)
+      box.extend(bounding_box(flat(*cut.inner_edge, view_)));
+    else
+      box = Box3(box.min() - Vec3::Constant(6.0), box.max() + Vec3::Constant(6.0));
     grid_ = grid_around(box.min().head<2>(), box.max().head<2>(), settings.mm_per_pixel, settings.border_mm);
     seen_ = depth_buffer(grid_, scene_.in_view, scene_.triangles);
     picture_ = {grid_.width, grid_.height, std::vector<std::uint8_t>(3 * grid_.pixel_count())};
@@ -171,8 +177,7 @@ class Painter {
         for (std::size_t c = 0; c < 3; ++c)
           rest += weights[static_cast<Eigen::Index>(c)] * body_.tissue->mesh.vertices[t[c].index()];
         const Vec3& a = scene_.in_view[t[0].index()];
-        const Vec3 normal =
-            (scene_.in_view[t[1].index()] - a).cross(scene_.in_view[t[2].index()] - a).normalized();
+        const Vec3 normal = (scene_.in_view[t[1].index()] - a).cross(scene_.in_view[t[2].index()] - a).normalized();
         const double light = 0.6 + 0.4 * std::abs(normal.z());
         if (scene_.is_skin[static_cast<std::size_t>(n)] != 0) {
           put(pixel(i, j), kTissuePaint * (grain_.at(rest) * light) + 2.5 * noise);

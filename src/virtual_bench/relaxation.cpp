@@ -45,7 +45,8 @@ void Relaxation::add_tangent(TissueState& state, double step_s, const std::vecto
 void Relaxation::renew(TissueState& state, double step_s, std::vector<std::uint8_t> is_lively, Workers& workers) {
   is_lively_ = std::move(is_lively);
   std::vector<std::uint8_t> is_calm(is_lively_.size());
-  std::transform(is_lively_.begin(), is_lively_.end(), is_calm.begin(), [](std::uint8_t flag) -> std::uint8_t { return flag == 0; });
+  std::transform(is_lively_.begin(), is_lively_.end(), is_calm.begin(),
+                 [](std::uint8_t flag) -> std::uint8_t { return flag == 0; });
   std::fill(kept_.values.begin(), kept_.values.end(), 0.0);
   add_tangent(state, step_s, is_calm, kept_, workers);
   // Inertia over one second: nothing beside stiffness, but it keeps bits that hang by a corner from being free.

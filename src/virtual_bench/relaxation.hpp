@@ -26,8 +26,8 @@ struct RelaxReport {
 
 /// Moves tissue towards equilibrium by Newton's method with the projected tangent of the true law, viscosity included.
 /// Only tets that are called lively have their tangent taken at every solution; of the others it is that of the last
-/// renewal. Forces are exact, so what is reached is the true equilibrium; a tangent that is not quite up to date only sets
-/// how fast.
+/// renewal. Forces are exact, so what is reached is the true equilibrium; a tangent that is not quite up to date only
+/// sets how fast.
 class Relaxation {
  public:
   static constexpr double kMostStepMm = 1.0;  ///< that a vertex moves in one solution

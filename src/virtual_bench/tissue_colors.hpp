@@ -15,8 +15,8 @@ namespace incise {
 /// Linear mixture of paints, 0 to 255 a channel.
 using Paint = Vec3;
 inline const Paint kTissuePaint(196.0, 138.0, 130.0);
-inline const Paint kWallPaint(70.0, 40.0, 38.0);    // cut muscle, in the shadow of the kerf
-inline const Paint kDeepPaint(46.0, 18.0, 18.0);    // the bottom of the kerf
+inline const Paint kWallPaint(70.0, 40.0, 38.0);  // cut muscle, in the shadow of the kerf
+inline const Paint kDeepPaint(46.0, 18.0, 18.0);  // the bottom of the kerf
 inline const Paint kCookedPaint(226.0, 212.0, 190.0);
 inline const Paint kRedInk(208.0, 22.0, 30.0);
 inline const Paint kGreenInk(26.0, 158.0, 62.0);
@@ -39,7 +39,8 @@ inline std::uint8_t channel(double value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
 }
 inline std::uint8_t* pixel_at(ColorPicture& picture, int u, int v) {
-  return picture.rgb.data() + 3 * (static_cast<std::size_t>(v) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(u));
+  return picture.rgb.data() +
+         3 * (static_cast<std::size_t>(v) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(u));
 }
 inline void put(std::uint8_t* pixel, const Paint& paint) {
   for (int c = 0; c < 3; ++c) pixel[c] = channel(paint[c]);

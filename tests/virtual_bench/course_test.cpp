@@ -29,8 +29,8 @@ TEST(TipCourse, AnArmWithoutErrorsGoesWhereTheProgramSays) {
     EXPECT_LT((course[i].tip_mm - program.poses[i].tip_mm).norm(), 1e-9);
     EXPECT_LT((course[i].axis + Vec3::UnitZ()).norm(), 1e-9);
     const ProgramPhase phase = program.poses[i].phase;
-    EXPECT_EQ(course[i].is_cutting, phase == ProgramPhase::Plunge || phase == ProgramPhase::Cut || phase == ProgramPhase::Overlap ||
-                                         phase == ProgramPhase::Dwell);
+    EXPECT_EQ(course[i].is_cutting, phase == ProgramPhase::Plunge || phase == ProgramPhase::Cut ||
+                                        phase == ProgramPhase::Overlap || phase == ProgramPhase::Dwell);
   }
 }
 

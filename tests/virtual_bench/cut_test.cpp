@@ -43,7 +43,8 @@ TEST(BenchBody, IsStretchedAsDrawnInEquilibriumAndItsPullGrowsWithItsStiffness) 
   Specimen stiff = middle_specimen();
   stiff.youngs_modulus_kpa *= 2.0;
   const BenchBody other = coarse_body(stiff);
-  // Displacements are prescribed, so force goes with stiffness; weight and friction-free rest on the platform take a little.
+  // Displacements are prescribed, so force goes with stiffness; weight and friction-free rest on the platform take a
+  // little.
   EXPECT_NEAR(other.stretch_force_n / body().stretch_force_n, 2.0, 0.06);
   EXPECT_GT(body().stretch_force_n, 0.5);
   EXPECT_LT(body().stretch_force_n, 20.0);
@@ -126,7 +127,8 @@ Ink find_ink(ColorPicture picture, bool is_red) {
     }
   }
   Ink ink{places.size(), 0.0};
-  for (const Vec2& p : places) ink.mean_radius_px += (p - centre / static_cast<double>(places.size())).norm() / static_cast<double>(places.size());
+  for (const Vec2& p : places)
+    ink.mean_radius_px += (p - centre / static_cast<double>(places.size())).norm() / static_cast<double>(places.size());
   return ink;
 }
 
@@ -147,7 +149,8 @@ void expect_both_lines_at_their_scale() {
   const Ink red = find_ink(picture, true);
   EXPECT_NEAR(0.06 * green.mean_radius_px, mean_radius_mm(cut_at_35().tumor_edge), 0.1);
   EXPECT_NEAR(0.06 * red.mean_radius_px, mean_radius_mm(*cut_at_35().inner_edge), 0.1);
-  EXPECT_NEAR(0.06 * 0.06 * static_cast<double>(green.pixels) / length_mm(cut_at_35().tumor_edge), settings.green_line_mm, 0.12);
+  EXPECT_NEAR(0.06 * 0.06 * static_cast<double>(green.pixels) / length_mm(cut_at_35().tumor_edge),
+              settings.green_line_mm, 0.12);
 }
 
 TEST(Photograph, ShowsBothLinesAtTheirScaleAndAnOpenRingAsAnOpenLine) {

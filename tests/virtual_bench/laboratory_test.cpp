@@ -104,7 +104,8 @@ TEST(Readings, ForceAndElasticityShowStiffnessWithTheirNoise) {
     ++count;
   }
   ASSERT_GT(count, 1000U);
-  EXPECT_NEAR(sum / static_cast<double>(count), seen_specimen().youngs_modulus_kpa, 0.15 * seen_specimen().youngs_modulus_kpa);
+  EXPECT_NEAR(sum / static_cast<double>(count), seen_specimen().youngs_modulus_kpa,
+              0.15 * seen_specimen().youngs_modulus_kpa);
 }
 
 }  // namespace

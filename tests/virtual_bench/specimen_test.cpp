@@ -47,7 +47,9 @@ TEST(Specimen, DrawsKeepToTheirSpreads) {
     }
     const double mean = sum / kDraws;
     const double sd = std::sqrt(squares / kDraws - mean * mean);
-    const double expected_mean = spec.drawn_as == DrawnAs::Uniform ? 0.5 * (spec.a + spec.b) : spec.drawn_as == DrawnAs::Normal ? spec.a : 0.0;
+    const double expected_mean = spec.drawn_as == DrawnAs::Uniform  ? 0.5 * (spec.a + spec.b)
+                                 : spec.drawn_as == DrawnAs::Normal ? spec.a
+                                                                    : 0.0;
     const double expected_sd = spec.drawn_as == DrawnAs::Uniform ? (spec.b - spec.a) / std::sqrt(12.0) : spec.b;
     // Four standard errors; limits that cut a tail off take little away.
     EXPECT_NEAR(mean, expected_mean, 4.0 * expected_sd / std::sqrt(kDraws) + 0.02 * expected_sd) << spec.name;
@@ -59,8 +61,12 @@ TEST(Specimen, DefaultsAreTheMiddleOfEachSpread) {
   const Specimen middle;
   EXPECT_THAT(validate(middle), testing::IsEmpty());
   for (const ParameterSpec& spec : parameter_specs()) {
-    const double low = spec.drawn_as == DrawnAs::Uniform ? spec.a : spec.drawn_as == DrawnAs::Normal ? spec.a - spec.b : spec.a * std::exp(-spec.b);
-    const double high = spec.drawn_as == DrawnAs::Uniform ? spec.b : spec.drawn_as == DrawnAs::Normal ? spec.a + spec.b : spec.a * std::exp(spec.b);
+    const double low = spec.drawn_as == DrawnAs::Uniform  ? spec.a
+                       : spec.drawn_as == DrawnAs::Normal ? spec.a - spec.b
+                                                          : spec.a * std::exp(-spec.b);
+    const double high = spec.drawn_as == DrawnAs::Uniform  ? spec.b
+                        : spec.drawn_as == DrawnAs::Normal ? spec.a + spec.b
+                                                           : spec.a * std::exp(spec.b);
     EXPECT_GE(middle.*spec.member, low) << spec.name;
     EXPECT_LE(middle.*spec.member, high) << spec.name;
   }

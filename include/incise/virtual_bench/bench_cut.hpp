@@ -24,14 +24,15 @@ struct BenchCut {
   std::optional<Contour> inner_edge;   ///< of the kerf, on the skin, as seen along the approach; nullopt: open
   Contour tumor_edge;                  ///< where it lies after the cut
   std::size_t removed_tets = 0;
-  std::size_t loose_tets = 0;          ///< of these: fragments that hung on nothing
-  double bulge_mm = 0.0;               ///< how far skin in the 15 x 10 mm ahead of the tool is shoved from its place, up and along: mean over place and cut
-  double max_drag_mm = 0.0;            ///< farthest that the tool took a piece of skin along
-  double mean_force_mn = 0.0;          ///< of the drag, over the cut
-  double thermal_width_mm = 0.0;       ///< how far beside the tool's axis tissue reached 60 degrees C
+  std::size_t loose_tets = 0;  ///< of these: fragments that hung on nothing
+  double bulge_mm = 0.0;  ///< how far skin in the 15 x 10 mm ahead of the tool is shoved from its place, up and along:
+                          ///< mean over place and cut
+  double max_drag_mm = 0.0;       ///< farthest that the tool took a piece of skin along
+  double mean_force_mn = 0.0;     ///< of the drag, over the cut
+  double thermal_width_mm = 0.0;  ///< how far beside the tool's axis tissue reached 60 degrees C
   int steps = 0;
-  double unrest_mm = 0.0;              ///< longest way of a vertex in the last solution before the photograph
-  int solutions = 0;                   ///< of linear systems
+  double unrest_mm = 0.0;  ///< longest way of a vertex in the last solution before the photograph
+  int solutions = 0;       ///< of linear systems
   int linear_iterations = 0;
   double wall_s = 0.0;
 };

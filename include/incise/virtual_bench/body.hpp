@@ -20,7 +20,8 @@ struct BenchResolution {
   double way_mm = 0.5;     ///< of the tool in a step, > 0
 };
 
-/// A virtual specimen in its holder: clamped, its tip pulled forward. mm, LPS frame of its CT. Hidden from whoever plans.
+/// A virtual specimen in its holder: clamped, its tip pulled forward. mm, LPS frame of its CT. Hidden from whoever
+/// plans.
 struct BenchBody {
   Specimen specimen;
   BenchResolution resolution;
@@ -33,8 +34,9 @@ struct BenchBody {
   TriMesh tumor_rest;                         ///< closed surface of the inclusion at rest
   Vec3 approach = -Vec3::UnitZ();             ///< as camera and surgeon look
   double stretch_force_n = 0.0;               ///< the suture's pull, without the load cell's error
-  Outcome outcome = Outcome::NotConverged;    ///< Success, ElementInverted (in equilibrium, but tets turned inside out) or NotConverged
-  double equilibrium_residual = 0.0;          ///< |free residual| over |reactions|
+  Outcome outcome =
+      Outcome::NotConverged;  ///< Success, ElementInverted (in equilibrium, but tets turned inside out) or NotConverged
+  double equilibrium_residual = 0.0;  ///< |free residual| over |reactions|
   std::size_t inverted_tets = 0;
   double wall_s = 0.0;
 };

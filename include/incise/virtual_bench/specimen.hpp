@@ -9,8 +9,8 @@
 namespace incise {
 
 /// Everything that is hidden about a virtual specimen, its holder, the arm and the camera over it: what a laboratory
-/// cannot look up. Defaults are the middle of each spread; parameter_specs() says spread, source and the reading through
-/// which a parameter shows.
+/// cannot look up. Defaults are the middle of each spread; parameter_specs() says spread, source and the reading
+/// through which a parameter shows.
 struct Specimen {
   std::uint64_t seed = 1;  ///< of the shape, of the fields inside and of all noise
 
@@ -78,11 +78,11 @@ struct ParameterSpec {
   std::string_view name;     ///< its key in a specimen file; units at the end
   double Specimen::*member;  ///< the place it has
   DrawnAs drawn_as;
-  double a, b;               ///< of the spread
-  double low, high;          ///< what a specimen file may say, both included
+  double a, b;       ///< of the spread
+  double low, high;  ///< what a specimen file may say, both included
   std::string_view meaning;
-  std::string_view source;   ///< of value and spread; "chosen" where nobody has published one
-  std::string_view shows_in; ///< the reading through which it shows; "none"
+  std::string_view source;    ///< of value and spread; "chosen" where nobody has published one
+  std::string_view shows_in;  ///< the reading through which it shows; "none"
 };
 /// All of them, in the order of Specimen.
 [[nodiscard]] std::span<const ParameterSpec> parameter_specs();
