@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   app.footer("\n`incise VERB --help` explains a verb and ends with an example.\n");
   Application application(app, joined(argc, argv));
+  add_bench(application);
   add_demo(application);
   add_run(application);
   add_phantom(application);

@@ -53,9 +53,21 @@ std::filesystem::path CommonOptions::required_output(const char* example) const 
 
 CLI::App* Application::add_verb(const std::string& name, const std::string& what, const std::string& example,
                                 std::function<int(const CommonOptions&)> run) {
+  return add_verb_to(app_, name, what, example, std::move(run));
+}
+
+CLI::App* Application::add_group(const std::string& group, const std::string& what, const std::string& example) {
+  CLI::App* verbs = app_.add_subcommand(group, what);
+  verbs->require_subcommand(1);
+  verbs->footer("\nExample:\n  " + example + "\n");
+  return verbs;
+}
+
+CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, const std::string& what,
+                                   const std::string& example, std::function<int(const CommonOptions&)> run) {
   auto options = std::make_shared<CommonOptions>();
   options->command_line = command_line_;
-  CLI::App* verb = app_.add_subcommand(name, what);
+  CLI::App* verb = group.add_subcommand(name, what);
   verb->footer("\nExample:\n  " + example + "\n");
   verb->add_option("-o,--output", options->output, "File or folder to write");
   verb->add_flag("--json", options->json, "One JSON object on standard output");

@@ -64,6 +64,10 @@ class Application {
   /// @param example  shown at the end of --help.
   CLI::App* add_verb(const std::string& name, const std::string& what, const std::string& example,
                      std::function<int(const CommonOptions&)> run);
+  /// A verb of several words: `group` holds the verbs that follow it, one of which has to be given.
+  CLI::App* add_group(const std::string& group, const std::string& what, const std::string& example);
+  CLI::App* add_verb_to(CLI::App& group, const std::string& name, const std::string& what, const std::string& example,
+                        std::function<int(const CommonOptions&)> run);
   [[nodiscard]] int status() const { return status_; }
 
  private:
@@ -80,6 +84,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
 /// 0 for Success, 130 for Cancelled, 4 for every other outcome.
 [[nodiscard]] int status_of(Outcome outcome);
 
+void add_bench(Application& application);     ///< bench make, bench cut
 void add_demo(Application& application);
 void add_run(Application& application);
 void add_phantom(Application& application);

@@ -2,6 +2,8 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/storage/bench_files.hpp>
 #include <incise/storage/path_schema.hpp>
 
 #include <cstdio>
@@ -9,6 +11,15 @@
 #include <ostream>
 
 namespace incise::cli {
+namespace {
+
+std::string text_of(const std::string& what, bool has_defaults) {
+  if (what == "bench") return has_defaults ? json_text(to_json(Specimen{})) : bench_schema_json();
+  if (what == "path") return path_schema_json();
+  return has_defaults ? case_defaults_yaml() : case_schema_json();
+}
+
+}  // namespace
 
 void add_schema(Application& application) {
   struct Arguments {
@@ -22,7 +33,7 @@ void add_schema(Application& application) {
         if (arguments->what == "path" && arguments->defaults) {
           throw CaseError("command line", "--defaults", "path", "case: a path has no defaults");
         }
-        const std::string text = arguments->what == "path" ? path_schema_json() : arguments->defaults ? case_defaults_yaml() : case_schema_json();
+        const std::string text = text_of(arguments->what, arguments->defaults);
         if (options.output.empty()) {
           std::fwrite(text.data(), 1, text.size(), stdout);
         } else {
@@ -30,7 +41,7 @@ void add_schema(Application& application) {
         }
         return kDone;
       });
-  verb->add_option("what", arguments->what, "Which file")->check(CLI::IsMember({"case", "path"}))->required();
+  verb->add_option("what", arguments->what, "Which file")->check(CLI::IsMember({"bench", "case", "path"}))->required();
   verb->add_flag("--defaults", arguments->defaults, "A file with every default instead of the schema");
 }
 

@@ -131,6 +131,11 @@ TEST(ForbiddenIncludes, TheBenchCannotSeeTheSimulation) {
       2U);
 }
 
+TEST(ForbiddenIncludes, ThePlannerCannotSeeTheBench) {
+  for (const char* planner : {"planning", "calibration", "procedure", "cutting", "registration", "evaluation"})
+    EXPECT_EQ(check_text(planner, "#include <incise/virtual_bench/body.hpp>\n").size(), 1U) << planner;
+}
+
 TEST(ForbiddenIncludes, PrivateHeadersStayInTheirModule) {
   EXPECT_EQ(check_text("storage", "#include \"io/vtk_bytes.hpp\"\n").size(), 1U);
   EXPECT_EQ(check_text("io", "#include \"io/vtk_bytes.hpp\"\n#include \"vtk_bytes.hpp\"\n").size(), 0U);
@@ -149,6 +154,9 @@ TEST(LayersTable, WhatMayBeIncludedIsTransitive) {
   const Layers table = layers();
   EXPECT_THAT(table.at("procedure").may_include, ElementsAre("core", "cutting", "geometry", "mechanics", "procedure"));
   EXPECT_EQ(table.at("workflow").may_include.count("io"), 0U);
+  for (const char* planner : {"planning", "calibration"}) EXPECT_EQ(table.at(planner).may_include.count("virtual_bench"), 0U);
+  for (const char* hidden : {"cutting", "procedure", "planning", "calibration"})
+    EXPECT_EQ(table.at("virtual_bench").may_include.count(hidden), 0U);
 }
 
 TEST(LayersTable, ARowMayOnlyUseRowsBelowIt) {

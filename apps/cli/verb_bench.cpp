@@ -1,0 +1,223 @@
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/storage/bench_files.hpp>
+#include <incise/virtual_bench/course.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+
+namespace incise::cli {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct MakeArguments {
+  std::filesystem::path specimen;
+  std::filesystem::path truth;
+  bool elasticity = false;
+};
+
+struct CutArguments {
+  std::filesystem::path specimen;
+  std::filesystem::path program;
+  std::filesystem::path truth;
+  double power_w = 35.0;
+  double mm_per_pixel = PhotographSettings{}.mm_per_pixel;
+};
+
+/// The seed stays out of the laboratory's folder: who knows it can draw the specimen.
+void write_run(const std::filesystem::path& folder, const CommonOptions& options, const std::string& command,
+               const std::vector<std::filesystem::path>& inputs, Clock::time_point start) {
+  Manifest manifest;
+  manifest.version = version();
+  manifest.commit = source_commit();
+  manifest.command = command;
+  manifest.threads = options.context().threads;
+  manifest.instruction_set = to_string(active_isa());
+  manifest.machine = machine_description();
+  manifest.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  for (const auto& input : inputs) manifest.inputs.push_back({input.string(), sha256_of_file(input)});
+  write_manifest(folder, manifest);
+}
+
+void make_parent(const std::filesystem::path& folder) {
+  const auto parent = std::filesystem::absolute(folder).parent_path();
+  std::error_code error;
+  std::filesystem::create_directories(parent, error);
+  if (error) throw DataError(folder, "", error.message(), "a folder that can be made");
+  require_replaceable(folder);
+}
+
+bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer) {
+  const auto a = std::filesystem::weakly_canonical(inner);
+  const auto b = std::filesystem::weakly_canonical(outer);
+  return std::mismatch(b.begin(), b.end(), a.begin(), a.end()).first == b.end();
+}
+
+void require_apart(const std::filesystem::path& truth, const std::filesystem::path& output) {
+  if (truth.empty() || !(is_same_or_within(truth, output) || is_same_or_within(output, truth))) return;
+  throw CaseError("command line", "--truth", truth.string(), "a folder apart from the output",
+                  "The truth must not lie beside what a planner reads.");
+}
+
+/// A specimen that cannot be held and stretched is a result: it is told, and there is nothing to read or to cut.
+bool is_held(const BenchBody& body, Console& console) {
+  if (body.inverted_tets > 0)
+    console.message(Severity::Detail,
+                    fmt::format("{} tets of the stretched specimen are turned inside out", body.inverted_tets));
+  if (body.outcome != Outcome::NotConverged) return true;
+  console.message(Severity::Warning, fmt::format("the specimen could not be stretched: {}, residual {:.2g}",
+                                                 to_string(body.outcome), body.equilibrium_residual));
+  return false;
+}
+
+int make(const CommonOptions& options, const MakeArguments& arguments) {
+  const auto start = Clock::now();
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("specimen7");
+  require_apart(arguments.truth, output);
+  const Specimen specimen =
+      arguments.specimen.empty() ? draw_specimen(options.seed) : read_specimen(arguments.specimen);
+  make_parent(output);
+  if (!arguments.truth.empty()) make_parent(arguments.truth);
+  Workers workers(options.context().threads);
+  const BenchBody body = make_body(specimen, {}, workers, console);
+  if (!is_held(body, console)) return kNotAcceptable;
+  const Readings readings = take_readings(body, arguments.elasticity, console);
+  const std::string name = "VIRTUAL-" + sha256_of_text(to_json(specimen).dump()).substr(0, 8);
+  AtomicFolder folder(output);
+  write_readings(folder.path(), readings, name);
+  write_run(folder.path(), options, "incise bench make", {}, start);
+  if (!arguments.truth.empty()) {
+    AtomicFolder truth(arguments.truth);
+    write_truth(truth.path(), body);
+    write_run(truth.path(), options, options.command_line, {}, start);
+    truth.commit();
+  }
+  folder.commit();
+  nlohmann::ordered_json result;
+  result["specimen"] = name;
+  result["folder"] = output.string();
+  result["ct"] = (output / "ct").string();
+  result["scan"] = (output / "scan.ply").string();
+  result["scan_points"] = readings.cloud_mm.size();
+  result["stretch_force_n"] = readings.stretch_force_n;
+  if (!arguments.truth.empty()) result["truth"] = arguments.truth.string();
+  result["virtual"] = true;
+  result["wall_s"] = std::chrono::duration<double>(Clock::now() - start).count();
+  print_result(options, result);
+  return kDone;
+}
+
+nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut) {
+  nlohmann::ordered_json json;
+  json["note"] = "The truth about a virtual cut, for tests: nothing of this may reach a planner.";
+  json["outcome"] = to_string(cut.outcome);
+  if (cut.inner_edge) {
+    double mean = 0.0;
+    const std::vector<double> errors = true_errors_mm(body, cut, 4.5);
+    for (const double e : errors) mean += std::abs(e) / static_cast<double>(errors.size());
+    json["mean_abs_error_mm"] = mean;
+    json["signed_errors_mm"] = errors;
+  }
+  json["bulge_mm"] = cut.bulge_mm;
+  json["thermal_width_mm"] = cut.thermal_width_mm;
+  json["mean_drag_force_mn"] = cut.mean_force_mn;
+  json["removed_tets"] = cut.removed_tets;
+  return json;
+}
+
+int cut(const CommonOptions& options, const CutArguments& arguments) {
+  const auto start = Clock::now();
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("cut7");
+  require_apart(arguments.truth, output);
+  const Specimen specimen = read_specimen(arguments.specimen);
+  const WrittenProgram program = program_from_text(read_text(arguments.program), arguments.program);
+  const Replay replay = play(program);
+  if (replay.outcome != ReplayOutcome::Completed) {
+    throw DataError(arguments.program, fmt::format("line {}", replay.line),
+                    fmt::format("a motion that ends early: {}", to_string(replay.outcome)),
+                    "a program that the arm can run to its end", "`incise replay` shows how far it gets.");
+  }
+  make_parent(output);
+  if (!arguments.truth.empty()) make_parent(arguments.truth);
+  Workers workers(options.context().threads);
+  const BenchBody body = make_body(specimen, {}, workers, console);
+  if (!is_held(body, console)) return kNotAcceptable;
+  const std::vector<TipPose> course =
+      tip_course(asked_course(replay, program.T_flange_tool), specimen, T_robot_specimen(specimen).inverse());
+  if (const auto misfit = find_misfit(body, course)) {
+    throw DataError(arguments.program, "poses", *misfit, "a course in this specimen's tissue round its tumour",
+                    "Is it the program of another specimen?");
+  }
+  const BenchCut done = cut_specimen(body, course, arguments.power_w, workers, console);
+  if (done.outcome == Outcome::NotConverged) {
+    console.message(Severity::Warning, "the cut did not converge: nothing to photograph");
+    return kNotAcceptable;
+  }
+  PhotographSettings settings;
+  settings.mm_per_pixel = arguments.mm_per_pixel;
+  AtomicFolder folder(output);
+  write_picture(folder.path() / "photo.png", photograph(body, done, settings));
+  write_json(folder.path() / "photo.json", {{"note", "Virtual photograph: no real tissue."},
+                                            {"mm_per_pixel", settings.mm_per_pixel},
+                                            {"ruler_tick_mm", 1.0},
+                                            {"red", "annotation"}});
+  write_run(folder.path(), options, "incise bench cut", {arguments.program}, start);
+  if (!arguments.truth.empty()) {
+    AtomicFolder truth(arguments.truth);
+    write_json(truth.path() / "cut_truth.json", truth_of(body, done));
+    write_run(truth.path(), options, options.command_line, {arguments.specimen, arguments.program}, start);
+    truth.commit();
+  }
+  folder.commit();
+  nlohmann::ordered_json result;
+  result["photo"] = (output / "photo.png").string();
+  result["mm_per_pixel"] = settings.mm_per_pixel;
+  result["virtual"] = true;
+  result["wall_s"] = std::chrono::duration<double>(Clock::now() - start).count();
+  print_result(options, result);
+  return kDone;
+}
+
+}  // namespace
+
+void add_bench(Application& application) {
+  CLI::App* bench =
+      application.add_group("bench", "The virtual laboratory: make a specimen's readings, cut it by a robot program",
+                            "incise bench make --seed 7 -o specimen7 --truth hidden7");
+  auto made = std::make_shared<MakeArguments>();
+  CLI::App* verb = application.add_verb_to(
+      *bench, "make",
+      "Seed or specimen file -> what a laboratory would have: CT, camera cloud, RGB-D frame, pull force",
+      "incise bench make --seed 7 -o specimen7 --truth hidden7",
+      [made](const CommonOptions& options) { return make(options, *made); });
+  verb->add_option("specimen", made->specimen, "Specimen file (incise schema bench); without it the seed draws one");
+  verb->add_option("--truth", made->truth,
+                   "Folder for the hidden truth; it holds the specimen.json that `bench cut` needs");
+  verb->add_flag("--elasticity", made->elasticity, "Also a noisy elasticity map");
+
+  auto run = std::make_shared<CutArguments>();
+  verb = application.add_verb_to(*bench, "cut", "Specimen file and robot program -> the photograph of the cut specimen",
+                                 "incise bench cut hidden7/specimen.json cut.script -o cut7",
+                                 [run](const CommonOptions& options) { return cut(options, *run); });
+  verb->add_option("specimen", run->specimen, "The hidden specimen.json")->required();
+  verb->add_option("program", run->program, "A program that `incise export` wrote: URScript, .csv or .json")
+      ->required();
+  verb->add_option("--power-w", run->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
+  verb->add_option("--mm-per-pixel", run->mm_per_pixel, "Of the photograph")->check(CLI::Range(0.01, 0.2));
+  verb->add_option("--truth", run->truth, "Folder for what really happened, for tests");
+}
+
+}  // namespace incise::cli

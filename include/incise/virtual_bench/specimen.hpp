@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// Everything that is hidden about a virtual specimen, its holder, the arm and the camera over it: what a laboratory
+/// cannot look up. Defaults are the middle of each spread; parameter_specs() says spread, source and the reading
+/// through which a parameter shows.
+struct Specimen {
+  std::uint64_t seed = 1;  ///< of the shape, of the fields inside and of all noise
+
+  // The body and the tumour in it, at rest.
+  double tumor_diameter_mm = 18.5;
+  double tumor_irregularity = 0.12;
+  double tumor_depth_mm = 4.0;
+  double tumor_position = 0.46;
+
+  // What it is made of.
+  double youngs_modulus_kpa = 12.0;
+  double poissons_ratio = 0.46;
+  double stiffness_spread = 0.12;
+  double inclusion_ratio = 3.0;
+  double fibre_ratio = 0.4;
+  double fibre_angle_deg = 0.0;
+  double relaxing_ratio = 1.5;
+  double relaxation_time_s = 6.0;
+
+  // How it is cut.
+  double toughness_j_m2 = 300.0;
+  double toughness_spread = 0.12;
+  double lost_power_w = 15.0;
+  double rupture_percent = 1.2;
+  double full_arc_w = 45.0;
+  double adhesion_kpa_s_mm2 = 300.0;
+  double adhesion_limit_kpa_mm = 740.0;
+  double heat_percent = 55.0;
+
+  // How it is held.
+  double clamp_slip_mm = 0.8;
+  double stretch_error_mm = 0.0;
+  double stretch_angle_deg = 0.0;
+
+  // The arm: where its tip really is against where it should be.
+  double robot_offset_x_mm = 0.0;
+  double robot_offset_y_mm = 0.0;
+  double robot_offset_z_mm = 0.0;
+  double robot_turn_deg = 0.0;
+  double robot_wander_mm = 0.05;
+
+  // Camera and scanner.
+  double placement_x_mm = 0.0;
+  double placement_y_mm = 0.0;
+  double placement_turn_deg = 0.0;
+  double camera_tilt_deg = 0.0;
+  double depth_scale = 1.0;
+  double depth_noise_mm = 0.2;
+  double hole_percent = 3.0;
+  double ct_noise_hu = 15.0;
+
+  [[nodiscard]] bool operator==(const Specimen&) const = default;
+};
+
+/// How a parameter is drawn.
+enum class DrawnAs {
+  Uniform,    ///< between a and b
+  Normal,     ///< mean a, standard deviation b, redrawn until within the limits
+  LogNormal,  ///< median a, standard deviation b of the natural logarithm, redrawn until within the limits
+};
+[[nodiscard]] std::string_view to_string(DrawnAs drawn_as);  ///< uniform, normal, lognormal
+
+/// One hidden parameter.
+struct ParameterSpec {
+  std::string_view name;     ///< its key in a specimen file; units at the end
+  double Specimen::*member;  ///< the place it has
+  DrawnAs drawn_as;
+  double a, b;       ///< of the spread
+  double low, high;  ///< what a specimen file may say, both included
+  std::string_view meaning;
+  std::string_view source;    ///< of value and spread; "chosen" where nobody has published one
+  std::string_view shows_in;  ///< the reading through which it shows; "none"
+};
+/// All of them, in the order of Specimen.
+[[nodiscard]] std::span<const ParameterSpec> parameter_specs();
+
+/// A specimen at random. Each parameter has a stream of its own: a new one leaves the others as they were.
+[[nodiscard]] Specimen draw_specimen(std::uint64_t seed);
+
+/// Every violation, one sentence each; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const Specimen& specimen);
+
+}  // namespace incise

@@ -1,0 +1,272 @@
+#include "virtual_bench/drawn_line.hpp"
+#include "virtual_bench/tissue_colors.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/geometry/morphology.hpp>
+#include <incise/geometry/raster.hpp>
+#include <incise/virtual_bench/pictures.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kVisibleHeatMm = 1.0;  // the electrode's diameter: heat that reaches farther is seen
+constexpr double kNeedleMm = 0.5;
+constexpr double kWallMm = 1.2;        // from the rim of the kerf to where it is darkest
+constexpr double kCoarsePixels = 4.0;  // distances from the rim are taken on a grid this much coarser
+constexpr int kRays = 720;             // in which an open kerf's inner edge is looked for
+constexpr double kMostJumpMm = 1.2;    // between neighbouring rays along one piece of it
+constexpr double kHandMm = 0.03;       // standard deviation of the hand that draws the red line
+constexpr double kRulerMm = 40.0;
+constexpr double kTickMm = 0.25;  // width of a tick
+
+/// What is seen from above: triangles of what is left, in view coordinates.
+struct Scene {
+  Points in_view;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint8_t> is_skin;
+};
+
+Scene scene_of(const BenchBody& body, const BenchCut& cut, const ViewFrame& view) {
+  Scene scene;
+  for (const Vec3& p : cut.after.positions) scene.in_view.push_back(view.to_view(p));
+  const auto key_of = [](Triangle corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  };
+  std::vector<Triangle> skin;
+  for (const BoundaryFace& face : body.skin) skin.push_back(key_of(face.corners));
+  std::sort(skin.begin(), skin.end());
+  for (const BoundaryFace& face : boundary_faces(body.tissue->mesh, cut.after.is_live)) {
+    scene.triangles.push_back(face.corners);
+    scene.is_skin.push_back(std::binary_search(skin.begin(), skin.end(), key_of(face.corners)) ? 1 : 0);
+  }
+  return scene;
+}
+
+Points flat(const Contour& contour, const ViewFrame& view) {
+  Points points;
+  for (const Vec3& p : contour.points) points.push_back(view.to_view(p));
+  return points;
+}
+
+Vec3 weights_at(const Scene& scene, const Triangle& t, const Vec2& p) {
+  const Vec2 a = scene.in_view[t[0].index()].head<2>();
+  const Vec2 b = scene.in_view[t[1].index()].head<2>() - a;
+  const Vec2 c = scene.in_view[t[2].index()].head<2>() - a;
+  const double area = b.x() * c.y() - b.y() * c.x();
+  if (std::abs(area) < 1e-12) return {1.0, 0.0, 0.0};
+  const Vec2 d = p - a;
+  const double v = (d.x() * c.y() - d.y() * c.x()) / area;
+  const double w = (b.x() * d.y() - b.y() * d.x()) / area;
+  return {1.0 - v - w, v, w};
+}
+
+/// Rows of a picture run down, those of a grid up.
+Vec2 to_picture(const RasterGrid& grid, const Vec2& p) {
+  const Vec2 index = grid.index_of(p);
+  return {index.x(), grid.height - 1 - index.y()};
+}
+
+/// Pieces of the kerf's inner edge where it is no closed curve: the first cut pixel on rays from the tumour's middle.
+std::vector<std::vector<Vec2>> open_inner_edge(const Raster& kerf, const Vec2& middle) {
+  const double longest = kerf.pixel_mm * std::hypot(kerf.width, kerf.height);
+  std::vector<std::vector<Vec2>> pieces(1);
+  for (int n = 0; n <= kRays; ++n) {
+    const double angle = 2.0 * units::kPi * n / kRays;
+    const Vec2 heading(std::cos(angle), std::sin(angle));
+    std::optional<Vec2> found;
+    for (double r = 0.0; r < longest && !found; r += 0.5 * kerf.pixel_mm) {
+      const Vec2 index = kerf.index_of(middle + r * heading);
+      const int i = static_cast<int>(std::lround(index.x()));
+      const int j = static_cast<int>(std::lround(index.y()));
+      if (!kerf.contains(i, j)) break;
+      if (kerf.at(i, j) != 0) found = middle + r * heading;
+    }
+    const bool goes_on = found && !pieces.back().empty() && (*found - pieces.back().back()).norm() < kMostJumpMm;
+    if (!goes_on && !pieces.back().empty()) pieces.emplace_back();
+    if (found) pieces.back().push_back(*found);
+  }
+  return pieces;
+}
+
+class Painter {
+ public:
+  Painter(const BenchBody& body, const BenchCut& cut, const PhotographSettings& settings)
+      : body_(body),
+        cut_(cut),
+        settings_(settings),
+        view_(view_along(body.approach)),
+        scene_(scene_of(body, cut, view_)),
+        grain_(body.specimen.seed) {
+    Box3 box = bounding_box(flat(cut.tumor_edge, view_));
+    if (cut.inner_edge)
+      box.extend(bounding_box(flat(*cut.inner_edge, view_)));
+    else
+      box = Box3(box.min() - Vec3::Constant(6.0), box.max() + Vec3::Constant(6.0));
+    grid_ = grid_around(box.min().head<2>(), box.max().head<2>(), settings.mm_per_pixel, settings.border_mm);
+    seen_ = depth_buffer(grid_, scene_.in_view, scene_.triangles);
+    picture_ = {grid_.width, grid_.height, std::vector<std::uint8_t>(3 * grid_.pixel_count())};
+  }
+
+  ColorPicture paint() {
+    tissue();
+    cooked_rim();
+    line({flat2(cut_.tumor_edge)}, true, settings_.green_line_mm, kGreenInk, 0.0);
+    if (cut_.inner_edge) {
+      line({flat2(*cut_.inner_edge)}, true, settings_.line_mm, kRedInk, kHandMm);
+    } else {
+      const Vec3 middle = view_.to_view(curve_centroid(cut_.tumor_edge));
+      line(open_inner_edge(kerf(grid_), middle.head<2>()), false, settings_.line_mm, kRedInk, kHandMm);
+    }
+    ruler();
+    return std::move(picture_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<Vec2> flat2(const Contour& contour) const {
+    std::vector<Vec2> points;
+    for (const Vec3& p : flat(contour, view_)) points.push_back(p.head<2>());
+    return points;
+  }
+  std::uint8_t* pixel(int i, int j) { return pixel_at(picture_, i, grid_.height - 1 - j); }
+
+  [[nodiscard]] RasterGrid coarse_grid() const {
+    RasterGrid coarse = grid_;
+    coarse.pixel_mm = kCoarsePixels * grid_.pixel_mm;
+    coarse.width = static_cast<int>(std::ceil(grid_.width / kCoarsePixels));
+    coarse.height = static_cast<int>(std::ceil(grid_.height / kCoarsePixels));
+    return coarse;
+  }
+
+  /// Cut within the specimen's outline: not skin, whether a wall or the ground is seen.
+  [[nodiscard]] Raster kerf(const RasterGrid& grid) const {
+    Raster raster(grid, 0);
+    for (int j = 0; j < grid.height; ++j) {
+      for (int i = 0; i < grid.width; ++i) {
+        const Vec2 index = grid_.index_of(grid.centre(i, j));
+        const int u = static_cast<int>(std::lround(index.x()));
+        const int v = static_cast<int>(std::lround(index.y()));
+        if (!grid_.contains(u, v)) continue;
+        const std::int32_t triangle = seen_.triangles[grid_.offset(u, v)];
+        raster.at(i, j) = triangle >= 0 && scene_.is_skin[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
+      }
+    }
+    return raster;
+  }
+
+  void tissue() {
+    Random random(body_.specimen.seed ^ 0x85ebca6bULL);
+    const ScalarRaster within = distance_to(kerf(coarse_grid()), 0);
+    for (int j = 0; j < grid_.height; ++j) {
+      for (int i = 0; i < grid_.width; ++i) {
+        const std::int32_t n = seen_.triangles[grid_.offset(i, j)];
+        const Paint noise(random.normal(), random.normal(), random.normal());
+        if (n < 0) {
+          put(pixel(i, j), kTablePaint + 2.5 * noise);
+          continue;
+        }
+        const Triangle& t = scene_.triangles[static_cast<std::size_t>(n)];
+        const Vec3 weights = weights_at(scene_, t, grid_.centre(i, j));
+        Vec3 rest = Vec3::Zero();
+        for (std::size_t c = 0; c < 3; ++c)
+          rest += weights[static_cast<Eigen::Index>(c)] * body_.tissue->mesh.vertices[t[c].index()];
+        const Vec3& a = scene_.in_view[t[0].index()];
+        const Vec3 normal = (scene_.in_view[t[1].index()] - a).cross(scene_.in_view[t[2].index()] - a).normalized();
+        const double light = 0.6 + 0.4 * std::abs(normal.z());
+        if (scene_.is_skin[static_cast<std::size_t>(n)] != 0) {
+          put(pixel(i, j), kTissuePaint * (grain_.at(rest) * light) + 2.5 * noise);
+          continue;
+        }
+        // Walls of cut muscle, darker the farther from the rim: flat facets of tets are no sight of tissue.
+        const Vec2 place = grid_.centre(i, j);
+        const double depth = std::clamp(sample(within, place) / kWallMm, 0.0, 1.0);
+        const double grain = grain_.at(2.0 * Vec3(place.x(), place.y(), 0.0));
+        put(pixel(i, j), ((1.0 - depth) * kWallPaint + depth * kDeepPaint) * grain + 2.5 * noise);
+      }
+    }
+  }
+
+  /// Tissue beside the kerf that was heated past denaturation, where that is farther than the eye takes for granted.
+  void cooked_rim() {
+    if (cut_.thermal_width_mm <= kVisibleHeatMm) return;
+    const ScalarRaster away = distance_to(kerf(coarse_grid()), 1);
+    const double reach = cut_.thermal_width_mm - kNeedleMm;
+    for (int j = 0; j < grid_.height; ++j) {
+      for (int i = 0; i < grid_.width; ++i) {
+        const std::int32_t n = seen_.triangles[grid_.offset(i, j)];
+        if (n < 0 || scene_.is_skin[static_cast<std::size_t>(n)] == 0) continue;
+        const double distance = sample(away, grid_.centre(i, j));
+        if (distance < reach) lay(pixel(i, j), kCookedPaint, 0.85 * (1.0 - 0.5 * distance / reach));
+      }
+    }
+  }
+
+  void line(const std::vector<std::vector<Vec2>>& pieces, bool is_closed, double width_mm, const Paint& ink,
+            double hand_mm) {
+    Random random(body_.specimen.seed ^ 0xc2b2ae3dULL);
+    const SmoothField along_x(4.0, random);
+    const SmoothField along_y(4.0, random);
+    const double half_px = 0.5 * width_mm / grid_.pixel_mm;
+    LineDistance distance(grid_.width, grid_.height, half_px + 2.0);
+    for (const std::vector<Vec2>& piece : pieces) {
+      std::vector<Vec2> drawn;
+      for (const Vec2& p : piece) {
+        const Vec3 place(p.x(), p.y(), 0.0);
+        drawn.push_back(to_picture(grid_, p + hand_mm * Vec2(along_x.at(place), along_y.at(place))));
+      }
+      distance.add(drawn, is_closed);
+    }
+    for (int v = 0; v < picture_.height; ++v)
+      for (int u = 0; u < picture_.width; ++u) {
+        const double cover = std::clamp(half_px + 0.5 - distance.at(u, v), 0.0, 1.0);
+        if (cover > 0.0) lay(pixel_at(picture_, u, v), ink, cover);
+      }
+  }
+
+  /// A white steel rule along the lower rim: ticks every millimetre, longer ones every five.
+  void ruler() {
+    const double px = 1.0 / grid_.pixel_mm;
+    const double length = std::min(kRulerMm, std::floor(0.9 * grid_.width / px - 2.0));
+    const int left = static_cast<int>(0.5 * (grid_.width - length * px));
+    const int top = grid_.height - static_cast<int>(4.6 * px);
+    for (int v = top; v < grid_.height - static_cast<int>(0.4 * px); ++v) {
+      for (int u = left - static_cast<int>(px); u < left + static_cast<int>((length + 1.0) * px); ++u) {
+        if (u < 0 || v < 0 || u >= picture_.width) continue;
+        const double mm = (u - left) / px;
+        const double nearest = std::round(mm);
+        const bool is_long = static_cast<int>(nearest) % 5 == 0;
+        const bool is_tick = nearest >= 0.0 && nearest <= length && std::abs(mm - nearest) < 0.5 * kTickMm &&
+                             v - top < static_cast<int>((is_long ? 3.2 : 2.2) * px);
+        put(pixel_at(picture_, u, v), is_tick ? Paint(24.0, 24.0, 24.0) : Paint(236.0, 236.0, 234.0));
+      }
+    }
+  }
+
+  const BenchBody& body_;
+  const BenchCut& cut_;
+  const PhotographSettings& settings_;
+  ViewFrame view_;
+  Scene scene_;
+  TissueGrain grain_;
+  RasterGrid grid_;
+  DepthBuffer seen_;
+  ColorPicture picture_;
+};
+
+}  // namespace
+
+ColorPicture photograph(const BenchBody& body, const BenchCut& cut, const PhotographSettings& settings) {
+  INCISE_REQUIRE(settings.mm_per_pixel > 0.0 && settings.border_mm >= 6.0 && settings.line_mm > 0.0 &&
+                     settings.green_line_mm > 0.0,
+                 "expected a scale and widths above 0 and a border of at least 6 mm");
+  INCISE_REQUIRE(cut.after.positions.size() == body.tissue->mesh.vertices.size(), "expected a cut of this body");
+  return Painter(body, cut, settings).paint();
+}
+
+}  // namespace incise

@@ -1,0 +1,192 @@
+#include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
+#include <incise/virtual_bench/specimen.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+using S = Specimen;
+constexpr std::string_view kMarkedContour = "marked contour in the RGB-D frame";
+constexpr std::string_view kCloud = "camera cloud";
+constexpr std::string_view kPull = "stretch_force_n";
+constexpr std::string_view kMap = "elasticity map";
+constexpr std::string_view kNone = "none";
+
+constexpr std::array kSpecs{
+    ParameterSpec{"tumor_diameter_mm", &S::tumor_diameter_mm, DrawnAs::Normal, 18.5, 0.5, 14.0, 22.0,
+                  "mean diameter of the tumour's edge at rest; some 20 mm once stretched",
+                  "Paper: II-A, 2 cm; spread chosen: a hand-drawn mark", kMarkedContour},
+    ParameterSpec{"tumor_irregularity", &S::tumor_irregularity, DrawnAs::Uniform, 0.08, 0.16, 0.0, 0.25,
+                  "sum of the amplitudes of its harmonics over its radius", "Paper: figure 5, read off",
+                  kMarkedContour},
+    ParameterSpec{"tumor_depth_mm", &S::tumor_depth_mm, DrawnAs::Uniform, 3.0, 5.0, 1.0, 8.0,
+                  "of the stiff inclusion beneath the edge", "chosen: T1, less than 5 mm deep", kNone},
+    ParameterSpec{"tumor_position", &S::tumor_position, DrawnAs::Uniform, 0.44, 0.50, 0.4, 0.6,
+                  "of its middle, as a share of the length from the tip", "Paper: figure 2, read off", kMarkedContour},
+
+    ParameterSpec{"youngs_modulus_kpa", &S::youngs_modulus_kpa, DrawnAs::LogNormal, 12.0, 0.20, 3.0, 120.0,
+                  "long-time Young's modulus of the muscle across its fibres",
+                  "[Cheng2011]: shear modulus 2.67 +- 0.29 kPa in vivo, E some 8 kPa; [Buchaillard2009]: 6.2 kPa; "
+                  "raised for dead muscle, spread chosen",
+                  kPull},
+    ParameterSpec{"poissons_ratio", &S::poissons_ratio, DrawnAs::Uniform, 0.45, 0.47, 0.3, 0.49, "Poisson's ratio",
+                  "chosen: nearly incompressible, without locking the mesh", kNone},
+    ParameterSpec{"stiffness_spread", &S::stiffness_spread, DrawnAs::Uniform, 0.05, 0.15, 0.0, 0.6,
+                  "standard deviation of the logarithm of stiffness from place to place, 15 mm waves",
+                  "chosen: below that between specimens", kMap},
+    ParameterSpec{"inclusion_ratio", &S::inclusion_ratio, DrawnAs::LogNormal, 3.0, 0.3, 0.5, 15.0,
+                  "stiffness inside the tumour over that outside",
+                  "[TongueStrain2022]: strain ratio of tongue cancer 9.7 +- 9.8 (n = 62), skewed; lower here, since "
+                  "specimens hold no cancer but what stands for it: chosen",
+                  kMap},
+    ParameterSpec{"fibre_ratio", &S::fibre_ratio, DrawnAs::Uniform, 0.2, 0.6, 0.0, 3.0,
+                  "stiffness added along the fibres over Young's modulus",
+                  "[Song2007]: porcine muscle tested along and across its fibres; amount chosen", kPull},
+    ParameterSpec{"fibre_angle_deg", &S::fibre_angle_deg, DrawnAs::Normal, 0.0, 15.0, -60.0, 60.0,
+                  "of the fibres from the long axis, seen from above",
+                  "chosen: fibres of the back run lengthwise, more or less", kNone},
+    ParameterSpec{"relaxing_ratio", &S::relaxing_ratio, DrawnAs::Uniform, 1.0, 2.0, 0.0, 8.0,
+                  "shear stiffness that relaxes over the long-time one",
+                  "[Palevski2006]: porcine muscle relaxes from 5711 Pa to 807 Pa after an indentation at 2 m/s; less "
+                  "here, where rates are small: chosen",
+                  kNone},
+    ParameterSpec{"relaxation_time_s", &S::relaxation_time_s, DrawnAs::Uniform, 4.0, 8.0, 0.1, 60.0, "of that part",
+                  "[Palevski2006]: a plateau after some 20 s, three to five of these times", kNone},
+
+    ParameterSpec{"toughness_j_m2", &S::toughness_j_m2, DrawnAs::LogNormal, 300.0, 0.10, 50.0, 3000.0,
+                  "work that parts tissue, per area",
+                  "[Liu2022], table 2: porcine lamina propria 169 to 451 J/m2, liver 76 to 225; the middle, spread "
+                  "between specimens chosen",
+                  kNone},
+    ParameterSpec{
+        "toughness_spread", &S::toughness_spread, DrawnAs::Uniform, 0.05, 0.15, 0.0, 0.6,
+        "standard deviation of its logarithm from place to place, 12 mm waves",
+        "[Liu2022], table 2: lamina propria differs by location by a factor of 2.7; less here, on one back: chosen",
+        kNone},
+    ParameterSpec{
+        "lost_power_w", &S::lost_power_w, DrawnAs::Normal, 15.0, 0.5, 0.0, 24.0,
+        "of the generator: lost in leads, plate and drying before the arc holds",
+        "[Karaki2020], porcine liver: no effect at 10 W, coagulates without cutting at 25 W; in between: chosen",
+        kNone},
+    ParameterSpec{"rupture_percent", &S::rupture_percent, DrawnAs::LogNormal, 1.2, 0.06, 0.01, 10.0,
+                  "share of the remaining power that steam turns into work on tissue",
+                  "chosen: fits Paper II-B.3, bulging below 35 W at 7 mm/s", kNone},
+    ParameterSpec{"full_arc_w", &S::full_arc_w, DrawnAs::Normal, 45.0, 1.0, 41.0, 80.0,
+                  "power at which the arc never breaks off: steam then keeps tissue off the electrode",
+                  "Paper [14] on contact and arc; chosen: fits Paper II-B.3", kNone},
+    ParameterSpec{"adhesion_kpa_s_mm2", &S::adhesion_kpa_s_mm2, DrawnAs::LogNormal, 300.0, 0.15, 0.1, 3000.0,
+                  "drag of the electrode on tissue per volume and speed", "chosen: fits Paper Table II, S1 and S2",
+                  kNone},
+    ParameterSpec{"adhesion_limit_kpa_mm", &S::adhesion_limit_kpa_mm, DrawnAs::LogNormal, 740.0, 0.10, 1.0, 5000.0,
+                  "what that drag cannot exceed while electrode and tissue touch",
+                  "chosen: fits Paper Table II, S1 and S2", kNone},
+    ParameterSpec{
+        "heat_percent", &S::heat_percent, DrawnAs::Normal, 55.0, 1.5, 5.0, 100.0,
+        "share of the power that heats the kerf's walls",
+        "[Monteiro2019], oral mucosa: 1.0 +- 0.4 mm of damage; Paper II-B.3: discoloured at 40 W, not at 35 W",
+        "discoloured rim in the photograph"},
+
+    ParameterSpec{"clamp_slip_mm", &S::clamp_slip_mm, DrawnAs::Uniform, 0.0, 2.0, 0.0, 12.0,
+                  "how far the root is pulled out of the clamp", "chosen: wet muscle between jaws", kCloud},
+    ParameterSpec{"stretch_error_mm", &S::stretch_error_mm, DrawnAs::Normal, 0.0, 1.0, -12.0, 12.0,
+                  "of the 20 mm by which the suture is drawn", "chosen: the suture cuts in and knots slip", kCloud},
+    ParameterSpec{"stretch_angle_deg", &S::stretch_angle_deg, DrawnAs::Normal, 0.0, 3.0, -20.0, 20.0,
+                  "sideways, of the direction of the pull", "chosen: set by eye", kCloud},
+
+    ParameterSpec{"robot_offset_x_mm", &S::robot_offset_x_mm, DrawnAs::Normal, 0.0, 0.3, -3.0, 3.0,
+                  "of the tip from where it should be, base frame",
+                  "Paper [21]: millimetre accuracy in all, hand-eye calibration "
+                  "included; spread chosen",
+                  kNone},
+    ParameterSpec{"robot_offset_y_mm", &S::robot_offset_y_mm, DrawnAs::Normal, 0.0, 0.3, -3.0, 3.0, "likewise",
+                  "as robot_offset_x_mm", kNone},
+    ParameterSpec{"robot_offset_z_mm", &S::robot_offset_z_mm, DrawnAs::Normal, 0.0, 0.3, -3.0, 3.0, "likewise",
+                  "as robot_offset_x_mm", kNone},
+    ParameterSpec{"robot_turn_deg", &S::robot_turn_deg, DrawnAs::Normal, 0.0, 0.2, -5.0, 5.0,
+                  "of the course about the vertical through the tumour", "as robot_offset_x_mm", kNone},
+    ParameterSpec{"robot_wander_mm", &S::robot_wander_mm, DrawnAs::Uniform, 0.03, 0.08, 0.0, 1.0,
+                  "standard deviation of the tip from its course, 20 mm waves", "[UrDataSheet]: repeatability 0.05 mm",
+                  kNone},
+
+    ParameterSpec{"placement_x_mm", &S::placement_x_mm, DrawnAs::Normal, 0.0, 8.0, -40.0, 40.0,
+                  "of the specimen on the table, base frame", "chosen: set down by hand", kCloud},
+    ParameterSpec{"placement_y_mm", &S::placement_y_mm, DrawnAs::Normal, 0.0, 8.0, -40.0, 40.0, "likewise",
+                  "chosen: set down by hand", kCloud},
+    ParameterSpec{"placement_turn_deg", &S::placement_turn_deg, DrawnAs::Normal, 0.0, 5.0, -45.0, 45.0,
+                  "about the vertical", "chosen: set down by hand", kCloud},
+    ParameterSpec{"camera_tilt_deg", &S::camera_tilt_deg, DrawnAs::Normal, 0.0, 4.0, -20.0, 20.0,
+                  "of the camera from straight down", "chosen: mounted on the arm", kCloud},
+    ParameterSpec{"depth_scale", &S::depth_scale, DrawnAs::Normal, 1.0, 0.006, 0.9, 1.1,
+                  "measured over true distance from the camera",
+                  "[RealSenseD400]: accuracy within 2 % at 50 cm; spread chosen, calibrated", kCloud},
+    ParameterSpec{"depth_noise_mm", &S::depth_noise_mm, DrawnAs::Uniform, 0.1, 0.3, 0.0, 3.0,
+                  "standard deviation of a pixel's depth",
+                  "[RealSenseD400]: range 7 to 50 cm; noise chosen, below 1 mm at 20 cm", kCloud},
+    ParameterSpec{"hole_percent", &S::hole_percent, DrawnAs::Uniform, 1.0, 5.0, 0.0, 40.0,
+                  "share of the depth picture without a reading, in patches", "chosen: wet tissue glares", kCloud},
+    ParameterSpec{"ct_noise_hu", &S::ct_noise_hu, DrawnAs::Uniform, 10.0, 20.0, 0.0, 60.0,
+                  "standard deviation of a voxel", "chosen: a clinical head protocol", "CT"},
+};
+
+/// FNV-1a of the name: a stream of its own for each parameter.
+std::uint64_t stream_of(std::uint64_t seed, std::string_view name) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash ^ (seed * 0x9E3779B97F4A7C15ULL);
+}
+
+double drawn(const ParameterSpec& spec, Random& random) {
+  if (spec.drawn_as == DrawnAs::Uniform) return random.uniform(spec.a, spec.b);
+  for (;;) {
+    const double z = random.normal();
+    const double value = spec.drawn_as == DrawnAs::Normal ? spec.a + spec.b * z : spec.a * std::exp(spec.b * z);
+    if (value >= spec.low && value <= spec.high) return value;
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(DrawnAs drawn_as) {
+  switch (drawn_as) {
+    case DrawnAs::Uniform:
+      return "uniform";
+    case DrawnAs::Normal:
+      return "normal";
+    case DrawnAs::LogNormal:
+      return "lognormal";
+  }
+  return "unknown";
+}
+
+std::span<const ParameterSpec> parameter_specs() {
+  return kSpecs;
+}
+
+Specimen draw_specimen(std::uint64_t seed) {
+  Specimen specimen;
+  specimen.seed = seed;
+  for (const ParameterSpec& spec : kSpecs) {
+    Random random(stream_of(seed, spec.name));
+    specimen.*spec.member = drawn(spec, random);
+  }
+  return specimen;
+}
+
+std::vector<std::string> validate(const Specimen& specimen) {
+  std::vector<std::string> problems;
+  for (const ParameterSpec& spec : kSpecs) {
+    const double value = specimen.*spec.member;
+    if (!(value >= spec.low && value <= spec.high)) {
+      problems.push_back(
+          fmt::format("{}: found {}, expected a number in [{}, {}]", spec.name, value, spec.low, spec.high));
+    }
+  }
+  return problems;
+}
+
+}  // namespace incise

@@ -1,0 +1,126 @@
+"""The virtual bench: readings, a cut by a program, and what is refused."""
+
+import csv
+import json
+import math
+import struct
+import unittest
+
+from command import BAD_CASE, BAD_DATA, DONE, CommandTest, files_below
+
+
+def specimen_file(path, **given):
+    path.write_text(json.dumps({"schema": "incise.specimen/1", "seed": 5, **given}))
+    return path
+
+
+def path_round(edge_csv, T_robot_specimen, moved_mm=0.0):
+    """A path 5 mm outside a contour and 5 mm deep, straight down: a plan without any finesse."""
+    with open(edge_csv, newline="") as file:
+        points = [tuple(float(row[key]) for key in ("x_mm", "y_mm", "z_mm")) for row in csv.DictReader(file)]
+    middle = [sum(p[i] for p in points) / len(points) for i in range(3)]
+
+    def in_robot(point):
+        place = [sum(row[i] * (*point, 1.0)[i] for i in range(4)) for row in T_robot_specimen[:3]]
+        return [place[0] + moved_mm, place[1], place[2]]
+
+    def outside(p):
+        out = math.hypot(p[0] - middle[0], p[1] - middle[1])
+        return (p[0] + 5 * (p[0] - middle[0]) / out, p[1] + 5 * (p[1] - middle[1]) / out, p[2] - 1.0)
+
+    points = points[:: max(1, len(points) // 40)]
+    waypoints = [{"position_mm": in_robot(outside(p)), "axis": [0, 0, -1], "depth_mm": 5.0, "speed_mm_s": 7.0} for p in points]
+    return {"frame": "robot", "kind": "incise", "closed": True, "waypoints": waypoints, "tumor_edge": [in_robot(p) for p in points]}
+
+
+class SchemaTest(CommandTest):
+    def test_the_schema_lists_every_hidden_parameter_with_source_and_reading(self):
+        schema = json.loads(self.incise("schema", "bench").stdout)
+        self.assertEqual(schema["title"], "incise.specimen/1")
+        parameters = {k: v for k, v in schema["properties"].items() if k not in ("schema", "seed")}
+        self.assertGreater(len(parameters), 30)
+        for name, parameter in parameters.items():
+            for key in ("default", "description", "x-spread", "x-source", "x-shows-in"):
+                self.assertTrue(parameter[key] or parameter[key] == 0, f"{name}.{key}")
+        self.assertEqual(parameters["youngs_modulus_kpa"]["x-shows-in"], "stretch_force_n")
+
+    def test_the_defaults_are_a_specimen_file(self):
+        defaults = json.loads(self.incise("schema", "bench", "--defaults").stdout)
+        self.assertEqual(defaults["schema"], "incise.specimen/1")
+
+
+class BadInputTest(CommandTest):
+    def refused(self, *says, **given):
+        done = self.incise("bench", "make", specimen_file(self.folder / "specimen.json", **given), "-o", self.out)
+        self.assert_refused(done, BAD_DATA, "specimen.json", *says)
+        self.assert_nothing_written(self.out)
+
+    def test_an_unknown_parameter_names_the_nearest(self):
+        self.refused("youngs_modulus", "Did you mean 'youngs_modulus_kpa'?", youngs_modulus=12)
+
+    def test_a_parameter_out_of_range_says_the_range(self):
+        self.refused("poissons_ratio", "0.7", "[0.3, 0.49]", poissons_ratio=0.7)
+
+    def test_a_parameter_that_is_no_number_is_refused(self):
+        self.refused("clamp_slip_mm", "a finite number", clamp_slip_mm="much")
+
+    def test_a_seed_is_needed(self):
+        self.refused("seed", "a whole number", seed=None)
+
+    def test_a_missing_specimen_file_is_named(self):
+        self.assert_refused(self.incise("bench", "make", "nowhere.json", "-o", self.out), BAD_DATA, "nowhere.json")
+
+    def test_the_truth_may_not_lie_in_the_output(self):
+        done = self.incise("bench", "make", "--seed", 5, "-o", self.out, "--truth", self.out / "truth")
+        self.assert_refused(done, BAD_CASE, "--truth", "apart from the output")
+        self.assert_nothing_written(self.out)
+
+    def test_a_program_that_is_none_is_refused_before_any_computing(self):
+        program = self.folder / "program.json"
+        program.write_text(json.dumps({"schema": "incise.program/9"}))
+        done = self.incise("bench", "cut", specimen_file(self.folder / "specimen.json"), program, "-o", self.out)
+        self.assert_refused(done, BAD_DATA, "program.json", "schema", "incise.program/1")
+        self.assert_nothing_written(self.out)
+        program = self.folder / "cut.script"
+        program.write_text("def incise_cut():\n  dance()\nend\n")
+        done = self.incise("bench", "cut", specimen_file(self.folder / "specimen.json"), program, "-o", self.out)
+        self.assert_refused(done, BAD_DATA, "cut.script", "dance")
+        self.assert_nothing_written(self.out)
+
+
+class LoopTest(CommandTest):
+    def test_readings_tell_no_hidden_parameter_and_a_program_becomes_a_photograph(self):
+        truth = self.folder / "hidden"
+        made = self.json_of("bench", "make", "--seed", 5, "-o", self.out, "--truth", truth)
+        self.assertTrue(made["virtual"])
+        for name in ("scan.ply", "rgb.png", "depth.png", "camera.json", "readings.json", "manifest.json", "ct"):
+            self.assertIn(name, files_below(self.out))
+        told = "".join((self.out / name).read_text() for name in ("readings.json", "camera.json", "manifest.json"))
+        for hidden in ("youngs_modulus", "toughness", "adhesion", "T_robot_specimen", "--seed"):
+            self.assertNotIn(hidden, told)
+        depth = (self.out / "depth.png").read_bytes()
+        self.assertEqual(struct.unpack(">IIBB", depth[16:26]), (1280, 720, 16, 0))
+
+        transform = json.loads((truth / "truth.json").read_text())["T_robot_specimen"]
+        path = self.folder / "path.json"
+        path.write_text(json.dumps(path_round(truth / "tumor_edge_stretched.csv", transform)))
+        self.json_of("export", path, "-o", self.folder / "cut.script")
+        cut = self.json_of("bench", "cut", truth / "specimen.json", self.folder / "cut.script", "-o", self.folder / "cut", "--truth", self.folder / "cut_truth")
+        self.assertEqual(files_below(self.folder / "cut"), ["manifest.json", "photo.json", "photo.png"])
+        self.assertEqual(cut["mm_per_pixel"], 0.03)
+        width, height = struct.unpack(">II", (self.folder / "cut" / "photo.png").read_bytes()[16:24])
+        self.assertGreater(min(width, height), 1000)
+        # What the photograph shows is what happened.
+        true_mean = json.loads((self.folder / "cut_truth" / "cut_truth.json").read_text())["mean_abs_error_mm"]
+        seen = self.json_of("evaluate", self.folder / "cut" / "photo.png", "--mm-per-pixel", 0.03)
+        self.assertAlmostEqual(seen["abs_error_mm"]["mean"], true_mean, delta=0.05)
+
+        path.write_text(json.dumps(path_round(truth / "tumor_edge_stretched.csv", transform, moved_mm=60.0)))
+        self.json_of("export", path, "-o", self.folder / "other.json", "--format", "json")
+        done = self.incise("bench", "cut", truth / "specimen.json", self.folder / "other.json", "-o", self.folder / "other")
+        self.assert_refused(done, BAD_DATA, "other.json", "program of another specimen?")
+        self.assertFalse((self.folder / "other").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

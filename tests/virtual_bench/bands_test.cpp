@@ -1,0 +1,55 @@
+#include "virtual_bench/small_bench.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kTargetMm = 4.5;  // Paper III-A.1: of an inner edge
+
+/// Mean and standard deviation along the contour of the absolute error of a cut at the bench's own resolution.
+struct Cut {
+  Outcome outcome = Outcome::NotConverged;
+  double mean_mm = 0.0, sd_mm = 0.0;
+};
+Cut cut_as_planned(std::uint64_t seed) {
+  Workers workers(1);
+  Monitor monitor;
+  const BenchBody body = make_body(draw_specimen(seed), {}, workers, monitor);
+  const BenchCut cut = cut_specimen(body, test::ring_course(body, 7.0), 35.0, workers, monitor);
+  Cut result{cut.outcome};
+  if (!cut.inner_edge) return result;
+  const std::vector<double> errors = true_errors_mm(body, cut, kTargetMm);
+  const auto n = static_cast<double>(errors.size());
+  double squares = 0.0;
+  for (const double e : errors) {
+    result.mean_mm += std::abs(e) / n;
+    squares += e * e;
+  }
+  result.sd_mm = std::sqrt((squares - n * result.mean_mm * result.mean_mm) / (n - 1.0));
+  return result;
+}
+
+// The paper's two cuts along the intended path: 1.57 +- 0.66 and 1.91 +- 0.90 mm (Table II).
+TEST(BenchBands, CutsAsPlannedErrAsThePapersDo) {
+  double means = 0.0;
+  double sds = 0.0;
+  constexpr int kSeeds = 3;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Cut cut = cut_as_planned(seed);
+    ASSERT_EQ(cut.outcome, Outcome::Success) << "seed " << seed;
+    EXPECT_GT(cut.mean_mm, 1.0) << "seed " << seed;
+    EXPECT_LT(cut.mean_mm, 2.5) << "seed " << seed;
+    means += cut.mean_mm / kSeeds;
+    sds += cut.sd_mm / kSeeds;
+  }
+  EXPECT_GT(means, 1.4);
+  EXPECT_LT(means, 2.1);
+  EXPECT_GT(sds, 0.5) << "three specimens scatter about the 0.6 of many";
+  EXPECT_LT(sds, 1.0);
+}
+
+}  // namespace
+}  // namespace incise
