@@ -8,7 +8,7 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kLongestFound = 300;
+constexpr std::size_t kLongestFound = 1000;
 
 /// Fit to be shown: what a file holds may be long, and not text.
 std::string shown(const std::string& found) {
