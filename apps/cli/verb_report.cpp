@@ -1,21 +1,46 @@
 #include "options.hpp"
 #include "study_report.hpp"
+#include "tissue_report.hpp"
+
+#include <incise/core/error.hpp>
 
 #include <memory>
 
 namespace incise::cli {
 
 void add_report(Application& application) {
-  auto folder = std::make_shared<std::filesystem::path>();
+  struct ReportArguments {
+    std::filesystem::path folder, registration, replay;
+  };
+  auto arguments = std::make_shared<ReportArguments>();
   CLI::App* verb = application.add_verb(
-      "report", "Draw the report of a study's folder anew", "incise report demo -o demo/report.html", [folder](const CommonOptions& options) {
+      "report", "Draw the report of a study's folder anew, or of a program on measured tissue",
+      "incise report demo --registration registration --replay replay -o report.html",
+      [arguments](const CommonOptions& options) {
         Console console(options.level());
-        const std::filesystem::path output = options.output.empty() ? *folder / "report.html" : options.output;
-        write_report_and_figures(study_report(*folder, console), output);
+        const bool is_of_a_study = !arguments->folder.empty();
+        if (!is_of_a_study && arguments->registration.empty() && arguments->replay.empty()) {
+          throw CaseError("command line", "report", "no folder", "a study's folder, --registration or --replay");
+        }
+        ReportData data;
+        if (is_of_a_study) {
+          data = study_report(arguments->folder, console);
+        } else {
+          data.title = "Program on measured tissue";
+          data.is_of_a_study = false;
+        }
+        add_on_tissue(arguments->registration, arguments->replay, data);
+        const std::filesystem::path output = !options.output.empty() ? options.output
+                                             : is_of_a_study         ? arguments->folder / "report.html"
+                                                                     : std::filesystem::path("report.html");
+        write_report_and_figures(data, output);
         print_result(options, {{"report", output.string()}});
         return kDone;
       });
-  verb->add_option("folder", *folder, "A folder made by run, demo, simulate, …")->required();
+  verb->add_option("folder", arguments->folder, "A folder made by run, demo, simulate, …");
+  verb->add_option("--registration", arguments->registration,
+                   "A folder made by register: its figure and numbers go into the report");
+  verb->add_option("--replay", arguments->replay, "A folder made by replay: its figure and numbers go into the report");
 }
 
 }  // namespace incise::cli

@@ -82,9 +82,10 @@ std::string html_report(const ReportData& data) {
   if (mesh_is_shown) scene["mesh"] = mesh_json(data.mesh.mesh);
   scene["animations"] = animations_json(data);
 
-  const std::string body = page_header(data) + "<main>\n" + result_section(data) + scan_section(data, planes) +
-                           mesh_section(data, mesh_is_shown) + cut_section(data) + error_section(data) + kerf_section(data) +
-                           program_section(data) + record_section(data) + "</main>\n" + page_footer();
+  const std::string study = !data.is_of_a_study ? "" : result_section(data) + scan_section(data, planes) + mesh_section(data, mesh_is_shown) +
+                                                           cut_section(data) + error_section(data) + kerf_section(data) + program_section(data);
+  const std::string body =
+      page_header(data) + "<main>\n" + study + tissue_section(data) + record_section(data) + "</main>\n" + page_footer();
   std::string script;
   for (const std::string_view part :
        {page::decode_js, page::viewer_js, page::cut_view_js, page::mesh_view_js, page::main_js}) {

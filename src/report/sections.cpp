@@ -242,6 +242,17 @@ std::string program_section(const ReportData& data) {
   return html + "</section>\n";
 }
 
+std::string tissue_section(const ReportData& data) {
+  if (data.on_tissue.empty()) return "";
+  std::string html = "<section>\n" + heading("tissue", "On the measured tissue");
+  for (const ReportPicture& picture : data.on_tissue) {
+    html += "<h3>" + escaped(picture.title) + "</h3>\n";
+    if (!picture.lead.empty()) html += "<p>" + escaped(picture.lead) + "</p>\n";
+    html += "<div class=\"figures\">\n<figure>" + picture.svg + "</figure>\n</div>\n" + value_table(picture.values);
+  }
+  return html + "</section>\n";
+}
+
 std::string record_section(const ReportData& data) {
   std::string html = "<section>\n" + heading("record", "Settings and provenance");
   for (const ReportTable& table : data.tables) html += free_table(table);

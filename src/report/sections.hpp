@@ -20,6 +20,8 @@ namespace incise {
 [[nodiscard]] std::string error_section(const ReportData& data);
 [[nodiscard]] std::string kerf_section(const ReportData& data);
 [[nodiscard]] std::string program_section(const ReportData& data);
+/// Nothing where there is nothing to show.
+[[nodiscard]] std::string tissue_section(const ReportData& data);
 [[nodiscard]] std::string record_section(const ReportData& data);
 [[nodiscard]] std::string page_footer();
 

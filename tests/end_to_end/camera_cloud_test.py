@@ -43,6 +43,10 @@ def replayed(folder, seed, has_plate=True, settling_mm=1):
              "--registration", out / "registration" / "registration.json", "--intended", scene / "wanted.json", "-o", out / "cut.script")
     played = loop.run("replay", out / "cut.script", "--path", scene / "wanted.json", "-o", out / "replay")
     assert (out / "replay" / "replay.svg").stat().st_size > 0
+    loop.run("report", "--registration", out / "registration", "--replay", out / "replay", "-o", out / "report.html")
+    page = (out / "report.html").read_text()
+    for shown in ("On the measured tissue", "tip off the wanted path in the cut, greatest", f"{played['max_cut_deviation_mm']:.4g}"):
+        assert shown in page, shown
     for name in ("registration", "projected", "replay"):
         assert (out / name / "manifest.json").is_file(), name
     scale = tissue.get("camera_scale", found["scale"])

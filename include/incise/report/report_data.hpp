@@ -140,6 +140,12 @@ struct ReportNotice {
 struct ReportFile {
   std::string path, meaning;
 };
+/// A figure with the numbers that belong to it.
+struct ReportPicture {
+  std::string title, lead;
+  std::string svg;  ///< a complete SVG document
+  std::vector<ReportValue> values;
+};
 /// Any other table; units belong into the column names.
 struct ReportTable {
   std::string title;
@@ -166,6 +172,8 @@ struct ReportData {
   std::vector<ReportStage> stages;
   std::vector<ReportValue> program;  ///< summary of the robot program
   std::vector<ReportCheck> checks;
+  std::vector<ReportPicture> on_tissue;  ///< registration with the measured tissue, and the program that was laid onto it
+  bool is_of_a_study = true;             ///< false: sections of a study that this is no report of are left out
   std::string program_figure;           ///< a complete SVG document: the program as the player ran it
   std::vector<ReportValue> replay;      ///< numbers of that
   std::string program_text;             ///< the program, or its beginning
