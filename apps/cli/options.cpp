@@ -1,8 +1,8 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/version.hpp>
 #include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
 
 #include <fmt/format.h>
 
@@ -14,7 +14,8 @@ namespace {
 
 void choose_isa(const std::string& name) {
   if (!is_supported(parse_isa(name))) {
-    throw CaseError("command line", "--isa", name, fmt::format("an instruction set that this machine has: at best {}", to_string(best_isa())));
+    throw CaseError("command line", "--isa", name,
+                    fmt::format("an instruction set that this machine has: at best {}", to_string(best_isa())));
   }
   set_isa(parse_isa(name));
 }
@@ -45,9 +46,20 @@ Manifest manifest_of(const CommonOptions& options, std::string settings_json,
   return manifest;
 }
 
+void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
+                            const std::vector<std::filesystem::path>& inputs) {
+  std::error_code absent;
+  for (const std::filesystem::path& input : inputs) {
+    if (!output.empty() && std::filesystem::equivalent(input, output, absent)) {
+      throw CaseError("command line", option, fmt::format("{}, an input", output.string()),
+                      "another file: the input would be lost");
+    }
+  }
+}
 
 std::filesystem::path CommonOptions::required_output(const char* example) const {
-  if (output.empty()) throw CaseError("command line", "-o", "nothing", "where to write", fmt::format("For example: -o {}", example));
+  if (output.empty())
+    throw CaseError("command line", "-o", "nothing", "where to write", fmt::format("For example: -o {}", example));
   return output;
 }
 
@@ -75,7 +87,8 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   verb->add_flag("--verbose", options->verbose, "More detail");
   verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
   verb->add_option("--seed", options->seed, "Seed of everything random")->check(CLI::NonNegativeNumber);
-  verb->add_option("--isa", options->isa, "Instruction set of the vectorised kernels; by default the best that this machine has")
+  verb->add_option("--isa", options->isa,
+                   "Instruction set of the vectorised kernels; by default the best that this machine has")
       ->check(CLI::IsMember({"portable", "avx2", "avx512"}));
   verb->callback([this, options, run = std::move(run)] {
     if (!options->isa.empty()) choose_isa(options->isa);

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <incise/io/manifest.hpp>
-
 #include "console.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/storage/folder_store.hpp>
 
 #include <CLI/CLI.hpp>
@@ -14,6 +13,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace incise::cli {
 
@@ -32,6 +32,10 @@ class StagesKept : public Cancelled {
   explicit StagesKept(const std::string& what, const std::string& kept = "the stages that were finished are kept")
       : Cancelled(what + "; " + kept + ", run the same command to go on") {}
 };
+
+/// Refuses an output that would take the place of an input (status 2). An empty output: nothing to refuse.
+void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
+                            const std::vector<std::filesystem::path>& inputs);
 
 /// What every verb understands.
 struct CommonOptions {
@@ -84,13 +88,13 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
 /// 0 for Success, 130 for Cancelled, 4 for every other outcome.
 [[nodiscard]] int status_of(Outcome outcome);
 
-void add_bench(Application& application);     ///< bench make, bench cut
+void add_bench(Application& application);  ///< bench make, bench cut
 void add_demo(Application& application);
 void add_run(Application& application);
 void add_phantom(Application& application);
 void add_segment(Application& application);
 void add_mesh(Application& application);
-void add_stages(Application& application);   ///< deform, plan, simulate, compensate
+void add_stages(Application& application);  ///< deform, plan, simulate, compensate
 void add_surface(Application& application);
 void add_register(Application& application);
 void add_stages(Application& application);  ///< deform, plan, simulate, compensate

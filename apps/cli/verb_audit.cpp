@@ -73,6 +73,7 @@ int run(AuditArguments arguments, const CommonOptions& options) {
   if (const auto violations = validate(arguments.settings); !violations.empty()) {
     throw CaseError("command line", "", violations.front(), "usable settings");
   }
+  refuse_input_as_output("-o", options.output, {arguments.table});
   const PublishedTable table = read_published_table(arguments.table);
   const Audit result = audit(table.rows, arguments.settings);
   const Json json = audit_json(result, table);

@@ -173,6 +173,9 @@ void add_evaluate(Application& application) {
                            "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json",
                            [arguments](const CommonOptions& options) {
                              require_one_source(*arguments);
+                             const std::vector<std::filesystem::path> inputs{arguments->photo, arguments->incision, arguments->tumor};
+                             refuse_input_as_output("-o", options.output, inputs);
+                             refuse_input_as_output("--figure", arguments->figure, inputs);
                              const EvaluationSettings settings = settings_of(*arguments);
                              const Measured result = arguments->photo.empty() ? from_files(*arguments, settings)
                                                                               : from_photo(*arguments, settings);

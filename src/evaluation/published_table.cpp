@@ -31,6 +31,10 @@ void find_baseline(const std::vector<PrintedRow>& rows, Audit& audit) {
     audit.rows_on_baseline = count;
     audit.baseline_mm = common;
   }
+  if (audit.scored_rows > 1 && 2 * audit.rows_on_baseline <= audit.scored_rows) {  // which of them is wrong cannot be told
+    audit.baseline_mm.reset();
+    audit.rows_on_baseline = 0;
+  }
 }
 
 }  // namespace

@@ -102,6 +102,39 @@ void require_nothing_else(const MarkedLine& line, LineEdge edge, const cv::Mat& 
                   "one simple ring", "A second line, or one that crosses itself? Something else of that colour?");
 }
 
+/// Pieces of ink away from the ring, longest side of each, mm: what neither blood nor the picture's grain leaves.
+void require_no_marks(const MarkedLine& ring, LineEdge edge, const cv::Mat& mask, const std::vector<Vec2>* within,
+                      double mm_per_pixel, const char* color, const char* place, const std::filesystem::path& name) {
+  constexpr double kLongestSpeckMm = 3.0;
+  constexpr int kBesidePx = 12;
+  if (!ring.is_closed) return;
+  cv::Mat elsewhere = mask.clone();
+  const auto pixels_of_line = [](const std::vector<Vec2>& line) {
+    std::vector<cv::Point> points;
+    for (const Vec2& p : line) points.emplace_back(cvRound(p.x()), cvRound(p.y()));
+    return points;
+  };
+  if (within != nullptr) {
+    cv::Mat inside = cv::Mat::zeros(mask.size(), mask.type());
+    cv::fillPoly(inside, std::vector<std::vector<cv::Point>>{pixels_of_line(*within)}, cv::Scalar(255));
+    cv::bitwise_and(elsewhere, inside, elsewhere);
+  }
+  const int reach = (edge == LineEdge::Inner ? 2 : 1) * static_cast<int>(ring.width_px) + kBesidePx;
+  cv::polylines(elsewhere, pixels_of_line(ring.points_px), true, cv::Scalar(0), reach);
+  cv::Mat labels, stats, centers;
+  const int count = cv::connectedComponentsWithStats(elsewhere, labels, stats, centers, 8, CV_32S);
+  for (int i = 1; i < count; ++i) {
+    const int longest = std::max(stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
+    const double longest_mm = longest * mm_per_pixel;
+    if (longest_mm < kLongestSpeckMm) continue;
+    throw DataError(name, "",
+                    fmt::format("a {} mark of {:.1f} mm {}, at pixel {:.0f}, {:.0f}", color, longest_mm, place,
+                                centers.at<double>(i, 0), centers.at<double>(i, 1)),
+                    fmt::format("no {} there but the ring", color),
+                    "A second cut or tumour? Paint over it if it is neither");
+  }
+}
+
 Vec2 middle_of(const std::vector<Vec2>& points) {
   Vec2 sum = Vec2::Zero();
   for (const Vec2& p : points) sum += p;
@@ -133,6 +166,8 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   require_nothing_else(result.green, line.edge, green_mask, "green", name);
   result.tumor_edge = in_plane(result.green, scale);
   require_tumor(result.green, result.tumor_edge, name);
+  require_no_marks(result.green, LineEdge::Middle, green_mask, nullptr, result.mm_per_pixel, "green",
+                   "beside the green ring", name);
   result.mm_per_pixel = scale.mm_per_pixel(middle_of(result.green.points_px));
 
   line.mm_per_pixel = result.mm_per_pixel;
@@ -141,6 +176,8 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
       imaging_detail::trace_marked_line(red, red_mask, strengths.glare, widened(green_mask), InkColor::Red, line, name);
   require_in_view(result.red, "red", picture, name);
   require_nothing_else(result.red, line.edge, red_mask, "red", name);
+  require_no_marks(result.red, line.edge, red_mask, &result.green.points_px, line.mm_per_pixel, "red",
+                   "inside the tumour's edge", name);
   result.incision = in_plane(result.red, scale);
   return result;
 }

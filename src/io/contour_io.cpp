@@ -26,7 +26,8 @@ constexpr std::array<std::string_view, 3> kPointColumns{"x_mm", "y_mm", "z_mm"};
 Contour read_csv(const std::filesystem::path& path, bool is_closed) {
   const std::vector<std::vector<double>> columns = read_csv_columns(path, {kPointColumns.begin(), kPointColumns.end()});
   Contour contour{{}, is_closed};
-  for (std::size_t i = 0; i < columns[0].size(); ++i) contour.points.emplace_back(columns[0][i], columns[1][i], columns[2][i]);
+  for (std::size_t i = 0; i < columns[0].size(); ++i)
+    contour.points.emplace_back(columns[0][i], columns[1][i], columns[2][i]);
   return contour;
 }
 
@@ -54,6 +55,22 @@ Contour read_polyline(const std::filesystem::path& path, bool is_closed) {
     contour.points.push_back(points[static_cast<std::size_t>(index)]);
   }
   return contour;
+}
+
+/// A closed curve's last point is about as far from its first as neighbours are from each other.
+void require_closing(const Contour& contour, const std::filesystem::path& path) {
+  constexpr double kWidestGap = 4.0;  // times the longest way between neighbours
+  if (!contour.is_closed || contour.points.size() < 3) return;
+  double longest_mm = 0.0;
+  for (std::size_t i = 0; i + 1 < contour.points.size(); ++i) {
+    longest_mm = std::max(longest_mm, (contour.points[i + 1] - contour.points[i]).norm());
+  }
+  const double gap_mm = (contour.points.front() - contour.points.back()).norm();
+  if (!(gap_mm > kWidestGap * longest_mm)) return;
+  throw DataError(
+      path, "",
+      fmt::format("ends {:.3g} mm apart, where neighbouring points are at most {:.3g} mm apart", gap_mm, longest_mm),
+      "a closed curve", "`incise evaluate --open` takes an open incision");
 }
 
 /// Slicer's markups: "LPS" or "1", "RAS" or "0" (numbers in files of older versions).
@@ -117,6 +134,8 @@ Contour read_contour(const std::filesystem::path& path, bool is_closed) {
   else
     throw DataError(path, "", fmt::format("the ending '{}'", path.extension().string()), ".csv, .vtp or .mrk.json");
   Points& points = contour.points;
+  const bool is_said_closed = ends_with(name, ".mrk.json") || (points.size() > 1 && points.front() == points.back());
+  if (!is_said_closed) require_closing(contour, path);
   if (is_closed && points.size() > 1 && points.front() == points.back()) points.pop_back();
   const std::size_t least = is_closed ? 3 : 2;
   if (points.size() < least) {

@@ -213,6 +213,12 @@ class AuditTest(CommandTest):
         self.assertEqual(result["impossible_rows"], 0)
         self.assertEqual(json.loads((self.folder / "audit.json").read_text()), result)
 
+    def test_the_table_is_never_replaced(self):
+        table = self.folder / "t.csv"
+        table.write_text("mean_mm,sd_mm,max_mm\n1.0,0.5,2.0\n")
+        self.assert_refused(self.incise("audit", "t.csv", "-o", "t.csv"), BAD_CASE, "-o", "an input")
+        self.assertTrue(table.read_text().startswith("mean_mm"))
+
     def test_counts_by_their_grain(self):
         (self.folder / "t.csv").write_text("mean,sd,n\n5.18,1,28\n5.19,1,28\n")
         self.assertEqual(self.json_of("audit", "t.csv")["impossible_rows"], 0)

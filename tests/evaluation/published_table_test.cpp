@@ -182,6 +182,15 @@ TEST(Audit, FindsTheScoreThatFollowsFromNoCommonBaseline) {
   EXPECT_GE(found.baseline_mm->high_mm, 2.0);
 }
 
+TEST(Audit, TwoScoresThatContradictEachOtherLeaveOpenWhichIsWrong) {
+  const auto row = [](const char* percent) {
+    return PrintedRow{.name = percent, .total = group("1.00", "0.5", "2.00"), .parts = {}, .score_percent = printed(percent)};
+  };
+  const Audit found = audit({row("100.0"), row("50.0")});
+  EXPECT_FALSE(found.baseline_mm.has_value());
+  EXPECT_EQ(found.impossible_rows, 0U);
+}
+
 TEST(Audit, RefusesSettingsAndNumbersThatAreNone) {
   EXPECT_THROW(static_cast<void>(audit({}, {.n_at_least = 1})), InvalidArgument);
   EXPECT_THROW(static_cast<void>(audit({}, {.grain = 0.0})), InvalidArgument);

@@ -4,7 +4,9 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/surface_io.hpp>
 
+#include <cmath>
 #include <limits>
+#include <string>
 
 namespace incise {
 namespace {
@@ -12,6 +14,7 @@ namespace {
 using incise::testing::data_error_of;
 using incise::testing::TemporaryFolder;
 using incise::testing::write_file;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const Contour kTriangle{{Vec3(0.1, 1.0 / 3.0, -2e-9), Vec3(10, 0, 0), Vec3(0, 10, 0.7)}, true};
@@ -51,6 +54,22 @@ TEST_F(ContourFile, CsvAsksForItsHeader) {
   EXPECT_THAT(message("a.csv", "x,y,z\n1,2,3\n"),
               HasSubstr("found the header 'x,y,z', expected a header with the column x_mm"));
   EXPECT_THAT(message("a.csv", "\n\n"), HasSubstr("an empty file"));
+}
+
+TEST_F(ContourFile, AnArcIsNotTakenForAClosedCurve) {
+  const auto arc = [](double to_deg, bool repeats_first) {
+    std::string text = "x_mm,y_mm,z_mm\n";
+    for (double angle = 0.0; angle < to_deg; angle += 2.0)
+      text += std::to_string(15.0 * std::cos(angle * M_PI / 180.0)) + "," +
+              std::to_string(15.0 * std::sin(angle * M_PI / 180.0)) + ",0\n";
+    return repeats_first ? text + "15.000000,0.000000,0\n" : text;
+  };
+  EXPECT_EQ(read("whole.csv", arc(360.0, false)).points.size(), 180U);
+  EXPECT_THAT(message("arc.csv", arc(300.0, false)),
+              AllOf(HasSubstr("arc.csv"), HasSubstr("ends 15.5 mm apart"), HasSubstr("expected a closed curve")));
+  EXPECT_EQ(read("open.csv", arc(300.0, false), false).points.size(), 150U);
+  EXPECT_EQ(read("chord.csv", arc(300.0, true)).points.size(), 150U)
+      << "its first point stands at its end: that says closed";
 }
 
 TEST_F(ContourFile, NeedsThreePointsToCloseAndTwoToStayOpen) {
