@@ -101,6 +101,12 @@ void complete(ExportArguments& a, const ToolPath& path) {
   a.checks.must_be_ring = !a.is_open;
   a.checks.shaft_radius_mm = 0.5 * a.shaft_diameter_mm;
   if (!a.tcp.empty()) a.setup.T_flange_tool = tool_of(a.tcp);
+  const double length_mm = a.setup.T_flange_tool.topRightCorner<3, 1>().norm();
+  if (length_mm < a.checks.needle_length_mm) {
+    throw CaseError("command line", "--tcp", fmt::format("a tip {:.4g} mm from the flange", length_mm),
+                    fmt::format("at least the needle's length, {} mm (--needle-length-mm)", a.checks.needle_length_mm),
+                    "Lengths are in mm");
+  }
   for (std::size_t i = 0; i < a.near_deg.size(); ++i)
     a.setup.near_rad[static_cast<int>(i)] = units::rad_from_deg(a.near_deg[i]);
 }

@@ -1,6 +1,7 @@
 #include "robot/check_list.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
 #include <incise/robot/checks.hpp>
 
 #include <fmt/format.h>
@@ -16,17 +17,21 @@ using robot_detail::CheckList;
 using robot_detail::Worst;
 
 constexpr double kClosedToMm = 0.01;
-constexpr std::array<const char*, 24> kNames{"finite",
+constexpr std::array<const char*, 28> kNames{"finite",
                                              "frame",
                                              "closed",
+                                             "gap",
                                              "self_crossing",
                                              "speed_min",
                                              "speed_max",
                                              "depth",
                                              "margin",
+                                             "encloses",
                                              "edge_distance",
                                              "deviation",
                                              "chord_error",
+                                             "tilt",
+                                             "tool_table",
                                              "reach",
                                              "joint_limits",
                                              "joint_speed",
@@ -74,6 +79,7 @@ bool check_finite(CheckList& list) {
 /// A place on the course that is looked at: every pose of the cut and every waypoint.
 struct CoursePlace {
   Vec3 entry_mm;
+  Vec3 tip_mm;
   double depth_mm;
   std::size_t pose;  ///< that is named for it
 };
@@ -81,13 +87,15 @@ struct CoursePlace {
 std::vector<CoursePlace> places_of(const RobotProgram& program, const ToolPath& path,
                                    const std::vector<std::size_t>& cut) {
   std::vector<CoursePlace> places;
-  for (const std::size_t i : cut) places.push_back({program.poses[i].entry_mm(), program.poses[i].depth_mm, i});
+  for (const std::size_t i : cut)
+    places.push_back({program.poses[i].entry_mm(), program.poses[i].tip_mm, program.poses[i].depth_mm, i});
   for (std::size_t w = 0; w < path.waypoints.size(); ++w) {
     // The first pose at or after the waypoint; a course may have fewer poses than waypoints.
     const auto after =
         std::find_if(cut.begin(), cut.end(), [&](std::size_t i) { return program.poses[i].waypoint >= w; });
     const Waypoint& waypoint = path.waypoints[w];
-    places.push_back({waypoint.position_mm, waypoint.depth_mm, after == cut.end() ? cut.back() : *after});
+    const Vec3 tip_mm = waypoint.position_mm + waypoint.depth_mm * waypoint.axis;
+    places.push_back({waypoint.position_mm, tip_mm, waypoint.depth_mm, after == cut.end() ? cut.back() : *after});
   }
   return places;
 }
@@ -96,6 +104,15 @@ Vec3 mean_axis(const ToolPath& path) {
   Vec3 sum = Vec3::Zero();
   for (const Waypoint& waypoint : path.waypoints) sum += waypoint.axis;
   return sum;
+}
+
+/// Laid into the plane across `axis` through the origin: what is seen along it.
+Vec3 seen_along(const Vec3& axis, const Vec3& point) {
+  return point - axis.dot(point) * axis;
+}
+Contour seen_along(const Vec3& axis, Contour contour) {
+  for (Vec3& point : contour.points) point = seen_along(axis, point);
+  return contour;
 }
 
 /// What concerns the course alone, without the arm.
@@ -108,7 +125,7 @@ class CourseChecker {
         settings_(settings),
         cut_(cut_poses(program_)),
         places_(places_of(program_, path, cut_)),
-        axis_(mean_axis(path)) {}
+        axis_(mean_axis(path).normalized()) {}
 
   void closed() {
     const double gap = (program_.poses[cut_.back()].tip_mm - program_.poses[cut_.front()].tip_mm).norm();
@@ -117,6 +134,24 @@ class CourseChecker {
     } else {
       list_.holds("closed", false, "the path is open, and has to be a ring", cut_.back());
     }
+  }
+
+  /// The course joins neighbouring waypoints whatever lies between them.
+  void gap() {
+    std::vector<double> ways_mm;
+    for (std::size_t w = 0; w < path_.waypoints.size(); ++w) {
+      const Waypoint& next = path_.waypoints[(w + 1) % path_.waypoints.size()];
+      ways_mm.push_back((next.position_mm - path_.waypoints[w].position_mm).norm());
+    }
+    const auto longest = std::max_element(ways_mm.begin(), ways_mm.end());
+    const double longest_mm = *longest;
+    const auto before = static_cast<std::size_t>(longest - ways_mm.begin());
+    const auto middle = ways_mm.begin() + static_cast<std::ptrdiff_t>(ways_mm.size() / 2);
+    std::nth_element(ways_mm.begin(), middle, ways_mm.end());
+    const auto pose =
+        std::find_if(cut_.begin(), cut_.end(), [&](std::size_t i) { return program_.poses[i].waypoint >= before; });
+    list_.at_most("gap", longest_mm, std::max(settings_.max_gap_mm, settings_.max_gap_ratio * *middle), "mm",
+                  pose == cut_.end() ? cut_.back() : *pose, "longest way from one waypoint of the ring to the next");
   }
 
   void self_crossing() {
@@ -160,24 +195,77 @@ class CourseChecker {
 
   void margin() {
     if (path_.kind == PathKind::Mark) return edge_distance();
-    if (path_.tumor_edge.points.size() < 2) return list_.not_made("margin to the tumour edge: the path holds none");
+    const std::size_t least = settings_.must_be_ring ? 3 : 2;
+    if (path_.tumor_edge.points.size() < least) {
+      if (!settings_.must_be_ring) return list_.not_made("margin to the tumour edge: the path holds none");
+      return list_.holds("margin", false,
+                         "a ring keeps away from a tumour edge, and the path holds none of three points or more");
+    }
+    const Contour seen_edge = seen_along(axis_, path_.tumor_edge);
     Worst closest;  // of the negative margin
+    const auto see = [&](double distance, const Vec3& point, std::size_t pose) {
+      const bool is_inside = path_.tumor_edge.is_closed && contains_in_view(path_.tumor_edge, point, axis_);
+      closest.see(is_inside ? distance : -distance, pose);
+    };
     for (const CoursePlace& p : places_) {
-      const double distance = nearest_on(path_.tumor_edge, p.entry_mm).distance_mm;
-      const bool is_inside = path_.tumor_edge.is_closed && contains_in_view(path_.tumor_edge, p.entry_mm, axis_);
-      closest.see(is_inside ? distance : -distance, p.pose);
+      see(nearest_on(path_.tumor_edge, p.entry_mm).distance_mm, p.entry_mm, p.pose);
+      // What lies beneath the edge is not known: the tip keeps away from all of it.
+      see(nearest_on(seen_edge, seen_along(axis_, p.tip_mm)).distance_mm, p.tip_mm, p.pose);
     }
     list_.at_least("margin", -closest.value, settings_.close_margin_mm, "mm", closest.pose,
-                   "least distance of the course from the tumour edge (negative: inside it)");
+                   "least distance of the needle from the tumour edge, where it enters and of its tip as seen along "
+                   "the mean axis (negative: inside)");
+    if (settings_.must_be_ring) encloses();
+  }
+
+  void encloses() {
+    Contour ring{{}, true};
+    for (const std::size_t i : cut_) ring.points.push_back(program_.poses[i].entry_mm());
+    const bool goes_round = std::all_of(path_.tumor_edge.points.begin(), path_.tumor_edge.points.end(),
+                                        [&](const Vec3& point) { return contains_in_view(ring, point, axis_); });
+    double farthest_mm = 0.0;
+    for (const Vec3& point : path_.tumor_edge.points) {
+      farthest_mm = std::max(farthest_mm, std::abs(axis_.dot(point - nearest_on(ring, point).position_mm)));
+    }
+    list_.holds("encloses", goes_round && farthest_mm <= settings_.max_edge_height_mm,
+                fmt::format("the ring goes round the tumour edge, seen along the mean axis, and no point of the edge "
+                            "is more than {} mm above or below it",
+                            settings_.max_edge_height_mm));
   }
 
   void deviation(const ToolPath* intended) {
     if (intended == nullptr) return list_.not_made("deviation from the intended path: none was given");
     const Contour course = entry_contour(*intended);
     Worst worst;
+    Contour own{{}, program_.is_closed};
+    for (const std::size_t i : cut_) own.points.push_back(program_.poses[i].entry_mm());
     for (const CoursePlace& p : places_) worst.see(nearest_on(course, p.entry_mm).distance_mm, p.pose);
+    for (const Vec3& point : course.points) worst.see(nearest_on(own, point).distance_mm, cut_.back());
     list_.at_most("deviation", worst.value, settings_.max_deviation_mm, "mm", worst.pose,
-                  "greatest distance of the course from the intended one");
+                  "greatest distance of the course from the intended one, and of that from the course");
+  }
+
+  /// The robot stands on the table, and the tissue lies on it or is held above it: a tool that comes from below is a
+  /// mistaken frame.
+  void tilt() {
+    Worst steepest;
+    for (std::size_t i = 0; i < program_.poses.size(); ++i) {
+      steepest.see(std::acos(std::clamp(-program_.poses[i].R_robot_tool.col(2).z(), -1.0, 1.0)), i);
+    }
+    list_.at_most("tilt", units::deg_from_rad(steepest.value), settings_.max_tilt_deg, "deg", steepest.pose,
+                  "greatest angle of the tool from straight down");
+  }
+
+  void tool_table() {
+    const double table_z_mm = program_.setup.table_z_mm;
+    Worst lowest;
+    for (std::size_t i = 0; i < program_.poses.size(); ++i) {
+      const ProgramPose& pose = program_.poses[i];
+      const Vec3 shaft_mm = pose.tip_mm - settings_.needle_length_mm * pose.R_robot_tool.col(2);
+      lowest.see(table_z_mm - std::min(pose.tip_mm.z(), shaft_mm.z() - settings_.shaft_radius_mm), i);
+    }
+    list_.at_least("tool_table", -lowest.value, settings_.tool_table_clearance_mm, "mm", lowest.pose,
+                   fmt::format("least height of the tool's tip and shaft above the table at z = {} mm", table_z_mm));
   }
 
   void chord_error() {
@@ -299,13 +387,18 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
   list.holds("frame", path.frame == PathFrame::Robot,
              fmt::format("the path's frame is {}, and has to be robot", to_string(path.frame)));
   CourseChecker course(list, path, settings);
-  if (settings.must_be_ring) course.closed();
+  if (settings.must_be_ring) {
+    course.closed();
+    course.gap();
+  }
   course.self_crossing();
   course.speed();
   course.depth(inputs.surface);
   course.margin();
   course.deviation(inputs.intended);
   course.chord_error();
+  course.tilt();
+  course.tool_table();
   robot_detail::check_motion(list, settings);
   if (inputs.surface != nullptr)
     robot_detail::check_shaft(list, *inputs.surface, settings);

@@ -41,6 +41,18 @@ std::string header_lines(const ProgramHeader& header) {
 
 }  // namespace robot_detail
 
+namespace {
+
+/// With the limit, which options may have moved: "margin passed: 5.03 mm >= 2.2 mm".
+std::string held_against_its_limit(const ProgramCheck& check) {
+  const std::string verdict = fmt::format("{} {}", check.name, check.passed ? "passed" : "FAILED");
+  if (check.relation.empty()) return verdict;
+  const std::string unit = check.unit.empty() ? "" : " " + check.unit;
+  return fmt::format("{}: {:.4g}{} {} {:.4g}{}", verdict, check.value, unit, check.relation, check.limit, unit);
+}
+
+}  // namespace
+
 ProgramHeader program_header(const RobotProgram& program, const ToolPath& path, const ProgramChecks& checks,
                              const ProgramHeader& provenance) {
   ProgramHeader header{{"format", "incise.program/1"},
@@ -70,7 +82,7 @@ ProgramHeader program_header(const RobotProgram& program, const ToolPath& path, 
     if (check.is_overridden)
       add("override", check.message());
     else
-      add("check", fmt::format("{} {}", check.name, check.passed ? "passed" : "FAILED"));
+      add("check", held_against_its_limit(check));
   }
   for (const std::string& what : checks.not_made) add("not_checked", what);
   return header;

@@ -1,3 +1,5 @@
+#include "support/data_dir.hpp"
+
 #include <incise/core/random.hpp>
 #include <incise/core/units.hpp>
 #include <incise/robot/arm.hpp>
@@ -10,7 +12,6 @@
 #include <kdl/chainjnttojacsolver.hpp>
 #include <yaml-cpp/yaml.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -208,9 +209,8 @@ TEST(TableClearance, FallsToTheElbowBelowTheTable) {
 class PublishedDescription : public ::testing::Test {
  protected:
   void SetUp() override {
-    const char* data = std::getenv("INCISE_DATA_DIR");
-    if (data == nullptr) GTEST_SKIP() << "INCISE_DATA_DIR does not name the folder of shared test data";
-    const std::filesystem::path folder = std::filesystem::path(data) / "robot" / "ur10e";
+    INCISE_NEEDS_DATA_DIR();
+    const std::filesystem::path folder = *testing::data_dir() / "robot" / "ur10e";
     kinematics = YAML::LoadFile(folder / "default_kinematics.yaml")["kinematics"];
     limits = YAML::LoadFile(folder / "joint_limits.yaml")["joint_limits"];
     physical = YAML::LoadFile(folder / "physical_parameters.yaml")["offsets"];

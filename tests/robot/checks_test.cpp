@@ -40,9 +40,10 @@ TEST(CheckProgram, PassesASoundRingAndSaysWhatItFound) {
   EXPECT_TRUE(checks.all_passed()) << ::testing::PrintToString(failures(checks));
   std::vector<std::string> names;
   for (const auto& check : checks.checks) names.push_back(check.name);
-  EXPECT_THAT(names, ::testing::ElementsAre("finite", "frame", "closed", "self_crossing", "speed_min", "speed_max",
-                                            "depth", "margin", "deviation", "chord_error", "reach", "joint_limits",
-                                            "joint_speed", "joint_acceleration", "singularity", "tip_speed", "table"));
+  EXPECT_THAT(names, ::testing::ElementsAre("finite", "frame", "closed", "gap", "self_crossing", "speed_min",
+                                            "speed_max", "depth", "margin", "encloses", "deviation", "chord_error",
+                                            "tilt", "tool_table", "reach", "joint_limits", "joint_speed",
+                                            "joint_acceleration", "singularity", "tip_speed", "table"));
   EXPECT_NEAR(named(checks, "margin").value, 5.0, 0.05);
   EXPECT_NEAR(named(checks, "speed_max").value, 7.0, 1e-12);
   EXPECT_LT(named(checks, "deviation").value, 0.05);
@@ -114,8 +115,66 @@ TEST(CheckProgram, FindsACourseInsideTheTumourEdgeHoweverFarFromIt) {
   ToolPath path = ring_path();
   for (auto& point : path.tumor_edge.points) point = Vec3(600.0, 0.0, 100.0) + 2.0 * (point - Vec3(600.0, 0.0, 100.0));
   const auto checks = check_program(make_program(path), path);
-  EXPECT_THAT(failures(checks), ::testing::ElementsAre("margin"));
+  EXPECT_THAT(failures(checks), ::testing::ElementsAre("margin", "encloses"));
   EXPECT_LT(named(checks, "margin").value, -4.9);
+}
+
+TEST(CheckProgram, FindsARingBesideOrAboveTheTumourEdge) {
+  for (const Vec3& shift : {Vec3(40, 0, 0), Vec3(100, 0, 0), Vec3(0, 0, 100)}) {
+    ToolPath path = ring_path();
+    for (auto& point : path.tumor_edge.points) point += shift;
+    EXPECT_THAT(failures_of(path), ::testing::ElementsAre("encloses")) << shift.transpose();
+  }
+}
+
+TEST(CheckProgram, FindsARingWithoutATumourEdge) {
+  for (const std::size_t points : {0U, 1U, 2U}) {
+    ToolPath path = ring_path();
+    path.tumor_edge.points.resize(points);
+    EXPECT_THAT(failures_of(path), ::testing::ElementsAre("margin")) << points;
+  }
+}
+
+TEST(CheckProgram, FindsWaypointsThatAreMissing) {
+  ToolPath path = ring_path();
+  path.waypoints.erase(path.waypoints.begin(), path.waypoints.begin() + 5);
+  EXPECT_THAT(failures_of(path), ::testing::ElementsAre("gap"));
+  EXPECT_THAT(named(check_program(make_program(path), path), "gap").message(), ::testing::HasSubstr("gap: 11.48 mm"));
+}
+
+TEST(CheckProgram, FindsANeedleThatLeansUnderTheTumour) {
+  ToolPath path = ring_path();
+  for (auto& waypoint : path.waypoints) {
+    const Vec3 inwards = (Vec3(600.0, 0.0, 100.0) - waypoint.position_mm).normalized();
+    waypoint.axis = (inwards * std::sin(0.7) - Vec3::UnitZ() * std::cos(0.7)).normalized();  // 40 degrees
+  }
+  const auto checks = check_program(make_program(path), path);
+  EXPECT_THAT(failures(checks), ::testing::Contains("margin"));
+  EXPECT_NEAR(named(checks, "margin").value, 5.0 - 5.0 * std::sin(0.7), 0.05);
+}
+
+TEST(CheckProgram, FindsAToolThatComesFromBelow) {
+  ToolPath path = ring_path();
+  for (auto& waypoint : path.waypoints) waypoint.axis = Vec3::UnitZ();
+  const auto checks = check_program(make_program(path), path);
+  EXPECT_THAT(failures(checks), ::testing::Contains("tilt"));
+  EXPECT_NEAR(named(checks, "tilt").value, 180.0, 1e-6);
+}
+
+TEST(CheckProgram, FindsATipBelowTheTable) {
+  ArmSetup setup;
+  setup.table_z_mm = 97.0;  // the ring's entries are 3 mm above it, its tips 2 mm below
+  const ToolPath path = ring_path();
+  const auto checks = check_program(make_program(path, {}, setup), path, {.table_clearance_mm = -1000.0});
+  EXPECT_THAT(failures(checks), ::testing::ElementsAre("tool_table"));
+  EXPECT_NEAR(named(checks, "tool_table").value, -2.0, 1e-6);
+}
+
+TEST(CheckProgram, AnIntendedPathThatIsLeftOutInPartIsADeviation) {
+  const ToolPath intended = ring_path();
+  ToolPath path = intended;
+  path.waypoints.erase(path.waypoints.begin(), path.waypoints.begin() + 20);
+  EXPECT_THAT(failures_of(path, {.max_gap_ratio = 100.0}, {.intended = &intended}), ::testing::Contains("deviation"));
 }
 
 TEST(CheckProgram, FindsADeviationBeyondTheCap) {
@@ -155,7 +214,7 @@ TEST(CheckProgram, FindsAStretchedArmNextToASingularityBeforeItIsOutOfReach) {
   }
   std::vector<std::string> failed;
   for (int step = 0; step < 30 && failed.empty(); ++step) {
-    failed = failures_of(path, {.must_be_ring = false});
+    failed = failures_of(path, {.must_be_ring = false, .max_tilt_deg = 100.0});
     for (auto& waypoint : path.waypoints) waypoint.position_mm.x() += 4.0;
   }
   EXPECT_THAT(failed, ::testing::Contains("singularity"));
@@ -282,7 +341,7 @@ TEST(OverrideChecks, RefusesWhatCannotBeOverridden) {
   auto checks = check_program(make_program(path), path);
   for (const char* name : {"finite", "frame", "reach", "margins"})
     EXPECT_THROW(override_checks(checks, {name}), InvalidArgument) << name;
-  EXPECT_EQ(check_names().size(), 24u);
+  EXPECT_EQ(check_names().size(), 28u);
 }
 
 }  // namespace

@@ -107,7 +107,7 @@ TEST(ProgramHeader, NamesEveryOverrideAndWhatWasNotChecked) {
   override_checks(checks, {"depth"});
   const std::string text = to_urscript(program, program_header(program, path, checks));
   EXPECT_THAT(lines_with(text, "# incise.override: ").front(), HasSubstr("depth: 0.8 mm at waypoint 20 (pose "));
-  EXPECT_THAT(text, HasSubstr("# incise.check: margin passed\n"));
+  EXPECT_THAT(text, HasSubstr("# incise.check: margin passed: 5 mm >= 2.2 mm\n"));
   EXPECT_THAT(text, HasSubstr("# incise.not_checked: forces"));
   EXPECT_THAT(to_joint_csv(program, program_header(program, path, checks)), HasSubstr("# incise.override: depth"));
   EXPECT_THAT(text, HasSubstr("Virtual"));

@@ -25,8 +25,15 @@ struct CheckSettings {
   double max_speed_mm_s = 30.0;
   double planned_depth_mm = 5.0;
   double depth_tolerance_mm = 0.5;
-  double close_margin_mm = 2.2;   ///< least distance of the path from the tumour edge, on its outside
-  double max_deviation_mm = 4.0;  ///< of the path from the intended one: more than any correction should ask for
+  double close_margin_mm = 2.2;  ///< least distance of the path from the tumour edge, on its outside
+  /// Neighbouring waypoints of a ring lie no farther apart than this many medians of these ways, or `max_gap_mm` …
+  double max_gap_ratio = 4.0;
+  double max_gap_mm = 2.0;  ///< … whichever is more
+  /// Most that the tumour edge lies above or below the ring: beyond it the two are of different places.
+  double max_edge_height_mm = 20.0;
+  double max_tilt_deg = 80.0;            ///< of the tool from straight down
+  double tool_table_clearance_mm = 1.0;  ///< least height of tip and shaft above the table
+  double max_deviation_mm = 4.0;         ///< of the path from the intended one: more than any correction should ask for
 
   // Marking: in the place of the limits above.
   double mark_distance_mm = 0.3;  ///< most that a mark leaves the tumour edge by
@@ -89,23 +96,28 @@ struct ProgramChecks {
 };
 
 /// Checks a program and the path that it came from. Names of the checks, in this order:
-///
-///   finite           every number of the program is finite; if not, no other check is made
-///   frame            the path is given in the robot's base frame
-///   closed           (rings) the path is closed and the cut ends where it began, to 0.01 mm
-///   self_crossing    the entry course crosses itself nowhere, seen along the mean axis
-///   speed_min, speed_max   nominal tip speed while cutting; a mark: within its tolerance of 2 mm/s
-///   depth            every place's depth is the planned one within the tolerance: below the surface if one is given,
-///   else as the path says margin           (incisions) the entry course stays outside the tumour edge by
-///   `close_margin_mm` (distances to the edge's segments) edge_distance    (marks) the entry course follows the tumour
-///   edge within `mark_distance_mm` deviation        no entry point farther than `max_deviation_mm` from the intended
-///   path (if given) chord_error      straight moves and their blends stay near the smooth course reach            the
-///   arm reaches every pose on one branch, without a jump; if not, no check of joints is made joint_limits,
-///   joint_speed, joint_acceleration, singularity   of the arm's motion tip_speed        the tip's speed, from the
-///   joints, is the nominal one away from the ends table            the links stay clear of the table's plane shaft
-///   (with a surface) the instrument behind its needle stays clear of it power            (if given) within the
-///   generator's usual range for cutting registration_scale, registration_rmse, registration_inliers,
-///   registration_converged   (if given)
+/// - `finite`: every number of the program is finite; if not, no other check is made
+/// - `frame`: the path is given in the robot's base frame
+/// - `closed` (rings): the path is closed and the cut ends where it began, to 0.01 mm
+/// - `gap` (rings): no two neighbouring waypoints lie far apart
+/// - `self_crossing`: the entry course crosses itself nowhere, seen along the mean axis
+/// - `speed_min`, `speed_max`: nominal tip speed while cutting; a mark: within its tolerance of 2 mm/s
+/// - `depth`: that planned within the tolerance, everywhere: below the surface if one is given, else as the path says
+/// - `margin` (incisions): the needle keeps `close_margin_mm` outside the tumour edge where it enters, and its tip does
+///   so too, seen along the mean axis. A ring without an edge fails
+/// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height
+/// - `edge_distance` (marks): the entry course follows the tumour edge within `mark_distance_mm`
+/// - `deviation` (with an intended path): neither course is farther than `max_deviation_mm` from the other
+/// - `chord_error`: straight moves and their blends stay near the smooth course
+/// - `tilt`: the tool comes from above
+/// - `tool_table`: tip and shaft stay above the table's plane
+/// - `reach`: the arm reaches every pose on one branch, without a jump; if not, no check of joints is made
+/// - `joint_limits`, `joint_speed`, `joint_acceleration`, `singularity`: of the arm's motion
+/// - `tip_speed`: the tip's speed, from the joints, is the nominal one away from the ends
+/// - `table`: the links stay clear of the table's plane
+/// - `shaft` (with a surface): the instrument behind its needle stays clear of it
+/// - `power` (if given): within the generator's usual range for cutting
+/// - `registration_scale`, `registration_rmse`, `registration_inliers`, `registration_converged` (if given)
 ///
 /// Forces, the electrode's switching, cables, other things in the room and how well the controller keeps to its path
 /// are **not** checked; `not_made` lists them, together with checks that lack their input.
