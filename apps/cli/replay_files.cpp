@@ -20,7 +20,10 @@ bool is_in_cut(const ReplaySample& sample) {
 nlohmann::ordered_json to_json(const Replay& replay, const PlayerSettings& settings) {
   nlohmann::ordered_json json;
   json["outcome"] = to_string(replay.outcome);
-  if (replay.outcome != ReplayOutcome::Completed) json["line"] = replay.line;
+  if (replay.outcome != ReplayOutcome::Completed) {
+    json["line"] = replay.line > 0 ? nlohmann::ordered_json(replay.line) : nlohmann::ordered_json(nullptr);
+    if (!replay.reason.empty()) json["reason"] = replay.reason;
+  }
   json["speed_slider_percent"] = 100.0 * settings.speed_slider;
   json["duration_s"] = replay.duration_s();
   const bool is_known = !replay.intended_mm.empty();
@@ -47,7 +50,6 @@ void write_replay(const std::filesystem::path& folder, const Replay& replay) {
                                    {"tip_z_mm", {}}, {"tip_speed_mm_s", {}}, {"deviation_mm", {}}};
   for (const std::string& name : ur10e().joint_names) columns.push_back({name + "_rad", {}});
   ReplayPicture picture;
-  picture.max_deviation_mm = replay.max_deviation_mm;
   for (const ReplaySample& s : replay.samples) {
     const double row[] = {s.time_s, s.tip_mm.x(), s.tip_mm.y(), s.tip_mm.z(), s.tip_speed_mm_s, s.deviation_mm};
     for (std::size_t i = 0; i < 6; ++i) {

@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/storage/published_table_file.hpp>
 
@@ -71,7 +72,7 @@ void print_audit(const Audit& audit, const PublishedTable& table) {
 int run(AuditArguments arguments, const CommonOptions& options) {
   if (arguments.grain > 0.0) arguments.settings.grain = arguments.grain;
   if (const auto violations = validate(arguments.settings); !violations.empty()) {
-    throw CaseError("command line", "", violations.front(), "usable settings");
+    throw broken_options(violations.front());
   }
   refuse_input_as_output("-o", options.output, {arguments.table});
   const PublishedTable table = read_published_table(arguments.table);

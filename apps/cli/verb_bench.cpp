@@ -146,9 +146,10 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
   const WrittenProgram program = program_from_text(read_text(arguments.program), arguments.program);
   const Replay replay = play(program);
   if (replay.outcome != ReplayOutcome::Completed) {
-    throw DataError(arguments.program, fmt::format("line {}", replay.line),
-                    fmt::format("a motion that ends early: {}", to_string(replay.outcome)),
-                    "a program that the arm can run to its end", "`incise replay` shows how far it gets.");
+    throw DataError(arguments.program, replay.line > 0 ? fmt::format("line {}", replay.line) : "",
+                    fmt::format("a motion that ends as {}", to_string(replay.outcome)),
+                    "a program that the arm can run to its end, and that ends outside the tissue",
+                    "`incise replay` shows how far it gets.");
   }
   make_parent(output);
   if (!arguments.truth.empty()) make_parent(arguments.truth);

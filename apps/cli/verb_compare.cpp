@@ -3,6 +3,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/storage/evaluation_file.hpp>
 
 #include <fmt/format.h>
@@ -86,7 +87,7 @@ int run(CompareArguments arguments, const CommonOptions& options) {
   arguments.settings.measure = arguments.measure == "signed" ? ErrorMeasure::Signed : ErrorMeasure::Absolute;
   arguments.settings.bootstrap.seed = options.seed;
   if (const auto violations = validate(arguments.settings); !violations.empty()) {
-    throw CaseError("command line", "", violations.front(), "usable settings");
+    throw broken_options(violations.front());
   }
   if (arguments.settings.is_paired && arguments.before.size() != arguments.after.size()) {
     throw CaseError("command line", "--paired",

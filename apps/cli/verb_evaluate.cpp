@@ -14,7 +14,6 @@
 #include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -62,7 +61,7 @@ Evaluation measured(const Contour& incision, const Contour& tumor_edge, const Ev
   try {
     return evaluate(incision, tumor_edge, settings);
   } catch (const InvalidArgument& error) {
-    throw DataError(file, "", without_function_name(error), "contours that can be measured");
+    throw fault_of_file(file, "", error, "contours that can be measured");
   }
 }
 
@@ -77,7 +76,7 @@ EvaluationSettings settings_of(const EvaluateArguments& arguments) {
   if (!arguments.approach.empty()) settings.approach = Vec3(arguments.approach.data());
   if (!arguments.twelve.empty()) settings.twelve_o_clock = Vec3(arguments.twelve.data());
   if (const auto violations = validate(settings); !violations.empty()) {
-    throw CaseError("command line", "", fmt::format("{}", fmt::join(violations, "; ")), "usable settings");
+    throw broken_options(violations.front());
   }
   return settings;
 }

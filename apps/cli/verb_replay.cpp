@@ -2,6 +2,7 @@
 #include "replay_files.hpp"
 
 #include <incise/core/isa.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/core/version.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
@@ -29,9 +30,29 @@ void write_folder(const ReplayArguments& arguments, const CommonOptions& options
   write_json(target.path() / "replay.json", result);
   std::vector<std::filesystem::path> inputs{arguments.program};
   if (!arguments.path.empty()) inputs.push_back(arguments.path);
-  write_manifest(target.path(), manifest_of(options, nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent}}.dump(), inputs,
-                                            result.at("wall_s").get<double>()));
+  write_manifest(target.path(),
+                 manifest_of(options, nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent}}.dump(),
+                             inputs, result.at("wall_s").get<double>()));
   target.commit();
+}
+
+Replay played(const WrittenProgram& program, const PlayerSettings& settings, const std::optional<ToolPath>& intended,
+              const std::filesystem::path& path) {
+  if (!intended) return play(program, ur10e(), settings);
+  try {
+    return play(program, ur10e(), settings, &*intended);
+  } catch (const InvalidArgument& error) {
+    throw fault_of_file(path, "waypoints", error, "a path that a tool can follow");
+  }
+}
+
+/// How it ended, where that is not well.
+std::string warning_of(const Replay& replay, const std::filesystem::path& program) {
+  const bool is_played =
+      replay.outcome == ReplayOutcome::StartsInTissue || replay.outcome == ReplayOutcome::EndsInTissue;
+  return fmt::format("{}{}: {}{}{}", program.string(), replay.line > 0 ? fmt::format(":{}", replay.line) : "",
+                     is_played ? "" : "the arm cannot go on: ", to_string(replay.outcome),
+                     replay.reason.empty() ? "" : fmt::format(": {}", replay.reason));
 }
 
 int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
@@ -48,14 +69,13 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
                     "the program does not say which path it was made for: no deviations (give --path)");
   }
   const PlayerSettings settings{.speed_slider = arguments.slider_percent / 100.0};
-  const Replay replay = play(program, ur10e(), settings, intended ? &*intended : nullptr);
+  const Replay replay = played(program, settings, intended, arguments.path);
   nlohmann::ordered_json result = to_json(replay, settings);
   result["model"] = "incise's own kinematics and interpolation; not the maker's controller";
   result["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!options.output.empty()) write_folder(arguments, options, replay, result);
   if (replay.outcome != ReplayOutcome::Completed) {
-    console.message(Severity::Warning, fmt::format("{}:{}: the arm cannot go on: {}", arguments.program.string(),
-                                                   replay.line, to_string(replay.outcome)));
+    console.message(Severity::Warning, warning_of(replay, arguments.program));
   }
   print_result(options, result);
   return replay.outcome == ReplayOutcome::Completed ? kDone : kNotAcceptable;

@@ -26,4 +26,38 @@ std::string as_sentence(const InvalidArgument& problem) {
   return text;
 }
 
+Complaint complaint_of(const std::string& sentence, const std::string& otherwise) {
+  const std::string expected = "expected ", found = "found ", middle = ", " + expected, end = ", " + found;
+  Complaint complaint;
+  std::string rest = sentence;
+  const std::size_t colon = std::min(sentence.find(": " + expected), sentence.find(": " + found));
+  if (colon != std::string::npos && !sentence.starts_with(expected) && !sentence.starts_with(found)) {
+    complaint.field = sentence.substr(0, colon);
+    rest = sentence.substr(colon + 2);
+  }
+  if (rest.starts_with(expected)) {
+    const std::size_t at = rest.rfind(end);
+    complaint.expected = rest.substr(expected.size(), at == std::string::npos ? at : at - expected.size());
+    complaint.found = at == std::string::npos ? "another value" : rest.substr(at + end.size());
+  } else if (const std::size_t at = rest.find(middle); rest.starts_with(found) && at != std::string::npos) {
+    complaint.found = rest.substr(found.size(), at - found.size());
+    complaint.expected = rest.substr(at + middle.size());
+  } else {
+    complaint.found = rest;
+    complaint.expected = otherwise;
+  }
+  return complaint;
+}
+
+CaseError broken_options(const std::string& sentence) {
+  const Complaint complaint = complaint_of(sentence, "settings that can be used");
+  return {"command line", complaint.field, complaint.found, complaint.expected};
+}
+
+DataError fault_of_file(const std::filesystem::path& file, const std::string& place, const InvalidArgument& problem,
+                        const std::string& otherwise, const std::string& hint) {
+  const Complaint complaint = complaint_of(without_function_name(problem), otherwise);
+  return {file, complaint.field.empty() ? place : complaint.field, complaint.found, complaint.expected, hint};
+}
+
 }  // namespace incise

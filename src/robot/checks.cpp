@@ -138,19 +138,10 @@ class CourseChecker {
 
   /// The course joins neighbouring waypoints whatever lies between them.
   void gap() {
-    std::vector<double> ways_mm;
-    for (std::size_t w = 0; w < path_.waypoints.size(); ++w) {
-      const Waypoint& next = path_.waypoints[(w + 1) % path_.waypoints.size()];
-      ways_mm.push_back((next.position_mm - path_.waypoints[w].position_mm).norm());
-    }
-    const auto longest = std::max_element(ways_mm.begin(), ways_mm.end());
-    const double longest_mm = *longest;
-    const auto before = static_cast<std::size_t>(longest - ways_mm.begin());
-    const auto middle = ways_mm.begin() + static_cast<std::ptrdiff_t>(ways_mm.size() / 2);
-    std::nth_element(ways_mm.begin(), middle, ways_mm.end());
+    const WaypointGap widest = widest_gap(path_, settings_);
     const auto pose =
-        std::find_if(cut_.begin(), cut_.end(), [&](std::size_t i) { return program_.poses[i].waypoint >= before; });
-    list_.at_most("gap", longest_mm, std::max(settings_.max_gap_mm, settings_.max_gap_ratio * *middle), "mm",
+        std::find_if(cut_.begin(), cut_.end(), [&](std::size_t i) { return program_.poses[i].waypoint >= widest.after; });
+    list_.at_most("gap", widest.longest_mm, widest.limit_mm, "mm",
                   pose == cut_.end() ? cut_.back() : *pose, "longest way from one waypoint of the ring to the next");
   }
 
@@ -250,9 +241,9 @@ class CourseChecker {
   void tilt() {
     Worst steepest;
     for (std::size_t i = 0; i < program_.poses.size(); ++i) {
-      steepest.see(std::acos(std::clamp(-program_.poses[i].R_robot_tool.col(2).z(), -1.0, 1.0)), i);
+      steepest.see(tilt_deg(program_.poses[i].R_robot_tool.col(2)), i);
     }
-    list_.at_most("tilt", units::deg_from_rad(steepest.value), settings_.max_tilt_deg, "deg", steepest.pose,
+    list_.at_most("tilt", steepest.value, settings_.max_tilt_deg, "deg", steepest.pose,
                   "greatest angle of the tool from straight down");
   }
 
@@ -333,6 +324,25 @@ void check_registration(CheckList& list, const CheckInputs& inputs, const CheckS
 }
 
 }  // namespace
+
+WaypointGap widest_gap(const ToolPath& path, const CheckSettings& settings) {
+  INCISE_REQUIRE(!path.waypoints.empty(), "expected a path with waypoints, found none");
+  std::vector<double> ways_mm;
+  for (std::size_t w = 0; w < path.waypoints.size(); ++w) {
+    const Waypoint& next = path.waypoints[(w + 1) % path.waypoints.size()];
+    ways_mm.push_back((next.position_mm - path.waypoints[w].position_mm).norm());
+  }
+  const auto longest = std::max_element(ways_mm.begin(), ways_mm.end());
+  WaypointGap gap{*longest, 0.0, static_cast<std::size_t>(longest - ways_mm.begin())};
+  const auto middle = ways_mm.begin() + static_cast<std::ptrdiff_t>(ways_mm.size() / 2);
+  std::nth_element(ways_mm.begin(), middle, ways_mm.end());
+  gap.limit_mm = std::max(settings.max_gap_mm, settings.max_gap_ratio * *middle);
+  return gap;
+}
+
+double tilt_deg(const Vec3& axis) {
+  return units::deg_from_rad(std::acos(std::clamp(-axis.z(), -1.0, 1.0)));
+}
 
 std::string ProgramCheck::message() const {
   std::string where;

@@ -1,7 +1,8 @@
-#include "robot/tip_curve.hpp"
+#include "robot/replay_measures.hpp"
 #include "robot/tip_route.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
 #include <incise/robot/player.hpp>
 
 #include <fmt/format.h>
@@ -15,12 +16,8 @@ namespace {
 
 using robot_detail::TipRoute;
 
+constexpr double kWithinRad = 1e-6;  // a table holds ten digits
 constexpr double kJumpRad = 0.05;            // in a cycle of 2 ms: 25 rad/s, ten times what any joint can do
-constexpr double kIntendedSpacingMm = 0.05;  // chords deviate by 2e-5 mm at 15 mm radius
-
-bool is_cut(ProgramPhase phase) {
-  return phase == ProgramPhase::Cut || phase == ProgramPhase::Overlap;
-}
 
 /// Plays commands one after the other into samples.
 class Playing {
@@ -37,7 +34,7 @@ class Playing {
     const auto& commands = program_.commands;
     q_ = commands.front().q_rad;
     phase_ = commands.front().phase;
-    keep();
+    if (!keep(commands.front().line)) return;
     for (std::size_t i = 1; i < commands.size() && replay_.outcome == ReplayOutcome::Completed;) {
       using Kind = ScriptCommand::Kind;
       phase_ = commands[i].phase;
@@ -46,7 +43,7 @@ class Playing {
       } else if (commands[i].kind == Kind::ServoJ) {
         servo(commands[i++]);
       } else if (commands[i].kind == Kind::Sleep) {
-        rest(commands[i++].seconds);
+        rest(commands[i++]);
       } else {
         speed_.setZero();  // stopj: the stream has ended
         is_streaming_ = false;
@@ -56,7 +53,8 @@ class Playing {
   }
 
  private:
-  void keep() {
+  /// Keeps the arm as it now is. @returns whether it can go on
+  bool keep(std::size_t line) {
     ReplaySample sample;
     sample.time_s = time_;
     sample.q_rad = q_;
@@ -70,6 +68,19 @@ class Playing {
       replay_.max_joint_speed_share = std::max(replay_.max_joint_speed_share, share.maxCoeff());
     }
     replay_.samples.push_back(sample);
+    return is_within_limits(line);
+  }
+
+  bool is_within_limits(std::size_t line) {
+    for (int i = 0; i < 6; ++i) {
+      if (q_[i] >= arm_.min_rad[i] - kWithinRad && q_[i] <= arm_.max_rad[i] + kWithinRad) continue;
+      end(ReplayOutcome::JointLimits, line);
+      replay_.reason = fmt::format("{} at {:.1f} degrees, which its limits of {:.0f} to {:.0f} leave out",
+                                   arm_.joint_names[static_cast<std::size_t>(i)], units::deg_from_rad(q_[i]),
+                                   units::deg_from_rad(arm_.min_rad[i]), units::deg_from_rad(arm_.max_rad[i]));
+      return false;
+    }
+    return true;
   }
 
   void end(ReplayOutcome outcome, std::size_t line) {
@@ -100,7 +111,7 @@ class Playing {
       phase_ = commands[first + command].phase;
       if (!follow(T, line)) return commands.size();
       time_ = begin + settings_.cycle_s * static_cast<double>(k);
-      keep();
+      if (!keep(line)) return commands.size();
     }
     speed_.setZero();
     return last + 1;
@@ -144,15 +155,15 @@ class Playing {
       q_ += h / 6.0 * (speed_ + 2.0 * v2 + 2.0 * v3 + v4);
       speed_ += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
       time_ += settings_.cycle_s;
-      keep();
+      if (!keep(command.line)) return;
     }
   }
 
-  void rest(double seconds) {
-    const auto cycles = static_cast<std::size_t>(std::lround(seconds / settings_.cycle_s));
+  void rest(const ScriptCommand& command) {
+    const auto cycles = static_cast<std::size_t>(std::lround(command.seconds / settings_.cycle_s));
     for (std::size_t k = 0; k < cycles; ++k) {
       time_ += settings_.cycle_s;
-      keep();
+      if (!keep(command.line)) return;
     }
   }
 
@@ -169,7 +180,7 @@ class Playing {
       q_ = (2 * t3 - 3 * t2 + 1) * a.q_rad + (t3 - 2 * t2 + t) * h * a.speed_rad_s + (3 * t2 - 2 * t3) * b.q_rad +
            (t3 - t2) * h * b.speed_rad_s;
       phase_ = a.phase;
-      keep();
+      if (!keep(a.line)) return;
       if (settings_.speed_slider * time_ >= end_s) break;
     }
   }
@@ -185,96 +196,6 @@ class Playing {
   Joints q_ = Joints::Zero(), speed_ = Joints::Zero();
   ProgramPhase phase_ = ProgramPhase::Approach;
 };
-
-/// Down along the axis at the start, along the curve and its overlap, up along the axis at the end.
-Points intended_course(const ToolPath& path, const WrittenProgram& program) {
-  const robot_detail::TipCurve curve(path);
-  const double end = curve.length_mm() + (path.is_closed ? program.overlap_mm : 0.0);
-  const auto above = [&](const robot_detail::TipSample& place) {
-    return Vec3(place.tip_mm - (place.depth_mm + program.approach_height_mm) * place.axis);
-  };
-  Points course{above(curve.at(0.0))};
-  const auto steps = static_cast<std::size_t>(std::ceil(end / kIntendedSpacingMm));
-  for (std::size_t i = 0; i <= steps; ++i)
-    course.push_back(curve.at(end * static_cast<double>(i) / static_cast<double>(steps)).tip_mm);
-  course.push_back(above(curve.at(end)));
-  return course;
-}
-
-/// Nearest distance to the polyline. Samples follow it, so the search begins where the last one ended and looks at a
-/// stretch about it; it looks everywhere when the tip is far off.
-class CourseDistance {
- public:
-  explicit CourseDistance(const Points& course) : course_(course) {}
-  double operator()(const Vec3& p) {
-    constexpr std::size_t kWindow = 60;  // 3 mm of the curve either way
-    constexpr double kFarOffMm = 0.02;   // on a ring the overlap lies over the beginning: another stretch may be nearer
-    const std::size_t low = last_ > kWindow ? last_ - kWindow : 0;
-    double nearest = search(p, low, std::min(course_.size() - 1, last_ + kWindow));
-    if (nearest > kFarOffMm) nearest = search(p, 0, course_.size() - 1);
-    return nearest;
-  }
-
- private:
-  double search(const Vec3& p, std::size_t low, std::size_t high) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = low; i < high; ++i) {
-      const Vec3 along = course_[i + 1] - course_[i];
-      const double length2 = along.squaredNorm();
-      const double t = length2 > 0.0 ? std::clamp((p - course_[i]).dot(along) / length2, 0.0, 1.0) : 0.0;
-      const double distance = (p - course_[i] - t * along).norm();
-      if (distance >= nearest) continue;
-      nearest = distance;
-      last_ = i;
-    }
-    return nearest;
-  }
-  const Points& course_;
-  std::size_t last_ = 0;
-};
-
-void measure_deviation(Replay& replay) {
-  if (replay.intended_mm.empty()) return;
-  CourseDistance distance(replay.intended_mm);
-  double sum = 0.0;
-  std::size_t count = 0;
-  for (ReplaySample& sample : replay.samples) {
-    sample.deviation_mm = distance(sample.tip_mm);
-    if (sample.deviation_mm > replay.max_deviation_mm) {
-      replay.max_deviation_mm = sample.deviation_mm;
-      replay.max_deviation_at_s = sample.time_s;
-    }
-    if (!is_cut(sample.phase)) continue;
-    sum += sample.deviation_mm;
-    ++count;
-  }
-  if (count > 0) replay.mean_deviation_mm = sum / static_cast<double>(count);
-}
-
-void measure_speed(Replay& replay, double end_zone_mm) {
-  std::vector<double> arc(replay.samples.size(), 0.0);
-  double length = 0.0;
-  for (std::size_t i = 1; i < replay.samples.size(); ++i) {
-    if (is_cut(replay.samples[i].phase)) length += (replay.samples[i].tip_mm - replay.samples[i - 1].tip_mm).norm();
-    arc[i] = length;
-  }
-  SpeedNumbers& speed = replay.tip_speed_mm_s;
-  speed.min = std::numeric_limits<double>::infinity();
-  std::size_t count = 0;
-  for (std::size_t i = 1; i < replay.samples.size(); ++i) {
-    const bool is_away = arc[i - 1] > end_zone_mm && arc[i] < length - end_zone_mm;
-    if (!is_cut(replay.samples[i].phase) || !is_away) continue;
-    const double value = replay.samples[i].tip_speed_mm_s;
-    speed.mean += value;
-    speed.min = std::min(speed.min, value);
-    speed.max = std::max(speed.max, value);
-    ++count;
-  }
-  if (count > 0)
-    speed.mean /= static_cast<double>(count);
-  else
-    speed = {};
-}
 
 }  // namespace
 
@@ -299,6 +220,12 @@ std::string_view to_string(ReplayOutcome outcome) {
       return "jump";
     case ReplayOutcome::BlendsOverlap:
       return "blends_overlap";
+    case ReplayOutcome::JointLimits:
+      return "joint_limits";
+    case ReplayOutcome::StartsInTissue:
+      return "starts_in_tissue";
+    case ReplayOutcome::EndsInTissue:
+      return "ends_in_tissue";
   }
   return "unknown";
 }
@@ -311,9 +238,10 @@ Replay play(const WrittenProgram& program, const ArmModel& arm, const PlayerSett
   Replay replay;
   Playing(program, arm, settings, replay).run();
   if (intended == nullptr && program.path) intended = &*program.path;
-  if (intended != nullptr) replay.intended_mm = intended_course(*intended, program);
-  measure_deviation(replay);
-  measure_speed(replay, settings.end_zone_mm);
+  if (intended != nullptr) replay.intended_mm = robot_detail::intended_course(*intended, program);
+  robot_detail::measure_deviation(replay);
+  robot_detail::measure_speed(replay, settings.end_zone_mm);
+  robot_detail::judge_ends(replay, intended);
   replay.min_singular_value = std::numeric_limits<double>::infinity();
   constexpr std::size_t kStride = 10;  // every 20 ms
   for (std::size_t i = 0; i < replay.samples.size(); i += kStride)

@@ -123,6 +123,11 @@ void require_valid(const ToolPath& path, const ProgramSettings& settings) {
     const Waypoint& w = path.waypoints[i];
     INCISE_REQUIRE(w.position_mm.allFinite() && std::isfinite(w.depth_mm),
                    fmt::format("expected finite numbers at waypoint {}", i));
+    INCISE_REQUIRE(w.position_mm.cwiseAbs().maxCoeff() <= kFarthestPlaceMm,
+                   fmt::format("expected places within {:.0e} mm of the base, found {:.3g} mm at waypoint {}",
+                               kFarthestPlaceMm, w.position_mm.cwiseAbs().maxCoeff(), i));
+    INCISE_REQUIRE(std::abs(w.depth_mm) <= kLargestLengthMm,
+                   fmt::format("expected a depth of at most {} mm, found {} at waypoint {}", kLargestLengthMm, w.depth_mm, i));
     INCISE_REQUIRE(std::abs(w.axis.norm() - 1.0) < kUnitTolerance,
                    fmt::format("expected a unit axis, found length {} at waypoint {}", w.axis.norm(), i));
     INCISE_REQUIRE(w.speed_mm_s > 0.0 && std::isfinite(w.speed_mm_s),
@@ -176,6 +181,11 @@ std::vector<std::string> validate(const ProgramSettings& s) {
   if (!(s.approach_height_mm > s.clearance_mm) || !std::isfinite(s.approach_height_mm)) {
     broken.push_back(
         fmt::format("approach_height_mm: found {}, expected more than clearance_mm", s.approach_height_mm));
+  }
+  for (const auto& [length_mm, name] :
+       {std::pair(s.overlap_mm, "overlap_mm"), std::pair(s.approach_height_mm, "approach_height_mm")}) {
+    if (length_mm > kLargestLengthMm)
+      broken.push_back(fmt::format("{}: found {}, expected at most {}", name, length_mm, kLargestLengthMm));
   }
   if (s.spin_deg && !std::isfinite(*s.spin_deg)) broken.push_back("spin_deg: expected a finite angle");
   if (!s.tool_x_hint.allFinite() || s.tool_x_hint.norm() == 0.0) broken.push_back("tool_x_hint: expected a direction");

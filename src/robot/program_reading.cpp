@@ -1,8 +1,9 @@
 #include "robot/program_reading.hpp"
 
 #include "robot/text_form.hpp"
+#include "robot/tip_curve.hpp"
 
-#include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,40 @@ std::vector<double> numbers_of(const std::string& value, std::size_t count, cons
   if (numbers.size() != count)
     throw DataError(file, "header " + key, fmt::format("{} numbers", numbers.size()), fmt::format("{}", count));
   return numbers;
+}
+
+/// One length of 0 to what a program may have. @throws DataError
+double length_of(const std::string& value, const std::filesystem::path& file, const std::string& key) {
+  const double length_mm = numbers_of(value, 1, file, key)[0];
+  if (length_mm < 0.0 || length_mm > kLargestLengthMm)
+    throw DataError(file, "header " + key, value, fmt::format("0 to {} mm", kLargestLengthMm));
+  return length_mm;
+}
+
+Waypoint waypoint_of(const std::string& value, const std::filesystem::path& file) {
+  const auto n = numbers_of(value, 8, file, "waypoint");
+  Waypoint waypoint{Vec3(n[0], n[1], n[2]), Vec3(n[3], n[4], n[5]), n[6], n[7]};
+  const bool is_sound = waypoint.position_mm.cwiseAbs().maxCoeff() <= kFarthestPlaceMm && std::abs(waypoint.axis.norm() - 1.0) <= 1e-4 && waypoint.speed_mm_s > 0.0 &&
+                        waypoint.depth_mm >= 0.0 && waypoint.depth_mm <= kLargestLengthMm;
+  if (!is_sound) {
+    throw DataError(file, "header waypoint", value,
+                    fmt::format("a place, a unit axis, a depth of 0 to {} mm and a speed above 0", kLargestLengthMm));
+  }
+  waypoint.axis.normalize();
+  return waypoint;
+}
+
+/// A tool can follow the waypoints, and the overlap is less than once around. @throws DataError
+void require_course(const ToolPath& path, double overlap_mm, const std::filesystem::path& file) {
+  try {
+    const TipCurve curve(path);
+    if (path.is_closed && overlap_mm >= curve.length_mm()) {
+      throw DataError(file, "header overlap_mm", fmt::format("{}", overlap_mm),
+                      fmt::format("less than once around, {:.4g} mm", curve.length_mm()));
+    }
+  } catch (const InvalidArgument& error) {
+    throw fault_of_file(file, "header waypoint", error, "waypoints that a tool can follow");
+  }
 }
 
 }  // namespace
@@ -70,11 +105,11 @@ void read_header(WrittenProgram& program, const std::filesystem::path& file) {
       if (value != "true" && value != "false") throw DataError(file, "header closed", value, "true or false");
       path.is_closed = value == "true";
     } else if (key == "overlap_mm") {
-      program.overlap_mm = numbers_of(value, 1, file, key)[0];
+      program.overlap_mm = length_of(value, file, key);
     } else if (key == "clearance_mm") {
-      program.clearance_mm = numbers_of(value, 1, file, key)[0];
+      program.clearance_mm = length_of(value, file, key);
     } else if (key == "approach_height_mm") {
-      program.approach_height_mm = numbers_of(value, 1, file, key)[0];
+      program.approach_height_mm = length_of(value, file, key);
     } else if (key == "T_flange_tool") {
       const auto n = numbers_of(value, 16, file, key);
       const Mat4 T = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(n.data());
@@ -83,12 +118,7 @@ void read_header(WrittenProgram& program, const std::filesystem::path& file) {
       program.T_flange_tool = T;
       has_tool = true;
     } else if (key == "waypoint") {
-      const auto n = numbers_of(value, 8, file, key);
-      Waypoint waypoint{Vec3(n[0], n[1], n[2]), Vec3(n[3], n[4], n[5]), n[6], n[7]};
-      if (std::abs(waypoint.axis.norm() - 1.0) > 1e-4 || waypoint.speed_mm_s <= 0.0)
-        throw DataError(file, "header waypoint", value, "a place, a unit axis, a depth and a speed above 0");
-      waypoint.axis.normalize();
-      path.waypoints.push_back(waypoint);
+      path.waypoints.push_back(waypoint_of(value, file));
     }
   }
   const Mat3 R = program.T_flange_tool.topLeftCorner<3, 3>();
@@ -96,7 +126,9 @@ void read_header(WrittenProgram& program, const std::filesystem::path& file) {
     throw DataError(file, "header T_flange_tool", has_tool ? "a matrix that is not rigid" : "nothing",
                     "the tool's place on the flange", "Only programs that `incise export` wrote can be replayed.");
   }
-  if (path.waypoints.size() >= (path.is_closed ? 3u : 2u)) program.path = path;
+  if (path.waypoints.size() < (path.is_closed ? 3u : 2u)) return;
+  require_course(path, program.overlap_mm, file);
+  program.path = path;
 }
 
 WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path& file) {
@@ -133,7 +165,7 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
         if (end == cells[i].c_str() || *end != '\0' || !std::isfinite(numbers[i]))
           place.fail(fmt::format("'{}' in column {}", cells[i], i + 1), "a finite number");
       }
-      TimedJoints joints{numbers[0], Joints::Zero(), Joints::Zero(), phase_of(cells.back(), place)};
+      TimedJoints joints{numbers[0], Joints::Zero(), Joints::Zero(), phase_of(cells.back(), place), place.line};
       for (int i = 0; i < 6; ++i) {
         joints.q_rad[i] = numbers[static_cast<std::size_t>(1 + i)];
         joints.speed_rad_s[i] = numbers[static_cast<std::size_t>(7 + i)];
@@ -189,6 +221,10 @@ WrittenProgram read_program_json(std::string_view text, const std::filesystem::p
 
 WrittenProgram program_from_text(std::string_view text, const std::filesystem::path& name) {
   const std::string ending = name.extension().string();
+  if (ending == ".yaml" || ending == ".yml" || ending == ".bag") {
+    throw DataError(name, "", fmt::format("a {} program", ending), "URScript, .csv or .json",
+                    "What ROS runs holds the joints of --format joint-csv: export and replay these.");
+  }
   WrittenProgram program = ending == ".csv"    ? robot_detail::read_joint_csv(text, name)
                            : ending == ".json" ? robot_detail::read_program_json(text, name)
                                                : robot_detail::read_urscript(text, name);

@@ -58,6 +58,24 @@ TEST(ProblemText, LeavesOutTheNameOfTheFunctionAndNothingElse) {
   EXPECT_EQ(as_sentence(InvalidArgument("find_edges: expected 2 triangles")), "Expected 2 triangles");
 }
 
+TEST(ProblemText, TakesAComplaintApartSoThatNothingIsSaidTwice) {
+  const auto parts = [](const char* sentence) {
+    const Complaint c = complaint_of(sentence, "otherwise");
+    return c.field + "|" + c.found + "|" + c.expected;
+  };
+  EXPECT_EQ(parts("rotations: expected 8 to 2000, found 3"), "rotations|3|8 to 2000");
+  EXPECT_EQ(parts("clearance_mm: found -1, expected a number above 0"), "clearance_mm|-1|a number above 0");
+  EXPECT_EQ(parts("expected tips apart, found 0 mm after waypoint 3"), "|0 mm after waypoint 3|tips apart");
+  EXPECT_EQ(parts("case: plan.depth: found 2, expected 3. Why so"), "case: plan.depth|2|3. Why so");
+  EXPECT_EQ(parts("planes: expected 0 to 20"), "planes|another value|0 to 20");
+  EXPECT_EQ(parts("it is bent"), "|it is bent|otherwise");
+  EXPECT_STREQ(broken_options("rotations: expected 8 to 2000, found 3").what(),
+               "command line: rotations: found 3, expected 8 to 2000");
+  EXPECT_STREQ(
+      fault_of_file("a.json", "waypoints", InvalidArgument("TipCurve: expected tips apart, found 0 mm"), "x").what(),
+      "a.json: waypoints: found 0 mm, expected tips apart");
+}
+
 TEST(Errors, AreAllCaughtAsTheBase) {
   EXPECT_THROW(throw CaseError("a", "b", "c", "d"), Error);
   EXPECT_THROW(throw DataError("a", "b", "c", "d"), Error);

@@ -127,6 +127,64 @@ TEST(Player, NamesBlendsThatOverlapAndPosesOutOfReach) {
   EXPECT_FALSE(far.samples.empty());
 }
 
+std::string table_of(const ToolPath& path) {
+  const RobotProgram program = make_program(path);
+  return to_joint_csv(program, program_header(program, path, check_program(program, path)));
+}
+
+/// The number of the line that holds the place `at`.
+std::size_t line_at(const std::string& text, std::size_t at) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n')) + 1;
+}
+
+TEST(Player, EndsAtJointsBeyondTheirLimitsAndNamesLineAndJoint) {
+  std::string script = script_of(ring_path());
+  const std::size_t start = script.find("  movej([") + 9;
+  script.replace(start, script.find(',', start) - start, "6.6");
+  const Replay turned = replayed(script);
+  EXPECT_EQ(turned.outcome, ReplayOutcome::JointLimits);
+  EXPECT_EQ(turned.line, line_at(script, start));
+  EXPECT_EQ(turned.reason, "shoulder_pan_joint at 378.2 degrees, which its limits of -360 to 360 leave out");
+
+  std::string table = table_of(ring_path());
+  std::size_t row = table.find("\n0.");
+  for (int i = 0; i < 100; ++i) row = table.find('\n', row + 1);
+  const std::size_t cell = table.find(',', row) + 1;
+  table.replace(cell, table.find(',', cell) - cell, "-6.4");
+  const Replay jumped = replayed(table, 1.0, "cut.csv");
+  EXPECT_EQ(jumped.outcome, ReplayOutcome::JointLimits);
+  EXPECT_NEAR(static_cast<double>(jumped.line), static_cast<double>(line_at(table, cell)), 1.0);
+}
+
+TEST(Player, AProgramThatEndsOrBeginsInTheTissueIsNotCompleted) {
+  const std::string table = table_of(ring_path());
+  const std::size_t middle = table.find('\n', table.find(",cut\n") + 4000);
+  const Replay cut_short = replayed(table.substr(0, middle + 1), 1.0, "cut.csv");
+  EXPECT_EQ(cut_short.outcome, ReplayOutcome::EndsInTissue);
+  EXPECT_EQ(cut_short.reason, "the program ends with the tip 5.00 mm below the surface");
+
+  const std::size_t head = table.find('\n', table.find("time_s,")) + 1;
+  const Replay late = replayed(table.substr(0, head) + table.substr(middle + 1), 1.0, "cut.csv");
+  EXPECT_EQ(late.outcome, ReplayOutcome::StartsInTissue);
+  EXPECT_NE(late.reason.find("begins with the tip 5.00 mm below"), std::string::npos) << late.reason;
+
+  std::string script = script_of(ring_path());
+  const std::size_t exit = script.find("  # phase: exit");
+  ASSERT_NE(exit, std::string::npos);
+  script = script.substr(0, exit) + script.substr(script.find("end\n"));
+  EXPECT_EQ(replayed(script).outcome, ReplayOutcome::EndsInTissue);
+}
+
+TEST(Player, WithoutAPathThePhasesTellWhetherTheTipIsInTheTissue) {
+  std::string table = table_of(line_path());
+  for (std::size_t at; (at = table.find("# incise.waypoint")) != std::string::npos;)
+    table.erase(at, table.find('\n', at) + 1 - at);
+  EXPECT_EQ(replayed(table, 1.0, "cut.csv").outcome, ReplayOutcome::Completed);
+  const Replay cut_short = replayed(table.substr(0, table.rfind(",cut\n") + 5), 1.0, "cut.csv");
+  EXPECT_EQ(cut_short.outcome, ReplayOutcome::EndsInTissue);
+  EXPECT_EQ(cut_short.reason, "the program ends in its phase 'cut'");
+}
+
 TEST(Player, RefusesSettingsOutOfRange) {
   const WrittenProgram program = program_from_text(script_of(line_path()), "cut.script");
   EXPECT_THROW(static_cast<void>(play(program, ur10e(), {.speed_slider = 0.0})), InvalidArgument);
@@ -188,6 +246,30 @@ TEST(ProgramFromText, NamesTheLineOfAForeignOrDamagedStatement) {
   EXPECT_THAT(message_of(with("0.15000000, 0.0000000", "0.16000000, 0.0000000")),
               HasSubstr("another tool than in the header"));
   EXPECT_THAT(message_of(with("# phase: plunge", "# phase: plungge")), HasSubstr("phase 'plungge'"));
+}
+
+TEST(ProgramFromText, RefusesLengthsInTheHeaderThatNoProgramHas) {
+  const std::string good = script_of(ring_path());
+  const auto with = [&](const std::string& key, const std::string& value) {
+    const std::size_t at = good.find("# incise." + key + ": ");
+    EXPECT_NE(at, std::string::npos) << key;
+    return good.substr(0, at) + "# incise." + key + ": " + value + good.substr(good.find('\n', at));
+  };
+  for (const char* key : {"overlap_mm", "clearance_mm", "approach_height_mm"}) {
+    for (const char* value : {"1e9", "-8"}) {
+      EXPECT_THAT(message_of(with(key, value)),
+                  HasSubstr(fmt::format("cut.script: header {}: found {}, expected 0 to 1000 mm", key, value)));
+    }
+    EXPECT_EQ(message_of(with(key, "12")), "accepted");
+  }
+  for (const char* depth : {"-5", "1e9"}) {
+    EXPECT_THAT(message_of(with("waypoint", fmt::format("615 0 100 0 0 -1 {} 7", depth))),
+                HasSubstr("expected a place, a unit axis, a depth of 0 to 1000 mm and a speed above 0"));
+  }
+  const std::size_t first = good.find("# incise.waypoint: "), second = good.find("# incise.waypoint: ", first + 1);
+  EXPECT_THAT(message_of(good.substr(0, second) + good.substr(first)),
+              HasSubstr("mm after waypoint 0, expected tips more than"));
+  EXPECT_THAT(message_of("joint_names:\n", "cut.yaml"), HasSubstr("cut.yaml: found a .yaml program, expected URScript"));
 }
 
 TEST(ProgramFromText, NamesTheRowOfADamagedTableAndTheKeyOfADamagedJson) {

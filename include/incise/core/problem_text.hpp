@@ -13,4 +13,24 @@ namespace incise {
 /// As above, as a sentence of its own: for the hint of another error.
 [[nodiscard]] std::string as_sentence(const InvalidArgument& problem);
 
+/// What a sentence complains about, taken apart, so that an error that passes it on does not say "found" twice.
+struct Complaint {
+  std::string field;  ///< empty: none was named
+  std::string found;
+  std::string expected;
+};
+
+/// @param sentence  "[field: ]expected A[, found B]", "[field: ]found B, expected A", as broken preconditions and
+///                  validate() have it; any other sentence is what was found
+/// @param otherwise  what was expected, where the sentence does not say it
+[[nodiscard]] Complaint complaint_of(const std::string& sentence, const std::string& otherwise);
+
+/// The error of a command line whose options broke a rule of validate().
+[[nodiscard]] CaseError broken_options(const std::string& sentence);
+
+/// A broken precondition as the fault of a file.
+[[nodiscard]] DataError fault_of_file(const std::filesystem::path& file, const std::string& place,
+                                      const InvalidArgument& problem, const std::string& otherwise,
+                                      const std::string& hint = "");
+
 }  // namespace incise

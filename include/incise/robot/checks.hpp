@@ -124,6 +124,18 @@ struct ProgramChecks {
 [[nodiscard]] ProgramChecks check_program(const RobotProgram& program, const ToolPath& path,
                                           const CheckSettings& settings = {}, const CheckInputs& inputs = {});
 
+/// The longest way between neighbouring waypoints of a ring, and the most that the check `gap` lets pass.
+struct WaypointGap {
+  double longest_mm = 0.0;
+  double limit_mm = 0.0;
+  std::size_t after = 0;  ///< the waypoint before it
+};
+/// @pre at least one waypoint.
+[[nodiscard]] WaypointGap widest_gap(const ToolPath& path, const CheckSettings& settings = {});
+
+/// Angle of a tool's axis (unit, into the tissue) from straight down, degrees; what the check `tilt` looks at.
+[[nodiscard]] double tilt_deg(const Vec3& axis);
+
 /// Every name that check_program may give.
 [[nodiscard]] std::span<const char* const> check_names();
 

@@ -21,9 +21,13 @@ enum class ReplayOutcome {
   Completed,
   Unreachable,   ///< a pose of a straight or blended move cannot be reached
   Jump,          ///< a joint would have to jump: the move crosses a singularity
-  BlendsOverlap  ///< two blends of a move are longer together than the way between their poses
+  BlendsOverlap,  ///< two blends of a move are longer together than the way between their poses
+  JointLimits,    ///< a joint is sent beyond its limits
+  StartsInTissue,  ///< it runs to its end, but its first tip lies below the surface: the way there goes through tissue
+  EndsInTissue     ///< it runs to its end, and leaves the tip below the surface
 };
-[[nodiscard]] std::string_view to_string(ReplayOutcome outcome);  ///< completed, unreachable, jump, blends_overlap
+/// completed, unreachable, jump, blends_overlap, joint_limits, starts_in_tissue, ends_in_tissue
+[[nodiscard]] std::string_view to_string(ReplayOutcome outcome);
 
 /// The arm in one cycle.
 struct ReplaySample {
@@ -42,7 +46,8 @@ struct SpeedNumbers {
 /// What the arm would do.
 struct [[nodiscard]] Replay {
   ReplayOutcome outcome = ReplayOutcome::Completed;
-  std::size_t line = 0;  ///< of the program, where it ended too early
+  std::size_t line = 0;  ///< of the program, where it ended too early; 0: at no line (tissue, JSON)
+  std::string reason;    ///< what was found, for a person, where the outcome alone does not say it
   std::vector<ReplaySample> samples;
   Points intended_mm;  ///< the intended course of the tip as a fine polyline: plunge, cut with overlap, exit
   double max_deviation_mm = 0.0;

@@ -40,6 +40,10 @@ struct ProgramSettings {
   /// round.
   std::optional<double> spin_deg{};
 };
+/// Longest overlap, clearance, approach height or depth of a program, mm: the arm reaches no farther than 1300.
+inline constexpr double kLargestLengthMm = 1000.0;
+/// Farthest coordinate of a waypoint, mm: what lies beyond is no place near an arm, and its square may overflow.
+inline constexpr double kFarthestPlaceMm = 1e5;
 /// Every rule that the settings break, in words; empty: none.
 [[nodiscard]] std::vector<std::string> validate(const ProgramSettings& settings);
 

@@ -31,6 +31,7 @@ struct TimedJoints {
   Joints q_rad = Joints::Zero();
   Joints speed_rad_s = Joints::Zero();
   ProgramPhase phase = ProgramPhase::Approach;
+  std::size_t line = 0;  ///< of the table; 0: none (JSON)
 };
 
 /// A program that was written by to_urscript, to_joint_csv or to_json, read back. Either `commands` or `joints` is
@@ -48,7 +49,8 @@ struct WrittenProgram {
 /// to_urscript writes is known: comments, one function with `set_tcp`, `movej`, `movel`, `movep`, `servoj`, `sleep`,
 /// `stopj`, its `end` and its call.
 /// @throws DataError naming the line, what was found and what was expected: another statement, a wrong number of
-/// arguments, a number out of range, an end that is missing, a table with other columns.
+/// arguments, a number out of range, an end that is missing, a table with other columns, lengths in the header that no
+/// program has; or the file's kind, of those that are written for others (.yaml, .bag).
 [[nodiscard]] WrittenProgram program_from_text(std::string_view text, const std::filesystem::path& name);
 
 }  // namespace incise
