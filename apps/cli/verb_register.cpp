@@ -1,5 +1,6 @@
 #include "cloud_input.hpp"
 
+#include <incise/core/problem_text.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/surface_io.hpp>
@@ -119,8 +120,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   const PointCloud source = read_points(arguments.source, 12);
   const PointCloud target = read_points(arguments.target, 12);
   settings.settling_mm = arguments.settling_mm;
-  if (const auto problems = validate(settings); !problems.empty())
-    throw CaseError("command line", "", problems.front(), "usable settings");
+  if (const auto problems = validate(settings); !problems.empty()) throw broken_options(problems.front());
   Workers workers(options.threads);
   Registration found = register_clouds(source, target, settings, workers, console);
   if (found.outcome == RegistrationOutcome::Cancelled) throw Cancelled("register: stopped");
@@ -172,7 +172,7 @@ void add_register(Application& application) {
       "register",
       "Find the similarity that lays one cloud on another, and how far it can be relied upon. Exit status 4 when it "
       "cannot",
-      "incise register --source simulated.ply --target tissue.ply --scale 0.95,1.05 -o registration",
+      "incise register --source simulated.ply --target tissue.ply --scale fixed --settling-mm 1 -o registration",
       [arguments](const CommonOptions& options) { return run_register(*arguments, options); });
   RegistrationSettings& settings = arguments->settings;
   verb->add_option("--source", arguments->source, "Cloud or surface to be moved (.ply, .vtp, .stl, .obj)")->required();
@@ -191,9 +191,10 @@ void add_register(Application& application) {
   verb->add_option("--max-rmse-mm", arguments->max_rmse_mm,
                    "A larger residual is not acceptable; 0: 3 % of the target's radius")
       ->check(CLI::Range(0.0, 1000.0));
-  verb->add_option("--settling-mm", arguments->settling_mm,
-                   "How far the tissue may have settled, up or down, since it was simulated: pose and settling are then "
-                   "found together; 0: the pose alone")
+  verb->add_option(
+          "--settling-mm", arguments->settling_mm,
+          "How far the tissue may have settled, up or down, since it was simulated: pose and settling are then "
+          "found together; 0: the pose alone")
       ->check(CLI::Range(0.0, 20.0));
   verb->add_option("--smoothness", arguments->nonrigid.smoothness,
                    "nonrigid: range of the bending, share of the source's radius")

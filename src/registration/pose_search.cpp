@@ -20,7 +20,6 @@ constexpr int kSteps = 18;
 constexpr std::size_t kCoarsePoints = 300;
 constexpr std::size_t kScorePoints = 500;
 constexpr std::size_t kFinePoints = 2000;
-constexpr std::size_t kRoughKept = 32;      // poses that are refined
 constexpr double kAlike = 0.08;             // rms distance, in radii, below which two poses are one
 constexpr double kLeastSide = 0.3;          // length of the mean normal above which a cloud has a side
 constexpr double kLargestSideAngle = 75.0;  // degrees between the sides' normals
@@ -152,7 +151,7 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
       pose.score = overlap_score(source, asked, target, pose.transform, 3.0 * settings.score_width);
     });
   }
-  poses = distinct(std::move(poses), source.cloud.points, kRoughKept);
+  poses = distinct(std::move(poses), source.cloud.points, settings.refined);
   const std::vector<std::size_t> more = spread_indices(source.cloud.points.size(), kFinePoints);
   IcpSettings icp_settings;
   icp_settings.scale = settings.scale;

@@ -15,6 +15,7 @@ struct PoseSearchSettings {
   int rotations = 96;
   double score_width = 0.02;  ///< of overlap_score, as a length
   std::size_t keep = 8;
+  std::size_t refined = 32;  ///< poses of the coarse stage that are refined, the best ones
 };
 
 struct Pose {

@@ -1,6 +1,7 @@
 #include "registration/certificate.hpp"
 #include "registration/icp.hpp"
 #include "registration/levels.hpp"
+#include "registration/mirror_image.hpp"
 #include "registration/pose_search.hpp"
 #include "registration/settling.hpp"
 
@@ -26,6 +27,7 @@ constexpr double kFinalSigma = 0.06;        // of the drift that starts from a p
 constexpr double kFinalWidth = 0.08;        // of the ICP after the drift
 constexpr double kDifferent = 0.08;         // rms distance, in radii, from which on a pose counts as another one
 constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
+constexpr double kMirrorRatio = 0.95;       // of scores, beyond which one of source and mirror image fits clearly better
 constexpr double kUsualScale = 0.05;        // both sensors are metric
 
 /// Both clouds about the target's middle, in units of its radius, and the way back.
@@ -100,12 +102,7 @@ class Registering {
       poses.push_back({frame_.inwards(*settings_.start), 0.0});
       result.starts = 1;
     } else {
-      PoseSearchSettings search;
-      search.scale = settings_.scale;
-      search.outlier_weight = settings_.outlier_weight;
-      search.rotations = settings_.rotations;
-      search.score_width = 2.0 * score_width_;  // rough poses
-      PoseSearch found = search_poses(source_, target_, search, workers_, monitor_);
+      PoseSearch found = search_poses(source_, target_, search_settings(), workers_, monitor_);
       poses = std::move(found.poses);
       result.starts = found.starts;
     }
@@ -122,6 +119,23 @@ class Registering {
   }
 
  private:
+  [[nodiscard]] PoseSearchSettings search_settings() const {
+    PoseSearchSettings search;
+    search.scale = settings_.scale;
+    search.outlier_weight = settings_.outlier_weight;
+    search.rotations = settings_.rotations;
+    search.score_width = 2.0 * score_width_;  // rough poses
+    return search;
+  }
+
+  [[nodiscard]] IcpSettings finish_settings() const {
+    IcpSettings settings;
+    settings.scale = settings_.scale;
+    settings.first_width = kFinalWidth;
+    settings.max_iterations = std::min(settings_.max_iterations, kFinishSteps);
+    return settings;
+  }
+
   [[nodiscard]] double score_of(const Similarity& t) const {
     return overlap_score(source_, asked_, target_, t, score_width_);
   }
@@ -167,11 +181,7 @@ class Registering {
   }
 
   Candidate by_icp(const Similarity& start) {
-    IcpSettings settings;
-    settings.scale = settings_.scale;
-    settings.first_width = kFinalWidth;
-    settings.max_iterations = std::min(settings_.max_iterations, kFinishSteps);
-    const Icp done = icp(source_, target_, start, settings, workers_);
+    const Icp done = icp(source_, target_, start, finish_settings(), workers_);
     return {done.transform, score_of(done.transform), done.has_converged, done.is_degenerate, done.iterations, 0.0, 0.0,
             done.width};
   }
@@ -183,6 +193,7 @@ class Registering {
       return;
     }
     Candidate best = candidates.front();
+    compare_with_mirror_image(result, best);
     const std::optional<SettledPose> settled = settled_from(best);
     result.T_target_source = frame_.outwards(best.transform);
     result.iterations = best.iterations;
@@ -220,23 +231,26 @@ class Registering {
   }
 
   void measure_residuals(Registration& result, const Candidate& best) {
-    const std::vector<std::size_t> all = spread_indices(source_.cloud.points.size(), source_.cloud.points.size());
-    const std::vector<SurfacePair> pairs = pairs_of(source_, all, target_, best.transform, workers_);
-    // What is farther off than a tenth of the radius lies beside the target's surface, not on it.
-    constexpr double kBeside = 0.1;
-    double squares = 0.0;
-    std::size_t inliers = 0;
-    for (const SurfacePair& pair : pairs) {
-      const double d = std::abs(pair.distance);
-      inliers += d < 1.2 * best.width ? 1 : 0;
-      if (d > kBeside) continue;
-      result.residuals_mm.push_back(frame_.length * pair.distance);
-      squares += d * d;
-    }
-    const auto above = static_cast<double>(result.residuals_mm.size());
-    result.rmse_mm = above > 0.0 ? frame_.length * std::sqrt(squares / above) : 0.0;
-    result.inlier_fraction = static_cast<double>(inliers) / static_cast<double>(all.size());
-    result.fit_fraction = pairs.empty() ? 0.0 : static_cast<double>(inliers) / static_cast<double>(pairs.size());
+    const Misfit misfit = misfit_of(source_, asked_, target_, best.transform, best.width, score_width_, workers_);
+    for (const double distance : misfit.distances) result.residuals_mm.push_back(frame_.length * distance);
+    result.rmse_mm = frame_.length * misfit.rmse;
+    result.inlier_fraction = misfit.inlier_fraction;
+    result.fit_fraction = misfit.fit_fraction;
+  }
+
+  /// Before settling, which would take up a part of what tells the two apart.
+  void compare_with_mirror_image(Registration& result, const Candidate& best) {
+    std::optional<PoseSearchSettings> search;
+    if (!settings_.start) search = search_settings();
+    const Misfit proper = misfit_of(source_, asked_, target_, best.transform, best.width, score_width_, workers_);
+    const Misfit mirror =
+        mirror_image_misfit(source_, target_, best.transform, search, finish_settings(), score_width_, workers_, monitor_);
+    result.shape_rmse_mm = proper.rmse * frame_.length;
+    result.mirror_score = mirror.score;
+    result.mirror_rmse_mm = mirror.rmse * frame_.length;
+    is_mirrored_ = proper.score < kMirrorRatio * mirror.score && mirror.fit_fraction >= settings_.least_fit &&
+                   mirror.rmse <= settings_.largest_rmse;
+    result.is_handedness_determined = mirror.score < kMirrorRatio * proper.score;
   }
 
   void find_rival(Registration& result, const Candidate& best, const std::vector<Candidate>& candidates,
@@ -270,6 +284,13 @@ class Registering {
     };
     fail(!best.has_converged, RegistrationOutcome::IterationLimit,
          fmt::format("still moving after {} iterations", best.iterations));
+    const std::string both_residuals =
+        fmt::format("residual {:.3g} mm (rms) and score {:.3f}, against {:.3g} mm and {:.3f} as it is",
+                    result.mirror_rmse_mm, result.mirror_score, result.shape_rmse_mm, result.score);
+    fail(is_mirrored_, RegistrationOutcome::Mirrored,
+         fmt::format("the source's mirror image fits the target better than the source ({}): one of the two clouds is "
+                     "reflected",
+                     both_residuals));
     fail(result.inlier_fraction < settings_.least_inliers, RegistrationOutcome::PoorFit,
          fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %",
                      100.0 * result.inlier_fraction, 100.0 * settings_.least_inliers));
@@ -288,6 +309,11 @@ class Registering {
     fail(result.rival_score > settings_.largest_rival * result.score, RegistrationOutcome::Ambiguous,
          fmt::format("another pose fits about as well: {:.0f} % of the score",
                      100.0 * result.rival_score / result.score));
+    if (!is_mirrored_ && !result.is_handedness_determined) {
+      result.reasons.push_back(fmt::format(
+          "the source's mirror image fits about as well ({}): the shapes do not tell whether one is reflected",
+          both_residuals));
+    }
     const double scale = result.T_target_source.scale;
     const double tiny = 1e-9 * scale;
     result.scale_at_limit =
@@ -321,6 +347,7 @@ class Registering {
   std::vector<std::size_t> asked_;
   double noise_ = 0.0;
   double score_width_ = 0.0;
+  bool is_mirrored_ = false;
 };
 
 }  // namespace
@@ -362,6 +389,8 @@ std::string_view to_string(RegistrationOutcome outcome) {
       return "ill_determined";
     case RegistrationOutcome::Ambiguous:
       return "ambiguous";
+    case RegistrationOutcome::Mirrored:
+      return "mirrored";
     case RegistrationOutcome::PoorFit:
       return "poor_fit";
     case RegistrationOutcome::Degenerate:

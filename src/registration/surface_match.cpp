@@ -24,6 +24,17 @@ SampledSurface::SampledSurface(PointCloud given, Workers& workers)
       roughness(roughness_mm(given.points)),
       search(given.points) {}
 
+SampledSurface::SampledSurface(const SampledSurface& like, PointCloud moved)
+    : cloud(std::move(moved)),
+      has_oriented_normals(like.has_oriented_normals),
+      spacing(like.spacing),
+      roughness(like.roughness),
+      search(cloud.points) {}
+
+SampledSurface with_cloud(const SampledSurface& like, PointCloud moved) {
+  return {like, std::move(moved)};
+}
+
 double target_share(const SampledSurface& source, const SampledSurface& target) {
   const double all = source.roughness * source.roughness + target.roughness * target.roughness;
   return all > 0.0 ? target.roughness * target.roughness / all : 0.5;
@@ -93,6 +104,28 @@ double overlap_score(const SampledSurface& source, std::span<const std::size_t> 
     if (pair) sum += std::exp(-0.5 * pair->distance * pair->distance / (width * width));
   }
   return indices.empty() ? 0.0 : sum / static_cast<double>(indices.size());
+}
+
+Misfit misfit_of(const SampledSurface& source, std::span<const std::size_t> asked, const SampledSurface& target,
+                 const Similarity& t, double width, double score_width, Workers& workers) {
+  constexpr double kBeside = 0.1;  // what is farther off lies beside the target's surface, not on it
+  const std::size_t total = source.cloud.points.size();
+  const std::vector<SurfacePair> pairs = pairs_of(source, spread_indices(total, total), target, t, workers);
+  Misfit misfit;
+  double squares = 0.0;
+  std::size_t inliers = 0;
+  for (const SurfacePair& pair : pairs) {
+    inliers += std::abs(pair.distance) < 1.2 * width ? 1 : 0;
+    if (std::abs(pair.distance) > kBeside) continue;
+    misfit.distances.push_back(pair.distance);
+    squares += pair.distance * pair.distance;
+  }
+  const auto above = static_cast<double>(misfit.distances.size());
+  misfit.score = overlap_score(source, asked, target, t, score_width);
+  misfit.rmse = above > 0.0 ? std::sqrt(squares / above) : 0.0;
+  misfit.inlier_fraction = static_cast<double>(inliers) / static_cast<double>(total);
+  misfit.fit_fraction = pairs.empty() ? 0.0 : static_cast<double>(inliers) / static_cast<double>(pairs.size());
+  return misfit;
 }
 
 std::vector<std::size_t> spread_indices(std::size_t total, std::size_t count) {

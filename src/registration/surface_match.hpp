@@ -21,7 +21,14 @@ struct SampledSurface {
 
   /// @param cloud  normals, where it has none, are fitted and have no meaningful side.
   SampledSurface(PointCloud cloud, Workers& workers);
+
+ private:
+  SampledSurface(const SampledSurface& like, PointCloud moved);
+  friend SampledSurface with_cloud(const SampledSurface& like, PointCloud moved);
 };
+
+/// The same surface moved or reflected as a whole, with its size kept: what was measured of it holds on.
+[[nodiscard]] SampledSurface with_cloud(const SampledSurface& like, PointCloud moved);
 
 /// A source point beside the target's surface.
 struct SurfacePair {
@@ -61,6 +68,21 @@ inline constexpr double kEdgeSpacings = 2.0;
 /// How well surfaces lie on each other: Σ exp(-d²/2τ²) over the source's pairs, as a share of the source points asked.
 [[nodiscard]] double overlap_score(const SampledSurface& source, std::span<const std::size_t> indices,
                                    const SampledSurface& target, const Similarity& t, double width);
+
+/// How well a source lies on a target in one pose. Lengths in the clouds' unit.
+struct Misfit {
+  double score = 0.0;             ///< overlap_score
+  double rmse = 0.0;              ///< of the distances below
+  double inlier_fraction = 0.0;   ///< of the source's points: above the target, distance below 3 robust standard deviations
+  double fit_fraction = 0.0;      ///< the same of the points above the target alone
+  std::vector<double> distances;  ///< along the normals, of the points above the target and within a tenth of its radius
+};
+
+/// @param width  of the robust weight at the end of ICP; 1.2 times it is 3 robust standard deviations.
+/// @param asked  the points that the score looks at. Both clouds in units of the target's radius.
+[[nodiscard]] Misfit misfit_of(const SampledSurface& source, std::span<const std::size_t> asked,
+                               const SampledSurface& target, const Similarity& t, double width, double score_width,
+                               Workers& workers);
 
 /// `count` numbers of [0, total), evenly spread, or all.
 [[nodiscard]] std::vector<std::size_t> spread_indices(std::size_t total, std::size_t count);

@@ -84,6 +84,10 @@ Json to_json(const Registration& r) {
   json["score"] = number(r.score);
   json["rival_score"] = number(r.rival_score);
   json["rival_T_target_source"] = r.rival ? rows(matrix_of(*r.rival)) : Json(nullptr);
+  json["shape_rmse_mm"] = number(r.shape_rmse_mm);
+  json["mirror_score"] = number(r.mirror_score);
+  json["mirror_rmse_mm"] = number(r.mirror_rmse_mm);
+  json["handedness_determined"] = r.is_handedness_determined;
   json["scale_at_limit"] = r.scale_at_limit;
   json["scale_suspicious"] = r.is_scale_suspicious;
   json["certificate"] = has_transform ? certificate_json(r.certificate) : Json(nullptr);

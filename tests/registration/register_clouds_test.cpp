@@ -129,17 +129,62 @@ TEST_F(RegisterClouds, ASphericalCapIsIllDetermined) {
   EXPECT_THAT(found.reasons, Contains(HasSubstr("hardly changes the residual")));
 }
 
+PointCloud mirrored(PointCloud cloud) {
+  for (Vec3& p : cloud.points) p.x() = -p.x();
+  for (Vec3& n : cloud.normals) n.x() = -n.x();
+  return cloud;
+}
+
+/// A hill with a knoll straight behind its top: even in x, and in no other direction.
+double symmetric_height(double x, double y) {
+  return 14.0 * std::exp(-(x * x / 500.0 + y * y / 220.0)) +
+         5.0 * std::exp(-(x * x / 60.0 + (y - 9.0) * (y - 9.0) / 25.0));
+}
+
 TEST_F(RegisterClouds, AMirrorImageIsNeverAReflectionAndIsFlagged) {
   const PointCloud source = hill(2000, random_);
-  PointCloud target = hill(2000, random_, 0.1);
-  for (std::size_t i = 0; i < target.points.size(); ++i) {
-    target.points[i].x() = -target.points[i].x();
-    target.normals[i].x() = -target.normals[i].x();
-  }
-  const Registration found = run(source, target);
+  const Registration found = run(source, mirrored(hill(2000, random_, 0.1)));
   EXPECT_NEAR(found.T_target_source.rotation.determinant(), 1.0, 1e-9);
-  EXPECT_NE(found.outcome, RegistrationOutcome::Converged);
-  EXPECT_FALSE(found.reasons.empty());
+  EXPECT_EQ(found.outcome, RegistrationOutcome::Mirrored);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("mirror image fits the target better")));
+  EXPECT_GT(found.mirror_score, 1.2 * found.score);
+  EXPECT_LT(found.mirror_rmse_mm, 0.3);
+  EXPECT_GT(found.shape_rmse_mm, 3.0 * found.mirror_rmse_mm);
+}
+
+TEST_F(RegisterClouds, AMirrorImageIsKnownFromAStartNearTheWrongPoseToo) {
+  // Nearly symmetric: the wrong pose lies close by, and no search is made.
+  PointCloud source, target;
+  for (PointCloud* cloud : {&source, &target}) {
+    *cloud = hill(2500, random_);
+    for (Vec3& p : cloud->points) p.z() -= 0.6 * (p.z() - symmetric_height(p.x(), p.y()));
+    cloud->normals.clear();
+    *cloud = with_normals(std::move(*cloud), -Vec3::UnitZ(), 12, workers_);
+  }
+  RegistrationSettings near;
+  near.start = Similarity{};
+  const Registration proper = run(source, target, near);
+  EXPECT_EQ(proper.outcome, RegistrationOutcome::Converged) << (proper.reasons.empty() ? "" : proper.reasons.front());
+  EXPECT_TRUE(proper.is_handedness_determined);
+  EXPECT_EQ(run(source, mirrored(target), near).outcome, RegistrationOutcome::Mirrored);
+}
+
+TEST_F(RegisterClouds, AShapeThatIsItsOwnMirrorImageIsAcceptedAndToldOf) {
+  PointCloud source, target;
+  for (PointCloud* cloud : {&source, &target}) {
+    *cloud = hill(2500, random_);
+    for (Vec3& p : cloud->points) p.z() = symmetric_height(p.x(), p.y());
+    for (Vec3& p : cloud->points) p += 0.1 * Vec3(random_.normal(), random_.normal(), random_.normal());
+    cloud->normals.clear();
+    *cloud = with_normals(std::move(*cloud), -Vec3::UnitZ(), 12, workers_);
+  }
+  for (const PointCloud& shape : {target, mirrored(target)}) {
+    const Registration found = run(source, moved_cloud(upside_down_, shape));
+    EXPECT_EQ(found.outcome, RegistrationOutcome::Converged) << (found.reasons.empty() ? "" : found.reasons.front());
+    EXPECT_LT(rms_difference_mm(found.T_target_source, upside_down_, source.points), 0.4);
+    EXPECT_FALSE(found.is_handedness_determined);
+    EXPECT_THAT(found.reasons, Contains(HasSubstr("mirror image fits about as well")));
+  }
 }
 
 TEST_F(RegisterClouds, TellsWhenTheScaleIsUnlikely) {

@@ -40,11 +40,12 @@ enum class RegistrationOutcome {
   IterationLimit,  ///< still moving when the steps ran out
   IllDetermined,   ///< the surfaces can slide along each other: some motion leaves the residual as it is
   Ambiguous,       ///< another pose fits about as well
+  Mirrored,        ///< the source's mirror image fits clearly better: one of the clouds is reflected
   PoorFit,         ///< the residual is too large, or too little of the source finds a counterpart
   Degenerate,      ///< a cloud is a point or a line, or has fewer than 12 points; no transform follows
   Cancelled,
 };
-/// converged, iteration_limit, ill_determined, ambiguous, poor_fit, degenerate, cancelled
+/// converged, iteration_limit, ill_determined, ambiguous, mirrored, poor_fit, degenerate, cancelled
 [[nodiscard]] std::string_view to_string(RegistrationOutcome outcome);
 
 /// How well two surfaces fix the transform between them. Seven motions (three turns and three shifts about the
@@ -87,6 +88,10 @@ struct Registration {
   double score = 0.0;               ///< share of the source that lies on the target to within the noise, [0, 1]
   double rival_score = 0.0;         ///< of the best pose that is another one; 0: none
   std::optional<Similarity> rival;  ///< that pose
+  double shape_rmse_mm = 0.0;   ///< `rmse_mm` of the shapes as they are, before settling was looked for
+  double mirror_score = 0.0;    ///< `score` of the best pose found for the source's mirror image
+  double mirror_rmse_mm = 0.0;  ///< and its residual
+  bool is_handedness_determined = false;  ///< the mirror image fits clearly less well than the source
   /// Distances along the normals, target to source, of the source's points that lie above the target (within a tenth of
   /// its radius), mm.
   std::vector<double> residuals_mm;
@@ -103,7 +108,8 @@ struct Registration {
 /// an ICP finish. Where both clouds come with normals, these decide which side is up. Every result that is not to be
 /// relied upon says so in `outcome` and `reasons`. With `settling_mm` the pose is, last, found together with a smooth
 /// displacement along the source's mean normal, so that a dip is not taken for a shift. The same clouds give the same
-/// bits at any thread count. A reflection is never returned.
+/// bits at any thread count. A reflection is never returned; the source's mirror image is fitted too, and where it fits
+/// better the outcome is Mirrored.
 /// @param source, target  at least 1 point each, finite, any unit; normals of unit length or none.  @throws
 /// InvalidArgument. Sources: [Myronenko2010], [Alexa2022] (even rotations).
 [[nodiscard]] Registration register_clouds(const PointCloud& source, const PointCloud& target,

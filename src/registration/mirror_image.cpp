@@ -1,0 +1,82 @@
+#include "registration/mirror_image.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr std::size_t kFollowed = 2;    // poses of the search
+constexpr std::size_t kRefined = 8;     // of the coarse stage
+constexpr std::size_t kFewPoints = 2000;
+constexpr std::size_t kScorePoints = 4000;  // as for the proper pose
+
+/// Cancels when another monitor does, and says nothing.
+class Quiet : public Monitor {
+ public:
+  explicit Quiet(const Monitor& other) : other_(other) {}
+  [[nodiscard]] bool is_cancelled() const override { return other_.is_cancelled(); }
+
+ private:
+  const Monitor& other_;
+};
+
+Vec3 reflected(Vec3 v) {
+  v.x() = -v.x();
+  return v;
+}
+
+PointCloud reflected(PointCloud cloud) {
+  for (Vec3& p : cloud.points) p = reflected(p);
+  for (Vec3& n : cloud.normals) n = reflected(n);
+  return cloud;
+}
+
+/// The proper pose after a reflection in a principal plane, as a pose of the source reflected in x: the two
+/// reflections together are a rotation.
+std::vector<Similarity> reflected_in_principal_planes(const Similarity& proper, const Points& points) {
+  Mat3 scatter = Mat3::Zero();
+  for (const Vec3& p : points) scatter += p * p.transpose();  // about the source's middle, which is the origin
+  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors();
+  const Mat3 in_x = Vec3(-1.0, 1.0, 1.0).asDiagonal();
+  std::vector<Similarity> poses;
+  for (int k = 0; k < 3; ++k) {
+    const Mat3 in_plane = Mat3::Identity() - 2.0 * axes.col(k) * axes.col(k).transpose();
+    poses.push_back({proper.scale, proper.rotation * in_plane * in_x, proper.translation_mm});
+  }
+  return poses;
+}
+
+}  // namespace
+
+Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& target, const Similarity& proper,
+                           const std::optional<PoseSearchSettings>& search, const IcpSettings& finish,
+                           double score_width, Workers& workers, Monitor& monitor) {
+  const SampledSurface mirror = with_cloud(source, reflected(source.cloud));
+  std::vector<Similarity> starts = reflected_in_principal_planes(proper, source.cloud.points);
+  if (search) {
+    PoseSearchSettings few = *search;
+    few.refined = kRefined;
+    few.keep = kFollowed;
+    Quiet quiet(monitor);
+    for (const Pose& pose : search_poses(mirror, target, few, workers, quiet).poses) starts.push_back(pose.transform);
+  }
+  const std::vector<std::size_t> asked = spread_indices(mirror.cloud.points.size(), kScorePoints);
+  IcpSettings rough = finish;
+  rough.max_points = kFewPoints;
+  rough.tolerance = 1e-3;
+  Similarity best;
+  double best_score = -1.0;
+  for (const Similarity& start : starts) {
+    const Icp done = icp(mirror, target, start, rough, workers);
+    const double score = done.is_degenerate ? 0.0 : overlap_score(mirror, asked, target, done.transform, score_width);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = done.transform;
+  }
+  const Icp done = icp(mirror, target, best, finish, workers);
+  return done.is_degenerate ? Misfit{} : misfit_of(mirror, asked, target, done.transform, done.width, score_width, workers);
+}
+
+}  // namespace incise
