@@ -1,6 +1,7 @@
 #include "cloud_input.hpp"
 #include "study_run.hpp"
 
+#include <incise/core/problem_text.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/visible_surface.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -84,8 +85,7 @@ nlohmann::ordered_json cleaned(const PointCloud& raw, const SurfaceArguments& ar
   CleaningSettings settings = arguments.cleaning;
   settings.seen_along = approach;
   if (!arguments.box.empty()) settings.box = Box3(Vec3(arguments.box.data()), Vec3(arguments.box.data() + 3));
-  if (const auto problems = validate(settings); !problems.empty())
-    throw CaseError("command line", "", problems.front(), "usable settings");
+  if (const auto problems = validate(settings); !problems.empty()) throw broken_options(problems.front());
   Random random(options.seed);
   CleanedCloud result = clean_cloud(raw, settings, random, workers);
   cloud = std::move(result.cloud);
@@ -158,6 +158,7 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
     result = seen(skin_of(read_tet_mesh(input, console), input), arguments, approach, workers, cloud);
   } else {
     const TriMesh read = read_cloud(input);
+    require_surface(read.vertices, input);
     result = read.triangles.empty() ? cleaned(cloud_of(read), arguments, approach, options, workers, cloud)
                                     : seen(read, arguments, approach, workers, cloud);
     if (arguments.plane_z_mm) {
@@ -172,6 +173,7 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
     throw DataError(input, "surface", fmt::format("{} points left", cloud.points.size()),
                     fmt::format("at least {}", kFewestPoints), "Look at the approach, the box and the planes");
   }
+  require_surface(cloud.points, input);
   if (is_vtp) {
     write_vtp(output, mesh_of(cloud));
   } else {
@@ -190,7 +192,8 @@ void add_surface(Application& application) {
       application.add_verb("surface",
                            "The surface that an observer sees, as an evenly sampled cloud with normals; of a camera's "
                            "cloud, the cleaned part",
-                           "incise surface scan.ply --box -60 -80 -5 60 80 60 --planes 1 --voxel-mm 0.5 -o tissue.ply",
+                           "incise surface scene/scan.ply --planes 1 --approach 0 0 1 --camera scene/camera.json "
+                           "--plane-z-mm 74 -o tissue.ply",
                            [arguments](const CommonOptions& options) { return make_surface(*arguments, options); });
   verb->add_option("input", arguments->input,
                    "Case (its stretched specimen), tet mesh (.vtu, .vtk, .msh, .node), surface with triangles, or "

@@ -113,8 +113,7 @@ Scene scene_from_pictures(const TrackArguments& arguments) {
   try {
     scene.cloud = cloud_seen_in_color(depth, camera);
   } catch (const InvalidArgument& error) {
-    throw DataError(arguments.depth, "", without_function_name(error),
-                    "a depth picture that fits " + arguments.intrinsics.string());
+    throw fault_of_file(arguments.depth, "", error, "a depth picture that fits " + arguments.intrinsics.string());
   }
   return scene;
 }
@@ -193,10 +192,23 @@ ToolPath planned(const Tracked& tracked, const TrackArguments& arguments, const 
   try {
     return plan_marked_path(tracked.lifted.contour, tracked.cloud.vertices, plan);
   } catch (const CaseError& error) {
-    throw DataError(name, "", error.what(), "a measured surface all round the path");
+    // The case file that it names is not the user's.
+    const Complaint complaint = complaint_of(error.what(), "a measured surface all round the path");
+    throw DataError(name, "", complaint.found, complaint.expected);
   } catch (const InvalidArgument& error) {
-    throw DataError(name, "", without_function_name(error), "a measured surface all round the path");
+    throw fault_of_file(name, "", error, "a measured surface all round the path");
   }
+}
+
+/// Why the mark is not what was asked for.
+std::string complaint_about(const MarkedLine& line, const ColorPicture& picture, const TrackArguments& arguments) {
+  if (arguments.is_open) return "the mark is a closed ring, an open line was asked for";
+  if (const std::optional<Vec2> end = end_at_rim_px(line, picture.width, picture.height)) {
+    return fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: whether it is closed is not to be seen",
+                       end->x(), end->y());
+  }
+  return fmt::format("the mark is not closed: a gap of {:.2f} mm, at most {} mm is bridged", line.max_gap_mm(),
+                     arguments.max_gap_mm);
 }
 
 int run(const TrackArguments& arguments, const CommonOptions& options) {
@@ -236,6 +248,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   result["mark"] = arguments.mark;
   result["width_px"] = found.line.width_px;
   result["max_gap_mm"] = found.line.max_gap_mm();
+  result["leaves_picture"] = end_at_rim_px(found.line, scene.picture.width, scene.picture.height).has_value();
   result["max_hole_mm"] = found.lifted.max_hole_mm;
   result["bridged_points"] = found.lifted.bridged_points;
   result["cloud_points"] = found.cloud.vertices.size();
@@ -266,11 +279,11 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   write_manifest(target.path(), manifest_of(options, settings, {scene.inputs.begin(), scene.inputs.end()}, wall_s));
   target.commit();
   if (!is_wanted) {
-    console.message(Severity::Warning,
-                    arguments.is_open
-                        ? "the mark is a closed ring, an open line was asked for"
-                        : fmt::format("the mark is not closed: a gap of {:.2f} mm, at most {} mm is bridged",
-                                      found.line.max_gap_mm(), arguments.max_gap_mm));
+    console.message(Severity::Warning, complaint_about(found.line, scene.picture, arguments));
+  } else if (const auto end = end_at_rim_px(found.line, scene.picture.width, scene.picture.height)) {
+    console.message(
+        Severity::Warning,
+        fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: it may be longer", end->x(), end->y()));
   }
   print_result(options, result);
   return is_wanted ? kDone : kNotAcceptable;

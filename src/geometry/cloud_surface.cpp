@@ -52,61 +52,45 @@ double widest_empty_angle(const std::vector<Vec3>& near) {
   return widest;
 }
 
-}  // namespace
-
-CloudSurface::CloudSurface(std::span<const Vec3> points, const Vec3& approach, const CloudSurfaceSettings& settings)
-    : frame_(view_along(approach)), settings_(settings) {
+Points seen_in(const ViewFrame& frame, std::span<const Vec3> points) {
   INCISE_REQUIRE(points.size() >= kLeastPoints,
                  fmt::format("expected a cloud of at least {} points, found {}", kLeastPoints, points.size()));
-  INCISE_REQUIRE(
-      settings.radius_mm > 0.0 && settings.max_reach_mm >= settings.radius_mm && std::isfinite(settings.max_reach_mm),
-      fmt::format("expected 0 < radius_mm <= max_reach_mm, found {} and {}", settings.radius_mm,
-                  settings.max_reach_mm));
+  Points in_view;
   Eigen::AlignedBox2d box;
   for (std::size_t i = 0; i < points.size(); ++i) {
     INCISE_REQUIRE(points[i].allFinite(),
                    fmt::format("expected finite points, found point {} with a coordinate that is not a number", i));
-    in_view_.push_back(frame_.to_view(points[i]));
-    box.extend(in_view_.back().head<2>());
+    in_view.push_back(frame.to_view(points[i]));
+    box.extend(in_view.back().head<2>());
   }
-  constexpr double kMostCells = 4e6;
-  const Vec2 size = box.sizes() / settings.radius_mm + Vec2::Ones();
-  INCISE_REQUIRE(size.prod() < kMostCells,
+  constexpr double kWidestMm = 5000.0;
+  INCISE_REQUIRE(box.sizes().maxCoeff() < kWidestMm,
                  fmt::format("expected a cloud of millimetres, found one {:.4g} x {:.4g} mm wide", box.sizes().x(),
                              box.sizes().y()));
-  corner_ = box.min();
-  columns_ = static_cast<std::size_t>(size.x()) + 1;
-  rows_ = static_cast<std::size_t>(size.y()) + 1;
-  const auto cell_of = [&](const Vec3& p) {
-    return static_cast<std::size_t>((p.y() - corner_.y()) / settings_.radius_mm) * columns_ +
-           static_cast<std::size_t>((p.x() - corner_.x()) / settings_.radius_mm);
-  };
-  first_of_cell_.assign(columns_ * rows_ + 1, 0);
-  for (const Vec3& p : in_view_) ++first_of_cell_[cell_of(p) + 1];
-  for (std::size_t i = 1; i < first_of_cell_.size(); ++i) first_of_cell_[i] += first_of_cell_[i - 1];
-  by_cell_.resize(in_view_.size());
-  std::vector<std::size_t> next(first_of_cell_.begin(), first_of_cell_.end() - 1);
-  for (std::size_t i = 0; i < in_view_.size(); ++i) by_cell_[next[cell_of(in_view_[i])]++] = i;
+  return in_view;
+}
+
+Points flattened(Points points) {
+  for (Vec3& p : points) p.z() = 0.0;
+  return points;
+}
+
+}  // namespace
+
+CloudSurface::CloudSurface(std::span<const Vec3> points, const Vec3& approach, const CloudSurfaceSettings& settings)
+    : frame_(view_along(approach)),
+      settings_(settings),
+      in_view_(seen_in(frame_, points)),
+      in_picture_(flattened(in_view_)) {
+  INCISE_REQUIRE(
+      settings.radius_mm > 0.0 && settings.max_reach_mm >= settings.radius_mm && std::isfinite(settings.max_reach_mm),
+      fmt::format("expected 0 < radius_mm <= max_reach_mm, found {} and {}", settings.radius_mm,
+                  settings.max_reach_mm));
 }
 
 std::vector<std::size_t> CloudSurface::within(const Vec2& place, double radius_mm) const {
   std::vector<std::size_t> found;
-  const auto range = [&](double center, double corner, std::size_t count) {
-    const auto low = static_cast<std::ptrdiff_t>(std::floor((center - radius_mm - corner) / settings_.radius_mm));
-    const auto high = static_cast<std::ptrdiff_t>(std::floor((center + radius_mm - corner) / settings_.radius_mm));
-    return std::pair{std::max<std::ptrdiff_t>(0, low),
-                     std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(count) - 1, high)};
-  };
-  const auto [left, right] = range(place.x(), corner_.x(), columns_);
-  const auto [low, high] = range(place.y(), corner_.y(), rows_);
-  for (std::ptrdiff_t row = low; row <= high; ++row) {
-    for (std::ptrdiff_t column = left; column <= right; ++column) {
-      const std::size_t cell = static_cast<std::size_t>(row) * columns_ + static_cast<std::size_t>(column);
-      for (std::size_t k = first_of_cell_[cell]; k < first_of_cell_[cell + 1]; ++k) {
-        if ((in_view_[by_cell_[k]].head<2>() - place).norm() <= radius_mm) found.push_back(by_cell_[k]);
-      }
-    }
-  }
+  for (const Neighbour& near : in_picture_.within(Vec3(place.x(), place.y(), 0.0), radius_mm)) found.push_back(near.index);
   return found;
 }
 

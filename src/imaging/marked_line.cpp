@@ -225,6 +225,15 @@ std::string_view to_string(InkColor color) {
   return color == InkColor::Red ? "red" : "green";
 }
 
+std::optional<Vec2> end_at_rim_px(const MarkedLine& line, int width_px, int height_px) {
+  if (line.is_closed || line.points_px.empty()) return std::nullopt;
+  const double near = 6.0 + line.width_px;
+  for (const Vec2& end : {line.points_px.front(), line.points_px.back()}) {
+    if (end.x() < near || end.y() < near || end.x() > width_px - 1 - near || end.y() > height_px - 1 - near) return end;
+  }
+  return std::nullopt;
+}
+
 double MarkedLine::max_gap_mm() const {
   double longest = 0.0;
   for (const LineGap& gap : gaps) {

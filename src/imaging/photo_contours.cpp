@@ -63,17 +63,12 @@ void require_tumor(const MarkedLine& green, const Contour& edge, const std::file
 /// A ring that is cut off by the picture's rim is not open: nobody knows.
 void require_in_view(const MarkedLine& line, const char* color, const ColorPicture& picture,
                      const std::filesystem::path& name) {
-  if (line.is_closed) return;
-  const double near = 6.0 + line.width_px;
-  for (const Vec2& end : {line.points_px.front(), line.points_px.back()}) {
-    const bool is_at_rim =
-        end.x() < near || end.y() < near || end.x() > picture.width - 1 - near || end.y() > picture.height - 1 - near;
-    if (!is_at_rim) continue;
-    throw DataError(
-        name, "",
-        fmt::format("a {} line that runs out of the picture, at pixel {:.0f}, {:.0f}", color, end.x(), end.y()),
-        "the whole line in view");
-  }
+  const std::optional<Vec2> end = end_at_rim_px(line, picture.width, picture.height);
+  if (!end) return;
+  throw DataError(
+      name, "",
+      fmt::format("a {} line that runs out of the picture, at pixel {:.0f}, {:.0f}", color, end->x(), end->y()),
+      "the whole line in view");
 }
 
 /// Ink that the ring found does not explain: a second line, or a second loop of one that crosses itself. Specks, as

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/geometry/contour.hpp>
+#include <incise/geometry/neighbours.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 
 #include <optional>
@@ -24,7 +25,7 @@ struct CloudPlace {
 
 /// A cloud of points seen along a direction, as a surface: at every place a quadratic is fitted to the points around
 /// (weights (1 - d²/r²)², one round of rejection beyond 3 standard deviations), so that noise averages out.
-/// One height at every place: what lies under an overhang must be cut off before. Build O(n), query O(points in reach).
+/// One height at every place: what lies under an overhang must be cut off before. Build O(n log n), query O(log n) and the points in reach.
 /// Source: moving least squares, Levin 1998.
 class CloudSurface {
  public:
@@ -48,10 +49,7 @@ class CloudSurface {
   ViewFrame frame_;
   CloudSurfaceSettings settings_;
   Points in_view_;
-  Vec2 corner_ = Vec2::Zero();
-  std::size_t columns_ = 0, rows_ = 0;
-  std::vector<std::size_t> first_of_cell_;  ///< columns * rows + 1
-  std::vector<std::size_t> by_cell_;
+  NeighbourSearch in_picture_;  ///< of the points with their heights left out
 };
 
 }  // namespace incise

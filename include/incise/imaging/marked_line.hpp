@@ -4,6 +4,7 @@
 #include <incise/imaging/picture.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,6 +46,10 @@ struct MarkedLine {
   double contrast = 0.0;                    ///< of ink to tissue, chroma over lightness
   [[nodiscard]] double max_gap_mm() const;  ///< longest that is not hidden; 0 without one
 };
+
+/// Where an open line runs out of a picture: the end that lies at its rim. Nobody knows whether such a ring is open.
+/// @returns nothing for a closed line, or one whose ends are in view
+[[nodiscard]] std::optional<Vec2> end_at_rim_px(const MarkedLine& line, int width_px, int height_px);
 
 /// Finds the one ring (or, when nothing encloses anything, the one open line) of a colour.
 ///
