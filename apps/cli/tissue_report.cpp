@@ -55,6 +55,18 @@ void add_provenance(const std::filesystem::path& folder, const char* what, Repor
     data.provenance.push_back({fmt::format("{}: SHA-256 of {}", what, input.path), input.sha256, ""});
 }
 
+/// Tip against path, in a sentence.
+std::string headline(const Json& replay) {
+  const auto number = [&replay](const char* key) {
+    return replay.contains(key) && replay.at(key).is_number() ? replay.at(key).get<double>() : -1.0;
+  };
+  const double most_mm = number("max_cut_deviation_mm"), mean_mm = number("mean_deviation_mm");
+  std::string text = replay.value("outcome", "") == "completed" ? "" : "The program does not run to a good end. ";
+  if (most_mm >= 0.0 && mean_mm >= 0.0)
+    text += fmt::format("Tip against path, in the cut: at most {:.2f} mm, mean {:.2f} mm. ", most_mm, mean_mm);
+  return text + "As the player ran it, with incise's own kinematics and a model of the controller; not on an arm.";
+}
+
 }  // namespace
 
 void add_on_tissue(const std::filesystem::path& registration, const std::filesystem::path& replay, ReportData& data) {
@@ -63,7 +75,7 @@ void add_on_tissue(const std::filesystem::path& registration, const std::filesys
        {"scale", "scale", ""},
        {"rmse_mm", "residual, root mean square", "mm"},
        {"inlier_fraction", "share of points that fit", ""},
-       {"fit_fraction", "share of the tissue that the simulation reaches", ""},
+       {"fit_fraction", "share of the points above the tissue that fit", ""},
        {"settled_max_mm", "settling that was found, greatest", "mm"},
        {"rotation_deg", "turned by", "°"}}};
   static constexpr std::array<Shown, 6> kReplay{
@@ -73,17 +85,18 @@ void add_on_tissue(const std::filesystem::path& registration, const std::filesys
        {"max_deviation_mm", "with the ways in and out, greatest", "mm"},
        {"duration_s", "duration", "s"},
        {"model", "model", ""}}};
+  // What a reader wants to know first: where the tip goes.
+  if (!replay.empty()) {
+    ReportPicture picture = picture_of(replay, "replay", "replay", kReplay);
+    picture.title = "The program";
+    picture.lead = headline(results_in(replay, "replay.json", "replay"));
+    add_provenance(replay, "replay", data);
+    data.on_tissue.push_back(std::move(picture));
+  }
   if (!registration.empty()) {
     ReportPicture picture = picture_of(registration, "registration", "register", kRegistration);
     picture.title = "Simulation and measured tissue";
     add_provenance(registration, "registration", data);
-    data.on_tissue.push_back(std::move(picture));
-  }
-  if (!replay.empty()) {
-    ReportPicture picture = picture_of(replay, "replay", "replay", kReplay);
-    picture.title = "The program on it";
-    picture.lead = "As the player ran it, with incise's own kinematics and a model of the controller; not on an arm.";
-    add_provenance(replay, "replay", data);
     data.on_tissue.push_back(std::move(picture));
   }
 }

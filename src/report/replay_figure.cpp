@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace incise {
 namespace {
@@ -16,6 +17,7 @@ namespace {
 constexpr double kWidth = 860.0, kHeight = 400.0;
 constexpr double kPicture = 320.0;  // side of the square with the path
 constexpr double kScaleBarMm = 5.0;
+constexpr std::string_view kWorstMark = "fill=\"none\" stroke=\"#555\" stroke-width=\"1.4\"";
 constexpr std::size_t kMostPoints = 1500;  // of a curve: more than the picture has pixels
 
 void require_drawable(const ReplayPicture& p) {
@@ -33,6 +35,11 @@ void require_drawable(const ReplayPicture& p) {
 /// Every so many of `count` points, so that at most kMostPoints are drawn.
 std::size_t stride_of(std::size_t count) {
   return (count + kMostPoints - 1) / kMostPoints;
+}
+
+std::size_t worst_of(const ReplayPicture& picture) {
+  const auto worst = std::max_element(picture.deviation_mm.begin(), picture.deviation_mm.end());
+  return static_cast<std::size_t>(worst - picture.deviation_mm.begin());
 }
 
 void draw_paths(SvgWriter& svg, const ReplayPicture& picture) {
@@ -57,8 +64,11 @@ void draw_paths(SvgWriter& svg, const ReplayPicture& picture) {
   const double bar = kScaleBarMm / side * kPicture;
   svg.line({24.0, 384.0}, {24.0 + bar, 384.0}, "stroke=\"#111\" stroke-width=\"3\"");
   svg.text({30.0 + bar, 388.0}, fmt::format("{} mm", number_text(kScaleBarMm)));
-  svg.text({20.0, 30.0}, fmt::format("tip (colour) over the intended path (black); at most {} mm off",
-                                     number_text(picture.max_deviation_mm)));
+  if (picture.intended_mm.empty()) return svg.text({20.0, 30.0}, "tip; no intended path to hold it against");
+  const std::size_t worst = worst_of(picture);
+  svg.circle(at(picture.tip_mm[worst]), 8.0, kWorstMark);
+  svg.text({20.0, 20.0}, "tip (colour) over the intended path (black)");
+  svg.text({20.0, 36.0}, fmt::format("at most {:.2g} mm off in the cut (circle)", picture.deviation_mm[worst]));
 }
 
 /// What the curves run over.
@@ -75,7 +85,7 @@ std::vector<double> along(const Points& tip_mm) {
 }
 
 void draw_curve(SvgWriter& svg, const Course& course, const std::vector<double>& values, const Vec2& corner,
-                double height, std::string_view name) {
+                double height, std::string_view name, std::optional<std::size_t> mark = {}) {
   const double high = rounded_up(std::max(1e-3, 1.05 * *std::max_element(values.begin(), values.end())));
   const PlotArea area{.corner = corner,
                       .size = {420.0, height},
@@ -89,6 +99,7 @@ void draw_curve(SvgWriter& svg, const Course& course, const std::vector<double>&
   for (std::size_t i = 0; i < values.size(); i += stride_of(values.size()))
     line.push_back(area.at(course.at[i], values[i]));
   svg.polyline(line, false, fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"", ink::kSeries[1]));
+  if (mark) svg.circle(area.at(course.at[*mark], values[*mark]), 5.0, kWorstMark);
 }
 
 }  // namespace
@@ -100,8 +111,9 @@ std::string replay_figure_svg(const ReplayPicture& picture) {
   svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
   draw_paths(svg, picture);
   draw_curve(svg, {"time, s", picture.time_s}, picture.tip_speed_mm_s, {420.0, 44.0}, 110.0, "tip speed, mm/s");
+  if (picture.intended_mm.empty()) return svg.finish();
   draw_curve(svg, {"way of the tip, mm", along(picture.tip_mm)}, picture.deviation_mm, {420.0, 226.0}, 110.0,
-             "deviation, mm");
+             "deviation, mm", worst_of(picture));
   return svg.finish();
 }
 

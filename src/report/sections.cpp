@@ -111,10 +111,13 @@ std::string page_header(const ReportData& data) {
   }
   html += fmt::format("<header>\n<h1>{}</h1>\n", escaped(data.title));
   if (!data.subtitle.empty()) html += fmt::format("<p class=\"subtitle\">{}</p>\n", escaped(data.subtitle));
-  html +=
-      "<nav aria-label=\"Parts of this report\"><a href=\"#result\">Result</a><a href=\"#scan\">Scan</a>"
-      "<a href=\"#mesh\">Mesh</a><a href=\"#cut\">Cut</a><a href=\"#error\">Error</a><a href=\"#kerf\">Kerf</a><a href=\"#program\">Program</a>"
-      "<a href=\"#record\">Settings and provenance</a></nav>\n</header>\n";
+  html += "<nav aria-label=\"Parts of this report\">";
+  if (data.is_of_a_study) {
+    html += "<a href=\"#result\">Result</a><a href=\"#scan\">Scan</a><a href=\"#mesh\">Mesh</a><a href=\"#cut\">Cut</a>"
+            "<a href=\"#error\">Error</a><a href=\"#kerf\">Kerf</a><a href=\"#program\">Program</a>";
+  }
+  if (!data.on_tissue.empty()) html += "<a href=\"#tissue\">On the measured tissue</a>";
+  html += "<a href=\"#record\">Settings and provenance</a></nav>\n</header>\n";
   return html;
 }
 

@@ -202,7 +202,6 @@ ReplayPicture circle_picture() {
     picture.deviation_mm.push_back(0.01);
   }
   picture.intended_mm = picture.tip_mm;
-  picture.max_deviation_mm = 0.01;
   return picture;
 }
 
@@ -211,7 +210,7 @@ TEST(ReplayFigure, ShowsPathSpeedAndDeviationWithUnits) {
   expect_whole_svg(svg);
   for (const char* text : {"5 mm", "tip speed, mm/s", "time, s", "deviation, mm", "way of the tip, mm"})
     EXPECT_THAT(svg, HasSubstr(std::string(">") + text + "<"));
-  EXPECT_THAT(svg, HasSubstr("at most 0.01 mm off"));
+  EXPECT_THAT(svg, HasSubstr("at most 0.01 mm off in the cut"));
   EXPECT_LT(svg.size(), 200000U);  // thinned out to what can be seen
 }
 

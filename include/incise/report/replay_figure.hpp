@@ -14,7 +14,6 @@ struct ReplayPicture {
   std::vector<double> time_s;          ///< N
   std::vector<double> tip_speed_mm_s;  ///< N
   std::vector<double> deviation_mm;    ///< N, from the intended course
-  double max_deviation_mm = 0.0;
   Vec3 approach = -Vec3::UnitZ();  ///< direction in which the picture looks
 };
 
