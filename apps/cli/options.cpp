@@ -57,6 +57,24 @@ void refuse_input_as_output(const std::string& option, const std::filesystem::pa
   }
 }
 
+OlderOutput::OlderOutput(std::filesystem::path output, Console& console)
+    : output_(std::move(output)), console_(console) {
+  std::error_code absent;
+  is_there_ = std::filesystem::exists(output_, absent);
+}
+
+OlderOutput::~OlderOutput() {
+  if (!is_there_) return;
+  try {
+    console_.message(Severity::Warning, fmt::format("{} is of an earlier run and was left as it is", output_.string()));
+  } catch (...) {  // a message that cannot be shown is no reason to end the program
+  }
+}
+
+nlohmann::ordered_json OlderOutput::json() const {
+  return is_there_ ? nlohmann::ordered_json(output_.string()) : nlohmann::ordered_json(nullptr);
+}
+
 std::filesystem::path CommonOptions::required_output(const char* example) const {
   if (output.empty())
     throw CaseError("command line", "-o", "nothing", "where to write", fmt::format("For example: -o {}", example));
@@ -81,7 +99,7 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   options->command_line = command_line_;
   CLI::App* verb = group.add_subcommand(name, what);
   verb->footer("\nExample:\n  " + example + "\n");
-  verb->add_option("-o,--output", options->output, "File or folder to write");
+  const CLI::Option* given = verb->add_option("-o,--output", options->output, "File or folder to write");
   verb->add_flag("--json", options->json, "One JSON object on standard output");
   verb->add_flag("--quiet", options->quiet, "Warnings only");
   verb->add_flag("--verbose", options->verbose, "More detail");
@@ -90,8 +108,10 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   verb->add_option("--isa", options->isa,
                    "Instruction set of the vectorised kernels; by default the best that this machine has")
       ->check(CLI::IsMember({"portable", "avx2", "avx512"}));
-  verb->callback([this, options, run = std::move(run)] {
+  verb->callback([this, options, given, run = std::move(run)] {
     if (!options->isa.empty()) choose_isa(options->isa);
+    if (given->count() > 0 && options->output.empty())
+      throw CaseError("command line", "-o", "an empty name", "the file or folder to write");
     status_ = run(*options);
   });
   return verb;

@@ -56,6 +56,25 @@ struct CommonOptions {
   [[nodiscard]] std::filesystem::path required_output(const char* example) const;
 };
 
+/// Watches over an output that an earlier run left: where this run writes none, that is said when it ends, however it
+/// ends, so that nobody takes the old one for the new one.
+class OlderOutput {
+ public:
+  OlderOutput(std::filesystem::path output, Console& console);
+  ~OlderOutput();
+  OlderOutput(const OlderOutput&) = delete;
+  OlderOutput& operator=(const OlderOutput&) = delete;
+  /// The output has been written.
+  void replaced() { is_there_ = false; }
+  /// Its name, or null where there is none: the key `stale_output` of a refusal.
+  [[nodiscard]] nlohmann::ordered_json json() const;
+
+ private:
+  std::filesystem::path output_;
+  Console& console_;
+  bool is_there_ = false;
+};
+
 /// The manifest of a folder that a verb without a case fills.
 [[nodiscard]] Manifest manifest_of(const CommonOptions& options, std::string settings_json,
                                    const std::vector<std::filesystem::path>& inputs, double wall_s);

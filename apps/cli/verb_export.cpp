@@ -1,6 +1,6 @@
 #include "options.hpp"
 
-#include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/core/units.hpp>
 #include <incise/core/version.hpp>
 #include <incise/cutting/cut_settings.hpp>
@@ -62,7 +62,8 @@ void require_ending(const std::filesystem::path& output, const std::string& form
   if (format == "joint-csv" && ending != ".csv") refuse(".csv");
   if (format == "json" && ending != ".json") refuse(".json");
   if (format == "ros-trajectory" && ending != ".yaml" && ending != ".bag") refuse(".yaml (ROS 2) or .bag (ROS 1)");
-  if (format == "urscript" && (ending == ".csv" || ending == ".json" || ending == ".yaml" || ending == ".bag"))
+  if (format == "urscript" &&
+      (ending.empty() || ending == ".csv" || ending == ".json" || ending == ".yaml" || ending == ".bag"))
     refuse(".script");
 }
 
@@ -115,7 +116,7 @@ RobotProgram program_of(const ToolPath& path, const ExportArguments& arguments) 
   try {
     return make_program(path, arguments.settings, arguments.setup);
   } catch (const InvalidArgument& error) {
-    throw DataError(arguments.path, "waypoints", error.what(), "a path that a tool can follow");
+    throw fault_of_file(arguments.path, "waypoints", error, "a path that a tool can follow");
   }
 }
 
@@ -148,6 +149,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("cut.script");
+  OlderOutput older(output, console);
   require_override_names(arguments.overrides);
   require_ending(output, arguments.format);
   ToolPath path = read_robot_path(arguments.path);
@@ -174,6 +176,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   if (!checks.may_be_written()) {
+    result["stale_output"] = older.json();
     result["wall_s"] = elapsed();
     print_result(options, result);
     return kNotAcceptable;
@@ -184,6 +187,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
                                                {"made_from_sha256", sha256_of_file(arguments.path)}});
   const std::string text = text_of(program, checks, header, arguments, output);
   write_atomically(output, [&text](std::ostream& out) { out << text; });
+  older.replaced();
   result["program"] = output.string();
   result["wall_s"] = elapsed();
   print_result(options, result);
@@ -196,7 +200,8 @@ void add_export(Application& application) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* verb =
       application.add_verb("export", "Turn a path in the robot's frame into a program, after the safety checks",
-                           "incise export out/program/path.json --robot ur10e --format urscript -o cut.script",
+                           "incise export projected/path.json --surface projected/surface.ply --registration "
+                           "registration/registration.json -o cut.script",
                            [arguments](const CommonOptions& options) { return run_export(*arguments, options); });
   auto& a = *arguments;
   verb->add_option("path", a.path, "path.json, frame robot")->required();
@@ -230,7 +235,7 @@ void add_export(Application& application) {
   verb->add_option("--close-margin-mm", a.checks.close_margin_mm, "Least distance from the tumour edge")
       ->check(CLI::PositiveNumber);
   verb->add_option("--overlap-mm", a.overlap_mm, "How far a ring runs on beyond its start; by default 8, a mark 0")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, kLargestLengthMm))
       ->default_str("");
   verb->add_flag("--open", a.is_open, "The path is an open cut");
 }

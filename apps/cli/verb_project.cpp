@@ -9,6 +9,7 @@
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
 #include <incise/planning/project_path.hpp>
+#include <incise/robot/checks.hpp>
 #include <incise/storage/registration_json.hpp>
 
 #include <fmt/format.h>
@@ -157,8 +158,38 @@ ProjectedPath laid_down(const ToolPath& path, const Placement& placement, const 
     projected.path.source_sha256 = sha256_of_file(arguments.path);
     return projected;
   } catch (const InvalidArgument& error) {
-    throw DataError(arguments.surface, "", without_function_name(error),
-                    "a path, a transform and a surface that fit each other");
+    throw fault_of_file(arguments.surface, "", error, "a path, a transform and a surface that fit each other");
+  }
+}
+
+/// What `export` would refuse, told where the path is made.
+void warn_of_unsafe(const ToolPath& path, nlohmann::ordered_json& result, Console& console) {
+  const CheckSettings limits;
+  result["max_step_mm"] = nullptr;
+  if (path.is_closed) {
+    const WaypointGap gap = widest_gap(path, limits);
+    result["max_step_mm"] = gap.longest_mm;
+    if (gap.longest_mm > gap.limit_mm) {
+      console.message(Severity::Warning,
+                      fmt::format("the ring has a gap: {:.2f} mm from waypoint {} to the next, at most {:.2f} mm is "
+                                  "expected; export will refuse it (gap)",
+                                  gap.longest_mm, gap.after, gap.limit_mm));
+    }
+  }
+  double steepest_deg = 0.0;
+  std::size_t steepest = 0;
+  for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
+    if (tilt_deg(path.waypoints[i].axis) <= steepest_deg) continue;
+    steepest_deg = tilt_deg(path.waypoints[i].axis);
+    steepest = i;
+  }
+  result["max_tilt_deg"] = steepest_deg;
+  if (steepest_deg > limits.max_tilt_deg) {
+    console.message(Severity::Warning,
+                    fmt::format("the tool leans {:.0f} degrees from straight down at waypoint {}, at most {:.0f} are "
+                                "expected: are the axes, the transform and the camera's pose right? export will refuse "
+                                "it (tilt)",
+                                steepest_deg, steepest, limits.max_tilt_deg));
   }
 }
 
@@ -203,6 +234,7 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("projected");
+  OlderOutput older(output, console);
   if (output.extension() == ".json") {
     require_writable(output);
   } else {
@@ -229,11 +261,13 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   result["mean_shift_mm"] = projected.mean_shift_mm;
   result["shift_noise_mm"] = projected.shift_noise_mm;
   result.update(placement.summary);
+  warn_of_unsafe(projected.path, result, console);
   std::vector<std::filesystem::path> inputs{arguments.path, arguments.transform, arguments.surface};
   if (!arguments.camera.empty()) inputs.push_back(arguments.camera);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write(output, projected, placement, manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s),
         result);
+  older.replaced();
   result["wall_s"] = wall_s;
   print_result(options, result);
   return kDone;
@@ -245,8 +279,8 @@ void add_project(Application& application) {
   auto arguments = std::make_shared<ProjectArguments>();
   CLI::App* verb = application.add_verb(
       "project", "Lay a simulated path and tumour edge onto the measured tissue, in the robot's frame",
-      "incise project out/after/path.json --transform registration.json --surface cloud.ply --kind incise -o "
-      "projected",
+      "incise project scene/path.json --transform registration/registration.json --surface tissue.ply --camera "
+      "scene/camera.json -o projected",
       [arguments](const CommonOptions& options) { return run(*arguments, options); });
   verb->add_option("path", arguments->path, "path.json, frame sim_stretched")->required();
   verb->add_option("--transform", arguments->transform,

@@ -138,10 +138,10 @@ class TrackTest(CommandTest):
         (self.folder / "camera.json").write_text(json.dumps(CAMERA))
         (self.folder / "mount.json").write_text(json.dumps({"T_robot_camera": T_ROBOT_CAMERA}))
 
-    def scene(self, opening_deg=0.0, hole=None):
+    def scene(self, opening_deg=0.0, hole=None, center=(160.0, 120.0)):
         """A ring of 10 mm radius on a flat plate 150 mm away."""
         small_photo.ring_photo(
-            self.folder / "color.png", 320, 240, (160.0, 120.0), [(10.0 / PIXEL_MM, 4.0, GREEN, opening_deg)]
+            self.folder / "color.png", 320, 240, center, [(10.0 / PIXEL_MM, 4.0, GREEN, opening_deg)]
         )
 
         def counts(u, v):
@@ -187,6 +187,14 @@ class TrackTest(CommandTest):
         self.assertEqual(result["outcome"], "open_loop")
         self.assertIsNone(result["path"])
         self.assertTrue((self.out / "contour.csv").is_file())
+        self.assertFalse((self.out / "path.json").exists())
+
+    def test_a_mark_that_leaves_the_picture_is_not_called_open(self):
+        done = self.incise(*self.scene(center=(20.0, 120.0)), "--camera", "mount.json", "--plan", "--json")
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        self.assertIn("the mark leaves the picture at pixel", done.stderr)
+        self.assertNotIn("not closed", done.stderr)
+        self.assertTrue(json.loads(done.stdout)["leaves_picture"])
         self.assertFalse((self.out / "path.json").exists())
 
     def test_an_open_mark_can_be_asked_for(self):
@@ -276,6 +284,31 @@ class ProjectTest(CommandTest):
             self.assertAlmostEqual(math.hypot(x - 400, y - 50), 15.0, places=6)
             self.assertAlmostEqual(z, 100.5 + 0.1 * (x - 400), places=4)
             self.assertEqual((w["depth_mm"], w["speed_mm_s"]), (5, 7))
+
+    def test_what_export_would_refuse_is_told(self):
+        path = json.loads((self.folder / "path.json").read_text())
+        self.assertLess(self.json_of(*self.ARGUMENTS)["max_step_mm"], 2.2)
+        (self.folder / "path.json").write_text(json.dumps({**path, "waypoints": path["waypoints"][:38]}))
+        done = self.incise(*self.ARGUMENTS, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the ring has a gap: 18.", done.stderr)
+        self.assertIn("from waypoint 37 to the next", done.stderr)
+        self.assertGreater(json.loads(done.stdout)["max_step_mm"], 18.0)
+        upwards = [{**w, "axis": [0, 0, 1]} for w in path["waypoints"]]
+        (self.folder / "path.json").write_text(json.dumps({**path, "waypoints": upwards}))
+        done = self.incise(*self.ARGUMENTS, "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("the tool leans 180 degrees from straight down at waypoint 0", done.stderr)
+        self.assertAlmostEqual(json.loads(done.stdout)["max_tilt_deg"], 180.0)
+
+    def test_a_refusal_says_that_an_older_path_was_left(self):
+        self.json_of(*self.ARGUMENTS)
+        older = (self.folder / "robot.json").read_bytes()
+        self.write_transform(converged=False)
+        done = self.incise(*self.ARGUMENTS)
+        self.assert_refused(done, BAD_DATA, "registration.json")
+        self.assertIn("robot.json is of an earlier run and was left as it is", done.stderr)
+        self.assertEqual((self.folder / "robot.json").read_bytes(), older)
 
     def test_a_mark_follows_the_edge_a_millimetre_deep(self):
         result = self.json_of(*self.ARGUMENTS, "--kind", "mark")

@@ -122,8 +122,10 @@ class RegisterTest(CommandTest):
     def test_a_mirror_image_is_no_registration(self):
         write_ply(self.folder / "mirror.ply", turned([(-x, y, z) for x, y, z in hill(1200, 2)]))
         result = self.json_of(*self.register(target="mirror.ply"), status=NOT_ACCEPTABLE)
-        self.assertFalse(result["converged"])
-        self.assertTrue(any("mirror image" in reason for reason in result["reasons"]), result["reasons"])
+        self.assertEqual((result["outcome"], result["converged"]), ("mirrored", False))
+        self.assertGreater(result["mirror_score"], result["score"])
+        self.assertLess(result["mirror_rmse_mm"], result["shape_rmse_mm"])
+        self.assertTrue(any("mirror image" in reason and f"{result['mirror_rmse_mm']:.3g} mm" in reason for reason in result["reasons"]), result["reasons"])
         self.assert_chain_ends("/converged", "false")
 
     def test_identical_clouds_stay_where_they_are(self):
@@ -206,11 +208,28 @@ class SurfaceTest(CommandTest):
             self.assert_refused(self.incise(*arguments, *more), status, says)
             self.assert_nothing_written(self.folder / "tissue.ply")
 
+    def test_points_that_are_no_surface_are_refused(self):
+        wide = [(x * 1e30, y, z) for x, y, z in hill(100, 1)]
+        for name, points, says in (
+            ("place", [(1.0, 2.0, 3.0)] * 2000, "found all 2000 in one place"),
+            ("line", [(0.1 * i, 0.2 * i, 0.3 * i) for i in range(1000)], "found all 1000 on a line"),
+            ("wide", wide, "e+31"),
+            ("metres", [(1e3 * x, 1e4 * y, z) for x, y, z in hill(100, 1)], "wide, expected millimetres of tissue"),
+            ("one", [(1.0, 2.0, 3.0)], "1 "),
+        ):
+            with self.subTest(cloud=name):
+                write_ply(self.folder / f"{name}.ply", points)
+                self.assert_refused(self.incise("surface", f"{name}.ply", "-o", "tissue.ply"), BAD_DATA, f"{name}.ply", says)
+                self.assert_nothing_written(self.folder / "tissue.ply")
+
     def test_a_box_without_points_is_told(self):
         write_ply(self.folder / "scan.ply", hill(100, 1))
         done = self.incise("surface", "scan.ply", "-o", "tissue.ply", "--box", *"500 500 500 600 600 600".split())
         self.assert_refused(done, BAD_DATA, "scan.ply", "0 points left")
         self.assert_nothing_written(self.folder / "tissue.ply")
+        done = self.incise("surface", "scan.ply", "-o", "tissue.ply", "--box", *"5 5 5 1 1 1".split())
+        self.assert_refused(done, BAD_CASE, "command line: box: found", "expected low corner <= high corner")
+        self.assertEqual(done.stderr.count("expected"), 1)
 
     def test_another_ending_is_the_command_lines_fault(self):
         write_ply(self.folder / "scan.ply", hill(100, 1))

@@ -126,8 +126,44 @@ class ExportTest(RobotTest):
     def test_waypoints_that_no_tool_can_follow_are_refused(self):
         path = ring()
         path["waypoints"][6] = path["waypoints"][5]
-        self.assert_refused(self.incise("export", self.write(path), "-o", "cut.script"), BAD_DATA, "path.json", "after waypoint 5")
+        done = self.incise("export", self.write(path), "-o", "cut.script")
+        self.assert_refused(done, BAD_DATA, "path.json: waypoints: found 0 mm after waypoint 5, expected tips more than 0.001 mm apart")
+        self.assertEqual(done.stderr.count("expected"), 1)
+        path = ring()
+        path["waypoints"][6]["position_mm"][0] = 1e200
+        done = self.incise("export", self.write(path), "-o", "cut.script")
+        self.assert_refused(done, BAD_DATA, "path.json: waypoints: found 1e+200 mm at waypoint 6, expected places within 1e+05 mm")
+        tiny = ring(radius=1.0, edge=0.5)
+        self.assert_refused(self.incise("export", self.write(tiny), "-o", "cut.script"), BAD_DATA, "found 8 mm, expected an overlap below the path's 6.28")
         self.assert_nothing_written(self.folder / "cut.script")
+
+
+    def test_a_refusal_says_that_an_older_program_was_left(self):
+        self.assertEqual(self.incise("export", self.write(ring()), "-o", "cut.script").returncode, DONE)
+        older = (self.folder / "cut.script").read_bytes()
+        says = "cut.script is of an earlier run and was left as it is"
+        unsafe = self.incise("export", self.write(ring(radius=11.0)), "-o", "cut.script", "--json")
+        self.assertEqual(unsafe.returncode, NOT_ACCEPTABLE)
+        self.assertEqual(json.loads(unsafe.stdout)["stale_output"], "cut.script")
+        bad = self.incise("export", "nowhere.json", "-o", "cut.script")
+        self.assert_refused(bad, BAD_DATA, "nowhere.json")
+        wrong = self.incise("export", "path.json", "--override", "margn", "-o", "cut.script")
+        self.assert_refused(wrong, BAD_CASE, "margn")
+        for done in (unsafe, bad, wrong):
+            self.assertEqual(done.stderr.count(says), 1, done.stderr)
+        self.assertEqual((self.folder / "cut.script").read_bytes(), older)
+        again = self.incise("export", self.write(ring(speed=6.0)), "-o", "cut.script")
+        self.assertEqual(again.returncode, DONE, again.stderr)
+        self.assertNotIn("earlier run", again.stderr)
+        (self.folder / "cut.script").unlink()
+        fresh = self.json_of("export", self.write(ring(radius=11.0)), "-o", "cut.script", status=NOT_ACCEPTABLE)
+        self.assertIsNone(fresh["stale_output"])
+
+    def test_an_output_needs_a_name_with_an_ending(self):
+        path = self.write(ring())
+        for output, says in (("d", "a name that ends in .script"), ("", "-o: found an empty name")):
+            self.assert_refused(self.incise("export", path, "-o", output), BAD_CASE, "-o", says)
+        self.assertFalse((self.folder / "d").exists())
 
 
 class ReplayTest(RobotTest):
@@ -163,6 +199,43 @@ class ReplayTest(RobotTest):
         (self.folder / "other.script").write_text("movej([0, 0, 0, 0, 0, 0])\n")
         self.assert_refused(self.incise("replay", "other.script"), BAD_DATA, "other.script: line 1", "def NAME():")
         self.assert_refused(self.incise("replay", "nowhere.script"), BAD_DATA, "nowhere.script")
+
+    def test_joints_beyond_their_limits_end_the_replay(self):
+        start = next(line for line in self.text.splitlines() if line.startswith("  movej(["))
+        (self.folder / "far.script").write_text(self.text.replace(start, "  movej([7.0," + start.split(",", 1)[1], 1))
+        done = self.incise("replay", "far.script", "-o", "replay", "--json")
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual((result["outcome"], result["line"]), ("joint_limits", self.text[: self.text.index(start)].count("\n") + 1))
+        self.assertIn("shoulder_pan_joint at 401.1 degrees", done.stderr)
+        self.assertTrue((self.folder / "replay" / "replay.json").is_file())
+
+    def test_programs_that_end_or_begin_in_the_tissue_are_not_acceptable(self):
+        self.assertEqual(self.incise("export", "path.json", "--format", "joint-csv", "-o", "cut.csv").returncode, DONE)
+        lines = (self.folder / "cut.csv").read_text().splitlines(keepends=True)
+        head = next(i for i, line in enumerate(lines) if line.startswith("time_s,")) + 1
+        cut = [i for i, line in enumerate(lines) if line.rstrip().endswith(",cut")]
+        middle = cut[len(cut) // 2]
+        for name, text, outcome in (("short.csv", lines[:middle], "ends_in_tissue"), ("late.csv", lines[:head] + lines[middle:], "starts_in_tissue")):
+            with self.subTest(program=name):
+                (self.folder / name).write_text("".join(text))
+                done = self.incise("replay", name, "--json")
+                self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+                self.assertEqual(json.loads(done.stdout)["outcome"], outcome)
+                self.assertIn("5.00 mm below the surface", done.stderr)
+        exit_at = self.text.index("  # phase: exit")
+        (self.folder / "stays.script").write_text(self.text[:exit_at] + self.text[self.text.index("end\n"):])
+        self.assertEqual(self.json_of("replay", "stays.script", status=NOT_ACCEPTABLE)["outcome"], "ends_in_tissue")
+
+    def test_numbers_in_the_header_that_no_program_has_are_refused(self):
+        for key, value in (("overlap_mm", "1e9"), ("overlap_mm", "-8"), ("overlap_mm", "500"), ("clearance_mm", "-5"), ("approach_height_mm", "1e9")):
+            with self.subTest(key=key, value=value):
+                old = next(line for line in self.text.splitlines() if line.startswith(f"# incise.{key}: "))
+                (self.folder / "bad.script").write_text(self.text.replace(old, f"# incise.{key}: {value}", 1))
+                self.assert_refused(self.incise("replay", "bad.script", "-o", self.out), BAD_DATA, f"bad.script: header {key}: found {value}", "expected")
+                self.assert_nothing_written()
+        self.assertEqual(self.incise("export", "path.json", "--format", "ros-trajectory", "-o", "cut.yaml").returncode, DONE)
+        self.assert_refused(self.incise("replay", "cut.yaml"), BAD_DATA, "found a .yaml program", "--format joint-csv")
 
     def test_a_program_that_leaves_the_arms_reach_ends_with_its_line(self):
         first = next(line for line in self.text.splitlines() if line.startswith("  movep("))

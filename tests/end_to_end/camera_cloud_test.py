@@ -9,6 +9,7 @@ and without looking for the settling.
 
 import argparse
 import json
+import shlex
 import statistics
 import subprocess
 import sys
@@ -47,11 +48,50 @@ def replayed(folder, seed, has_plate=True, settling_mm=1):
     page = (out / "report.html").read_text()
     for shown in ("On the measured tissue", "tip off the wanted path in the cut, greatest", f"{played['max_cut_deviation_mm']:.4g}"):
         assert shown in page, shown
+    first_screen = page[page.index("<main>"):page.index("</svg>")]  # the sentence, then the picture of the program
+    assert f"Tip against path, in the cut: at most {played['max_cut_deviation_mm']:.2f} mm" in first_screen and "The program as the player ran it" in first_screen
     for name in ("registration", "projected", "replay"):
         assert (out / name / "manifest.json").is_file(), name
     scale = tissue.get("camera_scale", found["scale"])
     return {"max_mm": played["max_cut_deviation_mm"], "mean_mm": played["mean_deviation_mm"],
             "scale_error": scale / truth["camera_scale"] - 1.0, "settled_mm": found["settled_max_mm"], "gap_mm": projected["max_gap_mm"]}
+
+
+def mirror_image_is_refused(folder, seed):
+    """The specimen's simulation reflected (a left-handed exporter): register says so, with both residuals, and project refuses."""
+    scene, out = folder / f"scene{seed}", folder / f"out{seed}"
+    lines = (scene / "simulated.obj").read_text().splitlines()
+    for i, line in enumerate(lines):
+        word = line.split()
+        if word and word[0] == "v":
+            lines[i] = f"v {-float(word[1])!r} {word[2]} {word[3]}"
+        elif word and word[0] == "f":
+            lines[i] = f"f {word[1]} {word[3]} {word[2]}"  # or the surface would be inside out
+    (out / "mirror.obj").write_text("\n".join(lines) + "\n")
+    loop.run("surface", out / "mirror.obj", "--spacing-mm", 1, "-o", out / "mirror.ply")
+    found = loop.result("register", "--source", out / "mirror.ply", "--target", out / "tissue.ply", "--settling-mm", 1,
+                        "--scale", "fixed", "-o", out / "mirrored", status=4)
+    assert found["outcome"] == "mirrored" and not found["converged"], found["outcome"]
+    assert found["mirror_score"] > found["score"] and found["mirror_rmse_mm"] < found["shape_rmse_mm"], found
+    assert any("mirror image" in reason for reason in found["reasons"]), found["reasons"]
+    print(f"mirrored, seed {seed}: residual {found['shape_rmse_mm']:.3f} mm as it is, {found['mirror_rmse_mm']:.3f} mm reflected; "
+          f"score {found['score']:.3f} and {found['mirror_score']:.3f}", flush=True)
+    upright = json.loads((out / "registration" / "registration.json").read_text())
+    assert upright["handedness_determined"], (upright["score"], upright["mirror_score"])
+
+
+def help_examples_run(folder):
+    """What `incise VERB --help` ends with runs as it is printed, one after the other."""
+    scene = [sys.executable, "-B", loop.EXAMPLES / "05_camera_cloud" / "make_scene.py", "scene", "--seed", "1"]
+    subprocess.run(scene, cwd=folder, check=True)
+    simulated = [loop.COMMAND, "surface", "scene/simulated.obj", "--spacing-mm", "1", "-o", "simulated.ply"]
+    subprocess.run(simulated, cwd=folder, check=True, capture_output=True)
+    for verb in ("surface", "register", "project", "export", "replay"):
+        text = subprocess.run([loop.COMMAND, verb, "--help"], check=True, capture_output=True, text=True).stdout
+        example = shlex.split(text.splitlines()[-1])
+        assert example[:2] == ["incise", verb], example
+        done = subprocess.run([loop.COMMAND, *example[1:]], cwd=folder, capture_output=True, text=True)
+        assert done.returncode == 0, f"{' '.join(example)}: {done.stderr}"
 
 
 def main():
@@ -61,6 +101,8 @@ def main():
     options = parser.parse_args(sys.argv[3:])
     seeds = range(1, options.seeds + 1) if options.seeds else TESTED_SEEDS
     with loop.temporary_folder() as folder:
+        if not options.seeds:
+            help_examples_run(folder)
         for name, way in WAYS.items() if options.every_way else [next(iter(WAYS.items()))]:
             worst = []
             for seed in seeds:
@@ -77,6 +119,8 @@ def main():
                 if not options.seeds:
                     assert result["max_mm"] <= LIMIT_MM, f"{result['max_mm']:.3f} mm"
                     assert abs(result["scale_error"]) < 5e-4
+                if name == "plate and settling":
+                    mirror_image_is_refused(Path(folder), seed)
             if len(worst) > 1:
                 print(f"{name}: {sum(w <= LIMIT_MM for w in worst)} of {len(seeds)} within {LIMIT_MM} mm; median {statistics.median(worst):.3f}, worst {max(worst):.3f} mm", flush=True)
 

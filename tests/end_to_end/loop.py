@@ -14,8 +14,13 @@ STAGES_OF_A_SCAN = ("labels", "mesh", *STAGES_OF_A_MESH)
 
 def run(*arguments):
     """The JSON summary of a run that has to end with exit status 0."""
+    return result(*arguments, status=0)
+
+
+def result(*arguments, status):
+    """The JSON summary of a run that has to end with this exit status."""
     done = subprocess.run([COMMAND, *map(str, arguments), "--json", "--threads", "1"], capture_output=True, text=True)
-    assert done.returncode == 0, f"exit status {done.returncode}:\n{done.stderr}"
+    assert done.returncode == status, f"exit status {done.returncode}:\n{done.stderr}"
     return json.loads(done.stdout)
 
 
