@@ -57,6 +57,7 @@ Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& t
   std::vector<Similarity> starts = reflected_in_principal_planes(proper, source.cloud.points);
   if (search) {
     PoseSearchSettings few = *search;
+    few.rotations = std::max(8, few.rotations / 2);  // the principal planes are where it usually lies
     few.refined = kRefined;
     few.keep = kFollowed;
     Quiet quiet(monitor);

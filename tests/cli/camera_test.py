@@ -291,7 +291,7 @@ class ProjectTest(CommandTest):
         (self.folder / "path.json").write_text(json.dumps({**path, "waypoints": path["waypoints"][:38]}))
         done = self.incise(*self.ARGUMENTS, "--json")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("the ring has a gap: 18.", done.stderr)
+        self.assertIn("the ring has a gap: 19.84 mm", done.stderr)
         self.assertIn("from waypoint 37 to the next", done.stderr)
         self.assertGreater(json.loads(done.stdout)["max_step_mm"], 18.0)
         upwards = [{**w, "axis": [0, 0, 1]} for w in path["waypoints"]]

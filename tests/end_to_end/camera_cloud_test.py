@@ -88,7 +88,7 @@ def help_examples_run(folder):
     subprocess.run(simulated, cwd=folder, check=True, capture_output=True)
     for verb in ("surface", "register", "project", "export", "replay"):
         text = subprocess.run([loop.COMMAND, verb, "--help"], check=True, capture_output=True, text=True).stdout
-        example = shlex.split(text.splitlines()[-1])
+        example = shlex.split(text.strip().splitlines()[-1])
         assert example[:2] == ["incise", verb], example
         done = subprocess.run([loop.COMMAND, *example[1:]], cwd=folder, capture_output=True, text=True)
         assert done.returncode == 0, f"{' '.join(example)}: {done.stderr}"
