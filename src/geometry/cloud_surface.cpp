@@ -90,7 +90,8 @@ CloudSurface::CloudSurface(std::span<const Vec3> points, const Vec3& approach, c
 
 std::vector<std::size_t> CloudSurface::within(const Vec2& place, double radius_mm) const {
   std::vector<std::size_t> found;
-  for (const Neighbour& near : in_picture_.within(Vec3(place.x(), place.y(), 0.0), radius_mm)) found.push_back(near.index);
+  for (const Neighbour& near : in_picture_.within(Vec3(place.x(), place.y(), 0.0), radius_mm))
+    found.push_back(near.index);
   return found;
 }
 

@@ -7,8 +7,8 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kFollowed = 2;    // poses of the search
-constexpr std::size_t kRefined = 8;     // of the coarse stage
+constexpr std::size_t kFollowed = 2;  // poses of the search
+constexpr std::size_t kRefined = 8;   // of the coarse stage
 constexpr std::size_t kFewPoints = 2000;
 constexpr std::size_t kScorePoints = 4000;  // as for the proper pose
 
@@ -77,7 +77,8 @@ Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& t
     best = done.transform;
   }
   const Icp done = icp(mirror, target, best, finish, workers);
-  return done.is_degenerate ? Misfit{} : misfit_of(mirror, asked, target, done.transform, done.width, score_width, workers);
+  return done.is_degenerate ? Misfit{}
+                            : misfit_of(mirror, asked, target, done.transform, done.width, score_width, workers);
 }
 
 }  // namespace incise

@@ -71,11 +71,13 @@ inline constexpr double kEdgeSpacings = 2.0;
 
 /// How well a source lies on a target in one pose. Lengths in the clouds' unit.
 struct Misfit {
-  double score = 0.0;             ///< overlap_score
-  double rmse = 0.0;              ///< of the distances below
-  double inlier_fraction = 0.0;   ///< of the source's points: above the target, distance below 3 robust standard deviations
-  double fit_fraction = 0.0;      ///< the same of the points above the target alone
-  std::vector<double> distances;  ///< along the normals, of the points above the target and within a tenth of its radius
+  double score = 0.0;  ///< overlap_score
+  double rmse = 0.0;   ///< of the distances below
+  double inlier_fraction =
+      0.0;                    ///< of the source's points: above the target, distance below 3 robust standard deviations
+  double fit_fraction = 0.0;  ///< the same of the points above the target alone
+  std::vector<double>
+      distances;  ///< along the normals, of the points above the target and within a tenth of its radius
 };
 
 /// @param width  of the robust weight at the end of ICP; 1.2 times it is 3 robust standard deviations.

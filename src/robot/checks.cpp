@@ -139,10 +139,10 @@ class CourseChecker {
   /// The course joins neighbouring waypoints whatever lies between them.
   void gap() {
     const WaypointGap widest = widest_gap(path_, settings_);
-    const auto pose =
-        std::find_if(cut_.begin(), cut_.end(), [&](std::size_t i) { return program_.poses[i].waypoint >= widest.after; });
-    list_.at_most("gap", widest.longest_mm, widest.limit_mm, "mm",
-                  pose == cut_.end() ? cut_.back() : *pose, "longest way from one waypoint of the ring to the next");
+    const auto pose = std::find_if(cut_.begin(), cut_.end(),
+                                   [&](std::size_t i) { return program_.poses[i].waypoint >= widest.after; });
+    list_.at_most("gap", widest.longest_mm, widest.limit_mm, "mm", pose == cut_.end() ? cut_.back() : *pose,
+                  "longest way from one waypoint of the ring to the next");
   }
 
   void self_crossing() {

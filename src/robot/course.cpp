@@ -51,8 +51,9 @@ Mat3 ToolFrame::at(const Vec3& axis) const {
 Course::Course(const ToolPath& path, const ProgramSettings& s) : curve_(path) {
   if (path.is_closed) {
     overlap_mm_ = s.overlap_mm;
-    INCISE_REQUIRE(overlap_mm_ < curve_.length_mm(), fmt::format("expected an overlap below the path's {:.4g} mm, found {} mm",
-                                                                 curve_.length_mm(), overlap_mm_));
+    INCISE_REQUIRE(
+        overlap_mm_ < curve_.length_mm(),
+        fmt::format("expected an overlap below the path's {:.4g} mm, found {} mm", curve_.length_mm(), overlap_mm_));
   }
   const TipSample start = curve_.at(0.0);
   const TipSample end = curve_.at(curve_.length_mm() + overlap_mm_);

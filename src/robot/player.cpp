@@ -17,7 +17,7 @@ namespace {
 using robot_detail::TipRoute;
 
 constexpr double kWithinRad = 1e-6;  // a table holds ten digits
-constexpr double kJumpRad = 0.05;            // in a cycle of 2 ms: 25 rad/s, ten times what any joint can do
+constexpr double kJumpRad = 0.05;    // in a cycle of 2 ms: 25 rad/s, ten times what any joint can do
 
 /// Plays commands one after the other into samples.
 class Playing {

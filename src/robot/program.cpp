@@ -126,8 +126,9 @@ void require_valid(const ToolPath& path, const ProgramSettings& settings) {
     INCISE_REQUIRE(w.position_mm.cwiseAbs().maxCoeff() <= kFarthestPlaceMm,
                    fmt::format("expected places within {:.0e} mm of the base, found {:.3g} mm at waypoint {}",
                                kFarthestPlaceMm, w.position_mm.cwiseAbs().maxCoeff(), i));
-    INCISE_REQUIRE(std::abs(w.depth_mm) <= kLargestLengthMm,
-                   fmt::format("expected a depth of at most {} mm, found {} at waypoint {}", kLargestLengthMm, w.depth_mm, i));
+    INCISE_REQUIRE(
+        std::abs(w.depth_mm) <= kLargestLengthMm,
+        fmt::format("expected a depth of at most {} mm, found {} at waypoint {}", kLargestLengthMm, w.depth_mm, i));
     INCISE_REQUIRE(std::abs(w.axis.norm() - 1.0) < kUnitTolerance,
                    fmt::format("expected a unit axis, found length {} at waypoint {}", w.axis.norm(), i));
     INCISE_REQUIRE(w.speed_mm_s > 0.0 && std::isfinite(w.speed_mm_s),

@@ -47,7 +47,8 @@ double length_of(const std::string& value, const std::filesystem::path& file, co
 Waypoint waypoint_of(const std::string& value, const std::filesystem::path& file) {
   const auto n = numbers_of(value, 8, file, "waypoint");
   Waypoint waypoint{Vec3(n[0], n[1], n[2]), Vec3(n[3], n[4], n[5]), n[6], n[7]};
-  const bool is_sound = waypoint.position_mm.cwiseAbs().maxCoeff() <= kFarthestPlaceMm && std::abs(waypoint.axis.norm() - 1.0) <= 1e-4 && waypoint.speed_mm_s > 0.0 &&
+  const bool is_sound = waypoint.position_mm.cwiseAbs().maxCoeff() <= kFarthestPlaceMm &&
+                        std::abs(waypoint.axis.norm() - 1.0) <= 1e-4 && waypoint.speed_mm_s > 0.0 &&
                         waypoint.depth_mm >= 0.0 && waypoint.depth_mm <= kLargestLengthMm;
   if (!is_sound) {
     throw DataError(file, "header waypoint", value,

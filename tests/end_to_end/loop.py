@@ -6,8 +6,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-COMMAND = sys.argv[1]
-EXAMPLES = Path(sys.argv[2])
+COMMAND = str(Path(sys.argv[1]).resolve())
+EXAMPLES = Path(sys.argv[2]).resolve()
 STAGES_OF_A_MESH = ("stretched", "plan", "as_planned", "correction", "corrected", "program")  # where the case names a mesh
 STAGES_OF_A_SCAN = ("labels", "mesh", *STAGES_OF_A_MESH)
 

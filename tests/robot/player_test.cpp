@@ -269,7 +269,8 @@ TEST(ProgramFromText, RefusesLengthsInTheHeaderThatNoProgramHas) {
   const std::size_t first = good.find("# incise.waypoint: "), second = good.find("# incise.waypoint: ", first + 1);
   EXPECT_THAT(message_of(good.substr(0, second) + good.substr(first)),
               HasSubstr("mm after waypoint 0, expected tips more than"));
-  EXPECT_THAT(message_of("joint_names:\n", "cut.yaml"), HasSubstr("cut.yaml: found a .yaml program, expected URScript"));
+  EXPECT_THAT(message_of("joint_names:\n", "cut.yaml"),
+              HasSubstr("cut.yaml: found a .yaml program, expected URScript"));
 }
 
 TEST(ProgramFromText, NamesTheRowOfADamagedTableAndTheKeyOfADamagedJson) {

@@ -25,8 +25,8 @@ struct CloudPlace {
 
 /// A cloud of points seen along a direction, as a surface: at every place a quadratic is fitted to the points around
 /// (weights (1 - d²/r²)², one round of rejection beyond 3 standard deviations), so that noise averages out.
-/// One height at every place: what lies under an overhang must be cut off before. Build O(n log n), query O(log n) and the points in reach.
-/// Source: moving least squares, Levin 1998.
+/// One height at every place: what lies under an overhang must be cut off before. Build O(n log n), query O(log n) and
+/// the points in reach. Source: moving least squares, Levin 1998.
 class CloudSurface {
  public:
   /// @throws InvalidArgument for fewer than 12 points, points that are not finite, or settings out of range.

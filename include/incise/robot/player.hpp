@@ -19,10 +19,10 @@ struct PlayerSettings {
 
 enum class ReplayOutcome {
   Completed,
-  Unreachable,   ///< a pose of a straight or blended move cannot be reached
-  Jump,          ///< a joint would have to jump: the move crosses a singularity
-  BlendsOverlap,  ///< two blends of a move are longer together than the way between their poses
-  JointLimits,    ///< a joint is sent beyond its limits
+  Unreachable,     ///< a pose of a straight or blended move cannot be reached
+  Jump,            ///< a joint would have to jump: the move crosses a singularity
+  BlendsOverlap,   ///< two blends of a move are longer together than the way between their poses
+  JointLimits,     ///< a joint is sent beyond its limits
   StartsInTissue,  ///< it runs to its end, but its first tip lies below the surface: the way there goes through tissue
   EndsInTissue     ///< it runs to its end, and leaves the tip below the surface
 };
