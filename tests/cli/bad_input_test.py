@@ -536,7 +536,7 @@ class EvaluateTest(CommandTest):
 
     def test_contours_that_cross_themselves_are_refused_with_their_place(self):
         small_case.write_contour(self.folder / "good.csv", small_case.ring())
-        eight = [(10 + 8 * math.sin(t), 4 * math.sin(2 * t), 0.0) for t in (2 * math.pi * (k + 0.5) / 100 for k in range(100))]
+        eight = [(10 + 8 * math.sin(t), 4 * math.sin(2 * t), 0.0) for t in (2 * math.pi * (k + 12.5) / 100 for k in range(100))]
         small_case.write_contour(self.folder / "eight.csv", eight)
         (self.folder / "eight.mrk.json").write_text(json.dumps({"markups": [{
             "type": "ClosedCurve", "coordinateSystem": "LPS", "coordinateUnits": "mm",
