@@ -1,5 +1,7 @@
 #include "camera_options.hpp"
 
+#include "option_checks.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/io/json_text.hpp>
@@ -63,12 +65,13 @@ DepthCamera read_depth_camera(const std::filesystem::path& file) {
 }
 
 void add_scale_options(CLI::App& verb, ScaleOptions& options) {
-  verb.add_option("--mm-per-pixel", options.mm_per_pixel, "Scale of the photograph")->check(CLI::PositiveNumber);
+  verb.add_option("--mm-per-pixel", options.mm_per_pixel, "Scale of the photograph")
+      ->check(above_zero("--mm-per-pixel"));
   verb.add_option("--ruler", options.ruler, "Find the scale in the photograph: a ruler's ticks, or a solid scale bar")
       ->check(CLI::IsMember({"ticks", "bar"}));
   verb.add_option("--ruler-mm", options.ruler_mm,
                   "From one of the ruler's finest ticks to the next; of a bar: its length")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero("--ruler-mm"));
   verb.add_option("--two-points", options.two_points, "Scale from two pixels and their distance: U V U V MM")
       ->expected(5);
   verb.add_option("--rectangle", options.rectangle,

@@ -1,3 +1,4 @@
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -10,6 +11,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 
 namespace incise::cli {
 namespace {
@@ -43,7 +45,16 @@ Json audit_json(const Audit& audit, const PublishedTable& table) {
       findings.push_back(finding_json(finding));
       ++rules[std::string(to_string(finding.rule))];
     }
-    json["rows"].push_back({{"name", row.name}, {"possible", row.findings.empty()}, {"findings", std::move(findings)}});
+    Json unchecked = Json::array();
+    for (const Unchecked& rule : row.not_checkable) {
+      unchecked.push_back({{"rule", to_string(rule.rule)},
+                           {"of", rule.group.empty() ? Json(nullptr) : Json(rule.group)},
+                           {"needs", rule.needs}});
+    }
+    json["rows"].push_back({{"name", row.name},
+                            {"possible", row.findings.empty()},
+                            {"findings", std::move(findings)},
+                            {"not_checkable", std::move(unchecked)}});
   }
   json["findings_by_rule"] = Json::object();
   for (const auto& [rule, count] : rules) json["findings_by_rule"][rule] = count;
@@ -62,6 +73,15 @@ void print_audit(const Audit& audit, const PublishedTable& table) {
   for (const AuditedRow& row : audit.rows) {
     for (const Finding& finding : row.findings) fmt::print("{:<32} {}\n", row.name, to_text(finding));
   }
+  std::map<std::string, std::size_t> unchecked;
+  for (const AuditedRow& row : audit.rows) {
+    std::set<std::string> rules;
+    for (const Unchecked& rule : row.not_checkable)
+      rules.insert(fmt::format("{} (needs {})", to_string(rule.rule), rule.needs));
+    for (const std::string& rule : rules) ++unchecked[rule];
+  }
+  for (const auto& [rule, count] : unchecked)
+    fmt::print("not checkable in {} of {} rows: {}\n", count, audit.rows.size(), rule);
   fmt::print("{} of {} rows impossible\n", audit.impossible_rows, audit.rows.size());
   if (audit.baseline_mm) {
     fmt::print("score baseline {:.3f} to {:.3f} mm explains {} of {} rows\n", audit.baseline_mm->low_mm,
@@ -71,9 +91,7 @@ void print_audit(const Audit& audit, const PublishedTable& table) {
 
 int run(AuditArguments arguments, const CommonOptions& options) {
   if (arguments.grain > 0.0) arguments.settings.grain = arguments.grain;
-  if (const auto violations = validate(arguments.settings); !violations.empty()) {
-    throw broken_options(violations.front());
-  }
+  require_valid(validate(arguments.settings));
   refuse_input_as_output("-o", options.output, {arguments.table});
   const PublishedTable table = read_published_table(arguments.table);
   const Audit result = audit(table.rows, arguments.settings);
@@ -97,11 +115,11 @@ void add_audit(Application& application) {
                            [arguments](const CommonOptions& options) { return run(*arguments, options); });
   verb->add_option("table", arguments->table,
                    "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
-                   "PART_mean_mm, PART_sd_mm of what a row was pooled from")
+                   "PART_mean_mm, PART_sd_mm, PART_n of what a row was pooled from")
       ->required();
   verb->add_option("--least", arguments->settings.least, "No value can be smaller: 0 for absolute errors");
   verb->add_option("--n-at-least", arguments->settings.n_at_least, "Values behind a mean where the table does not say")
-      ->check(CLI::Range(2, 1000000000));
+      ->check(between("--n-at-least", 2, 1000000000));
   verb->add_option("--grain", arguments->grain, "Values are whole multiples of this (1 for counts); 0: any number")
       ->check(CLI::NonNegativeNumber);
 }

@@ -1,5 +1,6 @@
 #include "comparison_output.hpp"
 #include "comparison_tables.hpp"
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -86,9 +87,7 @@ int run(CompareArguments arguments, const CommonOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   arguments.settings.measure = arguments.measure == "signed" ? ErrorMeasure::Signed : ErrorMeasure::Absolute;
   arguments.settings.bootstrap.seed = options.seed;
-  if (const auto violations = validate(arguments.settings); !violations.empty()) {
-    throw broken_options(violations.front());
-  }
+  require_valid(validate(arguments.settings));
   if (arguments.settings.is_paired && arguments.before.size() != arguments.after.size()) {
     throw CaseError("command line", "--paired",
                     fmt::format("{} before and {} after", arguments.before.size(), arguments.after.size()),

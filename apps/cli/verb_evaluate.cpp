@@ -1,11 +1,13 @@
 #include "camera_options.hpp"
 #include "evaluation_figure.hpp"
 #include "figure_file.hpp"
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/evaluation/evaluation.hpp>
+#include <incise/geometry/contour_checks.hpp>
 #include <incise/imaging/photo_contours.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
@@ -26,6 +28,7 @@ struct EvaluateArguments {
   std::filesystem::path photo;
   std::filesystem::path incision;
   std::filesystem::path tumor;
+  std::filesystem::path line;
   std::filesystem::path figure;
   std::string contour;
   std::string red = "annotation";
@@ -40,26 +43,24 @@ struct EvaluateArguments {
 };
 
 /// Refuses what `evaluate` would measure without a sense: each contour by its own name.
-void require_usable(const Contour& contour, const Vec3& approach, const std::filesystem::path& file) {
-  constexpr double kSmallestMm = 2.0;
-  constexpr double kLargestMm = 200.0;
-  Box3 box;
-  for (const Vec3& p : contour.points) box.extend(p);
-  const double extent = box.sizes().maxCoeff();
-  if (!(extent >= kSmallestMm && extent <= kLargestMm)) {
-    throw DataError(file, "", fmt::format("a contour {:.4g} mm across", extent),
-                    fmt::format("{} to {} mm", kSmallestMm, kLargestMm), "Are its numbers in mm?");
+void require_usable(const Contour& contour, const std::string& what, double largest_mm, const Vec3& approach,
+                    const std::filesystem::path& file) {
+  if (const auto problem = size_problem(contour, what, largest_mm)) {
+    throw DataError(file, "", problem->found, problem->expected, "Are its numbers in mm?");
   }
-  if (contour.is_closed && crosses_itself_in_view(contour, approach)) {
-    throw DataError(file, "", "a contour that crosses itself, seen along the approach", "one simple ring");
+  if (const auto at = first_crossing_in_view(contour, approach)) {
+    throw DataError(file, "",
+                    fmt::format("a contour that crosses itself, seen along the approach, at {:.2f}, {:.2f}, {:.2f} mm",
+                                at->x(), at->y(), at->z()),
+                    contour.is_closed ? "one simple ring" : "one simple curve");
   }
 }
 
-/// The settings are known to be valid here, so what `evaluate` refuses is the contours' fault.
-Evaluation measured(const Contour& incision, const Contour& tumor_edge, const EvaluationSettings& settings,
-                    const std::filesystem::path& file) {
+/// The settings are known to be valid here, so what is refused is the contours' fault.
+template <typename Measure>
+Evaluation measured(const std::filesystem::path& file, const Measure& measure) {
   try {
-    return evaluate(incision, tumor_edge, settings);
+    return measure();
   } catch (const InvalidArgument& error) {
     throw fault_of_file(file, "", error, "contours that can be measured");
   }
@@ -75,14 +76,12 @@ EvaluationSettings settings_of(const EvaluateArguments& arguments) {
   if (arguments.target_mm > 0.0) settings.target_mm = arguments.target_mm;
   if (!arguments.approach.empty()) settings.approach = Vec3(arguments.approach.data());
   if (!arguments.twelve.empty()) settings.twelve_o_clock = Vec3(arguments.twelve.data());
-  if (const auto violations = validate(settings); !violations.empty()) {
-    throw broken_options(violations.front());
-  }
+  require_valid(validate(settings));
   return settings;
 }
 
 void require_one_source(const EvaluateArguments& arguments) {
-  const bool has_files = !arguments.incision.empty() || !arguments.tumor.empty();
+  const bool has_files = !arguments.incision.empty() || !arguments.tumor.empty() || !arguments.line.empty();
   const auto refuse = [](const char* field, const char* found, const char* expected) {
     throw CaseError("command line", field, found, expected);
   };
@@ -97,8 +96,15 @@ void require_one_source(const EvaluateArguments& arguments) {
       refuse("--figure", "another kind of file", "a name that ends in .png: the photograph is drawn over");
     return;
   }
-  if (arguments.incision.empty() || arguments.tumor.empty())
-    refuse("PHOTO", "no input", "a photograph, or --incision and --tumor");
+  const bool has_line = !arguments.line.empty();
+  if (arguments.incision.empty() || arguments.tumor.empty() != has_line)
+    refuse("PHOTO", has_line && !arguments.tumor.empty() ? "--line and --tumor" : "no input",
+           "a photograph, or --incision with either --tumor or --line");
+  if (has_line && arguments.target_mm > 0.0)
+    refuse("--target-mm", "a distance", "none: a cut along a line is to lie on the line");
+  if (has_line && !arguments.twelve.empty()) refuse("--twelve-o-clock", "a direction", "none: there is no ring");
+  if (has_line && !arguments.figure.empty())
+    refuse("--figure", "a file", "none: the figure shows an incision round a tumour");
   if (arguments.scale.is_given()) refuse("scale", "a scale for contour files", "none: they are in mm");
   if (!arguments.figure.empty()) require_figure_file(arguments.figure, "--figure");
 }
@@ -119,7 +125,23 @@ nlohmann::ordered_json line_json(const MarkedLine& line) {
 struct Measured {
   Evaluation evaluation;
   nlohmann::ordered_json json;
+  std::vector<std::string> warnings;
 };
+
+/// Red in the tumour that is no line may be blood, or a cut that went astray: no number shows it, so it is told.
+void tell_red_in_tumor(const std::vector<PhotoMark>& marks, Measured& result) {
+  result.json["red_in_tumor"] = nlohmann::ordered_json::array();
+  for (const PhotoMark& mark : marks) {
+    result.json["red_in_tumor"].push_back(
+        {{"u_px", mark.at_px.x()}, {"v_px", mark.at_px.y()}, {"longest_mm", mark.longest_mm}});
+  }
+  if (marks.empty()) return;
+  result.warnings.push_back(fmt::format(
+      "{} red {} inside the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: blood, or a cut? {} part of "
+      "no measure",
+      marks.size(), marks.size() == 1 ? "spot" : "spots", marks.front().longest_mm, marks.front().at_px.x(),
+      marks.front().at_px.y(), marks.size() == 1 ? "It is" : "They are"));
+}
 
 Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
   const ColorPicture picture = decode_picture(read_text(arguments.photo), arguments.photo);
@@ -129,7 +151,8 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   const PhotoSettings photo{.red = wants_border ? RedLine::Kerf : RedLine::Annotation,
                             .max_gap_mm = arguments.max_gap_mm};
   const PhotoContours found = find_photo_contours(picture, scale.scale, photo, arguments.photo);
-  Measured result{measured(found.incision, found.tumor_edge, settings, arguments.photo), {}};
+  Measured result{
+      measured(arguments.photo, [&] { return evaluate(found.incision, found.tumor_edge, settings); }), {}, {}};
   result.json = to_json(result.evaluation);
   result.json["points"] = points_json(result.evaluation);
   result.json["photo"] = arguments.photo.string();
@@ -138,6 +161,8 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   result.json["red"] = arguments.red;
   result.json["red_line"] = line_json(found.red);
   result.json["green_line"] = line_json(found.green);
+  tell_red_in_tumor(found.red_in_tumor, result);
+  result.json["warnings"] = result.warnings;
   if (!arguments.figure.empty()) {
     const std::string png = encode_png(draw_found(picture, {&found.green, &found.red}, scale.marks_px));
     write_atomically(arguments.figure, [&](std::ostream& out) { out << png; });
@@ -146,12 +171,25 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   return result;
 }
 
+/// An open cut against the line that it was to follow.
+Measured from_line(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
+  const Contour incision = read_contour(arguments.incision, false);
+  const Contour line = read_contour(arguments.line, false);
+  require_usable(incision, "a cut", kLargestIncisionMm, settings.approach, arguments.incision);
+  require_usable(line, "a line", kLargestIncisionMm, settings.approach, arguments.line);
+  Measured result{measured(arguments.line, [&] { return evaluate_line(incision, line, settings); }), {}, {}};
+  result.json = to_json(result.evaluation);
+  result.json["points"] = points_json(result.evaluation);
+  return result;
+}
+
 Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
+  if (!arguments.line.empty()) return from_line(arguments, settings);
   const Contour incision = read_contour(arguments.incision, !arguments.is_open);
   const Contour tumor_edge = read_contour(arguments.tumor, true);
-  require_usable(incision, settings.approach, arguments.incision);
-  require_usable(tumor_edge, settings.approach, arguments.tumor);
-  Measured result{measured(incision, tumor_edge, settings, arguments.tumor), {}};
+  require_usable(incision, "an incision", kLargestIncisionMm, settings.approach, arguments.incision);
+  require_usable(tumor_edge, "a tumour", kLargestTumorMm, settings.approach, arguments.tumor);
+  Measured result{measured(arguments.tumor, [&] { return evaluate(incision, tumor_edge, settings); }), {}, {}};
   result.json = to_json(result.evaluation);
   result.json["points"] = points_json(result.evaluation);
   if (!arguments.figure.empty()) {
@@ -172,13 +210,17 @@ void add_evaluate(Application& application) {
                            "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json",
                            [arguments](const CommonOptions& options) {
                              require_one_source(*arguments);
-                             const std::vector<std::filesystem::path> inputs{arguments->photo, arguments->incision, arguments->tumor};
+                             const std::vector<std::filesystem::path> inputs{arguments->photo, arguments->incision,
+                                                                             arguments->tumor, arguments->line};
                              refuse_input_as_output("-o", options.output, inputs);
                              refuse_input_as_output("--figure", arguments->figure, inputs);
                              const EvaluationSettings settings = settings_of(*arguments);
                              const Measured result = arguments->photo.empty() ? from_files(*arguments, settings)
                                                                               : from_photo(*arguments, settings);
                              if (!options.output.empty()) write_json(options.output, result.json);
+                             Console console(options.level());
+                             for (const std::string& warning : result.warnings)
+                               console.message(Severity::Warning, warning);
                              print_result(options, result.json);
                              return status_of(result.evaluation.outcome);
                            });
@@ -186,6 +228,9 @@ void add_evaluate(Application& application) {
                    "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
   verb->add_option("--incision", arguments->incision, "The incision: .csv (x_mm,y_mm,z_mm), .vtp or .mrk.json");
   verb->add_option("--tumor", arguments->tumor, "The tumour edge, same formats and frame");
+  verb->add_option(
+      "--line", arguments->line,
+      "Instead of --tumor, for an open cut: the line that --incision was to follow, same formats and frame");
   verb->add_option("--contour", arguments->contour,
                    "What was measured; default: inner_edge in a photograph, centerline in files")
       ->check(CLI::IsMember({"centerline", "inner_edge"}));
@@ -194,10 +239,10 @@ void add_evaluate(Application& application) {
       ->check(CLI::IsMember({"annotation", "kerf"}));
   add_scale_options(*verb, arguments->scale);
   verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A red or green ring with a longer gap is open")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(between("--max-gap-mm", 0.0, 10.0));
   verb->add_option("--target-mm", arguments->target_mm,
                    "Distance aimed at; default: 5.0 for a mid-line, 4.5 for an inner edge")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero("--target-mm"));
   verb->add_option("--close-margin-mm", arguments->settings.close_margin_mm, "Clinical cut-off");
   verb->add_option("--approach", arguments->approach, "Direction in which the camera looks")->expected(3);
   verb->add_option("--twelve-o-clock", arguments->twelve,
@@ -209,7 +254,7 @@ void add_evaluate(Application& application) {
   verb->add_option("--colors", arguments->colors,
                    "Of the figure: told apart with any colour vision, or as in the paper")
       ->check(CLI::IsMember({"safe", "jet"}));
-  verb->add_flag("--open", arguments->is_open, "The incision is an open curve");
+  verb->add_flag("--open", arguments->is_open, "The incision round the tumour is an open curve");
 }
 
 }  // namespace incise::cli

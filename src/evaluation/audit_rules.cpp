@@ -10,29 +10,9 @@
 namespace incise::audit_rules {
 namespace {
 
-/// Rounding of our own arithmetic: a printed number that meets its bound exactly is possible.
-constexpr double kSlack = 1e-9;
-
-double low(const PrintedNumber& number) {
-  return number.value - number.half_unit;
-}
-double high(const PrintedNumber& number) {
-  return number.value + number.half_unit;
-}
-
 void require_finite(const PrintedNumber& number, const std::string& name) {
   INCISE_REQUIRE(std::isfinite(number.value) && number.half_unit >= 0.0,
                  fmt::format("a number of \"{}\" is not finite", name));
-}
-
-std::size_t count_of(const PrintedGroup& group, const AuditSettings& settings) {
-  return std::max<std::size_t>(2, group.n.value_or(settings.n_at_least));
-}
-
-/// Greatest product (top - m)(m - bottom) for m in [from, to].
-double greatest_product(double bottom, double top, double from, double to) {
-  const double m = std::clamp(0.5 * (top + bottom), from, to);
-  return std::max(0.0, (top - m) * (m - bottom));
 }
 
 /// [BhatiaDavis2000], for the sample variance.
@@ -92,37 +72,16 @@ void check_group(const PrintedGroup& group, const std::optional<PrintedNumber>& 
   if (group.n) check_counted(group, settings, findings);
 }
 
-void check_pooling(const PrintedGroup& total, const std::vector<PrintedGroup>& parts, const AuditSettings& settings,
-                   std::vector<Finding>& findings) {
-  if (parts.size() < 2) return;
-  double bottom = low(parts[0].mean), top = high(parts[0].mean);
-  double least_sd = low(parts[0].sd), greatest = high(parts[0].sd);
-  double count = 0.0;
-  for (const PrintedGroup& part : parts) {
-    bottom = std::min(bottom, low(part.mean));
-    top = std::max(top, high(part.mean));
-    least_sd = std::min(least_sd, low(part.sd));
-    greatest = std::max(greatest, high(part.sd));
-    count += static_cast<double>(count_of(part, settings));
+void note_unchecked(const PrintedGroup& group, const std::optional<PrintedNumber>& max, const AuditSettings& settings,
+                    AuditedRow& row) {
+  const auto note = [&](AuditRule rule, const char* needs) { row.not_checkable.push_back({rule, group.name, needs}); };
+  if (!max) note(AuditRule::SdTooLarge, "max");
+  if (!group.n || !group.max) {
+    const char* needs = group.max ? "n" : group.n ? "its own max" : "n and its own max";
+    note(AuditRule::SdTooSmall, needs);
+    note(AuditRule::MeanTooSmall, needs);
   }
-  if (high(total.mean) < bottom - kSlack || low(total.mean) > top + kSlack) {
-    findings.push_back(
-        {AuditRule::PooledMeanOutside, total.name, total.mean.value, total.mean.value < bottom ? bottom : top});
-    return;
-  }
-  // (N − 1) sd² = Σ (n_i − 1) sd_i² + Σ n_i (m_i − mean)², and the last sum is that of values within [bottom, top].
-  const double from = std::max(bottom, low(total.mean));
-  const double to = std::min(top, high(total.mean));
-  const double between = count / (count - 1.0) * greatest_product(bottom, top, from, to);
-  const double most = std::sqrt(greatest * greatest + between);
-  const double share = (count - static_cast<double>(parts.size())) / (count - 1.0);
-  const double fewest = std::sqrt(share) * std::max(0.0, least_sd);
-  if (low(total.sd) > most + kSlack) {
-    findings.push_back({AuditRule::PooledSdTooLarge, total.name, total.sd.value, most});
-  }
-  if (high(total.sd) < fewest - kSlack) {
-    findings.push_back({AuditRule::PooledSdTooSmall, total.name, total.sd.value, fewest});
-  }
+  if (settings.grain && !group.n) note(AuditRule::MeanNotOnGrain, "n");
 }
 
 std::optional<PrintedScore> printed_score(const PrintedRow& row) {

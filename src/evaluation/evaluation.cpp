@@ -96,6 +96,7 @@ void measure_shape(const Contour& incision, const Contour& edge, const Evaluatio
   const HuScore score = hu_score(edge_moments.hu, incision_moments.hu);
   result.hu_score = score.opencv;
   result.hu_score_seven = score.seven;
+  result.hu_seven_unstable = score.seven_is_unstable;
   result.hu_unstable = score.is_unstable;
   if (score.opencv && floor.opencv) result.hu_excess = *score.opencv - *floor.opencv;
   result.hu_score_to_ideal = hu_score(ideal_moments.hu, incision_moments.hu).opencv;

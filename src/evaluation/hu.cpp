@@ -79,6 +79,18 @@ double inverse_log(double h) {
   return (h > 0.0 ? 1.0 : -1.0) / std::log10(std::abs(h));
 }
 
+/// Whether an invariant is so close to 0, as symmetry makes it, that noise decides about its logarithm or sign.
+bool has_noise(const std::array<double, 7>& hu) {
+  constexpr double kOfItsSize = 0.1;
+  for (const std::size_t i : {1U, 2U, 3U}) {
+    if (std::abs(hu[i]) <= kHuNoise) return true;
+  }
+  const double third = std::sqrt(std::abs(hu[2])) * std::pow(std::abs(hu[3]), 1.5);  // h5² + h7² = h3 h4³
+  const double mixed = std::sqrt(std::abs(hu[1])) * std::abs(hu[3]);                 // |h6| is at most this
+  return std::abs(hu[4]) <= kOfItsSize * third || std::abs(hu[5]) <= kOfItsSize * mixed ||
+         std::abs(hu[6]) <= kOfItsSize * third;
+}
+
 }  // namespace
 
 FilledMoments filled_moments(const Contour& contour, const Vec3& approach) {
@@ -115,6 +127,7 @@ HuScore hu_score(const std::array<double, 7>& a, const std::array<double, 7>& b)
       if (std::abs(h - kHuCutOff) <= 0.1 * kHuCutOff) score.is_unstable = true;
     }
   }
+  score.seven_is_unstable = has_noise(a) || has_noise(b);
   if (std::isfinite(opencv)) score.opencv = opencv;
   if (std::isfinite(seven)) score.seven = seven;
   return score;

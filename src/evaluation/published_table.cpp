@@ -31,7 +31,8 @@ void find_baseline(const std::vector<PrintedRow>& rows, Audit& audit) {
     audit.rows_on_baseline = count;
     audit.baseline_mm = common;
   }
-  if (audit.scored_rows > 1 && 2 * audit.rows_on_baseline <= audit.scored_rows) {  // which of them is wrong cannot be told
+  if (audit.scored_rows > 1 &&
+      2 * audit.rows_on_baseline <= audit.scored_rows) {  // which of them is wrong cannot be told
     audit.baseline_mm.reset();
     audit.rows_on_baseline = 0;
   }
@@ -56,7 +57,8 @@ std::optional<PrintedNumber> printed_number(std::string_view text) {
 
 std::vector<std::string> validate(const AuditSettings& settings) {
   std::vector<std::string> violations;
-  if (!std::isfinite(settings.least)) violations.push_back("least: expected a finite number");
+  if (!std::isfinite(settings.least))
+    violations.push_back(fmt::format("least: found {}, expected a finite number", settings.least));
   if (settings.n_at_least < 2) {
     violations.push_back(fmt::format("n_at_least: found {}, expected at least 2", settings.n_at_least));
   }
@@ -67,10 +69,10 @@ std::vector<std::string> validate(const AuditSettings& settings) {
 }
 
 std::string_view to_string(AuditRule rule) {
-  static constexpr std::array<std::string_view, 12> kNames{
-      "mean_below_least",    "negative_sd",         "max_below_mean",      "min_above_mean",
-      "sd_too_large",        "sd_too_small",        "mean_too_small",      "mean_not_on_grain",
-      "pooled_mean_outside", "pooled_sd_too_large", "pooled_sd_too_small", "score_off_baseline"};
+  static constexpr std::array<std::string_view, 14> kNames{
+      "mean_below_least", "negative_sd",         "max_below_mean",      "min_above_mean",      "sd_too_large",
+      "sd_too_small",     "mean_too_small",      "mean_not_on_grain",   "pooled_mean_outside", "pooled_mean_off",
+      "pooled_n_off",     "pooled_sd_too_large", "pooled_sd_too_small", "score_off_baseline"};
   return kNames.at(static_cast<std::size_t>(rule));
 }
 
@@ -99,6 +101,10 @@ std::string to_text(const Finding& finding) {
       return say("mean {found:g} is no mean of n such values; the nearest that is: {bound:.6g}");
     case AuditRule::PooledMeanOutside:
       return say("pooled mean {found:g} lies outside its parts, whose nearest reaches {bound:.4g}");
+    case AuditRule::PooledMeanOff:
+      return say("pooled mean {found:g} is not the mean of its parts by their n, whose nearest is {bound:.4g}");
+    case AuditRule::PooledNOff:
+      return say("pooled n {found:g} is not what its parts add up to, {bound:g}");
     case AuditRule::PooledSdTooLarge:
       return say("pooled sd {found:g} is more than its parts allow, {bound:.4g}");
     case AuditRule::PooledSdTooSmall:
@@ -115,13 +121,17 @@ Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings) 
   Audit result;
   find_baseline(rows, result);
   for (const PrintedRow& row : rows) {
-    AuditedRow audited{.name = row.name, .findings = {}};
-    if (row.total) audit_rules::check_group(*row.total, row.total->max, settings, audited.findings);
+    AuditedRow audited{.name = row.name, .findings = {}, .not_checkable = {}};
+    if (row.total) {
+      audit_rules::check_group(*row.total, row.total->max, settings, audited.findings);
+      audit_rules::note_unchecked(*row.total, row.total->max, settings, audited);
+    }
     for (const PrintedGroup& part : row.parts) {
       const auto max = part.max || !row.total ? part.max : row.total->max;
       audit_rules::check_group(part, max, settings, audited.findings);
+      audit_rules::note_unchecked(part, max, settings, audited);
     }
-    if (row.total) audit_rules::check_pooling(*row.total, row.parts, settings, audited.findings);
+    if (row.total) audit_rules::check_pooling(*row.total, row.parts, settings, audited);
     if (result.baseline_mm) audit_rules::check_score(row, *result.baseline_mm, audited.findings);
     if (!audited.findings.empty()) ++result.impossible_rows;
     result.rows.push_back(std::move(audited));

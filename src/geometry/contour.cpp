@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour.hpp>
+#include <incise/geometry/contour_checks.hpp>
 
 #include <fmt/format.h>
 
@@ -34,26 +35,6 @@ std::vector<Vec2> flat_points(const Contour& contour, const Vec3& approach) {
   flat.reserve(contour.points.size());
   for (const Vec3& p : contour.points) flat.push_back(view.to_view(p).head<2>());
   return flat;
-}
-
-bool lies_between(const Vec2& a, const Vec2& b, const Vec2& p) {
-  return (p.array() >= a.cwiseMin(b).array()).all() && (p.array() <= a.cwiseMax(b).array()).all();
-}
-
-/// Whether the closed segments ab and cd share a point.
-bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
-  if ((a.cwiseMax(b).array() < c.cwiseMin(d).array()).any()) return false;
-  if ((c.cwiseMax(d).array() < a.cwiseMin(b).array()).any()) return false;
-  const double c_side = plane_cross(b - a, c - a);
-  const double d_side = plane_cross(b - a, d - a);
-  const double a_side = plane_cross(d - c, a - c);
-  const double b_side = plane_cross(d - c, b - c);
-  if (((c_side > 0 && d_side < 0) || (c_side < 0 && d_side > 0)) &&
-      ((a_side > 0 && b_side < 0) || (a_side < 0 && b_side > 0))) {
-    return true;
-  }
-  return (c_side == 0 && lies_between(a, b, c)) || (d_side == 0 && lies_between(a, b, d)) ||
-         (a_side == 0 && lies_between(c, d, a)) || (b_side == 0 && lies_between(c, d, b));
 }
 
 }  // namespace
@@ -171,20 +152,7 @@ bool contains_in_view(const Contour& polygon, const Vec3& p, const Vec3& approac
 }
 
 bool crosses_itself_in_view(const Contour& contour, const Vec3& approach) {
-  std::vector<Vec2> flat = flat_points(contour, approach);
-  // Repeated points would make a segment touch the neighbour of its neighbour.
-  flat.erase(std::unique(flat.begin(), flat.end()), flat.end());
-  if (contour.is_closed && flat.size() > 1 && flat.front() == flat.back()) flat.pop_back();
-  const std::size_t n = flat.size();
-  if (n < 4) return false;
-  const std::size_t segments = contour.is_closed ? n : n - 1;
-  for (std::size_t i = 0; i < segments; ++i) {
-    for (std::size_t j = i + 2; j < segments; ++j) {
-      if (contour.is_closed && i == 0 && j == segments - 1) continue;  // neighbours through the seam
-      if (segments_meet(flat[i], flat[i + 1], flat[j], flat[(j + 1) % n])) return true;
-    }
-  }
-  return false;
+  return first_crossing_in_view(contour, approach).has_value();
 }
 
 Vec3 curve_centroid(const Contour& contour) {

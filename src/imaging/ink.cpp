@@ -147,20 +147,47 @@ double level_exceeded_by(const cv::Mat& values, std::size_t count) {
   return 0.0;
 }
 
+/// Where the picture is burnt out. White paper is as bright and hides nothing: what is nearly as bright and fills this
+/// share of the picture is no highlight.
+/// @param darkest  of each pixel's channels, 8 bits
+cv::Mat glare_in(const cv::Mat& darkest) {
+  constexpr int kPaperLevel = 215;
+  constexpr double kLeastPaper = 0.05;
+  constexpr int kStep = 4;
+  cv::Mat glare = darkest >= kGlareLevel;
+  cv::Mat small, pieces, stats, centers, is_paper;
+  cv::resize(darkest, small, {std::max(1, glare.cols / kStep), std::max(1, glare.rows / kStep)}, 0, 0, cv::INTER_AREA);
+  const int count = cv::connectedComponentsWithStats(small >= kPaperLevel, pieces, stats, centers, 8, CV_32S);
+  cv::Mat paper(small.size(), CV_8U, cv::Scalar(0));
+  for (int i = 1; i < count; ++i) {
+    if (stats.at<int>(i, cv::CC_STAT_AREA) >= kLeastPaper * static_cast<double>(small.total())) paper |= pieces == i;
+  }
+  if (cv::countNonZero(paper) > 0) {
+    cv::dilate(paper, paper, cv::getStructuringElement(cv::MORPH_RECT, {5, 5}));  // beside a line it is darker
+    cv::resize(paper, is_paper, glare.size(), 0, 0, cv::INTER_NEAREST);
+    glare.setTo(cv::Scalar(0), is_paper);
+  }
+  // A highlight's skirt is not burnt out, but has lost its colour, too.
+  const int width = 2 * kGlareSkirtPx + 1;
+  cv::dilate(glare, glare, cv::getStructuringElement(cv::MORPH_RECT, {width, width}));
+  return glare;
+}
+
 }  // namespace
 
 InkStrengths ink_strengths(const ColorPicture& picture) {
   static const Tables tables;
   static const Direction red(kRedHueDeg);
   static const Direction green(kGreenHueDeg);
-  InkStrengths result{cv::Mat(picture.height, picture.width, CV_32F), cv::Mat(picture.height, picture.width, CV_32F),
-                      cv::Mat(picture.height, picture.width, CV_8U)};
+  InkStrengths result{
+      cv::Mat(picture.height, picture.width, CV_32F), cv::Mat(picture.height, picture.width, CV_32F), {}};
+  cv::Mat darkest(picture.height, picture.width, CV_8U);
   for (int y = 0; y < picture.height; ++y) {
     const std::uint8_t* rgb =
         picture.rgb.data() + 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width);
     auto* red_row = result.red.ptr<float>(y);
     auto* green_row = result.green.ptr<float>(y);
-    auto* glare_row = result.glare.ptr<std::uint8_t>(y);
+    auto* darkest_row = darkest.ptr<std::uint8_t>(y);
     for (int x = 0; x < picture.width; ++x, rgb += 3) {
       // OKLab (Ottosson 2020). A change of light multiplies L, a and b alike, so that a/L and b/L do not see it.
       const float r = tables.linear(rgb[0]), g = tables.linear(rgb[1]), b = tables.linear(rgb[2]);
@@ -172,12 +199,10 @@ InkStrengths ink_strengths(const ColorPicture& picture) {
       const float along_b = (0.0259040371F * l + 0.7827717662F * m - 0.8086757660F * s) / lightness;
       red_row[x] = red.strength(along_a, along_b);
       green_row[x] = green.strength(along_a, along_b);
-      glare_row[x] = std::min({rgb[0], rgb[1], rgb[2]}) >= kGlareLevel ? 255 : 0;
+      darkest_row[x] = std::min({rgb[0], rgb[1], rgb[2]});
     }
   }
-  // A highlight's skirt is not burnt out, but has lost its colour, too.
-  const int width = 2 * kGlareSkirtPx + 1;
-  cv::dilate(result.glare, result.glare, cv::getStructuringElement(cv::MORPH_RECT, {width, width}));
+  result.glare = glare_in(darkest);
   return result;
 }
 

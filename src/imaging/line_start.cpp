@@ -67,14 +67,17 @@ Line border_of(const cv::Mat& places, int place, const cv::Mat& distance) {
 
 cv::Mat ink_mask(const InkMap& map) {
   constexpr double kGreyIsNoInk = 0.06;  // what has lost its colour on coloured tissue does not count
-  const cv::Mat above = map.likelihood > std::max(0.5, kGreyIsNoInk / map.contrast);
+  return without_specks(map.likelihood > std::max(0.5, kGreyIsNoInk / map.contrast), kLeastSpeckPixels);
+}
+
+cv::Mat without_specks(const cv::Mat& above, int least_pixels) {
   cv::Mat labels, stats, centers;
   const int count = cv::connectedComponentsWithStats(above, labels, stats, centers, 8, CV_32S);
   cv::Mat mask(above.size(), CV_8U, cv::Scalar(0));
   if (count <= 1) return mask;
   std::vector<std::uint8_t> is_kept(static_cast<std::size_t>(count), 0);
   for (int i = 1; i < count; ++i)
-    is_kept[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= kLeastSpeckPixels ? 255 : 0;
+    is_kept[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least_pixels ? 255 : 0;
   for (int v = 0; v < mask.rows; ++v) {
     const auto* from = labels.ptr<int>(v);
     auto* to = mask.ptr<std::uint8_t>(v);

@@ -23,6 +23,8 @@ void smooth(Line& line, bool is_closed, int passes);
 
 /// Pixels of ink: 255 where the likelihood passes one half, specks left out.
 [[nodiscard]] cv::Mat ink_mask(const InkMap& map);
+/// The mask without connected pieces of fewer pixels.
+[[nodiscard]] cv::Mat without_specks(const cv::Mat& above, int least_pixels);
 
 /// Part of the picture that a mask fills, and where it lies.
 struct MaskWindow {

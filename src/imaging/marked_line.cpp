@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kStepPx = 2.0;  // between the points of a line
 constexpr double kLeastDiscPx = 2.0;
-constexpr double kDiscOfGap = 0.65;      // of the rolling disc's radius to the gap that it must not pass
-constexpr double kWidestHiddenMm = 8.0;  // a painted band that crosses the other line hides at most this much of it
-constexpr double kLeastRingRadiusMm = 1.0;
-constexpr double kLeastLineMm = 8.0;
-constexpr double kGapToleranceMm = 0.18;  // where a gap's ends are not known better: blur eats at them,
-constexpr double kGapTolerancePx = 2.0;   // and the line has points only so often
+constexpr double kDiscOfGap = 0.65;         // of the rolling disc's radius to the gap that it must not pass
+constexpr double kWidestHiddenMm = 8.0;     // a painted band that crosses the other line hides at most this much of it
+constexpr double kLeastRingRadiusMm = 0.6;  // the inside of a tumour of 2 mm with a line of 12 pixels
+constexpr double kLeastLineMm = 3.0;        // the inner border of a ring too small to be a tumour: that is said later
+constexpr double kGapToleranceMm = 0.18;    // where a gap's ends are not known better: blur eats at them,
+constexpr double kGapTolerancePx = 2.0;     // and the line has points only so often
 constexpr int kPasses = 4;
 
 struct Start {

@@ -1,6 +1,7 @@
-#include "imaging/line_tracing.hpp"
+#include "imaging/photo_checks.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/geometry/contour_checks.hpp>
 #include <incise/imaging/photo_contours.hpp>
 
 #include <fmt/format.h>
@@ -11,10 +12,9 @@
 namespace incise {
 namespace {
 
+using imaging_detail::CheckedLine;
 using imaging_detail::InkMap;
 
-constexpr double kSmallestTumorMm = 2.0;
-constexpr double kLargestTumorMm = 100.0;
 constexpr double kRimOfCoverPx = 4.0;  // a line's blur hides a little more than its mask
 
 Contour in_plane(const MarkedLine& line, const PhotoScale& scale) {
@@ -27,12 +27,6 @@ Contour in_plane(const MarkedLine& line, const PhotoScale& scale) {
   return start_farthest_along(counter_clockwise(contour, -Vec3::UnitZ()), Vec3::UnitY());
 }
 
-double extent_mm(const Contour& contour) {
-  Box3 box;
-  for (const Vec3& p : contour.points) box.extend(p);
-  return box.sizes().maxCoeff();
-}
-
 cv::Mat widened(const cv::Mat& mask) {
   if (mask.empty()) return {};
   const int width = 2 * static_cast<int>(kRimOfCoverPx) + 1;
@@ -41,13 +35,13 @@ cv::Mat widened(const cv::Mat& mask) {
   return result;
 }
 
-/// The size comes first: where the scale is wrong, so is the length of a gap.
-void require_tumor(const MarkedLine& green, const Contour& edge, const std::filesystem::path& name) {
-  const double extent = extent_mm(edge);
-  if (extent < kSmallestTumorMm || extent > kLargestTumorMm) {
-    throw DataError(name, "", fmt::format("a tumour {:.4g} mm across", extent),
-                    fmt::format("{} to {} mm", kSmallestTumorMm, kLargestTumorMm), "Is the scale right?");
+void require_size(const Contour& edge, const std::filesystem::path& name) {
+  if (const auto problem = size_problem(edge, "a tumour", kLargestTumorMm)) {
+    throw DataError(name, "", problem->found, problem->expected, "Is the scale right?");
   }
+}
+
+void require_closed(const MarkedLine& green, const std::filesystem::path& name) {
   if (!green.is_closed) {
     // The widest gap that is not hidden is the first of them.
     const auto widest =
@@ -60,74 +54,13 @@ void require_tumor(const MarkedLine& green, const Contour& edge, const std::file
   }
 }
 
-/// A ring that is cut off by the picture's rim is not open: nobody knows.
-void require_in_view(const MarkedLine& line, const char* color, const ColorPicture& picture,
-                     const std::filesystem::path& name) {
-  const std::optional<Vec2> end = end_at_rim_px(line, picture.width, picture.height);
-  if (!end) return;
+void require_no_crossing(const Contour& contour, InkColor color, const std::filesystem::path& name) {
+  const auto at = first_crossing_in_view(contour, -Vec3::UnitZ());
+  if (!at) return;
   throw DataError(
       name, "",
-      fmt::format("a {} line that runs out of the picture, at pixel {:.0f}, {:.0f}", color, end->x(), end->y()),
-      "the whole line in view");
-}
-
-/// Ink that the ring found does not explain: a second line, or a second loop of one that crosses itself. Specks, as
-/// noise paints them in the dark, are no line.
-void require_nothing_else(const MarkedLine& line, LineEdge edge, const cv::Mat& mask, const char* color,
-                          const std::filesystem::path& name) {
-  constexpr double kMostElse = 0.4;     // share of the ink: blood is less
-  constexpr double kLeastPiece = 0.05;  // of the ring's own ink
-  constexpr int kBesidePx = 12;
-  if (!line.is_closed) return;
-  const int reach = (edge == LineEdge::Inner ? 2 : 1) * static_cast<int>(line.width_px) + kBesidePx;
-  cv::Mat elsewhere = mask.clone(), labels, stats, centers;
-  std::vector<cv::Point> points;
-  for (const Vec2& p : line.points_px) points.emplace_back(cvRound(p.x()), cvRound(p.y()));
-  cv::polylines(elsewhere, points, true, cv::Scalar(0), reach);
-  const double own = cv::countNonZero(mask) - cv::countNonZero(elsewhere);
-  double other = 0.0;
-  const int count = cv::connectedComponentsWithStats(elsewhere, labels, stats, centers, 8, CV_32S);
-  for (int i = 1; i < count; ++i) {
-    const double area = stats.at<int>(i, cv::CC_STAT_AREA);
-    if (area >= kLeastPiece * own) other += area;
-  }
-  const double share = other / std::max(1.0, own + other);
-  if (share <= kMostElse) return;
-  throw DataError(name, "", fmt::format("much {0} beside the {0} ring ({1:.0f} % of it)", color, 100.0 * share),
-                  "one simple ring", "A second line, or one that crosses itself? Something else of that colour?");
-}
-
-/// Pieces of ink away from the ring, longest side of each, mm: what neither blood nor the picture's grain leaves.
-void require_no_marks(const MarkedLine& ring, LineEdge edge, const cv::Mat& mask, const std::vector<Vec2>* within,
-                      double mm_per_pixel, const char* color, const char* place, const std::filesystem::path& name) {
-  constexpr double kLongestSpeckMm = 3.0;
-  constexpr int kBesidePx = 12;
-  if (!ring.is_closed) return;
-  cv::Mat elsewhere = mask.clone();
-  const auto pixels_of_line = [](const std::vector<Vec2>& line) {
-    std::vector<cv::Point> points;
-    for (const Vec2& p : line) points.emplace_back(cvRound(p.x()), cvRound(p.y()));
-    return points;
-  };
-  if (within != nullptr) {
-    cv::Mat inside = cv::Mat::zeros(mask.size(), mask.type());
-    cv::fillPoly(inside, std::vector<std::vector<cv::Point>>{pixels_of_line(*within)}, cv::Scalar(255));
-    cv::bitwise_and(elsewhere, inside, elsewhere);
-  }
-  const int reach = (edge == LineEdge::Inner ? 2 : 1) * static_cast<int>(ring.width_px) + kBesidePx;
-  cv::polylines(elsewhere, pixels_of_line(ring.points_px), true, cv::Scalar(0), reach);
-  cv::Mat labels, stats, centers;
-  const int count = cv::connectedComponentsWithStats(elsewhere, labels, stats, centers, 8, CV_32S);
-  for (int i = 1; i < count; ++i) {
-    const int longest = std::max(stats.at<int>(i, cv::CC_STAT_WIDTH), stats.at<int>(i, cv::CC_STAT_HEIGHT));
-    const double longest_mm = longest * mm_per_pixel;
-    if (longest_mm < kLongestSpeckMm) continue;
-    throw DataError(name, "",
-                    fmt::format("a {} mark of {:.1f} mm {}, at pixel {:.0f}, {:.0f}", color, longest_mm, place,
-                                centers.at<double>(i, 0), centers.at<double>(i, 1)),
-                    fmt::format("no {} there but the ring", color),
-                    "A second cut or tumour? Paint over it if it is neither");
-  }
+      fmt::format("a {} line that crosses itself at x {:.2f}, y {:.2f} mm", to_string(color), at->x(), at->y()),
+      "one simple curve");
 }
 
 Vec2 middle_of(const std::vector<Vec2>& points) {
@@ -157,23 +90,33 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   LineSettings line{.edge = LineEdge::Middle, .mm_per_pixel = result.mm_per_pixel, .max_gap_mm = settings.max_gap_mm};
   result.green = imaging_detail::trace_marked_line(green, green_mask, strengths.glare, widened(red_mask),
                                                    InkColor::Green, line, name);
-  require_in_view(result.green, "green", picture, name);
-  require_nothing_else(result.green, line.edge, green_mask, "green", name);
+  const CheckedLine edge{result.green,    line.edge, InkColor::Green, green_mask, line.mm_per_pixel,
+                         line.max_gap_mm, name};
+  imaging_detail::require_in_view(edge);
   result.tumor_edge = in_plane(result.green, scale);
-  require_tumor(result.green, result.tumor_edge, name);
-  require_no_marks(result.green, LineEdge::Middle, green_mask, nullptr, result.mm_per_pixel, "green",
-                   "beside the green ring", name);
+  require_size(result.tumor_edge, name);  // comes first: where the scale is wrong, so is the length of a gap
+  imaging_detail::require_simple(edge);
+  imaging_detail::require_nothing_else(edge);
+  require_closed(result.green, name);
+  require_no_crossing(result.tumor_edge, InkColor::Green, name);
+  imaging_detail::require_no_large_mark(edge, imaging_detail::marks_beside(edge, green_mask, nullptr),
+                                        "beside the green ring");
   result.mm_per_pixel = scale.mm_per_pixel(middle_of(result.green.points_px));
 
   line.mm_per_pixel = result.mm_per_pixel;
   line.edge = settings.red == RedLine::Kerf ? LineEdge::Inner : LineEdge::Middle;
   result.red =
       imaging_detail::trace_marked_line(red, red_mask, strengths.glare, widened(green_mask), InkColor::Red, line, name);
-  require_in_view(result.red, "red", picture, name);
-  require_nothing_else(result.red, line.edge, red_mask, "red", name);
-  require_no_marks(result.red, line.edge, red_mask, &result.green.points_px, line.mm_per_pixel, "red",
-                   "inside the tumour's edge", name);
+  const CheckedLine cut{result.red, line.edge, InkColor::Red, red_mask, line.mm_per_pixel, line.max_gap_mm, name};
+  imaging_detail::require_in_view(cut);
+  imaging_detail::require_simple(cut);
+  imaging_detail::require_nothing_else(cut);
+  imaging_detail::require_no_large_mark(cut, imaging_detail::marks_beside(cut, red_mask, &result.green.points_px),
+                                        "inside the tumour's edge");
   result.incision = in_plane(result.red, scale);
+  require_no_crossing(result.incision, InkColor::Red, name);
+  result.red_in_tumor = imaging_detail::marks_beside(cut, imaging_detail::faint_ink(red, result.green.points_px),
+                                                     &result.green.points_px);
   return result;
 }
 

@@ -195,13 +195,15 @@ std::optional<double> end_of_bar(const cv::Mat& grey, const Vec2& inside, const 
   return std::nullopt;
 }
 
-Ruler ruler_of_bar(const ColorPicture& picture, double length_mm, const std::filesystem::path& name) {
+/// Every solid straight bar without colour, black or white, longest first.
+std::vector<Stroke> bars_in(const ColorPicture& picture, const cv::Mat& grey) {
   constexpr double kFill = 0.85;
   constexpr double kAspect = 4.0;
+  constexpr double kLeastPx = 40.0;
   const cv::Mat rgb = pixels_of(picture);
-  cv::Mat grey, mask(rgb.size(), CV_8U), even(rgb.size(), CV_8U, cv::Scalar(127));
-  cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
-  std::optional<Stroke> best;
+  cv::Mat mask(grey.size(), CV_8U);
+  const cv::Mat even(grey.size(), CV_8U, cv::Scalar(127));
+  std::vector<Stroke> bars;
   for (const bool is_dark : {true, false}) {
     for (int v = 0; v < rgb.rows; ++v) {
       for (int u = 0; u < rgb.cols; ++u) {
@@ -211,15 +213,37 @@ Ruler ruler_of_bar(const ColorPicture& picture, double length_mm, const std::fil
       }
     }
     for (const Stroke& s : strokes_in(mask, even, kAspect)) {
-      if (s.fill < kFill || s.fill > 1.0 / kFill || s.length < 40.0) continue;
-      if (!best || s.length > best->length) best = s;
+      if (s.fill >= kFill && s.fill <= 1.0 / kFill && s.length >= kLeastPx) bars.push_back(s);
     }
   }
+  std::stable_sort(bars.begin(), bars.end(), [](const Stroke& a, const Stroke& b) { return a.length > b.length; });
+  return bars;
+}
+
+/// An instrument's shaft, a label or the next piece of a chequered bar passes for a bar, too: which one has the length
+/// that was given cannot be told.
+void require_one_bar(const std::vector<Stroke>& bars, const std::filesystem::path& name) {
+  constexpr double kOfLongest = 0.25;  // strokes of a label's letters are shorter
+  if (bars.size() < 2 || bars[1].length < kOfLongest * bars[0].length) return;
+  const auto text = [](const Stroke& bar) {
+    return fmt::format("one of {:.0f} pixels at pixel {:.0f}, {:.0f}", bar.length, bar.center.x(), bar.center.y());
+  };
+  throw DataError(name, "", fmt::format("{} bars, {} and {}", bars.size(), text(bars[0]), text(bars[1])),
+                  "one scale bar in view",
+                  "Cover the other, or give the scale with --mm-per-pixel or with the bar's two ends: --two-points.");
+}
+
+Ruler ruler_of_bar(const ColorPicture& picture, double length_mm, const std::filesystem::path& name) {
+  cv::Mat grey;
+  cv::cvtColor(pixels_of(picture), grey, cv::COLOR_RGB2GRAY);
+  const std::vector<Stroke> bars = bars_in(picture, grey);
   const auto refuse = [&] {
     throw DataError(name, "", "no scale bar (a solid black or white straight bar)", "one in view",
                     "Give the scale with --mm-per-pixel or two points of known distance instead.");
   };
-  if (!best) refuse();
+  if (bars.empty()) refuse();
+  require_one_bar(bars, name);
+  const Stroke* best = bars.data();
   // Ends on several lines along the bar, so that one blemish does not count.
   const Vec2 across(-best->direction.y(), best->direction.x());
   std::vector<double> lengths;

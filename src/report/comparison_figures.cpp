@@ -66,23 +66,33 @@ std::string shortened(const std::string& name, std::size_t most) {
 }
 
 /// Half of a panel: signed errors mirrored to be read as "towards the tumour" have the same zones upwards.
-void draw_absolute_zones(SvgWriter& svg, const PlotArea& area, const ZoneBorders& zones) {
-  const auto band = [&](double from, double to, std::string_view color, const char* label) {
+template <typename Draw>
+void for_each_absolute_zone(const PlotArea& area, const ZoneBorders& zones, const Draw& draw) {
+  const auto band = [&](double from, double to, std::string_view color, const char* name) {
     const double high = std::min(to, area.y_high);
-    if (high <= from) return;
-    svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(from) - area.y(high)},
-                  fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
-    svg.text({area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, label, "end",
-             fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
+    if (high > from) draw(from, high, color, name);
   };
   band(-zones.too_close_mm, -zones.positive_mm, ink::kTooClose, "too close, if towards the tumour");
   band(-zones.positive_mm, 1e9, ink::kReached, "failed, if towards the tumour");
 }
 
+void draw_absolute_zones(SvgWriter& svg, const PlotArea& area, const ZoneBorders& zones) {
+  for_each_absolute_zone(area, zones, [&](double low, double high, std::string_view color, const char*) {
+    svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(low) - area.y(high)},
+                  fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
+  });
+}
+
+void draw_absolute_zone_names(SvgWriter& svg, const PlotArea& area, const ZoneBorders& zones) {
+  for_each_absolute_zone(area, zones, [&](double, double high, std::string_view color, const char* name) {
+    draw_zone_name(svg, {area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, name, color);
+  });
+}
+
 void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& boxes, bool is_signed,
                 const ZoneBorders& zones) {
   if (is_signed) {
-    draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
+    draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm);
   } else {
     draw_absolute_zones(svg, area, zones);
   }
@@ -102,6 +112,11 @@ void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& bo
     draw_box(svg, area, center, box_numbers(values), boxes[k].color, std::min(24.0, 0.36 * pitch));
     svg.text({center, area.corner.y() + area.size.y() + 17.0},
              shortened(boxes[k].name, static_cast<std::size_t>(pitch / 7.0)), "middle", "font-size=\"11\"");
+  }
+  if (is_signed) {
+    draw_error_zone_names(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
+  } else {
+    draw_absolute_zone_names(svg, area, zones);
   }
 }
 
@@ -173,7 +188,7 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBo
   SvgWriter svg(760.0, 420.0, "Signed error by clock position",
                 "The error of each point against where it lies on a clock face over the tumour.");
   svg.rectangle({0.0, 0.0}, {760.0, 420.0}, "fill=\"#fff\"");
-  draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
+  draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm);
   draw_y_axis(svg, area, round_ticks(-limit, limit, 10), "signed error, mm");
   svg.line(area.at(0.0, 0.0), area.at(12.0, 0.0), "stroke=\"#555\" stroke-width=\"1.2\"");
   draw_x_axis(svg, area, {}, "clock position, h (12: up in the picture unless set)");
@@ -193,6 +208,7 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBo
     svg.text(legend + Vec2(28.0, 4.0), one.name);
     legend.x() += 50.0 + 7.0 * static_cast<double>(one.name.size());
   }
+  draw_error_zone_names(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
   svg.text({740.0, 28.0}, "dashed: before · full: after", "end", "font-size=\"11\" fill=\"#555\"");
   return svg.finish();
 }

@@ -7,21 +7,45 @@
 
 namespace incise {
 
-void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm,
-                      const std::string& close_label) {
-  const auto band = [&](double from, double to, std::string_view color, const std::string& label) {
+namespace {
+
+/// A zone as far as the plot shows it; nothing where it does not.
+template <typename Draw>
+void for_each_zone(const PlotArea& area, double reached_mm, double close_mm, const std::string& close_name,
+                   const Draw& draw) {
+  const auto band = [&](double from, double to, std::string_view color, const std::string& name) {
     const double low = std::max(from, area.y_low);
     const double high = std::min(to, area.y_high);
-    if (high <= low) return;
+    if (high > low) draw(low, high, color, name);
+  };
+  band(reached_mm, close_mm, ink::kTooClose, close_name);
+  band(-1e9, reached_mm, ink::kReached, "tumour edge reached");
+}
+
+}  // namespace
+
+void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm) {
+  for_each_zone(area, reached_mm, close_mm, "", [&](double low, double high, std::string_view color, const auto&) {
     svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(low) - area.y(high)},
                   fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
-    if (area.y(low) - area.y(high) > 14.0) {
-      svg.text({area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, label, "end",
-               fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
-    }
-  };
-  band(reached_mm, close_mm, ink::kTooClose, close_label);
-  band(-1e9, reached_mm, ink::kReached, "tumour edge reached");
+  });
+}
+
+void draw_error_zone_names(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm,
+                           const std::string& close_name) {
+  constexpr double kLeastHeightPx = 14.0;
+  for_each_zone(area, reached_mm, close_mm, close_name,
+                [&](double low, double high, std::string_view color, const std::string& name) {
+                  if (area.y(low) - area.y(high) <= kLeastHeightPx) return;
+                  draw_zone_name(svg, {area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, name, color);
+                });
+}
+
+void draw_zone_name(SvgWriter& svg, const Vec2& end_px, const std::string& name, std::string_view color) {
+  svg.text(end_px, name, "end",
+           "font-size=\"11\" fill=\"#fff\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"");
+  svg.text(end_px, name, "end",
+           fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
 }
 
 void draw_box(SvgWriter& svg, const PlotArea& area, double center_px, const BoxNumbers& box, std::string_view color,

@@ -56,8 +56,12 @@ std::vector<PlacedError> by_arc(const ReportIncision& incision) {
 }
 
 void draw_zones(SvgWriter& svg, const PlotArea& area, const ReportIncision& incision) {
-  draw_error_zones(svg, area, incision.reached_error_mm(), incision.close_error_mm(),
-                   fmt::format("closer than {} mm", number_text(incision.close_margin_mm)));
+  draw_error_zones(svg, area, incision.reached_error_mm(), incision.close_error_mm());
+}
+
+void draw_zone_names(SvgWriter& svg, const PlotArea& area, const ReportIncision& incision) {
+  draw_error_zone_names(svg, area, incision.reached_error_mm(), incision.close_error_mm(),
+                        fmt::format("closer than {} mm", number_text(incision.close_margin_mm)));
 }
 
 void draw_series_legend(SvgWriter& svg, std::span<const ReportIncision> incisions, Vec2 at) {
@@ -120,6 +124,7 @@ std::string error_by_angle_svg(std::span<const ReportIncision> incisions, const 
                  fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}",
                              ink::kSeries[k % ink::kSeries.size()], k == 0 ? " stroke-dasharray=\"5 3\"" : ""));
   }
+  draw_zone_names(svg, area, incisions.front());
   return svg.finish();
 }
 
@@ -176,6 +181,7 @@ std::string box_plot_svg(std::span<const ReportIncision> incisions, const Figure
       draw_box(svg, area, center, box_numbers(values), ink::kSeries[k % ink::kSeries.size()]);
       svg.text({center, 314.0}, incisions[k].name, "middle");
     }
+    if (is_signed) draw_zone_names(svg, area, incisions.front());
   }
   svg.text({width / 2.0, 340.0}, "line: median · diamond: mean · box: quartiles · whiskers: 1.5 interquartile ranges",
            "middle", "font-size=\"11\" fill=\"#555\"");

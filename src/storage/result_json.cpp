@@ -58,6 +58,7 @@ Json to_json(const Evaluation& e) {
   json["hu_score"] = or_null(e.hu_score);
   json["hu_score_ideal"] = or_null(e.hu_score_ideal);
   json["hu_score_seven"] = or_null(e.hu_score_seven);
+  json["hu_seven_unstable"] = e.hu_seven_unstable;
   json["hu_unstable"] = e.hu_unstable;
   json["hu_excess"] = or_null(e.hu_excess);
   json["hu_score_to_ideal"] = or_null(e.hu_score_to_ideal);

@@ -517,7 +517,68 @@ class EvaluateTest(CommandTest):
     def test_settings_out_of_range_are_the_command_lines_fault(self):
         small_case.write_contour(self.folder / "good.csv", small_case.ring())
         done = self.incise("evaluate", "--incision", "good.csv", "--tumor", "good.csv", "--approach", "0", "0", "0")
-        self.assert_refused(done, BAD_CASE, "approach")
+        self.assert_refused(done, BAD_CASE, "--approach")
+
+    def test_numbers_of_options_are_refused_in_the_words_of_all_errors(self):
+        small_case.write_contour(self.folder / "good.csv", small_case.ring())
+        contours = ("--incision", "good.csv", "--tumor", "good.csv")
+        for words, says in (
+            (("evaluate", "photo.png", "--mm-per-pixel", "-1"), "command line: --mm-per-pixel: found -1, expected a number above 0"),
+            (("evaluate", "photo.png", "--mm-per-pixel", "wide"), "--mm-per-pixel: found 'wide', expected a number above 0"),
+            (("evaluate", *contours, "--close-margin-mm", "-1"), "command line: --close-margin-mm: found -1, expected a distance above 0 mm"),
+            (("compare", "--before", "a", "b", "--after", "c", "d", "--alpha", "2"), "command line: --alpha: found 2, expected a level in (0, 1)"),
+            (("audit", "t.csv", "--n-at-least", "1"), "command line: --n-at-least: found 1, expected a number from 2 to"),
+        ):
+            with self.subTest(words=words):
+                done = self.incise(*words)
+                self.assert_refused(done, BAD_CASE, says)
+                self.assertEqual(done.stderr.count("expected"), 1, done.stderr)
+
+    def test_contours_that_cross_themselves_are_refused_with_their_place(self):
+        small_case.write_contour(self.folder / "good.csv", small_case.ring())
+        eight = [(10 + 8 * math.sin(t), 4 * math.sin(2 * t), 0.0) for t in (2 * math.pi * (k + 12.5) / 100 for k in range(100))]
+        small_case.write_contour(self.folder / "eight.csv", eight)
+        (self.folder / "eight.mrk.json").write_text(json.dumps({"markups": [{
+            "type": "ClosedCurve", "coordinateSystem": "LPS", "coordinateUnits": "mm",
+            "controlPoints": [{"position": list(p)} for p in eight]}]}))
+        lines = "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">" + " ".join(
+            f"{c}" for p in eight for c in p) + "</DataArray></Points>"
+        ids = " ".join(str(k) for k in range(100)) + " 0"
+        (self.folder / "eight.vtp").write_text(
+            '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian"><PolyData><Piece NumberOfPoints="100" NumberOfLines="1">'
+            + lines + '<Lines><DataArray type="Int64" Name="connectivity" format="ascii">' + ids
+            + '</DataArray><DataArray type="Int64" Name="offsets" format="ascii">101</DataArray></Lines></Piece></PolyData></VTKFile>')
+        for name in ("eight.csv", "eight.vtp", "eight.mrk.json"):
+            for incision, tumor in (("good.csv", name), (name, "good.csv")):
+                with self.subTest(incision=incision, tumor=tumor):
+                    done = self.incise("evaluate", "--incision", incision, "--tumor", tumor)
+                    self.assert_refused(done, BAD_DATA, name, "crosses itself", "10.00, ", "0.00 mm")
+        done = self.incise("evaluate", "--incision", "eight.csv", "--open", "--tumor", "good.csv")
+        self.assert_refused(done, BAD_DATA, "eight.csv", "crosses itself")
+
+    def test_a_tumor_of_another_scale_is_refused_as_in_photographs(self):
+        for across, limit in ((200.0, "2 to 100 mm"), (101.0, "2 to 100 mm"), (1.9, "2 to 100 mm")):
+            with self.subTest(across=across):
+                ring = lambda r: [(r * math.cos(2 * math.pi * k / 80), r * math.sin(2 * math.pi * k / 80), 0.0) for k in range(80)]
+                small_case.write_contour(self.folder / "tumor.csv", ring(0.5 * across))
+                small_case.write_contour(self.folder / "cut.csv", ring(min(0.5 * across + 5.0, 100.0)))
+                done = self.incise("evaluate", "--incision", "cut.csv", "--tumor", "tumor.csv")
+                self.assert_refused(done, BAD_DATA, "tumor.csv", "a tumour", "mm across", limit)
+
+    def test_an_open_cut_is_measured_against_its_line(self):
+        small_case.write_contour(self.folder / "line.csv", [(float(x), 0.0, 0.0) for x in range(31)])
+        small_case.write_contour(self.folder / "cut.csv", [(float(x), 0.4, 0.0) for x in range(31)])
+        result = self.json_of("evaluate", "--incision", "cut.csv", "--line", "line.csv")
+        self.assertEqual(result["outcome"], "success")
+        self.assertIsNone(result["closed_loop"])
+        self.assertAlmostEqual(result["signed_error_mm"]["mean"], 0.4, places=9)
+        self.assertAlmostEqual(result["coverage"], 1.0, places=9)
+        small_case.write_contour(self.folder / "short.csv", [(float(x), 0.4, 0.0) for x in range(25)])
+        result = self.json_of("evaluate", "--incision", "short.csv", "--line", "line.csv", status=NOT_ACCEPTABLE)
+        self.assertEqual(result["outcome"], "open_loop")
+        self.assertAlmostEqual(result["end_gap_mm"], 6.0, places=9)
+        done = self.incise("evaluate", "--incision", "cut.csv", "--line", "line.csv", "--tumor", "line.csv")
+        self.assert_refused(done, BAD_CASE, "--line and --tumor")
 
 
 class CommandLineTest(CommandTest):

@@ -106,6 +106,19 @@ class PhotoTest(CommandTest):
         self.assertLess(result["coverage"], 0.25)
         self.assertIsNone(result["hu_score"])
 
+    def test_red_in_the_tumour_is_told(self):
+        plain = self.json_of("evaluate", self.photo(TUMOR, self.ring(10.0)), "--mm-per-pixel", SCALE)
+        self.assertEqual((plain["red_in_tumor"], plain["warnings"]), ([], []))
+        photo = self.photo(TUMOR, self.ring(10.0), (0.0, 9.0, RED, 0.0))  # a spot of 10 pixels in the middle
+        done = self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--json", "--quiet")
+        result = json.loads(done.stdout)
+        self.assertEqual(result["outcome"], "success")
+        (spot,) = result["red_in_tumor"]
+        self.assertAlmostEqual(spot["u_px"], 250.0, delta=1.0)
+        self.assertAlmostEqual(spot["longest_mm"], 10.0 * SCALE, delta=3.0 * SCALE)
+        self.assertIn("1 red spot inside the tumour's edge", result["warnings"][0])
+        self.assertIn("warning: 1 red spot inside", done.stderr)
+
     def test_gaps_as_large_as_the_picture_are_refused(self):
         photo = self.photo(TUMOR, self.ring(10.0))
         done = self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--max-gap-mm", 1000)

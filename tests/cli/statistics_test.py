@@ -224,6 +224,17 @@ class AuditTest(CommandTest):
         self.assertEqual(self.json_of("audit", "t.csv")["impossible_rows"], 0)
         self.assertEqual(self.json_of("audit", "t.csv", "--grain", "1", status=NOT_ACCEPTABLE)["impossible_rows"], 1)
 
+    def test_pooling_is_checked_by_counts_and_what_is_not_is_said(self):
+        header = "a_mean_mm,a_sd_mm,a_n,b_mean_mm,b_sd_mm,b_n,mean_mm,sd_mm,n\n"
+        (self.folder / "t.csv").write_text(header + "1.0,0.2,10,3.0,0.2,10,1.1,1.05,20\n1.0,0.2,10,3.0,0.2,10,2.0,1.05,25\n"
+                                           "1.0,0.2,10,3.0,0.2,10,2.0,1.0,20\n1.0,0.2,-,3.0,0.2,-,2.0,0.5,-\n")
+        rows = self.json_of("audit", "t.csv", status=NOT_ACCEPTABLE)["rows"]
+        self.assertEqual([[f["rule"] for f in row["findings"]] for row in rows],
+                         [["pooled_mean_off"], ["pooled_n_off"], [], ["pooled_sd_too_small"]])
+        self.assertEqual([u["rule"] for u in rows[3]["not_checkable"] if u["rule"].startswith("pooled")], ["pooled_n_off", "pooled_mean_off"])
+        said = self.incise("audit", "t.csv").stdout
+        self.assertIn("pooled_mean_off (needs n of every part)", said)
+
     def test_a_column_that_was_not_understood_is_named(self):
         (self.folder / "t.csv").write_text("trial,mean_mm,sd_mm,maximum_mm\n1,1.0,9.0,2.0\n")
         result = self.json_of("audit", "t.csv")

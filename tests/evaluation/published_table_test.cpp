@@ -80,6 +80,12 @@ TEST(Audit, PassesWhateverNumbersReallyGive) {
   for (const AuditedRow& row : audit(rows).rows) {
     EXPECT_THAT(row.findings, IsEmpty()) << to_text(row.findings.front());
   }
+  for (PrintedRow& row : rows) {
+    for (PrintedGroup& part : row.parts) part.n.reset();
+  }
+  for (const AuditedRow& row : audit(rows, {.n_at_least = 2}).rows) {
+    EXPECT_THAT(row.findings, IsEmpty()) << "without n: " << to_text(row.findings.front());
+  }
 }
 
 TEST(Audit, KnowsThatTheSpreadIsBoundByMeanAndMax) {
@@ -164,6 +170,90 @@ TEST(Audit, KnowsWhatPoolingCanGive) {
   EXPECT_THAT(rules_of(row), IsEmpty());  // one part: nothing was pooled
 }
 
+PrintedGroup counted(const char* mean, const char* sd, std::size_t n) {
+  PrintedGroup result = group(mean, sd, "9.0");
+  result.max.reset();  // a greatest value of 9 would be another impossibility
+  result.n = n;
+  return result;
+}
+
+PrintedRow pooled(const PrintedGroup& total, const std::vector<PrintedGroup>& parts) {
+  return {.name = "pooled", .total = total, .parts = parts, .score_percent = {}};
+}
+
+std::vector<std::string> unchecked_of(const PrintedRow& row) {
+  const Audit found = audit({row});
+  std::vector<std::string> result;
+  for (const Unchecked& rule : found.rows.at(0).not_checkable) {
+    const std::string name(to_string(rule.rule));
+    if (name.starts_with("pooled")) result.push_back(name + ": " + rule.needs);
+  }
+  return result;
+}
+
+TEST(Audit, KnowsThePooledMeanWhereThePartsAreCounted) {
+  // (10 · 1.0 + 30 · 3.0) / 40 = 2.5; rounding leaves 2.45 to 2.55, printed 2.4 at most 2.45, 2.3 at most 2.35.
+  // Within: 9 · 0.04 + 29 · 0.04 = 1.52, between: 10 · 30 / 40 · 4 = 30, sd² = 31.52 / 39, sd = 0.899.
+  const std::vector<PrintedGroup> parts{counted("1.0", "0.2", 10), counted("3.0", "0.2", 30)};
+  EXPECT_THAT(rules_of(pooled(counted("2.5", "0.9", 40), parts)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(counted("2.4", "0.9", 40), parts)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(counted("2.3", "0.9", 40), parts)), ElementsAre(AuditRule::PooledMeanOff));
+  const Audit found = audit({pooled(counted("2.0", "0.9", 40), parts)});
+  ASSERT_EQ(found.rows[0].findings.size(), 1U);
+  EXPECT_NEAR(found.rows[0].findings[0].bound, 2.45, 1e-12);
+  EXPECT_THAT(rules_of(pooled(counted("2.5", "1.1", 40), parts)), ElementsAre(AuditRule::PooledSdTooLarge));
+  EXPECT_THAT(rules_of(pooled(counted("2.5", "0.7", 40), parts)), ElementsAre(AuditRule::PooledSdTooSmall));
+  EXPECT_THAT(unchecked_of(pooled(counted("2.5", "0.9", 40), parts)), IsEmpty());
+}
+
+TEST(Audit, KnowsThatCountsAddUp) {
+  const std::vector<PrintedGroup> parts{counted("1.0", "0.2", 10), counted("3.0", "0.2", 10)};
+  EXPECT_THAT(rules_of(pooled(counted("2.0", "1.0", 20), parts)), IsEmpty());
+  const Audit found = audit({pooled(counted("2.0", "1.0", 25), parts)});
+  ASSERT_EQ(found.rows[0].findings.size(), 1U);
+  EXPECT_EQ(found.rows[0].findings[0].rule, AuditRule::PooledNOff);
+  EXPECT_EQ(found.rows[0].findings[0].bound, 20.0);
+  // One count is missing, and follows: 25 − 10 = 15, mean (10 + 45) / 25 = 2.2.
+  std::vector<PrintedGroup> uncounted{parts[0], group("3.0", "0.2", "9.0")};
+  EXPECT_THAT(rules_of(pooled(counted("2.2", "1.0", 25), uncounted)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(counted("2.0", "1.0", 25), uncounted)), ElementsAre(AuditRule::PooledMeanOff));
+  EXPECT_THAT(rules_of(pooled(counted("1.0", "0.2", 10), uncounted)), ElementsAre(AuditRule::PooledNOff));
+}
+
+TEST(Audit, KnowsWhatTheMeansOfUncountedPartsAddToTheSpread) {
+  // A pooled mean half way between 1.0 and 3.0 takes half of the values from each, whatever n: 1.0 alone from between.
+  // For very many values sd² = 0.2² + 1² = 1.02²; rounding leaves (2.05 − 1.05)(2.95 − 2.05) + 0.15² = 0.960².
+  const std::vector<PrintedGroup> parts{group("1.0", "0.2", "9.0"), group("3.0", "0.2", "9.0")};
+  EXPECT_THAT(rules_of(pooled(group("2.0", "1.0", "9.0"), parts)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(group("2.0", "0.5", "9.0"), parts)), ElementsAre(AuditRule::PooledSdTooSmall));
+  EXPECT_THAT(rules_of(pooled(group("2.0", "1.3", "9.0"), parts)), ElementsAre(AuditRule::PooledSdTooLarge));
+  const Audit found = audit({pooled(group("2.0", "0.5", "9.0"), parts)});
+  EXPECT_NEAR(found.rows[0].findings.at(0).bound, std::sqrt(0.9225), 1e-9);
+  // 1.1 takes 5 % from the upper part: sd² = 0.04 + 0.1 · 1.9 = 0.23 = 0.48². A third part at 1.1 needs nothing from
+  // it.
+  EXPECT_THAT(rules_of(pooled(group("1.1", "1.0", "9.0"), parts)), ElementsAre(AuditRule::PooledSdTooLarge));
+  std::vector<PrintedGroup> three = parts;
+  three.push_back(group("2.0", "0.2", "9.0"));
+  EXPECT_THAT(rules_of(pooled(group("2.0", "0.2", "9.0"), three)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(group("2.0", "0.05", "9.0"), three)), ElementsAre(AuditRule::PooledSdTooSmall));
+}
+
+TEST(Audit, SaysWhatCannotBeChecked) {
+  const std::vector<PrintedGroup> parts{group("1.0", "0.2", "9.0"), group("3.0", "0.2", "9.0")};
+  EXPECT_THAT(unchecked_of(pooled(group("2.0", "1.0", "9.0"), parts)),
+              ElementsAre("pooled_n_off: n of the row and of its parts", "pooled_mean_off: n of every part"));
+  const std::vector<PrintedGroup> counts{counted("1.0", "0.2", 10), counted("3.0", "0.2", 10)};
+  EXPECT_THAT(unchecked_of(pooled(group("2.0", "1.0", "9.0"), counts)),
+              ElementsAre("pooled_n_off: n of the row and of its parts"));
+  EXPECT_THAT(unchecked_of(pooled(counted("2.0", "1.0", 25), counts)),
+              ElementsAre("pooled_mean_off: counts that agree"));
+  const Audit alone =
+      audit({PrintedRow{.name = "", .total = group("1.0", "0.2", "9.0"), .parts = {}, .score_percent = {}}});
+  ASSERT_EQ(alone.rows[0].not_checkable.size(), 2U);
+  EXPECT_EQ(alone.rows[0].not_checkable[0].rule, AuditRule::SdTooSmall);
+  EXPECT_EQ(alone.rows[0].not_checkable[0].needs, "n");
+}
+
 TEST(Audit, FindsTheScoreThatFollowsFromNoCommonBaseline) {
   const auto row = [](const char* mean, const char* max, const char* percent) {
     return PrintedRow{
@@ -184,7 +274,8 @@ TEST(Audit, FindsTheScoreThatFollowsFromNoCommonBaseline) {
 
 TEST(Audit, TwoScoresThatContradictEachOtherLeaveOpenWhichIsWrong) {
   const auto row = [](const char* percent) {
-    return PrintedRow{.name = percent, .total = group("1.00", "0.5", "2.00"), .parts = {}, .score_percent = printed(percent)};
+    return PrintedRow{
+        .name = percent, .total = group("1.00", "0.5", "2.00"), .parts = {}, .score_percent = printed(percent)};
   };
   const Audit found = audit({row("100.0"), row("50.0")});
   EXPECT_FALSE(found.baseline_mm.has_value());

@@ -153,6 +153,36 @@ TEST(FindRuler, MeasuresASolidBar) {
   }
 }
 
+TEST(FindRuler, RefusesTwoBarsWithLengthsAndPlaces) {
+  const auto bar = [](double from, double to, double y, const testing::Rgb& color) {
+    return testing::PaintedLine{.course = {{Vec3(from, y, 0), Vec3(to, y, 0)}, false}, .width_mm = 0.4, .color = color};
+  };
+  testing::PaintedPhoto photo;
+  photo.width = photo.height = 700;
+  photo.glare_spots = 0;
+  photo.shading = 0.0;
+  photo.lines = {bar(3, 8, 4, {15, 15, 15})};
+  const auto found = [&] { return find_ruler(testing::paint_photo(photo), RulerKind::Bar, 5.4, "bar.png"); };
+  const double alone = found().mm_per_pixel;
+  EXPECT_NEAR(alone / 0.03, 1.0, 0.02);
+  // A shaft twice as long, and one of half the length; black or white.
+  for (const double end : {13.0, 5.5}) {
+    for (const testing::Rgb& color : {testing::Rgb{20, 20, 22}, testing::Rgb{252, 252, 252}}) {
+      photo.lines = {bar(3, 8, 4, {15, 15, 15}), bar(3, end, 12, color)};
+      try {
+        static_cast<void>(found());
+        ADD_FAILURE() << "one of two bars was taken";
+      } catch (const DataError& error) {
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("2 bars, one of "));
+        EXPECT_THAT(error.what(), ::testing::ContainsRegex("at pixel 18[0-9], 56[0-9]"));
+      }
+    }
+  }
+  // A stroke of a label's letter is no second bar.
+  photo.lines = {bar(3, 15, 4, {15, 15, 15}), bar(3, 5, 12, {15, 15, 15})};
+  EXPECT_NEAR(found().mm_per_pixel, 0.03 * 5.4 / 12.4, 0.0005);
+}
+
 TEST(FindRuler, SaysThatThereIsNone) {
   testing::PaintedPhoto photo;
   photo.width = photo.height = 500;

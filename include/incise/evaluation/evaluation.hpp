@@ -77,7 +77,8 @@ struct Evaluation {
   std::optional<double> hu_score;     ///< tumour edge against incision, as OpenCV's I1; needs a closed contour
   std::optional<double> hu_score_ideal;  ///< what the edge's perfect offset by target_mm would score
   std::optional<double> hu_score_seven;
-  bool hu_unstable = false;  ///< see HuScore::is_unstable; of edge and incision
+  bool hu_seven_unstable = false;  ///< see HuScore::seven_is_unstable; of edge and incision
+  bool hu_unstable = false;        ///< see HuScore::is_unstable; of edge and incision
   /// hu_score − hu_score_ideal: what the score holds against the cut, and not against the shape of the tumour. May be
   /// negative: the score is no distance to the ideal.
   std::optional<double> hu_excess;

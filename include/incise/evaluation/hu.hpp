@@ -31,9 +31,16 @@ struct HuScore {
   std::optional<double> seven;
   /// An invariant of either shape lies within 10 % of the cut-off, so that a small change of shape makes `opencv` jump.
   bool is_unstable = false;
+  /// A small change of either shape makes `seven` jump. It has no cut-off, so that invariants which symmetry would make
+  /// 0 count by whatever noise makes of them: one of the second to fourth is at most kHuNoise, or one of the fifth to
+  /// seventh at most 10 % of the size that it could have, √(h3 h4³), √h2 h4, √(h3 h4³): its term may change its sign.
+  bool seven_is_unstable = false;
 };
 
 inline constexpr double kHuCutOff = 1e-5;  ///< of OpenCV's matchShapes
+/// Of the second to fourth invariants, squares of moments: an error of 0.03 mm in a contour 12 mm across makes moments
+/// of 1e-3.
+inline constexpr double kHuNoise = 1e-6;
 
 /// @throws InvalidArgument for an invariant that is not finite. Source: [Paper, III-A.1].
 [[nodiscard]] HuScore hu_score(const std::array<double, 7>& a, const std::array<double, 7>& b);

@@ -53,9 +53,11 @@ enum class AuditRule {
   MeanTooSmall,       ///< n · mean < max + (n − 1) · least: the greatest value alone needs more; needs n
   MeanNotOnGrain,     ///< no sum of n multiples of the grain has this mean: [BrownHeathers2017]; needs n and grain
   PooledMeanOutside,  ///< below every part's mean, or above
-  PooledSdTooLarge,   ///< sd² > greatest part's sd² + what the parts' means can add
-  PooledSdTooSmall,   ///< sd² < least part's sd²
-  ScoreOffBaseline,   ///< the per cent does not follow from mean, max and the baseline that most rows agree on
+  PooledMeanOff,      ///< not Σ n_i mean_i / Σ n_i; needs n of every part
+  PooledNOff,         ///< n of the row is not the sum of its parts'; needs them
+  PooledSdTooLarge,  ///< (N−1) sd² > Σ (n_i−1) sd_i² + Σ n_i (mean_i − mean)²; without n: for any shares with that mean
+  PooledSdTooSmall,  ///< (N−1) sd² < the same
+  ScoreOffBaseline,  ///< the per cent does not follow from mean, max and the baseline that most rows agree on
 };
 
 [[nodiscard]] std::string_view to_string(AuditRule rule);  ///< mean_below_least, negative_sd, …
@@ -70,9 +72,17 @@ struct Finding {
 /// One sentence for a person: rule, numbers, bound.
 [[nodiscard]] std::string to_text(const Finding& finding);
 
+/// A rule that needs a number which the table does not print.
+struct Unchecked {
+  AuditRule rule = AuditRule::SdTooLarge;
+  std::string group;  ///< as in Finding
+  std::string needs;
+};
+
 struct AuditedRow {
   std::string name;
-  std::vector<Finding> findings;  ///< empty: nothing impossible
+  std::vector<Finding> findings;         ///< empty: nothing impossible
+  std::vector<Unchecked> not_checkable;  ///< what "nothing impossible" does not cover
 };
 
 struct Audit {

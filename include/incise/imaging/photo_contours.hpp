@@ -20,6 +20,12 @@ struct PhotoSettings {
   double max_gap_mm = 1.0;  ///< a ring with a longer gap is open, >= 0
 };
 
+/// A piece of ink that belongs to no line.
+struct PhotoMark {
+  Vec2 at_px = Vec2::Zero();  ///< its middle
+  double longest_mm = 0.0;    ///< longer side of the box round it
+};
+
 /// The curves of one top-view photograph, mm in the picture's plane (x to the right, y up, z = 0): seen along -z.
 struct PhotoContours {
   Contour tumor_edge;  ///< closed, counter-clockwise, from its topmost point on
@@ -27,12 +33,16 @@ struct PhotoContours {
   MarkedLine green;    ///< the same in pixels, with gaps and width
   MarkedLine red;
   double mm_per_pixel = 0.0;  ///< at the tumour
+  /// Red inside the tumour's edge that is not the red line, largest first: blood, or a cut that went astray. From 8
+  /// pixels of a third of the line's strength and 8 times the tissue's own spread.
+  std::vector<PhotoMark> red_in_tumor;
 };
 
 /// Measures red and green lines of a photograph; see find_marked_line. Where one line crosses the other, the hidden
 /// part of the lower one is bridged (up to 8 mm). An open red ring is a result; an open green one is not.
-/// @throws DataError: no red, no green, two tumours, a line that crosses itself, a tumour edge that is open (with the
-/// width of the opening), or less than 2 or more than 100 mm across ("is the scale right?").
+/// @throws DataError: no red, no green, two tumours, a line that crosses itself or has a loop (with its place), a mark
+/// of 3 mm or more beside the green ring or red inside it, a tumour edge that is open (with the width of the opening),
+/// or less than kSmallestTumorMm or more than kLargestTumorMm across ("is the scale right?").
 [[nodiscard]] PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale& scale,
                                                 const PhotoSettings& settings, const std::filesystem::path& name);
 

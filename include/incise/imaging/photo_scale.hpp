@@ -41,7 +41,8 @@ struct Ruler {
 };
 
 /// Finds a ruler. @param length_mm  from tick to tick (of the finest ticks), or of the whole bar.
-/// @throws DataError where none is found (fewer than 8 evenly spaced ticks; no solid bar), naming what was seen.
+/// @throws DataError where none is found (fewer than 8 evenly spaced ticks; no solid bar), naming what was seen; where
+/// a second bar is at least a quarter as long as the longest, with lengths and places.
 [[nodiscard]] Ruler find_ruler(const ColorPicture& picture, RulerKind kind, double length_mm,
                                const std::filesystem::path& name);
 

@@ -1,0 +1,56 @@
+#include "option_checks.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace incise::cli {
+namespace {
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const char* end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(begin, end, value);
+  if (error != std::errc{} || at != end || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+template <typename IsAllowed>
+CLI::Validator check_of(const std::string& option, const std::string& expected, const IsAllowed& is_allowed) {
+  return CLI::Validator(
+      [option, expected, is_allowed](std::string& text) {
+        const std::optional<double> value = number_in(text);
+        if (!value || !is_allowed(*value))
+          throw CaseError("command line", option, value ? text : "'" + text + "'", expected);
+        return std::string();
+      },
+      "");
+}
+
+}  // namespace
+
+CLI::Validator above_zero(const std::string& option) {
+  return check_of(option, "a number above 0", [](double value) { return value > 0.0; });
+}
+
+CLI::Validator between(const std::string& option, double low, double high) {
+  return check_of(option, fmt::format("a number from {} to {}", low, high),
+                  [low, high](double value) { return value >= low && value <= high; });
+}
+
+void require_valid(const std::vector<std::string>& violations) {
+  if (violations.empty()) return;
+  const Complaint complaint = complaint_of(violations.front(), "settings that can be used");
+  std::string option = complaint.field.empty() ? "" : "--" + complaint.field;
+  std::replace(option.begin(), option.end(), '_', '-');
+  throw CaseError("command line", option, complaint.found, complaint.expected);
+}
+
+}  // namespace incise::cli
