@@ -56,7 +56,7 @@ void add_provenance(const std::filesystem::path& folder, const char* what, Repor
 }
 
 /// Tip against path, in a sentence.
-std::string headline(const Json& replay) {
+std::string tip_against_path(const Json& replay) {
   const auto number = [&replay](const char* key) {
     return replay.contains(key) && replay.at(key).is_number() ? replay.at(key).get<double>() : -1.0;
   };
@@ -89,7 +89,7 @@ void add_on_tissue(const std::filesystem::path& registration, const std::filesys
   if (!replay.empty()) {
     ReportPicture picture = picture_of(replay, "replay", "replay", kReplay);
     picture.title = "The program";
-    picture.lead = headline(results_in(replay, "replay.json", "replay"));
+    picture.lead = tip_against_path(results_in(replay, "replay.json", "replay"));
     add_provenance(replay, "replay", data);
     data.on_tissue.push_back(std::move(picture));
   }
