@@ -27,7 +27,7 @@ constexpr double kFinalSigma = 0.06;        // of the drift that starts from a p
 constexpr double kFinalWidth = 0.08;        // of the ICP after the drift
 constexpr double kDifferent = 0.08;         // rms distance, in radii, from which on a pose counts as another one
 constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
-constexpr double kMirrorRatio = 0.95;       // of scores, beyond which one of source and mirror image fits clearly better
+constexpr double kMirrorRatio = 0.95;       // of scores and residuals: beyond it source or mirror image fits better
 constexpr double kUsualScale = 0.05;        // both sensors are metric
 
 /// Both clouds about the target's middle, in units of its radius, and the way back.
@@ -243,13 +243,14 @@ class Registering {
     std::optional<PoseSearchSettings> search;
     if (!settings_.start) search = search_settings();
     const Misfit proper = misfit_of(source_, asked_, target_, best.transform, best.width, score_width_, workers_);
-    const Misfit mirror =
-        mirror_image_misfit(source_, target_, best.transform, search, finish_settings(), score_width_, workers_, monitor_);
+    const Misfit mirror = mirror_image_misfit(source_, target_, best.transform, search, finish_settings(), score_width_,
+                                              workers_, monitor_);
     result.shape_rmse_mm = proper.rmse * frame_.length;
     result.mirror_score = mirror.score;
     result.mirror_rmse_mm = mirror.rmse * frame_.length;
-    is_mirrored_ = proper.score < kMirrorRatio * mirror.score && mirror.fit_fraction >= settings_.least_fit &&
-                   mirror.rmse <= settings_.largest_rmse;
+    // Both have to say so: where tissue has settled, a few of the mirror image's points may lie better and most worse.
+    is_mirrored_ = proper.score < kMirrorRatio * mirror.score && mirror.rmse < kMirrorRatio * proper.rmse &&
+                   mirror.fit_fraction >= settings_.least_fit && mirror.rmse <= settings_.largest_rmse;
     result.is_handedness_determined = mirror.score < kMirrorRatio * proper.score;
   }
 
@@ -295,9 +296,10 @@ class Registering {
          fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %",
                      100.0 * result.inlier_fraction, 100.0 * settings_.least_inliers));
     fail(result.fit_fraction < settings_.least_fit, RegistrationOutcome::PoorFit,
-         fmt::format("only {:.0f} % of the source's points above the target lie on it, expected at least {:.0f} %: another "
-                     "shape, or its mirror image",
-                     100.0 * result.fit_fraction, 100.0 * settings_.least_fit));
+         fmt::format(
+             "only {:.0f} % of the source's points above the target lie on it, expected at least {:.0f} %: another "
+             "shape, or its mirror image",
+             100.0 * result.fit_fraction, 100.0 * settings_.least_fit));
     fail(result.rmse_mm > settings_.largest_rmse * frame_.length, RegistrationOutcome::PoorFit,
          fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm,
                      settings_.largest_rmse * frame_.length));
