@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
+#include <incise/geometry/contour_checks.hpp>
 #include <incise/robot/checks.hpp>
 
 #include <fmt/format.h>
@@ -115,6 +116,10 @@ Contour seen_along(const Vec3& axis, Contour contour) {
   return contour;
 }
 
+std::string place_text(const Vec3& p) {
+  return fmt::format("{:.2f}, {:.2f}, {:.2f} mm", p.x(), p.y(), p.z());
+}
+
 /// What concerns the course alone, without the arm.
 class CourseChecker {
  public:
@@ -142,7 +147,8 @@ class CourseChecker {
     const auto pose = std::find_if(cut_.begin(), cut_.end(),
                                    [&](std::size_t i) { return program_.poses[i].waypoint >= widest.after; });
     list_.at_most("gap", widest.longest_mm, widest.limit_mm, "mm", pose == cut_.end() ? cut_.back() : *pose,
-                  "longest way from one waypoint of the ring to the next");
+                  "longest way from one waypoint of the ring to the next. A ring is taken to have evenly spaced "
+                  "waypoints: sample long straight sides as finely as its curves");
   }
 
   void self_crossing() {
@@ -192,6 +198,19 @@ class CourseChecker {
       return list_.holds("margin", false,
                          "a ring keeps away from a tumour edge, and the path holds none of three points or more");
     }
+    if (const auto at = first_crossing_in_view(path_.tumor_edge, axis_)) {
+      list_.holds(
+          "margin", false,
+          fmt::format("the tumour edge is a simple curve, seen along the mean axis: it crosses itself at {}, so "
+                      "that what lies inside it is not known",
+                      place_text(*at)));
+    } else {
+      keeps_away();
+    }
+    if (settings_.must_be_ring) encloses();
+  }
+
+  void keeps_away() {
     const Contour seen_edge = seen_along(axis_, path_.tumor_edge);
     Worst closest;  // of the negative margin
     const auto see = [&](double distance, const Vec3& point, std::size_t pose) {
@@ -206,22 +225,32 @@ class CourseChecker {
     list_.at_least("margin", -closest.value, settings_.close_margin_mm, "mm", closest.pose,
                    "least distance of the needle from the tumour edge, where it enters and of its tip as seen along "
                    "the mean axis (negative: inside)");
-    if (settings_.must_be_ring) encloses();
   }
 
   void encloses() {
     Contour ring{{}, true};
     for (const std::size_t i : cut_) ring.points.push_back(program_.poses[i].entry_mm());
-    const bool goes_round = std::all_of(path_.tumor_edge.points.begin(), path_.tumor_edge.points.end(),
-                                        [&](const Vec3& point) { return contains_in_view(ring, point, axis_); });
-    double farthest_mm = 0.0;
-    for (const Vec3& point : path_.tumor_edge.points) {
-      farthest_mm = std::max(farthest_mm, std::abs(axis_.dot(point - nearest_on(ring, point).position_mm)));
+    const Contour seen_ring = seen_along(axis_, ring);
+    Worst outside, farthest;  // index: of the edge's point
+    for (std::size_t k = 0; k < path_.tumor_edge.points.size(); ++k) {
+      const Vec3& point = path_.tumor_edge.points[k];
+      if (!contains_in_view(ring, point, axis_))
+        outside.see(nearest_on(seen_ring, seen_along(axis_, point)).distance_mm, k);
+      farthest.see(std::abs(height_above(ring, point)), k);
     }
-    list_.holds("encloses", goes_round && farthest_mm <= settings_.max_edge_height_mm,
-                fmt::format("the ring goes round the tumour edge, seen along the mean axis, and no point of the edge "
-                            "is more than {} mm above or below it",
-                            settings_.max_edge_height_mm));
+    if (outside.pose) {
+      const Vec3& point = path_.tumor_edge.points[*outside.pose];
+      return list_.holds("encloses", false,
+                         fmt::format("the ring goes round the tumour edge, seen along the mean axis: the edge lies "
+                                     "outside it at {}, by {:.2f} mm",
+                                     place_text(point), outside.value),
+                         pose_next_to(nearest_on(seen_ring, seen_along(axis_, point))));
+    }
+    const Vec3& point = path_.tumor_edge.points[*farthest.pose];
+    list_.at_most("encloses", farthest.value, settings_.max_edge_height_mm, "mm", pose_next_to(nearest_on(ring, point)),
+                  fmt::format("the ring goes round the tumour edge, seen along the mean axis; the edge's point that is "
+                              "farthest from its height lies {} it, at {}",
+                              height_above(ring, point) < 0.0 ? "below" : "above", place_text(point)));
   }
 
   void deviation(const ToolPath* intended) {
@@ -273,6 +302,16 @@ class CourseChecker {
     for (const CoursePlace& p : places_) farthest.see(nearest_on(path_.tumor_edge, p.entry_mm).distance_mm, p.pose);
     list_.at_most("edge_distance", farthest.value, settings_.mark_distance_mm, "mm", farthest.pose,
                   "greatest distance of the mark from the tumour edge");
+  }
+
+  /// Of `point` above the nearest place of the ring, against the mean axis; mm, negative: below.
+  [[nodiscard]] double height_above(const Contour& ring, const Vec3& point) const {
+    return axis_.dot(nearest_on(ring, point).position_mm - point);
+  }
+
+  /// Of a place on the ring through the poses of the cut.
+  [[nodiscard]] std::size_t pose_next_to(const ContourPoint& place) const {
+    return cut_[(place.segment + (place.fraction > 0.5 ? 1 : 0)) % cut_.size()];
   }
 
   /// A pose before the first crossing, found by taking points away from the end until no crossing is left.

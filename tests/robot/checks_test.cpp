@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace incise {
@@ -127,6 +128,45 @@ TEST(CheckProgram, FindsARingBesideOrAboveTheTumourEdge) {
   }
 }
 
+TEST(CheckProgram, NamesTheEdgePointThatIsWorst) {
+  ToolPath path = ring_path();
+  EXPECT_NEAR(named(check_program(make_program(path), path), "encloses").value, 0.0, 1e-9);
+  path.tumor_edge.points[12].z() += 25.0;  // at 600, 10
+  const auto high = check_program(make_program(path), path);
+  EXPECT_THAT(failures(high), ::testing::ElementsAre("encloses"));
+  EXPECT_NEAR(named(high, "encloses").value, 25.0, 1e-9);
+  EXPECT_NEAR(static_cast<double>(named(high, "encloses").waypoint.value()), 12.0, 1.0);
+  EXPECT_THAT(named(high, "encloses").message(),
+              ::testing::AllOf(::testing::HasSubstr("encloses: 25 mm at waypoint 1"),
+                               ::testing::HasSubstr("has to be <= 20 mm"),
+                               ::testing::HasSubstr("lies above it, at 600.00, 10.00, 125.00 mm")));
+  path.tumor_edge.points[12].z() -= 50.0;
+  EXPECT_THAT(named(check_program(make_program(path), path), "encloses").message(),
+              ::testing::HasSubstr("lies below it, at 600.00, 10.00, 75.00 mm"));
+  path = ring_path();
+  path.tumor_edge.points[12].y() = 25.0;  // the ring's radius is 15: 10 mm outside it, next to its waypoint 12
+  const auto beyond = check_program(make_program(path), path);
+  EXPECT_THAT(failures(beyond), ::testing::Contains("encloses"));
+  EXPECT_THAT(named(beyond, "encloses").message(),
+              ::testing::AllOf(::testing::HasSubstr("encloses: not so at waypoint 1"),
+                               ::testing::HasSubstr("outside it at 600.00, 25.00, 100.00 mm, by 10.0")));
+}
+
+TEST(CheckProgram, FindsATumourEdgeThatCrossesItself) {
+  ToolPath path = ring_path();
+  auto& edge = path.tumor_edge.points;
+  std::reverse(edge.begin() + 1, edge.begin() + 24);  // an eight: 0, 23, 22 … 1, 24, 25 …
+  for (const double lift_mm : {0.0, 3.0}) {           // a crossing is one that is seen: the strands need not touch
+    for (std::size_t i = 1; i < 24; ++i) edge[i].z() = 100.0 + lift_mm;
+    const auto checks = check_program(make_program(path), path);
+    EXPECT_THAT(failures(checks), ::testing::ElementsAre("margin"));
+    // The strands 0 to 23 and 1 to 24 meet above the centre: 10 sin 7.5° · 10 / (10 + 10 cos 7.5°) = 0.655.
+    EXPECT_THAT(named(checks, "margin").message(),
+                ::testing::HasSubstr("margin: not so: the tumour edge is a simple curve, seen along the mean axis: it "
+                                     "crosses itself at 600.00, 0.66, 100.00 mm"));
+  }
+}
+
 TEST(CheckProgram, FindsARingWithoutATumourEdge) {
   for (const std::size_t points : {0U, 1U, 2U}) {
     ToolPath path = ring_path();
@@ -140,6 +180,32 @@ TEST(CheckProgram, FindsWaypointsThatAreMissing) {
   path.waypoints.erase(path.waypoints.begin(), path.waypoints.begin() + 5);
   EXPECT_THAT(failures_of(path), ::testing::ElementsAre("gap"));
   EXPECT_THAT(named(check_program(make_program(path), path), "gap").message(), ::testing::HasSubstr("gap: 11.48 mm"));
+}
+
+TEST(CheckProgram, LongStraightSidesPassOnceTheyAreSampledEvenly) {
+  // A square of 30 mm with round corners of 4 mm, whose corners are sampled every 0.5 mm and whose sides not at all.
+  ToolPath path = ring_path();
+  Contour square;
+  for (int corner = 0; corner < 4; ++corner) {
+    for (int k = 0; k <= 12; ++k) {
+      const double angle = 0.5 * units::kPi * (corner + k / 12.0);
+      const double middle = 0.5 * units::kPi * (corner + 0.5);
+      const Vec3 center =
+          Vec3(600.0, 0.0, 100.0) + 11.0 * std::sqrt(2.0) * Vec3(std::cos(middle), std::sin(middle), 0.0);
+      square.points.push_back(center + 4.0 * Vec3(std::cos(angle), std::sin(angle), 0.0));
+    }
+  }
+  const auto follow = [&](const Contour& contour) {
+    path.waypoints.clear();
+    for (const Vec3& point : contour.points) path.waypoints.push_back({point, -Vec3::UnitZ(), 5.0, 7.0});
+  };
+  follow(square);
+  const auto sparse = check_program(make_program(path), path);
+  EXPECT_THAT(failures(sparse), ::testing::Contains("gap"));
+  EXPECT_NEAR(named(sparse, "gap").value, 22.0, 1e-9);
+  EXPECT_THAT(named(sparse, "gap").message(), ::testing::HasSubstr("sample long straight sides"));
+  follow(resample(square, 113));
+  EXPECT_THAT(failures_of(path), ::testing::IsEmpty());
 }
 
 TEST(CheckProgram, FindsANeedleThatLeansUnderTheTumour) {

@@ -99,13 +99,14 @@ struct ProgramChecks {
 /// - `finite`: every number of the program is finite; if not, no other check is made
 /// - `frame`: the path is given in the robot's base frame
 /// - `closed` (rings): the path is closed and the cut ends where it began, to 0.01 mm
-/// - `gap` (rings): no two neighbouring waypoints lie far apart
+/// - `gap` (rings): no two neighbouring waypoints lie far apart, which takes evenly spaced ones for granted
 /// - `self_crossing`: the entry course crosses itself nowhere, seen along the mean axis
 /// - `speed_min`, `speed_max`: nominal tip speed while cutting; a mark: within its tolerance of 2 mm/s
 /// - `depth`: that planned within the tolerance, everywhere: below the surface if one is given, else as the path says
 /// - `margin` (incisions): the needle keeps `close_margin_mm` outside the tumour edge where it enters, and its tip does
-///   so too, seen along the mean axis. A ring without an edge fails
-/// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height
+///   so too, seen along the mean axis. A ring without an edge fails, and so does an edge that crosses itself
+///   in that view
+/// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height: its worst point is named
 /// - `edge_distance` (marks): the entry course follows the tumour edge within `mark_distance_mm`
 /// - `deviation` (with an intended path): neither course is farther than `max_deviation_mm` from the other
 /// - `chord_error`: straight moves and their blends stay near the smooth course
