@@ -37,11 +37,11 @@ void check_counted(const PrintedGroup& group, const AuditSettings& settings, std
   if (high(group.mean) < least_mean - kSlack) {
     findings.push_back({AuditRule::MeanTooSmall, group.name, group.mean.value, least_mean});
   }
-  if (*group.n < 2) return;
+  if (*group.n < 2 || !group.sd) return;
   const double reach = std::max(0.0, low(*group.max) - high(group.mean));
   const double least_sd = reach * std::sqrt(n) / (n - 1.0);
-  if (high(group.sd) < least_sd - kSlack) {
-    findings.push_back({AuditRule::SdTooSmall, group.name, group.sd.value, least_sd});
+  if (high(*group.sd) < least_sd - kSlack) {
+    findings.push_back({AuditRule::SdTooSmall, group.name, group.sd->value, least_sd});
   }
 }
 
@@ -49,7 +49,7 @@ void check_counted(const PrintedGroup& group, const AuditSettings& settings, std
 
 void check_group(const PrintedGroup& group, const std::optional<PrintedNumber>& max, const AuditSettings& settings,
                  std::vector<Finding>& findings) {
-  for (const auto& number : {std::optional(group.mean), std::optional(group.sd), max, group.min}) {
+  for (const auto& number : {std::optional(group.mean), group.sd, max, group.min}) {
     if (number) require_finite(*number, group.name);
   }
   const auto find = [&](AuditRule rule, double printed, double bound) {
@@ -57,17 +57,17 @@ void check_group(const PrintedGroup& group, const std::optional<PrintedNumber>& 
   };
   const std::size_t before = findings.size();
   if (high(group.mean) < settings.least - kSlack) find(AuditRule::MeanBelowLeast, group.mean.value, settings.least);
-  if (high(group.sd) < -kSlack) find(AuditRule::NegativeSd, group.sd.value, 0.0);
+  if (group.sd && high(*group.sd) < -kSlack) find(AuditRule::NegativeSd, group.sd->value, 0.0);
   if (max && high(*max) < low(group.mean) - kSlack) find(AuditRule::MaxBelowMean, max->value, low(group.mean));
   if (group.min && low(*group.min) > high(group.mean) + kSlack) {
     find(AuditRule::MinAboveMean, group.min->value, high(group.mean));
   }
   // Bounds on the spread mean nothing round a mean that is itself impossible.
   if (findings.size() > before) return;
-  if (max) {
+  if (max && group.sd) {
     const double bottom = group.min ? std::max(settings.least, low(*group.min)) : settings.least;
     const double bound = greatest_sd(group, bottom, high(*max), settings);
-    if (low(group.sd) > bound + kSlack) find(AuditRule::SdTooLarge, group.sd.value, bound);
+    if (low(*group.sd) > bound + kSlack) find(AuditRule::SdTooLarge, group.sd->value, bound);
   }
   if (group.n) check_counted(group, settings, findings);
 }
@@ -75,12 +75,13 @@ void check_group(const PrintedGroup& group, const std::optional<PrintedNumber>& 
 void note_unchecked(const PrintedGroup& group, const std::optional<PrintedNumber>& max, const AuditSettings& settings,
                     AuditedRow& row) {
   const auto note = [&](AuditRule rule, const char* needs) { row.not_checkable.push_back({rule, group.name, needs}); };
-  if (!max) note(AuditRule::SdTooLarge, "max");
-  if (!group.n || !group.max) {
-    const char* needs = group.max ? "n" : group.n ? "its own max" : "n and its own max";
-    note(AuditRule::SdTooSmall, needs);
-    note(AuditRule::MeanTooSmall, needs);
-  }
+  // The sd of one value is 0 by definition: where it is not printed, nothing can be wrong with it.
+  const bool has_sd_to_check = group.sd || group.n != 1U;
+  if (has_sd_to_check && (!max || !group.sd)) note(AuditRule::SdTooLarge, group.sd ? "max" : "sd");
+  const bool is_bare = !group.n || !group.max;
+  const char* needs = group.max ? "n" : group.n ? "its own max" : "n and its own max";
+  if (has_sd_to_check && (is_bare || !group.sd)) note(AuditRule::SdTooSmall, group.sd ? needs : "sd");
+  if (is_bare) note(AuditRule::MeanTooSmall, needs);
   if (settings.grain && !group.n) note(AuditRule::MeanNotOnGrain, "n");
 }
 

@@ -19,10 +19,11 @@ struct Range {
 Range mean_of(const PrintedGroup& group) {
   return {low(group.mean), high(group.mean)};
 }
-/// Of the sd squared.
+/// Of the sd squared. Where no sd is printed 0: exact for one value, the least for more. @see is_spread_known
 Range variance_of(const PrintedGroup& group) {
-  const double least = std::max(0.0, low(group.sd));
-  const double most = std::max(0.0, high(group.sd));
+  if (!group.sd) return {0.0, 0.0};
+  const double least = std::max(0.0, low(*group.sd));
+  const double most = std::max(0.0, high(*group.sd));
   return {least * least, most * most};
 }
 
@@ -57,6 +58,21 @@ Counts counts_of(const PrintedGroup& total, const std::vector<PrintedGroup>& par
     counts.parts.clear();
   }
   return counts;
+}
+
+/// Whether the spread within every part is: its sd is printed, or it is of one value, which does not stray from itself.
+bool is_spread_known(const std::vector<PrintedGroup>& parts, const Counts& counts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const bool is_one = parts[i].n == 1U || (!counts.parts.empty() && counts.parts[i] == 1);
+    if (!parts[i].sd && !is_one) return false;
+  }
+  return true;
+}
+
+/// The fewest values that a part may have. One without an sd may be a single one.
+std::size_t fewest_of(const PrintedGroup& part, const AuditSettings& settings) {
+  if (part.n) return *part.n;
+  return part.sd ? count_of(part, settings) : 1;
 }
 
 /// Mean of the pooled values. @pre counts of all parts
@@ -141,7 +157,7 @@ Range variance_for_any_shares(const PrintedGroup& total, const std::vector<Print
     const Range variance = variance_of(parts[i]);
     parts_sum.low += variance.low;
     parts_sum.high += variance.high;
-    fewest += count_of(parts[i], settings);
+    fewest += fewest_of(parts[i], settings);
     if (low(parts[i].mean) <= mean.high && high(parts[i].mean) >= mean.low) spread.include(variance);
     for (std::size_t j = 0; j < parts.size(); ++j) {
       if (i == j) continue;
@@ -183,15 +199,23 @@ void check_pooling(const PrintedGroup& total, const std::vector<PrintedGroup>& p
     row.not_checkable.push_back(
         {AuditRule::PooledMeanOff, total.name, counts.is_contradiction ? "counts that agree" : "n of every part"});
   }
+  if (!total.sd) {
+    row.not_checkable.push_back({AuditRule::PooledSdTooLarge, total.name, "sd of the row"});
+    row.not_checkable.push_back({AuditRule::PooledSdTooSmall, total.name, "sd of the row"});
+    return;
+  }
   const Range variance =
       is_counted ? pooled_variance(parts, counts) : variance_for_any_shares(total, parts, counts, settings);
   const double most = std::sqrt(std::max(0.0, variance.high));
   const double fewest = std::sqrt(std::max(0.0, variance.low));
-  if (low(total.sd) > most + kSlack) {
-    row.findings.push_back({AuditRule::PooledSdTooLarge, total.name, total.sd.value, most});
+  // The sum grows with the sd of each part: without one it still has its least, but no greatest.
+  if (!is_spread_known(parts, counts)) {
+    row.not_checkable.push_back({AuditRule::PooledSdTooLarge, total.name, "sd of every part"});
+  } else if (low(*total.sd) > most + kSlack) {
+    row.findings.push_back({AuditRule::PooledSdTooLarge, total.name, total.sd->value, most});
   }
-  if (high(total.sd) < fewest - kSlack) {
-    row.findings.push_back({AuditRule::PooledSdTooSmall, total.name, total.sd.value, fewest});
+  if (high(*total.sd) < fewest - kSlack) {
+    row.findings.push_back({AuditRule::PooledSdTooSmall, total.name, total.sd->value, fewest});
   }
 }
 

@@ -67,9 +67,10 @@ Columns columns_of(const TextTable& table, const std::filesystem::path& path) {
   }
   const auto own = columns.places.find("");
   if (own == columns.places.end() || own->second.count("mean") == 0 || own->second.count("sd") == 0) {
-    throw DataError(
-        path, "line 1", fmt::format("the columns {}", fmt::join(table.header, ", ")), "the columns mean_mm and sd_mm",
-        "Optional: max_mm, min_mm, n, score_percent, and PART_mean_mm, PART_sd_mm, PART_n of what a row was pooled from");
+    throw DataError(path, "line 1", fmt::format("the columns {}", fmt::join(table.header, ", ")),
+                    "the columns mean_mm and sd_mm",
+                    "Optional: max_mm, min_mm, n, score_percent, and PART_mean_mm, PART_sd_mm, PART_n of what a row "
+                    "was pooled from");
   }
   for (const auto& [part, places] : columns.places) {
     if (places.count("mean") != places.count("sd")) {
@@ -106,8 +107,8 @@ std::optional<PrintedGroup> group_of(const TableRow& row, const std::string& par
                                      const std::map<std::string, std::size_t>& places) {
   std::map<std::string, std::optional<PrintedNumber>> cells;
   for (const auto& [quantity, column] : places) cells[quantity] = row.number(column);
-  if (!cells["mean"] || !cells["sd"]) return std::nullopt;
-  PrintedGroup group{.name = part, .mean = *cells["mean"], .sd = *cells["sd"]};
+  if (!cells["mean"]) return std::nullopt;
+  PrintedGroup group{.name = part, .mean = *cells["mean"], .sd = cells["sd"]};
   group.max = cells["max"];
   group.min = cells["min"];
   if (cells["n"]) {

@@ -206,6 +206,59 @@ TEST(Audit, KnowsThePooledMeanWhereThePartsAreCounted) {
   EXPECT_THAT(unchecked_of(pooled(counted("2.5", "0.9", 40), parts)), IsEmpty());
 }
 
+PrintedGroup without_sd(PrintedGroup group) {
+  group.sd.reset();
+  return group;
+}
+
+TEST(Audit, APartOfOneValueNeedsNoSd) {
+  // N = 31, mean (10 · 1 + 20 · 2 + 1 · 1) / 31 = 1.645. Within: 9 · 0.25 + 19 · 0.25 = 7; between: 10 · 0.645² +
+  // 20 · 0.355² + 0.645² = 7.10; sd² = 14.10 / 30, sd = 0.686.
+  std::vector<PrintedGroup> parts{counted("1.0", "0.5", 10), counted("2.0", "0.5", 20),
+                                  without_sd(counted("1.0", "0", 1))};
+  EXPECT_THAT(rules_of(pooled(counted("1.65", "0.69", 31), parts)), IsEmpty());
+  EXPECT_THAT(unchecked_of(pooled(counted("1.65", "0.69", 31), parts)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(counted("1.65", "0.69", 30), parts)), ElementsAre(AuditRule::PooledNOff));
+  EXPECT_THAT(rules_of(pooled(counted("1.75", "0.69", 31), parts)), ElementsAre(AuditRule::PooledMeanOff));
+  EXPECT_THAT(rules_of(pooled(counted("1.65", "0.90", 31), parts)), ElementsAre(AuditRule::PooledSdTooLarge));
+  // At 50 the one value makes the mean 100 / 31 = 3.226 and, with 2267 between, sd² = 2274 / 30, sd = 8.71.
+  parts[2].mean = printed("50");
+  EXPECT_THAT(rules_of(pooled(counted("3.23", "8.7", 31), parts)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(counted("3.23", "9.5", 31), parts)), ElementsAre(AuditRule::PooledSdTooLarge));
+  EXPECT_THAT(rules_of(pooled(counted("3.23", "7.9", 31), parts)), ElementsAre(AuditRule::PooledSdTooSmall));
+  // Its n follows from the others: 31 − 30 = 1.
+  parts[2].n.reset();
+  EXPECT_THAT(rules_of(pooled(counted("3.23", "8.7", 31), parts)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(counted("3.23", "9.5", 31), parts)), ElementsAre(AuditRule::PooledSdTooLarge));
+  // Nothing is counted at all: it may be one value, and the pooled mean lies between the parts'.
+  for (PrintedGroup& part : parts) part.n.reset();
+  EXPECT_THAT(rules_of(pooled(group("3.23", "8.7", "60.0"), parts)), IsEmpty());
+  EXPECT_THAT(rules_of(pooled(group("0.70", "5.0", "60.0"), parts)), ElementsAre(AuditRule::PooledMeanOutside));
+}
+
+TEST(Audit, APartWithoutSdCountsWithItsNAndItsMean) {
+  // (10 · 1 + 20 · 2 + 10 · 4) / 40 = 2.25. Between: 10 · 1.25² + 20 · 0.25² + 10 · 1.75² = 47.5, within at least 7:
+  // sd >= √(54.5 / 39) = 1.18, however the third part's values stray.
+  const std::vector<PrintedGroup> parts{counted("1.0", "0.5", 10), counted("2.0", "0.5", 20),
+                                        without_sd(counted("4.0", "0", 10))};
+  const auto needs_sd = ElementsAre("pooled_sd_too_large: sd of every part");
+  for (const char* sd : {"1.2", "3.0"}) {
+    EXPECT_THAT(rules_of(pooled(counted("2.25", sd, 40), parts)), IsEmpty()) << sd;
+    EXPECT_THAT(unchecked_of(pooled(counted("2.25", sd, 40), parts)), needs_sd) << sd;
+  }
+  EXPECT_THAT(rules_of(pooled(counted("2.25", "1.0", 40), parts)), ElementsAre(AuditRule::PooledSdTooSmall));
+  EXPECT_THAT(rules_of(pooled(counted("1.67", "1.2", 40), parts)), ElementsAre(AuditRule::PooledMeanOff));
+  EXPECT_THAT(rules_of(pooled(counted("2.25", "1.2", 30), parts)), ElementsAre(AuditRule::PooledNOff));
+  EXPECT_THAT(unchecked_of(pooled(without_sd(counted("2.25", "0", 40)), parts)),
+              ElementsAre("pooled_sd_too_large: sd of the row", "pooled_sd_too_small: sd of the row"));
+  const Audit found = audit({pooled(counted("2.25", "1.2", 40), parts)});
+  std::vector<std::string> third;
+  for (const Unchecked& rule : found.rows[0].not_checkable) {
+    if (rule.needs == "sd") third.emplace_back(to_string(rule.rule));
+  }
+  EXPECT_THAT(third, ElementsAre("sd_too_large", "sd_too_small"));
+}
+
 TEST(Audit, KnowsThatCountsAddUp) {
   const std::vector<PrintedGroup> parts{counted("1.0", "0.2", 10), counted("3.0", "0.2", 10)};
   EXPECT_THAT(rules_of(pooled(counted("2.0", "1.0", 20), parts)), IsEmpty());

@@ -126,6 +126,19 @@ TEST_F(PublishedTableTest, IsReadWithItsPartsAndItsFailures) {
   EXPECT_TRUE(rows[1].parts.empty());
 }
 
+TEST_F(PublishedTableTest, KeepsASetWithoutSd) {
+  const auto rows = read(
+      "name,mean_mm,sd_mm,n,a_mean_mm,a_sd_mm,a_n,b_mean_mm,b_sd_mm,b_n,c_mean_mm,c_sd_mm,c_n\n"
+      "near,1.65,0.69,31,1.0,0.5,10,2.0,0.5,20,1.0,-,1\n"
+      "far,3.23,8.7,31,1.0,0.5,10,2.0,0.5,20,50,,1\n");
+  for (const PrintedRow& row : rows) {
+    ASSERT_EQ(row.parts.size(), 3U) << row.name;
+    EXPECT_FALSE(row.parts[2].sd.has_value()) << row.name;
+    EXPECT_EQ(row.parts[2].n, 1U) << row.name;
+  }
+  EXPECT_EQ(audit(rows).impossible_rows, 0U);
+}
+
 TEST_F(PublishedTableTest, ThatIsDamagedIsRefusedWithThePlace) {
   expect_refused("", "an empty file");
   expect_refused("mean_mm,sd_mm\n", "without rows");
@@ -182,6 +195,11 @@ TEST(PaperTableOne, HoldsRowsThatCannotBe) {
   EXPECT_EQ(rows_with(found, AuditRule::SdTooLarge, ""), 3U);
   EXPECT_EQ(rows_with(found, AuditRule::PooledMeanOutside, ""), 1U);  // speed 17, dullness 5: 0.8 of 0.4 and 0.6
   EXPECT_EQ(rows_with(found, AuditRule::PooledSdTooLarge, ""), 1U);   // speed 9, dullness 1: 2.3 of 0.4 and 1.8
+}
+
+TEST(PaperTableOne, HasAsManyImpossibleRowsAsTheDocumentationSays) {
+  EXPECT_EQ(audit(published("table_1.csv")).impossible_rows, 16U);
+  EXPECT_EQ(audit(published("table_1.csv"), {.n_at_least = 30}).impossible_rows, 18U);
 }
 
 TEST(PaperTableTwo, IsPossible) {

@@ -17,7 +17,8 @@ namespace incise {
 struct PrintedGroup {
   std::string name;  ///< of the columns; empty for the row's own
   PrintedNumber mean;
-  PrintedNumber sd;  ///< taken for the sample standard deviation (n - 1)
+  /// Taken for the sample standard deviation (n - 1). Absent: not printed, and 0 where n is 1.
+  std::optional<PrintedNumber> sd;
   std::optional<PrintedNumber> max;
   std::optional<PrintedNumber> min;
   std::optional<std::size_t> n;

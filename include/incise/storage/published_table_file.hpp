@@ -22,7 +22,7 @@ struct PublishedTable {
 ///   score_percent       0.75 mean + 0.25 max as per cent of a baseline
 ///
 /// Every other column belongs to the row's name. A cell that is empty or reads -, n/a, failure or failed holds nothing;
-/// a set without mean or sd is left out.
+/// a set without mean is left out, one without sd is kept: its mean and n count.
 /// @throws DataError naming line and column: neither mean nor sd among the columns, a part with one of the two,
 /// a cell that is no decimal number, a count that is not whole or below 1.
 [[nodiscard]] PublishedTable read_published_table(const std::filesystem::path& path);
