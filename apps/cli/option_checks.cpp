@@ -45,6 +45,29 @@ CLI::Validator between(const std::string& option, double low, double high) {
                   [low, high](double value) { return value >= low && value <= high; });
 }
 
+CLI::Validator zero_or_more(const std::string& option) {
+  return check_of(option, "a number of at least 0", [](double value) { return value >= 0.0; });
+}
+
+CLI::Validator finite(const std::string& option) {
+  return check_of(option, "a finite number", [](double) { return true; });
+}
+
+CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::uint64_t high) {
+  return CLI::Validator(
+      [option, low, high](std::string& text) {
+        std::uint64_t value = 0;
+        const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool is_whole = error == std::errc{} && at == text.data() + text.size();
+        if (!is_whole || value < low || value > high)
+          throw CaseError("command line", option, number_in(text) ? text : "'" + text + "'",
+                          fmt::format("a whole number from {} to {}, in digits", low, high));
+        text = fmt::format("{}", value);  // a leading 0 would be read as an octal number
+        return std::string();
+      },
+      "");
+}
+
 void require_valid(const std::vector<std::string>& violations) {
   if (violations.empty()) return;
   const Complaint complaint = complaint_of(violations.front(), "settings that can be used");

@@ -117,11 +117,12 @@ void add_audit(Application& application) {
                    "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
                    "PART_mean_mm, PART_sd_mm, PART_n of what a row was pooled from")
       ->required();
-  verb->add_option("--least", arguments->settings.least, "No value can be smaller: 0 for absolute errors");
+  verb->add_option("--least", arguments->settings.least, "No value can be smaller: 0 for absolute errors")
+      ->check(finite("--least"));
   verb->add_option("--n-at-least", arguments->settings.n_at_least, "Values behind a mean where the table does not say")
-      ->check(between("--n-at-least", 2, 1000000000));
+      ->check(whole_between("--n-at-least", 2, 1000000000));
   verb->add_option("--grain", arguments->grain, "Values are whole multiples of this (1 for counts); 0: any number")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more("--grain"));
 }
 
 }  // namespace incise::cli

@@ -527,7 +527,14 @@ class EvaluateTest(CommandTest):
             (("evaluate", "photo.png", "--mm-per-pixel", "wide"), "--mm-per-pixel: found 'wide', expected a number above 0"),
             (("evaluate", *contours, "--close-margin-mm", "-1"), "command line: --close-margin-mm: found -1, expected a distance above 0 mm"),
             (("compare", "--before", "a", "b", "--after", "c", "d", "--alpha", "2"), "command line: --alpha: found 2, expected a level in (0, 1)"),
-            (("audit", "t.csv", "--n-at-least", "1"), "command line: --n-at-least: found 1, expected a number from 2 to"),
+            (("audit", "t.csv", "--n-at-least", "1"), "command line: --n-at-least: found 1, expected a whole number from 2 to"),
+            (("audit", "t.csv", "--n-at-least", "1e3"), "--n-at-least: found 1e3, expected a whole number from 2 to"),
+            (("audit", "t.csv", "--n-at-least", "2.5"), "--n-at-least: found 2.5, expected a whole number from 2 to"),
+            (("audit", "t.csv", "--n-at-least", "few"), "--n-at-least: found 'few', expected a whole number from 2 to"),
+            (("audit", "t.csv", "--grain", "-1"), "--grain: found -1, expected a number of at least 0"),
+            (("audit", "t.csv", "--grain", "abc"), "--grain: found 'abc', expected a number of at least 0"),
+            (("audit", "t.csv", "--least", "nan"), "--least: found 'nan', expected a finite number"),
+            (("evaluate", "photo.png", "--mm-per-pixel", "nan"), "--mm-per-pixel: found 'nan', expected a number above 0"),
         ):
             with self.subTest(words=words):
                 done = self.incise(*words)
