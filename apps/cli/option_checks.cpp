@@ -58,11 +58,11 @@ CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::
       [option, low, high](std::string& text) {
         std::uint64_t value = 0;
         const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool is_whole = error == std::errc{} && at == text.data() + text.size();
+        const bool is_octal = text.size() > 1 && text.front() == '0';  // as the parser would read it
+        const bool is_whole = error == std::errc{} && at == text.data() + text.size() && !is_octal;
         if (!is_whole || value < low || value > high)
           throw CaseError("command line", option, number_in(text) ? text : "'" + text + "'",
                           fmt::format("a whole number from {} to {}, in digits", low, high));
-        text = fmt::format("{}", value);  // a leading 0 would be read as an octal number
         return std::string();
       },
       "");

@@ -14,10 +14,11 @@ namespace incise::cli {
 /// From low to high, both allowed.
 [[nodiscard]] CLI::Validator between(const std::string& option, double low, double high);
 
+/// 0 is allowed.
 [[nodiscard]] CLI::Validator zero_or_more(const std::string& option);
 /// Any that is finite.
 [[nodiscard]] CLI::Validator finite(const std::string& option);
-/// Digits alone: neither 2.5 nor 1e3. From low to high, both allowed.
+/// Digits alone: neither 2.5 nor 1e3 nor 010. From low to high, both allowed.
 [[nodiscard]] CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::uint64_t high);
 
 /// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), as one about the option of that

@@ -530,6 +530,7 @@ class EvaluateTest(CommandTest):
             (("audit", "t.csv", "--n-at-least", "1"), "command line: --n-at-least: found 1, expected a whole number from 2 to"),
             (("audit", "t.csv", "--n-at-least", "1e3"), "--n-at-least: found 1e3, expected a whole number from 2 to"),
             (("audit", "t.csv", "--n-at-least", "2.5"), "--n-at-least: found 2.5, expected a whole number from 2 to"),
+            (("audit", "t.csv", "--n-at-least", "010"), "--n-at-least: found 010, expected a whole number from 2 to"),
             (("audit", "t.csv", "--n-at-least", "few"), "--n-at-least: found 'few', expected a whole number from 2 to"),
             (("audit", "t.csv", "--grain", "-1"), "--grain: found -1, expected a number of at least 0"),
             (("audit", "t.csv", "--grain", "abc"), "--grain: found 'abc', expected a number of at least 0"),
