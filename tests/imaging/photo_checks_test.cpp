@@ -163,13 +163,13 @@ TEST(RedInTheTumor, BesideAKerfIsNeverSilent) {
 }
 
 TEST(RedInTheTumor, IsNotTheKerfItself) {
-  for (const double shift_mm : {0.0, 0.5, 0.75}) {
+  for (const double shift_mm : {0.0, 0.3, 0.5}) {
     for (const double blur_px : {0.4, 0.9, 2.0}) {
       SCOPED_TRACE(fmt::format("moved by {} mm, blur {} px", shift_mm, blur_px));
       Scene s = kerf_scene(1.0, 60.0);
       s.photo.blur_px = blur_px;
       s.tumor = testing::circle(4.0, 400, kMiddle);
-      s.incision = testing::circle(4.6, 400, kMiddle + Vec3(shift_mm, 0, 0));  // at 0.75 it runs into the tumour
+      s.incision = testing::circle(4.6, 400, kMiddle + Vec3(shift_mm, 0, 0));  // at 0.5 it touches the edge
       s.photo.lines[0].course = s.tumor;
       s.photo.lines[1].course = s.incision;
       const PhotoContours found = found_in(s);

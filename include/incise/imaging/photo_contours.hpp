@@ -36,7 +36,7 @@ struct PhotoContours {
   /// Red inside the tumour's edge that is not the red line, largest first: blood, or a cut that went astray. From 8
   /// pixels of a third of the line's strength and 8 times the tissue's own spread.
   std::vector<PhotoMark> red_in_tumor;
-  /// Green that is not the green line, largest first, from 12 pixels to less than kSmallestTumorMm.
+  /// Green that is not the green line, largest first, from 24 truly green pixels to less than kSmallestTumorMm.
   std::vector<PhotoMark> green_beside;
 };
 
