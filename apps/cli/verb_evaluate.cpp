@@ -128,19 +128,33 @@ struct Measured {
   std::vector<std::string> warnings;
 };
 
+nlohmann::ordered_json marks_json(const std::vector<PhotoMark>& marks) {
+  auto json = nlohmann::ordered_json::array();
+  for (const PhotoMark& mark : marks)
+    json.push_back({{"u_px", mark.at_px.x()}, {"v_px", mark.at_px.y()}, {"longest_mm", mark.longest_mm}});
+  return json;
+}
+
 /// Red in the tumour that is no line may be blood, or a cut that went astray: no number shows it, so it is told.
 void tell_red_in_tumor(const std::vector<PhotoMark>& marks, Measured& result) {
-  result.json["red_in_tumor"] = nlohmann::ordered_json::array();
-  for (const PhotoMark& mark : marks) {
-    result.json["red_in_tumor"].push_back(
-        {{"u_px", mark.at_px.x()}, {"v_px", mark.at_px.y()}, {"longest_mm", mark.longest_mm}});
-  }
+  result.json["red_in_tumor"] = marks_json(marks);
   if (marks.empty()) return;
   result.warnings.push_back(fmt::format(
       "{} red {} inside the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: blood, or a cut? {} part of "
       "no measure",
       marks.size(), marks.size() == 1 ? "spot" : "spots", marks.front().longest_mm, marks.front().at_px.x(),
       marks.front().at_px.y(), marks.size() == 1 ? "It is" : "They are"));
+}
+
+/// Green beside the tumour's edge that is smaller than any tumour: told, because it may be part of one.
+void tell_green_beside(const std::vector<PhotoMark>& marks, Measured& result) {
+  result.json["green_beside"] = marks_json(marks);
+  if (marks.empty()) return;
+  result.warnings.push_back(
+      fmt::format("{} green {} beside the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: a second "
+                  "tumour? {} part of no measure",
+                  marks.size(), marks.size() == 1 ? "mark" : "marks", marks.front().longest_mm, marks.front().at_px.x(),
+                  marks.front().at_px.y(), marks.size() == 1 ? "It is" : "They are"));
 }
 
 Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
@@ -162,6 +176,7 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   result.json["red_line"] = line_json(found.red);
   result.json["green_line"] = line_json(found.green);
   tell_red_in_tumor(found.red_in_tumor, result);
+  tell_green_beside(found.green_beside, result);
   result.json["warnings"] = result.warnings;
   if (!arguments.figure.empty()) {
     const std::string png = encode_png(draw_found(picture, {&found.green, &found.red}, scale.marks_px));

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace incise::imaging_detail {
 namespace {
@@ -96,12 +97,47 @@ void fill_from_tissue(cv::Mat& values, const Tissue& tissue, int window) {
   }
 }
 
+/// About a quarter of the picture.
+int window_of_median(const cv::Mat& small) {
+  return std::clamp(std::min(small.cols, small.rows) / 4, 3, 61) | 1;
+}
+
+/// The tissue without a broad band of the ink itself, where one fills so much of the median's window that the median
+/// would take it for tissue; nullopt where it does not.
+std::optional<Tissue> tissue_beside_band(const cv::Mat& strength, const Tissue& tissue, double contrast) {
+  constexpr double kInk = 0.6;         // of the contrast, above the tissue's median
+  constexpr double kMostShare = 0.25;  // a median that half of its window upsets
+  cv::Mat small, share;
+  cv::resize(strength, small, tissue.mask.size(), 0, 0, cv::INTER_AREA);
+  std::vector<float> values;
+  for (int v = 0; v < small.rows; ++v) {
+    for (int u = 0; u < small.cols; ++u) {
+      if (tissue.mask.at<std::uint8_t>(v, u) != 0) values.push_back(small.at<float>(v, u));
+    }
+  }
+  if (values.empty()) return std::nullopt;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  cv::Mat ink = small > *middle + kInk * contrast;
+  const int window = window_of_median(small);
+  ink.convertTo(share, CV_32F, 1.0 / 255.0);
+  cv::boxFilter(share, share, -1, {window, window}, {-1, -1}, true, cv::BORDER_REPLICATE);
+  double most = 0.0;
+  cv::minMaxLoc(share, nullptr, &most);
+  if (most <= kMostShare) return std::nullopt;
+  Tissue result{tissue.mask.clone(), tissue.step};
+  cv::dilate(ink, ink, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));  // its rim is mixed with tissue
+  result.mask.setTo(cv::Scalar(0), ink);
+  if (cv::countNonZero(result.mask) == 0) return std::nullopt;
+  return result;
+}
+
 /// What the tissue around has of the colour: the median over about a quarter of the picture.
 cv::Mat local_background(const cv::Mat& strength, const Tissue& tissue) {
   constexpr double kFullScale = 0.6;  // of 255 steps from kBeyondGrey below 0; strengths beyond belong to no tissue
   cv::Mat small, bytes;
   cv::resize(strength, small, tissue.mask.size(), 0, 0, cv::INTER_AREA);
-  const int window = std::clamp(std::min(small.cols, small.rows) / 4, 3, 61) | 1;
+  const int window = window_of_median(small);
   fill_from_tissue(small, tissue, window);
   small.convertTo(bytes, CV_8U, 255.0 / kFullScale, kBeyondGrey * 255.0 / kFullScale);
   cv::medianBlur(bytes, bytes, window);
@@ -215,12 +251,16 @@ InkMap ink_map(const InkStrengths& strengths, InkColor color, double mm_per_pixe
   constexpr double kNoises = 8.0;
   const cv::Mat& strength = color == InkColor::Red ? strengths.red : strengths.green;
   const Tissue tissue = tissue_in(strengths.red);
-  InkMap result;
-  cv::GaussianBlur(strength, result.likelihood, {0, 0}, kSmoothingPx);
-  result.likelihood -= local_background(strength, tissue);
-  result.noise = spread_of(result.likelihood, tissue);
   const auto pixels = static_cast<std::size_t>(std::max(24.0, kShortestLineMm / mm_per_pixel));
-  result.contrast = level_exceeded_by(result.likelihood, pixels);
+  InkMap result;
+  const auto hold_against = [&](const Tissue& around) {
+    cv::GaussianBlur(strength, result.likelihood, {0, 0}, kSmoothingPx);
+    result.likelihood -= local_background(strength, around);
+    result.noise = spread_of(result.likelihood, around);
+    result.contrast = level_exceeded_by(result.likelihood, pixels);
+  };
+  hold_against(tissue);
+  if (const auto beside = tissue_beside_band(strength, tissue, result.contrast)) hold_against(*beside);
   result.is_present =
       result.contrast > (color == InkColor::Red ? kLeastRed : kLeastGreen) && result.contrast > kNoises * result.noise;
   if (result.is_present) result.likelihood *= 1.0 / result.contrast;

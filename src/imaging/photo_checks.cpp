@@ -21,9 +21,36 @@ std::vector<cv::Point> pixels_along(const std::vector<Vec2>& line) {
   return points;
 }
 
-/// Of the ink that belongs to the line itself, from one side to the other.
-int reach_px(const CheckedLine& checked) {
-  return (checked.edge == LineEdge::Inner ? 2 : 1) * static_cast<int>(checked.line.width_px) + kBesidePx;
+/// Paints over the ink that belongs to the line itself. A band lies on the outer side of its inner border only: what
+/// is red on the other side, farther than blur reaches, is something else.
+void wipe_own_ink(cv::Mat& ink, const CheckedLine& checked, const cv::Point& corner) {
+  const std::vector<Vec2>& line = checked.line.points_px;
+  std::vector<cv::Point> points = pixels_along(line);
+  for (cv::Point& p : points) p -= corner;
+  const bool is_band = checked.edge == LineEdge::Inner;
+  const int width = static_cast<int>(checked.line.width_px);
+  cv::polylines(ink, points, checked.line.is_closed, cv::Scalar(0), (is_band ? 0 : width) + kBesidePx);
+  if (!is_band) return;
+  const std::size_t n = line.size();
+  const Vec2 origin(corner.x, corner.y);
+  const auto pixel = [&](const Vec2& p) { return cv::Point(cvRound(p.x() - origin.x()), cvRound(p.y() - origin.y())); };
+  const auto fill = [&](const Vec2& a, const Vec2& out_a, const Vec2& b, const Vec2& out_b) {
+    cv::fillConvexPoly(ink, std::vector<cv::Point>{pixel(a), pixel(a + out_a), pixel(b + out_b), pixel(b)},
+                       cv::Scalar(0));
+  };
+  const auto out = [&](std::size_t i) {
+    return Vec2((width + 0.5 * kBesidePx) * outward(tangent_at(line, checked.line.is_closed, i, 4)));
+  };
+  for (std::size_t i = 0; i + 1 < n; ++i) fill(line[i], out(i), line[i + 1], out(i + 1));
+  if (checked.line.is_closed) {
+    fill(line[n - 1], out(n - 1), line[0], out(0));
+    return;
+  }
+  const double beyond = 0.5 * width + kBesidePx;  // round ends
+  const Vec2 before = line[0] - beyond * tangent_at(line, false, 0, 4);
+  const Vec2 behind = line[n - 1] + beyond * tangent_at(line, false, n - 1, 4);
+  fill(before, out(0), line[0], out(0));
+  fill(line[n - 1], out(n - 1), behind, out(n - 1));
 }
 
 /// The picture's part that a mask fills, with a rim of one pixel, and the line in its coordinates.
@@ -77,10 +104,21 @@ cv::Mat ink_of_line(const CheckedLine& checked, const Crop& crop) {
 /// A place that ink encloses.
 struct Enclosed {
   double pixels = 0.0;
-  double inside_ring = 0.0;  ///< of its pixels
+  double inside_ring = 0.0;  ///< of its pixels; an open line counts as closed by its chord
   double off_line = 0.0;     ///< of its pixels: farther from the line than its own ink lies
   Vec2 middle_px = Vec2::Zero();
+  cv::Mat shape;  ///< of the ring's own inside alone, in the crop: 255 there and on what lies in it
+  bool is_own_inside = false;
 };
+
+/// A place without the holes that other ink makes in it.
+cv::Mat filled(const cv::Mat& place) {
+  std::vector<std::vector<cv::Point>> borders;
+  cv::findContours(place, borders, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  cv::Mat result(place.size(), CV_8U, cv::Scalar(0));
+  cv::fillPoly(result, borders, cv::Scalar(255));
+  return result;
+}
 
 std::vector<Enclosed> enclosed_places(const CheckedLine& checked, const Crop& crop) {
   const cv::Mat own = ink_of_line(checked, crop);
@@ -89,7 +127,7 @@ std::vector<Enclosed> enclosed_places(const CheckedLine& checked, const Crop& cr
   const double to_side = (is_band ? 1.1 : 0.5) * checked.line.width_px + (is_band ? 4.0 : 2.0);
   const cv::Mat on_line = drawn(own.size(), crop.line, checked.line.is_closed, 2.0 * to_side);
   cv::Mat ring(own.size(), CV_8U, cv::Scalar(0));
-  if (checked.line.is_closed) cv::fillPoly(ring, std::vector<std::vector<cv::Point>>{crop.line}, cv::Scalar(255));
+  cv::fillPoly(ring, std::vector<std::vector<cv::Point>>{crop.line}, cv::Scalar(255));
   cv::Mat places, stats, middles;
   const int count = cv::connectedComponentsWithStats(cv::Mat(own == 0), places, stats, middles, 4, CV_32S);
   std::vector<Enclosed> result(static_cast<std::size_t>(count));
@@ -111,7 +149,45 @@ std::vector<Enclosed> enclosed_places(const CheckedLine& checked, const Crop& cr
   const auto outside = static_cast<std::size_t>(places.at<int>(0, 0));
   result[outside] = {};
   result[0] = {};  // the ink
+  // With gaps in the ring's ink its inside is part of the outside, and no place at all.
+  const auto own_inside = std::max_element(
+      result.begin(), result.end(), [](const Enclosed& a, const Enclosed& b) { return a.inside_ring < b.inside_ring; });
+  const double least = checked.line.is_closed ? 0.0 : 0.5 * cv::countNonZero(ring);
+  if (own_inside->inside_ring > 0.5 * own_inside->pixels && own_inside->inside_ring > least) {
+    own_inside->is_own_inside = true;
+    own_inside->shape = filled(places == static_cast<int>(own_inside - result.begin()));
+  }
   return result;
+}
+
+/// Ink encloses the ring, but its border was lost on the way: mostly because something else of that colour is in it.
+[[noreturn]] void refuse_unclear_ring(const CheckedLine& checked, const Crop& crop, const Enclosed& inside) {
+  cv::Mat other, labels, stats, middles;
+  cv::bitwise_and(crop.mask, inside.shape, other);
+  // The shape's rim may touch the ring's ink.
+  cv::Mat core;
+  cv::erode(inside.shape, core, cv::getStructuringElement(cv::MORPH_RECT, {3, 3}));
+  cv::bitwise_and(other, core, other);
+  const int count = cv::connectedComponentsWithStats(other, labels, stats, middles, 8, CV_32S);
+  int largest = 0;
+  for (int i = 1; i < count; ++i) {
+    const int area = stats.at<int>(i, cv::CC_STAT_AREA);
+    if (area >= kLeastPlacePixels && (largest == 0 || area > stats.at<int>(largest, cv::CC_STAT_AREA))) largest = i;
+  }
+  const std::string color(to_string(checked.color));
+  if (largest == 0) {
+    const LineGap& gap = checked.line.gaps.front();
+    throw DataError(checked.name, "",
+                    fmt::format("a {} ring whose border is not clear over {:.1f} mm, at pixel {:.0f}, {:.0f}", color,
+                                gap.length_mm, gap.from_px.x(), gap.from_px.y()),
+                    "one simple ring");
+  }
+  const int longest = std::max(stats.at<int>(largest, cv::CC_STAT_WIDTH), stats.at<int>(largest, cv::CC_STAT_HEIGHT));
+  throw DataError(checked.name, "",
+                  fmt::format("a {0} mark of {1:.1f} mm inside the {0} ring, at pixel {2:.0f}, {3:.0f}", color,
+                              longest * checked.mm_per_pixel, middles.at<double>(largest, 0) + crop.corner.x,
+                              middles.at<double>(largest, 1) + crop.corner.y),
+                  fmt::format("no {} there but the ring", color), "A second cut? Paint over it if it is none");
 }
 
 }  // namespace
@@ -130,7 +206,7 @@ void require_nothing_else(const CheckedLine& checked) {
   constexpr double kLeastPiece = 0.05;  // of the ring's own ink
   if (!checked.line.is_closed) return;
   cv::Mat elsewhere = checked.mask.clone(), labels, stats, centers;
-  cv::polylines(elsewhere, pixels_along(checked.line.points_px), true, cv::Scalar(0), reach_px(checked));
+  wipe_own_ink(elsewhere, checked, {0, 0});
   const double own = cv::countNonZero(checked.mask) - cv::countNonZero(elsewhere);
   double other = 0.0;
   const int count = cv::connectedComponentsWithStats(elsewhere, labels, stats, centers, 8, CV_32S);
@@ -147,13 +223,12 @@ void require_nothing_else(const CheckedLine& checked) {
 }
 
 void require_simple(const CheckedLine& checked) {
-  const std::vector<Enclosed> places = enclosed_places(checked, crop_to_ink(checked));
-  // The ring's own inside; with gaps in its ink it is part of the outside, and no place at all.
-  const auto own = std::max_element(places.begin(), places.end(),
-                                    [](const Enclosed& a, const Enclosed& b) { return a.inside_ring < b.inside_ring; });
+  const Crop crop = crop_to_ink(checked);
+  const std::vector<Enclosed> places = enclosed_places(checked, crop);
   const Enclosed* loop = nullptr;
   for (const Enclosed& place : places) {
-    if (checked.line.is_closed && &place == &*own && place.inside_ring > 0.5 * place.pixels) continue;
+    if (place.is_own_inside && checked.line.is_closed) continue;
+    if (place.is_own_inside) refuse_unclear_ring(checked, crop, place);
     if (place.pixels < kLeastPlacePixels || place.off_line < kLeastPlacePixels) continue;
     if (loop == nullptr || place.pixels > loop->pixels) loop = &place;
   }
@@ -182,7 +257,7 @@ std::vector<PhotoMark> marks_beside(const CheckedLine& checked, const cv::Mat& i
     cv::fillPoly(inside, std::vector<std::vector<cv::Point>>{in_box(*within)}, cv::Scalar(255));
     cv::bitwise_and(elsewhere, inside, elsewhere);
   }
-  cv::polylines(elsewhere, in_box(checked.line.points_px), checked.line.is_closed, cv::Scalar(0), reach_px(checked));
+  wipe_own_ink(elsewhere, checked, box.tl());
   const int count = cv::connectedComponentsWithStats(elsewhere, labels, stats, centers, 8, CV_32S);
   std::vector<PhotoMark> marks;
   for (int i = 1; i < count; ++i) {
@@ -195,9 +270,9 @@ std::vector<PhotoMark> marks_beside(const CheckedLine& checked, const cv::Mat& i
   return marks;
 }
 
-void require_no_large_mark(const CheckedLine& checked, const std::vector<PhotoMark>& marks, const char* place) {
-  constexpr double kLongestSpeckMm = 3.0;
-  if (!checked.line.is_closed || marks.empty() || marks.front().longest_mm < kLongestSpeckMm) return;
+void require_no_large_mark(const CheckedLine& checked, const std::vector<PhotoMark>& marks, double least_mm,
+                           const char* place) {
+  if (!checked.line.is_closed || marks.empty() || marks.front().longest_mm < least_mm) return;
   const PhotoMark& mark = marks.front();
   throw DataError(checked.name, "",
                   fmt::format("a {} mark of {:.1f} mm {}, at pixel {:.0f}, {:.0f}", to_string(checked.color),

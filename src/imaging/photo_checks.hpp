@@ -25,7 +25,8 @@ void require_in_view(const CheckedLine& checked);
 void require_nothing_else(const CheckedLine& checked);
 
 /// A simple curve, whose ink encloses one place (a ring) or none (an open line). Every other place that the same ink
-/// encloses is a loop, unless it lies within the line's own width: a highlight, or a burnt spot on a band.
+/// encloses is a loop, unless it lies within the line's own width: a highlight, or a burnt spot on a band. An open line
+/// whose ink encloses the ring was led astray: that, too, is refused, with the mark inside the ring that did it.
 /// @throws DataError naming the place
 void require_simple(const CheckedLine& checked);
 
@@ -33,8 +34,9 @@ void require_simple(const CheckedLine& checked);
 [[nodiscard]] std::vector<PhotoMark> marks_beside(const CheckedLine& checked, const cv::Mat& ink,
                                                   const std::vector<Vec2>* within);
 
-/// @throws DataError for a mark that neither blood nor the picture's grain leaves (3 mm). @param place  for the message
-void require_no_large_mark(const CheckedLine& checked, const std::vector<PhotoMark>& marks, const char* place);
+/// @param marks  largest first. @param place  for the message. @throws DataError for one of least_mm or more
+void require_no_large_mark(const CheckedLine& checked, const std::vector<PhotoMark>& marks, double least_mm,
+                           const char* place);
 
 /// A mask as ink_mask gives it, in the box round a ring alone, of ink that may be too faint or too small to be part of
 /// a line, but is more than the tissue's own variation.

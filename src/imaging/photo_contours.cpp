@@ -15,7 +15,9 @@ namespace {
 using imaging_detail::CheckedLine;
 using imaging_detail::InkMap;
 
-constexpr double kRimOfCoverPx = 4.0;  // a line's blur hides a little more than its mask
+constexpr double kLargestBloodMm = 3.0;    // red in the tumour that neither blood nor the picture's grain leaves
+constexpr double kGreenerThanGrey = 0.08;  // strength: rims of paper, cloth and char are grey beside red tissue
+constexpr double kRimOfCoverPx = 4.0;      // a line's blur hides a little more than its mask
 
 Contour in_plane(const MarkedLine& line, const PhotoScale& scale) {
   Contour contour{.points = {}, .is_closed = line.is_closed};
@@ -99,8 +101,10 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   imaging_detail::require_nothing_else(edge);
   require_closed(result.green, name);
   require_no_crossing(result.tumor_edge, InkColor::Green, name);
-  imaging_detail::require_no_large_mark(edge, imaging_detail::marks_beside(edge, green_mask, nullptr),
+  imaging_detail::require_no_large_mark(edge, imaging_detail::marks_beside(edge, green_mask, nullptr), kSmallestTumorMm,
                                         "beside the green ring");
+  const cv::Mat truly_green = imaging_detail::without_specks(green_mask & (strengths.green > kGreenerThanGrey), 24);
+  result.green_beside = imaging_detail::marks_beside(edge, truly_green, nullptr);
   result.mm_per_pixel = scale.mm_per_pixel(middle_of(result.green.points_px));
 
   line.mm_per_pixel = result.mm_per_pixel;
@@ -112,7 +116,7 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   imaging_detail::require_simple(cut);
   imaging_detail::require_nothing_else(cut);
   imaging_detail::require_no_large_mark(cut, imaging_detail::marks_beside(cut, red_mask, &result.green.points_px),
-                                        "inside the tumour's edge");
+                                        kLargestBloodMm, "inside the tumour's edge");
   result.incision = in_plane(result.red, scale);
   require_no_crossing(result.incision, InkColor::Red, name);
   result.red_in_tumor = imaging_detail::marks_beside(cut, imaging_detail::faint_ink(red, result.green.points_px),

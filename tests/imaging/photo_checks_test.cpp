@@ -112,6 +112,89 @@ TEST(RedInTheTumor, IsNotSeenInTissueAndHighlights) {
   }
 }
 
+Contour ellipse(double half_width, double half_height, double from = 0.0, double to = 2.0 * std::numbers::pi) {
+  Contour curve{.points = {}, .is_closed = to - from > 6.28};
+  for (int i = 0; i < 720; ++i) {
+    const double t = from + (to - from) * i / 720.0;
+    curve.points.emplace_back(kMiddle + Vec3(half_width * std::cos(t), half_height * std::sin(t), 0.0));
+  }
+  return curve;
+}
+
+/// A tumour of 9 x 7.2 mm in a kerf.
+Scene kerf_scene(double distance_mm, double width_px) {
+  Scene s = scene(width_px, true);
+  s.photo.glare_spots = 0;
+  s.tumor = ellipse(4.5, 3.6);
+  s.incision = outer_offset(s.tumor, distance_mm, -Vec3::UnitZ());
+  s.photo.lines[0].course = s.tumor;
+  s.photo.lines[1].course = s.incision;
+  return s;
+}
+
+TEST(FindPhotoContours, MeasuresBroadKerfsCloseToTheTumor) {
+  for (const double distance_mm : {1.2, 2.0}) {
+    for (const double width_px : {60.0, 100.0, 130.0}) {
+      SCOPED_TRACE(fmt::format("{} mm beside the edge, {} px", distance_mm, width_px));
+      expect_measured(kerf_scene(distance_mm, width_px));
+    }
+  }
+}
+
+TEST(RedInTheTumor, BesideAKerfIsNeverSilent) {
+  for (const double width_px : {5.0, 12.0}) {
+    SCOPED_TRACE(fmt::format("a line of {} px", width_px));
+    Scene s = kerf_scene(1.2, 60.0);
+    s.photo.lines.push_back(
+        {.course = ellipse(4.05, 3.15, -0.7, 0.7), .width_mm = width_px * kScale, .color = {205, 20, 35}});
+    EXPECT_THAT(refusal(s), ::testing::AllOf(HasSubstr("a red mark of 4."), HasSubstr("inside the")));
+  }
+  for (const double x : {0.0, 3.0, 4.2}) {
+    SCOPED_TRACE(fmt::format("a spot {} mm from the middle", x));
+    Scene s = kerf_scene(1.2, 60.0);
+    const Vec3 at = kMiddle + Vec3(x, 0, 0);
+    s.photo.lines.push_back({.course = {.points = {at - Vec3(0.005, 0, 0), at + Vec3(0.005, 0, 0)}, .is_closed = false},
+                             .width_mm = 0.4,
+                             .color = {205, 20, 35}});
+    const PhotoContours found = found_in(s);
+    ASSERT_EQ(found.red_in_tumor.size(), 1U);
+    EXPECT_NEAR(found.red_in_tumor.front().longest_mm, 0.4, 0.15);
+  }
+}
+
+TEST(RedInTheTumor, IsNotTheKerfItself) {
+  for (const double shift_mm : {0.0, 0.3, 0.5}) {
+    for (const double blur_px : {0.4, 0.9, 2.0}) {
+      SCOPED_TRACE(fmt::format("moved by {} mm, blur {} px", shift_mm, blur_px));
+      Scene s = kerf_scene(1.0, 60.0);
+      s.photo.blur_px = blur_px;
+      s.tumor = testing::circle(4.0, 400, kMiddle);
+      s.incision = testing::circle(4.6, 400, kMiddle + Vec3(shift_mm, 0, 0));  // at 0.5 it touches the edge
+      s.photo.lines[0].course = s.tumor;
+      s.photo.lines[1].course = s.incision;
+      const PhotoContours found = found_in(s);
+      EXPECT_TRUE(found.red_in_tumor.empty());
+      EXPECT_LT(mean_error(found.incision, s.incision), kContourMm);
+    }
+  }
+}
+
+TEST(GreenBesideTheTumor, IsToldAndRefusedFromTheSmallestTumorOn) {
+  for (const double across_mm : {0.4, 0.8, 1.5, 2.4, 3.2}) {
+    SCOPED_TRACE(fmt::format("a ring of {} mm", across_mm));
+    Scene s = scene(4, false);
+    s.photo.glare_spots = 0;
+    s.photo.lines.push_back({.course = testing::circle(0.5 * across_mm, 200, Vec3(27.0, 27.0, 0.0)), .width_mm = 0.12});
+    if (across_mm >= 2.0) {
+      EXPECT_THAT(refusal(s), ::testing::AnyOf(HasSubstr("a green mark of"), HasSubstr("2 green rings")));
+      continue;
+    }
+    const PhotoContours found = found_in(s);
+    ASSERT_EQ(found.green_beside.size(), 1U);
+    EXPECT_NEAR(found.green_beside.front().longest_mm, across_mm + 0.12, 0.15);
+  }
+}
+
 TEST(CrossingCurves, AreRefusedWithTheirPlace) {
   for (const double width_px : {3.0, 12.0}) {
     for (const double a : {1.3, 2.0}) {

@@ -102,6 +102,10 @@ inline void expect_measured(const Scene& truth, bool may_be_unseen = false) {
       const PhotoMark& mark = found.red_in_tumor.front();
       ADD_FAILURE() << "red where there is none: " << mark.longest_mm << " mm at pixel " << mark.at_px.transpose();
     }
+    if (!found.green_beside.empty()) {
+      const PhotoMark& mark = found.green_beside.front();
+      ADD_FAILURE() << "green where there is none: " << mark.longest_mm << " mm at pixel " << mark.at_px.transpose();
+    }
     if (!found.incision.is_closed) ADD_FAILURE() << "an opening of " << found.red.max_gap_mm() << " mm was seen";
     expect_same_measures(found, truth);
   } catch (const DataError& error) {

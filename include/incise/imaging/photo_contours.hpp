@@ -36,13 +36,16 @@ struct PhotoContours {
   /// Red inside the tumour's edge that is not the red line, largest first: blood, or a cut that went astray. From 8
   /// pixels of a third of the line's strength and 8 times the tissue's own spread.
   std::vector<PhotoMark> red_in_tumor;
+  /// Green that is not the green line, largest first, from 24 truly green pixels to less than kSmallestTumorMm.
+  std::vector<PhotoMark> green_beside;
 };
 
 /// Measures red and green lines of a photograph; see find_marked_line. Where one line crosses the other, the hidden
 /// part of the lower one is bridged (up to 8 mm). An open red ring is a result; an open green one is not.
-/// @throws DataError: no red, no green, two tumours, a line that crosses itself or has a loop (with its place), a mark
-/// of 3 mm or more beside the green ring or red inside it, a tumour edge that is open (with the width of the opening),
-/// or less than kSmallestTumorMm or more than kLargestTumorMm across ("is the scale right?").
+/// @throws DataError: no red, no green, two tumours, a line that crosses itself or has a loop (with its place), green
+/// of kSmallestTumorMm or more beside the green ring or red of 3 mm or more inside it, a tumour edge that is open (with
+/// the width of the opening), or less than kSmallestTumorMm or more than kLargestTumorMm across ("is the scale
+/// right?").
 [[nodiscard]] PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale& scale,
                                                 const PhotoSettings& settings, const std::filesystem::path& name);
 
