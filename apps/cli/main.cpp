@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <vector>
 
@@ -29,7 +29,8 @@ std::string joined(int argc, char** argv) {
 /// CLI11 only says that a verb is required.
 void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
   std::vector<std::string> verbs;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) verbs.push_back(verb->get_name());
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    verbs.push_back(verb->get_name());
   if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
   throw CaseError("command line", "verb", fmt::format("'{}'", word), fmt::format("one of {}", fmt::join(verbs, ", ")),
                   fmt::format("Did you mean '{}'?", nearest_name(word, verbs)));
@@ -38,12 +39,18 @@ void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
 /// strtod and CLI11 take "nan" and "inf" for numbers, and no range check stops a NaN.
 void refuse_numbers_that_are_not_finite(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
-    std::string word = argv[i];
-    if (word.rfind("--", 0) == 0 && word.find('=') != std::string::npos) word = word.substr(word.find('=') + 1);
+    std::string word = argv[i], name = argv[i];  // name: the option that the number belongs to, where there is one
+    const std::size_t equals = word.find('=');
+    if (word.rfind("--", 0) == 0 && equals != std::string::npos) {
+      name = word.substr(0, equals);
+      word = word.substr(equals + 1);
+    } else if (std::string(argv[i - 1]).rfind("--", 0) == 0) {
+      name = argv[i - 1];
+    }
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
     if (end != word.c_str() && *end == '\0' && !std::isfinite(value)) {
-      throw CaseError("command line", argv[i], word, "a finite number", "A file of that name can be given as ./" + word);
+      throw CaseError("command line", name, word, "a finite number", "A file of that name can be given as ./" + word);
     }
   }
 }
@@ -104,10 +111,13 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "incise: {}; nothing was written\n", error.what());
     return kInterrupted;
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message());
+    fmt::print(stderr, "incise: {}: found {}, expected a path that can be used\n", error.path1().string(),
+               error.code().message());
     return kBadData;
   } catch (const nlohmann::json::exception& error) {
-    fmt::print(stderr, "incise: a file of the results: found {}, expected what an earlier run wrote. Remove the result folder to make it anew\n",
+    fmt::print(stderr,
+               "incise: a file of the results: found {}, expected what an earlier run wrote. Remove the result folder "
+               "to make it anew\n",
                error.what());
     return kBadData;
   } catch (const std::bad_alloc&) {

@@ -534,8 +534,8 @@ class EvaluateTest(CommandTest):
             (("audit", "t.csv", "--n-at-least", "few"), "--n-at-least: found 'few', expected a whole number from 2 to"),
             (("audit", "t.csv", "--grain", "-1"), "--grain: found -1, expected a number of at least 0"),
             (("audit", "t.csv", "--grain", "abc"), "--grain: found 'abc', expected a number of at least 0"),
-            (("audit", "t.csv", "--least", "nan"), "--least: found 'nan', expected a finite number"),
-            (("evaluate", "photo.png", "--mm-per-pixel", "nan"), "--mm-per-pixel: found 'nan', expected a number above 0"),
+            (("audit", "t.csv", "--least", "nan"), "command line: --least: found nan, expected a finite number"),
+            (("evaluate", "photo.png", "--mm-per-pixel", "nan"), "command line: --mm-per-pixel: found nan, expected a finite number"),
         ):
             with self.subTest(words=words):
                 done = self.incise(*words)
