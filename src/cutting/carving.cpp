@@ -263,6 +263,7 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   PcgSettings pcg;
   pcg.relative_tolerance = settings.residual_tolerance;
   pcg.reference_mn = std::max(bond_scale, kForceFloorMn);
+  pcg.starts_from_last = true;
   report.solve = scratch.solver.solve(scratch.stiffness.matrix(), scratch.right_side, scratch.increment, pcg, workers);
 
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) {

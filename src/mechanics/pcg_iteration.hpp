@@ -17,17 +17,17 @@ inline double sum_of(const std::vector<double>& of_chunks) {
   return std::accumulate(of_chunks.begin(), of_chunks.end(), 0.0);
 }
 
-/// Preconditioned conjugate gradients from x = 0. `sweeps` owns the vectors, with r = b and x = p = A p = 0 before, and
-/// does
+/// Preconditioned conjugate gradients from x = start · p: `sweeps` owns the vectors, with r = b and x = 0 before, p and
+/// A p those of a first direction (0: none), and does
 ///   move(alpha):    x += alpha p, r -= alpha A p; returns |r|
 ///   precondition(): prepares M⁻¹ r; returns r · M⁻¹ r
 ///   turn(beta):     p = M⁻¹ r + beta p
 ///   multiply():     A p; returns p · A p
 template <class Sweeps>
-PcgReport iterate(Sweeps& sweeps, const PcgSettings& settings) {
+PcgReport iterate(Sweeps& sweeps, const PcgSettings& settings, double start = 0.0) {
   PcgReport report;
-  report.residual_mn = sweeps.move(0.0);
-  const double reference = settings.reference_mn > 0.0 ? settings.reference_mn : report.residual_mn;
+  const double reference = settings.reference_mn > 0.0 ? settings.reference_mn : sweeps.move(0.0);
+  report.residual_mn = sweeps.move(start);
   const double target = settings.relative_tolerance * std::max(reference, settings.floor_mn);
   double rz_before = 0.0;
   while (!(report.residual_mn <= target) && report.iterations < settings.max_iterations) {

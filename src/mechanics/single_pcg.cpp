@@ -140,6 +140,7 @@ void SinglePcg::update(const BlockMatrix& matrix, std::span<const Mat3> inverse_
     }
   });
   if (!has_new_coarse) return;
+  has_last_ = false;
   if (!is_coarse_dense_) {
     cycle_ = rounded(coarse.cycle());
     return;
@@ -154,18 +155,34 @@ PcgVectors SinglePcg::vectors() {
           arm_.data(), is_free_.data(), scaled_p_.data(), scale_.data(), left_.data()};
 }
 
-/// r = b, x = p = q = 0.
-void SinglePcg::load(std::span<const Vec3> b, Workers& workers) {
+/// r = b, x = q = 0; p = 0, or the last solution on the axes that are free now, and s p.
+void SinglePcg::load(std::span<const Vec3> b, bool keeps_last, Workers& workers) {
   for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto first = static_cast<std::size_t>(start_[begin]);
     const auto last = static_cast<std::size_t>(start_[end]);
-    for (std::vector<float>* vector : {&x_, &p_, &q_})
-      std::fill(vector->data() + 4 * first, vector->data() + 4 * last, 0.0F);
+    for (std::size_t k = 4 * first; k < 4 * last; ++k) {
+      p_[k] = keeps_last ? is_free_[k] * x_[k] : 0.0F;
+      scaled_p_[k] = scale_[k / 4] * p_[k];
+      x_[k] = q_[k] = 0.0F;
+    }
     for (std::size_t i = first; i < last; ++i) {
       const Vec3& from = b[static_cast<std::size_t>(vertex_[i])];
       for (std::size_t k = 0; k < 3; ++k) r_[4 * i + k] = static_cast<float>(from[static_cast<int>(k)]);
     }
   });
+}
+
+/// How much of the direction p, the last solution, lowers the energy most: p · b / p · A p.
+double SinglePcg::share_of_last(Workers& workers) {
+  const double pq = multiply(workers);
+  for_aggregates(workers, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    double sum = 0.0;
+    for (auto k = 4 * static_cast<std::size_t>(start_[begin]); k < 4 * static_cast<std::size_t>(start_[end]); ++k)
+      sum += static_cast<double>(p_[k]) * static_cast<double>(r_[k]);
+    partial_rr_[chunk] = sum;
+  });
+  const double share = sum_of(partial_rr_) / pq;
+  return pq > 0.0 && std::isfinite(share) ? share : 0.0;
 }
 
 /// x += alpha p, r -= alpha q, z = D⁻¹ r and Pᵀ r.
@@ -227,7 +244,9 @@ PcgReport SinglePcg::solve(std::span<const Vec3> b, std::span<Vec3> x, const Pcg
     report.is_indefinite = true;
     return report;
   }
-  load(b, workers);
+  const bool keeps_last = settings.starts_from_last && has_last_;
+  load(b, keeps_last, workers);
+  const double start = keeps_last ? share_of_last(workers) : 0.0;
   struct Sweeps {
     SinglePcg& pcg;
     Workers& workers;
@@ -239,7 +258,8 @@ PcgReport SinglePcg::solve(std::span<const Vec3> b, std::span<Vec3> x, const Pcg
     void turn(double beta) { pcg.turn(static_cast<float>(beta), workers); }
     double multiply() { return pcg.multiply(workers); }
   } sweeps{*this, workers};
-  const PcgReport report = iterate(sweeps, settings);
+  const PcgReport report = iterate(sweeps, settings, start);
+  has_last_ = report.converged;
   for (std::size_t i = 0; i < vertex_.size(); ++i) {
     const auto v = static_cast<std::size_t>(vertex_[i]);
     x[v] = Vec3(x_[4 * i], x_[4 * i + 1], x_[4 * i + 2]);

@@ -37,7 +37,8 @@ class SinglePcg {
   void rescale(const BlockMatrix& matrix, std::span<const std::uint8_t> changed_rows, Workers& workers);
   bool round_row(const BlockMatrix& matrix, std::size_t row);
   PcgVectors vectors();
-  void load(std::span<const Vec3> b, Workers& workers);
+  void load(std::span<const Vec3> b, bool keeps_last, Workers& workers);
+  double share_of_last(Workers& workers);
   void move(float alpha, Workers& workers);
   double precondition(Workers& workers);
   double multiply(Workers& workers);
@@ -56,6 +57,7 @@ class SinglePcg {
   std::vector<float> inverse_diagonal_;      ///< 12 per vertex: three columns of four
   std::vector<float> arm_, is_free_;         ///< 4 per vertex
   bool is_coarse_dense_;
+  bool has_last_ = false;  ///< x_ is the solution of the solve before, with the same coarse matrix
   std::vector<float> coarse_;                        ///< n x n, where the coarse inverse is dense
   CoarseCycle<float> cycle_;                         ///< where it is not
   std::vector<float> x_, r_, z_, p_, q_, scaled_p_;  ///< 4 per vertex

@@ -11,7 +11,7 @@
 namespace incise {
 namespace {
 
-constexpr double kTurnRad = 1e-2;  // below it a tet's blocks stay: docs/models/solvers.md
+constexpr double kTurnRad = 2e-2;  // below it a tet's blocks stay: docs/models/solvers.md
 constexpr std::size_t kRowsPerChunk = 512;
 constexpr std::size_t kBatchesPerChunk = 64;
 

@@ -289,7 +289,7 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
   result.record = progress.state.record;
   result.inverted_tets = count_inverted(model, progress.state.tissue);
   result.final_state = std::move(progress.state);
-  measure_kerf(model, stretched, path, settings, result);
+  measure_kerf(model, stretched, path, settings, result, workers);
   if (result.outcome == Outcome::Success && result.is_closed_loop && !*result.is_closed_loop) {
     result.outcome = Outcome::OpenLoop;
   }

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <vector>
 
 namespace incise {
 namespace {
@@ -65,45 +67,58 @@ CutSurface cut_surface(const TetMesh& mesh, const TissueState& tissue, const Inc
   return surface;
 }
 
-}  // namespace
-
-void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path, const IncisionSettings& settings,
-                  IncisionResult& result) {
-  KerfMidlineSettings midline_settings;
-  midline_settings.layer_bottom_mm = settings.midline_layer_mm;
-  const KerfInput kerf = kerf_input(model, stretched, path, settings, result.record);
+void measure_midline(const KerfInput& kerf, const KerfMidlineSettings& midline_settings, IncisionResult& result) {
   const KerfMidline midline = midline_contour(kerf, midline_settings);
   result.centerline = midline.contour;
   result.kerf_width_mm = midline.mean_width_mm;
-  if (path.is_closed) {
-    result.is_closed_loop = midline.is_closed;
-    if (!midline.is_closed && std::isfinite(midline.gap_mm)) result.gap_mm = midline.gap_mm;
-    result.gap_deg = midline.gap_deg;
-  }
+  if (!kerf.is_closed) return;
+  result.is_closed_loop = midline.is_closed;
+  if (!midline.is_closed && std::isfinite(midline.gap_mm)) result.gap_mm = midline.gap_mm;
+  result.gap_deg = midline.gap_deg;
+}
+
+/// Where the tumour edge lies after the cut, and the inner edge of a ring.
+void measure_final_edges(const TissueModel& model, const TissueState& stretched, const ToolPath& path, const IncisionSettings& settings,
+                         double bridge_mm, IncisionResult& result) {
+  if (path.tumor_edge.points.size() < 3) return;
+  const TissueState& tissue = result.final_state.tissue;
+  result.final_tumor_edge = carried(path.tumor_edge, model.mesh, stretched.positions, tissue.positions);
+  if (!path.is_closed) return;
+  InnerEdgeSettings edge_settings;
+  edge_settings.opening_mm = bridge_mm;
+  result.inner_edge =
+      inner_edge_contour(cut_surface(model.mesh, tissue, settings, inside_of(result.final_tumor_edge, path)), edge_settings);
+  if (!result.inner_edge) return;
+  result.kerf.inner_edge_reference = carried_with_live(*result.inner_edge, 0.0, settings.approach, model.mesh, tissue.is_live,
+                                                       tissue.positions, stretched.positions);
+}
+
+}  // namespace
+
+void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path, const IncisionSettings& settings,
+                  IncisionResult& result, Workers& workers) {
+  KerfMidlineSettings midline_settings;
+  midline_settings.layer_bottom_mm = settings.midline_layer_mm;
+  const KerfInput kerf = kerf_input(model, stretched, path, settings, result.record);
   const TissueState& tissue = result.final_state.tissue;
   KerfMeasures& measures = result.kerf;
-  measures.body = kerf_body(model, stretched.positions, tissue.is_live);
-  measures.layers = kerf_layers(kerf, path, settings);
-  measures.depth = depth_reached(kerf, path, settings);
-  measures.drag = tissue_drag(model, stretched.positions, path, settings, result.record);
+  measures.layers.resize(settings.layer_depths_mm.size());
+  // Each writes what no other reads; the slow ones stand apart, so that threads share them.
+  std::vector<std::function<void()>> tasks{
+      [&] { measure_midline(kerf, midline_settings, result); },
+      [&] { measures.body = kerf_body(model, stretched.positions, tissue.is_live); },
+      [&] { measures.depth = depth_reached(kerf, path, settings); },
+      [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, result.record); },
+      // A strip of tissue that the mid-line overlooks does not hold the plug either.
+      [&] { measure_final_edges(model, stretched, path, settings, midline_settings.closing_mm, result); }};
+  for (std::size_t i = 0; i < measures.layers.size(); ++i) {
+    tasks.emplace_back([&, i] { measures.layers[i] = kerf_layer(kerf, path, settings.layer_depths_mm[i]); });
+  }
+  workers.for_each(tasks.size(), 1, [&](std::size_t i) { tasks[i](); });
   measures.deep_margin = deep_margin(measures.body, measures.depth, settings);
-  if (result.centerline) {
-    measures.final_centerline = carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
-                                                  tissue.is_live, stretched.positions, tissue.positions);
-  }
-  if (path.tumor_edge.points.size() < 3) return;
-  result.final_tumor_edge = carried(path.tumor_edge, model.mesh, stretched.positions, tissue.positions);
-  if (path.is_closed) {
-    // A strip of tissue that the mid-line overlooks does not hold the plug either.
-    InnerEdgeSettings edge_settings;
-    edge_settings.opening_mm = midline_settings.closing_mm;
-    result.inner_edge = inner_edge_contour(cut_surface(model.mesh, tissue, settings, inside_of(result.final_tumor_edge, path)),
-                                           edge_settings);
-    if (result.inner_edge) {
-      measures.inner_edge_reference = carried_with_live(*result.inner_edge, 0.0, settings.approach, model.mesh, tissue.is_live,
-                                                        tissue.positions, stretched.positions);
-    }
-  }
+  if (!result.centerline) return;
+  measures.final_centerline = carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
+                                                tissue.is_live, stretched.positions, tissue.positions);
 }
 
 }  // namespace incise

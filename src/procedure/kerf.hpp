@@ -9,13 +9,13 @@ namespace incise {
 inline constexpr double kLayerThicknessMm = 1.0;
 
 /// Measures what a cut left behind and enters it in `result`: mid-line of the kerf in the stretched reference, inner edge and tumour
-/// edge in the final configuration, whether a ring closed. Uses result.record and result.final_state.
+/// edge in the final configuration, whether a ring closed. Uses result.record and result.final_state. The measures are taken side by side.
 void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path, const IncisionSettings& settings,
-                  IncisionResult& result);
+                  IncisionResult& result, Workers& workers);
 
 /// The single measures; `kerf` is the removed tets in the stretched tissue before the cut.
 [[nodiscard]] KerfBody kerf_body(const TissueModel& model, std::span<const Vec3> stretched, std::span<const std::uint8_t> is_live);
-[[nodiscard]] std::vector<KerfLayer> kerf_layers(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings);
+[[nodiscard]] KerfLayer kerf_layer(const KerfInput& kerf, const ToolPath& path, double depth_mm);
 [[nodiscard]] DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings);
 [[nodiscard]] std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path,
                                                     const IncisionSettings& settings, const CutRecord& record);

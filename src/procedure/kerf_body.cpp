@@ -53,29 +53,26 @@ KerfBody kerf_body(const TissueModel& model, std::span<const Vec3> stretched, st
   return body;
 }
 
-std::vector<KerfLayer> kerf_layers(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings) {
+KerfLayer kerf_layer(const KerfInput& kerf, const ToolPath& path, double depth_mm) {
   double planned_mm = 0.0;
   for (const Waypoint& waypoint : path.waypoints) planned_mm = std::max(planned_mm, waypoint.depth_mm);
-  std::vector<KerfLayer> layers;
-  for (const double depth_mm : settings.layer_depths_mm) {
-    KerfLayer& layer = layers.emplace_back();
-    layer.depth_mm = depth_mm;
-    layer.is_within_plan = depth_mm <= planned_mm;
-    if (!layer.is_within_plan) continue;
-    KerfMidlineSettings midline;
-    midline.layer_top_mm = depth_mm - 0.5 * kLayerThicknessMm;
-    midline.layer_bottom_mm = depth_mm + 0.5 * kLayerThicknessMm;
-    KerfMidline found = midline_contour(kerf, midline);
-    if (path.is_closed) {
-      layer.is_closed = found.is_closed;
-      if (!found.is_closed && std::isfinite(found.gap_mm)) layer.gap_mm = found.gap_mm;
-    }
-    layer.width_mm = found.mean_width_mm;
-    layer.centerline = std::move(found.contour);
-    if (!layer.centerline) continue;
-    for (Vec3& p : layer.centerline->points) p += depth_mm * settings.approach;
+  KerfLayer layer;
+  layer.depth_mm = depth_mm;
+  layer.is_within_plan = depth_mm <= planned_mm;
+  if (!layer.is_within_plan) return layer;
+  KerfMidlineSettings midline;
+  midline.layer_top_mm = depth_mm - 0.5 * kLayerThicknessMm;
+  midline.layer_bottom_mm = depth_mm + 0.5 * kLayerThicknessMm;
+  KerfMidline found = midline_contour(kerf, midline);
+  if (path.is_closed) {
+    layer.is_closed = found.is_closed;
+    if (!found.is_closed && std::isfinite(found.gap_mm)) layer.gap_mm = found.gap_mm;
   }
-  return layers;
+  layer.width_mm = found.mean_width_mm;
+  layer.centerline = std::move(found.contour);
+  if (!layer.centerline) return layer;
+  for (Vec3& p : layer.centerline->points) p += depth_mm * kerf.approach;
+  return layer;
 }
 
 std::optional<Contour> carried_with_live(const Contour& curve, double reach_mm, const Vec3& approach,

@@ -328,6 +328,62 @@ TEST(TwoLevelPcg, InSinglePrecisionGivesTheSameBitsAtAnyThreadCount) {
   EXPECT_EQ(one, three);
 }
 
+/// Solves for several right sides one after the other, each but the first from the solution before.
+struct Chain {
+  std::vector<Points> solutions;
+  std::vector<int> iterations;
+};
+Chain solve_chain(const System& system, const std::vector<Points>& right_sides, bool renews, int threads = 1) {
+  Workers workers(threads);
+  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, 20, Precision::Single);
+  PcgSettings settings;
+  settings.relative_tolerance = 1e-2;
+  settings.starts_from_last = true;
+  Chain chain;
+  for (const Points& right : right_sides) {
+    solver.update(system.matrix, renews, workers);
+    Points x(right.size());
+    const PcgReport report = solver.solve(system.matrix, right, x, settings, workers);
+    EXPECT_TRUE(report.converged);
+    chain.solutions.push_back(x);
+    chain.iterations.push_back(report.iterations);
+  }
+  return chain;
+}
+
+TEST(TwoLevelPcg, InSinglePrecisionStartsFromTheLastSolution) {
+  const System system(clamped_block({12, 8, 8}, 0.45));
+  Points thrice = system.right;
+  for (Vec3& b : thrice) b *= 3.0;
+  Points turned = system.right;  // nearly the same load
+  for (Vec3& b : turned) b += Vec3(0.0, 0.1 * b.x(), 0.0);
+  const std::vector<Points> loads{system.right, system.right, thrice, turned};
+  const Chain kept = solve_chain(system, loads, false);
+  const Chain renewed = solve_chain(system, loads, true);
+  EXPECT_GT(kept.iterations[0], 5);
+  EXPECT_EQ(kept.iterations[1], 0) << "it has been solved";
+  EXPECT_EQ(kept.iterations[2], 0) << "the solution is the last one, three times";
+  EXPECT_LT(difference(kept.solutions[2], renewed.solutions[2]), 0.05 * norm(renewed.solutions[2]));
+  EXPECT_LT(kept.iterations[3], renewed.iterations[3]);
+  EXPECT_EQ(kept.solutions[0], renewed.solutions[0]);
+  EXPECT_EQ(renewed.solutions[1], renewed.solutions[0]) << "a renewed coarse matrix forgets what was before";
+  EXPECT_EQ(renewed.iterations[2], kept.iterations[0]);
+  const Chain threaded = solve_chain(system, loads, false, 3);
+  EXPECT_EQ(threaded.solutions, kept.solutions);
+}
+
+TEST(TwoLevelPcg, InSinglePrecisionALastSolutionOfNoUseDoesNoHarm) {
+  const System system(clamped_block({12, 8, 8}, 0.45));
+  Points other(system.right.size(), Vec3::Zero());
+  for (std::size_t v = 0; v < other.size(); v += 5) other[v] = Vec3(0.0, v % 2 == 0 ? 1.0 : -1.0, 0.5);
+  Points right_side = other;
+  BlockMatrix matrix = system.matrix;
+  hold_constrained(system.model, matrix, right_side);
+  const Chain kept = solve_chain(system, {system.right, right_side}, false);
+  const Chain renewed = solve_chain(system, {system.right, right_side}, true);
+  EXPECT_LE(kept.iterations[1], renewed.iterations[1] + 1);
+}
+
 TEST(TwoLevelPcg, RefusesAMatrixWithANegativeDiagonal) {
   System system(clamped_block({3, 2, 2}));
   Workers workers(1);

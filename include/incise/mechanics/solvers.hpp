@@ -21,6 +21,9 @@ struct PcgSettings {
   double reference_mn = 0.0;         ///< scale of the stopping test; 0: |b|
   double floor_mn = 0.0;             ///< lower bound of that scale
   int max_iterations = 2000;
+  /// Begin with the share of the last solution that lowers the energy most, in place of zero (of the last since
+  /// update() renewed the coarse matrix; there is none, or with Precision::Double: zero).
+  bool starts_from_last = false;
 };
 
 struct PcgReport {
