@@ -283,8 +283,6 @@ class Registering {
       if (result.outcome == RegistrationOutcome::Converged) result.outcome = outcome;
       result.reasons.push_back(std::move(reason));
     };
-    fail(!best.has_converged, RegistrationOutcome::IterationLimit,
-         fmt::format("still moving after {} iterations", best.iterations));
     const std::string both_residuals =
         fmt::format("residual {:.3g} mm (rms) and score {:.3f}, against {:.3g} mm and {:.3f} as it is",
                     result.mirror_rmse_mm, result.mirror_score, result.shape_rmse_mm, result.score);
@@ -292,6 +290,8 @@ class Registering {
          fmt::format("the source's mirror image fits the target better than the source ({}): one of the two clouds is "
                      "reflected",
                      both_residuals));
+    fail(!best.has_converged, RegistrationOutcome::IterationLimit,
+         fmt::format("still moving after {} iterations", best.iterations));
     fail(result.inlier_fraction < settings_.least_inliers, RegistrationOutcome::PoorFit,
          fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %",
                      100.0 * result.inlier_fraction, 100.0 * settings_.least_inliers));

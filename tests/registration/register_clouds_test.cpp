@@ -152,6 +152,15 @@ TEST_F(RegisterClouds, AMirrorImageIsNeverAReflectionAndIsFlagged) {
   EXPECT_GT(found.shape_rmse_mm, 3.0 * found.mirror_rmse_mm);
 }
 
+TEST_F(RegisterClouds, AMirrorImageIsOneWhereTheWrongShapeDoesNotComeToRestToo) {
+  const PointCloud source = hill(2000, random_);
+  RegistrationSettings hasty;
+  hasty.max_iterations = 5;
+  const Registration found = run(source, mirrored(hill(2000, random_, 0.1)), hasty);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("still moving")));
+  EXPECT_EQ(found.outcome, RegistrationOutcome::Mirrored);
+}
+
 TEST_F(RegisterClouds, AMirrorImageIsKnownFromAStartNearTheWrongPoseToo) {
   // Nearly symmetric: the wrong pose lies close by, and no search is made.
   PointCloud source, target;
