@@ -248,8 +248,10 @@ class Registering {
     result.shape_rmse_mm = proper.rmse * frame_.length;
     result.mirror_score = mirror.score;
     result.mirror_rmse_mm = mirror.rmse * frame_.length;
-    // Both have to say so: where tissue has settled, a few of the mirror image's points may lie better and most worse.
+    // All have to say so: where tissue has settled, a few of the mirror image's points may lie better and most worse;
+    // and of a symmetric shape two halves that overlap a little have mirror images that overlap altogether.
     is_mirrored_ = proper.score < kMirrorRatio * mirror.score && mirror.rmse < kMirrorRatio * proper.rmse &&
+                   proper.score_above < kMirrorRatio * mirror.score_above &&
                    mirror.fit_fraction >= settings_.least_fit && mirror.rmse <= settings_.largest_rmse;
     result.is_handedness_determined = mirror.score < kMirrorRatio * proper.score;
   }
