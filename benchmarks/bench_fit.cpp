@@ -114,14 +114,7 @@ void run(std::uint64_t seed, int tets) {
     fmt::print("{},no closed ring\n", seed);
     return;
   }
-  PhantomSettings shown;
-  shown.seed = specimen.seed;
-  shown.noise_hu = specimen.ct_noise_hu;
-  shown.tumor_diameter_mm = specimen.tumor_diameter_mm;
-  shown.tumor_irregularity = specimen.tumor_irregularity;
-  shown.tumor_depth_mm = specimen.tumor_depth_mm;
-  shown.tumor_position = specimen.tumor_position;
-  const Phantom phantom = make_phantom(shown, silent);
+  const Phantom phantom = make_phantom(phantom_settings(specimen), silent);
   bench::PhantomStore store(phantom);
   Fit best;
   int open = 0;

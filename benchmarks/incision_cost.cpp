@@ -2,14 +2,12 @@
 //   incise_incision_cost [--tets N[,N...]] [--threads N] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE] [--figure FILE]
 // Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4). Several sizes, in
 // ascending order, are drawn against each other with --figure.
+#include "cost_table.hpp"
 #include "process_cost.hpp"
 #include "virtual_study.hpp"
 
-#include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
-#include <incise/core/version.hpp>
 #include <incise/geometry/contour.hpp>
-#include <incise/io/manifest.hpp>
 #include <incise/procedure/incision.hpp>
 #include <incise/report/line_plot.hpp>
 
@@ -18,16 +16,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <string_view>
 
 namespace incise::bench {
 namespace {
-
-double load_average() {
-  double loads[1] = {0.0};
-  return getloadavg(loads, 1) == 1 ? loads[0] : -1.0;
-}
 
 struct Options {
   std::vector<int> tets{100000};  // ascending: a process remembers the most memory that it ever held
@@ -175,8 +167,7 @@ Size run_size(const Options& options, const Phantom& phantom, int tets, std::str
                          r.record.removals.size(), signed_mm, to_tight, size.bytes_per_tet, to_string(r.outcome), load_average(),
                          to_string(active_isa()), source_commit());
   }
-  std::sort(walls.begin(), walls.end());
-  size.median_wall_s = walls[walls.size() / 2];
+  size.median_wall_s = median(walls);
   fmt::print("median wall: {:.2f} s\n", size.median_wall_s);
   return size;
 }
@@ -198,37 +189,24 @@ LinePlot plot_of(const std::vector<Size>& sizes) {
   return plot;
 }
 
-bool write_file(const std::string& name, const std::string& text) {
-  if (name.empty()) return true;
-  std::ofstream file(name);
-  file << text;
-  if (file.flush()) return true;
-  fmt::print(stderr, "cannot write {}\n", name);
-  return false;
-}
-
 int run(const Options& options) {
   INCISE_REQUIRE(options.runs > 0 && options.threads > 0, "expected at least one run and one thread");
   Monitor silent;
   const Phantom phantom = make_phantom(PhantomSettings{}, silent);
-  std::string table = fmt::format("# {}; g++ {}, {}; {}\n", machine_description(), __VERSION__, BUILD_FLAGS, version());
+  std::string table = origin_line();
   table +=
       "tets,vertices,threads,advance_mm,residual_tolerance,steps,iterations,wall_s,processor_s,removed,signed_error_mm,"
       "to_tight_mm,bytes_per_tet,outcome,load,isa,commit\n";
   std::vector<Size> sizes;
   for (const int tets : options.tets) sizes.push_back(run_size(options, phantom, tets, table));
-  const bool is_written = write_file(options.csv, table) && (options.figure.empty() || write_file(options.figure, line_plot_svg(plot_of(sizes))));
-  return is_written ? 0 : 3;
+  write_text(options.csv, table);
+  if (!options.figure.empty()) write_text(options.figure, line_plot_svg(plot_of(sizes)));
+  return 0;
 }
 
 }  // namespace
 }  // namespace incise::bench
 
 int main(int argc, char** argv) {
-  try {
-    return incise::bench::run(incise::bench::parse(argc, argv));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "incise_incision_cost: {}\n", error.what());
-    return 2;
-  }
+  return incise::bench::reporting_errors("incise_incision_cost", [&] { return incise::bench::run(incise::bench::parse(argc, argv)); });
 }

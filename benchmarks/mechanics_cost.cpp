@@ -1,11 +1,10 @@
 // Cost of a static stretch against the size of the body, and SOFA's beam: accuracy beside time, as a table and as CSV.
 //   incise_mechanics_cost [--csv FILE] [--figure FILE.svg] [--large] [--million] [--threads N]
+#include "cost_table.hpp"
 #include "process_cost.hpp"
 #include "test_body.hpp"
 
 #include <incise/core/isa.hpp>
-#include <incise/core/version.hpp>
-#include <incise/io/manifest.hpp>
 #include <incise/mechanics/motion.hpp>
 #include <incise/report/line_plot.hpp>
 
@@ -16,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -155,12 +153,10 @@ std::string figure_of(const std::vector<Row>& stretches, double slope) {
   return line_plot_svg(plot);
 }
 
-bool write_file(const std::string& file_name, const std::string& text) {
-  std::ofstream file(file_name);
-  file << text;
-  if (file.flush()) return true;
-  fmt::print(stderr, "cannot write {}\n", file_name);
-  return false;
+std::string line_of(const Row& row, int threads) {
+  return fmt::format("{},{},{},{},{:.3f},{:.3f},{},{},{:.1e},{:.0f},{},{},{}\n", row.name, row.tets, row.vertices, threads,
+                     row.processor_s, row.wall_s, row.newton, row.linear_iterations, row.accuracy, row.bytes_per_tet,
+                     row.has_converged ? "yes" : "no", to_string(active_isa()), source_commit());
 }
 
 int run(int argc, char** argv) {
@@ -181,38 +177,34 @@ int run(int argc, char** argv) {
     } else if (argument == "--threads" && i + 1 < argc) {
       threads = std::atoi(argv[++i]);
     } else {
-      fmt::print(stderr, "expected [--csv FILE] [--figure FILE] [--large] [--million] [--threads N], found {}\n", argument);
-      return 2;
+      throw std::runtime_error(
+          fmt::format("expected [--csv FILE] [--figure FILE] [--large] [--million] [--threads N], found {}", argument));
     }
   }
-  std::vector<Row> rows;
-  for (const double size : sizes) rows.push_back(in_own_process([&] { return stretch(size, threads); }));
-  const double slope = exponent(rows);
-  const std::string drawn = figure_of(rows, slope);
-  rows.push_back(in_own_process([&] { return beam(threads); }));
-  std::string table = fmt::format("# {}; g++ {}, {}; {}\n", machine_description(), __VERSION__, BUILD_FLAGS, version());
-  table +=
+  std::string table;
+  tell(origin_line(), table);
+  tell(
       "name,tets,vertices,threads,processor_s,wall_s,newton,linear_iterations,relative_residual,bytes_per_tet,converged,isa,"
-      "commit\n";
-  for (const Row& row : rows) {
-    table += fmt::format("{},{},{},{},{:.3f},{:.3f},{},{},{:.1e},{:.0f},{},{},{}\n", row.name, row.tets, row.vertices,
-                         threads, row.processor_s, row.wall_s, row.newton, row.linear_iterations, row.accuracy,
-                         row.bytes_per_tet, row.has_converged ? "yes" : "no", to_string(active_isa()), source_commit());
+      "commit\n",
+      table);
+  std::vector<Row> stretches;
+  for (const double size : sizes) {
+    stretches.push_back(in_own_process([&] { return stretch(size, threads); }));
+    tell(line_of(stretches.back(), threads), table);
   }
-  fmt::print("{}processor time of the stretch grows as tets^{:.2f}\n", table, slope);
-  const bool is_written = (csv.empty() || write_file(csv, table)) && (figure.empty() || write_file(figure, drawn));
-  if (!is_written) return 3;
-  return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.has_converged; }) ? 0 : 4;
+  const Row bent = in_own_process([&] { return beam(threads); });
+  tell(line_of(bent, threads), table);
+  const double slope = exponent(stretches);
+  fmt::print("processor time of the stretch grows as tets^{:.2f}\n", slope);
+  write_text(csv, table);
+  if (!figure.empty()) write_text(figure, figure_of(stretches, slope));
+  const bool all_converged = std::all_of(stretches.begin(), stretches.end(), [](const Row& row) { return row.has_converged; });
+  return all_converged && bent.has_converged ? 0 : 4;
 }
 
 }  // namespace
 }  // namespace incise::bench
 
 int main(int argc, char** argv) {
-  try {
-    return incise::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "incise_mechanics_cost: {}\n", error.what());
-    return 2;
-  }
+  return incise::bench::reporting_errors("incise_mechanics_cost", [&] { return incise::bench::run(argc, argv); });
 }

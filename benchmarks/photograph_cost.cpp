@@ -1,20 +1,18 @@
 // A photograph from file to measures: time beside accuracy, on painted photographs whose contours are known (virtual).
 //   incise_photograph_cost [--runs N] [--pixels N] [--csv FILE]
+#include "cost_table.hpp"
 #include "process_cost.hpp"
 #include "support/contour_shapes.hpp"
 #include "support/photo_painter.hpp"
 
-#include <incise/core/version.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/evaluation/level_loop.hpp>
 #include <incise/imaging/photo_contours.hpp>
-#include <incise/io/manifest.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -71,11 +69,6 @@ double mean_error_mm(const Contour& found, const Contour& truth) {
   return sum / kPoints;
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
-}
-
 bool measure(const Kind& kind, const Options& options, std::string& table) {
   const Scene truth = scene(kind, options.pixels);
   const EvaluationSettings settings{.contour = ContourKind::InnerEdge};
@@ -108,9 +101,7 @@ bool measure(const Kind& kind, const Options& options, std::string& table) {
       "{},{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.4f},{:.4f},{:.4f},{:.5f},{:.0f},{}\n", kind.name,
       options.pixels, options.runs, median(decode), median(find), median(walls), *fastest, *slowest, median(processors),
       green, red, error, hu, peak_bytes() / 1048576.0, is_good ? "yes" : "NO");
-  fmt::print("{}", line);
-  std::fflush(stdout);
-  table += line;
+  tell(line, table);
   return is_good;
 }
 
@@ -133,22 +124,18 @@ Options options_of(int argc, char** argv) {
 
 int run(int argc, char** argv) {
   const Options options = options_of(argc, argv);
-  std::string table = fmt::format("# {}; g++ {}, {}; {} {}; 1 thread\n", machine_description(), __VERSION__,
-                                  BUILD_FLAGS, version(), source_commit());
-  table +=
+  std::string table;
+  tell(origin_line("1 thread"), table);
+  tell(
       "red_line,pixels,runs,decode_s,find_s,wall_s,wall_least_s,wall_most_s,processor_s,green_error_mm,red_error_mm,"
-      "abs_error_change_mm,hu_change,peak_mb,passed\n";
-  fmt::print("{}", table);
+      "abs_error_change_mm,hu_change,peak_mb,passed\n",
+      table);
   bool is_good = true;
   for (const Kind& kind : {Kind{"line 4 px", 4.0, RedLine::Annotation}, Kind{"line 12 px", 12.0, RedLine::Annotation},
                            Kind{"kerf 60 px", 60.0, RedLine::Kerf}}) {
     is_good = measure(kind, options, table) && is_good;
   }
-  if (!options.csv.empty()) {
-    std::ofstream file(options.csv);
-    file << table;
-    if (!file.flush()) throw std::runtime_error("cannot write " + options.csv);
-  }
+  write_text(options.csv, table);
   return is_good ? 0 : 4;
 }
 
@@ -156,10 +143,5 @@ int run(int argc, char** argv) {
 }  // namespace incise::bench
 
 int main(int argc, char** argv) {
-  try {
-    return incise::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "incise_photograph_cost: {}\n", error.what());
-    return 2;
-  }
+  return incise::bench::reporting_errors("incise_photograph_cost", [&] { return incise::bench::run(argc, argv); });
 }

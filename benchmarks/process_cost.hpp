@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <cstdlib>
 #include <ctime>
 
 namespace incise::bench {
@@ -25,6 +26,12 @@ inline double peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// Mean number of busy processes in the last minute, this one included; negative: unknown.
+inline double load_average() {
+  double loads[1] = {0.0};
+  return getloadavg(loads, 1) == 1 ? loads[0] : -1.0;
 }
 
 }  // namespace incise::bench

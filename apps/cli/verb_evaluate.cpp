@@ -56,16 +56,6 @@ void require_usable(const Contour& contour, const std::string& what, double larg
   }
 }
 
-/// The settings are known to be valid here, so what is refused is the contours' fault.
-template <typename Measure>
-Evaluation measured(const std::filesystem::path& file, const Measure& measure) {
-  try {
-    return measure();
-  } catch (const InvalidArgument& error) {
-    throw fault_of_file(file, "", error, "contours that can be measured");
-  }
-}
-
 /// A photograph shows the inner edge unless told otherwise, contour files hold the mid-line.
 EvaluationSettings settings_of(const EvaluateArguments& arguments) {
   EvaluationSettings settings = arguments.settings;
@@ -128,6 +118,20 @@ struct Measured {
   std::vector<std::string> warnings;
 };
 
+/// What `measure` finds, in JSON too. The settings are known to be valid here, so what it refuses is the fault of the
+/// contours in `file`.
+template <typename Measure>
+Measured measured(const std::filesystem::path& file, const Measure& measure) {
+  try {
+    Measured result{measure(), {}, {}};
+    result.json = to_json(result.evaluation);
+    result.json["points"] = points_json(result.evaluation);
+    return result;
+  } catch (const InvalidArgument& error) {
+    throw fault_of_file(file, "", error, "contours that can be measured");
+  }
+}
+
 nlohmann::ordered_json marks_json(const std::vector<PhotoMark>& marks) {
   auto json = nlohmann::ordered_json::array();
   for (const PhotoMark& mark : marks)
@@ -165,10 +169,7 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   const PhotoSettings photo{.red = wants_border ? RedLine::Kerf : RedLine::Annotation,
                             .max_gap_mm = arguments.max_gap_mm};
   const PhotoContours found = find_photo_contours(picture, scale.scale, photo, arguments.photo);
-  Measured result{
-      measured(arguments.photo, [&] { return evaluate(found.incision, found.tumor_edge, settings); }), {}, {}};
-  result.json = to_json(result.evaluation);
-  result.json["points"] = points_json(result.evaluation);
+  Measured result = measured(arguments.photo, [&] { return evaluate(found.incision, found.tumor_edge, settings); });
   result.json["photo"] = arguments.photo.string();
   result.json["mm_per_pixel"] = found.mm_per_pixel;
   result.json["scale"] = scale.summary;
@@ -192,10 +193,7 @@ Measured from_line(const EvaluateArguments& arguments, const EvaluationSettings&
   const Contour line = read_contour(arguments.line, false);
   require_usable(incision, "a cut", kLargestIncisionMm, settings.approach, arguments.incision);
   require_usable(line, "a line", kLargestIncisionMm, settings.approach, arguments.line);
-  Measured result{measured(arguments.line, [&] { return evaluate_line(incision, line, settings); }), {}, {}};
-  result.json = to_json(result.evaluation);
-  result.json["points"] = points_json(result.evaluation);
-  return result;
+  return measured(arguments.line, [&] { return evaluate_line(incision, line, settings); });
 }
 
 Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
@@ -204,9 +202,7 @@ Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings
   const Contour tumor_edge = read_contour(arguments.tumor, true);
   require_usable(incision, "an incision", kLargestIncisionMm, settings.approach, arguments.incision);
   require_usable(tumor_edge, "a tumour", kLargestTumorMm, settings.approach, arguments.tumor);
-  Measured result{measured(arguments.tumor, [&] { return evaluate(incision, tumor_edge, settings); }), {}, {}};
-  result.json = to_json(result.evaluation);
-  result.json["points"] = points_json(result.evaluation);
+  Measured result = measured(arguments.tumor, [&] { return evaluate(incision, tumor_edge, settings); });
   if (!arguments.figure.empty()) {
     const ErrorColors colors = arguments.colors == "jet" ? ErrorColors::Jet : ErrorColors::Safe;
     const std::string name = arguments.incision.stem().string();

@@ -1,6 +1,6 @@
 #include "cloud_input.hpp"
+#include "option_checks.hpp"
 
-#include <incise/core/problem_text.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/surface_io.hpp>
@@ -117,10 +117,10 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   settings.finish_with_icp = !arguments.no_icp;
   if (arguments.from_identity) settings.start = Similarity{std::clamp(1.0, settings.scale.low, settings.scale.high)};
   const Vec3 approach = direction_of(arguments.approach, "--approach");
+  settings.settling_mm = arguments.settling_mm;
+  require_valid(validate(settings));
   const PointCloud source = read_points(arguments.source, 12);
   const PointCloud target = read_points(arguments.target, 12);
-  settings.settling_mm = arguments.settling_mm;
-  if (const auto problems = validate(settings); !problems.empty()) throw broken_options(problems.front());
   Workers workers(options.threads);
   Registration found = register_clouds(source, target, settings, workers, console);
   if (found.outcome == RegistrationOutcome::Cancelled) throw Cancelled("register: stopped");
@@ -190,7 +190,7 @@ void add_register(Application& application) {
       ->check(CLI::Range(1, 100000));
   verb->add_option("--max-rmse-mm", arguments->max_rmse_mm,
                    "A larger residual is not acceptable; 0: 3 % of the target's radius")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(between("--max-rmse-mm", 0.0, 1000.0));
   verb->add_option(
           "--settling-mm", arguments->settling_mm,
           "How far the tissue may have settled, up or down, since it was simulated: pose and settling are then "
@@ -198,9 +198,9 @@ void add_register(Application& application) {
       ->check(CLI::Range(0.0, 20.0));
   verb->add_option("--smoothness", arguments->nonrigid.smoothness,
                    "nonrigid: range of the bending, share of the source's radius")
-      ->check(CLI::Range(0.01, 10.0));
+      ->check(between("--smoothness", 0.01, 10.0));
   verb->add_option("--stiffness", arguments->nonrigid.stiffness, "nonrigid: cost of bending against misfit")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(between("--stiffness", 1e-6, 1e6));
   verb->add_option("--approach", arguments->approach, "Line of sight of the picture")->expected(3);
 }
 

@@ -1,7 +1,7 @@
 #include "cloud_input.hpp"
+#include "option_checks.hpp"
 #include "study_run.hpp"
 
-#include <incise/core/problem_text.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/visible_surface.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -85,7 +85,7 @@ nlohmann::ordered_json cleaned(const PointCloud& raw, const SurfaceArguments& ar
   CleaningSettings settings = arguments.cleaning;
   settings.seen_along = approach;
   if (!arguments.box.empty()) settings.box = Box3(Vec3(arguments.box.data()), Vec3(arguments.box.data() + 3));
-  if (const auto problems = validate(settings); !problems.empty()) throw broken_options(problems.front());
+  require_valid(validate(settings));
   Random random(options.seed);
   CleanedCloud result = clean_cloud(raw, settings, random, workers);
   cloud = std::move(result.cloud);

@@ -8,7 +8,8 @@ namespace {
 
 bool is_function_name(const std::string& word) {
   if (word.starts_with("operator")) return true;
-  return !word.empty() && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  return !word.empty() &&
+         std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
 }  // namespace
@@ -47,11 +48,6 @@ Complaint complaint_of(const std::string& sentence, const std::string& otherwise
     complaint.expected = otherwise;
   }
   return complaint;
-}
-
-CaseError broken_options(const std::string& sentence) {
-  const Complaint complaint = complaint_of(sentence, "settings that can be used");
-  return {"command line", complaint.field, complaint.found, complaint.expected};
 }
 
 DataError fault_of_file(const std::filesystem::path& file, const std::string& place, const InvalidArgument& problem,

@@ -12,16 +12,6 @@ constexpr std::size_t kRefined = 8;   // of the coarse stage
 constexpr std::size_t kFewPoints = 2000;
 constexpr std::size_t kScorePoints = 4000;  // as for the proper pose
 
-/// Cancels when another monitor does, and says nothing.
-class Quiet : public Monitor {
- public:
-  explicit Quiet(const Monitor& other) : other_(other) {}
-  [[nodiscard]] bool is_cancelled() const override { return other_.is_cancelled(); }
-
- private:
-  const Monitor& other_;
-};
-
 Vec3 reflected(Vec3 v) {
   v.x() = -v.x();
   return v;
@@ -60,7 +50,7 @@ Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& t
     few.rotations = std::max(8, few.rotations / 2);  // the principal planes are where it usually lies
     few.refined = kRefined;
     few.keep = kFollowed;
-    Quiet quiet(monitor);
+    StopOnly quiet(monitor);
     for (const Pose& pose : search_poses(mirror, target, few, workers, quiet).poses) starts.push_back(pose.transform);
   }
   const std::vector<std::size_t> asked = spread_indices(mirror.cloud.points.size(), kScorePoints);

@@ -248,8 +248,10 @@ class Registering {
     result.shape_rmse_mm = proper.rmse * frame_.length;
     result.mirror_score = mirror.score;
     result.mirror_rmse_mm = mirror.rmse * frame_.length;
-    // Both have to say so: where tissue has settled, a few of the mirror image's points may lie better and most worse.
+    // All have to say so: where tissue has settled, a few of the mirror image's points may lie better and most worse;
+    // and of a symmetric shape two halves that overlap a little have mirror images that overlap altogether.
     is_mirrored_ = proper.score < kMirrorRatio * mirror.score && mirror.rmse < kMirrorRatio * proper.rmse &&
+                   proper.score_above < kMirrorRatio * mirror.score_above &&
                    mirror.fit_fraction >= settings_.least_fit && mirror.rmse <= settings_.largest_rmse;
     result.is_handedness_determined = mirror.score < kMirrorRatio * proper.score;
   }
@@ -283,8 +285,6 @@ class Registering {
       if (result.outcome == RegistrationOutcome::Converged) result.outcome = outcome;
       result.reasons.push_back(std::move(reason));
     };
-    fail(!best.has_converged, RegistrationOutcome::IterationLimit,
-         fmt::format("still moving after {} iterations", best.iterations));
     const std::string both_residuals =
         fmt::format("residual {:.3g} mm (rms) and score {:.3f}, against {:.3g} mm and {:.3f} as it is",
                     result.mirror_rmse_mm, result.mirror_score, result.shape_rmse_mm, result.score);
@@ -292,6 +292,8 @@ class Registering {
          fmt::format("the source's mirror image fits the target better than the source ({}): one of the two clouds is "
                      "reflected",
                      both_residuals));
+    fail(!best.has_converged, RegistrationOutcome::IterationLimit,
+         fmt::format("still moving after {} iterations", best.iterations));
     fail(result.inlier_fraction < settings_.least_inliers, RegistrationOutcome::PoorFit,
          fmt::format("only {:.0f} % of the source's points lie on the target, expected at least {:.0f} %",
                      100.0 * result.inlier_fraction, 100.0 * settings_.least_inliers));

@@ -116,6 +116,7 @@ Misfit misfit_of(const SampledSurface& source, std::span<const std::size_t> aske
   std::size_t inliers = 0;
   for (const SurfacePair& pair : pairs) {
     inliers += std::abs(pair.distance) < 1.2 * width ? 1 : 0;
+    misfit.score_above += std::exp(-0.5 * std::pow(pair.distance / score_width, 2)) / static_cast<double>(pairs.size());
     if (std::abs(pair.distance) > kBeside) continue;
     misfit.distances.push_back(pair.distance);
     squares += pair.distance * pair.distance;

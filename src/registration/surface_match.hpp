@@ -71,8 +71,9 @@ inline constexpr double kEdgeSpacings = 2.0;
 
 /// How well a source lies on a target in one pose. Lengths in the clouds' unit.
 struct Misfit {
-  double score = 0.0;  ///< overlap_score
-  double rmse = 0.0;   ///< of the distances below
+  double score = 0.0;        ///< overlap_score
+  double score_above = 0.0;  ///< the same as a share of the source points above the target: whatever the overlap
+  double rmse = 0.0;         ///< of the distances below
   double inlier_fraction =
       0.0;                    ///< of the source's points: above the target, distance below 3 robust standard deviations
   double fit_fraction = 0.0;  ///< the same of the points above the target alone

@@ -65,28 +65,32 @@ std::string shortened(const std::string& name, std::size_t most) {
   return name.size() <= most ? name : name.substr(0, most - 1) + "…";
 }
 
-/// Half of a panel: signed errors mirrored to be read as "towards the tumour" have the same zones upwards.
-template <typename Draw>
-void for_each_absolute_zone(const PlotArea& area, const ZoneBorders& zones, const Draw& draw) {
-  const auto band = [&](double from, double to, std::string_view color, const char* name) {
-    const double high = std::min(to, area.y_high);
-    if (high > from) draw(from, high, color, name);
-  };
-  band(-zones.too_close_mm, -zones.positive_mm, ink::kTooClose, "too close, if towards the tumour");
-  band(-zones.positive_mm, 1e9, ink::kReached, "failed, if towards the tumour");
-}
-
+/// Of errors without their sign: the zones are those of errors towards the tumour.
 void draw_absolute_zones(SvgWriter& svg, const PlotArea& area, const ZoneBorders& zones) {
-  for_each_absolute_zone(area, zones, [&](double low, double high, std::string_view color, const char*) {
-    svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(low) - area.y(high)},
+  const auto band = [&](double from, double to, std::string_view color) {
+    const double high = std::min(to, area.y_high);
+    if (high <= from) return;
+    svg.rectangle({area.corner.x(), area.y(high)}, {area.size.x(), area.y(from) - area.y(high)},
                   fmt::format("fill=\"{}\" fill-opacity=\"0.16\"", color));
-  });
+  };
+  band(-zones.too_close_mm, -zones.positive_mm, ink::kTooClose);
+  band(-zones.positive_mm, 1e9, ink::kReached);
 }
 
-void draw_absolute_zone_names(SvgWriter& svg, const PlotArea& area, const ZoneBorders& zones) {
-  for_each_absolute_zone(area, zones, [&](double, double high, std::string_view color, const char* name) {
-    draw_zone_name(svg, {area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, name, color);
-  });
+/// The zones' names beneath the panels: boxes fill a panel from end to end, and a name among them would lie on a
+/// whisker.
+void draw_zone_key(SvgWriter& svg, const Vec2& middle) {
+  constexpr double kHalfWidth = 250.0;
+  Vec2 at = middle - Vec2(kHalfWidth, 0.0);
+  const auto entry = [&](std::string_view color, const char* name, double width) {
+    svg.rectangle(at - Vec2(0.0, 9.0), {14.0, 10.0},
+                  fmt::format("fill=\"{}\" fill-opacity=\"0.16\" stroke=\"{}\"", color, color));
+    svg.text(at + Vec2(20.0, 0.0), name, "start", "font-size=\"11\"");
+    at.x() += width;
+  };
+  entry(ink::kTooClose, "too close", 95.0);
+  entry(ink::kReached, "tumour edge reached", 160.0);
+  svg.text(at, "in a): where the error is towards the tumour", "start", "font-size=\"11\" fill=\"#555\"");
 }
 
 void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& boxes, bool is_signed,
@@ -112,11 +116,6 @@ void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& bo
     draw_box(svg, area, center, box_numbers(values), boxes[k].color, std::min(24.0, 0.36 * pitch));
     svg.text({center, area.corner.y() + area.size.y() + 17.0},
              shortened(boxes[k].name, static_cast<std::size_t>(pitch / 7.0)), "middle", "font-size=\"11\"");
-  }
-  if (is_signed) {
-    draw_error_zone_names(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
-  } else {
-    draw_absolute_zone_names(svg, area, zones);
   }
 }
 
@@ -164,7 +163,7 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
   const std::vector<Box> boxes = boxes_of(series);
   const double panel = std::max(250.0, 62.0 * static_cast<double>(boxes.size()));
   const double width = 70.0 + panel + 80.0 + panel + 16.0;
-  constexpr double kHeight = 400.0;
+  constexpr double kHeight = 420.0;
   SvgWriter svg(width, kHeight, "Distribution of the errors before and after",
                 "Box plots of the absolute and of the signed error; line: median, diamond: mean, box: quartiles.");
   svg.rectangle({0.0, 0.0}, {width, kHeight}, "fill=\"#fff\"");
@@ -175,6 +174,7 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
                         .y_high = limit};
     draw_panel(svg, area, boxes, is_signed, zones);
   }
+  draw_zone_key(svg, {width / 2.0, kHeight - 38.0});
   svg.text({width / 2.0, kHeight - 14.0},
            "line: median · diamond: mean · box: quartiles · whiskers: 1.5 interquartile ranges", "middle",
            "font-size=\"11\" fill=\"#555\"");

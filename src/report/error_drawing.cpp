@@ -22,6 +22,14 @@ void for_each_zone(const PlotArea& area, double reached_mm, double close_mm, con
   band(-1e9, reached_mm, ink::kReached, "tumour edge reached");
 }
 
+/// @param end_px  lower right corner of the text
+void draw_zone_name(SvgWriter& svg, const Vec2& end_px, const std::string& name, std::string_view color) {
+  svg.text(end_px, name, "end",
+           "font-size=\"11\" fill=\"#fff\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"");
+  svg.text(end_px, name, "end",
+           fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
+}
+
 }  // namespace
 
 void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm) {
@@ -39,13 +47,6 @@ void draw_error_zone_names(SvgWriter& svg, const PlotArea& area, double reached_
                   if (area.y(low) - area.y(high) <= kLeastHeightPx) return;
                   draw_zone_name(svg, {area.corner.x() + area.size.x() - 6.0, area.y(high) + 13.0}, name, color);
                 });
-}
-
-void draw_zone_name(SvgWriter& svg, const Vec2& end_px, const std::string& name, std::string_view color) {
-  svg.text(end_px, name, "end",
-           "font-size=\"11\" fill=\"#fff\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"");
-  svg.text(end_px, name, "end",
-           fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
 }
 
 void draw_box(SvgWriter& svg, const PlotArea& area, double center_px, const BoxNumbers& box, std::string_view color,

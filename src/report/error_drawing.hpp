@@ -13,8 +13,6 @@ void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, d
 /// Their names at the right, on a pale rim: to be drawn after the data, which would run over them.
 void draw_error_zone_names(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm,
                            const std::string& close_name);
-/// One such name. @param end_px  lower right corner of the text
-void draw_zone_name(SvgWriter& svg, const Vec2& end_px, const std::string& name, std::string_view color);
 
 /// A box of a box plot, `2 * half_px` wide.
 void draw_box(SvgWriter& svg, const PlotArea& area, double center_px, const BoxNumbers& box, std::string_view color,

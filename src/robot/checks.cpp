@@ -58,6 +58,13 @@ std::vector<std::size_t> cut_poses(const RobotProgram& program) {
   return result;
 }
 
+/// Where the needle enters the tissue at these poses.
+Contour entries_of(const RobotProgram& program, const std::vector<std::size_t>& cut) {
+  Contour entries{{}, program.is_closed};
+  for (const std::size_t i : cut) entries.points.push_back(program.poses[i].entry_mm());
+  return entries;
+}
+
 bool is_finite(const ProgramPose& p) {
   return p.tip_mm.allFinite() && p.R_robot_tool.allFinite() && p.rotation_vector.allFinite() &&
          std::isfinite(p.time_s) && std::isfinite(p.tip_speed_mm_s) && std::isfinite(p.depth_mm);
@@ -129,6 +136,7 @@ class CourseChecker {
         path_(path),
         settings_(settings),
         cut_(cut_poses(program_)),
+        entries_(entries_of(program_, cut_)),
         places_(places_of(program_, path, cut_)),
         axis_(mean_axis(path).normalized()) {}
 
@@ -152,8 +160,7 @@ class CourseChecker {
   }
 
   void self_crossing() {
-    Contour course{{}, program_.is_closed};
-    for (const std::size_t i : cut_) course.points.push_back(program_.poses[i].entry_mm());
+    Contour course = entries_;
     if (program_.is_closed && course.points.size() > 1) course.points.pop_back();  // it does not repeat its first
     const auto place = first_crossing(course);
     list_.holds("self_crossing", !place, "the course crosses itself nowhere, seen along the mean axis", place);
@@ -228,8 +235,7 @@ class CourseChecker {
   }
 
   void encloses() {
-    Contour ring{{}, true};
-    for (const std::size_t i : cut_) ring.points.push_back(program_.poses[i].entry_mm());
+    const Contour ring{entries_.points, true};
     const Contour seen_ring = seen_along(axis_, ring);
     Worst outside, farthest;  // index: of the edge's point
     for (std::size_t k = 0; k < path_.tumor_edge.points.size(); ++k) {
@@ -257,10 +263,8 @@ class CourseChecker {
     if (intended == nullptr) return list_.not_made("deviation from the intended path: none was given");
     const Contour course = entry_contour(*intended);
     Worst worst;
-    Contour own{{}, program_.is_closed};
-    for (const std::size_t i : cut_) own.points.push_back(program_.poses[i].entry_mm());
     for (const CoursePlace& p : places_) worst.see(nearest_on(course, p.entry_mm).distance_mm, p.pose);
-    for (const Vec3& point : course.points) worst.see(nearest_on(own, point).distance_mm, cut_.back());
+    for (const Vec3& point : course.points) worst.see(nearest_on(entries_, point).distance_mm, cut_.back());
     list_.at_most("deviation", worst.value, settings_.max_deviation_mm, "mm", worst.pose,
                   "greatest distance of the course from the intended one, and of that from the course");
   }
@@ -334,6 +338,7 @@ class CourseChecker {
   const ToolPath& path_;
   const CheckSettings& settings_;
   std::vector<std::size_t> cut_;
+  Contour entries_;  ///< point i: of pose cut_[i]
   std::vector<CoursePlace> places_;
   Vec3 axis_;
 };

@@ -10,16 +10,6 @@
 namespace incise {
 namespace {
 
-/// Lets a solver inside a check be stopped, and keeps its own progress to itself.
-class StopOnly : public Monitor {
- public:
-  explicit StopOnly(const Monitor& outer) : outer_(outer) {}
-  [[nodiscard]] bool is_cancelled() const override { return outer_.is_cancelled(); }
-
- private:
-  const Monitor& outer_;
-};
-
 VerificationCheck run_one(const CheckEntry& entry, double tolerance_scale, const CheckContext& context) {
   const auto began = std::chrono::steady_clock::now();
   VerificationCheck check;
@@ -60,7 +50,7 @@ std::vector<VerificationCheck> run_checks(const VerificationSettings& settings, 
   }
   INCISE_REQUIRE(!chosen.empty(),
                  fmt::format("expected the name of a check or the start of one, found '{}'", settings.only));
-  StopOnly inner(monitor);
+  StopOnly inner(monitor);  // a solver inside a check has a progress of its own
   const CheckContext context{workers, inner};
   std::vector<VerificationCheck> checks;
   for (std::size_t i = 0; i < chosen.size(); ++i) {

@@ -2,7 +2,6 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
-#include <incise/imaging/phantom.hpp>
 #include <incise/mechanics/statics.hpp>
 #include <incise/meshing/mesher.hpp>
 #include <incise/virtual_bench/body.hpp>
@@ -167,18 +166,24 @@ void stretch(BenchBody& body, Workers& workers, Monitor& monitor) {
 
 }  // namespace
 
+PhantomSettings phantom_settings(const Specimen& specimen) {
+  PhantomSettings settings;
+  settings.seed = specimen.seed;
+  settings.noise_hu = specimen.ct_noise_hu;
+  settings.tumor_diameter_mm = specimen.tumor_diameter_mm;
+  settings.tumor_irregularity = specimen.tumor_irregularity;
+  settings.tumor_depth_mm = specimen.tumor_depth_mm;
+  settings.tumor_position = specimen.tumor_position;
+  return settings;
+}
+
 BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution, Workers& workers, Monitor& monitor) {
   const auto start = std::chrono::steady_clock::now();
   if (const auto problems = validate(specimen); !problems.empty()) {
     throw CaseError("specimen", "parameters", fmt::format("{}", fmt::join(problems, "; ")), "a valid specimen");
   }
-  PhantomSettings shown;
-  shown.seed = specimen.seed;
+  PhantomSettings shown = phantom_settings(specimen);
   shown.spacing_mm = Vec3::Constant(3.0);  // the picture is thrown away: shape and tumour do not depend on it
-  shown.tumor_diameter_mm = specimen.tumor_diameter_mm;
-  shown.tumor_irregularity = specimen.tumor_irregularity;
-  shown.tumor_depth_mm = specimen.tumor_depth_mm;
-  shown.tumor_position = specimen.tumor_position;
   const Phantom phantom = make_phantom(shown, monitor);
 
   BenchBody body;

@@ -1,6 +1,5 @@
 #include <incise/core/random.hpp>
 #include <incise/core/units.hpp>
-#include <incise/imaging/phantom.hpp>
 #include <incise/virtual_bench/laboratory.hpp>
 
 #include <algorithm>
@@ -16,17 +15,6 @@ constexpr double kElasticityVoxelMm = 2.0;
 const Vec3 kHolderMm(600.0, 0.0, 150.0);   // the middle of the holder's platform in the base frame
 constexpr double kCameraHeightMm = 230.0;  // above the platform
 constexpr int kCloudStride = 3;            // every third pixel of the depth picture becomes a point
-
-CtVolume scan(const Specimen& specimen, Monitor& monitor) {
-  PhantomSettings shown;
-  shown.seed = specimen.seed;
-  shown.noise_hu = specimen.ct_noise_hu;
-  shown.tumor_diameter_mm = specimen.tumor_diameter_mm;
-  shown.tumor_irregularity = specimen.tumor_irregularity;
-  shown.tumor_depth_mm = specimen.tumor_depth_mm;
-  shown.tumor_position = specimen.tumor_position;
-  return make_phantom(shown, monitor).ct;
-}
 
 Points cloud_of(const FrameShot& frame) {
   Points cloud;
@@ -96,7 +84,7 @@ Readings take_readings(const BenchBody& body, bool has_elasticity, Monitor& moni
   Random random(body.specimen.seed ^ kReadingStream);
   Readings readings;
   readings.stretch_force_n = body.stretch_force_n * (1.0 + kForceNoise * random.normal());
-  readings.ct = scan(body.specimen, monitor);
+  readings.ct = make_phantom(phantom_settings(body.specimen), monitor).ct;
   readings.T_robot_camera = T_robot_camera(body.specimen);
   const Mat4 T_camera_specimen = readings.T_robot_camera.inverse() * T_robot_specimen(body.specimen);
   readings.frame = shoot_frame(body, T_camera_specimen);

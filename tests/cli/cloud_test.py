@@ -166,6 +166,12 @@ class RegisterTest(CommandTest):
                 self.assert_refused(self.incise(*self.register("--scale", scale)), BAD_CASE, "--scale", scale)
                 self.assert_nothing_written()
 
+    def test_a_number_that_is_none_is_told_by_its_option(self):
+        for option in ("--settling-mm", "--outlier-weight", "--max-rmse-mm", "--smoothness", "--stiffness"):
+            with self.subTest(option=option):
+                self.assert_refused(self.incise(*self.register(option, "nan")), BAD_CASE, f"command line: {option}: found", "nan", "expected ")
+                self.assert_nothing_written()
+
     def test_ctrl_c_leaves_nothing(self):
         done = self.interrupted(*self.register("--rotations", "2000"), after="searching poses")
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
@@ -228,7 +234,7 @@ class SurfaceTest(CommandTest):
         self.assert_refused(done, BAD_DATA, "scan.ply", "0 points left")
         self.assert_nothing_written(self.folder / "tissue.ply")
         done = self.incise("surface", "scan.ply", "-o", "tissue.ply", "--box", *"5 5 5 1 1 1".split())
-        self.assert_refused(done, BAD_CASE, "command line: box: found", "expected low corner <= high corner")
+        self.assert_refused(done, BAD_CASE, "command line: --box: found", "expected low corner <= high corner")
         self.assertEqual(done.stderr.count("expected"), 1)
 
     def test_another_ending_is_the_command_lines_fault(self):

@@ -69,8 +69,6 @@ TEST(ProblemText, TakesAComplaintApartSoThatNothingIsSaidTwice) {
   EXPECT_EQ(parts("case: plan.depth: found 2, expected 3. Why so"), "case: plan.depth|2|3. Why so");
   EXPECT_EQ(parts("planes: expected 0 to 20"), "planes|another value|0 to 20");
   EXPECT_EQ(parts("it is bent"), "|it is bent|otherwise");
-  EXPECT_STREQ(broken_options("rotations: expected 8 to 2000, found 3").what(),
-               "command line: rotations: found 3, expected 8 to 2000");
   EXPECT_STREQ(
       fault_of_file("a.json", "waypoints", InvalidArgument("TipCurve: expected tips apart, found 0 mm"), "x").what(),
       "a.json: waypoints: found 0 mm, expected tips apart");

@@ -6,6 +6,15 @@
 namespace incise {
 namespace {
 
+class Listener : public Monitor {
+ public:
+  void message(Severity, std::string_view) override { ++heard; }
+  void progress(std::string_view, double) override { ++heard; }
+  [[nodiscard]] bool is_cancelled() const override { return stops; }
+  int heard = 0;
+  bool stops = false;
+};
+
 class StoppingMonitor : public Monitor {
  public:
   [[nodiscard]] bool is_cancelled() const override { return true; }
@@ -25,6 +34,17 @@ TEST(Monitor, StopsAComputationByNameWhenAsked) {
   } catch (const Cancelled& error) {
     EXPECT_STREQ(error.what(), "meshing was interrupted");
   }
+}
+
+TEST(StopOnly, StopsWithTheOuterMonitorAndTellsItNothing) {
+  Listener outer;
+  StopOnly inner(outer);
+  inner.message(Severity::Warning, "inner");
+  inner.progress("inner", 0.5);
+  EXPECT_EQ(outer.heard, 0);
+  EXPECT_FALSE(inner.is_cancelled());
+  outer.stops = true;
+  EXPECT_TRUE(inner.is_cancelled());
 }
 
 }  // namespace

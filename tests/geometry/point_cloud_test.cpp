@@ -115,6 +115,73 @@ TEST(VisibleSurface, OfABlockIsItsTop) {
   EXPECT_GE(spacing_mm(seen.cloud.points), 1.0);
 }
 
+/// A grid of triangles over [0, 40] x [0, 40] mm with the heights of a function.
+template <typename HeightAt>
+TriMesh triangles_over(double pitch_mm, const HeightAt& height_at) {
+  const auto side = static_cast<std::size_t>(40.0 / pitch_mm) + 1;
+  TriMesh mesh;
+  for (std::size_t j = 0; j < side; ++j) {
+    for (std::size_t i = 0; i < side; ++i) {
+      const double x = pitch_mm * static_cast<double>(i), y = pitch_mm * static_cast<double>(j);
+      mesh.vertices.emplace_back(x, y, height_at(x, y));
+    }
+  }
+  for (std::size_t j = 0; j + 1 < side; ++j) {
+    for (std::size_t i = 0; i + 1 < side; ++i) {
+      const VertexId a(i + side * j), b(i + 1 + side * j), c(i + 1 + side * (j + 1)), d(i + side * (j + 1));
+      mesh.triangles.push_back({a, b, c});
+      mesh.triangles.push_back({a, c, d});
+    }
+  }
+  return mesh;
+}
+
+TEST(VisibleSurface, LiesOnTheCurvedSurfaceThatTrianglesStandFor) {
+  Workers workers(1);
+  constexpr double kRadius = 30.0, kPitch = 4.0;
+  const Vec3 middle(20.0, 20.0, 0.0);
+  const TriMesh dome = triangles_over(kPitch, [&](double x, double y) {
+    return std::sqrt(kRadius * kRadius - std::pow(x - middle.x(), 2) - std::pow(y - middle.y(), 2));
+  });
+  const VisibleSurface seen = visible_surface(dome, {.spacing_mm = 1.0}, workers);
+  double worst = 0.0, worst_normal = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < seen.cloud.points.size(); ++i) {
+    const Vec3 arm = seen.cloud.points[i] - middle;
+    if (arm.head<2>().cwiseAbs().maxCoeff() > 12.0) continue;  // the border's normals are one-sided
+    ++count;
+    worst = std::max(worst, std::abs(arm.norm() - kRadius));
+    worst_normal = std::max(worst_normal, (seen.cloud.normals[i] - arm / kRadius).norm());
+  }
+  ASSERT_GT(count, 300u);
+  // A chord of 4 sqrt(2) mm is 0.13 mm below the sphere.
+  EXPECT_LT(worst, 0.02);
+  EXPECT_LT(worst_normal, 0.03);
+}
+
+TEST(VisibleSurface, OfHollowsIsSeenToo) {
+  // The curved surface lies beneath the triangles of a hollow: they do not hide it.
+  Workers workers(1);
+  const TriMesh hollow =
+      triangles_over(4.0, [](double x, double y) { return 0.01 * (std::pow(x - 20.0, 2) + std::pow(y - 20.0, 2)); });
+  const VisibleSurface seen = visible_surface(hollow, {.spacing_mm = 1.0}, workers);
+  double least = 0.0;
+  for (const Vec3& p : seen.cloud.points) {
+    if ((p.head<2>().array() - 20.0).abs().maxCoeff() > 12.0) continue;
+    least = std::min(least, p.z() - 0.01 * (p.head<2>().array() - 20.0).square().sum());
+  }
+  EXPECT_GT(seen.area_mm2, 1600.0);
+  EXPECT_GT(least, -0.005);
+}
+
+TEST(VisibleSurface, KeepsCreases) {
+  // A roof of two planes, 45 degrees steep: nothing is rounded.
+  Workers workers(1);
+  const TriMesh roof = triangles_over(4.0, [](double x, double) { return 20.0 - std::abs(x - 20.0); });
+  for (const Vec3& p : visible_surface(roof, {.spacing_mm = 1.0}, workers).cloud.points)
+    EXPECT_NEAR(p.z(), 20.0 - std::abs(p.x() - 20.0), 1e-9);
+}
+
 TEST(VisibleSurface, LeavesOutWhatIsHidden) {
   // A small roof above a large floor, both facing up: the floor is not seen beneath the roof.
   TriMesh mesh;

@@ -152,6 +152,15 @@ TEST_F(RegisterClouds, AMirrorImageIsNeverAReflectionAndIsFlagged) {
   EXPECT_GT(found.shape_rmse_mm, 3.0 * found.mirror_rmse_mm);
 }
 
+TEST_F(RegisterClouds, AMirrorImageIsOneWhereTheWrongShapeDoesNotComeToRestToo) {
+  const PointCloud source = hill(2000, random_);
+  RegistrationSettings hasty;
+  hasty.max_iterations = 5;
+  const Registration found = run(source, mirrored(hill(2000, random_, 0.1)), hasty);
+  EXPECT_THAT(found.reasons, Contains(HasSubstr("still moving")));
+  EXPECT_EQ(found.outcome, RegistrationOutcome::Mirrored);
+}
+
 TEST_F(RegisterClouds, AMirrorImageIsKnownFromAStartNearTheWrongPoseToo) {
   // Nearly symmetric: the wrong pose lies close by, and no search is made.
   PointCloud source, target;
@@ -185,6 +194,32 @@ TEST_F(RegisterClouds, AShapeThatIsItsOwnMirrorImageIsAcceptedAndToldOf) {
     EXPECT_FALSE(found.is_handedness_determined);
     EXPECT_THAT(found.reasons, Contains(HasSubstr("mirror image fits about as well")));
   }
+}
+
+TEST_F(RegisterClouds, TwoPartsOfASymmetricShapeAreNoMirrorImages) {
+  // They share a strip about the plane of symmetry. The left part's mirror image lies on all of the right part, and a
+  // growth in the strip weighs less there.
+  constexpr double kHalfStripMm = 7.0;
+  PointCloud source, target;
+  for (PointCloud* cloud : {&source, &target}) {
+    *cloud = hill(5000, random_);
+    for (Vec3& p : cloud->points) p.z() = symmetric_height(p.x(), p.y());
+    if (cloud == &target)
+      for (Vec3& p : cloud->points) p.z() += 1.2 * std::exp(-(p.x() * p.x() + std::pow(p.y() + 8.0, 2)) / 4.0);
+    for (Vec3& p : cloud->points) p += 0.1 * Vec3(random_.normal(), random_.normal(), random_.normal());
+    cloud->normals.clear();
+    *cloud = with_normals(std::move(*cloud), -Vec3::UnitZ(), 12, workers_);
+  }
+  source = crop(source, Box3(Vec3(-50.0, -50.0, -50.0), Vec3(kHalfStripMm, 50.0, 50.0)));
+  target = crop(target, Box3(Vec3(-kHalfStripMm, -50.0, -50.0), Vec3(50.0, 50.0, 50.0)));
+  RegistrationSettings near;
+  near.start = Similarity{};
+  const Registration found = run(source, target, near);
+  EXPECT_LT(rms_difference_mm(found.T_target_source, Similarity{}, source.points), 0.4);
+  EXPECT_LT(found.score, 0.95 * found.mirror_score) << "what used to be taken for a mirror image";
+  EXPECT_GT(found.shape_rmse_mm, found.mirror_rmse_mm / 0.95) << "likewise";
+  EXPECT_NE(found.outcome, RegistrationOutcome::Mirrored);
+  EXPECT_FALSE(found.is_handedness_determined);
 }
 
 TEST_F(RegisterClouds, TellsWhenTheScaleIsUnlikely) {

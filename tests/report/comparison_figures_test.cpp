@@ -39,9 +39,8 @@ void expect_whole(const std::string& svg) {
 TEST(ComparisonBoxPlot, ShowsBothSidesEachSpecimenAndBothZonesInBothPanels) {
   const std::string svg = comparison_box_plot_svg(kFour);
   expect_whole(svg);
-  for (const char* text :
-       {"a) absolute", "before", "after", "s1", "s4", "|error|, mm", "signed error, mm", "too close",
-        "tumour edge reached", "too close, if towards the tumour", "failed, if towards the tumour"}) {
+  for (const char* text : {"a) absolute", "before", "after", "s1", "s4", "|error|, mm", "signed error, mm", "too close",
+                           "tumour edge reached", "in a): where the error is towards the tumour"}) {
     EXPECT_THAT(svg, HasSubstr(std::string(">") + text + "<"));
   }
   // A box for each of 2 sides and 4 incisions in 2 panels, each with its diamond.
@@ -54,6 +53,20 @@ TEST(ComparisonBoxPlot, ZonesLieWhereTheirBordersSay) {
   const double middle = 36.0 + 150.0;
   EXPECT_THAT(svg, HasSubstr("y=\"" + std::to_string(static_cast<int>(middle + 2.3 * 30.0)) + ".00\""));
   EXPECT_THAT(svg, HasSubstr("y=\"" + std::to_string(static_cast<int>(middle + 4.5 * 30.0)) + ".00\""));
+}
+
+TEST(ComparisonBoxPlot, NamesItsZonesBeneathTheBoxesAndNotOnThem) {
+  const std::string svg = comparison_box_plot_svg(kFour);
+  const double lowest = 36.0 + 300.0;  // of the panels
+  for (const char* name : {"too close", "tumour edge reached"}) {
+    const std::size_t end = svg.find(std::string(">") + name + "<");
+    const std::size_t begin = svg.rfind("<text", end);
+    ASSERT_NE(end, std::string::npos) << name;
+    EXPECT_EQ(svg.find(std::string(">") + name + "<", end + 1), std::string::npos) << name << ": more than once";
+    const std::vector<std::string> y = texts_between(svg.substr(begin, end - begin), " y=\"", "\"");
+    ASSERT_EQ(y.size(), 1U);
+    EXPECT_GT(std::stod(y.front()), lowest) << name;
+  }
 }
 
 TEST(ErrorByClock, GoesFromTwelveToTwelveAndLeavesGapsOpen) {

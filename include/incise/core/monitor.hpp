@@ -19,6 +19,17 @@ class Monitor {
   [[nodiscard]] virtual bool is_cancelled() const { return false; }
 };
 
+/// For a computation inside another one: stops when the outer monitor asks to, and keeps its messages and its progress
+/// to itself. The outer monitor has to outlive it.
+class StopOnly : public Monitor {
+ public:
+  explicit StopOnly(const Monitor& outer) : outer_(outer) {}
+  [[nodiscard]] bool is_cancelled() const override { return outer_.is_cancelled(); }
+
+ private:
+  const Monitor& outer_;
+};
+
 /// Throws Cancelled naming `stage` if the monitor asks to stop; for computations without a partial result.
 void throw_if_cancelled(const Monitor& monitor, std::string_view stage);
 

@@ -25,9 +25,6 @@ struct Complaint {
 /// @param otherwise  what was expected, where the sentence does not say it
 [[nodiscard]] Complaint complaint_of(const std::string& sentence, const std::string& otherwise);
 
-/// The error of a command line whose options broke a rule of validate().
-[[nodiscard]] CaseError broken_options(const std::string& sentence);
-
 /// A broken precondition as the fault of a file.
 [[nodiscard]] DataError fault_of_file(const std::filesystem::path& file, const std::string& place,
                                       const InvalidArgument& problem, const std::string& otherwise,

@@ -18,9 +18,11 @@ struct VisibleSurface {
   double area_mm2 = 0.0;  ///< of the visible part, from dense samples: relative error about 1 / sqrt(10 · points)
 };
 
-/// Samples the surface evenly by area, drops what faces away, is steeper than `largest_tilt_deg` or is hidden by
-/// another part (a ray towards the observer hits something), and thins the rest so that no two points are closer than
-/// `spacing_mm`. The same input gives the same points; there is nothing random in it.
+/// Samples the surface evenly by area, lays the samples onto the curved surface that the triangles stand for (exact for
+/// quadratics; [Boubekeur2008]; along creases of more than 35 degrees the triangles stay flat), drops what faces away,
+/// is steeper than `largest_tilt_deg` or is hidden by another part (a ray towards the observer hits something), and
+/// thins the rest so that no two points are closer than `spacing_mm`. The same input gives the same points; there is
+/// nothing random in it.
 /// @param surface  outward oriented; need not be closed.  @pre at least one triangle, settings in range.
 [[nodiscard]] VisibleSurface visible_surface(const TriMesh& surface, const VisibleSurfaceSettings& settings,
                                              Workers& workers);

@@ -4,6 +4,7 @@
 #include <incise/core/outcome.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/surface_query.hpp>
+#include <incise/imaging/phantom.hpp>
 #include <incise/mechanics/tissue.hpp>
 #include <incise/virtual_bench/specimen.hpp>
 
@@ -40,6 +41,9 @@ struct BenchBody {
   std::size_t inverted_tets = 0;
   double wall_s = 0.0;
 };
+
+/// What a phantom with the specimen's shape, tumour and scanner noise is made from.
+[[nodiscard]] PhantomSettings phantom_settings(const Specimen& specimen);
 
 /// Makes the body of a specimen, holds and stretches it. The same specimen and resolution give the same bits.
 /// A body that finds no equilibrium is a result: its `outcome` says so, and nothing can be read or cut.
