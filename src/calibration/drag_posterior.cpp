@@ -1,0 +1,231 @@
+#include "calibration/drag_posterior.hpp"
+
+#include "calibration/sector_noise.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+constexpr std::size_t kDragSteps = 61;
+constexpr std::size_t kStiffnessSteps = 21;
+constexpr double kStiffnessReach = 2.5;  // standard deviations of the prior
+
+// The residual's parameters that are integrated over; each list is even in its logarithm, so equal weights are
+// Jeffreys' prior of a scale, cut off where nothing plausible is left.
+constexpr std::array kResidualSdMm{0.1, 0.14, 0.2, 0.28, 0.4, 0.56, 0.8, 1.12};
+constexpr std::array kCorrelationDeg{7.5, 15.0, 30.0, 60.0, 120.0};
+/// From specimen to specimen; weights are those of a half normal of 0.25 mm, for two or three specimens hardly tell.
+constexpr std::array kSpreadMm{0.05, 0.15, 0.25, 0.35, 0.5};
+constexpr double kSpreadPriorMm = 0.25;
+
+/// Photographed less simulated, and the slope by stiffness, both as spectra: one pair for each drag length.
+struct SpecimenSpectra {
+  std::vector<std::vector<double>> rest;
+  std::vector<std::vector<double>> slope;
+  double own_variance = 0.0;
+};
+
+/// Sums over the waves above order 0, weighted by the inverse variance of each.
+struct WaveSums {
+  double rest_rest = 0.0, rest_slope = 0.0, slope_slope = 0.0;
+};
+
+/// What the specimens together say at one place of the grid: ½-logarithm terms and the normal equation of the bias.
+struct BiasEquation {
+  double log_determinant = 0.0;
+  double squares = 0.0;
+  double weight = 0.0;  ///< 1ᵀ C⁻¹ 1
+  double pull = 0.0;    ///< 1ᵀ C⁻¹ r
+};
+
+struct ResidualChoice {
+  double sd_mm, correlation_deg, spread_mm;
+};
+
+std::vector<double> evenly(double from, double to, std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    values[i] =
+        count == 1 ? 0.5 * (from + to) : from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
+  }
+  return values;
+}
+
+SpecimenSpectra spectra_of(const FitSpecimen& specimen, const std::vector<double>& drag_lengths) {
+  SpecimenSpectra spectra;
+  spectra.own_variance = specimen.own_stiffness_sd * specimen.own_stiffness_sd;
+  for (const double drag : drag_lengths) {
+    std::vector<double> rest = specimen.signed_error_mm;
+    const std::vector<double> simulated = specimen.response.at(drag);
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= simulated[i];
+    spectra.rest.push_back(ring_spectrum(rest));
+    spectra.slope.push_back(ring_spectrum(specimen.response.stiffness_slope(drag)));
+  }
+  return spectra;
+}
+
+WaveSums wave_sums(const std::vector<double>& rest, const std::vector<double>& slope,
+                   const std::vector<double>& variances) {
+  WaveSums sums;
+  for (std::size_t j = 1; j < rest.size(); ++j) {
+    sums.rest_rest += rest[j] * rest[j] / variances[j];
+    sums.rest_slope += rest[j] * slope[j] / variances[j];
+    sums.slope_slope += slope[j] * slope[j] / variances[j];
+  }
+  return sums;
+}
+
+/// Adds one specimen. Its covariance is diagonal in the spectrum but for the rank-one part of its own stiffness, which
+/// the formula of Sherman and Morrison takes in.
+void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, double slope_0, double variance_0,
+                  double log_determinant, double ln_stiffness, double own_variance, double sectors) {
+  const double x = ln_stiffness;
+  const double r0 = rest_0 - x * slope_0;
+  const double rr = waves.rest_rest - 2.0 * x * waves.rest_slope + x * x * waves.slope_slope + r0 * r0 / variance_0;
+  const double rg = waves.rest_slope - x * waves.slope_slope + r0 * slope_0 / variance_0;
+  const double gg = waves.slope_slope + slope_0 * slope_0 / variance_0;
+  const double ur = std::sqrt(sectors) * r0 / variance_0;
+  const double ug = std::sqrt(sectors) * slope_0 / variance_0;
+  const double share = own_variance / (1.0 + own_variance * gg);
+  sum.log_determinant += log_determinant + std::log(variance_0) + std::log1p(own_variance * gg);
+  sum.squares += rr - share * rg * rg;
+  sum.weight += sectors / variance_0 - share * ug * ug;
+  sum.pull += ur - share * ug * rg;
+}
+
+/// Collects the grid, one choice of the residual's parameters after the other.
+class GridSum {
+ public:
+  GridSum(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings, DragPosterior& posterior)
+      : settings_(settings), posterior_(posterior), sectors_(specimens.front().response.sectors()) {
+    for (const FitSpecimen& specimen : specimens) spectra_.push_back(spectra_of(specimen, posterior.drag_lengths_mm));
+    const std::size_t cells = posterior.drag_lengths_mm.size() * posterior.ln_stiffness.size();
+    entries_.reserve(cells * kResidualSdMm.size() * kCorrelationDeg.size() * kSpreadMm.size());
+  }
+
+  void add(double sd_mm, double correlation_deg) {
+    std::vector<double> variances = ring_eigenvalues(sectors_, correlation_deg);
+    double log_determinant = 0.0;
+    for (std::size_t j = 0; j < sectors_; ++j) {
+      variances[j] = sd_mm * sd_mm * variances[j] + settings_.reading_sd_mm * settings_.reading_sd_mm;
+      if (j > 0) log_determinant += std::log(variances[j]);
+    }
+    for (std::size_t drag = 0; drag < posterior_.drag_lengths_mm.size(); ++drag) {
+      std::vector<WaveSums> waves;
+      for (const SpecimenSpectra& s : spectra_) waves.push_back(wave_sums(s.rest[drag], s.slope[drag], variances));
+      for (const double spread : kSpreadMm) {
+        add_row(drag, {sd_mm, correlation_deg, spread}, waves, variances[0], log_determinant);
+      }
+    }
+  }
+
+  void finish() {
+    double most = -std::numeric_limits<double>::infinity();
+    for (const Entry& entry : entries_) most = std::max(most, entry.log_mass);
+    double total = 0.0;
+    for (const Entry& entry : entries_) total += std::exp(entry.log_mass - most);
+    posterior_.cells.assign(posterior_.drag_lengths_mm.size() * posterior_.ln_stiffness.size(), {});
+    for (const Entry& entry : entries_) collect(entry, std::exp(entry.log_mass - most) / total);
+    for (PosteriorCell& cell : posterior_.cells) {
+      if (cell.mass <= 0.0) continue;
+      cell.bias_mean_mm /= cell.mass;
+      cell.bias_variance_mm2 = cell.bias_variance_mm2 / cell.mass - cell.bias_mean_mm * cell.bias_mean_mm;
+    }
+  }
+
+ private:
+  struct Entry {
+    double log_mass, bias_mean, bias_variance;
+    std::size_t cell;
+    ResidualChoice residual;
+  };
+
+  void add_row(std::size_t drag, const ResidualChoice& choice, const std::vector<WaveSums>& waves, double variance_0,
+               double log_determinant) {
+    const auto sectors = static_cast<double>(sectors_);
+    const double with_spread = variance_0 + sectors * choice.spread_mm * choice.spread_mm;
+    const double log_prior_spread = -0.5 * std::pow(choice.spread_mm / kSpreadPriorMm, 2);
+    for (std::size_t k = 0; k < posterior_.ln_stiffness.size(); ++k) {
+      const double x = posterior_.ln_stiffness[k];
+      BiasEquation sum;
+      for (std::size_t s = 0; s < spectra_.size(); ++s) {
+        add_specimen(sum, waves[s], spectra_[s].rest[drag][0], spectra_[s].slope[drag][0], with_spread, log_determinant,
+                     x, spectra_[s].own_variance, sectors);
+      }
+      const double prior_weight = 1.0 / (settings_.bias_sd_mm * settings_.bias_sd_mm);
+      const double weight = sum.weight + prior_weight;
+      const double log_mass = -0.5 * (sum.log_determinant + std::log(weight / prior_weight) + sum.squares -
+                                      sum.pull * sum.pull / weight + std::pow(x / settings_.stiffness_sd, 2)) +
+                              log_prior_spread;
+      entries_.push_back(
+          {log_mass, sum.pull / weight, 1.0 / weight, drag * posterior_.ln_stiffness.size() + k, choice});
+    }
+  }
+
+  void collect(const Entry& entry, double mass) {
+    PosteriorCell& cell = posterior_.cells[entry.cell];
+    cell.mass += mass;
+    cell.bias_mean_mm += mass * entry.bias_mean;
+    cell.bias_variance_mm2 += mass * (entry.bias_variance + entry.bias_mean * entry.bias_mean);
+    ResidualEstimate& residual = posterior_.residual;
+    residual.sd_mm += mass * entry.residual.sd_mm;
+    residual.correlation_deg += mass * entry.residual.correlation_deg;
+    residual.specimen_spread_mm += mass * entry.residual.spread_mm;
+    const double reading = settings_.reading_sd_mm * settings_.reading_sd_mm;
+    const double variance = entry.residual.sd_mm * entry.residual.sd_mm;
+    const double of_mean = variance * ring_eigenvalues_0(entry.residual.correlation_deg) + reading;
+    residual.n_effective += mass * static_cast<double>(sectors_) * (variance + reading) / of_mean;
+  }
+
+  double ring_eigenvalues_0(double correlation_deg) {
+    const auto at =
+        std::find(kCorrelationDeg.begin(), kCorrelationDeg.end(), correlation_deg) - kCorrelationDeg.begin();
+    double& value = first_eigenvalue_[static_cast<std::size_t>(at)];
+    if (value == 0.0) value = ring_eigenvalues(sectors_, correlation_deg)[0];
+    return value;
+  }
+
+  const DragFitSettings& settings_;
+  DragPosterior& posterior_;
+  std::size_t sectors_;
+  std::vector<SpecimenSpectra> spectra_;
+  std::vector<Entry> entries_;
+  std::array<double, kCorrelationDeg.size()> first_eigenvalue_{};
+};
+
+}  // namespace
+
+DragPosterior posterior_on_grid(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings) {
+  DragPosterior posterior;
+  double least = 0.0;
+  double most = std::numeric_limits<double>::infinity();
+  posterior.knows_stiffness = true;
+  for (const FitSpecimen& specimen : specimens) {
+    least = std::max(least, specimen.response.least_mm());
+    most = std::min(most, specimen.response.most_mm());
+    posterior.knows_stiffness = posterior.knows_stiffness && specimen.response.knows_stiffness();
+  }
+  INCISE_REQUIRE(least < most,
+                 fmt::format("expected drag lengths that all specimens were simulated with, found none: the "
+                             "least common one is {} mm, the greatest {} mm",
+                             least, most));
+  posterior.drag_lengths_mm = evenly(least, most, kDragSteps);
+  const double reach = kStiffnessReach * settings.stiffness_sd;
+  posterior.ln_stiffness = evenly(-reach, reach, posterior.knows_stiffness ? kStiffnessSteps : 1);
+  GridSum sum(specimens, settings, posterior);
+  for (const double sd : kResidualSdMm) {
+    for (const double correlation : kCorrelationDeg) sum.add(sd, correlation);
+  }
+  sum.finish();
+  return posterior;
+}
+
+}  // namespace incise
