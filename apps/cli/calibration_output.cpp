@@ -2,10 +2,12 @@
 
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/report/calibration_figures.hpp>
 #include <incise/storage/calibration_file.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ostream>
 
 namespace incise::cli {
@@ -39,6 +41,44 @@ Json summary_of_calibration(const Calibration& calibration) {
   return json;
 }
 
+/// The table's rows lie speed by speed, as they were asked for; the map is in ascending order.
+ScoreGrid grid_of(const Calibration& calibration) {
+  ScoreGrid grid;
+  grid.is_virtual = calibration.is_virtual;
+  const std::vector<ScoreRow>& rows = calibration.table.rows;
+  for (const ScoreRow& row : rows) {
+    grid.speeds_mm_s.push_back(row.setting.speed_mm_s);
+    grid.dullnesses.push_back(row.setting.dullness);
+  }
+  for (std::vector<double>* values : {&grid.speeds_mm_s, &grid.dullnesses}) {
+    std::sort(values->begin(), values->end());
+    values->erase(std::unique(values->begin(), values->end()), values->end());
+  }
+  for (const double speed : grid.speeds_mm_s) {
+    for (const double dullness : grid.dullnesses) {
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (rows[i].setting.speed_mm_s != speed || rows[i].setting.dullness != dullness) continue;
+        if (calibration.table.chosen == i) grid.chosen = grid.cells.size();
+        grid.cells.push_back({rows[i].is_failure, rows[i].percent, rows[i].mean_signed_mm});
+      }
+    }
+  }
+  return grid;
+}
+
+std::string fit_figure(const Calibration& calibration) {
+  const DragFit& fit = *calibration.fit;
+  std::vector<ProfileCurves> curves;
+  for (const SpecimenFit& s : fit.specimens) curves.push_back({s.name, s.observed_mm, s.fitted_mm, s.simulated_mm});
+  const auto marginal = [](const char* label, const ParameterEstimate& e) {
+    return MarginalCurve{label, e.grid, e.density, e.low, e.high};
+  };
+  std::vector<MarginalCurve> marginals{marginal("drag length, mm", fit.drag_length_mm),
+                                       marginal("bias, mm", fit.bias_mm)};
+  if (fit.knows_stiffness) marginals.push_back(marginal("ln(stiffness factor)", fit.ln_stiffness));
+  return drag_fit_svg(curves, marginals, calibration.is_virtual);
+}
+
 void print_estimate(const char* name, const ParameterEstimate& estimate) {
   fmt::print("{:<24} {:>8.3f} ± {:.3f}   {:.3f} to {:.3f}\n", name, estimate.mean, estimate.sd, estimate.low,
              estimate.high);
@@ -51,6 +91,10 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
                        const CommonOptions& options, double wall_s) {
   write_text(folder / "table_1.csv", csv_text(calibration_table(calibration)));
   write_text(folder / "table_1.tex", latex_text(calibration_table_rounded(calibration)));
+  if (calibration.method == CalibrationMethod::Paper) {
+    write_text(folder / "table_1.svg", score_heat_map_svg(grid_of(calibration)));
+  }
+  if (calibration.fit) write_text(folder / "fit.svg", fit_figure(calibration));
   write_manifest(folder, manifest_of(options, settings_of_all(cases), inputs, wall_s));
   write_json(folder / "calibration.json", to_json(calibration));
 }

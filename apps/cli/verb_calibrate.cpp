@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <set>
@@ -62,6 +63,14 @@ std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vect
   return files;
 }
 
+/// A value that is given twice would be one row of the grid twice.
+void require_different_values(const char* option, std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto twice = std::adjacent_find(values.begin(), values.end());
+  if (twice != values.end())
+    throw CaseError("command line", option, fmt::format("{} twice", *twice), "every value once");
+}
+
 bool holds_files(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored)) {
@@ -75,6 +84,10 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
   Console console(options.level());
   arguments.request.method = arguments.method == "paper" ? CalibrationMethod::Paper : CalibrationMethod::Fit;
   require_valid(validate(arguments.request));
+  require_different_values("--speeds-mm-s", arguments.request.speeds_mm_s);
+  require_different_values("--dullnesses", arguments.request.dullnesses);
+  require_different_values("--drag-lengths-mm", arguments.request.drag_lengths_mm);
+  require_different_values("--second-drag-lengths-mm", arguments.request.second_drag_lengths_mm);
   const std::filesystem::path output = options.required_output("calibration");
   std::vector<CalibrationSubject> subjects;
   const std::vector<CaseFile> files = read_inputs(arguments, subjects);

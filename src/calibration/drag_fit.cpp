@@ -30,7 +30,10 @@ void require_specimens(const std::vector<FitSpecimen>& specimens) {
 }
 
 SpecimenFit fitted(const FitSpecimen& specimen, const DragFit& fit) {
-  SpecimenFit result{specimen.name, specimen.signed_error_mm, specimen.response.at(fit.drag_length_mm.mean), 0.0};
+  SpecimenFit result;
+  result.name = specimen.name;
+  result.observed_mm = specimen.signed_error_mm;
+  result.fitted_mm = specimen.response.at(fit.drag_length_mm.mean);
   const std::vector<double> slope = specimen.response.stiffness_slope(fit.drag_length_mm.mean);
   double squares = 0.0;
   for (std::size_t i = 0; i < slope.size(); ++i) {

@@ -14,8 +14,8 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kDragSteps = 61;
-constexpr std::size_t kStiffnessSteps = 21;
+constexpr std::size_t kDragSteps = 41;
+constexpr std::size_t kStiffnessSteps = 15;
 constexpr double kStiffnessReach = 2.5;  // standard deviations of the prior
 
 // The residual's parameters that are integrated over; each list is even in its logarithm, so equal weights are
@@ -25,6 +25,9 @@ constexpr std::array kCorrelationDeg{7.5, 15.0, 30.0, 60.0, 120.0};
 /// From specimen to specimen; weights are those of a half normal of 0.25 mm, for two or three specimens hardly tell.
 constexpr std::array kSpreadMm{0.05, 0.15, 0.25, 0.35, 0.5};
 constexpr double kSpreadPriorMm = 0.25;
+/// Of the shift of a cut as a whole; weights are those of a half normal of 0.4 mm.
+constexpr std::array kPlacementMm{0.1, 0.3, 0.5, 0.7};
+constexpr double kPlacementPriorMm = 0.4;
 
 /// Photographed less simulated, and the slope by stiffness, both as spectra: one pair for each drag length.
 struct SpecimenSpectra {
@@ -47,7 +50,7 @@ struct BiasEquation {
 };
 
 struct ResidualChoice {
-  double sd_mm, correlation_deg, spread_mm;
+  double sd_mm, correlation_deg, placement_mm, spread_mm;
 };
 
 std::vector<double> evenly(double from, double to, std::size_t count) {
@@ -108,21 +111,23 @@ class GridSum {
       : settings_(settings), posterior_(posterior), sectors_(specimens.front().response.sectors()) {
     for (const FitSpecimen& specimen : specimens) spectra_.push_back(spectra_of(specimen, posterior.drag_lengths_mm));
     const std::size_t cells = posterior.drag_lengths_mm.size() * posterior.ln_stiffness.size();
-    entries_.reserve(cells * kResidualSdMm.size() * kCorrelationDeg.size() * kSpreadMm.size());
+    entries_.reserve(cells * kResidualSdMm.size() * kCorrelationDeg.size() * kPlacementMm.size() * kSpreadMm.size());
   }
 
-  void add(double sd_mm, double correlation_deg) {
+  void add(double sd_mm, double correlation_deg, double placement_mm) {
     std::vector<double> variances = ring_eigenvalues(sectors_, correlation_deg);
     double log_determinant = 0.0;
     for (std::size_t j = 0; j < sectors_; ++j) {
       variances[j] = sd_mm * sd_mm * variances[j] + settings_.reading_sd_mm * settings_.reading_sd_mm;
+      // A ring that is shifted as a whole errs by a cosine of order 1.
+      if (j == 1 || j == 2) variances[j] += 0.5 * static_cast<double>(sectors_) * placement_mm * placement_mm;
       if (j > 0) log_determinant += std::log(variances[j]);
     }
     for (std::size_t drag = 0; drag < posterior_.drag_lengths_mm.size(); ++drag) {
       std::vector<WaveSums> waves;
       for (const SpecimenSpectra& s : spectra_) waves.push_back(wave_sums(s.rest[drag], s.slope[drag], variances));
       for (const double spread : kSpreadMm) {
-        add_row(drag, {sd_mm, correlation_deg, spread}, waves, variances[0], log_determinant);
+        add_row(drag, {sd_mm, correlation_deg, placement_mm, spread}, waves, variances[0], log_determinant);
       }
     }
   }
@@ -152,7 +157,8 @@ class GridSum {
                double log_determinant) {
     const auto sectors = static_cast<double>(sectors_);
     const double with_spread = variance_0 + sectors * choice.spread_mm * choice.spread_mm;
-    const double log_prior_spread = -0.5 * std::pow(choice.spread_mm / kSpreadPriorMm, 2);
+    const double log_prior =
+        -0.5 * (std::pow(choice.spread_mm / kSpreadPriorMm, 2) + std::pow(choice.placement_mm / kPlacementPriorMm, 2));
     for (std::size_t k = 0; k < posterior_.ln_stiffness.size(); ++k) {
       const double x = posterior_.ln_stiffness[k];
       BiasEquation sum;
@@ -164,7 +170,7 @@ class GridSum {
       const double weight = sum.weight + prior_weight;
       const double log_mass = -0.5 * (sum.log_determinant + std::log(weight / prior_weight) + sum.squares -
                                       sum.pull * sum.pull / weight + std::pow(x / settings_.stiffness_sd, 2)) +
-                              log_prior_spread;
+                              log_prior;
       entries_.push_back(
           {log_mass, sum.pull / weight, 1.0 / weight, drag * posterior_.ln_stiffness.size() + k, choice});
     }
@@ -178,6 +184,7 @@ class GridSum {
     ResidualEstimate& residual = posterior_.residual;
     residual.sd_mm += mass * entry.residual.sd_mm;
     residual.correlation_deg += mass * entry.residual.correlation_deg;
+    residual.placement_mm += mass * entry.residual.placement_mm;
     residual.specimen_spread_mm += mass * entry.residual.spread_mm;
     const double reading = settings_.reading_sd_mm * settings_.reading_sd_mm;
     const double variance = entry.residual.sd_mm * entry.residual.sd_mm;
@@ -222,7 +229,9 @@ DragPosterior posterior_on_grid(const std::vector<FitSpecimen>& specimens, const
   posterior.ln_stiffness = evenly(-reach, reach, posterior.knows_stiffness ? kStiffnessSteps : 1);
   GridSum sum(specimens, settings, posterior);
   for (const double sd : kResidualSdMm) {
-    for (const double correlation : kCorrelationDeg) sum.add(sd, correlation);
+    for (const double correlation : kCorrelationDeg) {
+      for (const double placement : kPlacementMm) sum.add(sd, correlation, placement);
+    }
   }
   sum.finish();
   return posterior;

@@ -13,6 +13,7 @@ namespace {
 /// Sums what the specimens that came out hold.
 struct RowSums {
   double mean = 0.0, sd = 0.0, greatest = 0.0, mean_signed = 0.0, inner = 0.0;
+  double inner_abs = 0.0, inner_greatest = 0.0;
   double count = 0.0, inner_count = 0.0;
 
   void add(const CalibrationRun& run) {
@@ -22,9 +23,11 @@ struct RowSums {
     sd += run.paper_abs_error_mm->sd;
     greatest = std::max(greatest, run.paper_abs_error_mm->max);
     mean_signed += run.signed_error_mm->mean;
-    if (!run.inner_signed_error_mm) return;
+    if (!run.inner_signed_error_mm || !run.inner_abs_error_mm) return;
     inner_count += 1.0;
     inner += run.inner_signed_error_mm->mean;
+    inner_abs += run.inner_abs_error_mm->mean;
+    inner_greatest = std::max(inner_greatest, run.inner_abs_error_mm->max);
   }
 };
 
@@ -48,6 +51,11 @@ ScoreRow row_of(const std::vector<std::vector<CalibrationRun>>& runs, std::size_
   std::optional<double> score;
   if (!row.is_failure) score = registration_score_mm(*row.mean_abs_mm, *row.max_abs_mm);
   row.percent = registration_percent(score, baseline);
+  std::optional<double> inner_score;
+  if (!row.is_failure && sums.inner_count == static_cast<double>(runs.size())) {
+    inner_score = registration_score_mm(sums.inner_abs / sums.inner_count, sums.inner_greatest);
+  }
+  row.inner_percent = registration_percent(inner_score, baseline);
   return row;
 }
 

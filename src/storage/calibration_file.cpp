@@ -50,6 +50,7 @@ Json rows_json(const Calibration& calibration) {
     json["mean_signed_mm"] = or_null(row.mean_signed_mm);
     json["mean_inner_signed_mm"] = or_null(row.mean_inner_signed_mm);
     json["score_percent"] = row.percent;
+    json["inner_edge_score_percent"] = row.inner_percent;
     json["specimens"] = Json::array();
     for (const CalibratedSpecimen& specimen : calibration.specimens) {
       json["specimens"].push_back(run_summary_json(specimen.runs[row.run], specimen.name));
@@ -106,8 +107,12 @@ Json posterior_json(const DragFit& fit, const Identifiability& told) {
 Json fitted_json(const DragFit& fit) {
   Json list = Json::array();
   for (const SpecimenFit& s : fit.specimens) {
-    list.push_back(
-        {{"name", s.name}, {"rms_mm", s.rms_mm}, {"observed_mm", s.observed_mm}, {"fitted_mm", s.fitted_mm}});
+    list.push_back({{"name", s.name},
+                    {"rms_mm", s.rms_mm},
+                    {"check_rms_mm", or_null(s.check_rms_mm)},
+                    {"observed_mm", s.observed_mm},
+                    {"fitted_mm", s.fitted_mm},
+                    {"simulated_mm", s.simulated_mm}});
   }
   return list;
 }
@@ -153,6 +158,7 @@ Json to_json(const Calibration& calibration) {
     json["residual"] = {{"sd_mm", fit.residual.sd_mm},
                         {"correlation_deg", fit.residual.correlation_deg},
                         {"specimen_spread_mm", fit.residual.specimen_spread_mm},
+                        {"placement_mm", fit.residual.placement_mm},
                         {"n_effective", fit.residual.n_effective}};
     json["fitted"] = fitted_json(fit);
     json["identifiability"] = calibration.identifiability->sentences;
@@ -186,7 +192,8 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
   record.samples = samples_from(file.inside("posterior"));
   const JsonPlace residual = file.inside("residual");
   record.residual = {positive(residual, "sd_mm"), positive(residual, "correlation_deg"),
-                     positive(residual, "specimen_spread_mm"), positive(residual, "n_effective")};
+                     positive(residual, "specimen_spread_mm"), positive(residual, "placement_mm"),
+                     positive(residual, "n_effective")};
   return record;
 }
 

@@ -56,6 +56,7 @@ Json run_json(const CalibrationRun& run, const std::string& key) {
   json["signed_error_mm"] = summary_json(run.signed_error_mm);
   json["paper_abs_error_mm"] = summary_json(run.paper_abs_error_mm);
   json["inner_signed_error_mm"] = summary_json(run.inner_signed_error_mm);
+  json["inner_abs_error_mm"] = summary_json(run.inner_abs_error_mm);
   json["tets"] = run.tets;
   json["wall_s"] = run.wall_s;
   json["inner_edge"] = run.inner_edge ? contour_json(*run.inner_edge) : Json(nullptr);
@@ -74,6 +75,7 @@ CalibrationRun run_from(const JsonPlace& file, const RunSetting& setting) {
   run.signed_error_mm = summary_of(file, "signed_error_mm");
   run.paper_abs_error_mm = summary_of(file, "paper_abs_error_mm");
   run.inner_signed_error_mm = summary_of(file, "inner_signed_error_mm");
+  run.inner_abs_error_mm = summary_of(file, "inner_abs_error_mm");
   run.tets = static_cast<std::size_t>(file.number("tets"));
   run.wall_s = file.number("wall_s");
   run.inner_edge = contour_or_null(file, "inner_edge");

@@ -34,8 +34,8 @@ TextTable calibration_table(const Calibration& calibration) {
       table.header.push_back(fmt::format("s{}_{}", s, column));
     }
   }
-  for (const char* column :
-       {"mean_mm", "sd_mm", "max_mm", "signed_error_mm", "inner_signed_error_mm", "failure", "score_percent"}) {
+  for (const char* column : {"mean_mm", "sd_mm", "max_mm", "signed_error_mm", "inner_signed_error_mm", "failure",
+                             "inner_edge_score_percent", "score_percent"}) {
     table.header.emplace_back(column);
   }
   for (const ScoreRow& row : calibration.table.rows) {
@@ -58,6 +58,7 @@ TextTable calibration_table(const Calibration& calibration) {
       cells.push_back(cell_text(value, kFullDigits));
     }
     cells.emplace_back(row.is_failure ? "yes" : "no");
+    cells.push_back(fmt::format("{:.4f}", row.inner_percent));
     cells.push_back(fmt::format("{:.4f}", row.percent));
     table.rows.push_back(std::move(cells));
   }

@@ -198,17 +198,18 @@ class CalibrationRunner {
     return std::move(*errors);
   }
 
+  /// Empty: no closed ring round the tumour's middle.
+  [[nodiscard]] std::vector<double> profile_of(std::size_t s, const CalibrationRun& run) const {
+    if (!run.inner_edge || !run.closed_loop) return {};
+    return error_profile(*run.inner_edge, run.final_tumor_edge, simulated_profile(subjects_[s].settings))
+        .value_or(std::vector<double>{});
+  }
+
   [[nodiscard]] DragResponse response_of(std::size_t s) const {
-    const ProfileSettings settings = simulated_profile(subjects_[s].settings);
     std::vector<SimulatedProfile> profiles;
     const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      SimulatedProfile profile{runs[i].drag_length_mm(), factors_[i], {}};
-      if (runs[i].inner_edge && runs[i].closed_loop) {
-        profile.signed_error_mm =
-            error_profile(*runs[i].inner_edge, runs[i].final_tumor_edge, settings).value_or(std::vector<double>{});
-      }
-      profiles.push_back(std::move(profile));
+      profiles.push_back({runs[i].drag_length_mm(), factors_[i], profile_of(s, runs[i])});
     }
     try {
       return DragResponse(std::move(profiles));
@@ -232,9 +233,23 @@ class CalibrationRunner {
     if (is_every_force_measured) settings.stiffness_sd = request_.stiffness_sd_with_force;
     calibration_.fit = fit_drag(specimens, settings);
     calibration_.identifiability = identifiability(*calibration_.fit);
-    // One cut at the fitted values shows what the straight lines between the knots are worth.
-    const DragFit& fit = *calibration_.fit;
+    check();
+  }
+
+  /// One cut at the fitted values shows what the straight lines between the simulated drag lengths are worth.
+  void check() {
+    DragFit& fit = *calibration_.fit;
     make_runs({knot_at(fit.drag_length_mm.mean, fit.knows_stiffness ? std::exp(fit.ln_stiffness.mean) : 1.0)});
+    for (std::size_t s = 0; s < subjects_.size(); ++s) {
+      SpecimenFit& specimen = fit.specimens[s];
+      specimen.simulated_mm = profile_of(s, calibration_.specimens[s].runs.back());
+      if (specimen.simulated_mm.empty()) continue;
+      double squares = 0.0;
+      for (std::size_t i = 0; i < specimen.simulated_mm.size(); ++i) {
+        squares += std::pow(specimen.simulated_mm[i] + fit.bias_mm.mean - specimen.fitted_mm[i], 2);
+      }
+      specimen.check_rms_mm = std::sqrt(squares / static_cast<double>(specimen.simulated_mm.size()));
+    }
   }
 
   void score() {
@@ -250,7 +265,7 @@ class CalibrationRunner {
     if (!calibration_.table.chosen) return;
     const ScoreRow& row = calibration_.table.rows[*calibration_.table.chosen];
     calibration_.chosen = row.setting;
-    calibration_.score_percent = row.percent;
+    calibration_.score_percent = calibration_.fit ? row.inner_percent : row.percent;
   }
 
   const std::vector<CalibrationSubject>& subjects_;

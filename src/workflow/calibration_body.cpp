@@ -105,6 +105,7 @@ CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJ
   run.paper_success = cut.centerline.paper_success.value_or(false);
   run.signed_error_mm = cut.centerline.signed_error_mm;
   run.inner_signed_error_mm = cut.inner_edge.signed_error_mm;
+  run.inner_abs_error_mm = cut.inner_edge.abs_error_mm;
   if (!cut.centerline.errors.signed_distance_mm.empty()) {
     const double paper_target = settings.plan.lateral_margin_mm - radius_mm(settings.tool);
     std::vector<double> errors = cut.centerline.errors.signed_distance_mm;

@@ -47,7 +47,7 @@ struct Calibration {
   std::optional<DragFit> fit;  ///< method fit
   std::optional<Identifiability> identifiability;
   std::optional<RunSetting> chosen;     ///< absent: every setting failed
-  std::optional<double> score_percent;  ///< of the chosen setting
+  std::optional<double> score_percent;  ///< of the chosen setting: the paper's, of a fit ScoreRow::inner_percent
   double reference_step_s = 0.02;
   bool is_virtual = false;      ///< one specimen at least is
   std::size_t simulations = 0;  ///< runs in all, those reused too

@@ -29,6 +29,7 @@ struct CalibrationRun {
   std::optional<Summary> signed_error_mm;     ///< mid-line against the lateral margin
   std::optional<Summary> paper_abs_error_mm;  ///< |distance of the mid-line − (margin − radius)|, as the paper scores
   std::optional<Summary> inner_signed_error_mm;  ///< inner edge against margin less radius, tool out
+  std::optional<Summary> inner_abs_error_mm;     ///< its absolute value
   std::optional<Contour> inner_edge;             ///< tool out, tissue still stretched, mm
   Contour final_tumor_edge;                      ///< likewise
   std::size_t tets = 0;

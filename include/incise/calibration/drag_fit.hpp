@@ -3,6 +3,7 @@
 #include <incise/calibration/drag_response.hpp>
 #include <incise/geometry/types.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,7 @@ struct ResidualEstimate {
   double sd_mm = 0.0;               ///< along the contour
   double correlation_deg = 0.0;     ///< angle over which the correlation falls to 1/e
   double specimen_spread_mm = 0.0;  ///< sd of the bias from specimen to specimen about the common one
+  double placement_mm = 0.0;        ///< sd, along each axis of the picture, of the shift of a cut as a whole
   double n_effective = 0.0;         ///< independent places that one contour is worth, for its mean
 };
 
@@ -58,8 +60,10 @@ struct PosteriorSample {
 struct SpecimenFit {
   std::string name;
   std::vector<double> observed_mm;
-  std::vector<double> fitted_mm;  ///< at the posterior means
-  double rms_mm = 0.0;            ///< of their difference
+  std::vector<double> fitted_mm;       ///< at the posterior means
+  double rms_mm = 0.0;                 ///< of their difference
+  std::vector<double> simulated_mm;    ///< cut anew at those values, without the bias; empty: not done, or no ring
+  std::optional<double> check_rms_mm;  ///< between that and what the straight lines say
 };
 
 /// The posterior of (drag length, ln stiffness factor, bias).
@@ -75,8 +79,9 @@ struct DragFit {
 };
 
 /// Fits the simulated signed errors to the photographed ones, sector by sector:
-///   y_s(θ) = m_s(θ; L, κ) + b + δ_s + r_s(θ),  r_s correlated along the ring, δ_s from specimen to specimen.
-/// The residual's size and correlation and the spread of δ are integrated over, not chosen. Everything is on grids: no
+///   y_s(θ) = m_s(θ; L, κ) + b + δ_s + u_s cos θ + v_s sin θ + r_s(θ),
+/// δ_s from specimen to specimen, (u_s, v_s) by where arm and projection placed the cut, r_s correlated along the ring.
+/// The sizes of δ, (u, v) and r and the correlation of r are integrated over, not chosen. Everything is on grids: no
 /// random number is drawn. See docs/models/calibration.md.
 /// @throws InvalidArgument without specimens, for settings or profiles that do not fit, or where the ranges of drag
 /// length of the specimens do not overlap.

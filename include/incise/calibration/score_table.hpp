@@ -25,6 +25,7 @@ struct ScoreRow {
   std::optional<double> mean_inner_signed_mm;  ///< of the inner edge against margin less radius, likewise
   bool is_failure = false;                     ///< one specimen at least failed
   double percent = 0.0;                        ///< of the baseline; 0 for a failure
+  double inner_percent = 0.0;  ///< the same with the inner edge\'s errors, like against like; 0 for a failure
 };
 
 /// The paper's Table I.
@@ -39,7 +40,9 @@ struct ScoreTable {
 
 /// Scores settings as the paper does (III-A.2): 0.75 · mean + 0.25 · max of the absolute error over the specimens, as
 /// per cent of the photographs'; a setting with which any specimen failed scores 0 %. Mean: of the specimens' means;
-/// max: the greatest (the paper does not say how it joins two specimens).
+/// max: the greatest (the paper does not say how it joins two specimens). Like the paper it holds simulated mid-lines
+/// against margin less radius and compares that with photographs of inner edges; `inner_percent` compares like with
+/// like.
 /// @param runs  by specimen: the n-th of each specimen belongs to the n-th row.
 /// @throws InvalidArgument for lists of different length, without any, or a baseline that is not above 0.
 [[nodiscard]] ScoreTable score_table(const std::vector<std::vector<CalibrationRun>>& runs, double baseline_mm);
