@@ -18,15 +18,17 @@ constexpr std::size_t kDragSteps = 41;
 constexpr std::size_t kStiffnessSteps = 15;
 constexpr double kStiffnessReach = 2.5;  // standard deviations of the prior
 
-// The residual's parameters that are integrated over; each list is even in its logarithm, so equal weights are
+// The residual's parameters that are integrated over; each list is about even in its logarithm, so equal weights are
 // Jeffreys' prior of a scale, cut off where nothing plausible is left.
-constexpr std::array kResidualSdMm{0.1, 0.14, 0.2, 0.28, 0.4, 0.56, 0.8, 1.12};
-constexpr std::array kCorrelationDeg{7.5, 15.0, 30.0, 60.0, 120.0};
-/// From specimen to specimen; weights are those of a half normal of 0.25 mm, for two or three specimens hardly tell.
-constexpr std::array kSpreadMm{0.05, 0.15, 0.25, 0.35, 0.5};
+constexpr std::array kResidualSdMm{0.1, 0.14, 0.2, 0.28, 0.4, 0.56, 0.8};
+constexpr std::array kCorrelationDeg{10.0, 25.0, 60.0, 120.0};
+/// From sector to sector without any correlation: reading of the photograph, grain of the mesh; times the least one.
+constexpr std::array kReadingTimes{1.0, 2.0, 3.5};
+/// From specimen to specimen; weights are those of a half normal, for two or three specimens hardly tell.
+constexpr std::array kSpreadMm{0.05, 0.15, 0.3, 0.5};
 constexpr double kSpreadPriorMm = 0.25;
-/// Of the shift of a cut as a whole; weights are those of a half normal of 0.4 mm.
-constexpr std::array kPlacementMm{0.1, 0.3, 0.5, 0.7};
+/// Of the shift of a cut as a whole; weights are those of a half normal.
+constexpr std::array kPlacementMm{0.1, 0.3, 0.6};
 constexpr double kPlacementPriorMm = 0.4;
 
 /// Photographed less simulated, and the slope by stiffness, both as spectra: one pair for each drag length.
@@ -50,7 +52,8 @@ struct BiasEquation {
 };
 
 struct ResidualChoice {
-  double sd_mm, correlation_deg, placement_mm, spread_mm;
+  double sd_mm, correlation_deg, reading_mm, placement_mm, spread_mm;
+  double correlation_0 = 0.0;  ///< eigenvalue of order 0 of the correlation
 };
 
 std::vector<double> evenly(double from, double to, std::size_t count) {
@@ -104,61 +107,61 @@ void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, doubl
   sum.pull += ur - share * ug * rg;
 }
 
-/// Collects the grid, one choice of the residual's parameters after the other.
+/// Collects the grid, one choice of the residual's parameters after the other. Masses are kept relative to the greatest
+/// that was met so far, which keeps their exponentials in range.
 class GridSum {
  public:
   GridSum(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings, DragPosterior& posterior)
       : settings_(settings), posterior_(posterior), sectors_(specimens.front().response.sectors()) {
     for (const FitSpecimen& specimen : specimens) spectra_.push_back(spectra_of(specimen, posterior.drag_lengths_mm));
-    const std::size_t cells = posterior.drag_lengths_mm.size() * posterior.ln_stiffness.size();
-    entries_.reserve(cells * kResidualSdMm.size() * kCorrelationDeg.size() * kPlacementMm.size() * kSpreadMm.size());
+    posterior_.cells.assign(posterior.drag_lengths_mm.size() * posterior.ln_stiffness.size(), {});
   }
 
-  void add(double sd_mm, double correlation_deg, double placement_mm) {
-    std::vector<double> variances = ring_eigenvalues(sectors_, correlation_deg);
+  /// @param choice  its spread is not looked at: all are added.
+  void add(ResidualChoice choice) {
+    std::vector<double> variances = ring_eigenvalues(sectors_, choice.correlation_deg);
+    choice.correlation_0 = variances[0];
     double log_determinant = 0.0;
     for (std::size_t j = 0; j < sectors_; ++j) {
-      variances[j] = sd_mm * sd_mm * variances[j] + settings_.reading_sd_mm * settings_.reading_sd_mm;
+      variances[j] = choice.sd_mm * choice.sd_mm * variances[j] + choice.reading_mm * choice.reading_mm;
       // A ring that is shifted as a whole errs by a cosine of order 1.
-      if (j == 1 || j == 2) variances[j] += 0.5 * static_cast<double>(sectors_) * placement_mm * placement_mm;
+      if (j == 1 || j == 2) {
+        variances[j] += 0.5 * static_cast<double>(sectors_) * choice.placement_mm * choice.placement_mm;
+      }
       if (j > 0) log_determinant += std::log(variances[j]);
     }
     for (std::size_t drag = 0; drag < posterior_.drag_lengths_mm.size(); ++drag) {
       std::vector<WaveSums> waves;
       for (const SpecimenSpectra& s : spectra_) waves.push_back(wave_sums(s.rest[drag], s.slope[drag], variances));
       for (const double spread : kSpreadMm) {
-        add_row(drag, {sd_mm, correlation_deg, placement_mm, spread}, waves, variances[0], log_determinant);
+        choice.spread_mm = spread;
+        add_row(drag, choice, waves, variances[0], log_determinant);
       }
     }
   }
 
   void finish() {
-    double most = -std::numeric_limits<double>::infinity();
-    for (const Entry& entry : entries_) most = std::max(most, entry.log_mass);
-    double total = 0.0;
-    for (const Entry& entry : entries_) total += std::exp(entry.log_mass - most);
-    posterior_.cells.assign(posterior_.drag_lengths_mm.size() * posterior_.ln_stiffness.size(), {});
-    for (const Entry& entry : entries_) collect(entry, std::exp(entry.log_mass - most) / total);
     for (PosteriorCell& cell : posterior_.cells) {
       if (cell.mass <= 0.0) continue;
       cell.bias_mean_mm /= cell.mass;
       cell.bias_variance_mm2 = cell.bias_variance_mm2 / cell.mass - cell.bias_mean_mm * cell.bias_mean_mm;
+      cell.mass /= total_;
+    }
+    ResidualEstimate& residual = posterior_.residual;
+    for (double* sum : {&residual.sd_mm, &residual.correlation_deg, &residual.reading_mm, &residual.specimen_spread_mm,
+                        &residual.placement_mm, &residual.n_effective}) {
+      *sum /= total_;
     }
   }
 
  private:
-  struct Entry {
-    double log_mass, bias_mean, bias_variance;
-    std::size_t cell;
-    ResidualChoice residual;
-  };
-
   void add_row(std::size_t drag, const ResidualChoice& choice, const std::vector<WaveSums>& waves, double variance_0,
                double log_determinant) {
     const auto sectors = static_cast<double>(sectors_);
     const double with_spread = variance_0 + sectors * choice.spread_mm * choice.spread_mm;
     const double log_prior =
         -0.5 * (std::pow(choice.spread_mm / kSpreadPriorMm, 2) + std::pow(choice.placement_mm / kPlacementPriorMm, 2));
+    const double prior_weight = 1.0 / (settings_.bias_sd_mm * settings_.bias_sd_mm);
     for (std::size_t k = 0; k < posterior_.ln_stiffness.size(); ++k) {
       const double x = posterior_.ln_stiffness[k];
       BiasEquation sum;
@@ -166,46 +169,56 @@ class GridSum {
         add_specimen(sum, waves[s], spectra_[s].rest[drag][0], spectra_[s].slope[drag][0], with_spread, log_determinant,
                      x, spectra_[s].own_variance, sectors);
       }
-      const double prior_weight = 1.0 / (settings_.bias_sd_mm * settings_.bias_sd_mm);
       const double weight = sum.weight + prior_weight;
       const double log_mass = -0.5 * (sum.log_determinant + std::log(weight / prior_weight) + sum.squares -
                                       sum.pull * sum.pull / weight + std::pow(x / settings_.stiffness_sd, 2)) +
                               log_prior;
-      entries_.push_back(
-          {log_mass, sum.pull / weight, 1.0 / weight, drag * posterior_.ln_stiffness.size() + k, choice});
+      collect(drag * posterior_.ln_stiffness.size() + k, relative(log_mass), sum.pull / weight, 1.0 / weight, choice);
     }
   }
 
-  void collect(const Entry& entry, double mass) {
-    PosteriorCell& cell = posterior_.cells[entry.cell];
-    cell.mass += mass;
-    cell.bias_mean_mm += mass * entry.bias_mean;
-    cell.bias_variance_mm2 += mass * (entry.bias_variance + entry.bias_mean * entry.bias_mean);
-    ResidualEstimate& residual = posterior_.residual;
-    residual.sd_mm += mass * entry.residual.sd_mm;
-    residual.correlation_deg += mass * entry.residual.correlation_deg;
-    residual.placement_mm += mass * entry.residual.placement_mm;
-    residual.specimen_spread_mm += mass * entry.residual.spread_mm;
-    const double reading = settings_.reading_sd_mm * settings_.reading_sd_mm;
-    const double variance = entry.residual.sd_mm * entry.residual.sd_mm;
-    const double of_mean = variance * ring_eigenvalues_0(entry.residual.correlation_deg) + reading;
-    residual.n_effective += mass * static_cast<double>(sectors_) * (variance + reading) / of_mean;
+  /// Mass relative to the reference, which moves up when it is left far below.
+  double relative(double log_mass) {
+    constexpr double kFar = 30.0;
+    if (log_mass > reference_ + kFar) {
+      const double factor = std::exp(reference_ - log_mass);
+      reference_ = log_mass;
+      for (PosteriorCell& cell : posterior_.cells) {
+        for (double* sum : {&cell.mass, &cell.bias_mean_mm, &cell.bias_variance_mm2}) *sum *= factor;
+      }
+      ResidualEstimate& residual = posterior_.residual;
+      for (double* sum : {&residual.sd_mm, &residual.correlation_deg, &residual.reading_mm,
+                          &residual.specimen_spread_mm, &residual.placement_mm, &residual.n_effective, &total_}) {
+        *sum *= factor;
+      }
+    }
+    return std::exp(log_mass - reference_);
   }
 
-  double ring_eigenvalues_0(double correlation_deg) {
-    const auto at =
-        std::find(kCorrelationDeg.begin(), kCorrelationDeg.end(), correlation_deg) - kCorrelationDeg.begin();
-    double& value = first_eigenvalue_[static_cast<std::size_t>(at)];
-    if (value == 0.0) value = ring_eigenvalues(sectors_, correlation_deg)[0];
-    return value;
+  void collect(std::size_t at, double mass, double bias_mean, double bias_variance, const ResidualChoice& choice) {
+    PosteriorCell& cell = posterior_.cells[at];
+    cell.mass += mass;
+    cell.bias_mean_mm += mass * bias_mean;
+    cell.bias_variance_mm2 += mass * (bias_variance + bias_mean * bias_mean);
+    ResidualEstimate& residual = posterior_.residual;
+    residual.sd_mm += mass * choice.sd_mm;
+    residual.correlation_deg += mass * choice.correlation_deg;
+    residual.reading_mm += mass * choice.reading_mm;
+    residual.placement_mm += mass * choice.placement_mm;
+    residual.specimen_spread_mm += mass * choice.spread_mm;
+    const double reading = choice.reading_mm * choice.reading_mm;
+    const double variance = choice.sd_mm * choice.sd_mm;
+    residual.n_effective +=
+        mass * static_cast<double>(sectors_) * (variance + reading) / (variance * choice.correlation_0 + reading);
+    total_ += mass;
   }
 
   const DragFitSettings& settings_;
   DragPosterior& posterior_;
   std::size_t sectors_;
   std::vector<SpecimenSpectra> spectra_;
-  std::vector<Entry> entries_;
-  std::array<double, kCorrelationDeg.size()> first_eigenvalue_{};
+  double reference_ = -1e300;
+  double total_ = 0.0;
 };
 
 }  // namespace
@@ -230,7 +243,11 @@ DragPosterior posterior_on_grid(const std::vector<FitSpecimen>& specimens, const
   GridSum sum(specimens, settings, posterior);
   for (const double sd : kResidualSdMm) {
     for (const double correlation : kCorrelationDeg) {
-      for (const double placement : kPlacementMm) sum.add(sd, correlation, placement);
+      for (const double times : kReadingTimes) {
+        for (const double placement : kPlacementMm) {
+          sum.add({sd, correlation, times * settings.reading_sd_mm, placement, 0.0});
+        }
+      }
     }
   }
   sum.finish();

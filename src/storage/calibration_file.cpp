@@ -157,6 +157,7 @@ Json to_json(const Calibration& calibration) {
     json["posterior"] = posterior_json(fit, *calibration.identifiability);
     json["residual"] = {{"sd_mm", fit.residual.sd_mm},
                         {"correlation_deg", fit.residual.correlation_deg},
+                        {"reading_mm", fit.residual.reading_mm},
                         {"specimen_spread_mm", fit.residual.specimen_spread_mm},
                         {"placement_mm", fit.residual.placement_mm},
                         {"n_effective", fit.residual.n_effective}};
@@ -191,9 +192,12 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
   if (record.method == CalibrationMethod::Paper) return record;
   record.samples = samples_from(file.inside("posterior"));
   const JsonPlace residual = file.inside("residual");
-  record.residual = {positive(residual, "sd_mm"), positive(residual, "correlation_deg"),
-                     positive(residual, "specimen_spread_mm"), positive(residual, "placement_mm"),
-                     positive(residual, "n_effective")};
+  record.residual.sd_mm = positive(residual, "sd_mm");
+  record.residual.correlation_deg = positive(residual, "correlation_deg");
+  record.residual.reading_mm = positive(residual, "reading_mm");
+  record.residual.specimen_spread_mm = positive(residual, "specimen_spread_mm");
+  record.residual.placement_mm = positive(residual, "placement_mm");
+  record.residual.n_effective = positive(residual, "n_effective");
   return record;
 }
 

@@ -292,6 +292,10 @@ std::vector<std::string> validate(const CalibrationRequest& r) {
   expect_positive(violations, "speeds_mm_s", r.speeds_mm_s);
   expect_positive(violations, "dullnesses", r.dullnesses);
   expect_positive(violations, "drag_lengths_mm", r.drag_lengths_mm);
+  for (const double drag : r.second_drag_lengths_mm) {
+    if (std::find(r.drag_lengths_mm.begin(), r.drag_lengths_mm.end(), drag) != r.drag_lengths_mm.end()) continue;
+    violations.push_back(fmt::format("second_drag_lengths_mm: found {}, expected some of drag_lengths_mm", drag));
+  }
   expect_positive(violations, "second_stiffness", {r.second_stiffness, std::abs(r.second_stiffness - 1.0)});
   expect_positive(violations, "fit_speed_mm_s", {r.fit_speed_mm_s});
   expect_positive(violations, "force_sd", {r.force_sd});

@@ -43,8 +43,9 @@ struct ParameterEstimate {
 
 /// What simulation and photograph differ by, estimated from the data.
 struct ResidualEstimate {
-  double sd_mm = 0.0;               ///< along the contour
-  double correlation_deg = 0.0;     ///< angle over which the correlation falls to 1/e
+  double sd_mm = 0.0;            ///< along the contour
+  double correlation_deg = 0.0;  ///< angle over which the correlation falls to 1/e
+  double reading_mm = 0.0;       ///< from sector to sector, independent: reading of the photograph, grain of the mesh
   double specimen_spread_mm = 0.0;  ///< sd of the bias from specimen to specimen about the common one
   double placement_mm = 0.0;        ///< sd, along each axis of the picture, of the shift of a cut as a whole
   double n_effective = 0.0;         ///< independent places that one contour is worth, for its mean
