@@ -1,4 +1,5 @@
 #include "calibration/drag_posterior.hpp"
+#include "calibration/sector_noise.hpp"
 
 #include <incise/calibration/drag_fit.hpp>
 #include <incise/core/error.hpp>
@@ -33,8 +34,8 @@ SpecimenFit fitted(const FitSpecimen& specimen, const DragFit& fit) {
   SpecimenFit result;
   result.name = specimen.name;
   result.observed_mm = specimen.signed_error_mm;
-  result.fitted_mm = specimen.response.at(fit.drag_length_mm.mean);
-  const std::vector<double> slope = specimen.response.stiffness_slope(fit.drag_length_mm.mean);
+  result.fitted_mm = without_fast_waves(specimen.response.at(fit.drag_length_mm.mean));
+  const std::vector<double> slope = without_fast_waves(specimen.response.stiffness_slope(fit.drag_length_mm.mean));
   double squares = 0.0;
   for (std::size_t i = 0; i < slope.size(); ++i) {
     result.fitted_mm[i] += fit.ln_stiffness.mean * slope[i] + fit.bias_mm.mean;

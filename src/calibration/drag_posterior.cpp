@@ -35,12 +35,15 @@ constexpr double kPlacementPriorMm = 0.4;
 struct SpecimenSpectra {
   std::vector<std::vector<double>> rest;
   std::vector<std::vector<double>> slope;
+  std::vector<double> grain_variance;  ///< of a sector of the simulation, mm²
   double own_variance = 0.0;
 };
 
 /// Sums over the waves above order 0, weighted by the inverse variance of each.
 struct WaveSums {
   double rest_rest = 0.0, rest_slope = 0.0, slope_slope = 0.0;
+  double log_determinant = 0.0;
+  double variance_0 = 0.0;  ///< of the wave of order 0, without what differs from specimen to specimen
 };
 
 /// What the specimens together say at one place of the grid: ½-logarithm terms and the normal equation of the bias.
@@ -68,31 +71,44 @@ std::vector<double> evenly(double from, double to, std::size_t count) {
 SpecimenSpectra spectra_of(const FitSpecimen& specimen, const std::vector<double>& drag_lengths) {
   SpecimenSpectra spectra;
   spectra.own_variance = specimen.own_stiffness_sd * specimen.own_stiffness_sd;
+  // The simulation says nothing about the fast waves but its grain: there the photograph stands alone, and tells how
+  // rough what differs is.
+  const std::vector<double> observed = ring_spectrum(specimen.signed_error_mm);
   for (const double drag : drag_lengths) {
-    std::vector<double> rest = specimen.signed_error_mm;
-    const std::vector<double> simulated = specimen.response.at(drag);
-    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= simulated[i];
-    spectra.rest.push_back(ring_spectrum(rest));
-    spectra.slope.push_back(ring_spectrum(specimen.response.stiffness_slope(drag)));
+    std::vector<double> rest = observed;
+    std::vector<double> slope = ring_spectrum(specimen.response.stiffness_slope(drag));
+    const std::vector<double> simulated = ring_spectrum(specimen.response.at(drag));
+    const std::size_t slow = std::min(rest.size(), kEntriesThatCount);
+    for (std::size_t j = 0; j < slow; ++j) rest[j] -= simulated[j];
+    std::fill(slope.begin() + static_cast<std::ptrdiff_t>(slow), slope.end(), 0.0);
+    spectra.rest.push_back(std::move(rest));
+    spectra.slope.push_back(std::move(slope));
+    // Without its own variance in the middle between two knots, where the grain of both averages out, the fit would be
+    // drawn to just these places.
+    spectra.grain_variance.push_back(std::pow(specimen.response.grain_mm(), 2) * specimen.response.grain_share(drag));
   }
   return spectra;
 }
 
 WaveSums wave_sums(const std::vector<double>& rest, const std::vector<double>& slope,
-                   const std::vector<double>& variances) {
+                   const std::vector<double>& variances, double grain_variance) {
   WaveSums sums;
+  sums.variance_0 = variances[0] + grain_variance;
   for (std::size_t j = 1; j < rest.size(); ++j) {
-    sums.rest_rest += rest[j] * rest[j] / variances[j];
-    sums.rest_slope += rest[j] * slope[j] / variances[j];
-    sums.slope_slope += slope[j] * slope[j] / variances[j];
+    const double variance = variances[j] + (j < kEntriesThatCount ? grain_variance : 0.0);
+    sums.rest_rest += rest[j] * rest[j] / variance;
+    sums.rest_slope += rest[j] * slope[j] / variance;
+    sums.slope_slope += slope[j] * slope[j] / variance;
+    sums.log_determinant += std::log(variance);
   }
   return sums;
 }
 
 /// Adds one specimen. Its covariance is diagonal in the spectrum but for the rank-one part of its own stiffness, which
 /// the formula of Sherman and Morrison takes in.
-void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, double slope_0, double variance_0,
-                  double log_determinant, double ln_stiffness, double own_variance, double sectors) {
+void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, double slope_0, double spread_mm,
+                  double ln_stiffness, double own_variance, double sectors) {
+  const double variance_0 = waves.variance_0 + sectors * spread_mm * spread_mm;
   const double x = ln_stiffness;
   const double r0 = rest_0 - x * slope_0;
   const double rr = waves.rest_rest - 2.0 * x * waves.rest_slope + x * x * waves.slope_slope + r0 * r0 / variance_0;
@@ -101,7 +117,7 @@ void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, doubl
   const double ur = std::sqrt(sectors) * r0 / variance_0;
   const double ug = std::sqrt(sectors) * slope_0 / variance_0;
   const double share = own_variance / (1.0 + own_variance * gg);
-  sum.log_determinant += log_determinant + std::log(variance_0) + std::log1p(own_variance * gg);
+  sum.log_determinant += waves.log_determinant + std::log(variance_0) + std::log1p(own_variance * gg);
   sum.squares += rr - share * rg * rg;
   sum.weight += sectors / variance_0 - share * ug * ug;
   sum.pull += ur - share * ug * rg;
@@ -121,21 +137,20 @@ class GridSum {
   void add(ResidualChoice choice) {
     std::vector<double> variances = ring_eigenvalues(sectors_, choice.correlation_deg);
     choice.correlation_0 = variances[0];
-    double log_determinant = 0.0;
     for (std::size_t j = 0; j < sectors_; ++j) {
       variances[j] = choice.sd_mm * choice.sd_mm * variances[j] + choice.reading_mm * choice.reading_mm;
       // A ring that is shifted as a whole errs by a cosine of order 1.
       if (j == 1 || j == 2) {
         variances[j] += 0.5 * static_cast<double>(sectors_) * choice.placement_mm * choice.placement_mm;
       }
-      if (j > 0) log_determinant += std::log(variances[j]);
     }
     for (std::size_t drag = 0; drag < posterior_.drag_lengths_mm.size(); ++drag) {
       std::vector<WaveSums> waves;
-      for (const SpecimenSpectra& s : spectra_) waves.push_back(wave_sums(s.rest[drag], s.slope[drag], variances));
+      for (const SpecimenSpectra& s : spectra_)
+        waves.push_back(wave_sums(s.rest[drag], s.slope[drag], variances, s.grain_variance[drag]));
       for (const double spread : kSpreadMm) {
         choice.spread_mm = spread;
-        add_row(drag, choice, waves, variances[0], log_determinant);
+        add_row(drag, choice, waves);
       }
     }
   }
@@ -155,10 +170,8 @@ class GridSum {
   }
 
  private:
-  void add_row(std::size_t drag, const ResidualChoice& choice, const std::vector<WaveSums>& waves, double variance_0,
-               double log_determinant) {
+  void add_row(std::size_t drag, const ResidualChoice& choice, const std::vector<WaveSums>& waves) {
     const auto sectors = static_cast<double>(sectors_);
-    const double with_spread = variance_0 + sectors * choice.spread_mm * choice.spread_mm;
     const double log_prior =
         -0.5 * (std::pow(choice.spread_mm / kSpreadPriorMm, 2) + std::pow(choice.placement_mm / kPlacementPriorMm, 2));
     const double prior_weight = 1.0 / (settings_.bias_sd_mm * settings_.bias_sd_mm);
@@ -166,8 +179,8 @@ class GridSum {
       const double x = posterior_.ln_stiffness[k];
       BiasEquation sum;
       for (std::size_t s = 0; s < spectra_.size(); ++s) {
-        add_specimen(sum, waves[s], spectra_[s].rest[drag][0], spectra_[s].slope[drag][0], with_spread, log_determinant,
-                     x, spectra_[s].own_variance, sectors);
+        add_specimen(sum, waves[s], spectra_[s].rest[drag][0], spectra_[s].slope[drag][0], choice.spread_mm, x,
+                     spectra_[s].own_variance, sectors);
       }
       const double weight = sum.weight + prior_weight;
       const double log_mass = -0.5 * (sum.log_determinant + std::log(weight / prior_weight) + sum.squares -

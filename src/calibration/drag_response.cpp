@@ -1,3 +1,5 @@
+#include "calibration/sector_noise.hpp"
+
 #include <incise/calibration/drag_response.hpp>
 #include <incise/core/error.hpp>
 
@@ -24,6 +26,19 @@ void require_profiles(const std::vector<SimulatedProfile>& profiles) {
     INCISE_REQUIRE(p.signed_error_mm.size() == sectors,
                    fmt::format("profile {}: expected {} sectors, found {}", i, sectors, p.signed_error_mm.size()));
   }
+}
+
+/// Root mean square of the entries of all spectra that are too fast for tissue, up to twice the order that is not:
+/// grain is stronger in slow waves than in the fastest, and it is that of the slow ones that is asked for.
+double fast_waves_rms(const std::vector<SimulatedProfile>& knots) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const SimulatedProfile& knot : knots) {
+    const std::vector<double> spectrum = ring_spectrum(knot.signed_error_mm);
+    const std::size_t end = std::min(spectrum.size(), 2 * kEntriesThatCount - 1);
+    for (std::size_t j = kEntriesThatCount; j < end; ++j, count += 1.0) squares += spectrum[j] * spectrum[j];
+  }
+  return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
 /// Straight line between neighbours; beyond the ends the end itself.
@@ -57,6 +72,7 @@ DragResponse::DragResponse(std::vector<SimulatedProfile> profiles) {
   INCISE_REQUIRE(
       knots_.size() >= 2,
       fmt::format("expected at least two closed simulated rings before the first open one, found {}", knots_.size()));
+  grain_mm_ = fast_waves_rms(knots_);
   for (const SimulatedProfile& profile : profiles) {
     if (is_reference(profile) || profile.signed_error_mm.empty()) continue;
     const auto partner = std::find_if(knots_.begin(), knots_.end(), [&profile](const SimulatedProfile& knot) {
@@ -77,6 +93,17 @@ std::vector<double> DragResponse::at(double drag_length_mm) const {
       drag_length_mm >= least_mm() - 1e-9 && drag_length_mm <= most_mm() + 1e-9,
       fmt::format("expected a drag length from {} to {} mm, found {}", least_mm(), most_mm(), drag_length_mm));
   return between(knots_, drag_length_mm);
+}
+
+double DragResponse::grain_share(double drag_length_mm) const {
+  for (std::size_t i = 1; i < knots_.size(); ++i) {
+    const double from = knots_[i - 1].drag_length_mm;
+    const double to = knots_[i].drag_length_mm;
+    if (drag_length_mm > to || drag_length_mm < from) continue;
+    const double t = (drag_length_mm - from) / (to - from);
+    return (1.0 - t) * (1.0 - t) + t * t;
+  }
+  return 1.0;
 }
 
 std::vector<double> DragResponse::stiffness_slope(double drag_length_mm) const {

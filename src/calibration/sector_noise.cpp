@@ -12,23 +12,34 @@ std::size_t order_of(std::size_t entry) {
   return (entry + 1) / 2;
 }
 
+/// Value of the basis function of an entry at a place.
+double basis(std::size_t entry, std::size_t place, std::size_t n) {
+  const std::size_t order = order_of(entry);
+  const auto count = static_cast<double>(n);
+  const bool is_single = entry == 0 || 2 * order == n;  // the mean, and the fastest wave of an even count
+  const double angle = 2.0 * std::numbers::pi * static_cast<double>(order * place % n) / count;
+  return std::sqrt((is_single ? 1.0 : 2.0) / count) * (entry > 0 && entry % 2 == 0 ? std::sin(angle) : std::cos(angle));
+}
+
 }  // namespace
 
 std::vector<double> ring_spectrum(const std::vector<double>& values) {
   const std::size_t n = values.size();
-  const auto count = static_cast<double>(n);
   std::vector<double> spectrum(n, 0.0);
   for (std::size_t entry = 0; entry < n; ++entry) {
-    const std::size_t order = order_of(entry);
-    const bool is_single = entry == 0 || 2 * order == n;  // the mean, and the fastest wave of an even count
-    const bool is_sine = entry > 0 && entry % 2 == 0;
-    const double norm = std::sqrt((is_single ? 1.0 : 2.0) / count);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(order * i % n) / count;
-      spectrum[entry] += norm * values[i] * (is_sine ? std::sin(angle) : std::cos(angle));
-    }
+    for (std::size_t i = 0; i < n; ++i) spectrum[entry] += values[i] * basis(entry, i, n);
   }
   return spectrum;
+}
+
+std::vector<double> without_fast_waves(const std::vector<double>& values) {
+  const std::size_t n = values.size();
+  const std::vector<double> spectrum = ring_spectrum(values);
+  std::vector<double> slow(n, 0.0);
+  for (std::size_t entry = 0; entry < std::min(n, kEntriesThatCount); ++entry) {
+    for (std::size_t i = 0; i < n; ++i) slow[i] += spectrum[entry] * basis(entry, i, n);
+  }
+  return slow;
 }
 
 std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 namespace incise {
@@ -10,5 +11,13 @@ namespace incise {
 
 /// Eigenvalues, in the order of ring_spectrum, of the correlation exp(−angle / length) between `sectors` sectors.
 [[nodiscard]] std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg);
+
+/// Waves above this order are left to the mesh's grain and to the reading of photographs: what drags tissue is smooth.
+inline constexpr std::size_t kOrdersThatCount = 4;
+/// How many entries of a spectrum these are.
+inline constexpr std::size_t kEntriesThatCount = 2 * kOrdersThatCount + 1;
+
+/// The part of the values that is made of the orders that count.
+[[nodiscard]] std::vector<double> without_fast_waves(const std::vector<double>& values);
 
 }  // namespace incise

@@ -98,6 +98,36 @@ TEST(FitDrag, ItsIntervalsHoldTheTruthAsOftenAsTheySay) {
   for (const int count : held) EXPECT_GE(count, 47);
 }
 
+/// The response with the grain of a mesh: every simulated sector is off by itself.
+DragResponse grainy_response(double phase, Random& random, double grain_mm) {
+  std::vector<SimulatedProfile> profiles;
+  for (const double drag : {0.5, 1.5, 2.5, 3.5}) profiles.push_back({drag, 1.0, formula(drag, 0.0, phase, 1.0)});
+  for (const double drag : {0.5, 2.5}) profiles.push_back({drag, 2.0, formula(drag, std::log(2.0), phase, 1.0)});
+  for (SimulatedProfile& profile : profiles) {
+    for (double& e : profile.signed_error_mm) e += grain_mm * random.normal();
+  }
+  return DragResponse(std::move(profiles));
+}
+
+TEST(FitDrag, TheMeshsGrainDoesNotDrawItToTheMiddleBetweenTwoSimulations) {
+  // There the grain of two simulations averages out, so the misfit is least whatever the truth is.
+  Random random(23);
+  const int draws = 60;
+  int held = 0;
+  int in_the_middle = 0;
+  for (int i = 0; i < draws; ++i) {
+    const Truth truth{random.uniform(0.5, 3.5), 0.0, 0.0};
+    std::vector<FitSpecimen> specimens = photographed(truth, random, 0.3);
+    for (std::size_t s = 0; s < 2; ++s) specimens[s].response = grainy_response(s == 0 ? 0.0 : 1.1, random, 0.3);
+    EXPECT_NEAR(specimens[0].response.grain_mm(), 0.3, 0.13);  // of 32 numbers
+    const ParameterEstimate drag = fit_drag(specimens).drag_length_mm;
+    held += drag.low <= truth.drag_mm && truth.drag_mm <= drag.high;
+    in_the_middle += std::abs(drag.mean - std::round(drag.mean)) < 0.15;  // 1, 2 or 3 mm
+  }
+  EXPECT_GE(held, 47);
+  EXPECT_LE(in_the_middle, 29);  // by chance 18, and three standard deviations
+}
+
 TEST(FitDrag, CountsNeighbouringSectorsForLessThanIndependentOnes) {
   // The same size of residual, once correlated over 20 degrees and once not at all: only the second pins the mean down.
   Random random(3);

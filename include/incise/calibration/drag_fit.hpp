@@ -83,7 +83,8 @@ struct DragFit {
 ///   y_s(θ) = m_s(θ; L, κ) + b + δ_s + u_s cos θ + v_s sin θ + r_s(θ),
 /// δ_s from specimen to specimen, (u_s, v_s) by where arm and projection placed the cut, r_s correlated along the ring.
 /// The sizes of δ, (u, v) and r and the correlation of r are integrated over, not chosen. Everything is on grids: no
-/// random number is drawn. See docs/models/calibration.md.
+/// random number is drawn. Of the simulation's waves of more than four to the round nothing is believed: they are its
+/// mesh's grain, and tell how much of that is in the slower ones. See docs/models/calibration.md.
 /// @throws InvalidArgument without specimens, for settings or profiles that do not fit, or where the ranges of drag
 /// length of the specimens do not overlap.
 [[nodiscard]] DragFit fit_drag(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings = {});

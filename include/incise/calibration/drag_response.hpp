@@ -37,9 +37,15 @@ class DragResponse {
   /// were cut with it: that of the nearest.
   [[nodiscard]] std::vector<double> stiffness_slope(double drag_length_mm) const;
 
+  /// The mesh's grain: sd of one simulated sector, taken from the waves of the knots that are too fast for tissue; mm.
+  [[nodiscard]] double grain_mm() const { return grain_mm_; }
+  /// Share of one knot's variance that is left at a drag length: 1 at a knot, a half in the middle between two.
+  [[nodiscard]] double grain_share(double drag_length_mm) const;
+
  private:
   std::vector<SimulatedProfile> knots_;   ///< at the reference stiffness, by drag length
   std::vector<SimulatedProfile> slopes_;  ///< per ln(stiffness factor), by drag length
+  double grain_mm_ = 0.0;
   bool is_ended_by_failure_ = false;
 };
 

@@ -30,7 +30,8 @@ struct CalibrationSubject {
   Store* store = nullptr;       ///< of the case; not null
 };
 
-/// What is simulated. Defaults: the paper's grid; for the fit, seven cuts of each specimen and one that checks.
+/// What is simulated. Defaults: the paper's grid; for the fit, seven cuts of each specimen, one or two near the place that
+/// they point to, and one that checks.
 struct CalibrationRequest {
   CalibrationMethod method = CalibrationMethod::Fit;
   std::vector<double> speeds_mm_s{1.0, 5.0, 9.0, 13.0, 17.0};  ///< of the grid, each > 0
