@@ -71,6 +71,7 @@ int run(int argc, char** argv) {
   add_stages(application);
   add_interchange(application);
   add_evaluate(application);
+  add_calibrate(application);
   add_surface(application);
   add_register(application);
   add_track(application);

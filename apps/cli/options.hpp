@@ -108,6 +108,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
 [[nodiscard]] int status_of(Outcome outcome);
 
 void add_bench(Application& application);  ///< bench make, bench cut
+void add_calibrate(Application& application);
 void add_demo(Application& application);
 void add_run(Application& application);
 void add_phantom(Application& application);

@@ -112,6 +112,14 @@ nlohmann::ordered_json line_json(const MarkedLine& line) {
   return json;
 }
 
+/// What was measured, point by point and with the edge that it was measured against, for those who compare it place by place.
+void add_contours(nlohmann::ordered_json& json, const Evaluation& evaluation, const Contour& tumor_edge, const Vec3& approach) {
+  json["points"] = points_json(evaluation);
+  const double step_mm = EvaluationSettings{}.step_mm;
+  json["tumor_edge"] = contour_json(resample_by_step(tumor_edge, step_mm));
+  json["approach"] = {approach.x() + 0.0, approach.y() + 0.0, approach.z() + 0.0};  // no minus before a zero
+}
+
 struct Measured {
   Evaluation evaluation;
   nlohmann::ordered_json json;
@@ -170,6 +178,7 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
                             .max_gap_mm = arguments.max_gap_mm};
   const PhotoContours found = find_photo_contours(picture, scale.scale, photo, arguments.photo);
   Measured result = measured(arguments.photo, [&] { return evaluate(found.incision, found.tumor_edge, settings); });
+  add_contours(result.json, result.evaluation, found.tumor_edge, settings.approach);
   result.json["photo"] = arguments.photo.string();
   result.json["mm_per_pixel"] = found.mm_per_pixel;
   result.json["scale"] = scale.summary;
@@ -203,6 +212,7 @@ Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings
   require_usable(incision, "an incision", kLargestIncisionMm, settings.approach, arguments.incision);
   require_usable(tumor_edge, "a tumour", kLargestTumorMm, settings.approach, arguments.tumor);
   Measured result = measured(arguments.tumor, [&] { return evaluate(incision, tumor_edge, settings); });
+  add_contours(result.json, result.evaluation, tumor_edge, settings.approach);
   if (!arguments.figure.empty()) {
     const ErrorColors colors = arguments.colors == "jet" ? ErrorColors::Jet : ErrorColors::Safe;
     const std::string name = arguments.incision.stem().string();

@@ -24,7 +24,7 @@ struct VerifyArguments {
 };
 
 void require_a_check(const std::string& only) {
-  const std::vector<std::string> names = check_names();
+  const std::vector<std::string> names = physics_check_names();
   if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(only); })) return;
   throw CaseError("command line", "--only", fmt::format("'{}'", only),
                   fmt::format("the start of one of {}", fmt::join(names, ", ")),

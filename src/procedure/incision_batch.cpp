@@ -3,6 +3,7 @@
 #include <incise/procedure/incision_batch.hpp>
 
 #include <atomic>
+#include <mutex>
 #include <numeric>
 #include <thread>
 
@@ -57,16 +58,27 @@ IncisionJobResult run_job(const TissueModel& model, const TissueState& stretched
 
 }  // namespace
 
-std::vector<IncisionJobResult> simulate_incisions(const TissueModel& model, const TissueState& stretched,
-                                                  std::span<const IncisionJob> jobs, Workers& workers, Monitor& monitor) {
-  BatchProgress progress(jobs.size(), monitor);
-  std::vector<IncisionJobResult> results(jobs.size());
-  workers.for_each(jobs.size(), 1, [&](std::size_t i) {
+void simulate_incisions(std::span<const IncisionTask> tasks, Workers& workers, Monitor& monitor, const IncisionTaken& take) {
+  BatchProgress progress(tasks.size(), monitor);
+  std::mutex taking;
+  workers.for_each(tasks.size(), 1, [&](std::size_t i) {
     JobMonitor own(progress, i);
-    results[i] = run_job(model, stretched, jobs[i], own);
+    IncisionJobResult result = run_job(*tasks[i].model, *tasks[i].stretched, tasks[i].job, own);
+    {
+      const std::lock_guard one_at_a_time(taking);
+      take(i, std::move(result));
+    }
     progress.note(i, 1.0);
   });
-  if (!jobs.empty() && !monitor.is_cancelled()) monitor.progress("cutting", 1.0);
+  if (!tasks.empty() && !monitor.is_cancelled()) monitor.progress("cutting", 1.0);
+}
+
+std::vector<IncisionJobResult> simulate_incisions(const TissueModel& model, const TissueState& stretched,
+                                                  std::span<const IncisionJob> jobs, Workers& workers, Monitor& monitor) {
+  std::vector<IncisionTask> tasks;
+  for (const IncisionJob& job : jobs) tasks.push_back({&model, &stretched, job});
+  std::vector<IncisionJobResult> results(jobs.size());
+  simulate_incisions(tasks, workers, monitor, [&results](std::size_t i, IncisionJobResult result) { results[i] = std::move(result); });
   return results;
 }
 

@@ -1,3 +1,5 @@
+#include "storage/json_place.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/storage/evaluation_file.hpp>
@@ -12,69 +14,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::array<const char*, 3> kCoordinates{"x_mm", "y_mm", "z_mm"};
 constexpr const char* kEvaluationHint = "Write the file with `incise evaluate … -o FILE.json`";
 
-/// A file, and where in it one is.
-struct Place {
-  const std::filesystem::path& path;
-  const Json& object;
-  std::string prefix;
-
-  [[noreturn]] void refuse(const std::string& key, const std::string& found, const std::string& expected) const {
-    throw DataError(path, prefix + key, found, expected, kEvaluationHint);
-  }
-  [[nodiscard]] const Json& at(const std::string& key, const char* expected) const {
-    const auto found = object.find(key);
-    if (found == object.end()) refuse(key, "no such key", expected);
-    return *found;
-  }
-  [[nodiscard]] double number(const std::string& key) const {
-    const Json& value = at(key, "a number");
-    if (!value.is_number()) refuse(key, value.dump().substr(0, 40), "a number");
-    return value.get<double>();
-  }
-  [[nodiscard]] std::string text(const std::string& key) const {
-    const Json& value = at(key, "text");
-    if (!value.is_string()) refuse(key, value.dump().substr(0, 40), "text");
-    return value.get<std::string>();
-  }
-  [[nodiscard]] std::optional<double> number_or_null(const std::string& key) const {
-    return at(key, "a number or null").is_null() ? std::nullopt : std::optional(number(key));
-  }
-  [[nodiscard]] std::optional<bool> flag_or_null(const std::string& key) const {
-    const Json& value = at(key, "true, false or null");
-    if (value.is_null()) return std::nullopt;
-    if (!value.is_boolean()) refuse(key, value.dump().substr(0, 40), "true, false or null");
-    return value.get<bool>();
-  }
-  [[nodiscard]] std::vector<double> numbers(const std::string& key) const {
-    const Json& list = at(key, "a list of numbers");
-    if (!list.is_array()) refuse(key, list.dump().substr(0, 40), "a list of numbers");
-    std::vector<double> values;
-    for (const Json& item : list) {
-      if (!item.is_number()) {
-        refuse(fmt::format("{}[{}]", key, values.size()), item.dump().substr(0, 40), "a number");
-      }
-      values.push_back(item.get<double>());
-    }
-    return values;
-  }
-  [[nodiscard]] Place inside(const std::string& key) const {
-    const Json& value = at(key, "an object");
-    if (!value.is_object()) refuse(key, value.is_null() ? "null" : "no object", "an object");
-    return {path, value, prefix + key + "."};
-  }
-};
-
-std::optional<double> zone_border(const Place& zones, const char* name) {
+std::optional<double> zone_border(const JsonPlace& zones, const char* name) {
   return zones.at(name, "a zone or null").is_null() ? std::nullopt
                                                     : std::optional(zones.inside(name).number("at_or_below_mm"));
 }
 
-void read_points(const Place& file, EvaluationFile& result) {
+void read_points(const JsonPlace& file, EvaluationFile& result) {
   const double count = file.number("n_points");
   if (count == 0.0) return;  // no incision was found: a result, without errors
-  const Place points = file.inside("points");
+  const JsonPlace points = file.inside("points");
   std::vector<double>& errors = result.specimen.signed_error_mm;
   errors = points.numbers("signed_error_mm");
   if (static_cast<double>(errors.size()) != count) {
@@ -93,15 +44,31 @@ void read_points(const Place& file, EvaluationFile& result) {
 
 }  // namespace
 
-Json points_json(const Evaluation& evaluation) {
+Json contour_json(const Contour& contour) {
   Json json;
-  const Points& points = evaluation.errors.points.points;
-  const std::array<const char*, 3> names{"x_mm", "y_mm", "z_mm"};
   for (int axis = 0; axis < 3; ++axis) {
     Json list = Json::array();
-    for (const Vec3& p : points) list.push_back(p[axis]);
-    json[names[static_cast<std::size_t>(axis)]] = std::move(list);
+    for (const Vec3& p : contour.points) list.push_back(p[axis]);
+    json[kCoordinates[static_cast<std::size_t>(axis)]] = std::move(list);
   }
+  return json;
+}
+
+Contour contour_of(const JsonPlace& place) {
+  const std::vector<double> x = place.numbers("x_mm");
+  const std::vector<double> y = place.numbers("y_mm");
+  const std::vector<double> z = place.numbers("z_mm");
+  if (x.size() < 3) place.refuse("x_mm", fmt::format("{} numbers", x.size()), "at least 3");
+  if (y.size() != x.size()) place.refuse("y_mm", fmt::format("{} numbers", y.size()), fmt::format("{} as x_mm", x.size()));
+  if (z.size() != x.size()) place.refuse("z_mm", fmt::format("{} numbers", z.size()), fmt::format("{} as x_mm", x.size()));
+  Contour contour;
+  for (std::size_t i = 0; i < x.size(); ++i) contour.points.emplace_back(x[i], y[i], z[i]);
+  return contour;
+}
+
+Json points_json(const Evaluation& evaluation) {
+  const Points& points = evaluation.errors.points.points;
+  Json json = contour_json(evaluation.errors.points);
   Json arclengths = Json::array();
   double arclength = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -117,7 +84,7 @@ Json points_json(const Evaluation& evaluation) {
 EvaluationFile read_evaluation_file(const std::filesystem::path& path) {
   const Json json = read_json(path);
   if (!json.is_object()) throw DataError(path, "", "no object", "the result of an evaluation", kEvaluationHint);
-  const Place file{path, json, ""};
+  const JsonPlace file{path, json, "", kEvaluationHint};
   EvaluationFile result;
   result.specimen.name = path.stem().string();
   static_cast<void>(file.text("outcome"));
@@ -132,11 +99,32 @@ EvaluationFile read_evaluation_file(const std::filesystem::path& path) {
   result.hu_score = file.number_or_null("hu_score");
   result.hu_score_ideal = file.number_or_null("hu_score_ideal");
   result.centroid_shift_mm = file.number_or_null("centroid_shift_mm");
-  const Place zones = file.inside("zones");
+  const JsonPlace zones = file.inside("zones");
   result.positive_at_mm = zone_border(zones, "positive_margin");
   result.too_close_at_mm = zone_border(zones, "too_close");
   read_points(file, result);
   return result;
+}
+
+PhotographedCut read_photographed_cut(const std::filesystem::path& path) {
+  const EvaluationFile evaluation = read_evaluation_file(path);
+  const Json json = read_json(path);
+  const JsonPlace file{path, json, "", kEvaluationHint};
+  if (!file.flag_or_null("closed_loop").value_or(false)) {
+    file.refuse("closed_loop", file.at("closed_loop", "true").dump(), "true: an incision is compared all round");
+  }
+  if (evaluation.contour != to_string(ContourKind::InnerEdge)) {
+    file.refuse("contour", evaluation.contour, "inner_edge, as a photograph shows it");
+  }
+  PhotographedCut cut;
+  cut.name = evaluation.specimen.name;
+  cut.incision = contour_of(file.inside("points"));
+  cut.tumor_edge = contour_of(file.inside("tumor_edge"));
+  const std::vector<double> approach = file.numbers("approach");
+  if (approach.size() != 3) file.refuse("approach", fmt::format("{} numbers", approach.size()), "3");
+  cut.approach = Vec3(approach.data());
+  if (!(cut.approach.norm() > 0.0)) file.refuse("approach", "a vector of length 0", "a direction");
+  return cut;
 }
 
 }  // namespace incise

@@ -35,7 +35,7 @@ bool is_met(const VerificationCheck& check) {
   return std::abs(check.found - check.expected) <= check.tolerance;
 }
 
-std::vector<std::string> check_names() {
+std::vector<std::string> physics_check_names() {
   std::vector<std::string> names;
   for (const CheckEntry& entry : check_table()) names.push_back(entry.name);
   return names;

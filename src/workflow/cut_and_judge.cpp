@@ -65,15 +65,20 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
   return cut;
 }
 
-SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched, const ToolPath& path,
-                           const ToolPath& intended, Workers& workers, Monitor& monitor, const TriMesh& tumor_surface,
-                           std::optional<IncisionProgress> from, const ProgressKeeper& keep) {
+IncisionSettings incision_settings(const Case& settings) {
   IncisionSettings incision;
   incision.cut = settings.cut;
   incision.cut.power_w = settings.plan.power_w;
   incision.tool = settings.tool;
   incision.approach = settings.plan.approach.normalized();
   incision.frames = settings.frames;
+  return incision;
+}
+
+SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                           const ToolPath& intended, Workers& workers, Monitor& monitor, const TriMesh& tumor_surface,
+                           std::optional<IncisionProgress> from, const ProgressKeeper& keep) {
+  IncisionSettings incision = incision_settings(settings);
   incision.tumor_surface = tumor_surface;
   ToolPath with_edge = path;
   with_edge.tumor_edge = intended.tumor_edge;

@@ -98,6 +98,28 @@ TEST_F(IncisionBatch, TellsTheProgressOfAllJobsFromTheCallersThreadOnly) {
   EXPECT_EQ(monitor.last(), 1.0);
 }
 
+TEST_F(IncisionBatch, OverSeveralTissuesHandsOverEachResultWhenItEnds) {
+  // The same job in the block and in one twice as stiff: the second is another cut, and each is what a single run gives.
+  Material stiff;
+  stiff.youngs_modulus_kpa *= 2.0;
+  const TissueModel other = make_tissue_model(model_.mesh, stiff, model_.constraints);
+  const std::array<const TissueModel*, 2> models{&model_, &other};
+  const std::array<TissueState, 2> stretched{rest_state(model_), rest_state(other)};
+  std::vector<IncisionTask> tasks;
+  for (std::size_t i = 0; i < 2; ++i) tasks.push_back({models[i], &stretched[i], jobs()[2]});
+  std::vector<IncisionResult> taken(2);
+  Workers workers(2);
+  simulate_incisions(tasks, workers, silent_,
+                     [&taken](std::size_t i, IncisionJobResult result) { taken[i] = std::move(result.incision); });
+  Workers alone(1);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const IncisionResult single =
+        simulate_incision(*models[i], stretched[i], tasks[i].job.path, tasks[i].job.settings, alone, silent_);
+    testing::expect_same(single, taken[i], fmt::format("tissue {}", i));
+  }
+  EXPECT_NE(taken[0].final_state.tissue.positions, taken[1].final_state.tissue.positions);
+}
+
 TEST_F(IncisionBatch, OfNoJobsIsEmpty) { EXPECT_TRUE(run({}, 2, silent_).empty()); }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <incise/procedure/incision.hpp>
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,13 @@ namespace incise {
 struct IncisionJob {
   IncisionSettings settings;
   ToolPath path;
+};
+
+/// One of several incisions, each into its own stretched tissue.
+struct IncisionTask {
+  const TissueModel* model = nullptr;       ///< outlives the call
+  const TissueState* stretched = nullptr;   ///< likewise
+  IncisionJob job;
 };
 
 /// What came of a job.
@@ -27,5 +35,12 @@ struct IncisionJobResult {
 /// @returns one result per job, in their order.
 [[nodiscard]] std::vector<IncisionJobResult> simulate_incisions(const TissueModel& model, const TissueState& stretched,
                                                                 std::span<const IncisionJob> jobs, Workers& workers, Monitor& monitor);
+
+/// Is given what came of a task as soon as that has ended, cancelled ones too: by any thread, one call at a time. What it throws ends
+/// the whole, as an exception of Workers.
+using IncisionTaken = std::function<void(std::size_t task, IncisionJobResult result)>;
+
+/// The same over several tissues, without keeping the results: each is handed to `take` when it ends.
+void simulate_incisions(std::span<const IncisionTask> tasks, Workers& workers, Monitor& monitor, const IncisionTaken& take);
 
 }  // namespace incise

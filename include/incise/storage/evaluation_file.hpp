@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/calibration/calibration.hpp>
 #include <incise/core/outcome.hpp>
 #include <incise/evaluation/comparison.hpp>
 #include <incise/evaluation/evaluation.hpp>
@@ -17,6 +18,10 @@ namespace incise {
 /// signed_error_mm, and of a ring clock_h. This is the key `points` of the file that `incise evaluate` writes.
 [[nodiscard]] nlohmann::ordered_json points_json(const Evaluation& evaluation);
 
+/// The points of a contour as equally long lists: x_mm, y_mm, z_mm. The file of `incise evaluate` holds the tumour edge of a ring
+/// so, under `tumor_edge`, and under `approach` the direction in which all was seen.
+[[nodiscard]] nlohmann::ordered_json contour_json(const Contour& contour);
+
 /// What `incise compare` takes from one file of `incise evaluate`.
 struct EvaluationFile {
   MeasuredSpecimen specimen;  ///< named after the file, without its ending; no errors where no incision was found
@@ -31,5 +36,9 @@ struct EvaluationFile {
 
 /// @throws DataError naming the file and the key that is missing, of another kind, not finite, or of another length.
 [[nodiscard]] EvaluationFile read_evaluation_file(const std::filesystem::path& path);
+
+/// What a calibration takes from one file of `incise evaluate`: the contours of a closed ring, named after the file.
+/// @throws DataError as above; also for an open ring, a mid-line, and a file without `tumor_edge` and `approach`.
+[[nodiscard]] PhotographedCut read_photographed_cut(const std::filesystem::path& path);
 
 }  // namespace incise

@@ -49,6 +49,8 @@ class FolderStore : public Store {
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
   [[nodiscard]] std::filesystem::path folder(Product product) const;
   [[nodiscard]] bool is_current(Product product);
+  /// Hash of the settings, inputs and version that a product of this case depends on.
+  [[nodiscard]] const std::string& product_key(Product product) { return key(product); }
 
   CtVolume read_ct(Monitor& monitor) override;
   std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) override;

@@ -55,7 +55,7 @@ struct VerificationSettings {
 };
 
 /// Names of all checks, in the order in which they run.
-[[nodiscard]] std::vector<std::string> check_names();
+[[nodiscard]] std::vector<std::string> physics_check_names();
 
 /// Runs the checks that settings.only selects, one after the other, each on all workers. No files, no data: every body
 /// is made here. A solver that gives up is a failed check, not an exception. Progress: stage "verifying", and a Notice

@@ -73,6 +73,8 @@ struct Study {
 /// @throws CaseError (field tumor.surface) for a vertex farther than surface_tolerance_mm from the tissue.
 [[nodiscard]] TriMesh tumor_in_stretched(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                          TriMesh surface, const std::optional<Contour>& drawn_edge);
+/// How a case's cut is simulated; the tumour's surface is not in it.
+[[nodiscard]] IncisionSettings incision_settings(const Case& settings);
 /// @param tumor_surface  closed, stretched tissue before the cut, mm; without triangles: not known.
 /// @param from  an interrupted cut along this path; nothing: from the beginning.  @param keep  see continue_incision.
 [[nodiscard]] SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,

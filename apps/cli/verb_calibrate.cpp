@@ -1,0 +1,160 @@
+#include "calibration_output.hpp"
+#include "option_checks.hpp"
+#include "options.hpp"
+#include "study_run.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/storage/calibration_file.hpp>
+#include <incise/storage/evaluation_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <set>
+
+namespace incise::cli {
+namespace {
+
+struct CalibrateArguments {
+  std::vector<std::filesystem::path> cases;
+  std::vector<std::filesystem::path> observed;
+  std::vector<double> forces_n;
+  std::string method = "fit";
+  CalibrationRequest request;
+};
+
+/// One entry for each case, or none where that is allowed.
+void require_one_each(const char* option, std::size_t found, std::size_t cases, const char* what) {
+  if (found == cases) return;
+  throw CaseError("command line", option, fmt::format("{} for {} {}", found, cases, cases == 1 ? "case" : "cases"),
+                  fmt::format("one {} for each case, in the same order", what));
+}
+
+/// Names tell specimens apart in the table: files of one name get their number.
+void make_names_differ(std::vector<CalibrationSubject>& subjects) {
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < subjects.size(); ++i) {
+    std::string& name = subjects[i].photographed.name;
+    if (!seen.insert(name).second) name = fmt::format("{} ({})", name, i + 1);
+  }
+}
+
+/// Everything that can be looked at before anything is written or computed.
+std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vector<CalibrationSubject>& subjects) {
+  require_one_each("--observed", arguments.observed.size(), arguments.cases.size(), "evaluation");
+  if (!arguments.forces_n.empty()) {
+    require_one_each("--stretch-force-n", arguments.forces_n.size(), arguments.cases.size(), "force");
+  }
+  std::vector<CaseFile> files;
+  for (std::size_t i = 0; i < arguments.cases.size(); ++i) {
+    files.push_back(case_with_inputs(arguments.cases[i]));
+    require_plan_inputs(files.back());
+    CalibrationSubject subject;
+    subject.photographed = read_photographed_cut(arguments.observed[i]);
+    if (!arguments.forces_n.empty()) subject.photographed.stretch_force_n = arguments.forces_n[i];
+    subject.photograph_file = arguments.observed[i].string();
+    subject.case_file = files.back().file.string();
+    subject.settings = files.back().settings;
+    subjects.push_back(std::move(subject));
+  }
+  make_names_differ(subjects);
+  return files;
+}
+
+/// A value that is given twice would be one row of the grid twice.
+void require_different_values(const char* option, std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto twice = std::adjacent_find(values.begin(), values.end());
+  if (twice != values.end())
+    throw CaseError("command line", option, fmt::format("{} twice", *twice), "every value once");
+}
+
+bool holds_files(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored)) {
+    if (entry.is_regular_file(ignored)) return true;
+  }
+  return false;
+}
+
+int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  Console console(options.level());
+  arguments.request.method = arguments.method == "paper" ? CalibrationMethod::Paper : CalibrationMethod::Fit;
+  require_valid(validate(arguments.request));
+  require_different_values("--speeds-mm-s", arguments.request.speeds_mm_s);
+  require_different_values("--dullnesses", arguments.request.dullnesses);
+  require_different_values("--drag-lengths-mm", arguments.request.drag_lengths_mm);
+  require_different_values("--second-drag-lengths-mm", arguments.request.second_drag_lengths_mm);
+  const std::filesystem::path output = options.required_output("calibration");
+  std::vector<CalibrationSubject> subjects;
+  const std::vector<CaseFile> files = read_inputs(arguments, subjects);
+  OlderOutput older(output / "calibration.json", console);
+  std::vector<std::unique_ptr<FolderStore>> stores;
+  std::vector<std::string> keys;
+  Workers workers(options.threads);
+  try {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const std::filesystem::path folder = output / "specimens" / std::to_string(i + 1);
+      stores.push_back(std::make_unique<FolderStore>(files[i], folder, options.context()));
+      keys.push_back(stores.back()->product_key(Product::AsPlanned));
+      subjects[i].store = stores.back().get();
+    }
+    RunFolder runs(output / "runs", keys);
+    const Calibration calibration = calibrate(subjects, arguments.request, runs, workers, console);
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    std::vector<std::filesystem::path> inputs = arguments.observed;
+    for (const CaseFile& file : files) inputs.push_back(file.file);
+    write_calibration(output, calibration, files, inputs, options, wall.count());
+    older.replaced();
+    print_calibration(options, calibration, output, wall.count());
+    return calibration.score_percent.value_or(0.0) > 0.0 ? kDone : kNotAcceptable;
+  } catch (const Cancelled& error) {
+    if (holds_files(output))
+      throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", output.string()));
+    std::filesystem::remove_all(output);
+    throw;
+  } catch (...) {
+    std::error_code ignored;
+    if (!holds_files(output)) std::filesystem::remove_all(output, ignored);
+    throw;
+  }
+}
+
+}  // namespace
+
+void add_calibrate(Application& application) {
+  auto arguments = std::make_shared<CalibrateArguments>();
+  CLI::App* verb = application.add_verb(
+      "calibrate",
+      "Find the simulated speed and dullness with which cuts come out as the photographed ones. fit: the signed error "
+      "round the "
+      "ring, few simulations, a posterior, and what the data can tell apart. paper: 25 pairs, scored as in the paper. "
+      "Interrupted, it keeps every finished simulation, and the same command goes on",
+      "incise calibrate s1 s2 --observed s1/cut.json s2/cut.json -o calibration",
+      [arguments](const CommonOptions& options) { return calibrate_cases(*arguments, options); });
+  verb->add_option("case", arguments->cases,
+                   "Case files, or folders with case.yaml: how each specimen was held, and its path")
+      ->required();
+  verb->add_option("--observed", arguments->observed,
+                   "Files of `incise evaluate PHOTO -o`, one for each case in the same order; up in the picture is "
+                   "+y of the case (seen along -z)")
+      ->required();
+  verb->add_option("--method", arguments->method, "fit or paper")->check(CLI::IsMember({"fit", "paper"}));
+  verb->add_option("--stretch-force-n", arguments->forces_n,
+                   "Measured pull of each specimen at its stretch: makes its stiffness known to 5 %")
+      ->check(above_zero("--stretch-force-n"));
+  verb->add_option("--speeds-mm-s", arguments->request.speeds_mm_s, "Of the paper's grid")
+      ->check(above_zero("--speeds-mm-s"));
+  verb->add_option("--dullnesses", arguments->request.dullnesses, "Of the paper's grid")
+      ->check(above_zero("--dullnesses"));
+  verb->add_option("--drag-lengths-mm", arguments->request.drag_lengths_mm, "Speed x dwell of the fit's simulations")
+      ->check(above_zero("--drag-lengths-mm"));
+  verb->add_option("--second-drag-lengths-mm", arguments->request.second_drag_lengths_mm,
+                   "Those of them that are also simulated with the second stiffness")
+      ->check(above_zero("--second-drag-lengths-mm"));
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <incise/calibration/calibration_run.hpp>
+#include <incise/calibration/drag_fit.hpp>
+#include <incise/calibration/identifiability.hpp>
+#include <incise/calibration/picture_match.hpp>
+#include <incise/calibration/score_table.hpp>
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+enum class CalibrationMethod {
+  Paper,  ///< a grid of speeds and dullness values, scored (paper II-C.4, III-A.2)
+  Fit,    ///< the signed error round the ring, few simulations, a posterior
+};
+[[nodiscard]] std::string_view to_string(CalibrationMethod method);  ///< paper, fit
+
+/// A cut that was carried out and photographed, as an evaluation has it.
+struct PhotographedCut {
+  std::string name;
+  Contour incision;                       ///< inner edge, closed, mm
+  Contour tumor_edge;                     ///< closed, mm, same frame
+  Vec3 approach = -Vec3::UnitZ();         ///< in which the camera looked, in that frame
+  std::optional<double> stretch_force_n;  ///< measured pull of the specimen at its stretch, > 0
+};
+
+/// What a calibration holds of one specimen.
+struct CalibratedSpecimen {
+  std::string name;
+  PhotographedErrors photographed;
+  double signed_mean_mm = 0.0;            ///< of the photographed inner edge
+  double youngs_modulus_kpa = 70.0;       ///< reference: the case's, or what the measured force makes of it
+  double simulated_force_n = 0.0;         ///< pull of the simulated specimen at the case's modulus
+  std::optional<double> stretch_force_n;  ///< measured
+  PictureMatch picture;
+  std::vector<CalibrationRun> runs;
+};
+
+struct Calibration {
+  CalibrationMethod method = CalibrationMethod::Fit;
+  std::vector<CalibratedSpecimen> specimens;
+  ScoreTable table;            ///< of the n-th runs of all specimens
+  std::optional<DragFit> fit;  ///< method fit
+  std::optional<Identifiability> identifiability;
+  std::optional<RunSetting> chosen;     ///< absent: every setting failed
+  std::optional<double> score_percent;  ///< of the chosen setting: the paper's, of a fit ScoreRow::inner_percent
+  double reference_step_s = 0.02;
+  bool is_virtual = false;      ///< one specimen at least is
+  std::size_t simulations = 0;  ///< runs in all, those reused too
+};
+
+}  // namespace incise

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <incise/core/outcome.hpp>
+#include <incise/evaluation/statistics.hpp>
+#include <incise/geometry/contour.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace incise {
+
+/// What one simulated cut of a calibration is made with, beside its case.
+struct RunSetting {
+  double speed_mm_s = 13.0;        ///< of the simulated tool, > 0
+  double dullness = 9.0;           ///< contact needed before a tet goes, counted in reference steps, > 0
+  double stiffness_of_case = 1.0;  ///< Young's modulus over that of the case, > 0
+  bool operator==(const RunSetting&) const = default;
+};
+
+/// What is kept of one simulated cut.
+struct CalibrationRun {
+  RunSetting setting;
+  double reference_step_s = 0.02;  ///< the time that one unit of dullness stands for
+  Outcome outcome = Outcome::NotConverged;
+  std::string problem;  ///< why it could not be carried out; empty: it was
+  bool closed_loop = false;
+  bool paper_success = false;                 ///< see Evaluation::paper_success
+  std::optional<Summary> signed_error_mm;     ///< mid-line against the lateral margin
+  std::optional<Summary> paper_abs_error_mm;  ///< |distance of the mid-line − (margin − radius)|, as the paper scores
+  std::optional<Summary> inner_signed_error_mm;  ///< inner edge against margin less radius, tool out
+  std::optional<Summary> inner_abs_error_mm;     ///< its absolute value
+  std::optional<Contour> inner_edge;             ///< tool out, tissue still stretched, mm
+  Contour final_tumor_edge;                      ///< likewise
+  std::size_t tets = 0;
+  double wall_s = 0.0;
+
+  /// How far tissue that the tool holds is drawn along before it parts, mm: speed · dwell.
+  [[nodiscard]] double drag_length_mm() const { return setting.speed_mm_s * setting.dullness * reference_step_s; }
+  /// In the paper's sense: a closed ring with a negative margin, no point off by more than margin − radius.
+  [[nodiscard]] bool is_failure() const { return outcome != Outcome::Success || !paper_success; }
+};
+
+}  // namespace incise

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <incise/calibration/drag_response.hpp>
+#include <incise/geometry/types.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// One photographed cut and what the simulation of that specimen says.
+struct FitSpecimen {
+  std::string name;
+  std::vector<double> signed_error_mm;  ///< photographed, by sector
+  DragResponse response;                ///< simulated, with as many sectors
+  double own_stiffness_sd = 0.0;        ///< of ln(Young's modulus), by which this specimen's reference may be off, >= 0
+};
+
+/// What is believed before the photographs are looked at. The drag length is uniform where all specimens were
+/// simulated.
+struct DragFitSettings {
+  double stiffness_sd = 0.5;  ///< of ln(stiffness factor) common to all specimens, > 0; its mean is 0
+  double bias_sd_mm = 0.5;    ///< of the common bias, > 0; its mean is 0
+  double reading_sd_mm =
+      0.1;                ///< of a sector's error for reading the photograph and the mesh's grain, > 0; independent
+  double credible = 0.9;  ///< mass of the credible intervals, (0, 1)
+  int samples = 64;       ///< of the posterior, >= 1
+};
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const DragFitSettings& settings);
+
+/// What the data say about one parameter.
+struct ParameterEstimate {
+  double mean = 0.0;
+  double sd = 0.0;
+  double low = 0.0;  ///< ends of the equal-tailed credible interval
+  double high = 0.0;
+  double prior_sd = 0.0;
+  std::vector<double> grid;     ///< places at which the marginal density is given
+  std::vector<double> density;  ///< integrates to 1
+};
+
+/// What simulation and photograph differ by, estimated from the data.
+struct ResidualEstimate {
+  double sd_mm = 0.0;            ///< along the contour
+  double correlation_deg = 0.0;  ///< angle over which the correlation falls to 1/e
+  double reading_mm = 0.0;       ///< from sector to sector, independent: reading of the photograph, grain of the mesh
+  double specimen_spread_mm = 0.0;  ///< sd of the bias from specimen to specimen about the common one
+  double placement_mm = 0.0;        ///< sd, along each axis of the picture, of the shift of a cut as a whole
+  double n_effective = 0.0;         ///< independent places that one contour is worth, for its mean
+};
+
+struct PosteriorSample {
+  double weight = 0.0;  ///< all together 1
+  double drag_length_mm = 0.0;
+  double stiffness_factor = 1.0;
+  double bias_mm = 0.0;  ///< to be added to simulated signed errors
+};
+
+struct SpecimenFit {
+  std::string name;
+  std::vector<double> observed_mm;
+  std::vector<double> fitted_mm;       ///< at the posterior means
+  double rms_mm = 0.0;                 ///< of their difference
+  std::vector<double> simulated_mm;    ///< cut anew at those values, without the bias; empty: not done, or no ring
+  std::optional<double> check_rms_mm;  ///< between that and what the straight lines say
+};
+
+/// The posterior of (drag length, ln stiffness factor, bias).
+struct DragFit {
+  ParameterEstimate drag_length_mm;
+  ParameterEstimate ln_stiffness;
+  ParameterEstimate bias_mm;
+  Mat3 correlation = Mat3::Identity();  ///< in that order
+  ResidualEstimate residual;
+  std::vector<PosteriorSample> samples;
+  std::vector<SpecimenFit> specimens;
+  bool knows_stiffness = false;  ///< a second stiffness was cut for every specimen
+};
+
+/// Fits the simulated signed errors to the photographed ones, sector by sector:
+///   y_s(θ) = m_s(θ; L, κ) + b + δ_s + u_s cos θ + v_s sin θ + r_s(θ),
+/// δ_s from specimen to specimen, (u_s, v_s) by where arm and projection placed the cut, r_s correlated along the ring.
+/// The sizes of δ, (u, v) and r and the correlation of r are integrated over, not chosen. Everything is on grids: no
+/// random number is drawn. Of the simulation's waves of more than four to the round nothing is believed: they are its
+/// mesh's grain, and tell how much of that is in the slower ones. See docs/models/calibration.md.
+/// @throws InvalidArgument without specimens, for settings or profiles that do not fit, or where the ranges of drag
+/// length of the specimens do not overlap.
+[[nodiscard]] DragFit fit_drag(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings = {});
+
+}  // namespace incise

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <incise/calibration/drag_fit.hpp>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// How much the data say of a parameter.
+enum class Told {
+  Apart,   ///< its posterior sd is at most half that of the prior
+  Partly,  ///< at most nine tenths
+  Not,     ///< more: what one has is the prior
+};
+[[nodiscard]] std::string_view to_string(Told told);  ///< apart, partly, not
+
+struct ParameterVerdict {
+  std::string name;  ///< drag_length, stiffness, bias
+  Told told = Told::Not;
+  double share_of_prior_sd = 1.0;
+  std::string tied_to;  ///< the other parameter with which it is correlated by at least 0.7 either way; empty: none
+  double correlation = 0.0;  ///< with that one; 0: with none
+  bool is_at_limit = false;  ///< the interval ends where the simulations end: the truth may lie beyond
+};
+
+/// Which of drag length, stiffness and bias the photographs can tell apart, and the same in plain sentences.
+struct Identifiability {
+  std::array<ParameterVerdict, 3> parameters;
+  std::vector<std::string> sentences;
+};
+
+[[nodiscard]] Identifiability identifiability(const DragFit& fit);
+
+}  // namespace incise

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <incise/geometry/contour.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace incise {
+
+/// How a ring's errors become a function of place. All contours are seen along the approach: heights do not count.
+struct ProfileSettings {
+  double target_mm = 4.5;                 ///< intended distance of the measured contour, >= 0
+  Vec3 approach = -Vec3::UnitZ();         ///< direction in which the camera looks; non-zero
+  Vec3 start_direction = -Vec3::UnitY();  ///< middle of the first sector; its part across the approach counts
+  double turn_deg = 0.0;                  ///< the first sector lies this much farther, counter-clockwise
+  int sectors = 36;                       ///< of equal angle about the tumour edge's middle; 4 to 360
+};
+
+/// Signed error, mm, of a ring by direction from the middle of the tumour edge (its curve's centroid): means over
+/// sectors of equal angle, the first about the start direction, then counter-clockwise against the approach. So two
+/// rings round the same tumour, simulated and photographed, can be compared place by place.
+/// @param incision    closed, mm.   @param tumor_edge  closed, mm, same frame.
+/// @returns one mean for each sector; nothing where a sector is empty: the ring does not go round the tumour's middle.
+/// @throws InvalidArgument for settings out of range, and as contour_errors.
+/// @note O(points · edge points); points 0.1 mm apart.
+[[nodiscard]] std::optional<std::vector<double>> error_profile(const Contour& incision, const Contour& tumor_edge,
+                                                               const ProfileSettings& settings);
+
+}  // namespace incise

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <incise/calibration/calibration.hpp>
+#include <incise/io/table_io.hpp>
+#include <incise/workflow/calibrate.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// Finished simulations of a calibration as files, one each: `FOLDER/<first 16 digits of the key>.json`. The key is the
+/// hash of everything that determines the run: the specimen's case with all its inputs, the version, and the setting.
+/// So a run is found again whatever else the calibration asks for, and one made from other inputs is not.
+class RunFolder : public RunStore {
+ public:
+  /// @param folder  is made when the first run is saved.
+  /// @param specimen_keys  one for each specimen: the hash of its case (FolderStore::product_key).
+  RunFolder(std::filesystem::path folder, std::vector<std::string> specimen_keys);
+
+  /// A file that is damaged is told and counts as absent: the run is made anew and takes its place.
+  std::optional<CalibrationRun> load(std::size_t specimen, const RunSetting& setting, Monitor& monitor) override;
+  void save(std::size_t specimen, const CalibrationRun& run) override;
+
+  /// Where a run is or would be.
+  [[nodiscard]] std::filesystem::path file_of(std::size_t specimen, const RunSetting& setting) const;
+  /// Runs saved by this object.
+  [[nodiscard]] std::size_t saved() const { return saved_; }
+
+ private:
+  [[nodiscard]] std::string key_of(std::size_t specimen, const RunSetting& setting) const;
+  std::filesystem::path folder_;
+  std::vector<std::string> specimen_keys_;
+  std::size_t saved_ = 0;
+};
+
+/// `calibration.json` (incise.calibration/1): method, chosen, score_percent, rows, baseline_mm, specimens, and of a fit
+/// its posterior, residual and what the data tell apart.
+[[nodiscard]] nlohmann::ordered_json to_json(const Calibration& calibration);
+
+/// Table I: speed, dullness, drag length, stiffness, each specimen's absolute error, the pooled columns, per cent.
+/// Header with units; a failure is an empty field and `failure` in the column outcome.
+[[nodiscard]] TextTable calibration_table(const Calibration& calibration);
+/// The same rounded as the paper prints it, for LaTeX.
+[[nodiscard]] TextTable calibration_table_rounded(const Calibration& calibration);
+
+/// What a calibration found, for those who plan by it.
+struct CalibrationRecord {
+  CalibrationMethod method = CalibrationMethod::Fit;
+  bool is_virtual = false;
+  std::optional<RunSetting> chosen;  ///< absent: every setting failed
+  double reference_step_s = 0.02;
+  double baseline_mm = 0.0;
+  std::vector<std::string> specimens;
+  std::vector<PosteriorSample> samples;  ///< of a fit; weights add up to 1
+  ResidualEstimate residual;             ///< of a fit
+};
+/// @throws DataError naming the file and the key that is missing, of another kind, or out of range.
+[[nodiscard]] CalibrationRecord read_calibration(const std::filesystem::path& path);
+
+}  // namespace incise

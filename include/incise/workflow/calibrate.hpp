@@ -1,0 +1,60 @@
+#pragma once
+
+#include <incise/calibration/calibration.hpp>
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/workflow/case.hpp>
+#include <incise/workflow/store.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// Where finished simulations of a calibration are kept, so that an interrupted one goes on and none is made twice.
+class RunStore {
+ public:
+  virtual ~RunStore() = default;
+  /// The run of that specimen (its place in the list) with that setting, if there is one made from today's inputs.
+  virtual std::optional<CalibrationRun> load(std::size_t specimen, const RunSetting& setting, Monitor& monitor) = 0;
+  virtual void save(std::size_t specimen, const CalibrationRun& run) = 0;
+};
+
+/// A specimen that was cut and photographed, and the case that says how it was held and along which path.
+struct CalibrationSubject {
+  PhotographedCut photographed;
+  std::string photograph_file;  ///< named where the photograph cannot be used
+  std::string case_file;        ///< named where the case cannot be used
+  Case settings;                ///< plan.kind: ring
+  Store* store = nullptr;       ///< of the case; not null
+};
+
+/// What is simulated. Defaults: the paper's grid; for the fit, seven cuts of each specimen, one or two near the place that
+/// they point to, and one that checks.
+struct CalibrationRequest {
+  CalibrationMethod method = CalibrationMethod::Fit;
+  std::vector<double> speeds_mm_s{1.0, 5.0, 9.0, 13.0, 17.0};  ///< of the grid, each > 0
+  std::vector<double> dullnesses{1.0, 5.0, 9.0, 13.0, 17.0};   ///< of the grid, each > 0
+  double fit_speed_mm_s = 13.0;                                ///< of all cuts of a fit, > 0
+  std::vector<double> drag_lengths_mm{0.26, 1.04, 1.82, 2.6,
+                                      3.38};              ///< of the fit, at the reference stiffness; at least 2
+  std::vector<double> second_drag_lengths_mm{1.04, 2.6};  ///< some of those, cut again with the second stiffness
+  double second_stiffness = 2.0;                          ///< over the reference, > 0 and not 1
+  double force_sd = 0.05;                                 ///< of a measured force, relative, > 0
+  double stiffness_sd_with_force = 0.1;  ///< of ln(stiffness factor) where every specimen's force was measured, > 0
+  DragFitSettings fit;                   ///< stiffness_sd: without forces
+};
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const CalibrationRequest& request);
+
+/// Finds the settings with which simulated cuts come out as the photographed ones. Simulations run side by side, one
+/// thread each; those that the store has are not made again. A simulation that fails is a row.
+/// @throws CaseError for a case that cannot be held, stretched or planned (the file is named); DataError for a
+/// photograph
+///         that is mirrored, turned far, or does not show a ring round the tumour; InvalidArgument for a request that
+///         is not valid; Cancelled when the monitor asks to stop: finished runs are in the store.
+[[nodiscard]] Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request,
+                                    RunStore& runs, Workers& workers, Monitor& monitor);
+
+}  // namespace incise

@@ -1,0 +1,91 @@
+#include <incise/calibration/score_table.hpp>
+#include <incise/core/error.hpp>
+#include <incise/evaluation/registration_score.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// Sums what the specimens that came out hold.
+struct RowSums {
+  double mean = 0.0, sd = 0.0, greatest = 0.0, mean_signed = 0.0, inner = 0.0;
+  double inner_abs = 0.0, inner_greatest = 0.0;
+  double count = 0.0, inner_count = 0.0;
+
+  void add(const CalibrationRun& run) {
+    if (run.is_failure() || !run.paper_abs_error_mm || !run.signed_error_mm) return;
+    count += 1.0;
+    mean += run.paper_abs_error_mm->mean;
+    sd += run.paper_abs_error_mm->sd;
+    greatest = std::max(greatest, run.paper_abs_error_mm->max);
+    mean_signed += run.signed_error_mm->mean;
+    if (!run.inner_signed_error_mm || !run.inner_abs_error_mm) return;
+    inner_count += 1.0;
+    inner += run.inner_signed_error_mm->mean;
+    inner_abs += run.inner_abs_error_mm->mean;
+    inner_greatest = std::max(inner_greatest, run.inner_abs_error_mm->max);
+  }
+};
+
+ScoreRow row_of(const std::vector<std::vector<CalibrationRun>>& runs, std::size_t number, double baseline) {
+  ScoreRow row;
+  row.setting = runs.front()[number].setting;
+  row.run = number;
+  RowSums sums;
+  for (std::size_t s = 0; s < runs.size(); ++s) {
+    const CalibrationRun& run = runs[s][number];
+    row.is_failure = row.is_failure || run.is_failure();
+    sums.add(run);
+  }
+  if (sums.count > 0.0) {
+    row.mean_abs_mm = sums.mean / sums.count;
+    row.sd_abs_mm = sums.sd / sums.count;
+    row.max_abs_mm = sums.greatest;
+    row.mean_signed_mm = sums.mean_signed / sums.count;
+  }
+  if (sums.inner_count > 0.0) row.mean_inner_signed_mm = sums.inner / sums.inner_count;
+  std::optional<double> score;
+  if (!row.is_failure) score = registration_score_mm(*row.mean_abs_mm, *row.max_abs_mm);
+  row.percent = registration_percent(score, baseline);
+  std::optional<double> inner_score;
+  if (!row.is_failure && sums.inner_count == static_cast<double>(runs.size())) {
+    inner_score = registration_score_mm(sums.inner_abs / sums.inner_count, sums.inner_greatest);
+  }
+  row.inner_percent = registration_percent(inner_score, baseline);
+  return row;
+}
+
+}  // namespace
+
+double baseline_mm(std::span<const PhotographedErrors> photographs) {
+  INCISE_REQUIRE(!photographs.empty(), "expected at least one photograph");
+  double mean = 0.0;
+  double greatest = 0.0;
+  for (const PhotographedErrors& errors : photographs) {
+    mean += errors.mean_mm / static_cast<double>(photographs.size());
+    greatest = std::max(greatest, errors.max_mm);
+  }
+  return registration_score_mm(mean, greatest);
+}
+
+ScoreTable score_table(const std::vector<std::vector<CalibrationRun>>& runs, double baseline) {
+  INCISE_REQUIRE(!runs.empty() && !runs.front().empty(), "expected at least one specimen and one run");
+  for (const auto& list : runs) {
+    INCISE_REQUIRE(list.size() == runs.front().size(),
+                   fmt::format("expected {} runs for each specimen, found {}", runs.front().size(), list.size()));
+  }
+  ScoreTable table;
+  table.baseline_mm = baseline;
+  for (std::size_t i = 0; i < runs.front().size(); ++i) table.rows.push_back(row_of(runs, i, baseline));
+  const auto off = [](const ScoreRow& row) { return row.is_failure ? HUGE_VAL : std::abs(row.percent - 100.0); };
+  const auto best = std::min_element(table.rows.begin(), table.rows.end(),
+                                     [&off](const ScoreRow& a, const ScoreRow& b) { return off(a) < off(b); });
+  if (!best->is_failure) table.chosen = static_cast<std::size_t>(best - table.rows.begin());
+  return table;
+}
+
+}  // namespace incise

@@ -1,0 +1,204 @@
+#include "storage/json_place.hpp"
+#include "storage/json_values.hpp"
+
+#include <incise/io/json_text.hpp>
+#include <incise/storage/calibration_file.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kCalibrationSchema = "incise.calibration/1";
+constexpr const char* kCalibrationHint = "Write the file with `incise calibrate`";
+constexpr double kWeightTolerance = 1e-6;
+
+Json setting_json(const RunSetting& setting, double reference_step_s) {
+  return {{"speed_mm_s", setting.speed_mm_s},
+          {"dullness", setting.dullness},
+          {"drag_length_mm", setting.speed_mm_s * setting.dullness * reference_step_s},
+          {"stiffness_of_case", setting.stiffness_of_case}};
+}
+
+Json run_summary_json(const CalibrationRun& run, const std::string& name) {
+  Json json{{"name", name}, {"outcome", to_string(run.outcome)}, {"failure", run.is_failure()}};
+  if (!run.problem.empty()) json["problem"] = run.problem;
+  json["stiffness_of_case"] = run.setting.stiffness_of_case;
+  json["mean_abs_mm"] = run.paper_abs_error_mm ? Json(run.paper_abs_error_mm->mean) : Json(nullptr);
+  json["sd_abs_mm"] = run.paper_abs_error_mm ? Json(run.paper_abs_error_mm->sd) : Json(nullptr);
+  json["max_abs_mm"] = run.paper_abs_error_mm ? Json(run.paper_abs_error_mm->max) : Json(nullptr);
+  json["mean_signed_mm"] = run.signed_error_mm ? Json(run.signed_error_mm->mean) : Json(nullptr);
+  json["mean_inner_signed_mm"] = run.inner_signed_error_mm ? Json(run.inner_signed_error_mm->mean) : Json(nullptr);
+  json["tets"] = run.tets;
+  json["wall_s"] = run.wall_s;
+  return json;
+}
+
+Json rows_json(const Calibration& calibration) {
+  Json rows = Json::array();
+  for (const ScoreRow& row : calibration.table.rows) {
+    Json json = setting_json(row.setting, calibration.reference_step_s);
+    json.erase("stiffness_of_case");  // each specimen has its own
+    json["failure"] = row.is_failure;
+    json["mean_abs_mm"] = or_null(row.mean_abs_mm);
+    json["sd_abs_mm"] = or_null(row.sd_abs_mm);
+    json["max_abs_mm"] = or_null(row.max_abs_mm);
+    json["mean_signed_mm"] = or_null(row.mean_signed_mm);
+    json["mean_inner_signed_mm"] = or_null(row.mean_inner_signed_mm);
+    json["score_percent"] = row.percent;
+    json["inner_edge_score_percent"] = row.inner_percent;
+    json["specimens"] = Json::array();
+    for (const CalibratedSpecimen& specimen : calibration.specimens) {
+      json["specimens"].push_back(run_summary_json(specimen.runs[row.run], specimen.name));
+    }
+    rows.push_back(std::move(json));
+  }
+  return rows;
+}
+
+Json specimen_json(const CalibratedSpecimen& s) {
+  return {{"name", s.name},
+          {"photographed_mean_abs_mm", s.photographed.mean_mm},
+          {"photographed_max_abs_mm", s.photographed.max_mm},
+          {"photographed_mean_signed_mm", s.signed_mean_mm},
+          {"youngs_modulus_kpa", s.youngs_modulus_kpa},
+          {"stretch_force_n", or_null(s.stretch_force_n)},
+          {"simulated_force_n", s.simulated_force_n},
+          {"picture_turn_deg", s.picture.turn_deg},
+          {"picture_rms_mm", s.picture.rms_mm}};
+}
+
+Json estimate_json(const ParameterEstimate& e, const ParameterVerdict& verdict) {
+  return {{"mean", e.mean},
+          {"sd", e.sd},
+          {"low", e.low},
+          {"high", e.high},
+          {"prior_sd", e.prior_sd},
+          {"told", to_string(verdict.told)},
+          {"tied_to", verdict.tied_to.empty() ? Json(nullptr) : Json(verdict.tied_to)},
+          {"at_limit", verdict.is_at_limit},
+          {"grid", e.grid},
+          {"density", e.density}};
+}
+
+Json posterior_json(const DragFit& fit, const Identifiability& told) {
+  Json json;
+  json["drag_length_mm"] = estimate_json(fit.drag_length_mm, told.parameters[0]);
+  json["ln_stiffness_factor"] = estimate_json(fit.ln_stiffness, told.parameters[1]);
+  json["bias_mm"] = estimate_json(fit.bias_mm, told.parameters[2]);
+  json["stiffness_varied"] = fit.knows_stiffness;
+  json["correlation"] = Json::array();
+  for (int i = 0; i < 3; ++i)
+    json["correlation"].push_back({fit.correlation(i, 0), fit.correlation(i, 1), fit.correlation(i, 2)});
+  json["samples"] = Json::array();
+  for (const PosteriorSample& s : fit.samples) {
+    json["samples"].push_back({{"weight", s.weight},
+                               {"drag_length_mm", s.drag_length_mm},
+                               {"stiffness_factor", s.stiffness_factor},
+                               {"bias_mm", s.bias_mm}});
+  }
+  return json;
+}
+
+Json fitted_json(const DragFit& fit) {
+  Json list = Json::array();
+  for (const SpecimenFit& s : fit.specimens) {
+    list.push_back({{"name", s.name},
+                    {"rms_mm", s.rms_mm},
+                    {"check_rms_mm", or_null(s.check_rms_mm)},
+                    {"observed_mm", s.observed_mm},
+                    {"fitted_mm", s.fitted_mm},
+                    {"simulated_mm", s.simulated_mm}});
+  }
+  return list;
+}
+
+double positive(const JsonPlace& place, const char* key) {
+  const double value = place.number(key);
+  if (!(value > 0.0)) place.refuse(key, fmt::format("{}", value), "a number above 0");
+  return value;
+}
+
+std::vector<PosteriorSample> samples_from(const JsonPlace& posterior) {
+  std::vector<PosteriorSample> samples;
+  double sum = 0.0;
+  for (const JsonPlace& place : posterior.objects("samples")) {
+    samples.push_back({positive(place, "weight"), positive(place, "drag_length_mm"),
+                       positive(place, "stiffness_factor"), place.number("bias_mm")});
+    sum += samples.back().weight;
+  }
+  if (samples.empty() || std::abs(sum - 1.0) > kWeightTolerance) {
+    posterior.refuse("samples", fmt::format("weights that add up to {}", sum), "weights that add up to 1");
+  }
+  return samples;
+}
+
+}  // namespace
+
+Json to_json(const Calibration& calibration) {
+  Json json;
+  json["schema"] = kCalibrationSchema;
+  json["method"] = to_string(calibration.method);
+  json["virtual"] = calibration.is_virtual;
+  json["chosen"] = calibration.chosen ? setting_json(*calibration.chosen, calibration.reference_step_s) : Json(nullptr);
+  json["score_percent"] = or_null(calibration.score_percent);
+  json["baseline_mm"] = calibration.table.baseline_mm;
+  json["reference_step_s"] = calibration.reference_step_s;
+  json["simulations"] = calibration.simulations;
+  json["specimens"] = Json::array();
+  for (const CalibratedSpecimen& specimen : calibration.specimens) json["specimens"].push_back(specimen_json(specimen));
+  json["posterior"] = nullptr;
+  if (calibration.fit) {
+    const DragFit& fit = *calibration.fit;
+    json["posterior"] = posterior_json(fit, *calibration.identifiability);
+    json["residual"] = {{"sd_mm", fit.residual.sd_mm},
+                        {"correlation_deg", fit.residual.correlation_deg},
+                        {"reading_mm", fit.residual.reading_mm},
+                        {"specimen_spread_mm", fit.residual.specimen_spread_mm},
+                        {"placement_mm", fit.residual.placement_mm},
+                        {"n_effective", fit.residual.n_effective}};
+    json["fitted"] = fitted_json(fit);
+    json["identifiability"] = calibration.identifiability->sentences;
+  }
+  json["rows"] = rows_json(calibration);
+  return json;
+}
+
+CalibrationRecord read_calibration(const std::filesystem::path& path) {
+  const Json json = read_json(path);
+  if (!json.is_object()) throw DataError(path, "", "no object", "a calibration", kCalibrationHint);
+  const JsonPlace file{path, json, "", kCalibrationHint};
+  if (file.text("schema") != kCalibrationSchema)
+    file.refuse("schema", file.text("schema").substr(0, 40), kCalibrationSchema);
+  CalibrationRecord record;
+  const std::string method = file.text("method");
+  if (method != to_string(CalibrationMethod::Paper) && method != to_string(CalibrationMethod::Fit)) {
+    file.refuse("method", method.substr(0, 40), "paper or fit");
+  }
+  record.method = method == to_string(CalibrationMethod::Fit) ? CalibrationMethod::Fit : CalibrationMethod::Paper;
+  record.is_virtual = file.flag("virtual");
+  record.reference_step_s = positive(file, "reference_step_s");
+  record.baseline_mm = positive(file, "baseline_mm");
+  if (!file.at("chosen", "an object or null").is_null()) {
+    const JsonPlace chosen = file.inside("chosen");
+    record.chosen =
+        RunSetting{positive(chosen, "speed_mm_s"), positive(chosen, "dullness"), positive(chosen, "stiffness_of_case")};
+  }
+  for (const JsonPlace& specimen : file.objects("specimens")) record.specimens.push_back(specimen.text("name"));
+  if (record.method == CalibrationMethod::Paper) return record;
+  record.samples = samples_from(file.inside("posterior"));
+  const JsonPlace residual = file.inside("residual");
+  record.residual.sd_mm = positive(residual, "sd_mm");
+  record.residual.correlation_deg = positive(residual, "correlation_deg");
+  record.residual.reading_mm = positive(residual, "reading_mm");
+  record.residual.specimen_spread_mm = positive(residual, "specimen_spread_mm");
+  record.residual.placement_mm = positive(residual, "placement_mm");
+  record.residual.n_effective = positive(residual, "n_effective");
+  return record;
+}
+
+}  // namespace incise

@@ -1,0 +1,324 @@
+#include "workflow/calibration_body.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/evaluation/contour_errors.hpp>
+#include <incise/evaluation/error_profile.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// Before the cut the edge is not yet where the photograph shows it.
+constexpr double kEdgeBeforeCutSdMm = 1.0;
+/// A drag length this near to one that was simulated needs no cut of its own.
+constexpr double kNearMm = 0.15;
+
+/// The runs of one calibration: what is asked for is taken from the store or simulated.
+class CalibrationRunner {
+ public:
+  CalibrationRunner(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, RunStore& store,
+                    Workers& workers, Monitor& monitor)
+      : subjects_(subjects), request_(request), store_(store), workers_(workers), monitor_(monitor) {}
+
+  Calibration run() {
+    for (const CalibrationSubject& subject : subjects_) prepare(subject);
+    calibration_.method = request_.method;
+    calibration_.reference_step_s = subjects_.front().settings.cut.reference_step_s;
+    make_runs(request_.method == CalibrationMethod::Paper ? grid() : knots());
+    match_pictures();
+    if (request_.method == CalibrationMethod::Fit) fit();
+    score();
+    return std::move(calibration_);
+  }
+
+ private:
+  /// One setting, the stiffness over each specimen's own reference.
+  struct Knot {
+    double speed_mm_s, dullness, stiffness_factor;
+  };
+
+  void prepare(const CalibrationSubject& subject) {
+    try {
+      bodies_.push_back(std::make_unique<CalibrationBody>(subject, workers_, monitor_));
+    } catch (const CaseError& error) {
+      throw error.in_file(subject.case_file);
+    }
+    CalibratedSpecimen specimen;
+    specimen.name = subject.photographed.name;
+    specimen.stretch_force_n = subject.photographed.stretch_force_n;
+    specimen.simulated_force_n = bodies_.back()->simulated_force_n();
+    specimen.youngs_modulus_kpa = subject.settings.material.youngs_modulus_kpa * bodies_.back()->reference_stiffness();
+    measure_photograph(subject, specimen);
+    // A mirrored picture shows now, not after minutes of simulation.
+    PictureMatchSettings rough;
+    rough.edge_sd_mm = kEdgeBeforeCutSdMm;
+    const PictureMatch match = match_picture(subject.photographed.tumor_edge, subject.photographed.approach,
+                                             bodies_.back()->tumor_edge(), subject.settings.plan.approach, rough);
+    refuse_objection(subject, match);
+    calibration_.is_virtual = calibration_.is_virtual || subject.settings.is_virtual;
+    calibration_.specimens.push_back(std::move(specimen));
+  }
+
+  static void refuse_objection(const CalibrationSubject& subject, const PictureMatch& match) {
+    if (match.objection.empty()) return;
+    throw DataError(subject.photograph_file, "tumor_edge", match.objection,
+                    "the edge of this case's tumour, seen along its approach",
+                    "Are case and evaluation of the same specimen, and the picture neither mirrored nor turned?");
+  }
+
+  static double target_of(const Case& settings) { return settings.plan.lateral_margin_mm - radius_mm(settings.tool); }
+
+  static void measure_photograph(const CalibrationSubject& subject, CalibratedSpecimen& specimen) {
+    const ContourErrors errors = contour_errors(subject.photographed.incision, subject.photographed.tumor_edge,
+                                                target_of(subject.settings), subject.photographed.approach);
+    const auto count = static_cast<double>(errors.signed_error_mm.size());
+    for (const double e : errors.signed_error_mm) {
+      specimen.photographed.mean_mm += std::abs(e) / count;
+      specimen.photographed.max_mm = std::max(specimen.photographed.max_mm, std::abs(e));
+      specimen.signed_mean_mm += e / count;
+    }
+  }
+
+  [[nodiscard]] std::vector<Knot> grid() const {
+    std::vector<Knot> knots;
+    for (const double speed : request_.speeds_mm_s) {
+      for (const double dullness : request_.dullnesses) knots.push_back({speed, dullness, 1.0});
+    }
+    return knots;
+  }
+
+  [[nodiscard]] Knot knot_at(double drag_length_mm, double stiffness_factor) const {
+    return {request_.fit_speed_mm_s, drag_length_mm / (request_.fit_speed_mm_s * calibration_.reference_step_s),
+            stiffness_factor};
+  }
+
+  [[nodiscard]] std::vector<Knot> knots() const {
+    std::vector<Knot> knots;
+    for (const double drag : request_.drag_lengths_mm) knots.push_back(knot_at(drag, 1.0));
+    for (const double drag : request_.second_drag_lengths_mm) knots.push_back(knot_at(drag, request_.second_stiffness));
+    return knots;
+  }
+
+  /// Appends one run for each specimen and knot.
+  void make_runs(const std::vector<Knot>& knots) {
+    struct Missing {
+      std::size_t specimen, place;
+    };
+    std::vector<Missing> missing;
+    for (std::size_t s = 0; s < subjects_.size(); ++s) {
+      for (const Knot& knot : knots) {
+        const RunSetting setting{knot.speed_mm_s, knot.dullness,
+                                 knot.stiffness_factor * bodies_[s]->reference_stiffness()};
+        std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
+        std::optional<CalibrationRun> kept = store_.load(s, setting, monitor_);
+        if (!kept) missing.push_back({s, runs.size()});
+        runs.push_back(kept ? std::move(*kept) : CalibrationRun{.setting = setting});
+        factors_.resize(std::max(factors_.size(), runs.size()));
+        factors_[runs.size() - 1] = knot.stiffness_factor;
+      }
+    }
+    const std::size_t asked = subjects_.size() * knots.size();
+    calibration_.simulations += asked;
+    monitor_.message(Severity::Notice, fmt::format("calibration: {} simulations, {} of them are there already", asked,
+                                                   asked - missing.size()));
+    std::vector<IncisionTask> tasks;
+    std::vector<const HeldBody*> held;
+    for (const Missing& one : missing) {
+      const CalibrationRun& run = calibration_.specimens[one.specimen].runs[one.place];
+      held.push_back(&body(one.specimen, run.setting.stiffness_of_case));
+      const Case settings = with_setting(subjects_[one.specimen].settings, run.setting);
+      ToolPath path = held.back()->followed;
+      path.tumor_edge = held.back()->plan.tumor_edge;
+      tasks.push_back(
+          {&held.back()->model, &held.back()->stretched.state, {incision_settings(settings), std::move(path)}});
+    }
+    std::size_t done = 0;
+    simulate_incisions(tasks, workers_, monitor_, [&](std::size_t i, IncisionJobResult result) {
+      if (result.incision.outcome == Outcome::Cancelled) return;
+      CalibrationRun& run = calibration_.specimens[missing[i].specimen].runs[missing[i].place];
+      run = run_of(with_setting(subjects_[missing[i].specimen].settings, run.setting), run.setting, std::move(result),
+                   *held[i]);
+      store_.save(missing[i].specimen, run);
+      ++done;
+    });
+    if (done < tasks.size()) {
+      throw Cancelled(
+          fmt::format("the calibration was interrupted with {} of {} simulations to go", tasks.size() - done, asked));
+    }
+  }
+
+  const HeldBody& body(std::size_t specimen, double stiffness_of_case) {
+    try {
+      return bodies_[specimen]->with_stiffness(stiffness_of_case, workers_, monitor_);
+    } catch (const CaseError& error) {
+      throw error.in_file(subjects_[specimen].case_file);
+    }
+  }
+
+  /// Lays each photograph onto a simulated specimen after its cut, tool out: the first that closed.
+  void match_pictures() {
+    for (std::size_t s = 0; s < subjects_.size(); ++s) {
+      CalibratedSpecimen& specimen = calibration_.specimens[s];
+      const auto closed = std::find_if(specimen.runs.begin(), specimen.runs.end(),
+                                       [](const CalibrationRun& run) { return run.inner_edge.has_value(); });
+      if (closed == specimen.runs.end()) continue;
+      specimen.picture = match_picture(subjects_[s].photographed.tumor_edge, subjects_[s].photographed.approach,
+                                       closed->final_tumor_edge, subjects_[s].settings.plan.approach);
+      refuse_objection(subjects_[s], specimen.picture);
+    }
+  }
+
+  [[nodiscard]] static ProfileSettings simulated_profile(const Case& settings) {
+    ProfileSettings profile;
+    profile.target_mm = target_of(settings);
+    profile.approach = settings.plan.approach;
+    profile.start_direction = settings.plan.start_direction;
+    return profile;
+  }
+
+  /// The start direction of the simulation, as it lies in the photograph.
+  [[nodiscard]] std::vector<double> photographed_profile(std::size_t s) const {
+    const CalibrationSubject& subject = subjects_[s];
+    ProfileSettings profile = simulated_profile(subject.settings);
+    const ViewFrame view = view_along(subject.settings.plan.approach);
+    const ViewFrame picture = view_along(subject.photographed.approach);
+    const Vec3& start = subject.settings.plan.start_direction;
+    profile.approach = subject.photographed.approach;
+    profile.start_direction = picture.x * start.dot(view.x) + picture.y * start.dot(view.y);
+    profile.turn_deg = -calibration_.specimens[s].picture.turn_deg;
+    std::optional<std::vector<double>> errors =
+        error_profile(subject.photographed.incision, subject.photographed.tumor_edge, profile);
+    if (!errors) {
+      throw DataError(subject.photograph_file, "points", "an incision that does not go round the tumour's middle",
+                      "a ring round the tumour");
+    }
+    return std::move(*errors);
+  }
+
+  /// Empty: no closed ring round the tumour's middle.
+  [[nodiscard]] std::vector<double> profile_of(std::size_t s, const CalibrationRun& run) const {
+    if (!run.inner_edge || !run.closed_loop) return {};
+    return error_profile(*run.inner_edge, run.final_tumor_edge, simulated_profile(subjects_[s].settings))
+        .value_or(std::vector<double>{});
+  }
+
+  [[nodiscard]] DragResponse response_of(std::size_t s) const {
+    std::vector<SimulatedProfile> profiles;
+    const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      profiles.push_back({runs[i].drag_length_mm(), factors_[i], profile_of(s, runs[i])});
+    }
+    try {
+      return DragResponse(std::move(profiles));
+    } catch (const InvalidArgument&) {
+      throw CaseError("case", "cut", "simulated cuts that leave no closed ring at two drag lengths",
+                      "a specimen that the simulated tool can cut round")
+          .in_file(subjects_[s].case_file);
+    }
+  }
+
+  /// The lines between the simulated drag lengths are straight, the truth between them is not: one more cut near the
+  /// place that the first fit finds, where the interval ends at a cut that failed another half-way to that, and a
+  /// second fit.
+  void fit() {
+    fit_once();
+    std::vector<Knot> more;
+    const double found_mm = calibration_.fit->drag_length_mm.mean;
+    const auto is_near = [found_mm](double drag_mm) { return std::abs(drag_mm - found_mm) < kNearMm; };
+    if (std::none_of(request_.drag_lengths_mm.begin(), request_.drag_lengths_mm.end(), is_near)) {
+      more.push_back(knot_at(found_mm, 1.0));
+    }
+    if (const std::optional<double> beyond_mm = half_way_to_failure()) more.push_back(knot_at(*beyond_mm, 1.0));
+    if (!more.empty()) {
+      make_runs(more);
+      fit_once();
+    }
+    check();
+  }
+
+  /// Between the end of the simulated drag lengths, if the interval ends there, and the first that failed.
+  [[nodiscard]] std::optional<double> half_way_to_failure() const {
+    const double end_mm = calibration_.fit->drag_length_mm.grid.back();
+    const bool is_at_end =
+        calibration_.identifiability->parameters[0].is_at_limit &&
+        calibration_.fit->drag_length_mm.high > 0.5 * (end_mm + calibration_.fit->drag_length_mm.mean);
+    std::optional<double> failed_mm;
+    for (const double drag : request_.drag_lengths_mm) {
+      if (drag > end_mm + kNearMm && (!failed_mm || drag < *failed_mm)) failed_mm = drag;
+    }
+    return is_at_end && failed_mm ? std::optional(0.5 * (end_mm + *failed_mm)) : std::nullopt;
+  }
+
+  void fit_once() {
+    std::vector<FitSpecimen> specimens;
+    DragFitSettings settings = request_.fit;
+    bool is_every_force_measured = true;
+    for (std::size_t s = 0; s < subjects_.size(); ++s) {
+      const bool has_force = subjects_[s].photographed.stretch_force_n.has_value();
+      is_every_force_measured = is_every_force_measured && has_force;
+      specimens.push_back({calibration_.specimens[s].name, photographed_profile(s), response_of(s),
+                           has_force ? request_.force_sd : 0.0});
+    }
+    if (is_every_force_measured) settings.stiffness_sd = request_.stiffness_sd_with_force;
+    calibration_.fit = fit_drag(specimens, settings);
+    calibration_.identifiability = identifiability(*calibration_.fit);
+  }
+
+  /// One cut at the fitted values shows what the straight lines between the simulated drag lengths are worth.
+  void check() {
+    DragFit& fit = *calibration_.fit;
+    make_runs({knot_at(fit.drag_length_mm.mean, fit.knows_stiffness ? std::exp(fit.ln_stiffness.mean) : 1.0)});
+    for (std::size_t s = 0; s < subjects_.size(); ++s) {
+      SpecimenFit& specimen = fit.specimens[s];
+      specimen.simulated_mm = profile_of(s, calibration_.specimens[s].runs.back());
+      if (specimen.simulated_mm.empty()) continue;
+      double squares = 0.0;
+      for (std::size_t i = 0; i < specimen.simulated_mm.size(); ++i) {
+        squares += std::pow(specimen.simulated_mm[i] + fit.bias_mm.mean - specimen.fitted_mm[i], 2);
+      }
+      specimen.check_rms_mm = std::sqrt(squares / static_cast<double>(specimen.simulated_mm.size()));
+    }
+  }
+
+  void score() {
+    std::vector<PhotographedErrors> photographs;
+    std::vector<std::vector<CalibrationRun>> runs;
+    for (const CalibratedSpecimen& specimen : calibration_.specimens) {
+      photographs.push_back(specimen.photographed);
+      runs.push_back(specimen.runs);
+    }
+    calibration_.table = score_table(runs, baseline_mm(photographs));
+    if (calibration_.fit)
+      calibration_.table.chosen = calibration_.table.rows.size() - 1;  // the cut at the fitted values
+    if (!calibration_.table.chosen) return;
+    const ScoreRow& row = calibration_.table.rows[*calibration_.table.chosen];
+    calibration_.chosen = row.setting;
+    calibration_.score_percent = calibration_.fit ? row.inner_percent : row.percent;
+  }
+
+  const std::vector<CalibrationSubject>& subjects_;
+  const CalibrationRequest& request_;
+  RunStore& store_;
+  Workers& workers_;
+  Monitor& monitor_;
+  std::vector<std::unique_ptr<CalibrationBody>> bodies_;
+  std::vector<double> factors_;  ///< stiffness factor of each row
+  Calibration calibration_;
+};
+
+}  // namespace
+
+Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request,
+                      RunStore& runs, Workers& workers, Monitor& monitor) {
+  const std::vector<std::string> violations = validate(request);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  INCISE_REQUIRE(!subjects.empty(), "expected at least one specimen");
+  return CalibrationRunner(subjects, request, runs, workers, monitor).run();
+}
+
+}  // namespace incise

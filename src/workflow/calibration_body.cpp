@@ -1,0 +1,120 @@
+#include "workflow/calibration_body.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr double kMnPerN = 1000.0;
+
+/// The pull of the constraints that displace: together, as a load cell between them and the world would feel it.
+double pull_n(const TissueModel& model, const StaticResult& stretched) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < model.constraints.size() && i < stretched.reactions_mn.size(); ++i) {
+    if (std::holds_alternative<DisplacedConstraint>(model.constraints[i])) sum += stretched.reactions_mn[i];
+  }
+  return sum.norm() / kMnPerN;
+}
+
+/// Where the mesh says how stiff each tet is, that is scaled, too.
+TetMesh stiffened(TetMesh mesh, double factor) {
+  const auto array = mesh.cell_data.find("youngs_modulus_kpa");
+  if (array == mesh.cell_data.end()) return mesh;
+  for (double& value : array->second.values) value *= factor;
+  return mesh;
+}
+
+}  // namespace
+
+Case with_setting(const Case& settings, const RunSetting& setting) {
+  Case changed = settings;
+  changed.material.youngs_modulus_kpa *= setting.stiffness_of_case;
+  for (LabelMaterial& label : changed.variation.labels) {
+    if (label.youngs_modulus_kpa) *label.youngs_modulus_kpa *= setting.stiffness_of_case;
+  }
+  changed.cut.speed_mm_s = setting.speed_mm_s;
+  changed.cut.dullness = setting.dullness;
+  changed.frames = 0;
+  return changed;
+}
+
+CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& workers, Monitor& monitor)
+    : subject_(subject) {
+  if (subject.settings.plan.kind != PlanKind::Ring) {
+    throw CaseError("case", "plan.kind", std::string(to_string(subject.settings.plan.kind)),
+                    "ring: a calibration compares rings round a tumour");
+  }
+  study_ = run_study(subject.settings, *subject.store, Stage::Plan, workers, monitor);
+  require_stretched(*study_.stretched, 1.0);
+  drawn_edge_ = subject.store->read_tumor_edge();
+  given_path_ = subject.store->read_given_path();
+  simulated_force_n_ = pull_n(*study_.model, *study_.stretched);
+  if (subject.photographed.stretch_force_n && !(simulated_force_n_ > 0.0)) {
+    throw CaseError("case", "specimen.constraints", "none that pulls", "one of kind displaced",
+                    "A measured force is that of the stretch");
+  }
+}
+
+double CalibrationBody::reference_stiffness() const {
+  const std::optional<double>& measured = subject_.photographed.stretch_force_n;
+  return measured ? *measured / simulated_force_n_ : 1.0;
+}
+
+void CalibrationBody::require_stretched(const StaticResult& stretched, double stiffness_of_case) const {
+  if (stretched.outcome == Outcome::Success) return;
+  throw CaseError("case", "specimen",
+                  fmt::format("{} (at {:.3g} times its stiffness)", explain_stretch(stretched), stiffness_of_case),
+                  "a specimen that can be stretched");
+}
+
+HeldBody CalibrationBody::make(double stiffness_of_case, Workers& workers, Monitor& monitor) {
+  if (stiffness_of_case == 1.0)
+    return {*study_.model, *study_.stretched, *study_.plan, given_path_.value_or(*study_.plan)};
+  const RunSetting stiffness{.stiffness_of_case = stiffness_of_case};
+  const Case settings = with_setting(subject_.settings, stiffness);
+  HeldBody body{tissue_of(settings, stiffened(study_.model->mesh, stiffness_of_case)), {}, {}, {}};
+  body.stretched = stretch(body.model, workers, monitor);
+  if (body.stretched.outcome == Outcome::Cancelled) throw Cancelled("the calibration was interrupted");
+  require_stretched(body.stretched, stiffness_of_case);
+  body.plan = plan_on(settings, body.model, body.stretched.state.positions, drawn_edge_, std::nullopt);
+  body.followed = given_path_.value_or(body.plan);
+  return body;
+}
+
+const HeldBody& CalibrationBody::with_stiffness(double stiffness_of_case, Workers& workers, Monitor& monitor) {
+  std::unique_ptr<HeldBody>& body = bodies_[stiffness_of_case];
+  if (!body) body = std::make_unique<HeldBody>(make(stiffness_of_case, workers, monitor));
+  return *body;
+}
+
+CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJobResult result, const HeldBody& body) {
+  CalibrationRun run;
+  run.setting = setting;
+  run.reference_step_s = settings.cut.reference_step_s;
+  run.problem = result.problem;
+  run.wall_s = result.incision.wall_s;
+  run.tets = body.model.mesh.tets.size();
+  if (!run.problem.empty()) return run;
+  const SimulatedCut cut = judge(settings, std::move(result.incision), body.plan, run.tets);
+  run.outcome = cut.outcome;
+  run.closed_loop = cut.incision.is_closed_loop.value_or(false);
+  run.paper_success = cut.centerline.paper_success.value_or(false);
+  run.signed_error_mm = cut.centerline.signed_error_mm;
+  run.inner_signed_error_mm = cut.inner_edge.signed_error_mm;
+  run.inner_abs_error_mm = cut.inner_edge.abs_error_mm;
+  if (!cut.centerline.errors.signed_distance_mm.empty()) {
+    const double paper_target = settings.plan.lateral_margin_mm - radius_mm(settings.tool);
+    std::vector<double> errors = cut.centerline.errors.signed_distance_mm;
+    for (double& e : errors) e = std::abs(e - paper_target);
+    run.paper_abs_error_mm = summarize(errors);
+  }
+  run.inner_edge = cut.incision.inner_edge;
+  run.final_tumor_edge = cut.incision.final_tumor_edge;
+  return run;
+}
+
+}  // namespace incise

@@ -1,0 +1,239 @@
+#include "support/contour_shapes.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/storage/calibration_file.hpp>
+#include <incise/storage/evaluation_file.hpp>
+#include <incise/storage/result_json.hpp>
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+namespace incise {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::TemporaryFolder;
+using ::testing::ThrowsMessage;
+
+constexpr RunSetting kSetting{.speed_mm_s = 9.0, .dullness = 13.0, .stiffness_of_case = 0.3};
+
+CalibrationRun closed_run() {
+  CalibrationRun run;
+  run.setting = kSetting;
+  run.outcome = Outcome::Success;
+  run.closed_loop = true;
+  run.paper_success = true;
+  run.signed_error_mm = Summary{-1.0 / 3.0, 0.2, -1.0, 0.1};
+  run.paper_abs_error_mm = Summary{1.55, 1.1, 0.0, 3.3};
+  run.inner_signed_error_mm = Summary{-1.2, 0.5, -3.0, 0.0};
+  run.inner_abs_error_mm = Summary{1.2, 0.5, 0.0, 3.0};
+  run.inner_edge = testing::circle(13.1, 50);
+  run.final_tumor_edge = testing::circle(9.7, 40);
+  run.tets = 12345;
+  return run;
+}
+
+CalibrationRun failed_run() {
+  CalibrationRun run;
+  run.setting = kSetting;
+  run.outcome = Outcome::OpenLoop;
+  return run;
+}
+
+/// What is told is kept.
+class Listening : public Monitor {
+ public:
+  void message(Severity, std::string_view text) override { told += std::string(text); }
+  std::string told;
+};
+
+class RunFolderTest : public ::testing::Test {
+ protected:
+  TemporaryFolder folder_;
+  RunFolder runs_{folder_.path() / "runs", {"key of one", "key of two"}};
+  Listening monitor_;
+};
+
+TEST_F(RunFolderTest, KeepsARunToTheLastBitAndAFailureAsOne) {
+  runs_.save(0, closed_run());
+  runs_.save(1, failed_run());
+  const CalibrationRun read = runs_.load(0, kSetting, monitor_).value();
+  EXPECT_EQ(read.signed_error_mm->mean, -1.0 / 3.0);
+  EXPECT_EQ(read.inner_edge->points, closed_run().inner_edge->points);
+  EXPECT_EQ(read.final_tumor_edge.points, closed_run().final_tumor_edge.points);
+  EXPECT_FALSE(read.is_failure());
+  const CalibrationRun failed = runs_.load(1, kSetting, monitor_).value();
+  EXPECT_TRUE(failed.is_failure());
+  EXPECT_EQ(failed.outcome, Outcome::OpenLoop);
+  EXPECT_FALSE(failed.inner_edge);
+  EXPECT_EQ(monitor_.told, "");
+}
+
+TEST_F(RunFolderTest, ARunOfAnotherCaseOrSettingIsNotThere) {
+  runs_.save(0, closed_run());
+  RunSetting other = kSetting;
+  other.dullness = 13.5;
+  EXPECT_FALSE(runs_.load(0, other, monitor_));
+  EXPECT_FALSE(runs_.load(1, kSetting, monitor_));
+  RunFolder changed(folder_.path() / "runs", {"key after a change", "key of two"});
+  EXPECT_FALSE(changed.load(0, kSetting, monitor_));
+}
+
+TEST_F(RunFolderTest, ADamagedRunIsToldAndCountsAsAbsent) {
+  runs_.save(0, closed_run());
+  const std::filesystem::path file = runs_.file_of(0, kSetting);
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_FALSE(runs_.load(0, kSetting, monitor_));
+  EXPECT_THAT(monitor_.told, ::testing::AllOf(HasSubstr(file.filename().string()), HasSubstr("simulated anew")));
+  nlohmann::ordered_json json = read_json((runs_.save(0, closed_run()), file));
+  json["tets"] = "many";
+  write_json(file, json);
+  monitor_.told.clear();
+  EXPECT_FALSE(runs_.load(0, kSetting, monitor_));
+  EXPECT_THAT(monitor_.told, HasSubstr("tets"));
+  runs_.save(0, closed_run());
+  EXPECT_TRUE(runs_.load(0, kSetting, monitor_));
+}
+
+Calibration two_specimens() {
+  Calibration calibration;
+  calibration.method = CalibrationMethod::Paper;
+  CalibratedSpecimen first;
+  first.name = "s1";
+  first.runs = {closed_run(), closed_run()};
+  CalibratedSpecimen second = first;
+  second.name = "s2";
+  second.runs[1] = failed_run();
+  calibration.specimens = {first, second};
+  calibration.table = score_table({first.runs, second.runs}, 1.95);
+  calibration.chosen = kSetting;
+  calibration.score_percent = calibration.table.rows[0].percent;
+  return calibration;
+}
+
+Calibration fitted() {
+  Calibration calibration = two_specimens();
+  calibration.method = CalibrationMethod::Fit;
+  DragFit fit;
+  fit.drag_length_mm = {2.0, 0.2, 1.7, 2.3, 0.9, {1.0, 2.0, 3.0}, {0.1, 0.8, 0.1}};
+  fit.ln_stiffness = {0.1, 0.4, -0.6, 0.7, 0.5, {-1.0, 0.0, 1.0}, {0.2, 0.6, 0.2}};
+  fit.bias_mm = {-0.1, 0.1, -0.3, 0.1, 0.5, {-0.5, 0.0, 0.5}, {0.2, 1.6, 0.2}};
+  fit.samples = {{0.25, 1.8, 0.9, -0.2}, {0.75, 2.1, 1.1, 0.0}};
+  fit.residual = {.sd_mm = 0.4,
+                  .correlation_deg = 30.0,
+                  .reading_mm = 0.1,
+                  .specimen_spread_mm = 0.2,
+                  .placement_mm = 0.3,
+                  .n_effective = 6.0};
+  calibration.fit = fit;
+  calibration.identifiability = identifiability(fit);
+  return calibration;
+}
+
+class CalibrationFileTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::filesystem::path path() const { return folder_.path() / "calibration.json"; }
+  void expect_refused(const nlohmann::ordered_json& json, const char* place) {
+    write_json(path(), json);
+    EXPECT_THAT([&] { static_cast<void>(read_calibration(path())); },
+                ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("calibration.json"), HasSubstr(place))));
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(CalibrationFileTest, GivesAPlannerThePosteriorAgain) {
+  write_json(path(), to_json(fitted()));
+  const CalibrationRecord record = read_calibration(path());
+  EXPECT_EQ(record.method, CalibrationMethod::Fit);
+  EXPECT_EQ(record.specimens, (std::vector<std::string>{"s1", "s2"}));
+  ASSERT_EQ(record.samples.size(), 2U);
+  EXPECT_EQ(record.samples[1].drag_length_mm, 2.1);
+  EXPECT_EQ(record.samples[0].bias_mm, -0.2);
+  EXPECT_EQ(record.residual.placement_mm, 0.3);
+  EXPECT_EQ(record.chosen, kSetting);
+}
+
+TEST_F(CalibrationFileTest, RefusesWhatIsNoCalibrationByFileAndKey) {
+  const nlohmann::ordered_json good = to_json(fitted());
+  nlohmann::ordered_json bad = good;
+  bad["schema"] = "incise.calibration/9";
+  expect_refused(bad, "schema");
+  bad = good;
+  bad["posterior"]["samples"][0]["weight"] = 0.5;
+  expect_refused(bad, "add up to 1");
+  bad = good;
+  bad["posterior"]["samples"][1]["drag_length_mm"] = -1.0;
+  expect_refused(bad, "posterior.samples[1].drag_length_mm");
+  bad = good;
+  bad["residual"].erase("sd_mm");
+  expect_refused(bad, "residual.sd_mm");
+  bad = good;
+  bad["method"] = "guess";
+  expect_refused(bad, "method");
+}
+
+TEST_F(CalibrationFileTest, AFailedCellIsARowOfTheTable) {
+  const TextTable table = calibration_table(two_specimens());
+  ASSERT_EQ(table.rows.size(), 2U);
+  const auto cell = [&](std::size_t row, const std::string& column) {
+    const auto at = std::find(table.header.begin(), table.header.end(), column) - table.header.begin();
+    return table.rows[row].at(static_cast<std::size_t>(at));
+  };
+  EXPECT_EQ(cell(0, "failure"), "no");
+  EXPECT_EQ(cell(0, "mean_mm"), "1.550000");
+  EXPECT_EQ(cell(0, "score_percent"), "101.9231");  // (0.75 * 1.55 + 0.25 * 3.3) / 1.95
+  EXPECT_EQ(cell(1, "failure"), "yes");
+  EXPECT_EQ(cell(1, "s2_outcome"), "open_loop");
+  EXPECT_EQ(cell(1, "s2_mean_mm"), "");
+  EXPECT_EQ(cell(1, "score_percent"), "0.0000");
+  EXPECT_EQ(calibration_table_rounded(two_specimens()).rows[1][3], "Failure");
+  EXPECT_THAT(csv_text(table), HasSubstr("speed_mm_s,dullness,drag_length_mm"));
+}
+
+class PhotographedCutTest : public CalibrationFileTest {
+ protected:
+  static nlohmann::ordered_json evaluation_json(const Contour& incision) {
+    EvaluationSettings settings;
+    settings.contour = ContourKind::InnerEdge;
+    const Evaluation evaluation = evaluate(incision, testing::circle(10.0, 120), settings);
+    nlohmann::ordered_json json = to_json(evaluation);
+    json["points"] = points_json(evaluation);
+    json["tumor_edge"] = contour_json(testing::circle(10.0, 120));
+    json["approach"] = {0.0, 0.0, -1.0};
+    return json;
+  }
+  void expect_cut_refused(const nlohmann::ordered_json& json, const char* place, const char* says) {
+    write_json(path(), json);
+    EXPECT_THAT([&] { static_cast<void>(read_photographed_cut(path())); },
+                ThrowsMessage<DataError>(::testing::AllOf(HasSubstr(place), HasSubstr(says))));
+  }
+};
+
+TEST_F(PhotographedCutTest, HoldsBothContoursAndTheCamerasDirection) {
+  write_json(path(), evaluation_json(testing::circle(14.0, 360)));
+  const PhotographedCut cut = read_photographed_cut(path());
+  EXPECT_EQ(cut.tumor_edge.points, testing::circle(10.0, 120).points);
+  EXPECT_NEAR(cut.incision.points[7].norm(), 14.0, 0.01);
+  EXPECT_EQ(cut.approach, Vec3(0.0, 0.0, -1.0));
+}
+
+TEST_F(PhotographedCutTest, IsRefusedOpenOrAsAMidLineOrWithoutTheEdge) {
+  Contour open = testing::circle(14.0, 360);
+  open.is_closed = false;
+  expect_cut_refused(evaluation_json(open), "closed_loop", "all round");
+  nlohmann::ordered_json json = evaluation_json(testing::circle(14.0, 360));
+  json["contour"] = "centerline";
+  expect_cut_refused(json, "contour", "inner_edge");
+  json = evaluation_json(testing::circle(14.0, 360));
+  json.erase("tumor_edge");
+  expect_cut_refused(json, "tumor_edge", "incise evaluate");
+  json = evaluation_json(testing::circle(14.0, 360));
+  json["tumor_edge"]["y_mm"].erase(3);
+  expect_cut_refused(json, "tumor_edge.y_mm", "119 numbers");
+}
+
+}  // namespace
+}  // namespace incise

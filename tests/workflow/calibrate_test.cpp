@@ -1,0 +1,323 @@
+#include <incise/core/error.hpp>
+#include <incise/workflow/calibrate.hpp>
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace incise {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kTumorRadiusMm = 4.0;
+
+/// A soft block that is held at its underside, with a tumour edge that is no circle on top of it. Nothing is kept.
+class SoftBlock : public Store {
+ public:
+  explicit SoftBlock(double phase) : phase_(phase) {}
+  CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
+  std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return make_block({32, 32, 6}, {24, 24, 4}); }
+  std::optional<Contour> read_tumor_edge() override {
+    Contour edge;
+    for (int i = 0; i < 72; ++i) {
+      const double a = 2.0 * M_PI * i / 72.0;
+      const double r = kTumorRadiusMm * (1.0 + 0.12 * std::cos(2.0 * a + phase_) + 0.05 * std::sin(3.0 * a));
+      edge.points.emplace_back(16.0 + r * std::cos(a), 16.0 + r * std::sin(a), 6.0);
+    }
+    return edge;
+  }
+  std::optional<Contour> read_line() override { return std::nullopt; }
+  std::optional<ToolPath> read_given_path() override { return std::nullopt; }
+  std::optional<Segmentation> load_segmentation() override { return std::nullopt; }
+  void save_segmentation(const Segmentation&, double) override {}
+  std::optional<TetMesh> load_mesh() override { return std::nullopt; }
+  void save_mesh(const MeshProduct&, double) override {}
+  std::optional<StaticResult> load_stretched(const TissueModel&) override { return std::nullopt; }
+  void save_stretched(const TissueModel&, const StaticResult&, double) override {}
+  std::optional<ToolPath> load_plan() override { return std::nullopt; }
+  void save_plan(const ToolPath&, double) override {}
+  std::optional<SimulatedCut> load_cut(CutRole) override { return std::nullopt; }
+  void save_cut(CutRole, const TissueModel&, const StaticResult&, const SimulatedCut&, double) override {}
+  std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
+  void keep_progress(CutRole, const IncisionProgress&, bool) override {}
+  std::optional<Compensation> load_correction() override { return std::nullopt; }
+  void save_correction(const Compensation&, double) override {}
+
+ private:
+  double phase_;
+};
+
+/// Runs in memory.
+class RunsInMemory : public RunStore {
+ public:
+  std::optional<CalibrationRun> load(std::size_t specimen, const RunSetting& setting, Monitor&) override {
+    const auto found = runs.find(key(specimen, setting));
+    return found == runs.end() ? std::nullopt : std::optional(found->second);
+  }
+  void save(std::size_t specimen, const CalibrationRun& run) override {
+    runs[key(specimen, run.setting)] = run;
+    ++saved;
+  }
+  using Key = std::tuple<std::size_t, double, double, double>;
+  static Key key(std::size_t specimen, const RunSetting& s) {
+    return {specimen, s.speed_mm_s, s.dullness, s.stiffness_of_case};
+  }
+  std::map<Key, CalibrationRun> runs;
+  int saved = 0;
+};
+
+Case block_case() {
+  Case settings;
+  settings.gravity_mm_s2 = Vec3::Zero();
+  settings.material.youngs_modulus_kpa = 20.0;
+  settings.material.poissons_ratio = 0.4;
+  settings.constraints = std::vector<Constraint>{
+      FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}},
+      DisplacedConstraint{BoxRegion{Box3(Vec3(-1, 31.9, 0.2), Vec3(33, 33, 7))}, Vec3(0.0, 0.2, 0.0)}};
+  settings.plan.depth_mm = 3.0;
+  settings.tool = Needle{.diameter_mm = 1.6};
+  settings.cut.reach_mm = 0.4;
+  settings.cut.advance_per_step_mm = 0.8;
+  settings.frames = 0;
+  return settings;
+}
+
+/// Held at two ends and free to slide, as a tongue is, and soft: it follows the tool as a whole.
+Case sliding_case() {
+  Case settings = block_case();
+  settings.material.youngs_modulus_kpa = 2.0;
+  settings.constraints = std::vector<Constraint>{
+      FixedConstraint{EndRegion{Vec3::UnitY(), 2.0}},
+      DisplacedConstraint{EndRegion{-Vec3::UnitY(), 2.0}, Vec3(0.0, -2.0, 0.0)},
+      FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}, {false, false, true}}};
+  return settings;
+}
+
+/// Any ring will do where the photograph is not looked at.
+PhotographedCut plain_photograph(const Contour& edge) {
+  PhotographedCut photograph;
+  photograph.name = "plain";
+  photograph.tumor_edge = edge;
+  for (const Vec3& p : edge.points) {
+    const Vec3 out = p - Vec3(16.0, 16.0, 6.0);
+    photograph.incision.points.push_back(p + 3.0 * out.normalized());
+  }
+  return photograph;
+}
+
+class CalibrateBlocks : public ::testing::Test {
+ protected:
+  CalibrateBlocks() {
+    for (SoftBlock* store : {&first_, &second_}) {
+      CalibrationSubject subject;
+      subject.photographed = plain_photograph(*store->read_tumor_edge());
+      subject.photograph_file = "cut.json";
+      subject.case_file = "case.yaml";
+      subject.settings = block_case();
+      subject.store = store;
+      subjects_.push_back(std::move(subject));
+    }
+  }
+
+  Calibration run(const CalibrationRequest& request) {
+    Workers workers(2);
+    return calibrate(subjects_, request, runs_, workers, silent_);
+  }
+
+  static CalibrationRequest grid(std::vector<double> speeds, std::vector<double> dullnesses) {
+    CalibrationRequest request;
+    request.method = CalibrationMethod::Paper;
+    request.speeds_mm_s = std::move(speeds);
+    request.dullnesses = std::move(dullnesses);
+    return request;
+  }
+
+  SoftBlock first_{0.0};
+  SoftBlock second_{1.3};
+  std::vector<CalibrationSubject> subjects_;
+  RunsInMemory runs_;
+  Monitor silent_;
+};
+
+TEST_F(CalibrateBlocks, TableOneHasThePapersPattern) {
+  subjects_.pop_back();
+  subjects_[0].settings = sliding_case();
+  const CalibrationRequest paper{.method = CalibrationMethod::Paper};
+  std::vector<ScoreRow> rows = run(paper).table.rows;
+  ASSERT_EQ(rows.size(), 25U);
+  // At 1 mm/s nothing depends on dullness: what it does is hidden in the mesh's grain.
+  for (std::size_t d = 1; d < 5; ++d) {
+    EXPECT_NEAR(rows[d].mean_signed_mm.value(), rows[0].mean_signed_mm.value(), 0.1);
+  }
+  // A best score near 100 % lies inside the grid.
+  const double best = rows[run(paper).table.chosen.value()].percent;
+  EXPECT_GT(best, 85.0);
+  EXPECT_LT(best, 115.0);
+  // The error grows inwards with speed x dullness, up to the first that fail; these are the fastest and dullest.
+  const auto product = [](const ScoreRow& row) { return row.setting.speed_mm_s * row.setting.dullness; };
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](const ScoreRow& a, const ScoreRow& b) { return product(a) < product(b); });
+  EXPECT_TRUE(rows.back().is_failure);
+  EXPECT_EQ(rows.back().percent, 0.0);
+  double before = 0.1;
+  for (const ScoreRow& row : rows) {
+    EXPECT_FALSE(row.is_failure && product(row) <= 153.0) << row.setting.speed_mm_s << " x " << row.setting.dullness;
+    if (row.is_failure) continue;
+    EXPECT_LT(row.mean_signed_mm.value(), before + 0.1) << row.setting.speed_mm_s << " x " << row.setting.dullness;
+    before = *row.mean_signed_mm;
+  }
+  EXPECT_LT(before, -1.5);
+}
+
+TEST_F(CalibrateBlocks, AnInterruptedCalibrationGoesOnToTheSameNumbersAndMakesNoRunTwice) {
+  const CalibrationRequest request = grid({13.0}, {1.0, 7.0});
+  const Calibration straight = run(request);
+  ASSERT_EQ(runs_.saved, 4);
+
+  /// Asks to stop once a good third is done.
+  class StopAtAThird : public Monitor {
+   public:
+    void progress(std::string_view stage, double fraction) override {
+      if (stage == "cutting" && fraction > 0.35) is_stopped_ = true;
+    }
+    [[nodiscard]] bool is_cancelled() const override { return is_stopped_; }
+
+   private:
+    std::atomic<bool> is_stopped_ = false;
+  } stop;
+  runs_ = RunsInMemory();
+  Workers alone(1);
+  EXPECT_THAT([&] { static_cast<void>(calibrate(subjects_, request, runs_, alone, stop)); },
+              ::testing::ThrowsMessage<Cancelled>(HasSubstr("of 4 simulations to go")));
+  EXPECT_GT(runs_.saved, 0);
+  EXPECT_LT(runs_.saved, 4);
+  const Calibration resumed = run(request);
+  EXPECT_EQ(runs_.saved, 4);
+  for (std::size_t s = 0; s < 2; ++s) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const CalibrationRun& one = straight.specimens[s].runs[i];
+      const CalibrationRun& other = resumed.specimens[s].runs[i];
+      EXPECT_EQ(one.inner_edge->points, other.inner_edge->points);
+      EXPECT_EQ(one.paper_abs_error_mm->mean, other.paper_abs_error_mm->mean);
+    }
+  }
+  EXPECT_EQ(straight.score_percent, resumed.score_percent);
+}
+
+TEST_F(CalibrateBlocks, TheFitFindsTheDragLengthAndTheStiffnessIsThatOfTheForce) {
+  subjects_.pop_back();
+  // The photograph: the same block, twice as stiff, cut at a drag length between those that the fit simulates, and 0.2
+  // mm farther out all round, with errors that go slowly round the ring.
+  const double true_drag_mm = 2.2;
+  Case truth = subjects_[0].settings;
+  truth.material.youngs_modulus_kpa *= 2.0;
+  std::swap(truth, subjects_[0].settings);
+  const Calibration made = run(grid({13.0}, {true_drag_mm / (13.0 * 0.02)}));
+  std::swap(truth, subjects_[0].settings);
+  const CalibrationRun& cut = made.specimens[0].runs[0];
+  PhotographedCut& photograph = subjects_[0].photographed;
+  photograph.tumor_edge = cut.final_tumor_edge;
+  photograph.incision = *cut.inner_edge;
+  for (Vec3& p : photograph.incision.points) {
+    const Vec3 out = (p - Vec3(16.0, 16.0, 6.0)).normalized();
+    const double turn = std::atan2(out.y(), out.x());
+    p += (0.2 + 0.1 * std::sin(5.0 * turn) + 0.07 * std::cos(7.0 * turn)) * out;
+  }
+  photograph.stretch_force_n = made.specimens[0].simulated_force_n;
+  runs_ = RunsInMemory();
+
+  const Calibration fit = run({});
+  EXPECT_LE(fit.simulations, 9U);
+  EXPECT_NEAR(fit.specimens[0].youngs_modulus_kpa, 40.0, 0.4);
+  EXPECT_NEAR(fit.specimens[0].picture.turn_deg, 0.0, 2.0);
+  ASSERT_TRUE(fit.fit);
+  const ParameterEstimate& drag = fit.fit->drag_length_mm;
+  EXPECT_LT(drag.low, true_drag_mm);
+  EXPECT_GT(drag.high, true_drag_mm);
+  EXPECT_LT(drag.sd, drag.prior_sd);
+  EXPECT_LT(fit.fit->bias_mm.low, 0.2);
+  EXPECT_GT(fit.fit->bias_mm.high, 0.2);
+  EXPECT_NEAR(fit.chosen->dullness, drag.mean / (13.0 * 0.02), 1e-9);
+  EXPECT_LT(fit.fit->specimens[0].check_rms_mm.value(), 0.35);  // the mesh's grain is in it
+}
+
+TEST_F(CalibrateBlocks, LooksHalfWayToTheFirstFailureWhereTheAnswerMayLieThere) {
+  subjects_.pop_back();
+  subjects_[0].settings = sliding_case();
+  // Photographed at 3 mm; simulated up to 2 mm, and then at 10 mm, where no ring is left.
+  const Calibration made = run(grid({13.0}, {3.0 / (13.0 * 0.02)}));
+  subjects_[0].photographed.tumor_edge = made.specimens[0].runs[0].final_tumor_edge;
+  subjects_[0].photographed.incision = *made.specimens[0].runs[0].inner_edge;
+  CalibrationRequest request;
+  request.drag_lengths_mm = {0.5, 1.25, 2.0, 10.0};
+  request.second_drag_lengths_mm = {};
+  const Calibration fit = run(request);
+  ASSERT_FALSE(fit.specimens[0].runs[3].closed_loop);
+  const double beyond_mm = fit.fit->drag_length_mm.grid.back();
+  EXPECT_NEAR(beyond_mm, 6.0, 1e-9);
+  EXPECT_FALSE(fit.identifiability->parameters[0].is_at_limit);
+  EXPECT_FALSE(fit.fit->knows_stiffness);
+  EXPECT_THAT(fit.identifiability->sentences[1], HasSubstr("not varied"));
+}
+
+/// A tumour edge that is unlike its mirror image by more than the tissue's give.
+class LopsidedBlock : public SoftBlock {
+ public:
+  LopsidedBlock() : SoftBlock(0.0) {}
+  std::optional<Contour> read_tumor_edge() override {
+    Contour edge;
+    for (int i = 0; i < 72; ++i) {
+      const double a = 2.0 * M_PI * i / 72.0;
+      const double r = 4.0 + 1.1 * std::cos(2.0 * a) + 1.3 * std::sin(3.0 * a + 0.9);
+      edge.points.emplace_back(16.0 + r * std::cos(a), 16.0 + r * std::sin(a), 6.0);
+    }
+    return edge;
+  }
+};
+
+TEST_F(CalibrateBlocks, RefusesAPhotographOfAnotherTumourLyingTheOtherWayBeforeAnyCut) {
+  LopsidedBlock block;
+  subjects_.pop_back();
+  subjects_[0].store = &block;
+  subjects_[0].photographed = plain_photograph(*block.read_tumor_edge());
+  // Turned half round, the picture's errors would be taken for those of the other side.
+  for (Contour* contour : {&subjects_[0].photographed.tumor_edge, &subjects_[0].photographed.incision}) {
+    for (Vec3& p : contour->points) p = Vec3(32.0 - p.x(), 32.0 - p.y(), p.z());
+  }
+  EXPECT_THAT([&] { static_cast<void>(run({})); },
+              ::testing::ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("cut.json"), HasSubstr("turned by"))));
+  EXPECT_EQ(runs_.saved, 0);
+}
+
+TEST_F(CalibrateBlocks, RefusesALineAndAForceWithoutAPull) {
+  subjects_.pop_back();
+  subjects_[0].settings.plan.kind = PlanKind::Line;
+  EXPECT_THAT([&] { static_cast<void>(run({})); },
+              ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("case.yaml"), HasSubstr("plan.kind"))));
+  subjects_[0].settings = block_case();
+  subjects_[0].settings.constraints->pop_back();
+  subjects_[0].photographed.stretch_force_n = 3.0;
+  EXPECT_THAT([&] { static_cast<void>(run({})); },
+              ::testing::ThrowsMessage<CaseError>(HasSubstr("specimen.constraints")));
+  EXPECT_EQ(runs_.saved, 0);
+}
+
+TEST(CalibrationRequest, ListsEveryViolation) {
+  EXPECT_TRUE(validate(CalibrationRequest{}).empty());
+  CalibrationRequest request;
+  request.speeds_mm_s = {0.0};
+  request.drag_lengths_mm = {1.0};
+  request.second_drag_lengths_mm = {2.0};
+  request.second_stiffness = 1.0;
+  EXPECT_THAT(validate(request),
+              ::testing::UnorderedElementsAre(HasSubstr("speeds_mm_s"), HasSubstr("found 1,"),
+                                              HasSubstr("second_drag_lengths_mm"), HasSubstr("second_stiffness")));
+}
+
+}  // namespace
+}  // namespace incise
