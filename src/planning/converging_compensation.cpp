@@ -172,6 +172,13 @@ std::string_view to_string(CompensationOutcome outcome) {
   return "unknown";
 }
 
+std::optional<CompensationOutcome> parse_compensation_outcome(std::string_view name) {
+  for (int value = 0; value <= static_cast<int>(CompensationOutcome::NoMeasure); ++value) {
+    if (name == to_string(static_cast<CompensationOutcome>(value))) return static_cast<CompensationOutcome>(value);
+  }
+  return std::nullopt;
+}
+
 std::vector<std::string> validate(const ConvergenceSettings& s) {
   std::vector<std::string> violations;
   const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {

@@ -80,6 +80,7 @@ enum class CompensationOutcome {
 };
 /// converged, budget_spent, best_kept, at_rest, no_measure
 [[nodiscard]] std::string_view to_string(CompensationOutcome outcome);
+[[nodiscard]] std::optional<CompensationOutcome> parse_compensation_outcome(std::string_view name);
 
 struct ConvergedCompensation {
   ToolPath path;                         ///< of the best pass
