@@ -28,8 +28,9 @@ class PhantomStore final : public Store {
   void save_cut(CutRole, const TissueModel&, const StaticResult&, const SimulatedCut&, double) override {}
   std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return {}; }
   void keep_progress(CutRole, const IncisionProgress&, bool) override {}
-  std::optional<Compensation> load_correction() override { return {}; }
-  void save_correction(const Compensation&, double) override {}
+  std::optional<Correction> load_correction() override { return {}; }
+  void save_correction(const Correction&, double) override {}
+  bool adopt_cut(CutRole) override { return false; }
 
  private:
   const Phantom& phantom_;

@@ -114,10 +114,10 @@ void add_run(Application& application);
 void add_phantom(Application& application);
 void add_segment(Application& application);
 void add_mesh(Application& application);
-void add_stages(Application& application);  ///< deform, plan, simulate, compensate
+void add_stages(Application& application);  ///< deform, plan, simulate
+void add_compensate(Application& application);
 void add_surface(Application& application);
 void add_register(Application& application);
-void add_stages(Application& application);  ///< deform, plan, simulate, compensate
 void add_track(Application& application);
 void add_project(Application& application);
 void add_export(Application& application);

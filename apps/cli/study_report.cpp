@@ -1,5 +1,7 @@
 #include "study_report.hpp"
 
+#include "compensation_figures.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -362,7 +364,7 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
                        {"machine", manifest.machine, ""}};
     for (const ManifestInput& input : manifest.inputs) data.provenance.push_back({"SHA-256 of " + input.path, input.sha256, ""});
   }
-  static constexpr std::array<std::array<const char*, 2>, 10> kFiles{{
+  static constexpr std::array<std::array<const char*, 2>, 11> kFiles{{
       {"mesh/mesh.vtu", "tetrahedral mesh, unstretched (ParaView)"},
       {"stretched/deformed.vtu", "clamped and stretched, with displacement and stress (ParaView)"},
       {"plan/path.json", "intended path"},
@@ -370,7 +372,8 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
       {"as_planned/incision.json", "all numbers of the first cut"},
       {"as_planned/kerf.vtp", "the first cut's kerf as a closed surface (ParaView)"},
       {"correction/path.json", "corrected path"},
-      {"corrected/frames.pvd", "the second cut over time (ParaView)"},
+      {"correction/errors.csv", "errors along the path, pass by pass"},
+      {"corrected/frames.pvd", "the corrected cut over time (ParaView)"},
       {"program/program.script", "robot program (URScript)"},
       {"program/true_path.csv", "the tip's path as the player ran the program"},
   }};
@@ -432,6 +435,8 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   }
   add_evaluation(root, data);
   add_kerf(root, data);
+  data.correction = compensation_table(root);
+  for (CompensationFigure& figure : compensation_figures(root)) data.correction_plots.push_back(std::move(figure.plot));
   if (study.contains("stages")) {
     for (const Json& stage : study.at("stages")) data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
   }

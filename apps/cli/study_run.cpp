@@ -1,5 +1,6 @@
 #include "study_run.hpp"
 
+#include "compensation_figures.hpp"
 #include "replay_files.hpp"
 #include "study_report.hpp"
 
@@ -50,6 +51,7 @@ namespace {
 CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut) {
   CaseFile file = case_with_inputs(case_path);
   if (cut.frames) file.settings.frames = *cut.frames;
+  if (cut.method) file.settings.compensation.method = *cut.method;
   return file;
 }
 
@@ -71,10 +73,19 @@ StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem
   write_json(record, {{"case_file", relative.string()}});
 }
 
+CutRole StudyRun::next_cut() {
+  if (!store.is_current(Product::AsPlanned) || until_ < Stage::Verify) return CutRole::AsPlanned;
+  const bool is_paper = store.case_file().settings.compensation.method == CompensationMethod::Paper;
+  if (is_paper || store.is_current(Product::Correction)) return CutRole::Corrected;
+  int pass = 1;
+  while (pass < kMostPasses && store.is_current(product_of(role_of_pass(pass)))) ++pass;
+  return role_of_pass(pass);
+}
+
 void StudyRun::require_checkpoint() {
-  // The one cut that comes next: a checkpoint of the other would leave this one to start from the beginning.
+  // The one cut that comes next: a checkpoint of another would leave this one to start from the beginning.
   const bool is_first_made = store.is_current(Product::AsPlanned);
-  const CutRole next = is_first_made && until_ >= Stage::Verify ? CutRole::Corrected : CutRole::AsPlanned;
+  const CutRole next = next_cut();
   if (std::filesystem::exists(store.checkpoint(next))) {
     store.require_fitting_checkpoint(next);
     return;
@@ -86,7 +97,7 @@ void StudyRun::require_checkpoint() {
                     fmt::format("{}, which an interrupted cut leaves", name), "Without --resume it is read from there");
   }
   throw CaseError("command line", "--resume", fmt::format("no checkpoint {} in {}", name, store.root().string()),
-                  fmt::format("what the {} cut leaves when it is interrupted", next == CutRole::AsPlanned ? "planned" : "corrected"),
+                  fmt::format("what the cut {} leaves when it is interrupted", store.folder(product_of(next)).filename().string()),
                   "Without --resume the cut starts from the beginning");
 }
 
@@ -165,7 +176,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
     return json;
   }
   if (!done.is_accepted) monitor.message(Severity::Warning, "the correction is not accepted: the program follows the uncorrected path");
-  const ToolPath path = in_robot_frame(done.is_accepted ? done.correction->path : *done.followed, *file.settings.T_robot_sim);
+  const ToolPath path = in_robot_frame(done.is_accepted ? done.correction->moves.path : *done.followed, *file.settings.T_robot_sim);
   const ToolPath intended = in_robot_frame(*done.plan, *file.settings.T_robot_sim);
   ProgramSettings motion;
   motion.overlap_mm = file.settings.cut.overlap_mm;
@@ -223,6 +234,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monit
   result["before"] = done.as_planned ? headline(to_json(*done.as_planned)) : nlohmann::ordered_json(nullptr);
   result["after"] = done.corrected ? headline(to_json(*done.corrected)) : nlohmann::ordered_json(nullptr);
   result["accepted"] = done.is_accepted;
+  result["correction"] = done.correction ? correction_summary_json(*done.correction) : nlohmann::ordered_json(nullptr);
   result["specimen_is"] = study.store.case_file().settings.is_virtual ? "virtual" : "real";
   if (done.corrected && done.corrected->outcome == Outcome::Success && done.corrected->inner_edge.outcome == Outcome::PositiveMargin) {
     monitor.message(Severity::Warning, "the kerf's mid-line keeps its distance, but its inner edge reaches the tumour edge once the tool is out");
@@ -241,6 +253,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monit
   monitor.message(Severity::Notice, "report: drawing");
   try {
     write_report_and_figures(study_report(root, monitor), root / "report.html");
+    write_compensation_figures(root, root / "figures");
   } catch (const Cancelled& error) {
     throw StagesKept(error.what());
   }

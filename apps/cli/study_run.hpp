@@ -13,9 +13,12 @@ struct CutOptions {
   std::optional<int> frames;    ///< --frames: in place of the case's cut.frames
   bool must_resume = false;     ///< --resume: go on from a checkpoint or not at all
   double checkpoint_s = 30.0;   ///< --checkpoint-s: least wall time between two checkpoints
+  std::optional<CompensationMethod> method = std::nullopt;  ///< --method: in place of the case's compensation.method
 };
 /// Adds them to a verb; `options` receives what is given.
 void add_cut_options(CLI::App& verb, CutOptions& options);
+/// Adds --method to a verb that corrects the path.
+void add_compensation_method(CLI::App& verb, CutOptions& options);
 
 /// One way through a study on a folder: the stages up to `until`, and a study.json in the folder that says which case it is of.
 struct StudyRun {
@@ -32,6 +35,8 @@ struct StudyRun {
  private:
   const Stage until_;
   void require_checkpoint();
+  /// The cut that comes next.
+  [[nodiscard]] CutRole next_cut();
   /// A study that failed before its first product leaves no folder behind.
   void remove_if_nothing_was_made() const;
   [[nodiscard]] bool has_products() const;

@@ -60,6 +60,18 @@ std::string shown_at(const nlohmann::ordered_json& result, const char* part, con
   return cut != result.end() && cut->is_object() && cut->contains(place) ? shown(cut->at(place)) : "-";
 }
 
+/// How the error fell from pass to pass, against what the mesh can do.
+void print_passes(const nlohmann::ordered_json& result) {
+  const nlohmann::ordered_json::json_pointer history("/correction/history");
+  if (!result.contains(history)) return;
+  const nlohmann::ordered_json& correction = result.at("correction");
+  std::string line;
+  for (const auto& pass : correction.at("history")) line += (line.empty() ? "" : ", ") + shown(pass.at("mean_abs_error_mm"));
+  fmt::print("{:<36} {} ({}, pass {} kept)\n", "mean |error| pass by pass, mm", line, shown(correction.at("compensation_outcome")),
+             shown(correction.at("best_pass")));
+  fmt::print("{:<36} {}\n", "floor of the mesh, mm", shown(correction.at("floor_mm")));
+}
+
 }  // namespace
 
 void print_study(const CommonOptions& options, const nlohmann::ordered_json& result) {
@@ -68,6 +80,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
   for (const StudyLine& line : kStudyLines) {
     fmt::print("{:<36} {:>16} {:>16}\n", line.text, shown_at(result, "before", line.pointer), shown_at(result, "after", line.pointer));
   }
+  print_passes(result);
   fmt::print("\n");
   for (const char* key : {"outcome", "accepted", "specimen_is", "report", "wall_s"}) {
     if (const auto value = result.find(key); value != result.end() && !value->is_structured()) fmt::print("{:<36} {}\n", key, shown(*value));

@@ -48,6 +48,7 @@ void add_demo(Application& application) {
         }
       });
   add_cut_options(*verb, *cut);
+  add_compensation_method(*verb, *cut);
 }
 
 }  // namespace incise::cli

@@ -19,6 +19,7 @@ void add_run(Application& application) {
       });
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, *cut);
+  add_compensation_method(*verb, *cut);
 }
 
 }  // namespace incise::cli

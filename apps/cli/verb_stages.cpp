@@ -11,21 +11,9 @@ namespace {
 constexpr const char* kCaseHelp = "Case file, or a folder with case.yaml";
 
 nlohmann::ordered_json result_of(Stage stage, const Study& study) {
-  nlohmann::ordered_json json;
   switch (stage) {
     case Stage::Plan: return plan_summary_json(*study.plan);
     case Stage::Simulate: return to_json(*study.as_planned);
-    case Stage::Verify:
-      json["passes"] = study.correction ? 1 : 0;
-      json["accepted"] = study.is_accepted;
-      json["contraction"] = nullptr;
-      if (study.corrected && study.corrected->centerline.abs_error_mm) {
-        json["contraction"] = study.corrected->centerline.abs_error_mm->mean / study.as_planned->centerline.abs_error_mm->mean;
-      }
-      json["before"] = to_json(*study.as_planned);
-      json["after"] = study.corrected ? to_json(*study.corrected) : nlohmann::ordered_json(nullptr);
-      json["correction"] = study.correction ? to_json(*study.correction) : nlohmann::ordered_json(nullptr);
-      return json;
     default: return to_json(*study.stretched);
   }
 }
@@ -53,7 +41,7 @@ void add_stage(Application& application, const char* name, const char* what, con
 }
 
 /// A verb that runs the study up to a stage that cuts.
-CLI::App& add_cutting_stage(Application& application, const char* name, const char* what, const char* example, Stage stage,
+void add_cutting_stage(Application& application, const char* name, const char* what, const char* example, Stage stage,
                             Product product) {
   auto case_path = std::make_shared<std::filesystem::path>();
   auto cut = std::make_shared<CutOptions>();
@@ -62,7 +50,6 @@ CLI::App& add_cutting_stage(Application& application, const char* name, const ch
   });
   verb->add_option("case", *case_path, kCaseHelp)->required();
   add_cut_options(*verb, *cut);
-  return *verb;
 }
 
 }  // namespace
@@ -78,12 +65,6 @@ void add_stages(Application& application) {
                     "Cut along the planned path (or the case's own) and measure what comes out. Interrupted, it leaves a checkpoint, from "
                     "which it goes on and ends in the same bits",
                     "incise simulate specimen -o out", Stage::Simulate, Product::AsPlanned);
-  CLI::App& compensate =
-      add_cutting_stage(application, "compensate", "Correct the path by the simulated error and verify it by cutting again",
-                        "incise compensate specimen -o out", Stage::Verify, Product::Correction);
-  const auto only_one_there_is = [](const std::string&) {};
-  compensate.add_option_function<std::string>("--method", only_one_there_is, "paper: each waypoint moves once by the error measured there")
-      ->check(CLI::IsMember({"paper"}));
 }
 
 }  // namespace incise::cli

@@ -1,3 +1,4 @@
+#include "planning/safe_moves.hpp"
 #include "planning/surface_walk.hpp"
 
 #include <incise/core/error.hpp>
@@ -15,10 +16,7 @@ namespace incise {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr int kShareBisections = 60;
-constexpr double kMoveToleranceMm = 1e-6;
-/// By how much a move stays inside a limit that the finished path is then held to: beyond rounding.
-constexpr double kLimitSlackMm = 1e-6;
+constexpr double kShortMoveMm = 1e-6;  // a move that falls short by less was not cut short
 
 double positive_angle(double angle) {
   const double turned = std::fmod(angle, kTurn);
@@ -106,47 +104,13 @@ void smooth(std::vector<double>& values, int passes) {
   }
 }
 
-/// One waypoint's way across the surface.
-struct Move {
-  Vec3 position_mm;
-  double length_mm = 0.0;  ///< straight, >= 0
-};
-
-/// From `start`, `length_mm` far over the surface in direction `heading` of the picture, or as far as is allowed.
-Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is_inward, const SurfaceView& view,
-               const Contour& edge, const CompensationSettings& settings) {
-  const Vec3 origin = view.at(start)->position_mm;
-  const double least = settings.close_margin_mm + settings.electrode_radius_mm;
-  const double rim_clearance = settings.rim_clearance_mm > 0.0 ? settings.rim_clearance_mm + kLimitSlackMm : 0.0;
-  const auto reach = [&](double step) -> std::optional<Move> {
-    const Vec2 place = start + step * heading;
-    const std::optional<SurfacePoint> seen = view.at(place);
-    if (!seen || !view.is_clear_of_rim(place, rim_clearance)) return std::nullopt;
-    const double distance = nearest_on(edge, seen->position_mm).distance_mm;
-    if (is_inward && (distance < least || contains_in_view(edge, seen->position_mm, settings.approach)))
-      return std::nullopt;
-    return Move{seen->position_mm, (seen->position_mm - origin).norm()};
-  };
-  // Over a slope a step in the picture takes the waypoint farther in space, never less far.
-  double near = 0.0;
-  double far = length_mm;
-  Move best{origin, 0.0};
-  if (const std::optional<Move> full = reach(far); full && full->length_mm <= length_mm + 1e-12) return *full;
-  for (int n = 0; n < kShareBisections; ++n) {
-    const double middle = 0.5 * (near + far);
-    const std::optional<Move> there = reach(middle);
-    if (there && there->length_mm <= length_mm) {
-      near = middle;
-      best = *there;
-    } else {
-      far = middle;
-    }
-  }
-  return best;
-}
-
 void move_waypoints(const SurfaceView& view, const Vec2& center, const CompensationSettings& settings,
                     Compensation& result) {
+  const SafeRegion region{.close_margin_mm = settings.close_margin_mm,
+                          .electrode_radius_mm = settings.electrode_radius_mm,
+                          .rim_clearance_mm = settings.rim_clearance_mm,
+                          .approach = settings.approach,
+                          .axis_mode = settings.axis_mode};
   for (std::size_t i = 0; i < result.path.waypoints.size(); ++i) {
     Waypoint& waypoint = result.path.waypoints[i];
     const Vec2 start = view.place_of(waypoint.position_mm);
@@ -154,12 +118,12 @@ void move_waypoints(const SurfaceView& view, const Vec2& center, const Compensat
         -settings.relaxation * result.error_mm[i];  // too close (negative error): away from the tumour
     const double sign = wanted < 0.0 ? -1.0 : 1.0;
     const Vec2 heading = sign * (start - center).stableNormalized();
-    const Move move = move_over(start, heading, std::abs(wanted), wanted < 0.0, view, result.path.tumor_edge, settings);
+    const Move move = move_over(start, heading, std::abs(wanted), wanted < 0.0, view, result.path.tumor_edge, region);
     waypoint.position_mm = move.position_mm;
     if (settings.axis_mode == AxisMode::SurfaceNormal) {
       waypoint.axis = view.tool_axis(view.place_of(move.position_mm), settings.axis_mode);
     }
-    const bool is_limited = std::abs(wanted) - move.length_mm > kMoveToleranceMm;
+    const bool is_limited = std::abs(wanted) - move.length_mm > kShortMoveMm;
     result.move_mm.push_back(sign * move.length_mm);
     result.is_limited.push_back(is_limited ? 1 : 0);
     result.limited_waypoints += is_limited ? 1 : 0;

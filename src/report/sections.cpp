@@ -224,6 +224,11 @@ std::string error_section(const ReportData& data) {
   }
   const std::string table = evaluation_table(data.evaluation);
   html += "<h3>Measures</h3>\n" + (table.empty() ? missing("There is no evaluation here.") : table);
+  if (!data.correction.rows.empty()) html += free_table(data.correction);
+  if (data.correction_plots.empty()) return html + "</section>\n";
+  html += "<div class=\"figures\">\n";
+  for (const LinePlot& plot : data.correction_plots) html += "<figure>" + line_plot_svg(plot) + "</figure>\n";
+  html += "</div>\n";
   return html + "</section>\n";
 }
 

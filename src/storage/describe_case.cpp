@@ -286,6 +286,17 @@ void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
   v.end_group();
 }
 
+void describe_compensation(CompensationChoice& c, FieldVisitor& v) {
+  v.begin_group({"compensation", "", "How the path is corrected by the simulated error."});
+  static constexpr std::array<const char*, 2> kMethods{"default", "paper"};
+  choice(v, {"method", "", "Pass by pass until the cut lies where it was intended, or the paper's one pass."}, c.method, kMethods);
+  static constexpr std::array<const char*, 2> kObservables{"centerline", "inner_edge"};
+  choice(v, {"observable", "", "Which line of the cut is brought to its target; the paper's method: the mid-line."}, c.observable, kObservables);
+  v.number({"bias_mm", "mm", "Expected error of the real cut less that of the simulated one, positive: farther out; default method only."},
+           c.bias_mm, {-10.0, 10.0});
+  v.end_group();
+}
+
 void describe_robot(CaseFile& file, FieldVisitor& v) {
   v.path({"path", "", "A path.json (frame sim_stretched) to follow in place of the planned one."}, file.inputs.tool_path);
   v.begin_group({"robot", "", "The arm, its tool, and where the specimen lies under it."});
@@ -327,6 +338,7 @@ void describe_case(CaseFile& file, FieldVisitor& v) {
   describe_tool(file, v);
   describe_cut(file.settings, v);
   describe_thermal(file.settings.thermal, v);
+  describe_compensation(file.settings.compensation, v);
   describe_robot(file, v);
 }
 

@@ -30,16 +30,23 @@ struct ProductInfo {
 
 // What is only held against a cut that was made (see FolderStore::judgement_key) makes no cut anew.
 const ProductInfo& info(Product product) {
-  static const std::array<ProductInfo, 7> kInfo{{
+  static const std::array<ProductInfo, 10> kInfo{{
       {"labels", {"ct."}},
       {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}, {"plan.power_w", "plan.speed_mm_s", "plan.close_margin_mm"}},
       {"stretched", {"specimen."}},
       {"plan", {"tumor.", "plan."}, {"plan.power_w", "plan.close_margin_mm"}},
       {"as_planned", {"plan.power_w", "tool.", "cut."}},
-      {"correction", {"plan.close_margin_mm"}},
+      {"pass_1", {"plan.close_margin_mm", "compensation."}},
+      {"pass_2", {}},
+      {"pass_3", {}},
+      {"correction", {}},
       {"corrected", {}},
   }};
   return kInfo[static_cast<std::size_t>(product)];
+}
+
+bool is_cut(Product product) {
+  return product != Product::Correction && product >= Product::AsPlanned;
 }
 
 /// The case without the names of its files: what is in them counts, not where they lie.
@@ -154,7 +161,7 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   write(target.path());
   write_manifest_to(target.path(), wall_s);
   nlohmann::ordered_json stage{{"key", key(product)}, {"wall_s", wall_s}};
-  if (product == Product::AsPlanned || product == Product::Corrected) stage["judged_by"] = judgement_key();
+  if (is_cut(product)) stage["judged_by"] = judgement_key();
   write_json(target.path() / kStageFile, stage);
   target.commit();
   // What was made from the older product is of no use any more, and a report must not mix the two.
@@ -327,29 +334,6 @@ void FolderStore::save_plan(const ToolPath& path, double wall_s) {
     write_tool_path(to / "path.json", path);
     write_contour_vtp(to / "path.vtp", entry_contour(path));
     write_json(to / "plan.json", plan_summary_json(path));
-  });
-}
-
-std::optional<Compensation> FolderStore::load_correction() {
-  if (!is_current(Product::Correction)) return std::nullopt;
-  return of_earlier_run(folder(Product::Correction), [&]() -> std::optional<Compensation> {
-    const nlohmann::ordered_json json = read_json(folder(Product::Correction) / "compensate.json");
-    Compensation correction;
-    correction.path = read_tool_path(folder(Product::Correction) / "path.json");
-    correction.error_mm = json.at("error_mm").get<std::vector<double>>();
-    correction.move_mm = json.at("move_mm").get<std::vector<double>>();
-    correction.max_move_mm = json.at("max_move_mm");
-    correction.limited_waypoints = json.at("limited_waypoints");
-    correction.interpolated_waypoints = json.at("interpolated_waypoints");
-    return correction;
-  });
-}
-
-void FolderStore::save_correction(const Compensation& correction, double wall_s) {
-  save(Product::Correction, wall_s, [&](const std::filesystem::path& to) {
-    write_tool_path(to / "path.json", correction.path);
-    write_contour_vtp(to / "path.vtp", entry_contour(correction.path));
-    write_json(to / "compensate.json", to_json(correction));
   });
 }
 

@@ -27,7 +27,7 @@ std::string maker() { return fmt::format("incise {} ({}), {}", version(), source
 
 std::string short_key(const std::string& key) { return key.substr(0, 12); }
 
-Product product_of(CutRole role) { return role == CutRole::AsPlanned ? Product::AsPlanned : Product::Corrected; }
+
 
 /// The live tets at one moment; the cell array `tet` keeps their place in the uncut mesh.
 TetMesh live_mesh(const TetMesh& mesh, const Points& positions, std::span<const std::uint8_t> is_live) {
@@ -167,7 +167,7 @@ void FolderStore::keep_progress(CutRole role, const IncisionProgress& progress, 
 }
 
 void FolderStore::remove_checkpoints_of_no_use(Product saved) {
-  for (const CutRole role : {CutRole::AsPlanned, CutRole::Corrected}) {
+  for (const CutRole role : kCutRoles) {
     const Product product = product_of(role);
     if (product < saved || !std::filesystem::exists(checkpoint(role))) continue;
     // One whose key fits was made from what was saved just now, too: the same settings and inputs give the same bits.
@@ -242,6 +242,7 @@ void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticR
     write_kerf_files(to, incision.kerf);
     write_frames(to, model.mesh, incision.frames);
   });
+  if (role == CutRole::Corrected) remove_passes();
 }
 
 }  // namespace incise

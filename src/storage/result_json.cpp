@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace incise {
@@ -167,14 +168,48 @@ Json to_json(const StaticResult& r) {
   return json;
 }
 
-Json to_json(const Compensation& c) {
-  Json json;
+Json to_json(const Correction& correction) {
+  const Compensation& c = correction.moves;
+  Json json = correction_summary_json(correction);
   json["waypoints"] = c.path.waypoints.size();
   json["error_mm"] = c.error_mm;
   json["move_mm"] = c.move_mm;
+  if (!correction.iteration) return json;
+  const std::vector<CompensationPass>& passes = correction.iteration->passes;
+  for (std::size_t k = 0; k < passes.size(); ++k) {
+    Json& pass = json["history"][k];
+    pass["offset_mm"] = passes[k].offset_mm;
+    pass["error_mm"] = passes[k].error_mm;
+    pass["is_limited"] = passes[k].is_limited;
+    pass["is_interpolated"] = passes[k].is_interpolated;
+  }
+  return json;
+}
+
+Json correction_summary_json(const Correction& correction) {
+  const Compensation& c = correction.moves;
+  Json json;
+  json["method"] = to_string(correction.method);
+  json["floor_mm"] = or_null(correction.floor_mm);
   json["max_move_mm"] = c.max_move_mm;
   json["limited_waypoints"] = c.limited_waypoints;
   json["interpolated_waypoints"] = c.interpolated_waypoints;
+  if (!correction.iteration) return json;
+  const ConvergedCompensation& iteration = *correction.iteration;
+  json["compensation_outcome"] = to_string(iteration.outcome);
+  json["simulations"] = iteration.passes.size();
+  json["best_pass"] = iteration.best;
+  json["contraction"] = or_null(iteration.contraction);
+  json["history"] = Json::array();
+  for (const CompensationPass& pass : iteration.passes) {
+    json["history"].push_back({{"mean_abs_error_mm", or_null(pass.mean_abs_error_mm)},
+                               {"max_abs_error_mm", or_null(pass.max_abs_error_mm)},
+                               {"smooth_error_mm", or_null(pass.smooth_error_mm)},
+                               {"lag_mm", pass.lag_mm},
+                               {"max_move_mm", pass.max_move_mm},
+                               {"limited_waypoints", std::count(pass.is_limited.begin(), pass.is_limited.end(), 1)},
+                               {"success", pass.is_success}});
+  }
   return json;
 }
 

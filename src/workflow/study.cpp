@@ -4,35 +4,15 @@
 #include <incise/cutting/tool_program.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/procedure/incision_memory.hpp>
+#include <incise/workflow/correction.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
 
 #include <chrono>
+#include <map>
 
 namespace incise {
-
-std::string_view to_string(Stage stage) {
-  switch (stage) {
-    case Stage::Segment: return "segment";
-    case Stage::Mesh: return "mesh";
-    case Stage::Stretch: return "stretch";
-    case Stage::Plan: return "plan";
-    case Stage::Simulate: return "simulate";
-    case Stage::Compensate: return "compensate";
-    case Stage::Verify: return "verify";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(StageState state) {
-  switch (state) {
-    case StageState::Computed: return "computed";
-    case StageState::Reused: return "reused";
-    case StageState::Skipped: return "skipped";
-  }
-  return "unknown";
-}
 
 namespace {
 
@@ -177,28 +157,30 @@ class Runner {
   SimulatedCut cut(Stage stage, CutRole role, const ToolPath& path) {
     require_overlap_on(path);
     return load_or_make(
-        stage, [&] { return store_.load_cut(role); },
-        [&] {
-          std::optional<IncisionProgress> from = store_.load_progress(role, *study_.model, monitor_);
-          if (from) monitor_.message(Severity::Notice, fmt::format("{}: goes on after step {}", to_string(stage), from->state.step));
-          const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
-            try {
-              store_.keep_progress(role, progress, is_interrupted);
-            } catch (const DataError& error) {
-              if (is_interrupted) throw;  // nothing of the cut would be left
-              monitor_.message(Severity::Warning, fmt::format("{}. The cut goes on without a checkpoint", error.what()));
-            }
-          };
-          SimulatedCut made = cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_,
-                                            placed_tumor(), std::move(from), keep);
-          if (made.outcome == Outcome::Cancelled) {
-            throw Cancelled(fmt::format("the cut was interrupted after step {}", made.incision.final_state.step));
-          }
-          return made;
-        },
+        stage, [&] { return store_.load_cut(role); }, [&] { return simulated(to_string(stage), role, path); },
         [&](const SimulatedCut& made, double wall_s) {
           store_.save_cut(role, *study_.model, *study_.stretched, made, wall_s);
         });
+  }
+
+  /// Simulates a cut from where an interrupted one left it, or from the beginning. @param name  of what is under way, for messages.
+  SimulatedCut simulated(std::string_view name, CutRole role, const ToolPath& path) {
+    std::optional<IncisionProgress> from = store_.load_progress(role, *study_.model, monitor_);
+    if (from) monitor_.message(Severity::Notice, fmt::format("{}: goes on after step {}", name, from->state.step));
+    const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
+      try {
+        store_.keep_progress(role, progress, is_interrupted);
+      } catch (const DataError& error) {
+        if (is_interrupted) throw;  // nothing of the cut would be left
+        monitor_.message(Severity::Warning, fmt::format("{}. The cut goes on without a checkpoint", error.what()));
+      }
+    };
+    SimulatedCut made = cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_,
+                                      placed_tumor(), std::move(from), keep);
+    if (made.outcome == Outcome::Cancelled) {
+      throw Cancelled(fmt::format("the cut was interrupted after step {}", made.incision.final_state.step));
+    }
+    return made;
   }
 
   /// The tumour's surface in the stretched tissue; without triangles: not known.
@@ -231,36 +213,69 @@ class Runner {
   }
 
   bool compensate() {
-    const bool is_correctable = settings_.plan.kind == PlanKind::Ring && study_.as_planned->incision.centerline.has_value();
-    if (!is_correctable) {
-      study_.stages.push_back({Stage::Compensate, StageState::Skipped, 0.0});
-      monitor_.message(Severity::Warning, "no correction: it needs a ring whose mid-line could be measured");
-      return false;
-    }
+    const bool is_paper = settings_.compensation.method == CompensationMethod::Paper;
+    const bool is_ring = settings_.plan.kind == PlanKind::Ring;
+    if (!is_ring || (is_paper && !study_.as_planned->incision.centerline)) return skip_correction("it needs a ring whose mid-line could be measured");
     study_.correction = load_or_make(
         Stage::Compensate, [&] { return store_.load_correction(); },
         [&] {
-          CompensationSettings compensation;
-          compensation.target_mm = settings_.plan.lateral_margin_mm;
-          compensation.close_margin_mm = settings_.close_margin_mm;
-          compensation.electrode_radius_mm = radius_mm(settings_.tool);
-          compensation.approach = settings_.plan.approach;
-          compensation.axis_mode = settings_.plan.axis_mode;
           const SurfaceQuery surface(skin_of(study_.model->mesh, study_.stretched->state.positions));
-          return compensate_paper(*study_.followed, *study_.as_planned->incision.centerline, study_.plan->tumor_edge, surface,
-                                  compensation);
+          return is_paper ? correct_as_paper(settings_, *study_.followed, *study_.as_planned, study_.plan->tumor_edge, surface)
+                          : correct_pass_by_pass(surface);
         },
-        [&](const Compensation& correction, double wall_s) { store_.save_correction(correction, wall_s); });
+        [&](const Correction& correction, double wall_s) { store_.save_correction(correction, wall_s); });
+    const auto& iteration = study_.correction->iteration;
+    if (iteration && iteration->outcome == CompensationOutcome::NoMeasure) {
+      monitor_.message(Severity::Warning, "no correction: the first cut left nothing to measure");
+      return false;
+    }
     return true;
   }
 
+  bool skip_correction(const char* reason) {
+    study_.stages.push_back({Stage::Compensate, StageState::Skipped, 0.0});
+    monitor_.message(Severity::Warning, fmt::format("no correction: {}", reason));
+    return false;
+  }
+
+  Correction correct_pass_by_pass(const SurfaceQuery& surface) {
+    const std::optional<double> floor = mesh_floor_mm(settings_, *study_.model, study_.stretched->state, *study_.plan, workers_, monitor_);
+    if (!floor) monitor_.message(Severity::Warning, "compensate: the mesh is too coarse for a floor: a cut into tissue that cannot move leaves nothing to measure");
+    if (floor) monitor_.message(Severity::Notice, fmt::format("compensate: floor of the mesh {:.3f} mm", *floor));
+    const auto cut_of_pass = [&](int pass, const ToolPath& path) {
+      SimulatedCut made = pass == 0 ? *study_.as_planned : pass_cut(pass, path);
+      cut_of_pass_[pass] = made;
+      return made;
+    };
+    return correct_converging(settings_, *study_.followed, study_.plan->tumor_edge, surface, floor, cut_of_pass, monitor_);
+  }
+
+  SimulatedCut pass_cut(int pass, const ToolPath& path) {
+    require_overlap_on(path);
+    const CutRole role = role_of_pass(pass);
+    if (std::optional<SimulatedCut> kept = store_.load_cut(role)) return std::move(*kept);
+    const auto start = std::chrono::steady_clock::now();
+    SimulatedCut made = simulated(fmt::format("pass {}", pass), role, path);
+    store_.save_cut(role, *study_.model, *study_.stretched, made, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    return made;
+  }
+
+  /// The cut that the correction ended with was made on the way: it is not made again.
   bool verify() {
-    study_.corrected = cut(Stage::Verify, CutRole::Corrected, study_.correction->path);
+    const Correction& correction = *study_.correction;
+    if (correction.iteration) {
+      const int best = static_cast<int>(correction.iteration->best);
+      store_.adopt_cut(role_of_pass(best));
+      if (const auto made = cut_of_pass_.find(best); made != cut_of_pass_.end()) study_.corrected = std::move(made->second);
+      cut_of_pass_.clear();
+    }
+    if (study_.corrected) {
+      study_.stages.push_back({Stage::Verify, StageState::Computed, 0.0});
+    } else {
+      study_.corrected = cut(Stage::Verify, CutRole::Corrected, correction.moves.path);
+    }
     study_.outcome = study_.corrected->outcome;
-    const auto& before = study_.as_planned->centerline.abs_error_mm;
-    const auto& after = study_.corrected->centerline.abs_error_mm;
-    study_.is_accepted = study_.outcome == Outcome::Success && before && after && after->mean < radius_mm(settings_.tool) &&
-                         after->mean < before->mean;
+    study_.is_accepted = is_accepted(settings_, correction, *study_.as_planned, *study_.corrected);
     return true;
   }
 
@@ -273,22 +288,11 @@ class Runner {
   std::optional<TriMesh> tumor_surface_;
   std::optional<Contour> line_;
   std::optional<ToolPath> given_path_;
+  std::map<int, SimulatedCut> cut_of_pass_;  ///< of this run's correction
   Study study_;
 };
 
 }  // namespace
-
-std::string explain_stretch(const StaticResult& stretched) {
-  if (stretched.outcome == Outcome::Success) return "";
-  if (stretched.outcome == Outcome::Cancelled) return "stopped: the stretch was interrupted";
-  const std::string found =
-      stretched.outcome == Outcome::ElementInverted
-          ? fmt::format("the tissue came to rest, but {} of its tets turned inside out: it is stretched farther than the mesh can follow",
-                        stretched.inverted_tets)
-          : fmt::format("no equilibrium of the held tissue was found in {} iterations", stretched.iterations);
-  return fmt::format("stopped: {}. A smaller displacement_mm, wider held regions (specimen.constraints) or a finer mesh may help",
-                     found);
-}
 
 Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor) {
   return Runner(settings, store, workers, monitor).run(until);

@@ -86,13 +86,27 @@ class CheckpointTest(CommandTest):
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
 
     def test_run_goes_on_in_its_second_cut(self):
-        done = self.stop("run", self.out / "corrected.checkpoint", signal.SIGTERM)
+        done = self.stop("run", self.out / "pass_1.checkpoint", signal.SIGTERM)
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         resumed = self.incise("run", "case", "-o", self.out)
         self.assertEqual(resumed.returncode, DONE, resumed.stderr)
-        self.assertIn("verify: goes on after step", resumed.stderr)
+        self.assertIn("pass 1: goes on after step", resumed.stderr)
         for product in ("as_planned", "corrected"):
             self.assert_same_cut(self.out / product, self.straight / product)
+        for name in ("path.json", "history.csv", "errors.csv"):
+            self.assertEqual((self.out / "correction" / name).read_bytes(), (self.straight / "correction" / name).read_bytes(), name)
+        self.assertEqual([name for name in files_below(self.out) if name.startswith("pass_")], [])
+
+    def test_a_run_stopped_in_its_third_cut_takes_the_pass_before_it_from_the_folder(self):
+        done = self.stop("run", self.out / "pass_2.checkpoint", signal.SIGINT)
+        self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
+        self.assertTrue((self.out / "pass_1" / "incision.json").is_file())
+        self.assertFalse((self.out / "correction").exists())
+        resumed = self.incise("run", "case", "-o", self.out, "--resume")
+        self.assertEqual(resumed.returncode, DONE, resumed.stderr)
+        self.assertIn("pass 2: goes on after step", resumed.stderr)
+        self.assertNotIn("pass 1: goes on", resumed.stderr)
+        self.assert_same_cut(self.out / "corrected", self.straight / "corrected")
 
     def test_resume_without_a_checkpoint_is_refused(self):
         new = self.folder / "new"
@@ -101,13 +115,13 @@ class CheckpointTest(CommandTest):
         self.assert_nothing_written(new)
 
     def test_resume_goes_on_with_the_cut_that_comes_next_and_no_other(self):
-        self.stop("run", self.out / "corrected.checkpoint", signal.SIGTERM)
+        self.stop("run", self.out / "pass_1.checkpoint", signal.SIGTERM)
         done = self.incise("simulate", "case", "-o", self.out, "--resume")
         self.assert_refused(done, BAD_CASE, "--resume", "the cut as planned finished", "expected as_planned.checkpoint", "Without --resume")
         shutil.rmtree(self.out / "as_planned")
         done = self.incise("run", "case", "-o", self.out, "--resume")
         self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint as_planned.checkpoint in")
-        self.assertTrue((self.out / "corrected.checkpoint").exists(), "it is left where it is")
+        self.assertTrue((self.out / "pass_1.checkpoint").exists(), "it is left where it is")
 
     def test_a_checkpoint_of_other_settings_is_refused_by_resume_and_passed_over_without_it(self):
         self.stop("simulate", self.checkpoint, signal.SIGINT)

@@ -40,6 +40,8 @@ class LoopTest(CommandTest):
             self.assertTrue(CUT_FILES <= set(files_below(self.out / folder)), files_below(self.out / folder))
         self.assertLess(first["after"]["abs_error_mm"]["mean"], first["before"]["abs_error_mm"]["mean"])
         self.assertTrue(first["program"]["written"])
+        self.assertLessEqual(first["correction"]["simulations"], 4)
+        self.assertIn("pass by pass", (self.out / "report.html").read_text())
         self.assertIn("</html>", (self.out / "report.html").read_text()[-200:])
         self.assertEqual([name for name in files_below(self.out) if ".tmp" in name or "/." in name], [])
 

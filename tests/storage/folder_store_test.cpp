@@ -198,21 +198,24 @@ TEST_F(FolderStoreTest, AStretchedStateComesBackExactly) {
 }
 
 TEST_F(FolderStoreTest, ACorrectionComesBackExactly) {
-  Compensation correction;
-  correction.path = small_ring();
-  for (std::size_t i = 0; i < correction.path.waypoints.size(); ++i) {
-    correction.error_mm.push_back(0.1 * double(i));
-    correction.move_mm.push_back(-0.1 * double(i));
+  Correction correction;
+  correction.method = CompensationMethod::Paper;
+  correction.moves.path = small_ring();
+  for (std::size_t i = 0; i < correction.moves.path.waypoints.size(); ++i) {
+    correction.moves.error_mm.push_back(0.1 * double(i));
+    correction.moves.move_mm.push_back(-0.1 * double(i));
   }
-  correction.is_limited.assign(12, 0);
-  correction.is_interpolated.assign(12, 0);
-  correction.max_move_mm = 1.1;
+  correction.moves.is_limited.assign(12, 0);
+  correction.moves.is_interpolated.assign(12, 0);
+  correction.moves.max_move_mm = 1.1;
   open().save_correction(correction, 0.0);
   const auto loaded = open().load_correction();
   ASSERT_TRUE(loaded);
-  EXPECT_EQ(loaded->error_mm, correction.error_mm);
-  EXPECT_EQ(loaded->move_mm, correction.move_mm);
-  EXPECT_EQ(loaded->max_move_mm, 1.1);
+  EXPECT_EQ(loaded->method, CompensationMethod::Paper);
+  EXPECT_FALSE(loaded->iteration);
+  EXPECT_EQ(loaded->moves.error_mm, correction.moves.error_mm);
+  EXPECT_EQ(loaded->moves.move_mm, correction.moves.move_mm);
+  EXPECT_EQ(loaded->moves.max_move_mm, 1.1);
 }
 
 /// A cut of which every measure is there.
@@ -408,12 +411,95 @@ TEST_F(FolderStoreTest, WhatIsOnlyHeldAgainstACutJudgesItAnewInItsFilesToo) {
 TEST_F(FolderStoreTest, AMarginThatAWaypointKeepsMakesTheCorrectionStaleAndNotTheCut) {
   open().save_plan(small_ring(), 0.1);
   open().save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
-  Compensation correction;
-  correction.path = small_ring();
+  Correction correction;
+  correction.moves.path = small_ring();
   open().save_correction(correction, 0.1);
   FolderStore other = open("plan: {close_margin_mm: 3}\n");
   EXPECT_TRUE(other.is_current(Product::AsPlanned));
   EXPECT_FALSE(other.is_current(Product::Correction));
+}
+
+/// A correction that took one pass and kept it.
+Correction small_correction(const ToolPath& path) {
+  Correction correction;
+  correction.moves.path = path;
+  correction.moves.error_mm = {-1.0, -0.5};
+  correction.moves.move_mm = {1.0, 0.5};
+  correction.floor_mm = 0.1;
+  ConvergedCompensation& done = correction.iteration.emplace();
+  done.path = path;
+  done.passes.resize(2);
+  done.passes[0] = {{0.0, 0.0}, {-1.0, -0.5}, {0, 0}, {0, 1}, {0.5, 9.0}, {-1.25, -0.5}, 0.875, 1.25, 0.75, 4.0, 0.0, true};
+  done.passes[1].offset_mm = {1.0, 0.5};
+  done.passes[1].is_limited = {1, 0};
+  done.passes[1].max_move_mm = 1.0;
+  done.best = 0;
+  done.outcome = CompensationOutcome::BestKept;
+  return correction;
+}
+
+TEST_F(FolderStoreTest, ACorrectionComesBackPassByPass) {
+  open().save_plan(small_ring(), 0.1);
+  open().save_correction(small_correction(small_ring()), 0.1);
+  const auto loaded = open().load_correction();
+  ASSERT_TRUE(loaded && loaded->iteration);
+  EXPECT_EQ(loaded->method, CompensationMethod::Default);
+  EXPECT_EQ(loaded->floor_mm, 0.1);
+  const ConvergedCompensation& done = *loaded->iteration;
+  ASSERT_EQ(done.passes.size(), 2U);
+  EXPECT_EQ(done.outcome, CompensationOutcome::BestKept);
+  EXPECT_EQ(done.passes[0].mean_abs_error_mm, 0.875);
+  EXPECT_EQ(done.passes[0].error_mm, (std::vector<double>{-1.0, -0.5}));
+  EXPECT_EQ(done.passes[0].is_interpolated, (std::vector<std::uint8_t>{0, 1}));
+  EXPECT_FALSE(done.passes[1].mean_abs_error_mm) << "it left nothing to measure";
+  EXPECT_EQ(done.passes[1].is_limited, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_FALSE(done.contraction);
+  const std::filesystem::path folder = folder_ / "out" / "correction";
+  EXPECT_EQ(read_text(folder / "history.csv"),
+            "pass,waypoint,offset_mm,error_mm,limited,interpolated\n0,0,0,-1,0,0\n0,1,0,-0.5,0,1\n1,0,1,,1,1\n1,1,0.5,,0,1\n");
+  EXPECT_EQ(read_text(folder / "errors.csv"), "pass,along_mm,signed_error_mm\n0,0.5,-1.25\n0,9,-0.5\n");
+  EXPECT_FALSE(open("compensation: {method: paper}\n").load_correction()) << "another method";
+}
+
+TEST_F(FolderStoreTest, ADamagedCorrectionSaysWhatToRemove) {
+  open().save_plan(small_ring(), 0.1);
+  open().save_correction(small_correction(small_ring()), 0.1);
+  const std::filesystem::path file = folder_ / "out" / "correction" / "compensate.json";
+  const std::string whole = read_text(file);
+  for (const auto& [from, to] : {std::pair{"\"best_kept\"", "\"fine\""}, std::pair{"\"best_pass\": 0", "\"best_pass\": 7"}}) {
+    std::string text = whole;
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), std::string(from).size(), to);
+    std::ofstream(file) << text;
+    try {
+      static_cast<void>(open().load_correction());
+      FAIL() << to;
+    } catch (const DataError& error) {
+      EXPECT_NE(std::string(error.what()).find("Remove the folder"), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(FolderStoreTest, APassBecomesTheCorrectedCutAndThePassesGo) {
+  open().save_plan(small_ring(), 0.1);
+  open().save_cut(CutRole::AsPlanned, model(), stretched(), small_cut(), 0.1);
+  EXPECT_FALSE(open().adopt_cut(CutRole::Pass1)) << "it was not made";
+  for (const CutRole role : {CutRole::Pass1, CutRole::Pass2}) open().save_cut(role, model(), stretched(), small_cut(), 0.1);
+  open().save_correction(small_correction(small_ring()), 0.1);
+  EXPECT_TRUE(open().load_cut(CutRole::Pass1));
+  const std::string pass = read_text(folder_ / "out" / "pass_1" / "incision.json");
+  std::ofstream(folder_ / "out" / "pass_2" / "note.txt") << "mine";
+  EXPECT_THROW(static_cast<void>(open().adopt_cut(CutRole::Pass1)), DataError) << "a file of the user's own";
+  EXPECT_TRUE(open().is_current(Product::Pass1));
+  std::filesystem::remove(folder_ / "out" / "pass_2" / "note.txt");
+  EXPECT_TRUE(open().adopt_cut(CutRole::Pass1));
+  EXPECT_TRUE(open().load_cut(CutRole::Corrected));
+  EXPECT_EQ(read_text(folder_ / "out" / "corrected" / "incision.json"), pass);
+  EXPECT_NO_THROW(require_replaceable(folder_ / "out" / "corrected")) << "its manifest lists its files";
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "pass_1"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / "pass_2"));
+  EXPECT_TRUE(open().load_cut(CutRole::AsPlanned)) << "the first cut stays";
+  EXPECT_TRUE(open().adopt_cut(CutRole::Pass1)) << "it is there already";
 }
 
 TEST_F(FolderStoreTest, AChangedPowerIsCutAnewAndPlannedNoMore) {
@@ -525,8 +611,8 @@ TEST_F(FolderStoreTest, ANewProductTakesThePlaceOfAStaleOneAsAWhole) {
 }
 
 TEST_F(FolderStoreTest, AFileOfTheUsersOwnIsNeverRemoved) {
-  Compensation correction;
-  correction.path = small_ring();
+  Correction correction;
+  correction.moves.path = small_ring();
   open().save_plan(small_ring(), 0.0);
   open().save_correction(correction, 0.0);
   for (const char* name : {"plan", "correction"}) {  // the one that is replaced, and one that is stale after it

@@ -1,5 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
+#include <incise/workflow/correction.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <gtest/gtest.h>
@@ -45,14 +46,19 @@ class MemoryStore : public Store {
   void save_cut(CutRole role, const TissueModel&, const StaticResult&, const SimulatedCut& cut, double) override { cuts[role] = cut; }
   std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
   void keep_progress(CutRole, const IncisionProgress&, bool) override {}
-  std::optional<Compensation> load_correction() override { return correction; }
-  void save_correction(const Compensation& made, double) override { correction = made; }
+  std::optional<Correction> load_correction() override { return correction; }
+  void save_correction(const Correction& made, double) override { correction = made; }
+  bool adopt_cut(CutRole from) override {
+    if (!cuts.contains(from)) return false;
+    cuts[CutRole::Corrected] = cuts[from];
+    return true;
+  }
 
   std::map<std::string, int> saved;
   std::optional<StaticResult> stretched;
   std::optional<ToolPath> plan;
   std::map<CutRole, SimulatedCut> cuts;
-  std::optional<Compensation> correction;
+  std::optional<Correction> correction;
 };
 
 /// The paper's loop on a coarse block: a thick needle, so that a quarter of a minute is enough.
@@ -76,7 +82,9 @@ TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
   MemoryStore store;
   Workers workers(2);
   Monitor silent;
-  const Study study = run_study(coarse_case(), store, Stage::Verify, workers, silent);
+  Case settings = coarse_case();
+  settings.compensation.method = CompensationMethod::Paper;
+  const Study study = run_study(settings, store, Stage::Verify, workers, silent);
   ASSERT_TRUE(study.as_planned && study.corrected);
   EXPECT_EQ(study.as_planned->outcome, Outcome::Success);
   EXPECT_EQ(study.corrected->outcome, Outcome::Success);
@@ -84,6 +92,48 @@ TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
   const double after = study.corrected->centerline.abs_error_mm->mean;
   EXPECT_GT(before, 0.3) << "nothing to correct";
   EXPECT_LT(after, 0.5 * before);
+}
+
+TEST(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
+  MemoryStore store;
+  Workers workers(2);
+  Monitor silent;
+  const Study study = run_study(coarse_case(), store, Stage::Verify, workers, silent);
+  ASSERT_TRUE(study.corrected && study.correction && study.correction->iteration);
+  const ConvergedCompensation& done = *study.correction->iteration;
+  EXPECT_LE(done.passes.size(), 4U);
+  EXPECT_FALSE(store.cuts.contains(CutRole::Corrected) && done.passes.size() + 1 < store.cuts.size()) << "one more cut than passes";
+  const auto& best = store.cuts.at(role_of_pass(static_cast<int>(done.best)));
+  EXPECT_EQ(study.corrected->centerline.abs_error_mm->mean, best.centerline.abs_error_mm->mean);
+  EXPECT_NEAR(*done.result().mean_abs_error_mm, study.corrected->centerline.abs_error_mm->mean, 1e-12);
+  EXPECT_LT(study.corrected->centerline.abs_error_mm->mean, 0.5 * study.as_planned->centerline.abs_error_mm->mean);
+  ASSERT_TRUE(study.correction->floor_mm);
+  EXPECT_LT(*study.correction->floor_mm, study.corrected->centerline.abs_error_mm->mean + 0.05);
+
+  // A second run makes none of it again.
+  const std::size_t cuts = store.cuts.size();
+  const Study again = run_study(coarse_case(), store, Stage::Verify, workers, silent);
+  EXPECT_EQ(again.stages.back().state, StageState::Reused);
+  EXPECT_EQ(store.cuts.size(), cuts);
+  EXPECT_EQ(again.is_accepted, study.is_accepted);
+}
+
+TEST(IsAccepted, ByThePapersRule) {
+  Case settings;  // a needle of 1 mm: radius 0.5
+  const auto cut_with = [](double mean) {
+    SimulatedCut cut;
+    cut.outcome = Outcome::Success;
+    cut.centerline.abs_error_mm = Summary{.mean = mean};
+    return cut;
+  };
+  Correction paper;
+  paper.method = CompensationMethod::Paper;
+  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.99), cut_with(0.33)));
+  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.99), cut_with(0.63))) << "the paper's own case that is not";
+  EXPECT_FALSE(is_accepted(settings, paper, cut_with(0.3), cut_with(0.4))) << "worse than before";
+  SimulatedCut open = cut_with(0.1);
+  open.outcome = Outcome::OpenLoop;
+  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.0), open));
 }
 
 TEST(RunStudy, ASecondRunTakesEveryProductFromTheStore) {

@@ -169,6 +169,8 @@ struct ReportData {
   std::vector<LinePlot> kerf_plots;       ///< depth, lag and drift along the path
   std::vector<std::string> kerf_figures;  ///< complete SVG documents
   ReportTable kerf_layers;                ///< mid-line errors by depth
+  ReportTable correction;                 ///< pass by pass; no rows: not shown
+  std::vector<LinePlot> correction_plots;
   std::vector<ReportStage> stages;
   std::vector<ReportValue> program;  ///< summary of the robot program
   std::vector<ReportCheck> checks;

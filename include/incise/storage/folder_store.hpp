@@ -21,7 +21,13 @@ struct RunContext {
 };
 
 /// The products of a study and the folders that hold them.
-enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Correction, Corrected };
+enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Pass1, Pass2, Pass3, Correction, Corrected };
+
+/// The product that the cut of a role is.
+[[nodiscard]] constexpr Product product_of(CutRole role) {
+  constexpr std::array kProducts{Product::AsPlanned, Product::Pass1, Product::Pass2, Product::Pass3, Product::Corrected};
+  return kProducts[static_cast<std::size_t>(role)];
+}
 
 /// A Store on a folder. Each product has a folder of its own, written under a temporary name and renamed when it is complete:
 ///
@@ -31,10 +37,11 @@ enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Correction, Corre
 ///   plan/        path.json, path.vtp, plan.json
 ///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, steps.csv, removed.vtu,
 ///                frames.pvd, frames/, kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv, inner_edge_reference.csv
-///   correction/  path.json, path.vtp, compensate.json
+///   pass_1/ …    as as_planned/: cuts on the way to the correction, gone when it is found
+///   correction/  path.json, path.vtp, compensate.json, history.csv, errors.csv
 ///   corrected/   as as_planned/
 ///
-/// and while a cut is under way or interrupted, beside them, as_planned.checkpoint or corrected.checkpoint (see CheckpointFile),
+/// and while a cut is under way or interrupted, beside them, as_planned.checkpoint, pass_1.checkpoint … (see CheckpointFile),
 /// and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that the product depends on: a product
 /// with another key is stale and counts as absent. The key holds what the product is made with and from, and no names of files: a case
 /// folder may be moved. A cut whose judgement alone has changed (thermal, plan.close_margin_mm) is judged anew when it is loaded, in its
@@ -72,8 +79,9 @@ class FolderStore : public Store {
                 double wall_s) override;
   std::optional<IncisionProgress> load_progress(CutRole role, const TissueModel& model, Monitor& monitor) override;
   void keep_progress(CutRole role, const IncisionProgress& progress, bool is_interrupted) override;
-  std::optional<Compensation> load_correction() override;
-  void save_correction(const Compensation& correction, double wall_s) override;
+  std::optional<Correction> load_correction() override;
+  void save_correction(const Correction& correction, double wall_s) override;
+  bool adopt_cut(CutRole from) override;
 
   /// Where the checkpoint of a cut is, if there is one.
   [[nodiscard]] std::filesystem::path checkpoint(CutRole role) const;
@@ -98,6 +106,8 @@ class FolderStore : public Store {
   /// Made, and from other settings or inputs than the case's.
   [[nodiscard]] bool is_stale(Product product);
   void remove_checkpoints_of_no_use(Product saved);
+  /// What the cuts on the way to the correction left, once there is a corrected one.
+  void remove_passes();
   void save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write);
 
   CaseFile file_;
@@ -106,7 +116,7 @@ class FolderStore : public Store {
   std::chrono::duration<double> checkpoint_period_;
   std::chrono::steady_clock::time_point last_kept_ = std::chrono::steady_clock::now();
   std::filesystem::path last_checkpoint_;
-  std::array<std::string, 7> keys_;                      ///< empty: not computed yet
+  std::array<std::string, 10> keys_;                     ///< empty: not computed yet
   std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
 };
 

@@ -18,7 +18,9 @@ namespace incise {
 [[nodiscard]] nlohmann::ordered_json to_json(const MeshingResult& meshing);
 [[nodiscard]] nlohmann::ordered_json to_json(const Segmentation& segmentation);
 [[nodiscard]] nlohmann::ordered_json to_json(const StaticResult& result);
-[[nodiscard]] nlohmann::ordered_json to_json(const Compensation& compensation);
+[[nodiscard]] nlohmann::ordered_json to_json(const Correction& correction);
+/// What a person wants of it: method, outcome, floor, passes without their waypoints.
+[[nodiscard]] nlohmann::ordered_json correction_summary_json(const Correction& correction);
 [[nodiscard]] nlohmann::ordered_json plan_summary_json(const ToolPath& path);
 [[nodiscard]] nlohmann::ordered_json to_json(const std::vector<StageReport>& stages);
 

@@ -4,6 +4,7 @@
 #include <incise/cutting/thermal.hpp>
 #include <incise/cutting/tool.hpp>
 #include <incise/geometry/tet_mesh.hpp>
+#include <incise/evaluation/evaluation.hpp>
 #include <incise/imaging/segmentation.hpp>
 #include <incise/mechanics/constraints.hpp>
 #include <incise/mechanics/material.hpp>
@@ -11,6 +12,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace incise {
@@ -53,6 +55,19 @@ enum class TumorConfiguration {
   Rest,       ///< on the tissue as it was scanned
 };
 
+enum class CompensationMethod {
+  Default,  ///< pass by pass, until the cut lies where it was intended
+  Paper,    ///< each waypoint moves once by the error measured there
+};
+[[nodiscard]] std::string_view to_string(CompensationMethod method);  ///< default, paper
+
+/// How the path is corrected.
+struct CompensationChoice {
+  CompensationMethod method = CompensationMethod::Default;
+  ContourKind observable = ContourKind::Centerline;  ///< which line of the cut is brought to its target; the paper's method: the mid-line
+  double bias_mm = 0.0;  ///< expected error of the real cut less that of the simulated one, positive = farther out; the paper's method: none
+};
+
 /// What a study asks for, whatever files it came from. Every default is written here or in the structs that it holds.
 struct Case {
   std::string title = "Incision study";
@@ -70,6 +85,7 @@ struct Case {
   CutSettings cut;                          ///< without its power, which is the plan's
   ToughnessVariation toughness;
   ThermalSettings thermal;
+  CompensationChoice compensation;
   double close_margin_mm = 2.2;             ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
   int frames = 24;                          ///< moments of the cut that are kept for pictures
   std::optional<Mat4> T_robot_sim;          ///< where the specimen lies under the robot, until registration finds it

@@ -4,7 +4,9 @@
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/meshing/mesher.hpp>
 #include <incise/planning/compensation.hpp>
+#include <incise/planning/converging_compensation.hpp>
 #include <incise/procedure/incision.hpp>
+#include <incise/workflow/case.hpp>
 
 #include <optional>
 #include <string>
@@ -36,6 +38,15 @@ struct SimulatedCut {
   /// Tissue left unheated beside the tumour edge, mm: least distance of the mid-line from it less the half width; below 0: heat reaches the
   /// edge. Absent without a mid-line, and for an open cut.
   std::optional<double> thermal_margin_mm;
+};
+
+/// How the path was corrected.
+struct Correction {
+  CompensationMethod method = CompensationMethod::Default;
+  /// The corrected path. Errors per waypoint are those of the cut as planned, moves those from the path that it followed.
+  Compensation moves;
+  std::optional<double> floor_mm;                 ///< see mesh_floor_mm; the default method only
+  std::optional<ConvergedCompensation> iteration;  ///< pass by pass; the default method only
 };
 
 }  // namespace incise

@@ -8,12 +8,18 @@
 #include <incise/mechanics/statics.hpp>
 #include <incise/workflow/products.hpp>
 
+#include <array>
 #include <optional>
 
 namespace incise {
 
-/// Which of the two simulated cuts of a study.
-enum class CutRole { AsPlanned, Corrected };
+/// Which of the simulated cuts of a study: the first, those on the way to the correction, and the one that the correction ended with.
+enum class CutRole { AsPlanned, Pass1, Pass2, Pass3, Corrected };
+inline constexpr std::array kCutRoles{CutRole::AsPlanned, CutRole::Pass1, CutRole::Pass2, CutRole::Pass3, CutRole::Corrected};
+/// Most passes after the first cut.
+inline constexpr int kMostPasses = 3;
+/// The cut of a pass: 0 is the one as planned. @pre 0 <= pass <= kMostPasses.
+[[nodiscard]] constexpr CutRole role_of_pass(int pass) { return static_cast<CutRole>(pass); }
 
 /// Where a study finds what it was given and keeps what it makes. A load returns nothing when the product is absent or was made from other
 /// settings or inputs than today's: then the stage runs. `wall_s` is how long the stage took.
@@ -47,8 +53,11 @@ class Store {
   virtual std::optional<IncisionProgress> load_progress(CutRole role, const TissueModel& model, Monitor& monitor) = 0;
   /// Is shown a cut on its way (see ProgressKeeper) and keeps as much of it as it sees fit, the last of an interrupted cut always.
   virtual void keep_progress(CutRole role, const IncisionProgress& progress, bool is_interrupted) = 0;
-  virtual std::optional<Compensation> load_correction() = 0;
-  virtual void save_correction(const Compensation& correction, double wall_s) = 0;
+  virtual std::optional<Correction> load_correction() = 0;
+  virtual void save_correction(const Correction& correction, double wall_s) = 0;
+  /// Makes the cut of a pass the corrected one, and lets the passes go. Does nothing where there is a corrected cut of today's settings.
+  /// @returns whether there is one now.
+  virtual bool adopt_cut(CutRole from) = 0;
 };
 
 }  // namespace incise

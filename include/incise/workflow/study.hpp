@@ -40,9 +40,9 @@ struct Study {
   std::optional<ToolPath> plan;               ///< the intended path
   std::optional<ToolPath> followed;           ///< by the first cut: the planned path, or the one that was given
   std::optional<SimulatedCut> as_planned;
-  std::optional<Compensation> correction;
+  std::optional<Correction> correction;
   std::optional<SimulatedCut> corrected;
-  /// The corrected cut succeeded, its mean error is below the electrode's radius (the paper's rule, II-C.5) and below that of the first cut.
+  /// See is_accepted.
   bool is_accepted = false;
   /// How it ended: that of the last simulated cut, or NotConverged/Cancelled of the stage that could not go on.
   Outcome outcome = Outcome::Success;
@@ -52,7 +52,7 @@ struct Study {
 [[nodiscard]] std::string explain_stretch(const StaticResult& stretched);
 
 /// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch, plan, cut, correct
-/// the path by the measured error, cut again. Products that the store already has are used; new ones are saved as soon as they are made.
+/// the path by the measured error and cut again, once or until the cut lies where it was intended. Products that the store already has are used; new ones are saved as soon as they are made.
 /// @throws CaseError or DataError of the stage that cannot use what it was given; Cancelled when the monitor asks to stop between products.
 [[nodiscard]] Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor);
 

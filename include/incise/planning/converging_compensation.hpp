@@ -1,0 +1,106 @@
+#pragma once
+
+#include <incise/planning/plan_path.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// What a cut along a path was measured to be, point by point.
+struct PathErrors {
+  Points places;                        ///< N, mm, the path's frame: where the measured contour lies, evenly spaced
+  std::vector<double> signed_error_mm;  ///< N: positive = farther from the tumour than intended
+  /// How far tissue was dragged along the path when it was cut, on average, mm, >= 0 (see TissueDrag).
+  double lag_mm = 0.0;
+  bool is_success = true;  ///< the cut succeeded: ring closed, negative margin
+};
+
+/// Cuts along a path (in simulation, or in a test's stand-in for tissue) and measures; nullopt: no contour to measure.
+using MeasureCut = std::function<std::optional<PathErrors>(const ToolPath&)>;
+
+/// Where waypoints may go.
+struct SafeRegion {
+  double close_margin_mm = 2.2;      ///< a waypoint leaves at least this much tissue beside the tumour edge, > 0
+  double electrode_radius_mm = 0.5;  ///< >= 0
+  double max_offset_mm = 5.0;        ///< farthest from the place on the intended path, > 0
+  double rim_clearance_mm = 1.0;     ///< from the surface's rim, >= 0
+  Vec3 approach = -Vec3::UnitZ();
+  AxisMode axis_mode = AxisMode::Approach;
+};
+
+struct ConvergenceSettings {
+  SafeRegion region;
+  int simulations = 4;         ///< at most, the first (as intended) and the verifying one counted, >= 2
+  double floor_mm = 0.0;       ///< mean |error| that the mesh leaves in tissue that does not move, >= 0
+  double tolerance_mm = 0.05;  ///< converged: mean |error| within this of the floor, > 0
+  double smoothing_mm = 1.5;   ///< errors are averaged along the path with a Gaussian of this standard deviation, > 0
+  double relaxation = 1.0;     ///< share of the error that a plain step corrects, (0, 1]
+  /// The cut answers to the tool's path blurred (see PathErrors::lag_mm): about this share of the lag farther on, with
+  /// this share of the lag as standard deviation; >= 0 both. 0 and 0: every place answers to its own waypoint alone.
+  double shift_lags = 0.15;
+  double spread_lags = 1.0;
+  int memory = 2;         ///< earlier passes that Anderson acceleration looks back at, >= 0; 0: plain steps
+  double trust_mm = 4.0;  ///< farthest that a waypoint moves in one pass, > 0; halved after a pass that made it worse
+  double least_move_mm = 0.01;  ///< passes that would move no waypoint by more than this are not made, >= 0
+  /// Expected error of the real cut less that of the simulated one, positive = farther out: none, one for the whole
+  /// path, or one per waypoint. Added to what is measured.
+  std::vector<double> bias_mm;
+};
+
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const ConvergenceSettings& settings);
+
+/// One simulated cut of the iteration.
+struct CompensationPass {
+  std::vector<double> offset_mm;         ///< per waypoint: from the intended place, positive = away from the tumour
+  std::vector<double> error_mm;          ///< per waypoint: signed, averaged along the path; empty: nothing was measured
+  std::vector<std::uint8_t> is_limited;  ///< per waypoint: 1 where the safe region cut its move short
+  std::vector<std::uint8_t> is_interpolated;  ///< per waypoint: 1 where nothing was measured (its neighbours were used)
+  std::vector<double> along_mm;  ///< per measured point: its place on the intended path, arc length from the start
+  std::vector<double> point_error_mm;       ///< per measured point: signed error, with the bias
+  std::optional<double> mean_abs_error_mm;  ///< of all measured points; absent: nothing was measured
+  std::optional<double> max_abs_error_mm;
+  std::optional<double> smooth_error_mm;  ///< mean of |error_mm|: what moving waypoints can correct
+  double lag_mm = 0.0;
+  double max_move_mm = 0.0;  ///< greatest move from the pass that it was made from
+  bool is_success = false;
+};
+
+enum class CompensationOutcome {
+  Converged,    ///< mean |error| within the tolerance of the floor
+  BudgetSpent,  ///< all simulations made; the last one is the best, and not within the tolerance
+  BestKept,     ///< all simulations made; an earlier one was better, and is what is returned
+  AtRest,       ///< nothing to move: the error along the path is below least_move_mm, or the safe region holds it
+  NoMeasure,    ///< the cut along the intended path left nothing to measure
+};
+/// converged, budget_spent, best_kept, at_rest, no_measure
+[[nodiscard]] std::string_view to_string(CompensationOutcome outcome);
+[[nodiscard]] std::optional<CompensationOutcome> parse_compensation_outcome(std::string_view name);
+
+struct ConvergedCompensation {
+  ToolPath path;                         ///< of the best pass
+  std::vector<CompensationPass> passes;  ///< one per simulation, in order; the first: the intended path
+  std::size_t best = 0;  ///< pass of the least mean |error| among those that succeeded (all, if none did)
+  CompensationOutcome outcome = CompensationOutcome::NoMeasure;
+  /// Geometric mean, per pass, of what was left of the mean |error|, from the first to the best; absent without two.
+  std::optional<double> contraction;
+  [[nodiscard]] const CompensationPass& result() const { return passes.at(best); }
+};
+
+/// Moves the waypoints of a path across the surface, pass by pass, until the cut that it leads to lies where it was
+/// intended. See docs/models/compensation.md: errors are taken along the path from where the tool cut them (lag behind
+/// it), averaged, and corrected along the normal of the tumour edge; steps are accelerated (Anderson), kept inside a
+/// trust region and the safe region; the best pass is kept. Every path that is returned was cut.
+/// @param intended  closed path on the surface, at the intended distance; its tumor_edge has to be given.
+/// @throws InvalidArgument listing every violation of the settings, or for an open path; CaseError if the intended path
+/// fails check_path. Whatever `measure` throws passes through.
+[[nodiscard]] ConvergedCompensation compensate_converging(const ToolPath& intended, const SurfaceQuery& surface,
+                                                          const MeasureCut& measure,
+                                                          const ConvergenceSettings& settings = {});
+
+}  // namespace incise

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/mechanics/tissue.hpp>
+#include <incise/workflow/case.hpp>
+#include <incise/workflow/products.hpp>
+
+#include <functional>
+#include <optional>
+
+namespace incise {
+
+/// Mean |error|, mm, that the mesh alone leaves: of a cut along the path into the stretched tissue, held in place at
+/// every vertex, with a tool that does not drag. For the mid-line that of its distances from the lateral margin; for
+/// the inner edge that of its distances from their own mean, as the width of a kerf without drag is another. nullopt:
+/// that cut left nothing to measure.
+/// @throws Cancelled when the monitor asks to stop.
+[[nodiscard]] std::optional<double> mesh_floor_mm(const Case& settings, const TissueModel& model,
+                                                  const TissueState& stretched, const ToolPath& path, Workers& workers,
+                                                  Monitor& monitor);
+
+/// The errors of a cut that its path is corrected by: those of the line that the case observes, in the stretched tissue
+/// before the cut. A ring without a closed mid-line near the skin is measured by its shallowest closed layer, seen
+/// along the approach (`monitor` is told). nullopt: there is none.
+[[nodiscard]] std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut,
+                                                    const Contour& tumor_edge, Monitor& monitor);
+
+/// One pass of the paper's rule. @pre the cut has a mid-line.
+[[nodiscard]] Correction correct_as_paper(const Case& settings, const ToolPath& followed, const SimulatedCut& cut,
+                                          const Contour& tumor_edge, const SurfaceQuery& surface);
+
+/// Simulates the cut of a pass (0: along the path as followed first).
+using CutOfPass = std::function<SimulatedCut(int pass, const ToolPath& path)>;
+
+/// Corrects pass by pass, with at most kMostPasses cuts after the first. @param floor_mm  see mesh_floor_mm; nothing: 0
+/// is aimed at.
+[[nodiscard]] Correction correct_converging(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
+                                            const SurfaceQuery& surface, std::optional<double> floor_mm,
+                                            const CutOfPass& cut, Monitor& monitor);
+
+/// The paper's rule (II-C.5): a corrected cut is accepted when its mean |error| is below the electrode's radius. Ours
+/// adds that it has to succeed and to be nearer than the first cut, where that could be measured.
+[[nodiscard]] bool is_accepted(const Case& settings, const Correction& correction, const SimulatedCut& first,
+                               const SimulatedCut& corrected);
+
+}  // namespace incise

@@ -1,0 +1,222 @@
+#include "planning/anderson.hpp"
+#include "planning/path_course.hpp"
+#include "planning/safe_moves.hpp"
+#include "planning/tissue_response.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/planning/converging_compensation.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr int kMostHalvings = 6;
+/// Share of the floor that is left of the mesh's grain once errors are averaged along the path.
+constexpr double kSmoothedGrain = 0.25;
+
+/// The iteration: passes that were made, and where the next one goes.
+class ConvergingIteration {
+ public:
+  ConvergingIteration(const ToolPath& intended, const SurfaceQuery& surface, const MeasureCut& measure,
+                      const ConvergenceSettings& settings)
+      : intended_(intended),
+        measure_(measure),
+        settings_(settings),
+        course_(intended),
+        movable_(intended, surface, settings.region),
+        trust_mm_(settings.trust_mm) {}
+
+  ConvergedCompensation run() {
+    const std::size_t n = intended_.waypoints.size();
+    carry_out({intended_, std::vector<double>(n, 0.0), std::vector<std::uint8_t>(n, 0)}, 0.0);
+    if (!passes_.front().mean_abs_error_mm) return finish(CompensationOutcome::NoMeasure);
+    while (true) {
+      if (is_converged()) return finish(CompensationOutcome::Converged);
+      if (static_cast<int>(passes_.size()) >= settings_.simulations) break;
+      const std::optional<MovablePath::Moved> next = next_path();
+      if (!next) return finish(CompensationOutcome::AtRest);
+      carry_out(*next, greatest_move(passes_[best_].offset_mm, next->offset_mm));
+    }
+    const bool is_last_best = best_ + 1 == passes_.size();
+    return finish(is_last_best ? CompensationOutcome::BudgetSpent : CompensationOutcome::BestKept);
+  }
+
+ private:
+  static double greatest_move(const std::vector<double>& from, const std::vector<double>& to) {
+    double greatest = 0.0;
+    for (std::size_t i = 0; i < from.size(); ++i) greatest = std::max(greatest, std::abs(to[i] - from[i]));
+    return greatest;
+  }
+
+  void carry_out(const MovablePath::Moved& moved, double move_mm) {
+    CompensationPass pass;
+    pass.offset_mm = moved.offset_mm;
+    pass.is_limited = moved.is_limited;
+    pass.max_move_mm = move_mm;
+    if (const std::optional<PathErrors> errors = measure_(moved.path)) note(*errors, pass);
+    passes_.push_back(std::move(pass));
+    const std::size_t last = passes_.size() - 1;
+    if (last == 0 || is_better(passes_[last], passes_[best_])) {
+      best_ = last;
+      best_path_ = moved.path;
+    } else {
+      trust_mm_ = 0.5 * move_mm;
+    }
+  }
+
+  void note(const PathErrors& errors, CompensationPass& pass) const {
+    INCISE_REQUIRE(errors.places.size() == errors.signed_error_mm.size() && !errors.places.empty(),
+                   fmt::format("expected one error for each measured place, found {} for {}",
+                               errors.signed_error_mm.size(), errors.places.size()));
+    pass.point_error_mm = errors.signed_error_mm;
+    double sum = 0.0;
+    double greatest = 0.0;
+    for (std::size_t k = 0; k < errors.places.size(); ++k) {
+      double& expected = pass.point_error_mm[k];
+      pass.along_mm.push_back(course_.along_mm(errors.places[k]));
+      if (!settings_.bias_mm.empty()) expected += course_.interpolate(settings_.bias_mm, pass.along_mm[k]);
+      sum += std::abs(expected);
+      greatest = std::max(greatest, std::abs(expected));
+    }
+    PathCourse::Averages averages = course_.average(pass.along_mm, pass.point_error_mm, settings_.smoothing_mm);
+    pass.error_mm = std::move(averages.value);
+    pass.is_interpolated = std::move(averages.is_interpolated);
+    pass.mean_abs_error_mm = sum / static_cast<double>(errors.places.size());
+    pass.max_abs_error_mm = greatest;
+    pass.smooth_error_mm = 0.0;
+    for (const double e : pass.error_mm)
+      *pass.smooth_error_mm += std::abs(e) / static_cast<double>(pass.error_mm.size());
+    pass.is_success = errors.is_success;
+    pass.lag_mm = errors.lag_mm;
+  }
+
+  static bool is_better(const CompensationPass& a, const CompensationPass& b) {
+    if (!a.mean_abs_error_mm) return false;
+    if (a.is_success != b.is_success) return a.is_success;
+    return *a.mean_abs_error_mm < *b.mean_abs_error_mm;
+  }
+
+  [[nodiscard]] bool is_converged() const {
+    const CompensationPass& best = passes_[best_];
+    return best.is_success && *best.mean_abs_error_mm <= settings_.floor_mm + settings_.tolerance_mm;
+  }
+
+  [[nodiscard]] IterationPoint as_point(const CompensationPass& pass) const {
+    const double lag = passes_.front().lag_mm;
+    const TissueResponse response(course_, settings_.shift_lags * lag, settings_.spread_lags * lag);
+    IterationPoint point{pass.offset_mm, response.answer(pass.error_mm)};
+    for (double& move : point.f) move *= settings_.relaxation;
+    return point;
+  }
+
+  /// From the best pass, inside the trust region, shortened until it can be cut; nothing: it would hardly move.
+  [[nodiscard]] std::optional<MovablePath::Moved> next_path() const {
+    const IterationPoint base = as_point(passes_[best_]);
+    std::vector<IterationPoint> earlier;
+    for (std::size_t back = 0; back < passes_.size() && static_cast<int>(earlier.size()) < settings_.memory; ++back) {
+      const std::size_t k = passes_.size() - 1 - back;
+      if (k != best_ && passes_[k].mean_abs_error_mm) earlier.push_back(as_point(passes_[k]));
+    }
+    const std::vector<double> wanted = accelerated_step(base, earlier, kSmoothedGrain * settings_.floor_mm);
+    double share = std::min(1.0, trust_mm_ / std::max(trust_mm_, greatest_move(base.x, wanted)));
+    for (int halving = 0; halving <= kMostHalvings; ++halving, share *= 0.5) {
+      std::vector<double> offset = base.x;
+      for (std::size_t i = 0; i < offset.size(); ++i) offset[i] += share * (wanted[i] - base.x[i]);
+      MovablePath::Moved moved = movable_.at(offset);
+      if (greatest_move(base.x, moved.offset_mm) <= settings_.least_move_mm) return std::nullopt;
+      if (movable_.can_be_cut(moved.path)) return moved;
+    }
+    return std::nullopt;
+  }
+
+  ConvergedCompensation finish(CompensationOutcome outcome) {
+    ConvergedCompensation result{std::move(best_path_), std::move(passes_), best_, outcome, {}};
+    if (best_ > 0) {
+      const double left = *result.result().mean_abs_error_mm / *result.passes.front().mean_abs_error_mm;
+      result.contraction = std::pow(left, 1.0 / static_cast<double>(best_));
+    }
+    return result;
+  }
+
+  const ToolPath& intended_;
+  const MeasureCut& measure_;
+  const ConvergenceSettings& settings_;
+  const PathCourse course_;
+  const MovablePath movable_;
+  double trust_mm_;
+  std::vector<CompensationPass> passes_;
+  std::size_t best_ = 0;
+  ToolPath best_path_;
+};
+
+}  // namespace
+
+std::string_view to_string(CompensationOutcome outcome) {
+  switch (outcome) {
+    case CompensationOutcome::Converged:
+      return "converged";
+    case CompensationOutcome::BudgetSpent:
+      return "budget_spent";
+    case CompensationOutcome::BestKept:
+      return "best_kept";
+    case CompensationOutcome::AtRest:
+      return "at_rest";
+    case CompensationOutcome::NoMeasure:
+      return "no_measure";
+  }
+  return "unknown";
+}
+
+std::optional<CompensationOutcome> parse_compensation_outcome(std::string_view name) {
+  for (int value = 0; value <= static_cast<int>(CompensationOutcome::NoMeasure); ++value) {
+    if (name == to_string(static_cast<CompensationOutcome>(value))) return static_cast<CompensationOutcome>(value);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> validate(const ConvergenceSettings& s) {
+  std::vector<std::string> violations;
+  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
+    if (is_valid && std::isfinite(found)) return;
+    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
+  };
+  const SafeRegion& r = s.region;
+  expect(r.close_margin_mm > 0.0, "region.close_margin_mm", r.close_margin_mm, "a distance above 0 mm");
+  expect(r.electrode_radius_mm >= 0.0, "region.electrode_radius_mm", r.electrode_radius_mm, "0 mm or more");
+  expect(r.max_offset_mm > 0.0, "region.max_offset_mm", r.max_offset_mm, "a distance above 0 mm");
+  expect(r.rim_clearance_mm >= 0.0, "region.rim_clearance_mm", r.rim_clearance_mm, "0 mm or more");
+  expect(r.approach.norm() > 0.0, "region.approach", r.approach.norm(), "a vector of length above 0");
+  expect(s.simulations >= 2, "simulations", s.simulations, "2 or more");
+  expect(s.floor_mm >= 0.0, "floor_mm", s.floor_mm, "0 mm or more");
+  expect(s.tolerance_mm > 0.0, "tolerance_mm", s.tolerance_mm, "a distance above 0 mm");
+  expect(s.smoothing_mm > 0.0, "smoothing_mm", s.smoothing_mm, "a distance above 0 mm");
+  expect(s.relaxation > 0.0 && s.relaxation <= 1.0, "relaxation", s.relaxation, "a share in (0, 1]");
+  expect(s.shift_lags >= 0.0, "shift_lags", s.shift_lags, "0 or more");
+  expect(s.spread_lags >= 0.0, "spread_lags", s.spread_lags, "0 or more");
+  expect(s.memory >= 0, "memory", s.memory, "0 or more");
+  expect(s.trust_mm > 0.0, "trust_mm", s.trust_mm, "a distance above 0 mm");
+  expect(s.least_move_mm >= 0.0, "least_move_mm", s.least_move_mm, "0 mm or more");
+  for (const double bias : s.bias_mm) expect(true, "bias_mm", bias, "finite numbers");
+  return violations;
+}
+
+ConvergedCompensation compensate_converging(const ToolPath& intended, const SurfaceQuery& surface,
+                                            const MeasureCut& measure, const ConvergenceSettings& settings) {
+  const std::vector<std::string> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  INCISE_REQUIRE(intended.is_closed, "expected a closed path, found an open one");
+  INCISE_REQUIRE(intended.tumor_edge.is_closed && intended.tumor_edge.points.size() >= 3,
+                 "expected a path with a closed tumour edge of at least 3 points");
+  INCISE_REQUIRE(settings.bias_mm.size() <= 1 || settings.bias_mm.size() == intended.waypoints.size(),
+                 fmt::format("expected no bias_mm, one, or one for each of {} waypoints, found {}",
+                             intended.waypoints.size(), settings.bias_mm.size()));
+  check_path_as({"compensation"}, intended, surface, settings.region.approach, 0.0);
+  return ConvergingIteration(intended, surface, measure, settings).run();
+}
+
+}  // namespace incise

@@ -1,0 +1,157 @@
+#include <incise/core/error.hpp>
+#include <incise/geometry/surface_query.hpp>
+#include <incise/workflow/correction.hpp>
+#include <incise/workflow/store.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+
+std::string_view to_string(CompensationMethod method) {
+  switch (method) {
+    case CompensationMethod::Default:
+      return "default";
+    case CompensationMethod::Paper:
+      return "paper";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// Points of the inner edge, tool out, at their places in the stretched tissue before the cut.
+PathErrors inner_edge_errors(const SimulatedCut& cut) {
+  const Contour& seen = *cut.incision.inner_edge;
+  const Contour& reference = *cut.incision.kerf.inner_edge_reference;
+  PathErrors errors;
+  errors.signed_error_mm = cut.inner_edge.errors.signed_error_mm;
+  for (const Vec3& p : cut.inner_edge.errors.points.points) {
+    const ContourPoint at = nearest_on(seen, p);
+    const Vec3& start = reference.points[at.segment];
+    const Vec3& end = reference.points[(at.segment + 1) % reference.points.size()];
+    errors.places.push_back(start + at.fraction * (end - start));
+  }
+  errors.is_success = cut.outcome == Outcome::Success && cut.inner_edge.outcome == Outcome::Success;
+  return errors;
+}
+
+/// The mid-line of the shallowest layer in which the ring closed, at the skin's height.
+std::optional<PathErrors> layer_path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
+                                            Monitor& monitor) {
+  for (const KerfLayer& layer : cut.incision.kerf.layers) {
+    if (!layer.centerline || !layer.is_closed.value_or(false)) continue;
+    Contour lifted = *layer.centerline;
+    for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
+    ContourErrors found = contour_errors(lifted, tumor_edge, settings.plan.lateral_margin_mm, settings.plan.approach);
+    monitor.message(Severity::Notice,
+                    fmt::format("the ring is open near the skin; its path is corrected by the mid-line {} mm deep",
+                                layer.depth_mm));
+    return PathErrors{std::move(found.points.points), std::move(found.signed_error_mm), 0.0, false};
+  }
+  return std::nullopt;
+}
+
+ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {
+  ConvergenceSettings convergence;
+  convergence.region.close_margin_mm = settings.close_margin_mm;
+  convergence.region.electrode_radius_mm = radius_mm(settings.tool);
+  convergence.region.approach = settings.plan.approach;
+  convergence.region.axis_mode = settings.plan.axis_mode;
+  convergence.region.rim_clearance_mm = settings.plan.rim_clearance_mm;
+  convergence.simulations = 1 + kMostPasses;
+  convergence.floor_mm = floor_mm;
+  if (settings.compensation.bias_mm != 0.0) convergence.bias_mm = {settings.compensation.bias_mm};
+  return convergence;
+}
+
+std::string in_words(int pass, const std::optional<PathErrors>& errors) {
+  const std::string name = pass == 0 ? std::string("as planned") : fmt::format("pass {}", pass);
+  if (!errors) return fmt::format("compensate: {}: nothing to measure", name);
+  double sum = 0.0;
+  for (const double e : errors->signed_error_mm) sum += std::abs(e);
+  return fmt::format("compensate: {}: mean |error| {:.3f} mm", name,
+                     sum / static_cast<double>(errors->signed_error_mm.size()));
+}
+
+}  // namespace
+
+std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
+                                      Monitor& monitor) {
+  std::optional<PathErrors> errors;
+  if (settings.compensation.observable == ContourKind::InnerEdge) {
+    if (cut.incision.inner_edge && cut.incision.kerf.inner_edge_reference && cut.inner_edge.abs_error_mm)
+      errors = inner_edge_errors(cut);
+  } else if (cut.centerline.abs_error_mm && cut.incision.is_closed_loop.value_or(false)) {
+    const ContourErrors& found = cut.centerline.errors;
+    errors = PathErrors{found.points.points, found.signed_error_mm, 0.0, cut.outcome == Outcome::Success};
+  } else {
+    errors = layer_path_errors(settings, cut, tumor_edge, monitor);
+  }
+  if (errors && cut.incision.kerf.drag) errors->lag_mm = std::max(0.0, cut.incision.kerf.drag->lag.mean);
+  return errors;
+}
+
+Correction correct_as_paper(const Case& settings, const ToolPath& followed, const SimulatedCut& cut,
+                            const Contour& tumor_edge, const SurfaceQuery& surface) {
+  CompensationSettings compensation;
+  compensation.target_mm = settings.plan.lateral_margin_mm;
+  compensation.close_margin_mm = settings.close_margin_mm;
+  compensation.electrode_radius_mm = radius_mm(settings.tool);
+  compensation.approach = settings.plan.approach;
+  compensation.axis_mode = settings.plan.axis_mode;
+  Correction correction;
+  correction.method = CompensationMethod::Paper;
+  correction.moves = compensate_paper(followed, *cut.incision.centerline, tumor_edge, surface, compensation);
+  return correction;
+}
+
+Correction correct_converging(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
+                              const SurfaceQuery& surface, std::optional<double> floor_mm, const CutOfPass& cut,
+                              Monitor& monitor) {
+  int pass = 0;
+  const MeasureCut measure = [&](const ToolPath& path) {
+    std::optional<PathErrors> errors = path_errors(settings, cut(pass, path), tumor_edge, monitor);
+    monitor.message(Severity::Notice, in_words(pass, errors));
+    ++pass;
+    return errors;
+  };
+  ToolPath start = followed;
+  start.tumor_edge = tumor_edge;
+  Correction correction;
+  correction.floor_mm = floor_mm;
+  correction.iteration =
+      compensate_converging(start, surface, measure, convergence_settings(settings, floor_mm.value_or(0.0)));
+  const ConvergedCompensation& done = *correction.iteration;
+  Compensation& moves = correction.moves;
+  moves.path = done.path;
+  moves.error_mm = done.passes.front().error_mm;
+  moves.move_mm = done.result().offset_mm;
+  moves.is_limited = done.result().is_limited;
+  moves.is_interpolated = done.passes.front().is_interpolated;
+  moves.limited_waypoints = static_cast<std::size_t>(std::count(moves.is_limited.begin(), moves.is_limited.end(), 1));
+  moves.interpolated_waypoints =
+      static_cast<std::size_t>(std::count(moves.is_interpolated.begin(), moves.is_interpolated.end(), 1));
+  for (const double move : moves.move_mm) moves.max_move_mm = std::max(moves.max_move_mm, std::abs(move));
+  return correction;
+}
+
+bool is_accepted(const Case& settings, const Correction& correction, const SimulatedCut& first,
+                 const SimulatedCut& corrected) {
+  if (corrected.outcome != Outcome::Success) return false;
+  const double radius = radius_mm(settings.tool);
+  if (correction.iteration) {
+    const ConvergedCompensation& done = *correction.iteration;
+    const CompensationPass& best = done.result();
+    const bool is_nearer =
+        !done.passes.front().is_success || *best.mean_abs_error_mm < *done.passes.front().mean_abs_error_mm;
+    return best.is_success && *best.mean_abs_error_mm < radius && (done.best == 0 || is_nearer);
+  }
+  const auto& before = first.centerline.abs_error_mm;
+  const auto& after = corrected.centerline.abs_error_mm;
+  return before && after && after->mean < radius && after->mean < before->mean;
+}
+
+}  // namespace incise

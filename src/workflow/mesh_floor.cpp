@@ -1,0 +1,63 @@
+#include <incise/core/error.hpp>
+#include <incise/workflow/correction.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// Tissue that does not move passes the tool at speed, so contact may not have to last as long as in tissue that is
+/// dragged along: a tet goes that stays in reach for this share of the widest way through the tool's reach. The kerf is
+/// then about as wide as the needle.
+constexpr double kContactShare = 13.0 / 15.0;
+constexpr double kBeyondTissueMm = 1e4;
+
+/// The stretched body as one that nothing can move.
+TissueModel held_everywhere(const TissueModel& model, const TissueState& stretched) {
+  TetMesh mesh = model.mesh;
+  mesh.vertices = stretched.positions;
+  mesh.point_data.clear();
+  mesh.cell_data.clear();
+  const Vec3 middle = mesh.vertices.front();
+  return make_tissue_model(std::move(mesh), Material{}, {FixedConstraint{SphereRegion{middle, kBeyondTissueMm}}},
+                           Vec3::Zero());
+}
+
+CutSettings without_drag(const Case& settings) {
+  CutSettings cut = settings.cut;
+  cut.power_w = cut.reference_power_w;
+  cut.bond_stiffness_kpa_mm2 = 0.0;
+  cut.tear_energy_kpa.reset();
+  cut.slip_mm.reset();
+  const double way_mm = kContactShare * 2.0 * (radius_mm(settings.tool) + cut.reach_mm);
+  cut.dullness = way_mm / (cut.speed_mm_s * cut.reference_step_s);
+  return cut;
+}
+
+double mean_distance_from_mean(const std::vector<double>& values) {
+  double mean = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  double distance = 0.0;
+  for (const double value : values) distance += std::abs(value - mean) / static_cast<double>(values.size());
+  return distance;
+}
+
+}  // namespace
+
+std::optional<double> mesh_floor_mm(const Case& settings, const TissueModel& model, const TissueState& stretched,
+                                    const ToolPath& path, Workers& workers, Monitor& monitor) {
+  const TissueModel held = held_everywhere(model, stretched);
+  Case frozen = settings;
+  frozen.cut = without_drag(settings);
+  frozen.plan.power_w = frozen.cut.reference_power_w;
+  frozen.frames = 0;
+  const SimulatedCut cut = cut_and_judge(frozen, held, rest_state(held), path, path, workers, monitor);
+  if (cut.outcome == Outcome::Cancelled) throw Cancelled("the cut that finds the mesh's floor was interrupted");
+  const bool is_centerline = settings.compensation.observable == ContourKind::Centerline;
+  const Evaluation& seen = is_centerline ? cut.centerline : cut.inner_edge;
+  if (!seen.abs_error_mm) return std::nullopt;
+  return is_centerline ? seen.abs_error_mm->mean : mean_distance_from_mean(seen.errors.signed_error_mm);
+}
+
+}  // namespace incise
