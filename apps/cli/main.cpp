@@ -84,6 +84,7 @@ int run(int argc, char** argv) {
   add_report(application);
   add_verify(application);
   add_schema(application);
+  add_study(application);
   if (argc > 1 && argv[1][0] != '-') refuse_unknown_verb(app, argv[1]);
   refuse_numbers_that_are_not_finite(argc, argv);
   try {

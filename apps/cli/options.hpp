@@ -129,5 +129,6 @@ void add_audit(Application& application);
 void add_report(Application& application);
 void add_verify(Application& application);
 void add_schema(Application& application);
+void add_study(Application& application);
 
 }  // namespace incise::cli

@@ -116,7 +116,7 @@ std::string page_header(const ReportData& data) {
     html += "<a href=\"#result\">Result</a><a href=\"#scan\">Scan</a><a href=\"#mesh\">Mesh</a><a href=\"#cut\">Cut</a>"
             "<a href=\"#error\">Error</a><a href=\"#kerf\">Kerf</a><a href=\"#program\">Program</a>";
   }
-  if (!data.on_tissue.empty()) html += "<a href=\"#tissue\">On the measured tissue</a>";
+  if (!data.on_tissue.empty()) html += "<a href=\"#tissue\">" + escaped(data.pictures_heading) + "</a>";
   html += "<a href=\"#record\">Settings and provenance</a></nav>\n</header>\n";
   return html;
 }
@@ -252,7 +252,7 @@ std::string program_section(const ReportData& data) {
 
 std::string tissue_section(const ReportData& data) {
   if (data.on_tissue.empty()) return "";
-  std::string html = "<section>\n" + heading("tissue", "On the measured tissue");
+  std::string html = "<section>\n" + heading("tissue", data.pictures_heading);
   for (const ReportPicture& picture : data.on_tissue) {
     html += "<h3>" + escaped(picture.title) + "</h3>\n";
     if (!picture.lead.empty()) html += "<p>" + escaped(picture.lead) + "</p>\n";

@@ -175,6 +175,7 @@ struct ReportData {
   std::vector<ReportValue> program;  ///< summary of the robot program
   std::vector<ReportCheck> checks;
   std::vector<ReportPicture> on_tissue;  ///< registration with the measured tissue, and the program that was laid onto it
+  std::string pictures_heading = "On the measured tissue";  ///< of the section with them
   bool is_of_a_study = true;             ///< false: sections of a study that this is no report of are left out
   std::string program_figure;           ///< a complete SVG document: the program as the player ran it
   std::vector<ReportValue> replay;      ///< numbers of that

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "study_steps.hpp"
+
+#include <incise/core/monitor.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise::cli {
+
+/// A specimen of the virtual laboratory on its way through an experiment. Everything that a planner's command is given
+/// lies in `folder`; the specimen itself lies in `truth`, which only `bench make` and `bench cut` are told of.
+struct TrialSetup {
+  std::string name;                                      ///< "S1"
+  std::uint64_t seed = 1;                                ///< of the specimen
+  std::vector<std::pair<std::string, double>> given;     ///< hidden parameters that are not drawn from the seed
+  std::filesystem::path folder, truth;
+  double power_w = 35.0;
+  int tets = 25000;                                      ///< of the planner's mesh
+};
+
+/// The simulated tool that a calibration chose.
+struct ChosenTool {
+  double speed_mm_s = 13.0;
+  double dullness = 9.0;
+};
+
+/// What came of a cut.
+struct TrialCut {
+  std::filesystem::path evaluation;   ///< file of `incise evaluate`
+  nlohmann::ordered_json measures;    ///< what it printed: of the photograph
+};
+
+class SpecimenTrial {
+ public:
+  SpecimenTrial(TrialSetup setup, int threads, const Monitor& monitor);
+
+  /// From the readings to the planned path: the specimen is made; its CT is meshed, clamped and stretched; that surface
+  /// is laid on the camera's cloud, whose scale the platform of known height gives; the marked edge is carried into the
+  /// simulation; stiffness follows from the suture's pull; the path is planned. @returns false where a step refused.
+  bool prepare(const std::optional<ChosenTool>& tool);
+  /// Projects a path (sim_stretched) on the tissue, exports the program after its checks, has the bench cut, and
+  /// measures the photograph. @param tag  of the files: planned, corrected.
+  std::optional<TrialCut> cut(const std::filesystem::path& path, const std::string& tag);
+  /// Runs one more command of the planner in this specimen's folder. @returns nothing where it refused (see ended_at).
+  std::optional<StepRecord> run(const ExperimentStep& step);
+
+  [[nodiscard]] const TrialSetup& setup() const { return setup_; }
+  [[nodiscard]] std::filesystem::path at(const std::string& name) const { return setup_.folder / name; }
+  [[nodiscard]] std::filesystem::path case_file() const { return at("case.yaml"); }
+  [[nodiscard]] std::filesystem::path planned_path() const { return at("planned/plan/path.json"); }
+  [[nodiscard]] double stretch_force_n() const { return stretch_force_n_; }
+  [[nodiscard]] double youngs_modulus_kpa() const { return youngs_modulus_kpa_; }
+  [[nodiscard]] double registration_rmse_mm() const { return registration_rmse_mm_; }
+  /// The step that refused, and why; empty: none did.
+  [[nodiscard]] const std::string& ended_at() const { return ended_at_; }
+  [[nodiscard]] const std::vector<std::string>& commands() const { return runner_.lines(); }
+
+ private:
+  bool make();
+  bool find_shape();
+  bool find_place();
+  void write_edge(const nlohmann::ordered_json& registration) const;
+  void write_case(const std::optional<ChosenTool>& tool) const;
+
+  TrialSetup setup_;
+  StepRunner runner_;
+  std::string ended_at_;
+  double stretch_force_n_ = 0.0;
+  double youngs_modulus_kpa_ = 0.0;
+  double camera_scale_ = 1.0;
+  double registration_rmse_mm_ = 0.0;
+};
+
+}  // namespace incise::cli

@@ -1,0 +1,81 @@
+#include "study_steps.hpp"
+
+#include "options.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+
+namespace incise::cli {
+namespace {
+
+using StepJson = nlohmann::ordered_json;
+
+/// What decides the outcome of a step.
+StepJson identity_of(const ExperimentStep& step) {
+  StepJson json;
+  json["build"] = fmt::format("{} ({})", version(), source_commit());
+  json["arguments"] = step.arguments;
+  StepJson& inputs = json["inputs"] = StepJson::object();
+  for (const std::filesystem::path& path : step.inputs) {
+    inputs[path.string()] = std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path);
+  }
+  return json;
+}
+
+/// The last lines that a failed command wrote.
+std::string end_of(const std::filesystem::path& log) {
+  constexpr std::size_t kMostCharacters = 600;
+  std::string text = read_text(log);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  const std::size_t line = text.rfind('\n');
+  text = line == std::string::npos ? text : text.substr(line + 1);
+  return text.size() > kMostCharacters ? text.substr(text.size() - kMostCharacters) : text;
+}
+
+}  // namespace
+
+StepRunner::StepRunner(std::filesystem::path folder, int threads, const Monitor& monitor)
+    : folder_(std::move(folder)), log_(folder_ / "log.txt"), threads_(threads), monitor_(monitor) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_ / "steps", error);
+  if (error) throw DataError(folder_, "", error.message(), "a folder that can be made");
+}
+
+StepRecord StepRunner::run(const ExperimentStep& step) {
+  lines_.push_back("incise " + shell_line(step.arguments));
+  const std::filesystem::path file = folder_ / "steps" / (step.name + ".json");
+  const StepJson identity = identity_of(step);
+  StepRecord record;
+  if (std::filesystem::exists(file) && (step.product.empty() || std::filesystem::exists(step.product))) {
+    const StepJson older = read_json(file);
+    if (older.is_object() && older.value("identity", StepJson()) == identity) {
+      return {older.at("status").get<int>(), older.at("result"), older.at("wall_s").get<double>(), true};
+    }
+  }
+  std::filesystem::remove(file);
+  OwnProcess process{step.arguments, folder_ / "steps" / (step.name + ".out"), log_};
+  for (const std::string& word : {std::string("--json"), std::string("--quiet"), std::string("--threads"), std::to_string(threads_)})
+    process.arguments.push_back(word);
+  const auto start = std::chrono::steady_clock::now();
+  record.status = run_process(process, monitor_);
+  record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (record.status != kDone && record.status != kNotAcceptable) {
+    throw DataError(log_, step.name, fmt::format("`{}` ended with status {}: {}", lines_.back(), record.status, end_of(log_)),
+                    "status 0 or 4");
+  }
+  const std::string printed = read_text(process.output);
+  if (!printed.empty()) record.result = StepJson::parse(printed);
+  std::filesystem::remove(process.output);
+  write_json(file, {{"identity", identity}, {"status", record.status}, {"result", record.result}, {"wall_s", record.wall_s}});
+  return record;
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "study_specimen.hpp"
+
+#include <incise/report/report_data.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise::cli {
+
+enum class TrialRole { Calibrate, Test, Outside };
+[[nodiscard]] const char* to_string(TrialRole role);  ///< calibrate, test, outside
+
+/// One specimen of an experiment, and what came of it.
+struct Trial {
+  std::string name;
+  std::uint64_t seed = 0;
+  TrialRole role = TrialRole::Calibrate;
+  std::optional<TrialCut> planned, corrected;
+  nlohmann::ordered_json compensation;  ///< what `incise compensate` printed; null: not run
+  nlohmann::ordered_json assessment;    ///< what `incise assess` printed; null: not run
+  double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0, registration_rmse_mm = 0.0;
+  std::string ended_at;                 ///< the step that refused; empty: none did
+  std::vector<std::string> commands;
+};
+
+/// The test specimens that were cut twice, and what the correction did to them.
+struct TrialSummary {
+  std::size_t pairs = 0;
+  double mean_before_mm = 0.0, mean_after_mm = 0.0;  ///< mean over specimens of the mean absolute error
+  double gain_percent = 0.0;
+  std::size_t worse = 0;        ///< specimens whose error grew
+  double most_worse_mm = 0.0;   ///< by how much at most; 0: none
+};
+/// Of the specimens with that role. No pairs: zeros.
+[[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role);
+
+/// One row a cut: the paper's Table II in our own version.
+[[nodiscard]] nlohmann::ordered_json table_2_json(const std::vector<Trial>& trials);
+void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials);
+
+/// The page with everything: tables, the comparison's figures, the calibration's, the paper's figures cited beside.
+/// @param folder  of the experiment: figures are taken from there where they are.
+[[nodiscard]] ReportData experiment_report(const std::vector<Trial>& trials, const nlohmann::ordered_json& result,
+                                           const std::filesystem::path& folder);
+
+}  // namespace incise::cli
