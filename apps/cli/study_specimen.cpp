@@ -23,6 +23,7 @@ constexpr double kPlatformZMm = 150.0;     // height of the virtual holder's pla
 constexpr double kSurveyEdgeMm = 4.0;      // of the mesh that finds the stretched shape
 constexpr double kMmPerPixel = 0.03;       // of the photograph, as the paper's
 constexpr double kSurfaceSpacingMm = 1.0;
+constexpr double kMostHoleMm = 8.0;        // of the depth under the mark: the edge is laid onto the simulated tissue, whose heights are whole
 
 std::string text(double number) { return fmt::format("{}", number); }
 
@@ -99,7 +100,7 @@ bool SpecimenTrial::find_shape() {
 bool SpecimenTrial::find_place() {
   const std::string camera = at("lab/camera.json").string();
   if (!run({"track",
-            {"track", at("lab/rgb.png").string(), at("lab/depth.png").string(), "--intrinsics", camera, "-o", at("tracked").string()},
+            {"track", at("lab/rgb.png").string(), at("lab/depth.png").string(), "--intrinsics", camera, "--max-hole-mm", text(kMostHoleMm), "-o", at("tracked").string()},
             {at("lab/rgb.png"), at("lab/depth.png"), camera},
             at("tracked/contour.csv")})) {
     return false;
