@@ -1,0 +1,77 @@
+"""The experiment on the virtual bench: small, interrupted, run again; what a planner's commands are told."""
+
+import json
+import pathlib
+import shlex
+import signal
+import subprocess
+import time
+import unittest
+
+from command import BAD_CASE, BAD_DATA, COMMAND, CommandTest
+
+SMALL = ("study", "--specimens", "2", "--quick", "--tets", "9000", "--threads", "2", "-o", "study")
+
+
+class StudyTest(CommandTest):
+    def test_specimens_that_cannot_be_halved_are_refused(self):
+        done = self.incise("study", "--specimens", "3", "-o", "study")
+        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        for words in ("--specimens", "found 3", "even"):
+            self.assertIn(words, done.stderr)
+        self.assert_nothing_written(self.folder / "study")
+
+    def test_an_interrupted_experiment_goes_on_and_ends(self):
+        begun = subprocess.Popen([COMMAND, *SMALL], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        record = self.folder / "study" / "S1" / "steps" / "bench_make.json"
+        for _ in range(3000):
+            if record.is_file():
+                break
+            time.sleep(0.1)
+        begun.send_signal(signal.SIGINT)
+        _, said = begun.communicate(timeout=120)
+        self.assertEqual(begun.returncode, 130, said)
+        self.assertIn("kept", said)
+        made = record.stat().st_mtime_ns
+
+        result = self.json_of(*SMALL)
+        self.assertEqual(record.stat().st_mtime_ns, made, "a step that had ended was run again")
+        self.assertEqual(result["specimen_is"], "virtual")
+        self.assertEqual(result["pairs"], 1)
+        self.assertLess(result["mean_after_mm"], result["mean_before_mm"])
+        self.assertEqual([row["cut"] for row in result["table_2"]], ["planned", "planned", "corrected"])
+        page = (self.folder / "study" / "report.html").read_text()
+        self.assertIn("Virtual specimens, cut by a computed bench", page)
+        for name in ("table_2.csv", "commands.sh", "study.json", "manifest.json"):
+            self.assertTrue((self.folder / "study" / name).is_file(), name)
+
+        self.planners_commands_know_nothing_of_the_truth(result)
+        again = self.json_of(*SMALL)
+        self.assertEqual(again["table_2"], result["table_2"])
+        self.assertLess(again["wall_s"], 0.2 * result["wall_s"], "nothing was left to do")
+
+        record.write_text('{"identity": ')
+        done = self.incise(*SMALL)
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        self.assertIn("bench_make.json", done.stderr)
+
+    def planners_commands_know_nothing_of_the_truth(self, result):
+        """Only the bench's commands name the truth's folder, and the others give the same without it."""
+        truth = self.folder / "study" / "truth"
+        lines = [shlex.split(line)[1:] for line in pathlib.Path(self.folder, result["commands"]).read_text().splitlines() if line.startswith("incise ")]
+        planners = [line for line in lines if line[0] != "bench"]
+        self.assertGreater(len(planners), 10)
+        for line in planners:
+            self.assertFalse([word for word in line if "truth" in word], line)
+        truth.rename(self.folder / "elsewhere")
+        planned = [line for line in planners if line[0] == "plan"][0]
+        path = pathlib.Path(self.folder, planned[-1], "plan", "path.json")
+        before = path.read_bytes()
+        subprocess.run(["rm", "-r", path.parents[1]], check=True)
+        self.json_of(*planned)
+        self.assertEqual(path.read_bytes(), before)
+        (self.folder / "elsewhere").rename(truth)
+
+
+if __name__ == "__main__":
+    unittest.main()
