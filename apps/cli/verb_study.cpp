@@ -149,11 +149,10 @@ void Experiment::run_trial(Trial& trial) {
 
 /// The correction, verified in simulation, and the second cut of the same specimen.
 void Experiment::correct(SpecimenTrial& specimen, Trial& trial) {
-  const std::filesystem::path calibration = root_ / "calibration/calibration.json";
-  const std::filesystem::path folder = specimen.at("compensated");
+  const std::filesystem::path folder = specimen.at("compensated");  // its case holds what was calibrated: tool and stiffness
   const auto corrected = specimen.run({"compensate",
-                                       {"compensate", specimen.case_file().string(), "--calibration", calibration.string(), "-o", folder.string()},
-                                       {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration},
+                                       {"compensate", specimen.case_file().string(), "-o", folder.string()},
+                                       {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct")},
                                        folder / "correction/path.json"});
   if (!corrected) return;
   trial.compensation = corrected->result;
