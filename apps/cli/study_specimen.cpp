@@ -136,7 +136,10 @@ void SpecimenTrial::write_case(const std::optional<ChosenTool>& tool) const {
       "schema: incise.case/1\nct: {{volume: lab/ct}}\nmeshing: {{tets: {}}}\nspecimen:\n  material: {{youngs_modulus_kpa: {:.4f}}}\n"
       "tumor: {{contour: tumor.csv, configuration: stretched}}\nplan: {{power_w: {}}}\n",
       setup_.tets, youngs_modulus_kpa_, setup_.power_w);
-  if (tool) yaml += fmt::format("cut: {{speed_mm_s: {}, dullness: {}}}\n", tool->speed_mm_s, tool->dullness);
+  if (tool) {
+    yaml += fmt::format("cut: {{speed_mm_s: {}, dullness: {}}}\ncompensation: {{observable: inner_edge, bias_mm: {}}}\n", tool->speed_mm_s, tool->dullness,
+                        tool->bias_mm);
+  }
   write_file(case_file(), yaml);
 }
 

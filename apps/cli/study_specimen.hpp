@@ -22,10 +22,11 @@ struct TrialSetup {
   int tets = 25000;                                      ///< of the planner's mesh
 };
 
-/// The simulated tool that a calibration chose.
+/// The simulated tool that a calibration chose, and by how much real inner edges lie farther out than simulated ones.
 struct ChosenTool {
   double speed_mm_s = 13.0;
   double dullness = 9.0;
+  double bias_mm = 0.0;
 };
 
 /// What came of a cut.

@@ -149,7 +149,7 @@ void Experiment::run_trial(Trial& trial) {
 
 /// The correction, verified in simulation, and the second cut of the same specimen.
 void Experiment::correct(SpecimenTrial& specimen, Trial& trial) {
-  const std::filesystem::path folder = specimen.at("compensated");  // its case holds what was calibrated: tool and stiffness
+  const std::filesystem::path folder = specimen.at("compensated");  // its case holds what was calibrated: tool, stiffness, bias
   const auto corrected = specimen.run({"compensate",
                                        {"compensate", specimen.case_file().string(), "-o", folder.string()},
                                        {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct")},
@@ -191,7 +191,8 @@ void Experiment::calibrate() {
   calibration_ = fit.result;
   if (fit.status != kDone) throw DataError(root_ / "calibration", "", "a calibration in which every simulation failed", "one that can be used");
   const ExperimentJson& chosen = calibration_.at("chosen");
-  tool_ = ChosenTool{chosen.at("speed_mm_s").get<double>(), chosen.at("dullness").get<double>()};
+  tool_ = ChosenTool{chosen.at("speed_mm_s").get<double>(), chosen.at("dullness").get<double>(),
+                     calibration_.at("posterior").at("bias_mm").at("mean").get<double>()};
   if (!arguments_.is_quick) table_1_ = runner.run({"table_1", arguments("paper", root_ / "table_1"), inputs, root_ / "table_1/table_1.csv"}).result;
   common_commands_ = runner.lines();
 }
