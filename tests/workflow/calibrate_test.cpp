@@ -45,8 +45,9 @@ class SoftBlock : public Store {
   void save_cut(CutRole, const TissueModel&, const StaticResult&, const SimulatedCut&, double) override {}
   std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
   void keep_progress(CutRole, const IncisionProgress&, bool) override {}
-  std::optional<Compensation> load_correction() override { return std::nullopt; }
-  void save_correction(const Compensation&, double) override {}
+  std::optional<Correction> load_correction() override { return std::nullopt; }
+  void save_correction(const Correction&, double) override {}
+  bool adopt_cut(CutRole) override { return false; }
 
  private:
   double phase_;
