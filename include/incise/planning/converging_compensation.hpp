@@ -27,7 +27,7 @@ using MeasureCut = std::function<std::optional<PathErrors>(const ToolPath&)>;
 struct SafeRegion {
   double close_margin_mm = 2.2;      ///< a waypoint leaves at least this much tissue beside the tumour edge, > 0
   double electrode_radius_mm = 0.5;  ///< >= 0
-  double max_offset_mm = 5.0;        ///< farthest from the place on the intended path, > 0
+  double max_offset_mm = 3.8;        ///< farthest from the place on the intended path, > 0; a program whose course is 4 mm off is not exported
   double rim_clearance_mm = 1.0;     ///< from the surface's rim, >= 0
   Vec3 approach = -Vec3::UnitZ();
   AxisMode axis_mode = AxisMode::Approach;
