@@ -19,6 +19,8 @@ class TissueResponse {
   /// the detail, as what tissue blurs away can only be undone by larger and larger moves. Where errors are alike all
   /// round, the move is just their negative.
   [[nodiscard]] std::vector<double> answer(const std::vector<double>& error_mm) const;
+  /// By how much the error at the waypoint of each row changes with the move of the waypoint of each column.
+  [[nodiscard]] const Eigen::MatrixXd& matrix() const { return response_; }
 
  private:
   Eigen::MatrixXd response_;

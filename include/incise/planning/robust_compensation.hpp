@@ -1,0 +1,75 @@
+#pragma once
+
+#include <incise/planning/converging_compensation.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// One way in which the real tissue may answer, and how to simulate it.
+struct CutScenario {
+  double weight = 1.0;   ///< > 0; only ratios count
+  double bias_mm = 0.0;  ///< expected error of the real cut less that of the simulated one, positive = farther out
+  MeasureCut measure;
+};
+
+struct RobustSettings {
+  SafeRegion region;
+  double target_mm = 5.0;  ///< intended distance of the measured contour from the edge, > 0
+  /// What of the target is no tissue: the electrode's radius for a mid-line, 0 for an inner edge; >= 0.
+  double kerf_allowance_mm = 0.5;
+  double max_probability = 0.05;    ///< of less tissue than the region's close margin anywhere along the cut, (0, 1)
+  double residual_sd_mm = 0.3;      ///< of a real cut's error about what its scenario says, > 0 …
+  double residual_length_mm = 6.0;  ///< … and the way along the path over which its correlation falls to 1/e, > 0
+  double smoothing_mm = 1.5;        ///< as in ConvergenceSettings
+  double shift_lags = 0.15;         ///< as there
+  double spread_lags = 1.0;         ///< as there
+  double trust_mm = 4.0;            ///< farthest that a waypoint moves from the corrected path, > 0
+  int rounds = 2;                   ///< most times that the path is chosen and cut in every scenario, >= 1
+  int samples = 4000;               ///< residuals that probabilities are counted over, >= 100
+  std::uint64_t seed = 1;
+};
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const RobustSettings& settings);
+
+/// What is to be expected of a path, from cuts along it in every scenario.
+struct PathRisk {
+  double expected_abs_error_mm = 0.0;  ///< mean over scenarios, residuals and the path
+  double p_close_margin = 0.0;         ///< that somewhere less tissue is left than the close margin
+  double unmeasured_weight = 0.0;      ///< share of the scenarios whose cut left nothing to measure; left out above
+};
+
+enum class RobustOutcome {
+  Met,        ///< the path keeps the probability, in the scenarios' own cuts
+  NotMet,     ///< no path that was found inside the safe region does; the one of the least probability is returned
+  NoMeasure,  ///< no scenario could be measured along the intended or the corrected path
+};
+[[nodiscard]] std::string_view to_string(RobustOutcome outcome);  ///< met, not_met, no_measure
+
+struct RobustCompensation {
+  ToolPath path;
+  std::vector<double> offset_mm;  ///< per waypoint, from the intended place
+  std::vector<std::uint8_t> is_limited;
+  RobustOutcome outcome = RobustOutcome::NoMeasure;
+  PathRisk intended, corrected, robust;
+  std::size_t simulations = 0;
+};
+
+/// Chooses, among smooth paths inside the safe region, the one that minimises the expected |error| over the scenarios
+/// subject to P(tissue beside the tumour < close margin anywhere) <= max_probability. Scenarios are cut along the
+/// intended, the corrected and the chosen path; in between their errors are taken to answer to moves as
+/// compensate_converging takes them to. See docs/models/compensation.md.
+/// @param corrected_offset_mm  per waypoint: of the path that the iteration ended with.
+/// @throws InvalidArgument with every violation of the settings, without scenarios, for weights that are not above 0 or
+/// an open path; CaseError if the intended path fails check_path.
+[[nodiscard]] RobustCompensation compensate_robust(const ToolPath& intended,
+                                                   const std::vector<double>& corrected_offset_mm,
+                                                   const SurfaceQuery& surface,
+                                                   const std::vector<CutScenario>& scenarios,
+                                                   const RobustSettings& settings = {});
+
+}  // namespace incise

@@ -1,0 +1,82 @@
+#include "planning/margin_risk.hpp"
+
+#include <incise/core/random.hpp>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <numbers>
+
+namespace incise {
+namespace {
+
+constexpr double kJitter = 1e-9;  // keeps the covariance of waypoints that nearly coincide positive definite
+
+double normal_density(double z) {
+  return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+}
+double normal_share_below(double z) {
+  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
+}  // namespace
+
+FoldedNormal folded_normal(double mean, double sd) {
+  const double z = mean / sd;
+  const double slope = 2.0 * normal_share_below(z) - 1.0;
+  return {2.0 * sd * normal_density(z) + mean * slope, slope, 2.0 * normal_density(z) / sd};
+}
+
+FoldedNormal expected_shortfall(double mean, double sd, double least) {
+  const double z = (least - mean) / sd;
+  return {sd * normal_density(z) + (least - mean) * normal_share_below(z), -normal_share_below(z),
+          normal_density(z) / sd};
+}
+
+MarginRisk::MarginRisk(const PathCourse& course, const RobustSettings& settings) : sd_(settings.residual_sd_mm) {
+  least_error_ = settings.region.close_margin_mm + settings.kerf_allowance_mm - settings.target_mm;
+  const auto n = static_cast<Eigen::Index>(course.waypoints());
+  Eigen::MatrixXd covariance(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const double apart =
+          std::abs(course.way(course.at(static_cast<std::size_t>(i)), course.at(static_cast<std::size_t>(j))));
+      covariance(i, j) = sd_ * sd_ * std::exp(-apart / settings.residual_length_mm);
+    }
+  }
+  covariance.diagonal().array() += kJitter * sd_ * sd_;
+  const Eigen::MatrixXd factor = covariance.llt().matrixL();
+  Random random(settings.seed);
+  residuals_.resize(n, settings.samples);
+  for (Eigen::Index k = 0; k < residuals_.cols(); ++k) {
+    for (Eigen::Index i = 0; i < n; ++i) residuals_(i, k) = random.normal();
+  }
+  residuals_ = factor * residuals_;
+}
+
+double MarginRisk::p_close(const std::vector<ScenarioErrors>& scenarios) const {
+  double sum = 0.0;
+  double weights = 0.0;
+  for (const ScenarioErrors& scenario : scenarios) {
+    Eigen::Index close = 0;
+    for (Eigen::Index k = 0; k < residuals_.cols(); ++k) {
+      close += (scenario.error_mm + residuals_.col(k)).minCoeff() < least_error_ ? 1 : 0;
+    }
+    sum += scenario.weight * static_cast<double>(close) / static_cast<double>(residuals_.cols());
+    weights += scenario.weight;
+  }
+  return sum / weights;
+}
+
+double MarginRisk::expected_abs_error(const std::vector<ScenarioErrors>& scenarios) const {
+  double sum = 0.0;
+  double weights = 0.0;
+  for (const ScenarioErrors& scenario : scenarios) {
+    double mean = 0.0;
+    for (const double error : scenario.error_mm) mean += folded_normal(error, sd_).value;
+    sum += scenario.weight * mean / static_cast<double>(scenario.error_mm.size());
+    weights += scenario.weight;
+  }
+  return sum / weights;
+}
+
+}  // namespace incise

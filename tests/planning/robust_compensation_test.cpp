@@ -1,0 +1,152 @@
+#include "planning/bodies.hpp"
+#include "planning/fake_tissue.hpp"
+#include "support/contour_shapes.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
+#include <incise/planning/robust_compensation.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using testing::FakeTissue;
+using ::testing::HasSubstr;
+using testing::kChordMm;
+using testing::kRingRadiusMm;
+using testing::kTurn;
+
+class Robust : public ::testing::Test {
+ protected:
+  static CutScenario scenario(double weight, double bias_mm, const FakeTissue& tissue) {
+    return {weight, bias_mm, [tissue](const ToolPath& path) { return std::optional(tissue.cut(path)); }};
+  }
+  RobustCompensation run(double corrected_mm, const std::vector<CutScenario>& scenarios,
+                         const RobustSettings& settings) {
+    return compensate_robust(path_, std::vector<double>(48, corrected_mm), surface_, scenarios, settings);
+  }
+  SurfaceQuery surface_{testing::flat_body()};
+  ToolPath path_ = plan_ring(surface_, testing::circle(testing::kEdgeRadiusMm, 1440), {.waypoints = 48});
+  FakeTissue tissue_{.drift_mm = [](double) { return -1.0; }};
+};
+
+/// P(min over 48 places of e + r < least) for a residual that is a first-order autoregression round most of the ring,
+/// counted from random numbers of its own.
+double counted_probability(const std::vector<double>& errors, double least, const RobustSettings& s) {
+  Random random(99);
+  const double step = kTurn * kRingRadiusMm / 48.0;
+  const double carried = std::exp(-step / s.residual_length_mm);
+  int close = 0;
+  constexpr int kTrials = 20000;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    bool is_close = false;
+    double residual = s.residual_sd_mm * random.normal();
+    for (const double error : errors) {
+      is_close = is_close || error + residual < least;
+      residual = carried * residual + s.residual_sd_mm * std::sqrt(1.0 - carried * carried) * random.normal();
+    }
+    close += is_close ? 1 : 0;
+  }
+  return static_cast<double>(close) / kTrials;
+}
+
+TEST_F(Robust, WithOneScenarioAndRoomEnoughItIsThePathOfLeastError) {
+  const RobustCompensation result = run(0.6, {scenario(1.0, 0.0, tissue_)}, {});
+  EXPECT_EQ(result.outcome, RobustOutcome::Met);
+  EXPECT_THAT(result.offset_mm, Each(::testing::DoubleNear(1.0, kChordMm)));
+  // All that is left is the residual's own mean size.
+  EXPECT_NEAR(result.robust.expected_abs_error_mm, 0.3 * std::sqrt(2.0 / std::numbers::pi), 0.005);
+  EXPECT_GT(result.corrected.expected_abs_error_mm, result.robust.expected_abs_error_mm);
+  EXPECT_GT(result.intended.expected_abs_error_mm, result.corrected.expected_abs_error_mm);
+  EXPECT_EQ(result.simulations, 3U) << "intended, corrected, chosen";
+}
+
+TEST_F(Robust, ItLiesBetweenScenariosByTheirWeights) {
+  // |error| is least where half of the weight lies on either side.
+  const RobustCompensation result =
+      run(1.0, {scenario(1.0, 0.6, tissue_), scenario(8.0, 0.0, tissue_), scenario(1.0, -0.6, tissue_)},
+          {.residual_sd_mm = 0.05});
+  EXPECT_THAT(result.offset_mm, Each(::testing::DoubleNear(1.0, 2.0 * kChordMm)));
+  const RobustCompensation heavy =
+      run(1.0, {scenario(9.0, -0.6, tissue_), scenario(1.0, 0.0, tissue_)}, {.residual_sd_mm = 0.05});
+  EXPECT_THAT(heavy.offset_mm, Each(::testing::DoubleNear(1.6, 2.0 * kChordMm)));
+}
+
+TEST_F(Robust, BuysTheProbabilityWithAsLittleErrorAsItCosts) {
+  // A target of 3.2 mm leaves 0.5 mm above the close margin: with residuals of 0.3 mm most rings come too close
+  // somewhere.
+  const RobustSettings settings{.target_mm = 3.2, .residual_sd_mm = 0.3};
+  const std::vector<CutScenario> scenarios{scenario(1.0, 0.2, tissue_), scenario(1.0, -0.2, tissue_)};
+  const RobustCompensation result = run(1.0, scenarios, settings);
+  ASSERT_EQ(result.outcome, RobustOutcome::Met) << result.robust.p_close_margin;
+  EXPECT_GT(result.intended.p_close_margin, 0.99);
+  EXPECT_GT(result.corrected.p_close_margin, 0.4);
+  EXPECT_LE(result.robust.p_close_margin, 0.05);
+  EXPECT_GT(result.robust.p_close_margin, 0.02) << "no farther out than it has to be";
+  EXPECT_GT(result.robust.expected_abs_error_mm, result.corrected.expected_abs_error_mm) << "safety is not free";
+
+  // The same probability, counted here.
+  double counted = 0.0;
+  for (const double bias : {0.2, -0.2}) {
+    std::vector<double> errors;
+    for (const double offset : result.offset_mm) errors.push_back(offset - 1.0 + bias);
+    counted += 0.5 * counted_probability(errors, 2.2 + 0.5 - 3.2, settings);
+  }
+  EXPECT_NEAR(counted, result.robust.p_close_margin, 0.012);
+}
+
+TEST_F(Robust, SaysWhereNoPathKeepsTheProbability) {
+  RobustSettings settings{.target_mm = 3.2, .residual_sd_mm = 0.3};
+  settings.region.max_offset_mm = 1.1;
+  const RobustCompensation result = run(1.0, {scenario(1.0, 0.0, tissue_)}, settings);
+  EXPECT_EQ(result.outcome, RobustOutcome::NotMet);
+  EXPECT_GT(result.robust.p_close_margin, 0.05);
+  EXPECT_LT(result.robust.p_close_margin, result.corrected.p_close_margin) << "the best that there is";
+  EXPECT_THAT(result.offset_mm, Each(::testing::Le(1.1 + 1e-9)));
+}
+
+TEST_F(Robust, AimsLowerWhereTheCutsAreWorseThanForetold) {
+  // This tissue answers to a move by half: what is foretold from the corrected path falls short.
+  const FakeTissue stiff{.drift_mm = [](double) { return -1.0; }, .gain = 0.5};
+  const RobustCompensation one = run(2.0, {scenario(1.0, 0.0, stiff)}, {.target_mm = 3.2, .rounds = 1});
+  const RobustCompensation three = run(2.0, {scenario(1.0, 0.0, stiff)}, {.target_mm = 3.2, .rounds = 4});
+  EXPECT_EQ(one.outcome, RobustOutcome::NotMet);
+  EXPECT_EQ(three.outcome, RobustOutcome::Met) << three.robust.p_close_margin;
+  EXPECT_GT(three.simulations, one.simulations);
+}
+
+TEST_F(Robust, LeavesOutAndCountsScenariosThatCannotBeMeasured) {
+  const CutScenario open{1.0, 0.0, [](const ToolPath&) { return std::optional<PathErrors>(); }};
+  const RobustCompensation result = run(0.5, {scenario(3.0, 0.0, tissue_), open}, {});
+  EXPECT_NEAR(result.robust.unmeasured_weight, 0.25, 1e-12);
+  EXPECT_THAT(result.offset_mm, Each(::testing::DoubleNear(1.0, kChordMm)));
+  EXPECT_EQ(run(0.5, {open}, {}).outcome, RobustOutcome::NoMeasure);
+}
+
+TEST_F(Robust, IsTheSameForTheSameSeed) {
+  const std::vector<CutScenario> scenarios{scenario(1.0, 0.1, tissue_), scenario(2.0, -0.3, tissue_)};
+  const RobustCompensation a = run(0.8, scenarios, {.target_mm = 3.4});
+  const RobustCompensation b = run(0.8, scenarios, {.target_mm = 3.4});
+  EXPECT_EQ(a.offset_mm, b.offset_mm);
+  EXPECT_EQ(a.robust.p_close_margin, b.robust.p_close_margin);
+}
+
+TEST_F(Robust, TellsEveryViolation) {
+  const RobustSettings bad{.max_probability = 1.0, .residual_sd_mm = 0.0, .rounds = 0, .samples = 10};
+  EXPECT_THAT(validate(bad), ElementsAre(HasSubstr("max_probability"), HasSubstr("residual_sd_mm"), HasSubstr("rounds"),
+                                         HasSubstr("samples")));
+  EXPECT_THROW(static_cast<void>(run(0.0, {scenario(1.0, 0.0, tissue_)}, bad)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(run(0.0, {}, {})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(run(0.0, {scenario(0.0, 0.0, tissue_)}, {})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(compensate_robust(path_, {0.0}, surface_, {scenario(1.0, 0.0, tissue_)})),
+               InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise
