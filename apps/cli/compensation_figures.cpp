@@ -1,5 +1,6 @@
 #include "compensation_figures.hpp"
 
+#include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/table_io.hpp>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <optional>
 #include <ostream>
 
 namespace incise::cli {
@@ -75,6 +77,25 @@ LinePlot convergence(const Json& record) {
   return plot;
 }
 
+/// How far each waypoint of the corrected and of the robust path lies from its intended place.
+std::optional<CompensationFigure> robust_offsets(const std::filesystem::path& root) {
+  const std::filesystem::path file = root / "robust" / "robust.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const Json json = read_json(file);
+  LinePlot plot{.title = "Where the tool is sent, against the path as planned (simulated)",
+                .x_label = "waypoint",
+                .y_label = "offset, mm (positive: away from the tumour)",
+                .series = {}};
+  for (const auto& [key, name] : {std::pair{"corrected_offset_mm", "corrected"}, std::pair{"offset_mm", "robust"}}) {
+    if (!json.is_object() || !json.contains(key) || !json.at(key).is_array())
+      throw DataError(file, key, "no list of numbers", "what `incise compensate --robust` writes");
+    LineSeries series{name, {}, json.at(key).get<std::vector<double>>(), true};
+    for (std::size_t i = 0; i < series.y.size(); ++i) series.x.push_back(static_cast<double>(i));
+    plot.series.push_back(std::move(series));
+  }
+  return CompensationFigure{"compensation_robust.svg", std::move(plot)};
+}
+
 std::string cell_of(const Json& number) {
   return number.is_null() ? std::string("–") : fmt::format("{:.3f}", number.get<double>());
 }
@@ -84,7 +105,10 @@ std::string cell_of(const Json& number) {
 std::vector<CompensationFigure> compensation_figures(const std::filesystem::path& root) {
   const Json record = correction_record(root);
   if (record.is_null() || record.at("history").at(0).at("mean_abs_error_mm").is_null()) return {};
-  return {{"compensation_errors.svg", errors_along(root)}, {"compensation_convergence.svg", convergence(record)}};
+  std::vector<CompensationFigure> figures{{"compensation_errors.svg", errors_along(root)},
+                                          {"compensation_convergence.svg", convergence(record)}};
+  if (std::optional<CompensationFigure> robust = robust_offsets(root)) figures.push_back(std::move(*robust));
+  return figures;
 }
 
 ReportTable compensation_table(const std::filesystem::path& root) {

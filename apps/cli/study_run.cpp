@@ -46,16 +46,12 @@ void add_cut_options(CLI::App& verb, CutOptions& options) {
       ->check(CLI::Range(0.0, kLongestCheckpointS));
 }
 
-namespace {
-
 CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut) {
   CaseFile file = case_with_inputs(case_path);
   if (cut.frames) file.settings.frames = *cut.frames;
   if (cut.method) file.settings.compensation.method = *cut.method;
   return file;
 }
-
-}  // namespace
 
 StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until,
                    const CommonOptions& options, const CutOptions& cut)

@@ -45,6 +45,9 @@ struct StudyRun {
 /// The case, and the files that it names looked for, before anything is written. @throws CaseError, DataError
 [[nodiscard]] CaseFile case_with_inputs(const std::filesystem::path& case_path);
 
+/// The same with what the command line says in place of the case.
+[[nodiscard]] CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut);
+
 /// Where the results of a case go when -o is not given: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
 

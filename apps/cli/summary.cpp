@@ -72,6 +72,20 @@ void print_passes(const nlohmann::ordered_json& result) {
   fmt::print("{:<36} {}\n", "floor of the mesh, mm", shown(correction.at("floor_mm")));
 }
 
+/// What is to be expected of each path over a calibration's posterior.
+void print_risks(const nlohmann::ordered_json& result) {
+  const auto robust = result.find("robust");
+  if (robust == result.end() || !robust->is_object()) return;
+  fmt::print("\n{:<36} {:>16} {:>16} {:>16}\n", "over the calibration's posterior", "as planned", "corrected", "robust");
+  for (const auto& [key, text] : {std::pair{"expected_abs_error_mm", "expected mean |error|, mm"}, std::pair{"p_close_margin", "P(close margin anywhere)"},
+                                  std::pair{"unmeasured_weight", "share of tissues with an open ring"}}) {
+    fmt::print("{:<36}", text);
+    for (const char* path : {"intended", "corrected", "robust"}) fmt::print(" {:>16}", shown(robust->at(path).at(key)));
+    fmt::print("\n");
+  }
+  fmt::print("{:<36} {}\n", "robust path", shown(robust->at("outcome")));
+}
+
 }  // namespace
 
 void print_study(const CommonOptions& options, const nlohmann::ordered_json& result) {
@@ -81,6 +95,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
     fmt::print("{:<36} {:>16} {:>16}\n", line.text, shown_at(result, "before", line.pointer), shown_at(result, "after", line.pointer));
   }
   print_passes(result);
+  print_risks(result);
   fmt::print("\n");
   for (const char* key : {"outcome", "accepted", "specimen_is", "report", "wall_s"}) {
     if (const auto value = result.find(key); value != result.end() && !value->is_structured()) fmt::print("{:<36} {}\n", key, shown(*value));

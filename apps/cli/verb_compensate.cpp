@@ -1,9 +1,13 @@
+#include "calibrated_case.hpp"
 #include "compensation_figures.hpp"
-#include "study_run.hpp"
+#include "option_checks.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/storage/result_json.hpp>
 
+#include <fmt/format.h>
+
+#include <chrono>
 #include <memory>
 
 namespace incise::cli {
@@ -12,6 +16,9 @@ namespace {
 struct CompensateOptions {
   std::filesystem::path case_path;
   CutOptions cut;
+  bool is_robust = false;
+  CalibratedOptions calibrated;
+  double max_probability = ScenarioRequest{}.max_probability;
 };
 
 /// What was left of the mean error per pass; one pass of the paper's: after over before.
@@ -48,12 +55,73 @@ nlohmann::ordered_json summary_of(const Study& study) {
   return json;
 }
 
+/// --robust and what it needs go together.
+void require_robust_options(const CompensateOptions& chosen) {
+  const bool has_calibration = !chosen.calibrated.calibration.empty();
+  if (chosen.is_robust && !has_calibration) {
+    throw CaseError("command line", "--robust", "no --calibration",
+                    "--calibration C.json, whose posterior the path has to be right for");
+  }
+  if (!chosen.is_robust && (has_calibration || chosen.calibrated.stretch_force_n)) {
+    throw CaseError("command line", has_calibration ? "--calibration" : "--stretch-force-n", "no --robust",
+                    "--robust: the other methods do not look at a posterior");
+  }
+}
+
+void require_default_method(const CaseFile& file) {
+  if (file.settings.compensation.method == CompensationMethod::Default) return;
+  throw CaseError("command line", "--robust", "the paper's method", "--method default, from whose path it starts");
+}
+
+/// The path that is right for the whole posterior; what is said of it.
+nlohmann::ordered_json add_robust_path(const CompensateOptions& chosen, const CalibrationInput& calibration,
+                                       StudyRun& run, const Study& study, const CommonOptions& options,
+                                       Console& console) {
+  const auto start = std::chrono::steady_clock::now();
+  Workers workers(options.threads);
+  ScenarioRequest request = scenario_request(chosen.calibrated, options);
+  request.max_probability = chosen.max_probability;
+  const RobustCorrection robust = with_tissues(run, [&](ScenarioRunStore& runs) {
+    return correct_robustly(run.store.case_file().settings, run.store, study, calibration.belief, request, runs,
+                            workers, console);
+  });
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  write_robust(run.store, robust, calibration.file, wall.count());
+  nlohmann::ordered_json json = robust_summary_json(robust);
+  json["path"] = (run.store.root() / "robust" / "path.json").string();
+  json["wall_s"] = wall.count();
+  const RobustCompensation& made = robust.compensation;
+  if (made.outcome != RobustOutcome::Met) {
+    console.message(
+        Severity::Warning,
+        fmt::format(
+            "robust path: {}: a margin below {} mm somewhere has a probability of {:.3f}, or {:.3f} if the tissues "
+            "whose ring stayed open count, and not at most {}",
+            to_string(made.outcome), robust.settings.region.close_margin_mm, made.robust.p_close_margin,
+            made.robust.p_close_bound(), chosen.max_probability));
+  }
+  return json;
+}
+
 int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
   Console console(options.level());
+  require_robust_options(chosen);
+  std::optional<CalibrationInput> calibration;
+  if (chosen.is_robust) calibration = read_calibration_input(chosen.calibrated);
   const std::filesystem::path output = output_of(chosen.case_path, options);
+  if (chosen.is_robust) require_default_method(case_as_asked(chosen.case_path, chosen.cut));
   StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
   const Study study = run.run(options, console);
   nlohmann::ordered_json result = summary_of(study);
+  bool is_robust_enough = true;
+  if (chosen.is_robust) {
+    result["robust"] = nullptr;
+    is_robust_enough = false;
+    if (study.corrected) {
+      result["robust"] = add_robust_path(chosen, *calibration, run, study, options, console);
+      is_robust_enough = result["robust"]["outcome"] == to_string(RobustOutcome::Met);
+    }
+  }
   result["folder"] = run.store.folder(Product::Correction).string();
   if (study.correction) result["path"] = (run.store.folder(Product::Correction) / "path.json").string();
   result["figures"] = nlohmann::ordered_json::array();
@@ -66,7 +134,7 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
                     "the correction is not accepted: the mean error has to be below the electrode's radius, and "
                     "smaller than before");
   }
-  return study.is_accepted ? kDone : kNotAcceptable;
+  return study.is_accepted && is_robust_enough ? kDone : kNotAcceptable;
 }
 
 }  // namespace
@@ -92,6 +160,14 @@ void add_compensate(Application& application) {
   verb->add_option("case", chosen->case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, chosen->cut);
   add_compensation_method(*verb, chosen->cut);
+  verb->add_flag(
+      "--robust", chosen->is_robust,
+      "Also choose the path of least expected error over the calibration's posterior, with a probability of a close "
+      "margin anywhere of at most --max-probability: OUT/robust/path.json. Status 4 where there is none");
+  add_calibrated_options(*verb, chosen->calibrated);
+  verb->add_option("--max-probability", chosen->max_probability,
+                   "Of less tissue than the close margin anywhere, with --robust")
+      ->check(between("--max-probability", 1e-4, 0.9999));
 }
 
 }  // namespace incise::cli

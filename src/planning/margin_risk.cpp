@@ -3,6 +3,7 @@
 #include <incise/core/random.hpp>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -32,15 +33,19 @@ FoldedNormal expected_shortfall(double mean, double sd, double least) {
           normal_density(z) / sd};
 }
 
-MarginRisk::MarginRisk(const PathCourse& course, const RobustSettings& settings) : sd_(settings.residual_sd_mm) {
+MarginRisk::MarginRisk(const PathCourse& course, const RobustSettings& settings)
+    : sd_(std::hypot(settings.residual_sd_mm, settings.common_sd_mm, settings.placement_sd_mm)) {
   least_error_ = settings.region.close_margin_mm + settings.kerf_allowance_mm - settings.target_mm;
   const auto n = static_cast<Eigen::Index>(course.waypoints());
+  const double common = std::pow(settings.common_sd_mm, 2);
   Eigen::MatrixXd covariance(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
       const double apart =
           std::abs(course.way(course.at(static_cast<std::size_t>(i)), course.at(static_cast<std::size_t>(j))));
-      covariance(i, j) = sd_ * sd_ * std::exp(-apart / settings.residual_length_mm);
+      const double turn = 2.0 * std::numbers::pi * apart / course.length_mm();
+      covariance(i, j) = std::pow(settings.residual_sd_mm, 2) * std::exp(-apart / settings.residual_length_mm) +
+                         common + std::pow(settings.placement_sd_mm, 2) * std::cos(turn);
     }
   }
   covariance.diagonal().array() += kJitter * sd_ * sd_;
@@ -77,6 +82,28 @@ double MarginRisk::expected_abs_error(const std::vector<ScenarioErrors>& scenari
     weights += scenario.weight;
   }
   return sum / weights;
+}
+
+CutGain MarginRisk::gain(const std::vector<ScenarioErrors>& first, const std::vector<ScenarioErrors>& second) const {
+  CutGain gain;
+  double weights = 0.0;
+  double squares = 0.0;
+  const double share = 1.0 / static_cast<double>(residuals_.cols());
+  for (std::size_t s = 0; s < first.size(); ++s) {
+    const double weight = share * first[s].weight;
+    weights += first[s].weight;
+    for (Eigen::Index k = 0; k < residuals_.cols(); ++k) {
+      const double before = (first[s].error_mm + residuals_.col(k)).cwiseAbs().mean();
+      const double won = before - (second[s].error_mm + residuals_.col(k)).cwiseAbs().mean();
+      gain.mean_mm += weight * won;
+      squares += weight * won * won;
+      gain.p_worse += won < 0.0 ? weight : 0.0;
+    }
+  }
+  gain.mean_mm /= weights;
+  gain.p_worse /= weights;
+  gain.sd_mm = std::sqrt(std::max(0.0, squares / weights - gain.mean_mm * gain.mean_mm));
+  return gain;
 }
 
 }  // namespace incise

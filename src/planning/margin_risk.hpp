@@ -23,6 +23,10 @@ class MarginRisk {
   [[nodiscard]] double p_close(const std::vector<ScenarioErrors>& scenarios) const;
   /// E |error| over scenarios, residual and waypoints.
   [[nodiscard]] double expected_abs_error(const std::vector<ScenarioErrors>& scenarios) const;
+  /// What the second path wins over the first, scenario by scenario. @pre lists of one length and order, not empty.
+  [[nodiscard]] CutGain gain(const std::vector<ScenarioErrors>& first, const std::vector<ScenarioErrors>& second) const;
+  /// Standard deviation of the error at one place, about its scenario's.
+  [[nodiscard]] double sd_mm() const { return sd_; }
   /// The signed error at which just the close margin is left.
   [[nodiscard]] double least_error_mm() const { return least_error_; }
 

@@ -1,13 +1,6 @@
-#include "planning/margin_risk.hpp"
-#include "planning/path_course.hpp"
-#include "planning/safe_moves.hpp"
-#include "planning/tissue_response.hpp"
-
-#include <incise/core/error.hpp>
-#include <incise/planning/robust_compensation.hpp>
+#include "planning/scenario_cuts.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -22,22 +15,10 @@ constexpr double kRoughnessWeight = 0.02;  // of squared second differences, mm,
 constexpr int kPriceBisections = 24;
 constexpr double kHighestLogPrice = 12.0;  // of a mm of expected shortfall, in mm of expected error, as e to this
 constexpr int kShortenings = 6;
-
-/// A scenario about a path that was cut: its errors there, and how they answer to moves.
-struct LinearScenario {
-  double weight = 0.0;
-  Eigen::VectorXd error_mm;
-  Eigen::MatrixXd response;
-};
+constexpr double kSameWeight = 1e-9;
 
 Eigen::VectorXd as_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-std::vector<ScenarioErrors> moved(const std::vector<LinearScenario>& scenarios, const Eigen::VectorXd& move) {
-  std::vector<ScenarioErrors> errors;
-  for (const LinearScenario& s : scenarios) errors.push_back({s.weight, s.error_mm + s.response * move});
-  return errors;
 }
 
 /// Sum of squared second differences round the ring, as a matrix.
@@ -54,8 +35,12 @@ Eigen::MatrixXd roughness(Eigen::Index n) {
 /// by Newton's method with steps that are halved until it falls.
 class PricedMove {
  public:
-  PricedMove(const std::vector<LinearScenario>& scenarios, const MarginRisk& risk, double sd)
-      : scenarios_(scenarios), risk_(risk), sd_(sd), n_(scenarios.front().error_mm.size()), roughness_(roughness(n_)) {}
+  PricedMove(const std::vector<LinearScenario>& scenarios, const MarginRisk& risk)
+      : scenarios_(scenarios),
+        risk_(risk),
+        sd_(risk.sd_mm()),
+        n_(scenarios.front().error_mm.size()),
+        roughness_(roughness(n_)) {}
 
   [[nodiscard]] Eigen::VectorXd find(double price, Eigen::VectorXd move) const {
     for (int step = 0; step < kNewtonSteps; ++step) {
@@ -103,30 +88,29 @@ class PricedMove {
 
 class RobustChoice {
  public:
-  RobustChoice(const ToolPath& intended, const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-               const RobustSettings& settings)
-      : scenarios_(scenarios),
-        settings_(settings),
-        course_(intended),
-        movable_(intended, surface, settings.region),
-        risk_(course_, settings) {
-    for (const CutScenario& scenario : scenarios) all_weights_ += scenario.weight;
-  }
+  using Cut = ScenarioCuts::Cut;
+
+  RobustChoice(ScenarioCuts& cuts, const RobustSettings& settings) : cuts_(cuts), settings_(settings) {}
 
   RobustCompensation run(const std::vector<double>& corrected_offset) {
-    const std::vector<double> nowhere(course_.waypoints(), 0.0);
-    const Cut intended = cut(movable_.at(nowhere));
-    Cut base = cut(movable_.at(corrected_offset));
+    const Cut intended = cuts_.along_intended();
+    Cut base = cuts_.along(corrected_offset);
     result_.intended = intended.risk;
     result_.corrected = base.risk;
     keep(base);
-    if (intended.scenarios.empty() || base.scenarios.empty()) return result_;
+    if (!intended.scenarios.empty() && !base.scenarios.empty()) choose_in_rounds(std::move(base));
+    result_.simulations = cuts_.simulations();
+    return result_;
+  }
+
+ private:
+  void choose_in_rounds(Cut base) {
     const Eigen::VectorXd corrected = as_vector(base.moved.offset_mm);
     double aim = settings_.max_probability;
     for (int round = 0; round < settings_.rounds; ++round) {
       const std::optional<MovablePath::Moved> next = choose(base, corrected, aim);
       if (!next) break;
-      Cut chosen = cut(*next);
+      Cut chosen = cuts_.along(*next);
       if (chosen.scenarios.empty()) break;
       if (is_better(chosen.risk, result_.robust)) keep(chosen);
       if (chosen.risk.p_close_margin <= settings_.max_probability) break;
@@ -134,56 +118,22 @@ class RobustChoice {
       aim *= 0.5 * settings_.max_probability / chosen.risk.p_close_margin;
       base = std::move(chosen);
     }
-    const bool is_met = result_.robust.p_close_margin <= settings_.max_probability;
+    const bool is_met = result_.robust.p_close_bound() <= settings_.max_probability;
     result_.outcome = is_met ? RobustOutcome::Met : RobustOutcome::NotMet;
-    return result_;
-  }
-
- private:
-  struct Cut {
-    MovablePath::Moved moved;
-    std::vector<LinearScenario> scenarios;  ///< those that could be measured
-    PathRisk risk;
-  };
-
-  Cut cut(MovablePath::Moved moved_path) {
-    Cut made{std::move(moved_path), {}, {}};
-    double measured = 0.0;
-    for (const CutScenario& scenario : scenarios_) {
-      ++result_.simulations;
-      const std::optional<PathErrors> errors = scenario.measure(made.moved.path);
-      if (!errors) continue;
-      measured += scenario.weight;
-      std::vector<double> along;
-      for (const Vec3& p : errors->places) along.push_back(course_.along_mm(p));
-      std::vector<double> expected = errors->signed_error_mm;
-      for (double& error : expected) error += scenario.bias_mm;
-      const TissueResponse response(course_, settings_.shift_lags * errors->lag_mm,
-                                    settings_.spread_lags * errors->lag_mm);
-      made.scenarios.push_back({scenario.weight / all_weights_,
-                                as_vector(course_.average(along, expected, settings_.smoothing_mm).value),
-                                response.matrix()});
-    }
-    made.risk.unmeasured_weight = 1.0 - measured / all_weights_;
-    if (made.scenarios.empty()) return made;
-    const auto here =
-        incise::moved(made.scenarios, Eigen::VectorXd::Zero(static_cast<Eigen::Index>(course_.waypoints())));
-    made.risk.expected_abs_error_mm = risk_.expected_abs_error(here);
-    made.risk.p_close_margin = risk_.p_close(here);
-    return made;
   }
 
   /// The cheapest path that is foretold to keep the probability; the dearest where none does.
   [[nodiscard]] std::optional<MovablePath::Moved> choose(const Cut& base, const Eigen::VectorXd& corrected,
                                                          double aim) const {
-    const PricedMove priced(base.scenarios, risk_, settings_.residual_sd_mm);
+    const PricedMove priced(base.scenarios, cuts_.risk());
     const Eigen::VectorXd start = Eigen::VectorXd::Zero(corrected.size());
     const auto at_price = [&](double price) {
       const Eigen::VectorXd move = priced.find(price, start);
       return reachable(as_vector(base.moved.offset_mm), move, corrected);
     };
     const auto foretold = [&](const MovablePath::Moved& path) {
-      return risk_.p_close(incise::moved(base.scenarios, as_vector(path.offset_mm) - as_vector(base.moved.offset_mm)));
+      const Eigen::VectorXd move = as_vector(path.offset_mm) - as_vector(base.moved.offset_mm);
+      return cuts_.risk().p_close(moved_errors(base.scenarios, move));
     };
     std::optional<MovablePath::Moved> best = at_price(0.0);
     if (!best || foretold(*best) <= aim) return best;
@@ -214,18 +164,21 @@ class RobustChoice {
         offset[static_cast<std::size_t>(i)] =
             std::clamp(wanted, corrected[i] - settings_.trust_mm, corrected[i] + settings_.trust_mm);
       }
-      MovablePath::Moved path = movable_.at(offset);
-      if (movable_.can_be_cut(path.path)) return path;
+      MovablePath::Moved path = cuts_.movable().at(offset);
+      if (cuts_.movable().can_be_cut(path.path)) return path;
     }
     return std::nullopt;
   }
 
-  /// First what keeps the probability, then what errs less; where neither does, what comes nearer to it.
+  /// First what leaves fewest rings open (one that is left out is no way to a small probability), then what keeps the
+  /// probability, then what errs less; where neither keeps it, what comes nearer to it.
   [[nodiscard]] bool is_better(const PathRisk& a, const PathRisk& b) const {
-    const bool a_met = a.p_close_margin <= settings_.max_probability;
-    const bool b_met = b.p_close_margin <= settings_.max_probability;
-    if (a_met != b_met) return a_met;
-    return a_met ? a.expected_abs_error_mm < b.expected_abs_error_mm : a.p_close_margin < b.p_close_margin;
+    if (std::abs(a.unmeasured_weight - b.unmeasured_weight) > kSameWeight)
+      return a.unmeasured_weight < b.unmeasured_weight;
+    const bool a_kept = a.p_close_margin <= settings_.max_probability;
+    const bool b_kept = b.p_close_margin <= settings_.max_probability;
+    if (a_kept != b_kept) return a_kept;
+    return a_kept ? a.expected_abs_error_mm < b.expected_abs_error_mm : a.p_close_margin < b.p_close_margin;
   }
 
   void keep(const Cut& made) {
@@ -235,12 +188,8 @@ class RobustChoice {
     result_.robust = made.risk;
   }
 
-  const std::vector<CutScenario>& scenarios_;
+  ScenarioCuts& cuts_;
   const RobustSettings& settings_;
-  const PathCourse course_;
-  const MovablePath movable_;
-  const MarginRisk risk_;
-  double all_weights_ = 0.0;
   RobustCompensation result_;
 };
 
@@ -264,13 +213,20 @@ std::vector<std::string> validate(const RobustSettings& s) {
     if (is_valid && std::isfinite(found)) return;
     violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
   };
-  expect(s.region.close_margin_mm > 0.0, "region.close_margin_mm", s.region.close_margin_mm, "a distance above 0 mm");
+  const SafeRegion& r = s.region;
+  expect(r.close_margin_mm > 0.0, "region.close_margin_mm", r.close_margin_mm, "a distance above 0 mm");
+  expect(r.electrode_radius_mm >= 0.0, "region.electrode_radius_mm", r.electrode_radius_mm, "0 mm or more");
+  expect(r.max_offset_mm > 0.0, "region.max_offset_mm", r.max_offset_mm, "a distance above 0 mm");
+  expect(r.rim_clearance_mm >= 0.0, "region.rim_clearance_mm", r.rim_clearance_mm, "0 mm or more");
+  expect(r.approach.norm() > 0.0, "region.approach", r.approach.norm(), "a vector of length above 0");
   expect(s.target_mm > 0.0, "target_mm", s.target_mm, "a distance above 0 mm");
   expect(s.kerf_allowance_mm >= 0.0, "kerf_allowance_mm", s.kerf_allowance_mm, "0 mm or more");
   expect(s.max_probability > 0.0 && s.max_probability < 1.0, "max_probability", s.max_probability,
          "a probability in (0, 1)");
   expect(s.residual_sd_mm > 0.0, "residual_sd_mm", s.residual_sd_mm, "a length above 0 mm");
   expect(s.residual_length_mm > 0.0, "residual_length_mm", s.residual_length_mm, "a length above 0 mm");
+  expect(s.common_sd_mm >= 0.0, "common_sd_mm", s.common_sd_mm, "0 mm or more");
+  expect(s.placement_sd_mm >= 0.0, "placement_sd_mm", s.placement_sd_mm, "0 mm or more");
   expect(s.smoothing_mm > 0.0, "smoothing_mm", s.smoothing_mm, "a distance above 0 mm");
   expect(s.shift_lags >= 0.0, "shift_lags", s.shift_lags, "0 or more");
   expect(s.spread_lags >= 0.0, "spread_lags", s.spread_lags, "0 or more");
@@ -282,22 +238,10 @@ std::vector<std::string> validate(const RobustSettings& s) {
 
 RobustCompensation compensate_robust(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                                      const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-                                     const RobustSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
-  INCISE_REQUIRE(intended.is_closed && intended.tumor_edge.points.size() >= 3,
-                 "expected a closed path with a tumour edge of at least 3 points");
-  INCISE_REQUIRE(corrected_offset_mm.size() == intended.waypoints.size(),
-                 fmt::format("expected an offset for each of {} waypoints, found {}", intended.waypoints.size(),
-                             corrected_offset_mm.size()));
-  INCISE_REQUIRE(!scenarios.empty(), "expected at least one scenario");
-  for (const CutScenario& scenario : scenarios) {
-    INCISE_REQUIRE(std::isfinite(scenario.weight) && scenario.weight > 0.0 && std::isfinite(scenario.bias_mm),
-                   fmt::format("expected scenarios with weights above 0 and finite biases, found {} and {}",
-                               scenario.weight, scenario.bias_mm));
-  }
-  check_path_as({"compensation"}, intended, surface, settings.region.approach, 0.0);
-  return RobustChoice(intended, surface, scenarios, settings).run(corrected_offset_mm);
+                                     const MeasureScenarios& measure, const RobustSettings& settings) {
+  require_scenarios(intended, corrected_offset_mm, surface, scenarios, settings);
+  ScenarioCuts cuts(intended, surface, scenarios, measure, settings);
+  return RobustChoice(cuts, settings).run(corrected_offset_mm);
 }
 
 }  // namespace incise

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace incise {
@@ -60,6 +61,11 @@ Json rows_json(const Calibration& calibration) {
   return rows;
 }
 
+Json registration_quality_json(const std::optional<RegistrationQuality>& registration) {
+  if (!registration) return nullptr;
+  return {{"rmse_mm", registration->rmse_mm}, {"scale", registration->scale}};
+}
+
 Json specimen_json(const CalibratedSpecimen& s) {
   return {{"name", s.name},
           {"photographed_mean_abs_mm", s.photographed.mean_mm},
@@ -68,6 +74,7 @@ Json specimen_json(const CalibratedSpecimen& s) {
           {"youngs_modulus_kpa", s.youngs_modulus_kpa},
           {"stretch_force_n", or_null(s.stretch_force_n)},
           {"simulated_force_n", s.simulated_force_n},
+          {"registration", registration_quality_json(s.registration)},
           {"picture_turn_deg", s.picture.turn_deg},
           {"picture_rms_mm", s.picture.rms_mm}};
 }
@@ -121,6 +128,24 @@ double positive(const JsonPlace& place, const char* key) {
   const double value = place.number(key);
   if (!(value > 0.0)) place.refuse(key, fmt::format("{}", value), "a number above 0");
   return value;
+}
+
+/// Calibrations of before registrations were kept have no such key.
+std::optional<RegistrationQuality> registration_quality_from(const JsonPlace& specimen) {
+  if (!specimen.has("registration") || specimen.at("registration", "an object or null").is_null()) return std::nullopt;
+  const JsonPlace place = specimen.inside("registration");
+  return RegistrationQuality{positive(place, "rmse_mm"), positive(place, "scale")};
+}
+
+CalibratedSpecimenRecord specimen_from(const JsonPlace& place) {
+  CalibratedSpecimenRecord record;
+  record.name = place.text("name");
+  record.youngs_modulus_kpa = positive(place, "youngs_modulus_kpa");
+  record.simulated_force_n = place.number("simulated_force_n");
+  if (!place.at("stretch_force_n", "a number or null").is_null())
+    record.stretch_force_n = positive(place, "stretch_force_n");
+  record.registration = registration_quality_from(place);
+  return record;
 }
 
 std::vector<PosteriorSample> samples_from(const JsonPlace& posterior) {
@@ -188,7 +213,7 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
     record.chosen =
         RunSetting{positive(chosen, "speed_mm_s"), positive(chosen, "dullness"), positive(chosen, "stiffness_of_case")};
   }
-  for (const JsonPlace& specimen : file.objects("specimens")) record.specimens.push_back(specimen.text("name"));
+  for (const JsonPlace& specimen : file.objects("specimens")) record.specimens.push_back(specimen_from(specimen));
   if (record.method == CalibrationMethod::Paper) return record;
   record.samples = samples_from(file.inside("posterior"));
   const JsonPlace residual = file.inside("residual");
@@ -199,6 +224,20 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
   record.residual.placement_mm = positive(residual, "placement_mm");
   record.residual.n_effective = positive(residual, "n_effective");
   return record;
+}
+
+CalibratedBelief belief_of(const CalibrationRecord& record, const std::filesystem::path& path) {
+  if (record.method != CalibrationMethod::Fit)
+    throw DataError(path, "method", "paper", "fit: a grid of scores says nothing of how sure it is", kCalibrationHint);
+  if (!record.chosen) throw DataError(path, "chosen", "null", "a setting with which a simulated ring closed");
+  CalibratedBelief belief;
+  belief.samples = record.samples;
+  belief.residual = record.residual;
+  belief.speed_mm_s = record.chosen->speed_mm_s;
+  belief.knows_forces = !record.specimens.empty() &&
+                        std::all_of(record.specimens.begin(), record.specimens.end(),
+                                    [](const CalibratedSpecimenRecord& s) { return s.stretch_force_n.has_value(); });
+  return belief;
 }
 
 }  // namespace incise

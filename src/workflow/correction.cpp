@@ -56,11 +56,7 @@ std::optional<PathErrors> layer_path_errors(const Case& settings, const Simulate
 
 ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {
   ConvergenceSettings convergence;
-  convergence.region.close_margin_mm = settings.close_margin_mm;
-  convergence.region.electrode_radius_mm = radius_mm(settings.tool);
-  convergence.region.approach = settings.plan.approach;
-  convergence.region.axis_mode = settings.plan.axis_mode;
-  convergence.region.rim_clearance_mm = settings.plan.rim_clearance_mm;
+  convergence.region = safe_region(settings);
   convergence.simulations = 1 + kMostPasses;
   convergence.floor_mm = floor_mm;
   if (settings.compensation.bias_mm != 0.0) convergence.bias_mm = {settings.compensation.bias_mm};
@@ -77,6 +73,16 @@ std::string in_words(int pass, const std::optional<PathErrors>& errors) {
 }
 
 }  // namespace
+
+SafeRegion safe_region(const Case& settings) {
+  SafeRegion region;
+  region.close_margin_mm = settings.close_margin_mm;
+  region.electrode_radius_mm = radius_mm(settings.tool);
+  region.approach = settings.plan.approach;
+  region.axis_mode = settings.plan.axis_mode;
+  region.rim_clearance_mm = settings.plan.rim_clearance_mm;
+  return region;
+}
 
 std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
                                       Monitor& monitor) {

@@ -24,12 +24,32 @@ using testing::kTurn;
 
 class Robust : public ::testing::Test {
  protected:
-  static CutScenario scenario(double weight, double bias_mm, const FakeTissue& tissue) {
-    return {weight, bias_mm, [tissue](const ToolPath& path) { return std::optional(tissue.cut(path)); }};
+  struct Scenario {
+    double weight, bias_mm;
+    std::optional<FakeTissue> tissue;  ///< nothing: its cut cannot be measured
+  };
+  static Scenario scenario(double weight, double bias_mm, const FakeTissue& tissue) {
+    return {weight, bias_mm, tissue};
   }
-  RobustCompensation run(double corrected_mm, const std::vector<CutScenario>& scenarios,
-                         const RobustSettings& settings) {
-    return compensate_robust(path_, std::vector<double>(48, corrected_mm), surface_, scenarios, settings);
+  static MeasureScenarios cuts_of(const std::vector<Scenario>& scenarios) {
+    return [scenarios](const ToolPath& path) {
+      std::vector<std::optional<PathErrors>> cuts;
+      for (const Scenario& s : scenarios) cuts.push_back(s.tissue ? std::optional(s.tissue->cut(path)) : std::nullopt);
+      return cuts;
+    };
+  }
+  static std::vector<CutScenario> weighted(const std::vector<Scenario>& scenarios) {
+    std::vector<CutScenario> list;
+    for (const Scenario& s : scenarios) list.push_back({s.weight, s.bias_mm});
+    return list;
+  }
+  RobustCompensation run(double corrected_mm, const std::vector<Scenario>& scenarios, const RobustSettings& settings) {
+    return compensate_robust(path_, std::vector<double>(48, corrected_mm), surface_, weighted(scenarios),
+                             cuts_of(scenarios), settings);
+  }
+  PathOutlook foresee(double corrected_mm, const std::vector<Scenario>& scenarios, const RobustSettings& settings) {
+    return foresee_paths(path_, std::vector<double>(48, corrected_mm), surface_, weighted(scenarios),
+                         cuts_of(scenarios), settings);
   }
   SurfaceQuery surface_{testing::flat_body()};
   ToolPath path_ = plan_ring(surface_, testing::circle(testing::kEdgeRadiusMm, 1440), {.waypoints = 48});
@@ -82,7 +102,7 @@ TEST_F(Robust, BuysTheProbabilityWithAsLittleErrorAsItCosts) {
   // A target of 3.2 mm leaves 0.5 mm above the close margin: with residuals of 0.3 mm most rings come too close
   // somewhere.
   const RobustSettings settings{.target_mm = 3.2, .residual_sd_mm = 0.3};
-  const std::vector<CutScenario> scenarios{scenario(1.0, 0.2, tissue_), scenario(1.0, -0.2, tissue_)};
+  const std::vector<Scenario> scenarios{scenario(1.0, 0.2, tissue_), scenario(1.0, -0.2, tissue_)};
   const RobustCompensation result = run(1.0, scenarios, settings);
   ASSERT_EQ(result.outcome, RobustOutcome::Met) << result.robust.p_close_margin;
   EXPECT_GT(result.intended.p_close_margin, 0.99);
@@ -122,15 +142,75 @@ TEST_F(Robust, AimsLowerWhereTheCutsAreWorseThanForetold) {
 }
 
 TEST_F(Robust, LeavesOutAndCountsScenariosThatCannotBeMeasured) {
-  const CutScenario open{1.0, 0.0, [](const ToolPath&) { return std::optional<PathErrors>(); }};
+  const Scenario open{1.0, 0.0, std::nullopt};
   const RobustCompensation result = run(0.5, {scenario(3.0, 0.0, tissue_), open}, {});
   EXPECT_NEAR(result.robust.unmeasured_weight, 0.25, 1e-12);
   EXPECT_THAT(result.offset_mm, Each(::testing::DoubleNear(1.0, kChordMm)));
   EXPECT_EQ(run(0.5, {open}, {}).outcome, RobustOutcome::NoMeasure);
 }
 
+TEST_F(Robust, ARingThatStaysOpenIsNoWayToASmallProbability) {
+  // With every tissue measured the path is safe; that a quarter of what is believed possible shows no ring is not.
+  EXPECT_EQ(run(1.0, {scenario(3.0, 0.0, tissue_), scenario(1.0, 0.0, tissue_)}, {}).outcome, RobustOutcome::Met);
+  const RobustCompensation open = run(1.0, {scenario(3.0, 0.0, tissue_), {1.0, 0.0, std::nullopt}}, {});
+  EXPECT_EQ(open.outcome, RobustOutcome::NotMet);
+  EXPECT_LT(open.robust.p_close_margin, 0.01);
+  EXPECT_NEAR(open.robust.p_close_bound(), 0.25 + 0.75 * open.robust.p_close_margin, 1e-12);
+}
+
+TEST_F(Robust, AnErrorThatIsTheSameAllRoundCountsOnceAndNotAtEveryPlace) {
+  // Of the whole cut 0.3 mm sd, of each place hardly any: too close with the probability of one normal number.
+  const RobustSettings settings{
+      .target_mm = 3.2, .residual_sd_mm = 0.005, .residual_length_mm = 100.0, .common_sd_mm = 0.3};
+  const PathOutlook outlook = foresee(1.0, {scenario(1.0, 0.0, tissue_)}, settings);
+  EXPECT_NEAR(outlook.corrected.p_close_margin, 0.5 * std::erfc(0.5 / 0.3 / std::sqrt(2.0)), 0.015);
+  EXPECT_NEAR(outlook.corrected.expected_abs_error_mm, 0.3 * std::sqrt(2.0 / std::numbers::pi), 0.005);
+}
+
+TEST_F(Robust, AShiftOfTheWholeCutComesTooCloseOnOneSide) {
+  // A shift by (u, v) of 0.3 mm sd each takes away its length at its far side: Rayleigh.
+  const RobustSettings settings{
+      .target_mm = 3.4, .residual_sd_mm = 0.005, .residual_length_mm = 100.0, .placement_sd_mm = 0.3};
+  const PathOutlook outlook = foresee(1.0, {scenario(1.0, 0.0, tissue_)}, settings);
+  // Straight lines between waypoints take away up to a chord's height of those 0.7 mm.
+  const auto beyond = [](double way_mm) { return std::exp(-0.5 * std::pow(way_mm / 0.3, 2)); };
+  EXPECT_GT(outlook.corrected.p_close_margin, beyond(0.7) - 0.01);
+  EXPECT_LT(outlook.corrected.p_close_margin, beyond(0.7 - kChordMm) + 0.01);
+}
+
+TEST_F(Robust, ForeseesWhatTheCorrectionWinsAndHowSurely) {
+  // Errors of -1 mm all round and none: with a residual that is small beside them the gain is 1 mm.
+  const RobustSettings calm{.residual_sd_mm = 0.005};
+  const PathOutlook sure = foresee(1.0, {scenario(1.0, 0.0, tissue_)}, calm);
+  ASSERT_TRUE(sure.gain);
+  EXPECT_NEAR(sure.gain->mean_mm, 1.0, kChordMm);
+  EXPECT_LT(sure.gain->sd_mm, 0.01);
+  EXPECT_EQ(sure.gain->p_worse, 0.0);
+
+  // In three of four scenarios the gain is 1 mm, in the fourth the cut as planned was right and the correction is not.
+  const PathOutlook split = foresee(1.0, {scenario(3.0, 0.0, tissue_), scenario(1.0, 1.0, tissue_)}, calm);
+  ASSERT_TRUE(split.gain);
+  EXPECT_NEAR(split.gain->mean_mm, 0.75 * 1.0 - 0.25 * 1.0, kChordMm);
+  EXPECT_NEAR(split.gain->sd_mm, 2.0 * std::sqrt(0.75 * 0.25), 2.0 * kChordMm);
+  EXPECT_NEAR(split.gain->p_worse, 0.25, 1e-12);
+  EXPECT_THAT(split.corrected_error_mm[1], Each(::testing::DoubleNear(1.0, kChordMm)));
+
+  // Nothing is compared where one of the two cuts shows no ring.
+  EXPECT_FALSE(foresee(1.0, {{1.0, 0.0, std::nullopt}}, calm).gain);
+}
+
+TEST_F(Robust, AResidualThatBothCutsShareTakesGainAwayOnlyWhereItTurnsTheSign) {
+  // |-1 + r| - |0 + r| with one r for the whole ring: E|r - 1| - E|r|.
+  const RobustSettings loud{.residual_sd_mm = 0.005, .common_sd_mm = 0.6};
+  const PathOutlook outlook = foresee(1.0, {scenario(1.0, 0.0, tissue_)}, loud);
+  const double z = 1.0 / 0.6;
+  const double folded = 0.6 * std::sqrt(2.0 / std::numbers::pi) * std::exp(-0.5 * z * z) + std::erf(z / std::sqrt(2.0));
+  EXPECT_NEAR(outlook.gain->mean_mm, folded - 0.6 * std::sqrt(2.0 / std::numbers::pi), 0.03);
+  EXPECT_NEAR(outlook.gain->p_worse, 0.5 * std::erfc(0.5 / 0.6 / std::sqrt(2.0)), 0.03) << "r beyond the middle";
+}
+
 TEST_F(Robust, IsTheSameForTheSameSeed) {
-  const std::vector<CutScenario> scenarios{scenario(1.0, 0.1, tissue_), scenario(2.0, -0.3, tissue_)};
+  const std::vector<Scenario> scenarios{scenario(1.0, 0.1, tissue_), scenario(2.0, -0.3, tissue_)};
   const RobustCompensation a = run(0.8, scenarios, {.target_mm = 3.4});
   const RobustCompensation b = run(0.8, scenarios, {.target_mm = 3.4});
   EXPECT_EQ(a.offset_mm, b.offset_mm);
@@ -144,8 +224,13 @@ TEST_F(Robust, TellsEveryViolation) {
   EXPECT_THROW(static_cast<void>(run(0.0, {scenario(1.0, 0.0, tissue_)}, bad)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(run(0.0, {}, {})), InvalidArgument);
   EXPECT_THROW(static_cast<void>(run(0.0, {scenario(0.0, 0.0, tissue_)}, {})), InvalidArgument);
-  EXPECT_THROW(static_cast<void>(compensate_robust(path_, {0.0}, surface_, {scenario(1.0, 0.0, tissue_)})),
+  const std::vector<Scenario> one{scenario(1.0, 0.0, tissue_)};
+  EXPECT_THROW(static_cast<void>(compensate_robust(path_, {0.0}, surface_, weighted(one), cuts_of(one))),
                InvalidArgument);
+  EXPECT_THROW(
+      static_cast<void>(compensate_robust(path_, std::vector<double>(48, 0.0), surface_, weighted(one),
+                                          [](const ToolPath&) { return std::vector<std::optional<PathErrors>>{}; })),
+      InvalidArgument);
 }
 
 }  // namespace

@@ -148,12 +148,45 @@ TEST_F(CalibrationFileTest, GivesAPlannerThePosteriorAgain) {
   write_json(path(), to_json(fitted()));
   const CalibrationRecord record = read_calibration(path());
   EXPECT_EQ(record.method, CalibrationMethod::Fit);
-  EXPECT_EQ(record.specimens, (std::vector<std::string>{"s1", "s2"}));
+  ASSERT_EQ(record.specimens.size(), 2U);
+  EXPECT_EQ(record.specimens[1].name, "s2");
+  EXPECT_FALSE(record.specimens[0].stretch_force_n);
+  EXPECT_FALSE(record.specimens[0].registration);
   ASSERT_EQ(record.samples.size(), 2U);
   EXPECT_EQ(record.samples[1].drag_length_mm, 2.1);
   EXPECT_EQ(record.samples[0].bias_mm, -0.2);
   EXPECT_EQ(record.residual.placement_mm, 0.3);
   EXPECT_EQ(record.chosen, kSetting);
+}
+
+TEST_F(CalibrationFileTest, KeepsWhatWasMeasuredOfItsSpecimens) {
+  Calibration calibration = fitted();
+  calibration.specimens[0].youngs_modulus_kpa = 12.5;
+  calibration.specimens[0].stretch_force_n = 4.2;
+  calibration.specimens[0].registration = RegistrationQuality{0.31, 1.02};
+  write_json(path(), to_json(calibration));
+  CalibrationRecord record = read_calibration(path());
+  EXPECT_EQ(record.specimens[0].youngs_modulus_kpa, 12.5);
+  EXPECT_EQ(record.specimens[0].stretch_force_n, 4.2);
+  ASSERT_TRUE(record.specimens[0].registration);
+  EXPECT_EQ(record.specimens[0].registration->rmse_mm, 0.31);
+  EXPECT_EQ(record.specimens[0].registration->scale, 1.02);
+  EXPECT_FALSE(belief_of(record, path()).knows_forces) << "the second specimen's pull is not known";
+  record.specimens[1].stretch_force_n = 3.9;
+  EXPECT_TRUE(belief_of(record, path()).knows_forces);
+  EXPECT_EQ(belief_of(record, path()).speed_mm_s, kSetting.speed_mm_s);
+
+  // A file of an earlier version, without the key.
+  nlohmann::ordered_json older = to_json(calibration);
+  older["specimens"][0].erase("registration");
+  write_json(path(), older);
+  EXPECT_FALSE(read_calibration(path()).specimens[0].registration);
+}
+
+TEST_F(CalibrationFileTest, AGridOfScoresIsNoBeliefAboutTheNextSpecimen) {
+  write_json(path(), to_json(two_specimens()));
+  EXPECT_THAT([&] { static_cast<void>(belief_of(read_calibration(path()), path())); },
+              ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("calibration.json"), HasSubstr("method"))));
 }
 
 TEST_F(CalibrationFileTest, RefusesWhatIsNoCalibrationByFileAndKey) {

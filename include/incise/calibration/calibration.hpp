@@ -28,14 +28,21 @@ struct PhotographedCut {
   std::optional<double> stretch_force_n;  ///< measured pull of the specimen at its stretch, > 0
 };
 
+/// How well a specimen's simulated surface could be laid on its measured one.
+struct RegistrationQuality {
+  double rmse_mm = 0.0;
+  double scale = 1.0;  ///< of the measured surface over the simulated one
+};
+
 /// What a calibration holds of one specimen.
 struct CalibratedSpecimen {
   std::string name;
   PhotographedErrors photographed;
-  double signed_mean_mm = 0.0;            ///< of the photographed inner edge
-  double youngs_modulus_kpa = 70.0;       ///< reference: the case's, or what the measured force makes of it
-  double simulated_force_n = 0.0;         ///< pull of the simulated specimen at the case's modulus
-  std::optional<double> stretch_force_n;  ///< measured
+  double signed_mean_mm = 0.0;                      ///< of the photographed inner edge
+  double youngs_modulus_kpa = 70.0;                 ///< reference: the case's, or what the measured force makes of it
+  double simulated_force_n = 0.0;                   ///< pull of the simulated specimen at the case's modulus
+  std::optional<double> stretch_force_n;            ///< measured
+  std::optional<RegistrationQuality> registration;  ///< where it was given
   PictureMatch picture;
   std::vector<CalibrationRun> runs;
 };

@@ -10,12 +10,15 @@
 
 namespace incise {
 
-/// One way in which the real tissue may answer, and how to simulate it.
+/// One way in which the real tissue may answer.
 struct CutScenario {
   double weight = 1.0;   ///< > 0; only ratios count
   double bias_mm = 0.0;  ///< expected error of the real cut less that of the simulated one, positive = farther out
-  MeasureCut measure;
 };
+
+/// Cuts along a path in every scenario and measures: one entry for each, in their order; nullopt: no contour to
+/// measure.
+using MeasureScenarios = std::function<std::vector<std::optional<PathErrors>>(const ToolPath&)>;
 
 struct RobustSettings {
   SafeRegion region;
@@ -25,6 +28,8 @@ struct RobustSettings {
   double max_probability = 0.05;    ///< of less tissue than the region's close margin anywhere along the cut, (0, 1)
   double residual_sd_mm = 0.3;      ///< of a real cut's error about what its scenario says, > 0 …
   double residual_length_mm = 6.0;  ///< … and the way along the path over which its correlation falls to 1/e, > 0
+  double common_sd_mm = 0.0;        ///< of a further error that is the same all round, >= 0
+  double placement_sd_mm = 0.0;     ///< of a shift of the whole cut, along each axis of the picture, >= 0
   double smoothing_mm = 1.5;        ///< as in ConvergenceSettings
   double shift_lags = 0.15;         ///< as there
   double spread_lags = 1.0;         ///< as there
@@ -41,11 +46,13 @@ struct PathRisk {
   double expected_abs_error_mm = 0.0;  ///< mean over scenarios, residuals and the path
   double p_close_margin = 0.0;         ///< that somewhere less tissue is left than the close margin
   double unmeasured_weight = 0.0;      ///< share of the scenarios whose cut left nothing to measure; left out above
+  /// The probability if every scenario that could not be measured came too close.
+  [[nodiscard]] double p_close_bound() const { return unmeasured_weight + (1.0 - unmeasured_weight) * p_close_margin; }
 };
 
 enum class RobustOutcome {
-  Met,        ///< the path keeps the probability, in the scenarios' own cuts
-  NotMet,     ///< no path that was found inside the safe region does; the one of the least probability is returned
+  Met,     ///< the path keeps the probability, in the scenarios' own cuts, those without a measure counted as too close
+  NotMet,  ///< no path that was found inside the safe region does; the one of the least probability is returned
   NoMeasure,  ///< no scenario could be measured along the intended or the corrected path
 };
 [[nodiscard]] std::string_view to_string(RobustOutcome outcome);  ///< met, not_met, no_measure
@@ -56,7 +63,7 @@ struct RobustCompensation {
   std::vector<std::uint8_t> is_limited;
   RobustOutcome outcome = RobustOutcome::NoMeasure;
   PathRisk intended, corrected, robust;
-  std::size_t simulations = 0;
+  std::size_t simulations = 0;  ///< scenarios times paths
 };
 
 /// Chooses, among smooth paths inside the safe region, the one that minimises the expected |error| over the scenarios
@@ -66,10 +73,29 @@ struct RobustCompensation {
 /// @param corrected_offset_mm  per waypoint: of the path that the iteration ended with.
 /// @throws InvalidArgument with every violation of the settings, without scenarios, for weights that are not above 0 or
 /// an open path; CaseError if the intended path fails check_path.
-[[nodiscard]] RobustCompensation compensate_robust(const ToolPath& intended,
-                                                   const std::vector<double>& corrected_offset_mm,
-                                                   const SurfaceQuery& surface,
-                                                   const std::vector<CutScenario>& scenarios,
-                                                   const RobustSettings& settings = {});
+[[nodiscard]] RobustCompensation compensate_robust(
+    const ToolPath& intended, const std::vector<double>& corrected_offset_mm, const SurfaceQuery& surface,
+    const std::vector<CutScenario>& scenarios, const MeasureScenarios& measure, const RobustSettings& settings = {});
+
+/// What a correction is expected to win, mm: mean |error| along the intended path less that along the corrected one.
+struct CutGain {
+  double mean_mm = 0.0;
+  double sd_mm = 0.0;    ///< over scenarios and residuals; both cuts of one specimen have the same residual
+  double p_worse = 0.0;  ///< that it is below 0
+};
+
+/// Both paths of a correction in every scenario.
+struct PathOutlook {
+  PathRisk intended, corrected;
+  std::optional<CutGain> gain;  ///< absent: no scenario could be measured along both
+  /// By scenario, per waypoint, mm: along the corrected path, averaged along it, bias added; empty: not measured.
+  std::vector<std::vector<double>> corrected_error_mm;
+};
+
+/// The risks of two paths and what the second is expected to win, without looking for a better one.
+/// @throws as compensate_robust.
+[[nodiscard]] PathOutlook foresee_paths(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
+                                        const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
+                                        const MeasureScenarios& measure, const RobustSettings& settings = {});
 
 }  // namespace incise

@@ -3,6 +3,7 @@
 #include <incise/calibration/calibration.hpp>
 #include <incise/io/table_io.hpp>
 #include <incise/workflow/calibrate.hpp>
+#include <incise/workflow/robust_correction.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -47,6 +48,15 @@ class RunFolder : public RunStore {
 /// The same rounded as the paper prints it, for LaTeX.
 [[nodiscard]] TextTable calibration_table_rounded(const Calibration& calibration);
 
+/// What a calibration's file says of one of its specimens.
+struct CalibratedSpecimenRecord {
+  std::string name;
+  double youngs_modulus_kpa = 0.0;
+  double simulated_force_n = 0.0;                   ///< at the case's modulus; 0: the case does not pull
+  std::optional<double> stretch_force_n;            ///< measured
+  std::optional<RegistrationQuality> registration;  ///< absent where it was not given to the calibration
+};
+
 /// What a calibration found, for those who plan by it.
 struct CalibrationRecord {
   CalibrationMethod method = CalibrationMethod::Fit;
@@ -54,11 +64,15 @@ struct CalibrationRecord {
   std::optional<RunSetting> chosen;  ///< absent: every setting failed
   double reference_step_s = 0.02;
   double baseline_mm = 0.0;
-  std::vector<std::string> specimens;
+  std::vector<CalibratedSpecimenRecord> specimens;
   std::vector<PosteriorSample> samples;  ///< of a fit; weights add up to 1
   ResidualEstimate residual;             ///< of a fit
 };
 /// @throws DataError naming the file and the key that is missing, of another kind, or out of range.
 [[nodiscard]] CalibrationRecord read_calibration(const std::filesystem::path& path);
+
+/// What it says of the next specimen. @param path  of the file, for the message.
+/// @throws DataError for a calibration without a posterior (--method paper) or without a setting that worked.
+[[nodiscard]] CalibratedBelief belief_of(const CalibrationRecord& record, const std::filesystem::path& path);
 
 }  // namespace incise

@@ -26,6 +26,9 @@ namespace incise {
 [[nodiscard]] std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut,
                                                     const Contour& tumor_edge, Monitor& monitor);
 
+/// Where the case lets waypoints go.
+[[nodiscard]] SafeRegion safe_region(const Case& settings);
+
 /// One pass of the paper's rule. @pre the cut has a mid-line.
 [[nodiscard]] Correction correct_as_paper(const Case& settings, const ToolPath& followed, const SimulatedCut& cut,
                                           const Contour& tumor_edge, const SurfaceQuery& surface);

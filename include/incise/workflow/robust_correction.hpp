@@ -1,0 +1,90 @@
+#pragma once
+
+#include <incise/calibration/calibration_run.hpp>
+#include <incise/calibration/tissue_scenarios.hpp>
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/planning/robust_compensation.hpp>
+#include <incise/workflow/case.hpp>
+#include <incise/workflow/store.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// What a calibration says of the next specimen.
+struct CalibratedBelief {
+  std::vector<PosteriorSample> samples;
+  ResidualEstimate residual;
+  double speed_mm_s = 13.0;   ///< of the simulated tool; a drag length is reached by its dullness
+  bool knows_forces = false;  ///< the pull of every calibration specimen was measured: stiffness is over that
+};
+
+/// What is known of this specimen's stiffness, and what is asked of the path.
+struct ScenarioRequest {
+  std::optional<double>
+      stretch_force_n;     ///< measured pull at the case's stretch; absent: the case's modulus is believed …
+  double force_sd = 0.05;  ///< of a measured force, relative, > 0
+  double unknown_stiffness_sd =
+      0.5;  ///< … to this, of its logarithm, where the calibration specimens' pull is known, > 0
+  double max_probability = 0.05;  ///< of a close margin anywhere, (0, 1)
+  std::uint64_t seed = 1;         ///< of the residuals that probabilities are counted over
+};
+
+/// One simulated cut of a scenario, as far as it is looked at: its inner edge.
+struct ScenarioRun {
+  RunSetting setting;
+  std::optional<PathErrors> errors;  ///< absent: no closed ring
+  std::string problem;               ///< why it could not be carried out; empty: it was
+};
+
+/// Where finished scenarios are kept, so that none is simulated twice.
+class ScenarioRunStore {
+ public:
+  virtual ~ScenarioRunStore() = default;
+  /// The run with that setting along that path, if there is one made from today's inputs.
+  virtual std::optional<ScenarioRun> load(const RunSetting& setting, const ToolPath& path, Monitor& monitor) = 0;
+  virtual void save(const ScenarioRun& run, const ToolPath& path) = 0;
+};
+
+/// The tissues that were simulated for a correction.
+struct ScenarioSet {
+  TissueScenarios tissues;
+  std::vector<RunSetting> settings;  ///< one for each point
+  double simulated_force_n = 0.0;    ///< pull of the specimen at the case's modulus
+  double reference_kpa = 0.0;        ///< Young's modulus that stiffness factors are over
+  double own_stiffness_sd = 0.0;     ///< of its logarithm
+};
+
+struct RobustCorrection {
+  ScenarioSet scenarios;
+  RobustSettings settings;
+  std::vector<double> corrected_offset_mm;  ///< per waypoint: of the corrected path
+  RobustCompensation compensation;
+};
+
+/// Chooses the path of least expected error over a calibration's posterior (see compensate_robust): each of its tissues
+/// is cut along the intended, the corrected and the chosen path, side by side, one thread each. What is measured is the
+/// inner edge, tool out, as in the calibration, whatever line the case corrects by.
+/// @param done  the case's study, with a correction by the default method.
+/// @throws CaseError where force and calibration do not go together, or a tissue cannot be stretched; Cancelled when
+/// the monitor asks to stop: finished runs are in the store.
+[[nodiscard]] RobustCorrection correct_robustly(const Case& settings, Store& store, const Study& done,
+                                                const CalibratedBelief& belief, const ScenarioRequest& request,
+                                                ScenarioRunStore& runs, Workers& workers, Monitor& monitor);
+
+struct CorrectionOutlook {
+  ScenarioSet scenarios;
+  RobustSettings settings;
+  PathOutlook paths;
+};
+
+/// The same cuts along the intended and the corrected path alone: what the correction is expected to win.
+[[nodiscard]] CorrectionOutlook foresee_correction(const Case& settings, Store& store, const Study& done,
+                                                   const CalibratedBelief& belief, const ScenarioRequest& request,
+                                                   ScenarioRunStore& runs, Workers& workers, Monitor& monitor);
+
+}  // namespace incise

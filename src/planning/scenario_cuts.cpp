@@ -1,0 +1,91 @@
+#include "planning/scenario_cuts.hpp"
+
+#include "planning/tissue_response.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace incise {
+
+std::vector<ScenarioErrors> moved_errors(const std::vector<LinearScenario>& scenarios, const Eigen::VectorXd& move) {
+  std::vector<ScenarioErrors> errors;
+  for (const LinearScenario& s : scenarios) errors.push_back({s.weight, s.error_mm + s.response * move});
+  return errors;
+}
+
+ScenarioCuts::ScenarioCuts(const ToolPath& intended, const SurfaceQuery& surface,
+                           const std::vector<CutScenario>& scenarios, const MeasureScenarios& measure,
+                           const RobustSettings& settings)
+    : intended_(intended),
+      scenarios_(scenarios),
+      measure_(measure),
+      settings_(settings),
+      course_(intended),
+      movable_(intended, surface, settings.region),
+      risk_(course_, settings) {
+  for (const CutScenario& scenario : scenarios) all_weights_ += scenario.weight;
+}
+
+ScenarioCuts::Cut ScenarioCuts::along_intended() {
+  const std::size_t n = course_.waypoints();
+  return along({intended_, std::vector<double>(n, 0.0), std::vector<std::uint8_t>(n, 0)});
+}
+
+ScenarioCuts::Cut ScenarioCuts::along(MovablePath::Moved moved) {
+  Cut made{std::move(moved), {}, {}};
+  const std::vector<std::optional<PathErrors>> measured = measure_(made.moved.path);
+  INCISE_REQUIRE(measured.size() == scenarios_.size(),
+                 fmt::format("expected a measure, or none, for each of {} scenarios, found {}", scenarios_.size(),
+                             measured.size()));
+  simulations_ += scenarios_.size();
+  double weight = 0.0;
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    if (!measured[k]) continue;
+    made.scenarios.push_back(linear(k, *measured[k]));
+    weight += made.scenarios.back().weight;
+  }
+  made.risk.unmeasured_weight = made.scenarios.size() == scenarios_.size() ? 0.0 : 1.0 - weight;
+  if (made.scenarios.empty()) return made;
+  const auto still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(course_.waypoints()));
+  const std::vector<ScenarioErrors> here = moved_errors(made.scenarios, still);
+  made.risk.expected_abs_error_mm = risk_.expected_abs_error(here);
+  made.risk.p_close_margin = risk_.p_close(here);
+  return made;
+}
+
+LinearScenario ScenarioCuts::linear(std::size_t place, const PathErrors& errors) const {
+  std::vector<double> along_mm;
+  for (const Vec3& p : errors.places) along_mm.push_back(course_.along_mm(p));
+  std::vector<double> expected = errors.signed_error_mm;
+  for (double& error : expected) error += scenarios_[place].bias_mm;
+  const std::vector<double> at_waypoints = course_.average(along_mm, expected, settings_.smoothing_mm).value;
+  const TissueResponse response(course_, settings_.shift_lags * errors.lag_mm, settings_.spread_lags * errors.lag_mm);
+  return {place, scenarios_[place].weight / all_weights_,
+          Eigen::Map<const Eigen::VectorXd>(at_waypoints.data(), static_cast<Eigen::Index>(at_waypoints.size())),
+          response.matrix()};
+}
+
+void require_scenarios(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
+                       const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
+                       const RobustSettings& settings) {
+  const std::vector<std::string> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  INCISE_REQUIRE(intended.is_closed && intended.tumor_edge.points.size() >= 3,
+                 "expected a closed path with a tumour edge of at least 3 points");
+  INCISE_REQUIRE(corrected_offset_mm.size() == intended.waypoints.size(),
+                 fmt::format("expected an offset for each of {} waypoints, found {}", intended.waypoints.size(),
+                             corrected_offset_mm.size()));
+  INCISE_REQUIRE(!scenarios.empty(), "expected at least one scenario");
+  for (const CutScenario& scenario : scenarios) {
+    INCISE_REQUIRE(std::isfinite(scenario.weight) && scenario.weight > 0.0 && std::isfinite(scenario.bias_mm),
+                   fmt::format("expected scenarios with weights above 0 and finite biases, found {} and {}",
+                               scenario.weight, scenario.bias_mm));
+  }
+  check_path_as({"compensation"}, intended, surface, settings.region.approach, 0.0);
+}
+
+}  // namespace incise

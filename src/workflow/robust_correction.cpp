@@ -1,0 +1,201 @@
+#include "workflow/calibration_body.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/workflow/correction.hpp>
+#include <incise/workflow/robust_correction.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace incise {
+namespace {
+
+constexpr double kDegreesRound = 360.0;
+
+/// The case as a calibration compares it: by the inner edge.
+Case by_inner_edge(const Case& settings) {
+  Case changed = settings;
+  changed.compensation.observable = ContourKind::InnerEdge;
+  return changed;
+}
+
+CalibrationSubject subject_of(const Case& settings, Store& store, const ScenarioRequest& request) {
+  CalibrationSubject subject;
+  subject.settings = settings;
+  subject.store = &store;
+  subject.photographed.stretch_force_n = request.stretch_force_n;
+  return subject;
+}
+
+/// A specimen in the tissues that a calibration leaves possible.
+class TissueCuts {
+ public:
+  TissueCuts(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
+             const ScenarioRequest& request, ScenarioRunStore& runs, Workers& workers, Monitor& monitor)
+      : settings_(by_inner_edge(settings)),
+        subject_(subject_of(settings, store, request)),
+        belief_(belief),
+        request_(request),
+        runs_(runs),
+        workers_(workers),
+        monitor_(monitor),
+        body_(subject_, workers, monitor),
+        intended_(*done.followed),
+        surface_(skin_of(done.model->mesh, done.stretched->state.positions)) {
+    INCISE_REQUIRE(done.correction && done.correction->iteration,
+                   "expected a study that was corrected by the default method");
+    intended_.tumor_edge = done.plan->tumor_edge;
+    corrected_offset_mm_ = done.correction->moves.move_mm;
+    find_scenarios();
+  }
+
+  [[nodiscard]] RobustCorrection choose() {
+    const RobustSettings chosen_by = robust_settings();
+    RobustCompensation compensation =
+        compensate_robust(intended_, corrected_offset_mm_, surface_, weighted(), measure(), chosen_by);
+    return {scenarios_, chosen_by, corrected_offset_mm_, std::move(compensation)};
+  }
+
+  [[nodiscard]] CorrectionOutlook foresee() {
+    const RobustSettings judged_by = robust_settings();
+    PathOutlook paths = foresee_paths(intended_, corrected_offset_mm_, surface_, weighted(), measure(), judged_by);
+    return {scenarios_, judged_by, std::move(paths)};
+  }
+
+ private:
+  /// How far this specimen's modulus may be from its reference, beside what the calibration says.
+  [[nodiscard]] double own_stiffness_sd() const {
+    if (request_.stretch_force_n) return request_.force_sd;
+    return belief_.knows_forces ? request_.unknown_stiffness_sd : 0.0;
+  }
+
+  void find_scenarios() {
+    if (request_.stretch_force_n && !belief_.knows_forces) {
+      throw CaseError("command line", "--stretch-force-n", "a pull, and a calibration that was made without",
+                      "both with the pull of the suture, or both without");
+    }
+    const double reference = body_.reference_stiffness();
+    scenarios_.own_stiffness_sd = own_stiffness_sd();
+    scenarios_.tissues = tissue_scenarios(belief_.samples, belief_.residual, scenarios_.own_stiffness_sd);
+    scenarios_.simulated_force_n = body_.simulated_force_n();
+    scenarios_.reference_kpa = settings_.material.youngs_modulus_kpa * reference;
+    for (const TissueScenario& tissue : scenarios_.tissues.points) {
+      const double dullness = tissue.drag_length_mm / (belief_.speed_mm_s * settings_.cut.reference_step_s);
+      scenarios_.settings.push_back({belief_.speed_mm_s, dullness, tissue.stiffness_factor * reference});
+    }
+  }
+
+  [[nodiscard]] std::vector<CutScenario> weighted() const {
+    std::vector<CutScenario> list;
+    for (const TissueScenario& tissue : scenarios_.tissues.points) list.push_back({tissue.weight, tissue.bias_mm});
+    return list;
+  }
+
+  [[nodiscard]] RobustSettings robust_settings() const {
+    RobustSettings robust;
+    robust.region = safe_region(settings_);
+    robust.target_mm = settings_.plan.lateral_margin_mm - radius_mm(settings_.tool);
+    robust.kerf_allowance_mm = 0.0;  // an inner edge is where the tissue ends
+    robust.max_probability = request_.max_probability;
+    robust.residual_sd_mm = belief_.residual.sd_mm;
+    robust.residual_length_mm = belief_.residual.correlation_deg / kDegreesRound * length_mm(entry_contour(intended_));
+    robust.common_sd_mm = scenarios_.tissues.common_sd_mm;
+    robust.placement_sd_mm = belief_.residual.placement_mm;
+    robust.seed = request_.seed;
+    return robust;
+  }
+
+  [[nodiscard]] MeasureScenarios measure() {
+    return [this](const ToolPath& path) {
+      std::vector<std::optional<PathErrors>> errors;
+      for (ScenarioRun& run : runs_along(path)) errors.push_back(std::move(run.errors));
+      return errors;
+    };
+  }
+
+  /// One run for each tissue: those that the store has, and the others simulated side by side.
+  std::vector<ScenarioRun> runs_along(const ToolPath& path) {
+    std::vector<ScenarioRun> made;
+    std::vector<std::size_t> missing;
+    for (const RunSetting& setting : scenarios_.settings) {
+      std::optional<ScenarioRun> kept = runs_.load(setting, path, monitor_);
+      if (!kept) missing.push_back(made.size());
+      made.push_back(kept ? std::move(*kept) : ScenarioRun{.setting = setting});
+    }
+    monitor_.message(Severity::Notice,
+                     fmt::format("tissues of the calibration: {} cuts along a path, {} of them are there already",
+                                 made.size(), made.size() - missing.size()));
+    simulate(path, missing, made);
+    for (const ScenarioRun& run : made) {
+      if (run.problem.empty()) continue;
+      monitor_.message(Severity::Warning, fmt::format("a tissue of the calibration could not be cut: {}", run.problem));
+    }
+    return made;
+  }
+
+  void simulate(const ToolPath& path, const std::vector<std::size_t>& missing, std::vector<ScenarioRun>& made) {
+    std::vector<IncisionTask> tasks;
+    std::vector<const HeldBody*> held;
+    for (const std::size_t k : missing) {
+      const RunSetting& setting = made[k].setting;
+      held.push_back(&body_.with_stiffness(setting.stiffness_of_case, workers_, monitor_));
+      ToolPath with_edge = path;
+      with_edge.tumor_edge = held.back()->plan.tumor_edge;
+      tasks.push_back({&held.back()->model,
+                       &held.back()->stretched.state,
+                       {incision_settings(with_setting(settings_, setting)), std::move(with_edge)}});
+    }
+    std::size_t done = 0;
+    simulate_incisions(tasks, workers_, monitor_, [&](std::size_t i, IncisionJobResult result) {
+      if (result.incision.outcome == Outcome::Cancelled) return;
+      ScenarioRun& run = made[missing[i]];
+      run.problem = result.problem;
+      if (run.problem.empty()) run.errors = errors_of(std::move(result.incision), run.setting, *held[i]);
+      runs_.save(run, path);
+      ++done;
+    });
+    if (done < tasks.size())
+      throw Cancelled(fmt::format("the tissues of the calibration were interrupted with {} of {} cuts to go",
+                                  tasks.size() - done, tasks.size()));
+  }
+
+  /// Absent: no closed ring.
+  [[nodiscard]] std::optional<PathErrors> errors_of(IncisionResult incision, const RunSetting& setting,
+                                                    const HeldBody& held) const {
+    const Case settings = with_setting(settings_, setting);
+    const SimulatedCut cut = judge(settings, std::move(incision), held.plan, held.model.mesh.tets.size());
+    if (!cut.incision.is_closed_loop.value_or(false)) return std::nullopt;
+    Monitor silent;  // any thread may come here
+    return path_errors(settings, cut, held.plan.tumor_edge, silent);
+  }
+
+  const Case settings_;
+  const CalibrationSubject subject_;
+  const CalibratedBelief& belief_;
+  const ScenarioRequest& request_;
+  ScenarioRunStore& runs_;
+  Workers& workers_;
+  Monitor& monitor_;
+  CalibrationBody body_;
+  ToolPath intended_;
+  SurfaceQuery surface_;
+  std::vector<double> corrected_offset_mm_;
+  ScenarioSet scenarios_;
+};
+
+}  // namespace
+
+RobustCorrection correct_robustly(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
+                                  const ScenarioRequest& request, ScenarioRunStore& runs, Workers& workers,
+                                  Monitor& monitor) {
+  return TissueCuts(settings, store, done, belief, request, runs, workers, monitor).choose();
+}
+
+CorrectionOutlook foresee_correction(const Case& settings, Store& store, const Study& done,
+                                     const CalibratedBelief& belief, const ScenarioRequest& request,
+                                     ScenarioRunStore& runs, Workers& workers, Monitor& monitor) {
+  return TissueCuts(settings, store, done, belief, request, runs, workers, monitor).foresee();
+}
+
+}  // namespace incise

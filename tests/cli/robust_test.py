@@ -1,0 +1,118 @@
+"""The path that is right for a calibration's whole posterior: what it leaves, how it goes on, what is refused."""
+
+import json
+import unittest
+
+import small_calibration
+import small_case
+from command import BAD_CASE, BAD_DATA, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+
+RISK = {"expected_abs_error_mm", "p_close_margin", "unmeasured_weight"}
+CUTS = "tissues of the calibration: 5 cuts along a path, "
+
+
+class RobustTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        # The mesh of 3 mm leaves more than the electrode's radius of error, so no correction of it is accepted (status 4).
+        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}})
+        self.calibration = small_calibration.write(self.folder / "calibration.json")
+
+    def compensate(self, *options):
+        return self.incise("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, *options)
+
+    def robust(self, *options):
+        done = self.compensate("--json", *options)
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        return json.loads(done.stdout)["robust"], done.stderr
+
+    def test_three_paths_in_every_tissue_and_none_is_cut_twice(self):
+        found, said = self.robust("--stretch-force-n", 27)
+        for path in ("intended", "corrected", "robust"):
+            self.assertEqual(set(found[path]), RISK)
+            self.assertEqual(found[path]["unmeasured_weight"], 0.0)
+        self.assertLess(found["corrected"]["expected_abs_error_mm"], found["intended"]["expected_abs_error_mm"])
+        self.assertIn(found["simulations"], (15, 20))
+        tissues = found["scenarios"]["tissues"]
+        self.assertEqual(len(tissues), 5)
+        self.assertAlmostEqual(sum(tissue["weight"] for tissue in tissues), 1.0)
+        self.assertAlmostEqual(sum(tissue["weight"] * tissue["drag_length_mm"] for tissue in tissues), 1.3, delta=1e-9)
+        self.assertEqual(found["scenarios"]["own_stiffness_sd"], 0.05)
+        kpa = 70.0 * 27.0 / found["scenarios"]["simulated_force_n"]
+        self.assertAlmostEqual(found["scenarios"]["reference_kpa"], kpa, delta=1e-9 * kpa)
+        self.assertEqual(said.count(CUTS + "0 of them"), found["simulations"] // 5)
+
+        self.assertLessEqual({"robust/path.json", "robust/path.vtp", "robust/robust.json", "robust/manifest.json",
+                              "correction/path.json", "figures/compensation_robust.svg"}, set(files_below(self.out)))
+        path = json.loads((self.out / "robust" / "path.json").read_text())
+        self.assertEqual(path["frame"], "sim_stretched")
+        self.assertEqual(len(path["waypoints"]), 24)
+        written = json.loads((self.out / "robust" / "robust.json").read_text())
+        self.assertEqual(written["robust"], found["robust"])
+        self.assertEqual(len(written["offset_mm"]), 24)
+
+        again, said = self.robust("--stretch-force-n", 27)
+        self.assertEqual(said.count(CUTS + "5 of them"), found["simulations"] // 5, said)
+        self.assertEqual({key: again[key] for key in again if key != "wall_s"}, {key: found[key] for key in found if key != "wall_s"})
+
+    def test_a_smaller_probability_is_bought_with_error_and_what_cannot_be_had_is_said(self):
+        small_calibration.write(self.calibration, lambda c: c["residual"].update(sd_mm=0.7, correlation_deg=30.0))
+        free, _ = self.robust("--max-probability", 0.999)
+        held, _ = self.robust("--max-probability", 0.1)
+        self.assertEqual(free["outcome"], "met")
+        self.assertGreater(free["robust"]["p_close_margin"], 0.1)
+        if held["outcome"] == "met":
+            self.assertLessEqual(held["robust"]["p_close_margin"], 0.1)
+        self.assertLess(held["robust"]["p_close_margin"], free["robust"]["p_close_margin"])
+        self.assertGreater(held["robust"]["expected_abs_error_mm"], free["robust"]["expected_abs_error_mm"])
+
+        small_calibration.write(self.calibration, lambda c: c["residual"].update(sd_mm=2.5, correlation_deg=10.0))
+        hopeless, said = self.robust("--max-probability", 0.001)
+        self.assertEqual(hopeless["outcome"], "not_met")
+        self.assertIn("warning: robust path: not_met", said)
+
+    def test_without_the_pull_stiffness_is_less_sure(self):
+        without, _ = self.robust()
+        self.assertEqual(without["scenarios"]["own_stiffness_sd"], 0.5)
+        self.assertEqual(without["scenarios"]["reference_kpa"], 70.0)
+        factors = [tissue["stiffness_factor"] for tissue in without["scenarios"]["tissues"]]
+        self.assertGreater(max(factors) / min(factors), 5.0)
+
+    def test_an_interrupted_choice_keeps_its_cuts_and_goes_on(self):
+        stopped = self.interrupted("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, "--threads", 1,
+                                   after="tissues of the calibration: 5 cuts")
+        self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
+        self.assertIn("run the same command to go on", stopped.stderr)
+        self.assertFalse((self.out / "robust").exists())
+        self.assertTrue((self.out / "corrected").exists())
+        self.robust()
+
+    def test_another_correction_takes_the_robust_path_of_the_older_one_away(self):
+        self.robust()
+        self.assertTrue((self.out / "robust").exists())
+        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.5}})
+        self.incise("compensate", "case", "-o", self.out)
+        self.assertFalse((self.out / "robust").exists())
+
+    def test_what_cannot_be_is_refused_before_anything_is_written(self):
+        refused = self.incise("compensate", "case", "-o", self.out, "--robust")
+        self.assert_refused(refused, BAD_CASE, "--robust", "--calibration")
+        refused = self.incise("compensate", "case", "-o", self.out, "--calibration", self.calibration)
+        self.assert_refused(refused, BAD_CASE, "--calibration", "--robust")
+        self.assert_refused(self.compensate("--method", "paper"), BAD_CASE, "--robust", "--method default")
+        for probability in (0, 1, -0.1):
+            self.assert_refused(self.compensate("--max-probability", probability), BAD_CASE, "--max-probability")
+        self.assert_refused(self.compensate("--stretch-force-n", 0), BAD_CASE, "--stretch-force-n")
+        small_calibration.write(self.calibration, lambda c: c["specimens"][1].update(stretch_force_n=None))
+        self.assert_refused(self.compensate("--stretch-force-n", 27), BAD_CASE, "--stretch-force-n", "without")
+        small_calibration.write(self.calibration, lambda c: c.update(method="paper"))
+        self.assert_refused(self.compensate(), BAD_DATA, "calibration.json", "method", "fit")
+        self.calibration.write_text("{}")
+        self.assert_refused(self.compensate(), BAD_DATA, "calibration.json", "schema")
+        self.calibration.unlink()
+        self.assert_refused(self.compensate(), BAD_DATA, "calibration.json")
+        self.assert_nothing_written()
+
+
+if __name__ == "__main__":
+    unittest.main()

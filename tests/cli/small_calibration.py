@@ -1,0 +1,39 @@
+"""A calibration as `incise calibrate` would leave it, without having calibrated: for tests of what plans by one."""
+
+import copy
+import json
+import pathlib
+
+STEP_S, SPEED_MM_S = 0.02, 13.0
+SPECIMENS = [
+    {"name": "s1", "youngs_modulus_kpa": 62.0, "stretch_force_n": 24.0, "simulated_force_n": 27.0,
+     "registration": {"rmse_mm": 0.30, "scale": 1.000}},
+    {"name": "s2", "youngs_modulus_kpa": 78.0, "stretch_force_n": 30.0, "simulated_force_n": 27.0,
+     "registration": {"rmse_mm": 0.36, "scale": 1.004}},
+]
+RESIDUAL = {"sd_mm": 0.3, "correlation_deg": 60.0, "reading_mm": 0.1, "specimen_spread_mm": 0.2, "placement_mm": 0.2, "n_effective": 4.0}
+
+
+def samples(drag_mm=(1.2, 1.4), ln_stiffness=(-0.1, 0.1), bias_mm=(0.1, 0.3)):
+    """Eight of equal weight."""
+    import math
+
+    return [{"weight": 0.125, "drag_length_mm": drag, "stiffness_factor": math.exp(stiff), "bias_mm": bias}
+            for drag in drag_mm for stiff in ln_stiffness for bias in bias_mm]
+
+
+def calibration():
+    return {
+        "schema": "incise.calibration/1", "method": "fit", "virtual": True, "reference_step_s": STEP_S, "baseline_mm": 1.9,
+        "chosen": {"speed_mm_s": SPEED_MM_S, "dullness": 5.0, "stiffness_of_case": 1.0},
+        "specimens": copy.deepcopy(SPECIMENS), "posterior": {"samples": samples()}, "residual": dict(RESIDUAL),
+    }
+
+
+def write(path, changed=None):
+    """`changed` is called with the calibration and may alter it."""
+    found = calibration()
+    if changed:
+        changed(found)
+    pathlib.Path(path).write_text(json.dumps(found))
+    return pathlib.Path(path)
