@@ -107,6 +107,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
 /// 0 for Success, 130 for Cancelled, 4 for every other outcome.
 [[nodiscard]] int status_of(Outcome outcome);
 
+void add_assess(Application& application);
 void add_bench(Application& application);  ///< bench make, bench cut
 void add_calibrate(Application& application);
 void add_demo(Application& application);

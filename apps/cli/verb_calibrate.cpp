@@ -6,6 +6,7 @@
 #include <incise/core/error.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
+#include <incise/storage/registration_json.hpp>
 
 #include <fmt/format.h>
 
@@ -21,6 +22,7 @@ struct CalibrateArguments {
   std::vector<std::filesystem::path> cases;
   std::vector<std::filesystem::path> observed;
   std::vector<double> forces_n;
+  std::vector<std::filesystem::path> registrations;
   std::string method = "fit";
   CalibrationRequest request;
 };
@@ -30,6 +32,17 @@ void require_one_each(const char* option, std::size_t found, std::size_t cases, 
   if (found == cases) return;
   throw CaseError("command line", option, fmt::format("{} for {} {}", found, cases, cases == 1 ? "case" : "cases"),
                   fmt::format("one {} for each case, in the same order", what));
+}
+
+/// @throws DataError for one that found no transform, or does not say how well it fits.
+RegistrationQuality registration_of(const std::filesystem::path& file) {
+  const RegistrationRecord record = read_registration(file);
+  if (!record.T_target_source) throw DataError(file, "T_target_source", "null", "a registration that was found");
+  if (!record.rmse_mm || !(*record.rmse_mm > 0.0)) {
+    throw DataError(file, "rmse_mm", record.rmse_mm ? fmt::format("{}", *record.rmse_mm) : "no number",
+                    "how far the surfaces lie apart, above 0, as `incise register` writes it");
+  }
+  return {*record.rmse_mm, record.scale};
 }
 
 /// Names tell specimens apart in the table: files of one name get their number.
@@ -47,6 +60,9 @@ std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vect
   if (!arguments.forces_n.empty()) {
     require_one_each("--stretch-force-n", arguments.forces_n.size(), arguments.cases.size(), "force");
   }
+  if (!arguments.registrations.empty()) {
+    require_one_each("--registration", arguments.registrations.size(), arguments.cases.size(), "registration");
+  }
   std::vector<CaseFile> files;
   for (std::size_t i = 0; i < arguments.cases.size(); ++i) {
     files.push_back(case_with_inputs(arguments.cases[i]));
@@ -54,6 +70,7 @@ std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vect
     CalibrationSubject subject;
     subject.photographed = read_photographed_cut(arguments.observed[i]);
     if (!arguments.forces_n.empty()) subject.photographed.stretch_force_n = arguments.forces_n[i];
+    if (!arguments.registrations.empty()) subject.registration = registration_of(arguments.registrations[i]);
     subject.photograph_file = arguments.observed[i].string();
     subject.case_file = files.back().file.string();
     subject.settings = files.back().settings;
@@ -106,6 +123,7 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
     const Calibration calibration = calibrate(subjects, arguments.request, runs, workers, console);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     std::vector<std::filesystem::path> inputs = arguments.observed;
+    inputs.insert(inputs.end(), arguments.registrations.begin(), arguments.registrations.end());
     for (const CaseFile& file : files) inputs.push_back(file.file);
     write_calibration(output, calibration, files, inputs, options, wall.count());
     older.replaced();
@@ -146,6 +164,9 @@ void add_calibrate(Application& application) {
   verb->add_option("--stretch-force-n", arguments->forces_n,
                    "Measured pull of each specimen at its stretch: makes its stiffness known to 5 %")
       ->check(above_zero("--stretch-force-n"));
+  verb->add_option("--registration", arguments->registrations,
+                   "Files of `incise register`, one for each case: kept, so that `incise assess` can tell how a "
+                   "further specimen compares");
   verb->add_option("--speeds-mm-s", arguments->request.speeds_mm_s, "Of the paper's grid")
       ->check(above_zero("--speeds-mm-s"));
   verb->add_option("--dullnesses", arguments->request.dullnesses, "Of the paper's grid")

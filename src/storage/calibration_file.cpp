@@ -74,6 +74,7 @@ Json specimen_json(const CalibratedSpecimen& s) {
           {"youngs_modulus_kpa", s.youngs_modulus_kpa},
           {"stretch_force_n", or_null(s.stretch_force_n)},
           {"simulated_force_n", s.simulated_force_n},
+          {"stretch_mm", s.stretch_mm},
           {"registration", registration_quality_json(s.registration)},
           {"picture_turn_deg", s.picture.turn_deg},
           {"picture_rms_mm", s.picture.rms_mm}};
@@ -144,6 +145,7 @@ CalibratedSpecimenRecord specimen_from(const JsonPlace& place) {
   record.simulated_force_n = place.number("simulated_force_n");
   if (!place.at("stretch_force_n", "a number or null").is_null())
     record.stretch_force_n = positive(place, "stretch_force_n");
+  if (place.has("stretch_mm")) record.stretch_mm = place.number("stretch_mm");
   record.registration = registration_quality_from(place);
   return record;
 }
@@ -238,6 +240,19 @@ CalibratedBelief belief_of(const CalibrationRecord& record, const std::filesyste
                         std::all_of(record.specimens.begin(), record.specimens.end(),
                                     [](const CalibratedSpecimenRecord& s) { return s.stretch_force_n.has_value(); });
   return belief;
+}
+
+CalibratedRange range_of(const CalibrationRecord& record) {
+  CalibratedRange range;
+  for (const CalibratedSpecimenRecord& specimen : record.specimens) {
+    if (specimen.stretch_force_n) range.youngs_modulus_kpa.push_back(specimen.youngs_modulus_kpa);
+    if (specimen.stretch_force_n && specimen.stretch_mm > 0.0)
+      range.compliance_mm_n.push_back(specimen.stretch_mm / *specimen.stretch_force_n);
+    if (!specimen.registration) continue;
+    range.registration_rmse_mm.push_back(specimen.registration->rmse_mm);
+    range.registration_scale.push_back(specimen.registration->scale);
+  }
+  return range;
 }
 
 }  // namespace incise

@@ -156,7 +156,7 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
     if (is_stale(static_cast<Product>(later))) require_replaceable(folder(static_cast<Product>(later)));
   }
-  for (const char* made_of_it : {"program", "robust"}) require_replaceable(root_ / made_of_it);
+  for (const char* made_of_it : {"program", "robust", "assessment"}) require_replaceable(root_ / made_of_it);
   AtomicFolder target(folder(product));
   write(target.path());
   write_manifest_to(target.path(), wall_s);
@@ -168,7 +168,7 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
     if (is_stale(static_cast<Product>(later))) std::filesystem::remove_all(folder(static_cast<Product>(later)));
   }
-  for (const char* made_of_it : {"program", "robust"}) std::filesystem::remove_all(root_ / made_of_it);
+  for (const char* made_of_it : {"program", "robust", "assessment"}) std::filesystem::remove_all(root_ / made_of_it);
   remove_checkpoints_of_no_use(product);
 }
 

@@ -52,6 +52,8 @@ class CalibrationRunner {
     specimen.name = subject.photographed.name;
     specimen.stretch_force_n = subject.photographed.stretch_force_n;
     specimen.simulated_force_n = bodies_.back()->simulated_force_n();
+    specimen.stretch_mm = bodies_.back()->stretched_by_mm();
+    specimen.registration = subject.registration;
     specimen.youngs_modulus_kpa = subject.settings.material.youngs_modulus_kpa * bodies_.back()->reference_stiffness();
     measure_photograph(subject, specimen);
     // A mirrored picture shows now, not after minutes of simulation.

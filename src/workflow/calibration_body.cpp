@@ -1,6 +1,7 @@
 #include "workflow/calibration_body.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/workflow/assess.hpp>
 
 #include <fmt/format.h>
 
@@ -57,6 +58,10 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
     throw CaseError("case", "specimen.constraints", "none that pulls", "one of kind displaced",
                     "A measured force is that of the stretch");
   }
+}
+
+double CalibrationBody::stretched_by_mm() const {
+  return stretch_mm(*study_.model);
 }
 
 double CalibrationBody::reference_stiffness() const {

@@ -32,6 +32,8 @@ class CalibrationBody {
   [[nodiscard]] double reference_stiffness() const;
   /// Pull of the simulated specimen at the case's modulus, N: of all constraints that displace.
   [[nodiscard]] double simulated_force_n() const { return simulated_force_n_; }
+  /// How far the case displaces what it pulls, mm.
+  [[nodiscard]] double stretched_by_mm() const;
 
  private:
   [[nodiscard]] HeldBody make(double stiffness_of_case, Workers& workers, Monitor& monitor);

@@ -41,6 +41,7 @@ struct CalibratedSpecimen {
   double signed_mean_mm = 0.0;                      ///< of the photographed inner edge
   double youngs_modulus_kpa = 70.0;                 ///< reference: the case's, or what the measured force makes of it
   double simulated_force_n = 0.0;                   ///< pull of the simulated specimen at the case's modulus
+  double stretch_mm = 0.0;                          ///< how far its end was displaced
   std::optional<double> stretch_force_n;            ///< measured
   std::optional<RegistrationQuality> registration;  ///< where it was given
   PictureMatch picture;

@@ -2,6 +2,7 @@
 
 #include <incise/calibration/calibration.hpp>
 #include <incise/io/table_io.hpp>
+#include <incise/workflow/assess.hpp>
 #include <incise/workflow/calibrate.hpp>
 #include <incise/workflow/robust_correction.hpp>
 
@@ -53,6 +54,7 @@ struct CalibratedSpecimenRecord {
   std::string name;
   double youngs_modulus_kpa = 0.0;
   double simulated_force_n = 0.0;                   ///< at the case's modulus; 0: the case does not pull
+  double stretch_mm = 0.0;                          ///< by which it was displaced; 0: not said
   std::optional<double> stretch_force_n;            ///< measured
   std::optional<RegistrationQuality> registration;  ///< absent where it was not given to the calibration
 };
@@ -74,5 +76,8 @@ struct CalibrationRecord {
 /// What it says of the next specimen. @param path  of the file, for the message.
 /// @throws DataError for a calibration without a posterior (--method paper) or without a setting that worked.
 [[nodiscard]] CalibratedBelief belief_of(const CalibrationRecord& record, const std::filesystem::path& path);
+
+/// What it says of its specimens, to hold a further one against. A modulus counts only where the pull was measured.
+[[nodiscard]] CalibratedRange range_of(const CalibrationRecord& record);
 
 }  // namespace incise

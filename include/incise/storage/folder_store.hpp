@@ -41,6 +41,7 @@ enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Pass1, Pass2, Pas
 ///   correction/  path.json, path.vtp, compensate.json, history.csv, errors.csv
 ///   corrected/   as as_planned/
 ///   robust/      path.json, path.vtp, robust.json: see write_robust; gone when a product that it depends on is made anew
+///   assessment/  assess.json: see write_assessment; gone likewise
 ///
 /// and while a cut is under way or interrupted, beside them, as_planned.checkpoint, pass_1.checkpoint … (see CheckpointFile),
 /// and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that the product depends on: a product

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/storage/folder_store.hpp>
+#include <incise/workflow/assess.hpp>
 #include <incise/workflow/robust_correction.hpp>
 
 #include <nlohmann/json.hpp>
@@ -43,5 +44,14 @@ class ScenarioRunFolder : public ScenarioRunStore {
 /// @param calibration  the file that the scenarios are of.
 void write_robust(FolderStore& store, const RobustCorrection& robust, const std::filesystem::path& calibration,
                   double wall_s);
+
+/// `verdict`, `reasons`, `notes`, `expected_gain_mm {mean, sd}`, `p_worse`, `p_close_margin {intended, corrected}`,
+/// both paths' risks, `registration`, `distances`, `sensitivity`, `scenarios`, `rules`.
+[[nodiscard]] nlohmann::ordered_json to_json(const Assessment& assessment, const AssessmentRequest& request);
+
+/// Writes `OUT/assessment/` of a study: assess.json, manifest.json; all or nothing.
+void write_assessment(FolderStore& store, const nlohmann::ordered_json& assessment,
+                      const std::filesystem::path& calibration, const std::filesystem::path& registration,
+                      double wall_s);
 
 }  // namespace incise

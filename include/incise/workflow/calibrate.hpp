@@ -24,14 +24,15 @@ class RunStore {
 /// A specimen that was cut and photographed, and the case that says how it was held and along which path.
 struct CalibrationSubject {
   PhotographedCut photographed;
-  std::string photograph_file;  ///< named where the photograph cannot be used
-  std::string case_file;        ///< named where the case cannot be used
-  Case settings;                ///< plan.kind: ring
-  Store* store = nullptr;       ///< of the case; not null
+  std::string photograph_file;                      ///< named where the photograph cannot be used
+  std::string case_file;                            ///< named where the case cannot be used
+  Case settings;                                    ///< plan.kind: ring
+  std::optional<RegistrationQuality> registration;  ///< kept for whoever compares a further specimen with this one
+  Store* store = nullptr;                           ///< of the case; not null
 };
 
-/// What is simulated. Defaults: the paper's grid; for the fit, seven cuts of each specimen, one or two near the place that
-/// they point to, and one that checks.
+/// What is simulated. Defaults: the paper's grid; for the fit, seven cuts of each specimen, one or two near the place
+/// that they point to, and one that checks.
 struct CalibrationRequest {
   CalibrationMethod method = CalibrationMethod::Fit;
   std::vector<double> speeds_mm_s{1.0, 5.0, 9.0, 13.0, 17.0};  ///< of the grid, each > 0

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <incise/planning/robust_compensation.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// What to do with a specimen before the robot moves.
+enum class Verdict {
+  Compensate,    ///< the corrected path is expected to win more than is uncertain about it
+  CutAsPlanned,  ///< the simulation may be believed, but the correction wins too little, or costs margin
+  DoNotUse,      ///< the simulation is not to be believed of this specimen
+};
+[[nodiscard]] std::string_view to_string(Verdict verdict);  ///< compensate, cut_as_planned, do_not_use
+
+/// One quantity of this specimen against those of the calibration's specimens.
+struct SpecimenDistance {
+  std::string name;
+  double value = 0.0;
+  double mean = 0.0;   ///< of the calibration's specimens; for a logarithmic quantity the geometric one
+  double in_sd = 0.0;  ///< how many standard deviations of what a next specimen would show `value` lies above the mean
+  bool is_better_below = false;  ///< a value below the mean speaks for the specimen, however far
+};
+
+/// How a quantity differs between specimens that are alike.
+struct UsualSpread {
+  double sd = 0.0;  ///< usual standard deviation between them; of a logarithmic quantity that of its logarithm, > 0
+  bool is_logarithmic = false;
+  bool is_better_below = false;  ///< see SpecimenDistance
+};
+
+/// The distance of a quantity from the calibration's specimens. Few specimens hardly tell their spread, so it is
+/// blended with the usual one, which counts as much as five specimens would: sd² = (4 usual² + Σ (x − mean)²) / (4 + n
+/// − 1) · (1 + 1/n).
+/// @throws InvalidArgument without specimens, or for numbers not above 0 of a logarithmic quantity.
+[[nodiscard]] SpecimenDistance distance_from(std::string name, double value, std::span<const double> calibrated,
+                                             const UsualSpread& usual);
+
+/// What a verdict is made of.
+struct EligibilityEvidence {
+  PathRisk intended, corrected;
+  std::optional<CutGain> gain;              ///< absent: nothing could be simulated along both paths …
+  std::string no_gain_because;              ///< … and why
+  bool is_registered = true;                ///< a transform was found, and nothing spoke against it
+  double registration_rmse_mm = 0.0;        ///< of the simulated surface against the measured one
+  std::vector<SpecimenDistance> distances;  ///< of everything that is known of both
+};
+
+/// When a verdict is which. Every number is a choice; see docs/models/eligibility.md.
+struct EligibilityRules {
+  double least_gain_sds = 1.0;     ///< the gain has to be above this many of its standard deviations, >= 0
+  double most_p_worse = 0.15;      ///< and the probability that the corrected cut is the worse one at most this, [0, 1]
+  double most_distance_sds = 3.0;  ///< of any quantity, > 0
+  double most_rmse_mm = 1.0;       ///< of the registration, > 0
+  double most_unmeasured = 0.5;    ///< of the corrected path's tissues, by weight, [0, 1]
+  double most_p_close_margin = 0.05;  ///< of the corrected path, where it is above the intended one's, (0, 1)
+};
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const EligibilityRules& rules);
+
+struct Eligibility {
+  Verdict verdict = Verdict::DoNotUse;
+  std::vector<std::string> reasons;  ///< each with its numbers; of the verdict alone, at least one
+};
+
+/// Holds the evidence against the rules. Whatever speaks against the simulation is named before any gain is looked at.
+/// A number that is none speaks against it.
+/// @throws InvalidArgument with every violation of the rules.
+[[nodiscard]] Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules = {});
+
+}  // namespace incise

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <incise/calibration/calibration.hpp>
+#include <incise/planning/eligibility.hpp>
+#include <incise/workflow/robust_correction.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// What is known of the specimens that a calibration is of; a list is shorter where something was not measured.
+struct CalibratedRange {
+  std::vector<double> youngs_modulus_kpa;
+  std::vector<double> compliance_mm_n;  ///< stretch over pull
+  std::vector<double> registration_rmse_mm;
+  std::vector<double> registration_scale;
+};
+
+struct AssessmentRequest {
+  ScenarioRequest scenarios;
+  EligibilityRules rules;
+  CalibratedRange calibrated;
+  RegistrationQuality registration;  ///< of this specimen
+  bool is_registered = true;         ///< nothing spoke against its transform
+};
+
+/// What one standard deviation of a parameter does to the corrected cut.
+struct ParameterSensitivity {
+  std::string name;             ///< drag_length_mm, ln_stiffness_factor, bias_mm
+  double sd = 0.0;              ///< of the parameter
+  double change_mm = 0.0;       ///< by how much the error along the corrected path then changes: root mean square …
+  double mean_change_mm = 0.0;  ///< … and signed mean, positive = farther out
+};
+
+struct Assessment {
+  Eligibility eligibility;
+  EligibilityEvidence evidence;
+  std::optional<CorrectionOutlook> outlook;       ///< absent: there was no correction to look at
+  std::vector<ParameterSensitivity> sensitivity;  ///< empty, likewise or where a tissue could not be measured
+  std::vector<std::string> notes;                 ///< what was not known, and what that costs
+};
+
+/// Should this specimen be cut along the corrected path? Gathers what is known of it, cuts both paths in the tissues
+/// that the calibration leaves possible, and judges. See docs/models/eligibility.md.
+/// @param done  the case's study up to Stage::Verify, however it ended.
+/// @throws as correct_robustly.
+[[nodiscard]] Assessment assess(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
+                                const AssessmentRequest& request, ScenarioRunStore& runs, Workers& workers,
+                                Monitor& monitor);
+
+/// How far the case displaces the tissue that it pulls, mm: the farthest of its displacements; 0: it does not pull.
+[[nodiscard]] double stretch_mm(const TissueModel& model);
+
+/// From the cuts along the corrected path: a straight line through the scenarios for each waypoint.
+/// @param errors_mm  by scenario, per waypoint; an empty one was not measured. @returns nothing unless all were.
+[[nodiscard]] std::vector<ParameterSensitivity> sensitivity_of(const TissueScenarios& tissues,
+                                                               const std::vector<std::vector<double>>& errors_mm);
+
+}  // namespace incise

@@ -1,0 +1,127 @@
+#include <incise/core/error.hpp>
+#include <incise/planning/eligibility.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+/// Specimens, less one, that the usual spread counts as.
+constexpr double kUsualWeight = 4.0;
+
+/// What speaks against believing the simulation of this specimen.
+std::vector<std::string> objections(const EligibilityEvidence& e, const EligibilityRules& rules) {
+  std::vector<std::string> reasons;
+  if (!e.is_registered) reasons.emplace_back("the registration was refused: where the specimen lies is not known");
+  if (!(e.registration_rmse_mm <= rules.most_rmse_mm)) {
+    reasons.push_back(fmt::format("the simulated surface lies {:.2f} mm (rms) from the measured one, above {} mm",
+                                  e.registration_rmse_mm, rules.most_rmse_mm));
+  }
+  for (const SpecimenDistance& d : e.distances) {
+    if (std::abs(d.in_sd) <= rules.most_distance_sds || (d.is_better_below && d.in_sd < 0.0)) continue;
+    reasons.push_back(fmt::format("{}: {:.4g} is {:.1f} standard deviations {} the calibration's {:.4g}, beyond {}",
+                                  d.name, d.value, std::abs(d.in_sd), d.in_sd < 0.0 ? "below" : "above", d.mean,
+                                  rules.most_distance_sds));
+  }
+  if (!(e.corrected.unmeasured_weight <= rules.most_unmeasured)) {
+    reasons.push_back(fmt::format(
+        "along the corrected path the ring stays open in {:.0f} % of the calibration's tissues, above {:.0f} %",
+        100.0 * e.corrected.unmeasured_weight, 100.0 * rules.most_unmeasured));
+  }
+  if (!e.gain) reasons.push_back(fmt::format("nothing can be foretold: {}", e.no_gain_because));
+  if (e.gain && !(std::isfinite(e.gain->mean_mm) && std::isfinite(e.gain->sd_mm)))
+    reasons.emplace_back("the expected gain is no number");
+  return reasons;
+}
+
+/// What speaks against the correction, where the simulation is believed.
+std::vector<std::string> doubts(const EligibilityEvidence& e, const EligibilityRules& rules) {
+  std::vector<std::string> reasons;
+  const CutGain& gain = *e.gain;
+  if (!(gain.mean_mm > rules.least_gain_sds * gain.sd_mm)) {
+    reasons.push_back(
+        fmt::format("the expected gain of {:.2f} mm is not above {} of its standard deviation of {:.2f} mm",
+                    gain.mean_mm, rules.least_gain_sds, gain.sd_mm));
+  }
+  if (!(gain.p_worse <= rules.most_p_worse)) {
+    reasons.push_back(fmt::format("the corrected cut is the worse one with a probability of {:.2f}, above {}",
+                                  gain.p_worse, rules.most_p_worse));
+  }
+  const double p = e.corrected.p_close_bound();
+  if (!(p <= rules.most_p_close_margin) && !(p <= e.intended.p_close_bound())) {
+    reasons.push_back(fmt::format(
+        "corrected, a margin is too close somewhere with a probability of {:.3f}, above {} and above {:.3f} as planned",
+        p, rules.most_p_close_margin, e.intended.p_close_bound()));
+  }
+  return reasons;
+}
+
+}  // namespace
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::Compensate:
+      return "compensate";
+    case Verdict::CutAsPlanned:
+      return "cut_as_planned";
+    case Verdict::DoNotUse:
+      return "do_not_use";
+  }
+  return "unknown";
+}
+
+SpecimenDistance distance_from(std::string name, double value, std::span<const double> calibrated,
+                               const UsualSpread& usual) {
+  INCISE_REQUIRE(!calibrated.empty(), fmt::format("{}: expected at least one specimen to compare with", name));
+  INCISE_REQUIRE(usual.sd > 0.0, fmt::format("{}: expected a usual spread above 0, found {}", name, usual.sd));
+  const auto place = [&](double x) {
+    INCISE_REQUIRE(std::isfinite(x) && (!usual.is_logarithmic || x > 0.0),
+                   fmt::format("{}: expected a number above 0, found {}", name, x));
+    return usual.is_logarithmic ? std::log(x) : x;
+  };
+  const auto n = static_cast<double>(calibrated.size());
+  double mean = 0.0;
+  for (const double x : calibrated) mean += place(x) / n;
+  double squares = kUsualWeight * usual.sd * usual.sd;
+  for (const double x : calibrated) squares += std::pow(place(x) - mean, 2);
+  const double sd = std::sqrt(squares / (kUsualWeight + n - 1.0) * (1.0 + 1.0 / n));
+  return {std::move(name), value, usual.is_logarithmic ? std::exp(mean) : mean, (place(value) - mean) / sd,
+          usual.is_better_below};
+}
+
+std::vector<std::string> validate(const EligibilityRules& r) {
+  std::vector<std::string> violations;
+  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
+    if (is_valid && std::isfinite(found)) return;
+    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
+  };
+  expect(r.least_gain_sds >= 0.0, "least_gain_sds", r.least_gain_sds, "0 or more");
+  expect(r.most_p_worse >= 0.0 && r.most_p_worse <= 1.0, "most_p_worse", r.most_p_worse, "a probability in [0, 1]");
+  expect(r.most_distance_sds > 0.0, "most_distance_sds", r.most_distance_sds, "a number above 0");
+  expect(r.most_rmse_mm > 0.0, "most_rmse_mm", r.most_rmse_mm, "a distance above 0 mm");
+  expect(r.most_unmeasured >= 0.0 && r.most_unmeasured <= 1.0, "most_unmeasured", r.most_unmeasured,
+         "a share in [0, 1]");
+  expect(r.most_p_close_margin > 0.0 && r.most_p_close_margin < 1.0, "most_p_close_margin", r.most_p_close_margin,
+         "a probability in (0, 1)");
+  return violations;
+}
+
+Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules) {
+  const std::vector<std::string> violations = validate(rules);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  if (std::vector<std::string> against = objections(evidence, rules); !against.empty())
+    return {Verdict::DoNotUse, std::move(against)};
+  if (std::vector<std::string> against = doubts(evidence, rules); !against.empty())
+    return {Verdict::CutAsPlanned, std::move(against)};
+  const CutGain& gain = *evidence.gain;
+  return {
+      Verdict::Compensate,
+      {fmt::format(
+          "the expected gain is {:.2f} ± {:.2f} mm; the corrected cut is the worse one with a probability of {:.2f}",
+          gain.mean_mm, gain.sd_mm, gain.p_worse)}};
+}
+
+}  // namespace incise

@@ -1,0 +1,137 @@
+#include <incise/core/error.hpp>
+#include <incise/workflow/assess.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+// How specimens that are alike differ, where a calibration of few does not tell: chosen, see the model page.
+constexpr UsualSpread kUsualStiffness{.sd = 0.3, .is_logarithmic = true};
+constexpr UsualSpread kUsualCompliance{.sd = 0.3, .is_logarithmic = true};
+constexpr UsualSpread kUsualResidual{.sd = 0.3, .is_logarithmic = true, .is_better_below = true};
+constexpr UsualSpread kUsualScale{.sd = 0.01, .is_logarithmic = true};
+
+/// Distances of what is known of this specimen and of the calibration's.
+class RangeCheck {
+ public:
+  explicit RangeCheck(Assessment& assessment) : assessment_(assessment) {}
+
+  void compare(const char* name, double value, const std::vector<double>& calibrated, const UsualSpread& usual) {
+    if (calibrated.empty()) {
+      assessment_.notes.push_back(
+          fmt::format("{}: the calibration does not say it of any specimen, so its distance is not known", name));
+      return;
+    }
+    assessment_.evidence.distances.push_back(distance_from(name, value, calibrated, usual));
+  }
+
+ private:
+  Assessment& assessment_;
+};
+
+void compare_registration(const AssessmentRequest& request, Assessment& assessment) {
+  if (!(request.registration.rmse_mm > 0.0)) return;  // none was found, or the surface was laid on itself
+  RangeCheck range(assessment);
+  range.compare("registration_rmse_mm", request.registration.rmse_mm, request.calibrated.registration_rmse_mm,
+                kUsualResidual);
+  range.compare("registration_scale", request.registration.scale, request.calibrated.registration_scale, kUsualScale);
+}
+
+void compare_stiffness(const AssessmentRequest& request, const ScenarioSet& scenarios, const TissueModel& model,
+                       Assessment& assessment) {
+  RangeCheck range(assessment);
+  if (!request.scenarios.stretch_force_n) {
+    assessment.notes.push_back(
+        fmt::format("the pull was not measured: the case's modulus of {:.3g} kPa is believed, its logarithm give or "
+                    "take {:.2g}; whether "
+                    "it lies in the calibrated range is not known",
+                    scenarios.reference_kpa, scenarios.own_stiffness_sd));
+    return;
+  }
+  range.compare("youngs_modulus_kpa", scenarios.reference_kpa, request.calibrated.youngs_modulus_kpa, kUsualStiffness);
+  range.compare("compliance_mm_n", stretch_mm(model) / *request.scenarios.stretch_force_n,
+                request.calibrated.compliance_mm_n, kUsualCompliance);
+}
+
+/// Why there is no correction to look at; empty: there is one.
+std::string without_correction(const Study& done) {
+  if (!done.stretched || done.stretched->outcome != Outcome::Success)
+    return "the specimen could not be stretched in simulation";
+  if (!done.as_planned) return "the cut as planned was not simulated";
+  if (!done.corrected || !done.correction)
+    return fmt::format("the cut as planned ended as {} and left nothing to correct",
+                       to_string(done.as_planned->outcome));
+  return "";
+}
+
+}  // namespace
+
+double stretch_mm(const TissueModel& model) {
+  double farthest = 0.0;
+  for (const Constraint& constraint : model.constraints) {
+    if (const auto* pulled = std::get_if<DisplacedConstraint>(&constraint))
+      farthest = std::max(farthest, pulled->displacement_mm.norm());
+  }
+  return farthest;
+}
+
+std::vector<ParameterSensitivity> sensitivity_of(const TissueScenarios& tissues,
+                                                 const std::vector<std::vector<double>>& errors_mm) {
+  INCISE_REQUIRE(
+      errors_mm.size() == tissues.points.size() && !errors_mm.empty(),
+      fmt::format("expected errors for each of {} scenarios, found {}", tissues.points.size(), errors_mm.size()));
+  for (const std::vector<double>& errors : errors_mm) {
+    if (errors.empty()) return {};
+  }
+  // Per scenario one row: 1 and both parameters in standard deviations. The simulated error is without the bias.
+  const auto count = static_cast<Eigen::Index>(tissues.points.size());
+  const auto waypoints = static_cast<Eigen::Index>(errors_mm.front().size());
+  const TissueScenario& middle = tissues.points.front();
+  Eigen::MatrixXd places(count, 3);
+  Eigen::MatrixXd errors(count, waypoints);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const TissueScenario& tissue = tissues.points[static_cast<std::size_t>(k)];
+    places.row(k) << 1.0, (tissue.drag_length_mm - middle.drag_length_mm) / std::max(tissues.drag_length_sd_mm, 1e-9),
+        std::log(tissue.stiffness_factor / middle.stiffness_factor) / std::max(tissues.ln_stiffness_sd, 1e-9);
+    errors.row(k) = Eigen::Map<const Eigen::RowVectorXd>(errors_mm[static_cast<std::size_t>(k)].data(), waypoints);
+    errors.row(k).array() -= tissue.bias_mm;
+  }
+  const Eigen::MatrixXd slopes = places.colPivHouseholderQr().solve(errors);
+  const auto told = [&](const char* name, double sd, Eigen::Index row) {
+    return ParameterSensitivity{name, sd, std::sqrt(slopes.row(row).squaredNorm() / static_cast<double>(waypoints)),
+                                slopes.row(row).mean()};
+  };
+  return {told("drag_length_mm", tissues.drag_length_sd_mm, 1),
+          told("ln_stiffness_factor", tissues.ln_stiffness_sd, 2),
+          {"bias_mm", tissues.bias_sd_mm, tissues.bias_sd_mm, tissues.bias_sd_mm}};
+}
+
+Assessment assess(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
+                  const AssessmentRequest& request, ScenarioRunStore& runs, Workers& workers, Monitor& monitor) {
+  Assessment assessment;
+  EligibilityEvidence& evidence = assessment.evidence;
+  evidence.is_registered = request.is_registered;
+  evidence.registration_rmse_mm = request.registration.rmse_mm;
+  compare_registration(request, assessment);
+  evidence.no_gain_because = without_correction(done);
+  if (evidence.no_gain_because.empty()) {
+    assessment.outlook = foresee_correction(settings, store, done, belief, request.scenarios, runs, workers, monitor);
+    const PathOutlook& paths = assessment.outlook->paths;
+    evidence.intended = paths.intended;
+    evidence.corrected = paths.corrected;
+    evidence.gain = paths.gain;
+    if (!paths.gain)
+      evidence.no_gain_because = "in none of the calibration's tissues did the ring close along both paths";
+    compare_stiffness(request, assessment.outlook->scenarios, *done.model, assessment);
+    assessment.sensitivity = sensitivity_of(assessment.outlook->scenarios.tissues, paths.corrected_error_mm);
+  }
+  assessment.eligibility = judge_eligibility(evidence, request.rules);
+  return assessment;
+}
+
+}  // namespace incise

@@ -1,0 +1,109 @@
+"""Should this specimen be corrected? The verdict, its numbers, and what is refused."""
+
+import json
+import unittest
+
+import small_calibration
+import small_case
+from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+
+KEYS = ("verdict", "reasons", "expected_gain_mm", "p_worse", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
+IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+PULL_N = 27.0  # about what the block pulls at the case's modulus
+
+
+class AssessTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}})
+        self.calibration = small_calibration.write(self.folder / "calibration.json")
+        self.registered()
+
+    def registered(self, **changes):
+        record = {"T_target_source": IDENTITY, "converged": True, "scale": 1.001, "rmse_mm": 0.34, "inlier_fraction": 0.97}
+        record.update(changes)
+        (self.folder / "registration.json").write_text(json.dumps({key: value for key, value in record.items() if value != "absent"}))
+
+    def arguments(self, *options):
+        return ("assess", "case", "--calibration", self.calibration, "--registration", "registration.json", "-o", self.out, *options)
+
+    def assessed(self, *options, status=DONE):
+        return self.json_of(*self.arguments(*options), status=status)
+
+    def test_a_specimen_like_the_calibrations_is_judged_by_its_gain(self):
+        found = self.assessed("--stretch-force-n", PULL_N)
+        for key in KEYS:
+            self.assertIn(key, found)
+        self.assertEqual(found["verdict"], "compensate", found["reasons"])
+        gain = found["expected_gain_mm"]
+        self.assertGreater(gain["mean"], gain["sd"])
+        self.assertEqual([entry["name"] for entry in found["distances"]],
+                         ["registration_rmse_mm", "registration_scale", "youngs_modulus_kpa", "compliance_mm_n"])
+        self.assertLess(max(abs(entry["in_sd"]) for entry in found["distances"]), 3.0)
+        self.assertEqual([entry["name"] for entry in found["sensitivity"]], ["drag_length_mm", "ln_stiffness_factor", "bias_mm"])
+        self.assertEqual(found["notes"], [])
+        written = json.loads((self.out / "assessment" / "assess.json").read_text())
+        self.assertEqual(written["verdict"], found["verdict"])
+        self.assertIn("assessment/manifest.json", files_below(self.out))
+
+        # What was cut for it serves the robust path, and the other way round.
+        done = self.incise("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, "--stretch-force-n", PULL_N)
+        self.assertIn("5 cuts along a path, 5 of them are there already", done.stderr)
+
+        # A correction that the tissue does not need: the bias undoes what was foreseen.
+        small_calibration.write(self.calibration, lambda c: c["posterior"].update(samples=small_calibration.samples(bias_mm=(3.4, 3.8))))
+        found = self.assessed("--stretch-force-n", PULL_N)
+        self.assertEqual(found["verdict"], "cut_as_planned", found)
+        self.assertTrue(any("gain" in reason for reason in found["reasons"]), found["reasons"])
+
+    def test_outside_the_calibrated_range_or_badly_registered_is_not_to_be_used(self):
+        found = self.assessed("--stretch-force-n", 5.0 * PULL_N, status=NOT_ACCEPTABLE)
+        self.assertEqual(found["verdict"], "do_not_use")
+        self.assertTrue(any(reason.startswith("youngs_modulus_kpa") for reason in found["reasons"]), found["reasons"])
+        self.registered(rmse_mm=1.8)
+        found = self.assessed("--stretch-force-n", PULL_N, status=NOT_ACCEPTABLE)
+        self.assertTrue(any("1.80 mm (rms)" in reason for reason in found["reasons"]), found["reasons"])
+        self.registered(T_target_source=None, rmse_mm=None, scale=None, converged=False)
+        found = self.assessed("--stretch-force-n", PULL_N, status=NOT_ACCEPTABLE)
+        self.assertTrue(any("refused" in reason for reason in found["reasons"]), found["reasons"])
+
+    def test_a_pull_that_is_withheld_is_said_and_widens_what_is_believed(self):
+        known = self.assessed("--stretch-force-n", PULL_N)
+        withheld = self.assessed()
+        self.assertTrue(any("pull was not measured" in note for note in withheld["notes"]), withheld["notes"])
+        self.assertGreater(withheld["scenarios"]["spread"]["ln_stiffness_sd"], 3.0 * known["scenarios"]["spread"]["ln_stiffness_sd"])
+        self.assertEqual([entry["name"] for entry in withheld["distances"]], ["registration_rmse_mm", "registration_scale"])
+
+    def test_a_ring_that_stays_open_cannot_be_foretold(self):
+        small_case.write_case(self.folder / "case", {"cut": {"dullness": 900}})
+        found = self.assessed(status=NOT_ACCEPTABLE)
+        self.assertEqual(found["verdict"], "do_not_use")
+        self.assertIsNone(found["expected_gain_mm"])
+        self.assertTrue(any("open_loop" in reason for reason in found["reasons"]), found["reasons"])
+
+    def test_what_cannot_be_is_refused_before_anything_is_written(self):
+        self.assert_refused(self.incise(*self.arguments("--stretch-force-n", -1)), BAD_CASE, "--stretch-force-n")
+        self.registered(rmse_mm="absent")
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "registration.json", "rmse_mm")
+        self.registered(T_target_source="absent")
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "registration.json", "T_target_source")
+        self.registered()
+        small_calibration.write(self.calibration, lambda c: c.update(method="paper"))
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "method")
+        small_calibration.write(self.calibration, lambda c: c["specimens"][0].update(registration={"rmse_mm": -1, "scale": 1}))
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "specimens[0].registration.rmse_mm")
+        small_calibration.write(self.calibration)
+        small_case.write_case(self.folder / "case", {"compensation": {"method": "paper"}})
+        self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "compensation.method", "paper")
+        self.assert_nothing_written()
+
+    def test_an_interrupted_assessment_goes_on(self):
+        stopped = self.interrupted(*self.arguments("--threads", 1), after="tissues of the calibration: 5 cuts")
+        self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
+        self.assertFalse((self.out / "assessment").exists())
+        self.incise(*self.arguments())
+        self.assertTrue((self.out / "assessment").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,149 @@
+#include <incise/core/error.hpp>
+#include <incise/planning/eligibility.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace incise {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// A specimen like those of the calibration, whose correction wins a millimetre.
+EligibilityEvidence good() {
+  EligibilityEvidence evidence;
+  evidence.intended = {1.6, 0.30, 0.0};
+  evidence.corrected = {0.6, 0.01, 0.0};
+  evidence.gain = CutGain{1.0, 0.4, 0.01};
+  evidence.registration_rmse_mm = 0.4;
+  evidence.distances = {{"youngs_modulus_kpa", 13.0, 12.0, 0.3}};
+  return evidence;
+}
+
+TEST(JudgeEligibility, CompensatesWhereTheGainIsAboveItsUncertainty) {
+  const Eligibility judged = judge_eligibility(good());
+  EXPECT_EQ(judged.verdict, Verdict::Compensate);
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("1.00 ± 0.40 mm")));
+}
+
+TEST(JudgeEligibility, CutsAsPlannedWhereTheGainIsNotAboveItsUncertainty) {
+  EligibilityEvidence evidence = good();
+  evidence.gain->mean_mm = 0.4;  // just its sd: not above
+  Eligibility judged = judge_eligibility(evidence);
+  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("expected gain of 0.40 mm")));
+  evidence.gain->mean_mm = 0.401;
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+  evidence.gain = CutGain{-0.5, 0.1, 0.99};
+  judged = judge_eligibility(evidence);
+  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("-0.50 mm"), HasSubstr("probability of 0.99")));
+}
+
+TEST(JudgeEligibility, AGainWithoutAnyUncertaintyHasToBeAGain) {
+  EligibilityEvidence evidence = good();
+  evidence.gain = CutGain{0.0, 0.0, 0.0};
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::CutAsPlanned) << "nothing to win";
+  evidence.gain = CutGain{0.01, 0.0, 0.0};
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+}
+
+TEST(JudgeEligibility, CutsAsPlannedWhereTheCorrectionCostsMargin) {
+  EligibilityEvidence evidence = good();
+  evidence.corrected.p_close_margin = 0.2;
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate) << "much, but less than as planned";
+  evidence.intended.p_close_margin = 0.1;
+  const Eligibility judged = judge_eligibility(evidence);
+  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("probability of 0.200")));
+}
+
+TEST(JudgeEligibility, DoesNotUseWhatLiesOutsideTheCalibratedRange) {
+  for (const double in_sd : {3.1, -3.1}) {
+    EligibilityEvidence evidence = good();
+    evidence.distances.push_back({"compliance_mm_n", 1.0, 5.0, in_sd});
+    const Eligibility judged = judge_eligibility(evidence);
+    EXPECT_EQ(judged.verdict, Verdict::DoNotUse);
+    EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("compliance_mm_n: 1 is 3.1 standard deviations")));
+    evidence.distances.back().in_sd = 2.9;
+    EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+  }
+}
+
+TEST(JudgeEligibility, ABetterRegistrationThanTheCalibrationsIsNoObjection) {
+  EligibilityEvidence evidence = good();
+  evidence.distances = {{"registration_rmse_mm", 0.05, 0.4, -6.0, true}};
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+  evidence.distances = {{"registration_rmse_mm", 0.9, 0.2, 6.0, true}};
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+}
+
+TEST(JudgeEligibility, DoesNotUseABadRegistrationAndSaysAllThatSpeaksAgainstIt) {
+  EligibilityEvidence evidence = good();
+  evidence.registration_rmse_mm = 1.2;
+  EXPECT_THAT(judge_eligibility(evidence).reasons, ElementsAre(HasSubstr("1.20 mm (rms)")));
+  evidence.is_registered = false;
+  evidence.corrected.unmeasured_weight = 0.6;
+  const Eligibility judged = judge_eligibility(evidence);
+  EXPECT_EQ(judged.verdict, Verdict::DoNotUse);
+  EXPECT_THAT(judged.reasons,
+              ElementsAre(HasSubstr("registration was refused"), HasSubstr("1.20 mm"), HasSubstr("60 %")));
+}
+
+TEST(JudgeEligibility, DoesNotUseWhatCannotBeForetold) {
+  EligibilityEvidence evidence = good();
+  evidence.gain.reset();
+  evidence.no_gain_because = "open_loop";
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+  EXPECT_THAT(judge_eligibility(evidence).reasons, ElementsAre(HasSubstr("open_loop")));
+  evidence = good();
+  evidence.registration_rmse_mm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+  evidence = good();
+  evidence.gain->mean_mm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+}
+
+TEST(JudgeEligibility, RefusesRulesThatAreNone) {
+  EXPECT_TRUE(validate(EligibilityRules{}).empty());
+  const EligibilityRules bad{.least_gain_sds = -1.0, .most_rmse_mm = 0.0, .most_p_close_margin = 1.0};
+  EXPECT_THAT(validate(bad),
+              ElementsAre(HasSubstr("least_gain_sds"), HasSubstr("most_rmse_mm"), HasSubstr("most_p_close_margin")));
+  EXPECT_THROW(static_cast<void>(judge_eligibility(good(), bad)), InvalidArgument);
+}
+
+TEST(DistanceFrom, CountsInStandardDeviationsOfWhatANextSpecimenWouldShow) {
+  // Two specimens: Σ (x - mean)² = 2; (4 · 9 + 2) / 5 · 1.5 = 11.4.
+  const std::vector<double> two{9.0, 11.0};
+  const SpecimenDistance far = distance_from("scale", 20.0, two, {.sd = 3.0});
+  EXPECT_DOUBLE_EQ(far.mean, 10.0);
+  EXPECT_DOUBLE_EQ(far.in_sd, 10.0 / std::sqrt(11.4));
+  EXPECT_LT(distance_from("scale", 5.0, two, {.sd = 3.0}).in_sd, 0.0);
+  // Many: their own spread alone.
+  std::vector<double> many;
+  for (int i = 0; i < 2000; ++i) many.push_back(i % 2 == 0 ? 9.0 : 11.0);
+  EXPECT_NEAR(distance_from("scale", 12.0, many, {.sd = 3.0}).in_sd, 2.0, 0.03);
+  // One tells no spread at all: the usual one, doubled in variance, as its own place is as uncertain.
+  EXPECT_DOUBLE_EQ(distance_from("scale", 10.0 + 3.0 * std::sqrt(2.0), std::vector<double>{10.0}, {.sd = 3.0}).in_sd,
+                   1.0);
+}
+
+TEST(DistanceFrom, OfLogarithmsIsAFactor) {
+  const std::vector<double> moduli{6.0, 24.0};
+  const SpecimenDistance twice = distance_from("kpa", 24.0, moduli, {.sd = 0.3, .is_logarithmic = true});
+  const SpecimenDistance half = distance_from("kpa", 6.0, moduli, {.sd = 0.3, .is_logarithmic = true});
+  EXPECT_NEAR(twice.mean, 12.0, 1e-12);
+  EXPECT_NEAR(twice.in_sd, -half.in_sd, 1e-12);
+  EXPECT_THROW(static_cast<void>(distance_from("kpa", 0.0, moduli, {.sd = 0.3, .is_logarithmic = true})),
+               InvalidArgument);
+  EXPECT_THROW(static_cast<void>(distance_from("kpa", 1.0, {}, {.sd = 0.3})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(distance_from("kpa", 1.0, moduli, {.sd = 0.0})), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise
