@@ -116,7 +116,7 @@ bool SpecimenTrial::find_place() {
                          {"register", "--source", at("simulated.ply").string(), "--target", at("tissue.ply").string(), "--scale", "fixed", "-o",
                           at("registration").string()},
                          {at("simulated.ply"), at("tissue.ply")},
-                         at("registration/registration.json")});
+                         registration()});
   if (!laid) return false;
   registration_rmse_mm_ = laid->result.at("rmse_mm").get<double>();
   write_edge(laid->result);
@@ -126,7 +126,7 @@ bool SpecimenTrial::find_place() {
 /// The edge that was marked on the tissue, as the simulation would have it.
 void SpecimenTrial::write_edge(const StudyJson& registration) const {
   Contour edge = read_contour(at("tracked/contour.csv"));
-  const Mat4 T_sim_camera = transform_in(registration, "T_target_source", at("registration/registration.json")).inverse();
+  const Mat4 T_sim_camera = transform_in(registration, "T_target_source", this->registration()).inverse();
   for (Vec3& p : edge.points) p = (T_sim_camera * (p / camera_scale_).homogeneous()).head<3>();
   write_contour_csv(at("tumor.csv"), edge);
 }
@@ -146,7 +146,7 @@ void SpecimenTrial::write_case(const std::optional<ChosenTool>& tool) const {
 std::optional<TrialCut> SpecimenTrial::cut(const std::filesystem::path& path, const std::string& tag) {
   const auto named = [&](const std::string& name) { return at(tag + "_" + name); };
   const std::string camera = at("lab/camera.json").string();
-  const std::filesystem::path registration = at("registration/registration.json");
+  const std::filesystem::path registration = this->registration();
   const std::filesystem::path projected = named("on_tissue"), program = named("cut.script"), photo = named("cut"), found = named("evaluation.json");
   if (!run({tag + "_project",
             {"project", path.string(), "--transform", registration.string(), "--surface", at("tissue.ply").string(), "--camera", camera, "-o",

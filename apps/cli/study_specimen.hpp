@@ -48,10 +48,13 @@ class SpecimenTrial {
   std::optional<TrialCut> cut(const std::filesystem::path& path, const std::string& tag);
   /// Runs one more command of the planner in this specimen's folder. @returns nothing where it refused (see ended_at).
   std::optional<StepRecord> run(const ExperimentStep& step);
+  /// The same for a command whose refusal is an answer, and does not end the specimen.
+  StepRecord ask(const ExperimentStep& step) { return runner_.run(step); }
 
   [[nodiscard]] const TrialSetup& setup() const { return setup_; }
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return setup_.folder / name; }
   [[nodiscard]] std::filesystem::path case_file() const { return at("case.yaml"); }
+  [[nodiscard]] std::filesystem::path registration() const { return at("registration/registration.json"); }
   [[nodiscard]] std::filesystem::path planned_path() const { return at("planned/plan/path.json"); }
   [[nodiscard]] double stretch_force_n() const { return stretch_force_n_; }
   [[nodiscard]] double youngs_modulus_kpa() const { return youngs_modulus_kpa_; }

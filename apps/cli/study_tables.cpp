@@ -129,6 +129,20 @@ TableJson table_2_json(const std::vector<Trial>& trials) {
   return rows;
 }
 
+TableJson assessments_json(const std::vector<Trial>& trials) {
+  TableJson list = TableJson::array();
+  for (const Trial& trial : trials) {
+    if (!trial.assessment.is_object()) continue;
+    TableJson entry{{"specimen", trial.name}, {"role", to_string(trial.role)}};
+    for (const char* key : {"verdict", "reasons", "expected_gain_mm", "p_worse", "p_close_margin", "distances"})
+      entry[key] = trial.assessment.value(key, TableJson());
+    const bool is_pair = trial.planned && trial.corrected;
+    entry["gain_mm"] = is_pair ? TableJson(mean_error_mm(*trial.planned) - mean_error_mm(*trial.corrected)) : TableJson(nullptr);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
 void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials) {
   const TableJson rows = table_2_json(trials);
   write_atomically(file, [&rows](std::ostream& out) {

@@ -42,6 +42,8 @@ struct TrialSummary {
 
 /// One row a cut: the paper's Table II in our own version.
 [[nodiscard]] nlohmann::ordered_json table_2_json(const std::vector<Trial>& trials);
+/// By specimen, what `incise assess` said and whether its corrected cut was the worse one.
+[[nodiscard]] nlohmann::ordered_json assessments_json(const std::vector<Trial>& trials);
 void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials);
 
 /// The page with everything: tables, the comparison's figures, the calibration's, the paper's figures cited beside.

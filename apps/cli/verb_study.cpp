@@ -58,6 +58,7 @@ class Experiment {
  private:
   void run_trials(TrialRole first, TrialRole last);
   void run_trial(Trial& trial);
+  void assess(SpecimenTrial& specimen, Trial& trial);
   void correct(SpecimenTrial& specimen, Trial& trial);
   void calibrate();
   void compare();
@@ -99,6 +100,7 @@ ExperimentJson Experiment::run() {
   result["specimens_test"] = comparison_.is_object() ? comparison_.value("specimens", ExperimentJson()) : ExperimentJson(nullptr);
   result["table_1"] = table_1_.is_object() ? table_1_.value("rows", ExperimentJson()) : ExperimentJson(nullptr);
   result["table_2"] = table_2_json(trials_);
+  result["assessments"] = assessments_json(trials_);
   result["figures"] = ExperimentJson::array();
   for (const char* figure : {"comparison/box_plot.svg", "comparison/error_by_clock.svg", "table_1/table_1.svg", "calibration/fit.svg"}) {
     if (std::filesystem::exists(root_ / figure)) result["figures"].push_back((root_ / figure).string());
@@ -138,13 +140,29 @@ void Experiment::run_trial(Trial& trial) {
   SpecimenTrial specimen(setup, 1, console_);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
-    if (trial.role != TrialRole::Calibrate) correct(specimen, trial);
+    if (trial.role != TrialRole::Calibrate) {
+      assess(specimen, trial);
+      correct(specimen, trial);
+    }
   }
   trial.stretch_force_n = specimen.stretch_force_n();
   trial.youngs_modulus_kpa = specimen.youngs_modulus_kpa();
   trial.registration_rmse_mm = specimen.registration_rmse_mm();
   trial.ended_at = specimen.ended_at();
   trial.commands = specimen.commands();
+}
+
+/// What would be advised before the robot moves. The corrected cut is made on the bench whatever it says: whether the
+/// advice was right is part of the experiment.
+void Experiment::assess(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path folder = specimen.at("compensated"), calibration = root_ / "calibration/calibration.json";
+  const StepRecord judged = specimen.ask({"assess",
+                                          {"assess", specimen.case_file().string(), "--calibration", calibration.string(), "--registration",
+                                           specimen.registration().string(), "--stretch-force-n", fmt::format("{}", specimen.stretch_force_n()), "-o",
+                                           folder.string()},
+                                          {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration, specimen.registration()},
+                                          folder / "assessment/assess.json"});
+  trial.assessment = judged.result;
 }
 
 /// The correction, verified in simulation, and the second cut of the same specimen.
@@ -169,7 +187,7 @@ std::vector<std::filesystem::path> Experiment::cut_files(TrialRole role, std::op
 }
 
 void Experiment::calibrate() {
-  std::vector<std::string> cases, observed{"--observed"}, forces{"--stretch-force-n"};
+  std::vector<std::string> cases, observed{"--observed"}, forces{"--stretch-force-n"}, registrations{"--registration"};
   std::vector<std::filesystem::path> inputs;
   for (const Trial& trial : trials_) {
     if (trial.role != TrialRole::Calibrate || !trial.planned) continue;
@@ -177,13 +195,15 @@ void Experiment::calibrate() {
     cases.push_back(file.string());
     observed.push_back(trial.planned->evaluation.string());
     forces.push_back(fmt::format("{}", trial.stretch_force_n));
-    for (const std::filesystem::path& input : {file, root_ / trial.name / "tumor.csv", trial.planned->evaluation}) inputs.push_back(input);
+    const std::filesystem::path registration = root_ / trial.name / "registration/registration.json";
+    registrations.push_back(registration.string());
+    for (const std::filesystem::path& input : {file, root_ / trial.name / "tumor.csv", trial.planned->evaluation, registration}) inputs.push_back(input);
   }
   if (cases.empty()) throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
   StepRunner runner(root_, threads_, console_);
   const auto arguments = [&](const std::string& method, const std::filesystem::path& folder) {
     std::vector<std::string> words{"calibrate"};
-    for (const auto* list : {&cases, &observed, &forces}) words.insert(words.end(), list->begin(), list->end());
+    for (const auto* list : {&cases, &observed, &forces, &registrations}) words.insert(words.end(), list->begin(), list->end());
     for (const std::string& word : {std::string("--method"), method, std::string("-o"), folder.string()}) words.push_back(word);
     return words;
   };

@@ -40,6 +40,12 @@ class StudyTest(CommandTest):
         self.assertEqual(result["pairs"], 1)
         self.assertLess(result["mean_after_mm"], result["mean_before_mm"])
         self.assertEqual([row["cut"] for row in result["table_2"]], ["planned", "planned", "corrected"])
+        self.assertEqual([row["verdict"] is None for row in result["table_2"]], [True, False, False])
+        (advice,) = result["assessments"]
+        self.assertIn(advice["verdict"], ("compensate", "cut_as_planned", "do_not_use"))
+        self.assertEqual({entry["name"] for entry in advice["distances"]},
+                         {"registration_rmse_mm", "registration_scale", "youngs_modulus_kpa", "compliance_mm_n"})
+        self.assertAlmostEqual(advice["gain_mm"], result["mean_before_mm"] - result["mean_after_mm"], delta=1e-12)
         page = (self.folder / "study" / "report.html").read_text()
         self.assertIn("Virtual specimens, cut by a computed bench", page)
         for name in ("table_2.csv", "commands.sh", "study.json", "manifest.json"):
