@@ -175,12 +175,13 @@ void print(const Row& r) {
   const Errors& t = r.truth ? *r.truth : none;
   const Errors& p = r.photo ? *r.photo : none;
   fmt::print(
-      "{},{},{:.2f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.3f},{:.3f},{:.2f},{:.2f},{:.0f},{:.2f},{},{},{},{},"
+      "{},{},{:.2f},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},{:.3f},{:.3f},{:.2f},{:.2f},{:.2f},{:.0f},{:.2f},{},{}"
+      ",{},{},"
       "{:.3f},{},{:.1f},{:.1f},{:.1f},{:.1f}\n",
       r.seed, r.tets, r.pull_n, r.outcome, t.mean_abs, t.sd_abs, t.mean, t.sd, t.least, t.most, p.mean_abs, p.sd_abs,
-      r.cut.bulge_mm, r.cut.max_drag_mm, r.cut.mean_force_mn, r.cut.thermal_width_mm, r.cut.removed_tets,
-      r.cut.loose_tets, r.cut.steps, r.cut.solutions, r.cut.unrest_mm, r.cut.linear_iterations, r.body_s, r.cut_s,
-      r.photo_s, r.gap_deg);
+      r.cut.shove_mm, r.cut.bulge_mm, r.cut.max_drag_mm, r.cut.mean_force_mn, r.cut.thermal_width_mm,
+      r.cut.removed_tets, r.cut.loose_tets, r.cut.steps, r.cut.solutions, r.cut.unrest_mm, r.cut.linear_iterations,
+      r.body_s, r.cut_s, r.photo_s, r.gap_deg);
   std::fflush(stdout);
 }
 
@@ -239,7 +240,7 @@ int main(int argc, char** argv) {
   std::mutex printing;
   fmt::print(
       "seed,tets,pull_n,outcome,mean_abs_mm,sd_abs_mm,mean_mm,sd_mm,least_mm,most_mm,photo_mean_abs_mm,photo_sd_abs_mm,"
-      "bulge_mm,drag_mm,"
+      "shove_mm,bulge_mm,drag_mm,"
       "force_mn,thermal_mm,removed,loose,steps,solutions,unrest_mm,cg,body_s,cut_s,photo_s,gap_deg\n");
   Workers workers(static_cast<int>(options.given.at("threads")));
   workers.for_each(count, 1, [&](std::size_t i) {
