@@ -238,19 +238,22 @@ double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_
   return 0.0;
 }
 
-/// Moves the tissue by one linearised quasi-static step. The mass term is far below the stiffness and only steadies
-/// loose bits.
+/// What steadies loose bits is the mass over the square of this, whatever the step takes: a mass term over the step's
+/// own time would be a resistance that grows with the tool's speed, and without bound in short steps.
+constexpr double kSteadyingS = 0.02;
+
+/// Moves the tissue by one linearised quasi-static step; how long it takes is nothing to it.
 /// @returns the stiffness of each bond, mN/mm, in their order.
 std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool,
                                 CutState& state, CutWorkspace::Data& scratch, const std::optional<ToolPose>& next,
-                                double step_s, Workers& workers, CutStepReport& report) {
+                                Workers& workers, CutStepReport& report) {
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
   // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension
   // overshoots by more than it was off and swings for ever.
   const Tangent tangent = next ? Tangent::FrozenRotations : Tangent::Projected;
-  scratch.stiffness.begin(model, state.tissue, step_s, is_fresh, tangent, scratch.right_side, workers);
+  scratch.stiffness.begin(model, state.tissue, kSteadyingS, is_fresh, tangent, scratch.right_side, workers);
   double bond_scale = 0.0;
   std::vector<double> stiffnesses;
   if (next) {
@@ -412,8 +415,7 @@ CutStepReport advance(const TissueModel& model, const CutSettings& settings, con
   CutStepReport report;
   scratch.before = state.tissue.positions;
   if (!next) state.bonds.clear();
-  const std::vector<double> stiffnesses =
-      move_tissue(model, settings, tool, state, scratch, next, step_s, workers, report);
+  const std::vector<double> stiffnesses = move_tissue(model, settings, tool, state, scratch, next, workers, report);
   state.time_s += step_s;
   ++state.step;
   if (!next || !report.is_finite) return report;

@@ -4,6 +4,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/kerf_contours.hpp>
+#include <incise/geometry/surface_query.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
 
 #include <fmt/format.h>
@@ -23,7 +24,8 @@ constexpr int kMostSolutions =
     4;  // per step; one is enough where no vertex had to be held back (what is left over is put right by the next)
 constexpr double kTolerance = 0.1;
 constexpr double kLeastContact = 0.02;  // wet tissue never keeps off altogether
-constexpr double kAheadMm = 15.0;       // skin this far ahead of the tool counts as pushed up by it
+constexpr double kAheadMm = 15.0;       // skin this far ahead of the tool counts as shoved by it
+constexpr double kBulgeMm = 5.0;        // this far ahead as pushed up by it
 constexpr double kAsideMm = 5.0;        // and this far beside its course
 constexpr double kBridgeMm =
     0.5;  // radius: a strip of skin narrower than 1 mm does not hold the plug (as in photographs)
@@ -67,6 +69,12 @@ std::vector<TipPose> cutting_part(const std::vector<TipPose>& course) {
   return part;
 }
 
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
 double mean_speed(const std::vector<TipPose>& course) {
   double way = 0.0;
   double time = 0.0;
@@ -87,6 +95,7 @@ class Cut {
       : body_(body),
         mesh_(body.tissue->mesh),
         relaxation_(*body.tissue, body.stretched.positions),
+        uncut_skin_(skin_at(body, body.stretched.positions)),
         loose_(mesh_, held_vertices(*body.tissue)),
         dose_kpa_(mesh_.tets.size(), 0.0),
         slip_mm_s_(mesh_.tets.size(), 0.0) {
@@ -125,13 +134,14 @@ class Cut {
   const BenchBody& body_;
   const TetMesh& mesh_;
   Relaxation relaxation_;
+  SurfaceQuery uncut_skin_;
   LooseParts loose_;
   TissueState state_;
   Points before_;
   std::vector<double> dose_kpa_;
   std::vector<double> slip_mm_s_;  // per tet: speed of the tool against it in the last step; 0: not touched before
   std::vector<std::uint8_t> is_on_skin_;
-  std::vector<double> bulges_mm_;
+  std::vector<double> shoves_mm_, bulges_mm_;  // per step that goes ahead
   std::vector<double> forces_mn_;
   double steam_kpa_s_ = 0.0;
   double contact_share_ = 1.0;  // of the time that no arc keeps electrode and tissue apart
@@ -205,6 +215,7 @@ void Cut::watch_skin(const Vec3& tip, const Vec3& velocity) {
   const Vec3 heading = flat.normalized();
   const Vec3 aside = heading.cross(body_.approach);
   double shoved = 0.0;
+  double risen = 0.0;
   std::size_t count = 0;
   for (std::size_t v = 0; v < is_on_skin_.size(); ++v) {
     if (is_on_skin_[v] == 0) continue;
@@ -215,9 +226,14 @@ void Cut::watch_skin(const Vec3& tip, const Vec3& velocity) {
     const Vec3 moved = state_.positions[v] - body_.stretched.positions[v];
     shoved += moved.norm();
     ++count;
+    if (ahead > kBulgeMm) continue;
+    if (const auto below = uncut_skin_.seen_at(state_.positions[v], body_.approach))
+      risen = std::max(risen, below->distance_mm);
     result_.max_drag_mm = std::max(result_.max_drag_mm, moved.cross(body_.approach).norm());
   }
-  if (count > 0) bulges_mm_.push_back(shoved / static_cast<double>(count));
+  if (count == 0) return;
+  shoves_mm_.push_back(shoved / static_cast<double>(count));
+  bulges_mm_.push_back(risen);
 }
 
 void Cut::step(const TipPose& from, const TipPose& to, double step_s, Workers& workers) {
@@ -329,8 +345,9 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
   if (is_finite_) settle(workers, monitor);
   result_.thermal_width_mm = kPeak * power_w * 1000.0 * 0.01 * body_.specimen.heat_percent /
                              (kImmersedMm * kHeatCapacityMjMm3K * speed * kDamageRiseK);
-  for (const double bulge : bulges_mm_) result_.bulge_mm += bulge / static_cast<double>(bulges_mm_.size());
-  for (const double force : forces_mn_) result_.mean_force_mn += force / static_cast<double>(forces_mn_.size());
+  result_.shove_mm = mean_of(shoves_mm_);
+  result_.bulge_mm = mean_of(bulges_mm_);
+  result_.mean_force_mn = mean_of(forces_mn_);
   if (is_finite_) read_edges();
   const bool is_at_rest = is_finite_ && result_.unrest_mm < kSettleTolerance;
   result_.outcome = !is_at_rest ? Outcome::NotConverged : !result_.inner_edge ? Outcome::OpenLoop : Outcome::Success;

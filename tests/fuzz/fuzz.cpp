@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <atomic>
+#include <charconv>
 #include <cstdlib>
 #include <map>
 #include <string_view>
@@ -29,8 +30,11 @@ Options parse(int argc, char** argv) {
   for (int i = 1; i < argc; i += 2) {
     const std::string_view name = argv[i];
     INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a number after {}", name));
-    const long value = std::atol(argv[i + 1]);
-    INCISE_REQUIRE(value >= 0, fmt::format("{}: found {}, expected 0 or more", name, argv[i + 1]));
+    const std::string_view text = argv[i + 1];
+    long value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    INCISE_REQUIRE(problem == std::errc() && end == text.data() + text.size() && value >= 0,
+                   fmt::format("{}: found {}, expected a whole number, 0 or more", name, text));
     if (name == "--seed") {
       options.seed = static_cast<std::uint64_t>(value);
     } else if (name == "--removals") {
@@ -108,7 +112,9 @@ Ending cut_at_random(const TissueModel& model, std::uint64_t seed) {
     const CutStepReport report = advance(model, cut.settings.cut, cut.settings.tool, state, workspace,
                                          program.pose_at(state.time_s + step_s), step_s, alone);
     failures += report_violations(fmt::format("{}, step {}", name, state.step), model, state);
-    if (!report.is_finite) break;
+    if (report.is_finite) continue;
+    fmt::print("FAILED {}: step {} is not finite\n", name, state.step);
+    ++failures;
   }
   const IncisionResult result = simulate_incision(model, rest_state(model), cut.path, cut.settings, alone, silent);
   failures += report_violations(name + ", at the end", model, result.final_state);

@@ -25,8 +25,10 @@ struct BenchCut {
   Contour tumor_edge;                  ///< where it lies after the cut
   std::size_t removed_tets = 0;
   std::size_t loose_tets = 0;  ///< of these: fragments that hung on nothing
-  double bulge_mm = 0.0;  ///< how far skin in the 15 x 10 mm ahead of the tool is shoved from its place, up and along:
-                          ///< mean over place and cut
+  double shove_mm =
+      0.0;  ///< how far skin in the 15 x 10 mm ahead of the tool is from its place: mean over place and cut
+  double bulge_mm = 0.0;  ///< how high skin within 5 mm ahead of the tool stands above where the uncut surface is seen
+                          ///< at that place: highest of each step, mean over the cut
   double max_drag_mm = 0.0;       ///< farthest that the tool took a piece of skin along
   double mean_force_mn = 0.0;     ///< of the drag, over the cut
   double thermal_width_mm = 0.0;  ///< how far beside the tool's axis tissue reached 60 degrees C
