@@ -2,6 +2,7 @@
 //   incise_cut_study step  [--threads N] [--csv FILE] [--figure FILE]   the simulation step: 0.13, 0.26, 0.52 mm
 //   incise_cut_study mesh  ...                                          edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move
 //   incise_cut_study table ...                                          the paper's Table I: 25 pairs of speed and dullness on two virtual specimens
+#include "cost_table.hpp"
 #include "virtual_study.hpp"
 
 #include <incise/core/error.hpp>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <fstream>
 #include <mutex>
 #include <optional>
 #include <string_view>
@@ -234,22 +234,16 @@ Result study_table(Workers& workers) {
   return result;
 }
 
-void write_file(const std::string& name, const std::string& text) {
-  if (name.empty()) return;
-  std::ofstream file(name);
-  file << text;
-  INCISE_REQUIRE(static_cast<bool>(file.flush()), fmt::format("cannot write {}", name));
-}
-
 int run(const Options& options) {
   Workers workers(options.threads);
   const Result result = options.study == "step"   ? study_steps(workers)
                         : options.study == "mesh" ? study_meshes(workers)
                                                   : study_table(workers);
-  std::string table(kHeader);
+  std::string table = origin_line("simulations of virtual specimens");
+  table += kHeader;
   for (const Done& done : result.done) table += done.row;
-  write_file(options.csv, table);
-  if (!options.figure.empty()) write_file(options.figure, line_plot_svg(result.plot));
+  write_text(options.csv, table);
+  if (!options.figure.empty()) write_text(options.figure, line_plot_svg(result.plot));
   return 0;
 }
 
@@ -257,10 +251,6 @@ int run(const Options& options) {
 }  // namespace incise::bench
 
 int main(int argc, char** argv) {
-  try {
-    return incise::bench::run(incise::bench::parse(argc, argv));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "incise_cut_study: {}\n", error.what());
-    return 2;
-  }
+  return incise::bench::reporting_errors("incise_cut_study",
+                                         [&] { return incise::bench::run(incise::bench::parse(argc, argv)); });
 }

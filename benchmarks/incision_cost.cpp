@@ -1,5 +1,5 @@
 // What a whole incision costs: a virtual tongue from CT to stretched tissue, then the same ring cut with several settings.
-//   incise_incision_cost [--tets N[,N...]] [--threads N] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE] [--figure FILE]
+//   incise_incision_cost [--tets N[,N...]] [--threads N] [--one-thread-too] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE] [--figure FILE]
 // Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4). Several sizes, in
 // ascending order, are drawn against each other with --figure.
 #include "cost_table.hpp"
@@ -7,6 +7,7 @@
 #include "virtual_study.hpp"
 
 #include <incise/core/isa.hpp>
+#include <incise/evaluation/contour_errors.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/procedure/incision.hpp>
 #include <incise/report/line_plot.hpp>
@@ -24,6 +25,7 @@ namespace {
 struct Options {
   std::vector<int> tets{100000};  // ascending: a process remembers the most memory that it ever held
   int threads = 2;
+  bool also_one_thread = false;  ///< the same runs on one thread after them
   int runs = 1;
   double advance_mm = 0.26;
   double tolerance = 0.0;  // 0: the default
@@ -52,6 +54,10 @@ Options parse(int argc, char** argv) {
       options.is_tight = true;
       continue;
     }
+    if (name == "--one-thread-too") {
+      options.also_one_thread = true;
+      continue;
+    }
     INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a value after {}", name));
     const char* value = argv[++i];
     if (name == "--tets") {
@@ -70,7 +76,7 @@ Options parse(int argc, char** argv) {
       options.figure = value;
     } else {
       throw InvalidArgument(
-          fmt::format("expected --tets, --threads, --runs, --advance, --tolerance, --tight, --csv or --figure, found {}", name));
+          fmt::format("expected --tets, --threads, --one-thread-too, --runs, --advance, --tolerance, --tight, --csv or --figure, found {}", name));
     }
   }
   return options;
@@ -141,34 +147,46 @@ Size run_size(const Options& options, const Phantom& phantom, int tets, std::str
   }
   fmt::print("{:>7} {:>6} {:>9} {:>8} {:>9} {:>9} {:>7} {:>8} {:>9} {:>8} {:>10} {:>6}\n", "threads", "steps", "its/step", "wall s",
              "CPU s", "ms/step", "removed", "signed", "to tight", "MB", "outcome", "load");
-  std::vector<double> walls;
-  for (int i = 0; i < options.runs; ++i) {
-    const Run run = cut(study, incision, options.threads);
+  std::vector<double> walls, processors, walls_alone;
+  const int all_runs = options.also_one_thread ? 2 * options.runs : options.runs;
+  for (int i = 0; i < all_runs; ++i) {
+    const bool is_alone = i >= options.runs;
+    const int threads = is_alone ? 1 : options.threads;
+    const Run run = cut(study, incision, threads);
     const IncisionResult& r = run.result;
-    walls.push_back(run.wall_s);
+    (is_alone ? walls_alone : walls).push_back(run.wall_s);
+    if (!is_alone) processors.push_back(run.processor_s);
     double signed_mm = std::nan("");
     double to_tight = std::nan("");
     if (r.centerline) {
       signed_mm = 0.0;
-      for (const Vec3& p : r.centerline->points) signed_mm += nearest_on(study.plan->tumor_edge, p).distance_mm;
-      signed_mm = signed_mm / static_cast<double>(r.centerline->points.size()) - settings.plan.lateral_margin_mm;
+      for (const double error : contour_errors(*r.centerline, study.plan->tumor_edge, settings.plan.lateral_margin_mm,
+                                               settings.plan.approach)
+                                    .signed_error_mm)
+        signed_mm += error;
+      signed_mm /= static_cast<double>(r.centerline->points.size());
       if (reference) to_tight = mean_distance(*r.centerline, *reference);
     }
     const double steps = static_cast<double>(r.steps.size());
     size.iterations_per_step = static_cast<double>(r.solver_iterations) / steps;
     size.bytes_per_tet = peak_bytes() / size.tets;
-    fmt::print("{:>7} {:>6} {:>9.1f} {:>8.2f} {:>9.2f} {:>9.2f} {:>7} {:>8.3f} {:>9.4f} {:>8.0f} {:>10} {:>6.2f}\n", options.threads,
+    fmt::print("{:>7} {:>6} {:>9.1f} {:>8.2f} {:>9.2f} {:>9.2f} {:>7} {:>8.3f} {:>9.4f} {:>8.0f} {:>10} {:>6.2f}\n", threads,
                r.steps.size(), size.iterations_per_step, run.wall_s, run.processor_s, 1000.0 * run.wall_s / steps, r.record.removals.size(),
                signed_mm, to_tight, 1e-6 * peak_bytes(), to_string(r.outcome), load_average());
     std::fflush(stdout);
     table += fmt::format("{},{},{},{},{},{},{},{:.3f},{:.3f},{},{:.4f},{:.4f},{:.0f},{},{:.2f},{},{}\n", study.model->mesh.tets.size(),
-                         study.model->mesh.vertices.size(), options.threads, incision.cut.advance_per_step_mm,
+                         study.model->mesh.vertices.size(), threads, incision.cut.advance_per_step_mm,
                          incision.cut.residual_tolerance, r.steps.size(), r.solver_iterations, run.wall_s, run.processor_s,
                          r.record.removals.size(), signed_mm, to_tight, size.bytes_per_tet, to_string(r.outcome), load_average(),
                          to_string(active_isa()), source_commit());
   }
   size.median_wall_s = median(walls);
-  fmt::print("median wall: {:.2f} s\n", size.median_wall_s);
+  fmt::print("median of {} runs on {} threads: {:.2f} s wall, {:.2f} s processor\n", options.runs, options.threads,
+             size.median_wall_s, median(processors));
+  if (!walls_alone.empty()) {
+    fmt::print("median of {} runs on one thread: {:.2f} s wall, {:.2f} times that on {}\n", options.runs,
+               median(walls_alone), median(walls_alone) / size.median_wall_s, options.threads);
+  }
   return size;
 }
 
