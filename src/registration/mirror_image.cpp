@@ -8,7 +8,8 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kFollowed = 2;  // poses of the search
-constexpr std::size_t kRefined = 8;   // of the coarse stage
+constexpr std::size_t kTried = 40;    // of the coarse stage
+constexpr std::size_t kRefined = 8;
 constexpr std::size_t kFewPoints = 2000;
 constexpr std::size_t kScorePoints = 4000;  // as for the proper pose
 
@@ -48,6 +49,7 @@ Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& t
   if (search) {
     PoseSearchSettings few = *search;
     few.rotations = std::max(8, few.rotations / 2);  // the principal planes are where it usually lies
+    few.followed = kTried;
     few.refined = kRefined;
     few.keep = kFollowed;
     StopOnly quiet(monitor);

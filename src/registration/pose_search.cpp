@@ -13,17 +13,20 @@ namespace incise {
 namespace {
 
 // Widths of the coarse drift, as shares of the target's radius: wide enough to pull a tongue half a turn of the spiral,
-// narrow enough at the end for the clusters.
+// narrow enough at the end for the clusters. Beside the middle less wide: all of a cloud within reach pulls the middles
+// together, and an offset would be lost.
 constexpr double kFirstSigma = 0.35;
+constexpr double kFirstSigmaBeside = 0.18;
 constexpr double kLastSigma = 0.07;
 constexpr int kSteps = 18;
 constexpr std::size_t kCoarsePoints = 300;
 constexpr std::size_t kScorePoints = 500;
+constexpr std::size_t kFollowPoints = 400;
+constexpr int kFollowSteps = 15;
 constexpr std::size_t kFinePoints = 2000;
 constexpr double kAlike = 0.08;             // rms distance, in radii, below which two poses are one
 constexpr double kLeastSide = 0.3;          // length of the mean normal above which a cloud has a side
 constexpr double kLargestSideAngle = 75.0;  // degrees between the sides' normals
-constexpr double kOffset = 0.35;            // starts beside the middle, in radii of the source
 
 /// The first level with enough clusters to show the shape.
 const WeightedPoints& coarse_level(const std::vector<WeightedPoints>& levels) {
@@ -39,41 +42,57 @@ Vec3 mean_of(const Points& points) {
   return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
 }
 
-Vec3 longest_axis(const Points& points) {
+/// Where the source's middle is to lie beside the target's, in the source's frame: on it first, then to either side
+/// along its two longer axes. Where each cloud shows only a part, the middles do not correspond: 60 % of a strip that
+/// are shared put them 1.4 spreads apart.
+std::vector<Vec3> offsets_of(const Points& points) {
   Mat3 scatter = Mat3::Zero();
-  for (const Vec3& p : points) scatter += p * p.transpose();
-  return Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors().col(2);
+  for (const Vec3& p : points) scatter += p * p.transpose() / static_cast<double>(points.size());
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(scatter);
+  std::vector<Vec3> offsets{Vec3::Zero()};
+  for (const auto& [axis, spreads] : {std::pair(2, 0.5), std::pair(2, 1.1), std::pair(1, 0.6)}) {
+    const double length = spreads * std::sqrt(std::max(0.0, axes.eigenvalues()[axis]));
+    for (const double side : {-length, length}) offsets.emplace_back(side * axes.eigenvectors().col(axis));
+  }
+  return offsets;
 }
 
-/// Every rotation, with the source's middle on the target's and a little to either side along its longest axis: where
-/// one cloud shows only a part, the middles do not correspond.
-std::vector<Similarity> starts_of(const SampledSurface& source, const SampledSurface& target,
-                                  const PoseSearchSettings& settings) {
+/// Where a coarse drift begins, and how wide.
+struct Start {
+  Similarity transform;
+  double sigma = 0.0;
+};
+
+/// Every rotation with every offset.
+std::vector<Start> starts_of(const SampledSurface& source, const SampledSurface& target,
+                             const PoseSearchSettings& settings) {
   const bool knows_sides = source.has_oriented_normals && target.has_oriented_normals;
   const Vec3 up = mean_of(source.cloud.normals);
   const Vec3 target_up = mean_of(target.cloud.normals);
   const bool has_side = knows_sides && std::min(up.norm(), target_up.norm()) > kLeastSide;
   const double least_cosine = std::cos(units::rad_from_deg(kLargestSideAngle));
-  const Vec3 axis = longest_axis(source.cloud.points);
+  const std::vector<Vec3> offsets = offsets_of(source.cloud.points);
   const double radius = measure_of(source.cloud.points).radius;
   // With bounds the scale starts between them; without, as the sizes say.
   const double scale = settings.scale.high < 1e6 && settings.scale.low > 0.0
                            ? std::sqrt(settings.scale.low * settings.scale.high)
                            : std::clamp(1.0 / radius, settings.scale.low, settings.scale.high);
-  std::vector<Similarity> starts;
+  std::vector<Start> starts;
   for (const Mat3& turn : even_rotations(settings.rotations)) {
     if (has_side && (turn * up).normalized().dot(target_up.normalized()) < least_cosine) continue;
-    for (const double side : {0.0, -kOffset, kOffset})
-      starts.push_back({scale, turn, turn * (scale * side * radius * axis)});
+    for (const Vec3& offset : offsets) {
+      starts.push_back({{scale, turn, scale * (turn * offset)}, offset.isZero() ? kFirstSigma : kFirstSigmaBeside});
+    }
   }
   return starts;
 }
 
 /// Few steps with a width that shrinks on schedule: it cannot stall, and every start costs the same.
-Similarity coarse_drift(const WeightedPoints& source, const WeightedPoints& target, Similarity t,
+Similarity coarse_drift(const WeightedPoints& source, const WeightedPoints& target, const Start& start,
                         const DriftSettings& settings, Workers& alone) {
-  const double shrink = std::pow(kLastSigma / kFirstSigma, 1.0 / (kSteps - 1));
-  double sigma = kFirstSigma;
+  Similarity t = start.transform;
+  double sigma = start.sigma;
+  const double shrink = std::pow(kLastSigma / sigma, 1.0 / (kSteps - 1));
   for (int k = 0; k < kSteps; ++k, sigma *= shrink) {
     const MatchedTransform next = best_transform(match(source, target, t, sigma, settings, alone), settings);
     if (next.is_degenerate) break;
@@ -94,6 +113,33 @@ std::vector<Pose> distinct(std::vector<Pose> poses, std::span<const Vec3> source
     if (kept.size() == keep) break;
   }
   return kept;
+}
+
+/// How poses are brought closer: ICP with so many steps on so many points, and the width of the score after it.
+struct Refinement {
+  ScaleRange scale;
+  double first_width = 0.0;
+  int steps = 0;
+  std::size_t points = 0;
+  double score_width = 0.0;
+};
+
+/// Every pose brought closer by ICP and scored anew.
+void refine(std::vector<Pose>& poses, const SampledSurface& source, const SampledSurface& target, const Refinement& how,
+            Workers& workers) {
+  const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), how.points);
+  IcpSettings settings;
+  settings.scale = how.scale;
+  settings.first_width = how.first_width;
+  settings.max_iterations = how.steps;
+  settings.max_points = how.points;
+  settings.tolerance = 5e-4;
+  workers.for_each(poses.size(), 1, [&](std::size_t k) {
+    Workers alone(1);
+    const Icp refined = icp(source, target, poses[k].transform, settings, alone);
+    if (!refined.is_degenerate) poses[k].transform = refined.transform;
+    poses[k].score = overlap_score(source, asked, target, poses[k].transform, how.score_width);
+  });
 }
 
 }  // namespace
@@ -123,7 +169,7 @@ bool differ(const Similarity& a, const Similarity& b, std::span<const Vec3> sour
 
 PoseSearch search_poses(const SampledSurface& source, const SampledSurface& target, const PoseSearchSettings& settings,
                         Workers& workers, Monitor& monitor) {
-  const std::vector<Similarity> starts = starts_of(source, target, settings);
+  const std::vector<Start> starts = starts_of(source, target, settings);
   PoseSearch search;
   search.starts = static_cast<int>(starts.size());
   const std::vector<WeightedPoints> source_levels = levels_of(source.cloud.points);
@@ -135,7 +181,7 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
   drift.outlier_weight = settings.outlier_weight;
   if (!(drift.scale.low > 0.0) || drift.scale.high > 1e6) {
     // Free scale: coarse clusters alone would let it collapse.
-    const double middle = starts.empty() ? 1.0 : starts.front().scale;
+    const double middle = starts.empty() ? 1.0 : starts.front().transform.scale;
     drift.scale = {std::max(0.5 * middle, drift.scale.low), std::min(2.0 * middle, drift.scale.high)};
   }
   const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), kScorePoints);
@@ -151,20 +197,12 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
       pose.score = overlap_score(source, asked, target, pose.transform, 3.0 * settings.score_width);
     });
   }
+  // Rough poses are told apart only roughly. Many of them, brought closer with few points, show which are worth more.
+  poses = distinct(std::move(poses), source.cloud.points, settings.followed);
+  const Refinement few{settings.scale, 2.0 * kLastSigma, kFollowSteps, kFollowPoints, 2.0 * settings.score_width};
+  refine(poses, source, target, few, workers);
   poses = distinct(std::move(poses), source.cloud.points, settings.refined);
-  const std::vector<std::size_t> more = spread_indices(source.cloud.points.size(), kFinePoints);
-  IcpSettings icp_settings;
-  icp_settings.scale = settings.scale;
-  icp_settings.first_width = 2.0 * kLastSigma;
-  icp_settings.max_iterations = 40;
-  icp_settings.max_points = kFinePoints;
-  icp_settings.tolerance = 5e-4;
-  workers.for_each(poses.size(), 1, [&](std::size_t k) {
-    Workers alone(1);
-    const Icp refined = icp(source, target, poses[k].transform, icp_settings, alone);
-    if (!refined.is_degenerate) poses[k].transform = refined.transform;
-    poses[k].score = overlap_score(source, more, target, poses[k].transform, settings.score_width);
-  });
+  refine(poses, source, target, {settings.scale, 2.0 * kLastSigma, 40, kFinePoints, settings.score_width}, workers);
   monitor.progress("searching poses", 1.0);
   search.poses = distinct(std::move(poses), source.cloud.points, settings.keep);
   return search;

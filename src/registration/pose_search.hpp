@@ -15,7 +15,8 @@ struct PoseSearchSettings {
   int rotations = 96;
   double score_width = 0.02;  ///< of overlap_score, as a length
   std::size_t keep = 8;
-  std::size_t refined = 32;  ///< poses of the coarse stage that are refined, the best ones
+  std::size_t followed = 160;  ///< poses of the coarse stage that are brought closer with few points, the best ones
+  std::size_t refined = 12;    ///< of those, the best ones, that are refined
 };
 
 struct Pose {
