@@ -50,8 +50,10 @@ bool write_plot(const std::filesystem::path& folder, const MeasurePlot& what, co
     line.x.push_back(x);
     line.y.push_back(y);
   }
-  const LineSeries limit{
-      "limit", {greatest.begin()->first, greatest.rbegin()->first}, {what.limit_mm, what.limit_mm}, true};
+  const double first = greatest.begin()->first;
+  const double last = greatest.rbegin()->first;
+  const double beside = first < last ? 0.0 : 0.1 * first;  // one place alone: the limit is still a line
+  const LineSeries limit{"limit", {first - beside, last + beside}, {what.limit_mm, what.limit_mm}, true};
   const LinePlot plot{
       .title = what.title, .x_label = what.x_label, .y_label = what.y_label, .series = {marks, line, limit}};
   write_figure(folder / what.file, line_plot_svg(plot));
