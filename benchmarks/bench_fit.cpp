@@ -7,10 +7,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
-#include <incise/planning/plan_path.hpp>
-#include <incise/robot/program.hpp>
-#include <incise/virtual_bench/bench_cut.hpp>
-#include <incise/virtual_bench/course.hpp>
+#include <incise/workflow/planned_bench_cut.hpp>
 
 #include <fmt/format.h>
 
@@ -25,8 +22,6 @@ using namespace incise;
 
 namespace {
 
-constexpr double kTargetMm = 4.5;                           // Paper III-A.1: of an inner edge
-constexpr double kRingOverlapMm = 8.0;                      // as `incise export` has it
 constexpr std::size_t kBins = 36;                           // of the angle about the tumour's middle, seen from above
 constexpr std::array kDullness{3.0, 6.0, 9.0, 12.0, 15.0};  // at 13 mm/s
 constexpr std::array kModulusKpa{70.0, 35.0};
@@ -44,7 +39,7 @@ Profile profile_of(Contour inner_edge, Contour tumor) {
     const double turn = std::atan2(p.y() - middle.y(), p.x() - middle.x()) / (2.0 * units::kPi);
     const auto bin = static_cast<std::size_t>((turn - std::floor(turn)) * kBins) % kBins;
     const double distance = nearest_on(tumor, p).distance_mm;
-    sums[bin] += (contains_in_view(tumor, p, -Vec3::UnitZ()) ? -distance : distance) - kTargetMm;
+    sums[bin] += (contains_in_view(tumor, p, -Vec3::UnitZ()) ? -distance : distance) - kInnerEdgeTargetMm;
     counts[bin] += 1.0;
   }
   for (std::size_t i = 0; i < kBins; ++i) {
@@ -94,13 +89,7 @@ std::optional<Profile> cut_on_bench(const Specimen& specimen, Workers& workers) 
   Monitor silent;
   const BenchBody body = make_body(specimen, {}, workers, silent);
   if (body.outcome == Outcome::NotConverged) return std::nullopt;
-  const SurfaceQuery surface(skin_at(body, body.stretched.positions));
-  ToolPath path = plan_ring(surface, tumor_edge_at(body, body.stretched.positions), PlanSettings{});
-  path.frame = PathFrame::Robot;  // the robot's base is taken to be the specimen's frame
-  ProgramSettings settings;
-  settings.overlap_mm = kRingOverlapMm;
-  const auto course = tip_course(asked_course(make_program(path, settings)), specimen, Mat4::Identity());
-  const BenchCut cut = cut_specimen(body, course, PlanSettings{}.power_w, workers, silent);
+  const BenchCut cut = cut_as_planned(body, {}, workers, silent);
   if (!cut.inner_edge) return std::nullopt;
   return profile_of(*cut.inner_edge, cut.tumor_edge);
 }

@@ -10,11 +10,9 @@
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/imaging/photo_contours.hpp>
 #include <incise/imaging/picture.hpp>
-#include <incise/planning/plan_path.hpp>
-#include <incise/robot/program.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
-#include <incise/virtual_bench/course.hpp>
 #include <incise/virtual_bench/pictures.hpp>
+#include <incise/workflow/planned_bench_cut.hpp>
 
 #include <fmt/format.h>
 
@@ -33,9 +31,6 @@
 using namespace incise;
 
 namespace {
-
-constexpr double kTargetMm = 4.5;       // Paper III-A.1: of an inner edge
-constexpr double kRingOverlapMm = 8.0;  // as `incise export` has it
 
 /// Time that this thread has computed, s: other work on the machine does not count.
 double cpu_s() {
@@ -122,7 +117,8 @@ std::optional<Errors> read_photo(const BenchBody& body, const BenchCut& cut, con
   std::vector<double> errors;
   for (const Vec3& p : resample(found.incision, 360).points) {
     const double distance = nearest_on(found.tumor_edge, p).distance_mm;
-    errors.push_back((contains_in_view(found.tumor_edge, p, -Vec3::UnitZ()) ? -distance : distance) - kTargetMm);
+    errors.push_back((contains_in_view(found.tumor_edge, p, -Vec3::UnitZ()) ? -distance : distance) -
+                     kInnerEdgeTargetMm);
   }
   return measure(errors);
 }
@@ -146,20 +142,12 @@ Row run(std::uint64_t seed, const Options& options) {
   if (body.outcome == Outcome::NotConverged || options.given.at("draw_only") != 0.0) return row;
   PlanSettings plan;
   plan.speed_mm_s = options.given.at("speed_mm_s");
-  const SurfaceQuery surface(skin_at(body, body.stretched.positions));
-  ToolPath path = plan_ring(surface, tumor_edge_at(body, body.stretched.positions), plan);
-  // The robot's base is taken to be the specimen's frame: program poses need no other.
-  path.frame = PathFrame::Robot;
-  ProgramSettings settings;
-  settings.plunge_speed_mm_s = plan.speed_mm_s;
-  settings.overlap_mm = kRingOverlapMm;
-  const RobotProgram program = make_program(path, settings);
-  row.cut = cut_specimen(body, tip_course(asked_course(program), specimen, Mat4::Identity()),
-                         options.given.at("power_w"), workers, monitor);
+  plan.power_w = options.given.at("power_w");
+  row.cut = cut_as_planned(body, plan, workers, monitor);
   row.cut_s = cpu_s() - start - row.body_s;
   row.outcome = to_string(row.cut.outcome);
   if (row.cut.inner_edge)
-    row.truth = measure(true_errors_mm(body, row.cut, kTargetMm));
+    row.truth = measure(true_errors_mm(body, row.cut, kInnerEdgeTargetMm));
   else
     row.gap_deg = find_gap_deg(body, row.cut);
   if (options.given.at("photo") != 0.0) {

@@ -77,6 +77,7 @@ int run(int argc, char** argv) {
   add_surface(application);
   add_register(application);
   add_track(application);
+  add_power(application);
   add_project(application);
   add_compare(application);
   add_audit(application);

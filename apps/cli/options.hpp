@@ -120,6 +120,7 @@ void add_compensate(Application& application);
 void add_surface(Application& application);
 void add_register(Application& application);
 void add_track(Application& application);
+void add_power(Application& application);  ///< the lowest power that fits, on the virtual bench
 void add_project(Application& application);
 void add_export(Application& application);
 void add_replay(Application& application);

@@ -1,4 +1,5 @@
 #include "calibration_output.hpp"
+#include "kept_output.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 #include "study_run.hpp"
@@ -88,14 +89,6 @@ void require_different_values(const char* option, std::vector<double> values) {
     throw CaseError("command line", option, fmt::format("{} twice", *twice), "every value once");
 }
 
-bool holds_files(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored)) {
-    if (entry.is_regular_file(ignored)) return true;
-  }
-  return false;
-}
-
 int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
@@ -112,7 +105,7 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
   std::vector<std::unique_ptr<FolderStore>> stores;
   std::vector<std::string> keys;
   Workers workers(options.threads);
-  try {
+  return with_parts_kept(output, [&] {
     for (std::size_t i = 0; i < files.size(); ++i) {
       const std::filesystem::path folder = output / "specimens" / std::to_string(i + 1);
       stores.push_back(std::make_unique<FolderStore>(files[i], folder, options.context()));
@@ -129,16 +122,7 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
     older.replaced();
     print_calibration(options, calibration, output, wall.count());
     return calibration.score_percent.value_or(0.0) > 0.0 ? kDone : kNotAcceptable;
-  } catch (const Cancelled& error) {
-    if (holds_files(output))
-      throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", output.string()));
-    std::filesystem::remove_all(output);
-    throw;
-  } catch (...) {
-    std::error_code ignored;
-    if (!holds_files(output)) std::filesystem::remove_all(output, ignored);
-    throw;
-  }
+  });
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "storage/json_place.hpp"
 #include "storage/json_values.hpp"
+#include "storage/kept_record.hpp"
 
-#include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
@@ -17,7 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kRunSchema = "incise.calibration_run/1";
-constexpr const char* kRunHint = "";
 constexpr std::array<double Summary::*, 4> kSummaryParts{&Summary::mean, &Summary::sd, &Summary::min, &Summary::max};
 constexpr std::array<const char*, 4> kSummaryNames{"mean", "sd", "min", "max"};
 
@@ -41,10 +40,8 @@ std::optional<Contour> contour_or_null(const JsonPlace& file, const char* key) {
   return contour_of(file.inside(key));
 }
 
-Json run_json(const CalibrationRun& run, const std::string& key) {
+Json run_json(const CalibrationRun& run) {
   Json json;
-  json["schema"] = kRunSchema;
-  json["key"] = key;
   json["speed_mm_s"] = run.setting.speed_mm_s;
   json["dullness"] = run.setting.dullness;
   json["stiffness_of_case"] = run.setting.stiffness_of_case;
@@ -94,30 +91,17 @@ std::string RunFolder::key_of(std::size_t specimen, const RunSetting& setting) c
 }
 
 std::filesystem::path RunFolder::file_of(std::size_t specimen, const RunSetting& setting) const {
-  return folder_ / (key_of(specimen, setting).substr(0, 16) + ".json");
+  return KeptRecord(folder_, kRunSchema, key_of(specimen, setting)).file();
 }
 
 std::optional<CalibrationRun> RunFolder::load(std::size_t specimen, const RunSetting& setting, Monitor& monitor) {
-  const std::filesystem::path path = file_of(specimen, setting);
-  if (!std::filesystem::exists(path)) return std::nullopt;
-  try {
-    const Json json = read_json(path);
-    if (!json.is_object()) throw DataError(path, "", "no object", "a simulated run");
-    const JsonPlace file{path, json, "", kRunHint};
-    if (file.text("schema") != kRunSchema) file.refuse("schema", file.text("schema"), kRunSchema);
-    if (file.text("key") != key_of(specimen, setting)) file.refuse("key", "that of another run", "that of this one");
-    return run_from(file, setting);
-  } catch (const DataError& damaged) {
-    monitor.message(Severity::Warning, fmt::format("{}. The run is simulated anew", damaged.what()));
-    return std::nullopt;
-  }
+  return KeptRecord(folder_, kRunSchema, key_of(specimen, setting))
+      .load(monitor, "The run is simulated anew",
+            [&setting](const JsonPlace& file) { return run_from(file, setting); });
 }
 
 void RunFolder::save(std::size_t specimen, const CalibrationRun& run) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw DataError(folder_, "", error.message(), "a folder that can be written");
-  write_json(file_of(specimen, run.setting), run_json(run, key_of(specimen, run.setting)));
+  KeptRecord(folder_, kRunSchema, key_of(specimen, run.setting)).save(run_json(run));
   ++saved_;
 }
 

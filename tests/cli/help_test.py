@@ -6,7 +6,7 @@ import unittest
 
 from command import DONE, CommandTest
 
-VERBS = ["assess", "bench", "demo", "run", "phantom", "segment", "mesh", "deform", "plan", "simulate", "compensate", "calibrate", "evaluate", "export", "register", "report", "schema", "surface", "verify", "replay", "track", "project", "compare", "audit"]
+VERBS = ["assess", "bench", "demo", "run", "phantom", "segment", "mesh", "deform", "plan", "simulate", "compensate", "calibrate", "evaluate", "export", "register", "report", "schema", "surface", "verify", "replay", "track", "project", "power", "compare", "audit"]
 
 
 class HelpTest(CommandTest):

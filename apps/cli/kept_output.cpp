@@ -1,0 +1,37 @@
+#include "kept_output.hpp"
+
+#include <fmt/format.h>
+
+namespace incise::cli {
+namespace {
+
+bool holds_files(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored)) {
+    if (entry.is_regular_file(ignored)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+int with_parts_kept(const std::filesystem::path& output, const std::function<int()>& run) {
+  std::error_code ignored;
+  const bool was_there = std::filesystem::exists(output, ignored);
+  const auto remove_if_new = [&] {
+    if (!was_there) std::filesystem::remove_all(output, ignored);
+  };
+  try {
+    return run();
+  } catch (const Cancelled& error) {
+    if (holds_files(output))
+      throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", output.string()));
+    remove_if_new();
+    throw;
+  } catch (...) {
+    if (!holds_files(output)) remove_if_new();
+    throw;
+  }
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace incise {
+
+/// One straight cut by a surgeon, timed.
+struct TimedCut {
+  double length_mm = 0.0;  ///< > 0
+  double time_s = 0.0;     ///< > 0
+};
+
+/// How fast a surgeon cuts.
+struct SpeedEstimate {
+  std::size_t cuts = 0;
+  double mean_mm_s = 0.0;  ///< of the cuts' speeds, each counted once however long it is
+  double min_mm_s = 0.0, max_mm_s = 0.0;
+  std::optional<double> sample_sd_mm_s;  ///< divided by n - 1; absent for a single cut
+  double population_sd_mm_s = 0.0;       ///< divided by n: what the paper prints
+  double recommended_mm_s = 0.0;         ///< the mean to a whole mm/s; below 1 mm/s to one digit
+};
+
+/// Speed from timed straight cuts. @throws InvalidArgument naming the first cut that is none; without cuts.
+/// Source: [Paper, II-B.1]: six cuts of 10 cm, 7.22 ± 1.89 mm/s, rounded to 7.
+[[nodiscard]] SpeedEstimate estimate_speed(std::span<const TimedCut> cuts);
+
+}  // namespace incise

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <incise/core/outcome.hpp>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// What was seen of one specimen cut at one power and one speed.
+struct PowerCut {
+  std::string specimen;
+  double power_w = 0.0;                     ///< of the generator, > 0
+  double speed_mm_s = 0.0;                  ///< of the tool, > 0
+  Outcome outcome = Outcome::NotConverged;  ///< Success: the ring is closed
+  std::string problem;                      ///< why there is no cut at all; empty: there is one
+  std::optional<double> bulge_mm;           ///< how high skin ahead of the tool stands above the uncut surface, >= 0
+  std::optional<double> thermal_width_mm;   ///< how far beside the tool's axis heat damaged tissue, >= 0
+  std::optional<double> mean_abs_error_mm;  ///< of the inner edge; absent: the ring is open
+};
+
+/// What is taken for too much. The paper judged both by eye.
+struct PowerLimits {
+  double bulge_limit_mm = 1.2;
+  double damage_limit_mm = 1.0;  ///< the electrode's diameter: beyond it the rim is seen to be discoloured
+};
+/// Every violation, one sentence each with the field's name; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const PowerLimits& limits);
+
+/// What speaks against one power.
+struct PowerVerdict {
+  double power_w = 0.0;
+  std::optional<double> greatest_bulge_mm;  ///< over the specimens; absent: measured on none
+  std::optional<double> greatest_thermal_width_mm;
+  std::vector<std::string> reasons;  ///< empty: this power fits
+};
+
+/// Which power to cut with.
+struct PowerChoice {
+  std::optional<double> chosen_w;    ///< absent: no power fits
+  std::vector<PowerVerdict> powers;  ///< ascending
+};
+
+/// The lowest power at which every ring is closed and neither bulge nor thermal width of any specimen exceeds its limit
+/// (a value that equals it does not). Powers are judged one by one: that a lower one bulges more is not assumed.
+/// @param cuts  every specimen once at every power, all at one speed; a closed ring has bulge and width. Any order.
+/// @throws InvalidArgument for cuts that are not so, for numbers that are not finite or below their range, and for
+/// limits
+///         that are not valid.
+/// Source: [Paper, II-B.3]: "the lowest effective power", four tongues, judged by eye.
+[[nodiscard]] PowerChoice choose_power(std::span<const PowerCut> cuts, const PowerLimits& limits);
+
+}  // namespace incise

@@ -1,0 +1,28 @@
+#include "storage/kept_record.hpp"
+
+namespace incise {
+
+KeptRecord::KeptRecord(std::filesystem::path folder, std::string schema, std::string key)
+    : folder_(std::move(folder)),
+      file_(folder_ / (key.substr(0, 16) + ".json")),
+      schema_(std::move(schema)),
+      key_(std::move(key)) {}
+
+void KeptRecord::save(const nlohmann::ordered_json& result) const {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) throw DataError(folder_, "", error.message(), "a folder that can be written");
+  nlohmann::ordered_json json;
+  json["schema"] = schema_;
+  json["key"] = key_;
+  json.update(result);
+  write_json(file_, json);
+}
+
+void KeptRecord::require_own(const JsonPlace& place) const {
+  if (!place.object.is_object()) throw DataError(file_, "", "no object", fmt::format("a record {}", schema_));
+  if (place.text("schema") != schema_) place.refuse("schema", place.text("schema"), schema_);
+  if (place.text("key") != key_) place.refuse("key", "that of another record", "that of this one");
+}
+
+}  // namespace incise

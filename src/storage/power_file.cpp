@@ -1,0 +1,107 @@
+#include "storage/json_values.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/storage/power_file.hpp>
+
+#include <fmt/format.h>
+
+namespace incise {
+namespace {
+
+nlohmann::ordered_json row_json(const PowerCut& cut) {
+  nlohmann::ordered_json json;
+  json["specimen"] = cut.specimen;
+  json["power_w"] = cut.power_w;
+  json["speed_mm_s"] = cut.speed_mm_s;
+  json["outcome"] = to_string(cut.outcome);
+  if (!cut.problem.empty()) json["problem"] = cut.problem;
+  json["closed_loop"] = cut.outcome == Outcome::Success;
+  json["bulge_mm"] = or_null(cut.bulge_mm);
+  json["thermal_width_mm"] = or_null(cut.thermal_width_mm);
+  json["mean_abs_error_mm"] = or_null(cut.mean_abs_error_mm);
+  return json;
+}
+
+nlohmann::ordered_json rows_json(const std::vector<PowerCut>& cuts) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const PowerCut& cut : cuts) rows.push_back(row_json(cut));
+  return rows;
+}
+
+nlohmann::ordered_json verdict_json(const PowerVerdict& verdict) {
+  nlohmann::ordered_json json;
+  json["power_w"] = verdict.power_w;
+  json["fits"] = verdict.reasons.empty();
+  json["greatest_bulge_mm"] = or_null(verdict.greatest_bulge_mm);
+  json["greatest_thermal_width_mm"] = or_null(verdict.greatest_thermal_width_mm);
+  json["reasons"] = verdict.reasons;
+  return json;
+}
+
+std::string number_cell(const std::optional<double>& value) {
+  return value ? fmt::format("{}", *value) : std::string();
+}
+
+void add_rows(TextTable& table, const char* series, const std::vector<PowerCut>& cuts) {
+  for (const PowerCut& cut : cuts) {
+    table.rows.push_back({series, cut.specimen, fmt::format("{}", cut.power_w), fmt::format("{}", cut.speed_mm_s),
+                          std::string(to_string(cut.outcome)), number_cell(cut.bulge_mm),
+                          number_cell(cut.thermal_width_mm), number_cell(cut.mean_abs_error_mm), cut.problem});
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json to_json(const PowerSeries& series, const PowerRequest& request) {
+  nlohmann::ordered_json json;
+  json["verdict"] = series.choice.chosen_w ? "chosen" : "no_power_fits";
+  json["chosen_w"] = or_null(series.choice.chosen_w);
+  json["speed_mm_s"] = request.speed_mm_s;
+  json["limits"] = {{"bulge_limit_mm", request.limits.bulge_limit_mm},
+                    {"damage_limit_mm", request.limits.damage_limit_mm}};
+  json["powers"] = nlohmann::ordered_json::array();
+  for (const PowerVerdict& verdict : series.choice.powers) json["powers"].push_back(verdict_json(verdict));
+  json["rows"] = rows_json(series.cuts);
+  json["speed_rows"] = rows_json(series.speed_cuts);
+  return json;
+}
+
+nlohmann::ordered_json to_json(const SpeedEstimate& estimate) {
+  nlohmann::ordered_json json;
+  json["cuts"] = estimate.cuts;
+  json["mean_mm_s"] = estimate.mean_mm_s;
+  json["sample_sd_mm_s"] = or_null(estimate.sample_sd_mm_s);
+  json["population_sd_mm_s"] = estimate.population_sd_mm_s;
+  json["min_mm_s"] = estimate.min_mm_s;
+  json["max_mm_s"] = estimate.max_mm_s;
+  json["recommended_mm_s"] = estimate.recommended_mm_s;
+  return json;
+}
+
+TextTable power_table(const PowerSeries& series) {
+  TextTable table;
+  table.header = {"series",   "specimen",         "power_w",           "speed_mm_s", "outcome",
+                  "bulge_mm", "thermal_width_mm", "mean_abs_error_mm", "problem"};
+  add_rows(table, "power", series.cuts);
+  add_rows(table, "speed", series.speed_cuts);
+  return table;
+}
+
+std::vector<TimedCut> read_timed_cuts(const std::filesystem::path& file) {
+  const std::vector<std::string> names{"length_mm", "time_s"};
+  const auto columns = read_csv_columns(file, names);
+  const std::vector<std::size_t> lines = read_csv_text(file).lines;
+  std::vector<TimedCut> cuts;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      if (columns[k][i] > 0.0) continue;
+      throw DataError(file, fmt::format("line {}, column {}", lines[i], names[k]), fmt::format("{}", columns[k][i]),
+                      "a number above 0");
+    }
+    cuts.push_back({columns[0][i], columns[1][i]});
+  }
+  if (cuts.empty()) throw DataError(file, "", "no rows", "at least one timed cut");
+  return cuts;
+}
+
+}  // namespace incise

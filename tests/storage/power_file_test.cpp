@@ -1,0 +1,151 @@
+#include "support/temporary_folder.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/storage/power_file.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace incise {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+PowerCut kept_cut() {
+  PowerCut cut;
+  cut.specimen = "seed 1";
+  cut.power_w = 35.0;
+  cut.speed_mm_s = 7.0;
+  cut.outcome = Outcome::Success;
+  cut.bulge_mm = 1.0 / 3.0;
+  cut.thermal_width_mm = 0.94;
+  cut.mean_abs_error_mm = 1.5;
+  return cut;
+}
+
+class PowerMessages : public Monitor {
+ public:
+  void message(Severity, std::string_view text) override { told += std::string(text); }
+  std::string told;
+};
+
+class PowerCutFolderTest : public ::testing::Test {
+ protected:
+  testing::TemporaryFolder folder_;
+  PowerCutFolder cuts_{folder_ / "cuts", {}};
+  PowerSubject subject_{"seed 1", draw_specimen(1)};
+  PowerMessages monitor_;
+};
+
+TEST_F(PowerCutFolderTest, KeepsACutToTheLastBitUnderAnyName) {
+  cuts_.save(subject_, kept_cut());
+  const PowerSubject renamed{"a file of it", subject_.specimen};
+  const PowerCut read = cuts_.load(renamed, 35.0, 7.0, monitor_).value();
+  EXPECT_EQ(read.bulge_mm, 1.0 / 3.0);
+  EXPECT_EQ(read.outcome, Outcome::Success);
+  EXPECT_EQ(read.specimen, "a file of it");
+  EXPECT_EQ(read.power_w, 35.0);
+  EXPECT_EQ(monitor_.told, "");
+}
+
+TEST_F(PowerCutFolderTest, ACutOfAnotherSpecimenSettingOrMeshIsNotThere) {
+  cuts_.save(subject_, kept_cut());
+  PowerSubject softer = subject_;
+  softer.specimen.youngs_modulus_kpa += 0.1;
+  EXPECT_FALSE(cuts_.load(softer, 35.0, 7.0, monitor_));
+  EXPECT_FALSE(cuts_.load(subject_, 30.0, 7.0, monitor_));
+  EXPECT_FALSE(cuts_.load(subject_, 35.0, 5.0, monitor_));
+  PowerCutFolder coarser(folder_ / "cuts", {.fine_mm = 2.0});
+  EXPECT_FALSE(coarser.load(subject_, 35.0, 7.0, monitor_));
+}
+
+TEST_F(PowerCutFolderTest, ADamagedCutIsToldAndCountsAsAbsent) {
+  cuts_.save(subject_, kept_cut());
+  const std::filesystem::path file = cuts_.file_of(subject_, 35.0, 7.0);
+  nlohmann::ordered_json json = read_json(file);
+  for (const nlohmann::ordered_json& bad :
+       {nlohmann::ordered_json(-1.0), nlohmann::ordered_json(nullptr), nlohmann::ordered_json("high")}) {
+    json["bulge_mm"] = bad;
+    write_json(file, json);
+    monitor_.told.clear();
+    EXPECT_FALSE(cuts_.load(subject_, 35.0, 7.0, monitor_));
+    EXPECT_THAT(monitor_.told,
+                AllOf(HasSubstr(file.filename().string()), HasSubstr("bulge_mm"), HasSubstr("made anew")));
+  }
+  cuts_.save(subject_, kept_cut());
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  EXPECT_FALSE(cuts_.load(subject_, 35.0, 7.0, monitor_));
+  cuts_.save(subject_, kept_cut());
+  EXPECT_TRUE(cuts_.load(subject_, 35.0, 7.0, monitor_));
+}
+
+TEST(PowerTable, SaysWhatASeriesFoundAndLeavesOutWhatWasNotMeasured) {
+  PowerSeries series;
+  series.cuts = {kept_cut()};
+  PowerCut none = kept_cut();
+  none.outcome = Outcome::NotConverged;
+  none.bulge_mm.reset();
+  none.problem = "the specimen could not be stretched";
+  series.speed_cuts = {none};
+  const TextTable table = power_table(series);
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0][0], "power");
+  EXPECT_EQ(table.rows[1][0], "speed");
+  EXPECT_EQ(table.rows[1][4], "not_converged");
+  EXPECT_EQ(table.rows[1][5], "");
+  EXPECT_EQ(table.rows[1].back(), "the specimen could not be stretched");
+  const nlohmann::ordered_json json = to_json(series, {});
+  EXPECT_EQ(json["verdict"], "no_power_fits");
+  EXPECT_TRUE(json["chosen_w"].is_null());
+  EXPECT_TRUE(json["speed_rows"][0]["bulge_mm"].is_null());
+}
+
+class TimedCutsTest : public ::testing::Test {
+ protected:
+  std::vector<TimedCut> read(const std::string& text) {
+    std::ofstream(folder_ / "cuts.csv") << text;
+    return read_timed_cuts(folder_ / "cuts.csv");
+  }
+  std::string refusal_of(const std::string& text) {
+    try {
+      (void)read(text);
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "read";
+  }
+  testing::TemporaryFolder folder_;
+};
+
+TEST_F(TimedCutsTest, ThePapersSixCutsGiveThePapersSpeed) {
+  const SpeedEstimate speed = estimate_speed(
+      read_timed_cuts(std::filesystem::path(INCISE_SOURCE_DIR) / "data/published_tables/timed_cuts.csv"));
+  EXPECT_NEAR(speed.mean_mm_s, 7.22, 0.005);
+  EXPECT_NEAR(speed.population_sd_mm_s, 1.89, 0.005);
+  EXPECT_NEAR(speed.sample_sd_mm_s.value(), 2.07, 0.005);
+}
+
+TEST_F(TimedCutsTest, ColumnsMayComeInAnyOrderAmongOthers) {
+  const std::vector<TimedCut> cuts = read("tongue,time_s,length_mm\nA,20,100\n\nB,10,50\n");
+  ASSERT_EQ(cuts.size(), 2U);
+  EXPECT_EQ(cuts[0].length_mm, 100.0);
+  EXPECT_EQ(cuts[1].time_s, 10.0);
+}
+
+TEST_F(TimedCutsTest, ABadRowIsNamedByLineAndColumn) {
+  EXPECT_THAT(
+      refusal_of("length_mm,time_s\n100,9\n\n100,0\n"),
+      AllOf(HasSubstr("cuts.csv"), HasSubstr("line 4, column time_s"), HasSubstr("found 0"), HasSubstr("above 0")));
+  EXPECT_THAT(refusal_of("length_mm,time_s\n-5,9\n"), HasSubstr("line 2, column length_mm"));
+  EXPECT_THAT(refusal_of("length_mm,time_s\n100,nan\n"), HasSubstr("line 2, column time_s"));
+  EXPECT_THAT(refusal_of("length_mm,time_s\n100\n"), HasSubstr("line 2"));
+  EXPECT_THAT(refusal_of("length_mm,seconds\n100,9\n"), HasSubstr("the column time_s"));
+  EXPECT_THAT(refusal_of("length_mm,time_s\n"), HasSubstr("no rows"));
+}
+
+}  // namespace
+}  // namespace incise
