@@ -5,10 +5,13 @@
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/nearest_name.hpp>
 #include <incise/io/transform_json.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace incise::cli {
@@ -34,14 +37,42 @@ double number(const Json& document, const std::string& key, const std::filesyste
   return result;
 }
 
+int pixels(const Json& document, const std::string& key, const std::filesystem::path& file, const std::string& at) {
+  constexpr int kMost = 100000;
+  const double value = number(document, key, file, at, true);
+  if (value != std::floor(value) || value > kMost)
+    throw DataError(file, at + "/" + key, document[key].dump(),
+                    fmt::format("a whole number of pixels, at most {}", kMost));
+  return static_cast<int>(value);
+}
+
+/// The principal point lies in the picture, or not far beside it where the picture was cropped.
+double middle(const Json& document, const std::string& key, const std::filesystem::path& file, const std::string& at,
+              int size) {
+  const double value = number(document, key, file, at, false);
+  if (!(value >= -size && value <= 2.0 * size))
+    throw DataError(file, at + "/" + key, document[key].dump(), fmt::format("a place from {} to {}", -size, 2 * size));
+  return value;
+}
+
+void require_known(const Json& document, const std::vector<std::string>& keys, const std::filesystem::path& file,
+                   const std::string& at) {
+  if (!document.is_object()) return;  // told by whoever reads it
+  for (const auto& [key, value] : document.items()) {
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+    throw DataError(file, at + "/" + key, "an unknown key", fmt::format("one of {}", fmt::join(keys, ", ")),
+                    fmt::format("Did you mean '{}'?", nearest_name(key, keys)));
+  }
+}
+
 CameraIntrinsics intrinsics_in(const Json& document, const std::filesystem::path& file, const std::string& at) {
   CameraIntrinsics camera;
-  camera.width = static_cast<int>(number(document, "width", file, at, true));
-  camera.height = static_cast<int>(number(document, "height", file, at, true));
+  camera.width = pixels(document, "width", file, at);
+  camera.height = pixels(document, "height", file, at);
   camera.fx = number(document, "fx", file, at, true);
   camera.fy = number(document, "fy", file, at, true);
-  camera.cx = number(document, "cx", file, at, false);
-  camera.cy = number(document, "cy", file, at, false);
+  camera.cx = middle(document, "cx", file, at, camera.width);
+  camera.cy = middle(document, "cy", file, at, camera.height);
   const auto distortion = document.find("distortion");
   if (distortion == document.end()) return camera;
   const bool is_list = distortion->is_array() && distortion->size() == 5 &&
@@ -56,6 +87,11 @@ CameraIntrinsics intrinsics_in(const Json& document, const std::filesystem::path
 DepthCamera read_depth_camera(const std::filesystem::path& file) {
   constexpr double kMmPerMetre = 1000.0;
   const Json document = read_json(file);
+  const std::vector<std::string> of_camera{"width", "height", "fx", "fy", "cx", "cy", "distortion"};
+  std::vector<std::string> all = of_camera;
+  all.insert(all.end(), {"depth", "depth_scale", "T_color_depth", "T_robot_camera", "note"});
+  require_known(document, all, file, "");
+  if (document.contains("depth")) require_known(document["depth"], of_camera, file, "/depth");
   DepthCamera camera;
   camera.color = intrinsics_in(document, file, "");
   camera.depth = document.contains("depth") ? intrinsics_in(document["depth"], file, "/depth") : camera.color;

@@ -55,6 +55,16 @@ void refuse_numbers_that_are_not_finite(int argc, char** argv) {
   }
 }
 
+/// `incise help VERB` is `incise VERB --help`, and `incise help` is `incise --help`.
+std::vector<char*> spelled_out(int argc, char** argv) {
+  static char option[] = "--help";
+  std::vector<char*> words(argv, argv + argc);
+  if (argc < 2 || std::string(argv[1]) != "help") return words;
+  words.erase(words.begin() + 1);
+  words.push_back(option);
+  return words;
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Plans robotic soft-tissue incisions by simulating them first.", "incise");
   app.set_version_flag("--version", fmt::format("incise {} ({})", version(), source_commit()));
@@ -102,7 +112,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    std::vector<char*> words = spelled_out(argc, argv);
+    return run(static_cast<int>(words.size()), words.data());
   } catch (const CaseError& error) {
     fmt::print(stderr, "incise: {}\n", error.what());
     return kBadCase;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <thread>
 
@@ -48,19 +49,35 @@ Manifest manifest_of(const CommonOptions& options, std::string settings_json,
 
 void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
                             const std::vector<std::filesystem::path>& inputs) {
-  std::error_code absent;
   for (const std::filesystem::path& input : inputs) {
-    if (!output.empty() && std::filesystem::equivalent(input, output, absent)) {
-      throw CaseError("command line", option, fmt::format("{}, an input", output.string()),
-                      "another file: the input would be lost");
-    }
+    std::error_code absent;
+    if (output.empty() || input.empty() || !std::filesystem::exists(input, absent)) continue;
+    const auto refuse = [&](const std::string& what, const char* expected) {
+      throw CaseError("command line", option, output.string() + what, expected);
+    };
+    if (std::filesystem::equivalent(input, output, absent))
+      refuse(", an input", "another file: the input would be lost");
+    if (is_same_or_within(input, output))
+      refuse(fmt::format(", which holds the input {}", input.string()), "another place: the input would be lost");
+    if (std::filesystem::is_directory(input, absent) && is_same_or_within(output, input))
+      refuse(fmt::format(", in the input {}", input.string()),
+             "another place: the input would no longer be what it was");
   }
+}
+
+bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer) {
+  // Of a name that does not exist yet only an absolute one is resolved.
+  const auto a = std::filesystem::weakly_canonical(std::filesystem::absolute(inner));
+  const auto b =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(outer.has_filename() ? outer : outer.parent_path()));
+  return std::mismatch(b.begin(), b.end(), a.begin(), a.end()).first == b.end();
 }
 
 OlderOutput::OlderOutput(std::filesystem::path output, Console& console)
     : output_(std::move(output)), console_(console) {
   std::error_code absent;
-  is_there_ = std::filesystem::exists(output_, absent);
+  // A device or a pipe is of no run.
+  is_there_ = std::filesystem::is_regular_file(output_, absent) || std::filesystem::is_directory(output_, absent);
 }
 
 OlderOutput::~OlderOutput() {

@@ -33,7 +33,11 @@ class StagesKept : public Cancelled {
       : Cancelled(what + "; " + kept + ", run the same command to go on") {}
 };
 
-/// Refuses an output that would take the place of an input (status 2). An empty output: nothing to refuse.
+/// Whether a path is a folder, or lies anywhere in it. Links are followed; neither has to exist.
+[[nodiscard]] bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer);
+
+/// Refuses an output that is an input, that is a folder with an input in it (it would be replaced with all that it holds),
+/// or that lies in a folder that is an input (status 2). Empty names: nothing to refuse.
 void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
                             const std::vector<std::filesystem::path>& inputs);
 

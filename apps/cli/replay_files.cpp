@@ -33,10 +33,9 @@ nlohmann::ordered_json to_json(const Replay& replay, const PlayerSettings& setti
       is_known ? nlohmann::ordered_json(replay.max_deviation_at_s) : nlohmann::ordered_json(nullptr);
   json["mean_deviation_mm"] =
       is_known ? nlohmann::ordered_json(replay.mean_deviation_mm) : nlohmann::ordered_json(nullptr);
-  // In the tissue alone: on its way down and up a tool that is tilted is the farther off the longer the way.
-  double in_cut = 0.0;
-  for (const ReplaySample& s : replay.samples) in_cut = is_in_cut(s) ? std::max(in_cut, s.deviation_mm) : in_cut;
-  json["max_cut_deviation_mm"] = is_known ? nlohmann::ordered_json(in_cut) : nlohmann::ordered_json(nullptr);
+  json["max_cut_deviation_mm"] =
+      is_known ? nlohmann::ordered_json(replay.max_cut_deviation_mm) : nlohmann::ordered_json(nullptr);
+  json["allowed_deviation_mm"] = settings.max_deviation_mm;
   json["tip_speed_mm_s"] = {
       {"mean", replay.tip_speed_mm_s.mean}, {"min", replay.tip_speed_mm_s.min}, {"max", replay.tip_speed_mm_s.max}};
   json["end_zone_mm"] = settings.end_zone_mm;

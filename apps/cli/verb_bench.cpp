@@ -58,12 +58,6 @@ void make_parent(const std::filesystem::path& folder) {
   require_replaceable(folder);
 }
 
-bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer) {
-  const auto a = std::filesystem::weakly_canonical(inner);
-  const auto b = std::filesystem::weakly_canonical(outer);
-  return std::mismatch(b.begin(), b.end(), a.begin(), a.end()).first == b.end();
-}
-
 void require_apart(const std::filesystem::path& truth, const std::filesystem::path& output) {
   if (truth.empty() || !(is_same_or_within(truth, output) || is_same_or_within(output, truth))) return;
   throw CaseError("command line", "--truth", truth.string(), "a folder apart from the output",
@@ -85,6 +79,8 @@ int make(const CommonOptions& options, const MakeArguments& arguments) {
   const auto start = Clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("specimen7");
+  refuse_input_as_output("-o", output, {arguments.specimen});
+  refuse_input_as_output("--truth", arguments.truth, {arguments.specimen});
   require_apart(arguments.truth, output);
   const Specimen specimen =
       arguments.specimen.empty() ? draw_specimen(options.seed) : read_specimen(arguments.specimen);
@@ -141,6 +137,8 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
   const auto start = Clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("cut7");
+  refuse_input_as_output("-o", output, {arguments.specimen, arguments.program});
+  refuse_input_as_output("--truth", arguments.truth, {arguments.specimen, arguments.program});
   require_apart(arguments.truth, output);
   const Specimen specimen = read_specimen(arguments.specimen);
   const WrittenProgram program = program_from_text(read_text(arguments.program), arguments.program);

@@ -94,6 +94,8 @@ int run(CompareArguments arguments, const CommonOptions& options) {
                     "as many before as after, in the same order");
   }
   require_different(arguments);
+  refuse_input_as_output("-o", options.output, arguments.before);
+  refuse_input_as_output("-o", options.output, arguments.after);
   ComparedFiles files{read_all(arguments.before), read_all(arguments.after)};
   require_alike(arguments, files);
   ComparisonOutput output = compared(std::move(files), arguments.settings);

@@ -1,3 +1,4 @@
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/problem_text.hpp>
@@ -35,6 +36,7 @@ struct ExportArguments {
   std::vector<double> tcp, near_deg;
   std::vector<std::string> overrides;
   bool is_open = false;
+  const CLI::Option* motion_option = nullptr;
 };
 
 void require_override_names(const std::vector<std::string>& names) {
@@ -85,7 +87,7 @@ RegistrationSummary registration_summary(const std::filesystem::path& file) {
   require(record.rmse_mm.has_value(), "rmse_mm");
   require(record.inlier_fraction.has_value(), "inlier_fraction");
   require(record.is_converged.has_value(), "converged");
-  return {record.scale, *record.rmse_mm, *record.inlier_fraction, *record.is_converged};
+  return {record.scale * record.camera_scale, *record.rmse_mm, *record.inlier_fraction, *record.is_converged};
 }
 
 ToolPath read_robot_path(const std::filesystem::path& file) {
@@ -120,6 +122,34 @@ RobotProgram program_of(const ToolPath& path, const ExportArguments& arguments) 
   }
 }
 
+/// What nobody will look at, and what will be looked at less strictly than by default: nothing of it is silent.
+void warn_of_less(const ExportArguments& a, const CheckInputs& inputs, const ToolPath& path, Console& console) {
+  const auto missing = [&](bool is_given, const char* option, const char* checks) {
+    if (is_given) return;
+    console.message(Severity::Warning, fmt::format("not checked without {}: {}", option, checks));
+  };
+  missing(inputs.surface != nullptr, "--surface", "the shaft, and the depth below the tissue");
+  missing(inputs.registration.has_value(), "--registration", "how well the tissue was found");
+  missing(inputs.power_w.has_value(), "--power-w", "the electrode's power");
+  if (a.is_open) console.message(Severity::Warning, "not checked with --open: closed, gap, encloses");
+  const CheckSettings usual;
+  const auto looser = [&](bool is_looser, const char* option, double value, double by_default) {
+    if (!is_looser) return;
+    console.message(Severity::Warning,
+                    fmt::format("a looser check: {} is {} mm, by default {} mm", option, value, by_default));
+  };
+  const bool is_mark = path.kind == PathKind::Mark;
+  looser(!is_mark && a.checks.close_margin_mm < usual.close_margin_mm, "--close-margin-mm", a.checks.close_margin_mm,
+         usual.close_margin_mm);
+  looser(!is_mark && a.checks.planned_depth_mm > usual.planned_depth_mm, "--depth-mm", a.checks.planned_depth_mm,
+         usual.planned_depth_mm);
+  looser(a.checks.needle_length_mm > usual.needle_length_mm, "--needle-length-mm", a.checks.needle_length_mm,
+         usual.needle_length_mm);
+  looser(a.shaft_diameter_mm < 2.0 * usual.shaft_radius_mm, "--shaft-diameter-mm", a.shaft_diameter_mm,
+         2.0 * usual.shaft_radius_mm);
+  looser(a.setup.table_z_mm < ArmSetup{}.table_z_mm, "--table-z-mm", a.setup.table_z_mm, ArmSetup{}.table_z_mm);
+}
+
 std::string text_of(const RobotProgram& program, const ProgramChecks& checks, const ProgramHeader& header,
                     const ExportArguments& arguments, const std::filesystem::path& output) {
   if (arguments.format == "joint-csv") return to_joint_csv(program, header);
@@ -149,11 +179,20 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("cut.script");
+  refuse_input_as_output("-o", output, {arguments.path, arguments.intended, arguments.surface, arguments.registration});
   OlderOutput older(output, console);
   require_override_names(arguments.overrides);
   require_ending(output, arguments.format);
+  if (arguments.format != "urscript" && arguments.motion_option->count() > 0) {
+    throw CaseError("command line", "--motion", fmt::format("{} for --format {}", arguments.motion, arguments.format),
+                    "no --motion: only URScript has two kinds");
+  }
   ToolPath path = read_robot_path(arguments.path);
   if (!arguments.kind.empty()) path.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
+  if (arguments.is_open && path.is_closed) {
+    throw CaseError("command line", "--open", fmt::format("{}, a closed path", arguments.path.string()), "an open path",
+                    "Leave --open out: a ring is held to closed, gap and encloses.");
+  }
   complete(arguments, path);
   CheckInputs inputs;
   std::optional<ToolPath> intended;
@@ -163,6 +202,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   if (!arguments.registration.empty()) inputs.registration = registration_summary(arguments.registration);
   if (arguments.power_w > 0.0) inputs.power_w = arguments.power_w;
   require_writable(output);
+  warn_of_less(arguments, inputs, path, console);
 
   const RobotProgram program = program_of(path, arguments);
   ProgramChecks checks = check_program(program, path, arguments.checks, inputs);
@@ -208,8 +248,9 @@ void add_export(Application& application) {
   verb->add_option("--robot", a.robot, "The arm")->check(CLI::IsMember({"ur10e"}));
   verb->add_option("--format", a.format, "Of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1")
       ->check(CLI::IsMember({"urscript", "joint-csv", "ros-trajectory", "json"}));
-  verb->add_option("--motion", a.motion, "Of URScript: movep (blends, constant speed) or servoj (timed joints)")
-      ->check(CLI::IsMember({"movep", "servoj"}));
+  a.motion_option =
+      verb->add_option("--motion", a.motion, "Of URScript: movep (blends, constant speed) or servoj (timed joints)")
+          ->check(CLI::IsMember({"movep", "servoj"}));
   verb->add_option("--kind", a.kind, "Which checks hold, in place of the path's own kind")
       ->check(CLI::IsMember({"mark", "incise"}));
   verb->add_option("--override", a.overrides,
@@ -221,23 +262,26 @@ void add_export(Application& application) {
                    "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth and shaft are "
                    "checked against it");
   verb->add_option("--registration", a.registration, "Result of `incise register` (.json): its quality is checked");
-  verb->add_option("--power-w", a.power_w, "Power of the electrode, to check it")->check(CLI::PositiveNumber);
+  verb->add_option("--power-w", a.power_w, "Power of the electrode, to check it")->check(above_zero("--power-w"));
   verb->add_option("--tcp", a.tcp,
                    "Tool centre point in the flange as on the pendant: x y z (mm) rx ry rz (rad); z along the needle. "
                    "By default 0 0 150 0 0 0")
       ->expected(6);
-  verb->add_option("--near-joints-deg", a.near_deg, "Joints that the arm stands near")->expected(6);
+  verb->add_option("--near-joints-deg", a.near_deg, "Joints that the arm stands near")
+      ->expected(6)
+      ->check(between("--near-joints-deg", -360.0, 360.0));
   verb->add_option("--table-z-mm", a.setup.table_z_mm, "Height of the table's plane in the base frame");
   verb->add_option("--needle-length-mm", a.checks.needle_length_mm, "Of the needle; behind it comes the shaft")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--shaft-diameter-mm", a.shaft_diameter_mm, "Of the instrument's shaft")->check(CLI::PositiveNumber);
-  verb->add_option("--depth-mm", a.checks.planned_depth_mm, "Planned depth")->check(CLI::PositiveNumber);
+      ->check(above_zero("--needle-length-mm"));
+  verb->add_option("--shaft-diameter-mm", a.shaft_diameter_mm, "Of the instrument's shaft")
+      ->check(above_zero("--shaft-diameter-mm"));
+  verb->add_option("--depth-mm", a.checks.planned_depth_mm, "Planned depth")->check(above_zero("--depth-mm"));
   verb->add_option("--close-margin-mm", a.checks.close_margin_mm, "Least distance from the tumour edge")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero("--close-margin-mm"));
   verb->add_option("--overlap-mm", a.overlap_mm, "How far a ring runs on beyond its start; by default 8, a mark 0")
       ->check(CLI::Range(0.0, kLargestLengthMm))
       ->default_str("");
-  verb->add_flag("--open", a.is_open, "The path is an open cut");
+  verb->add_flag("--open", a.is_open, "The path is an open cut: closed, gap and encloses are not checked");
 }
 
 }  // namespace incise::cli

@@ -31,14 +31,16 @@ int export_case(const std::filesystem::path& case_path, const std::string& forma
   const std::filesystem::path output = options.required_output("for_sofa");
   require_replaceable(output);
   const CaseFile file = case_with_inputs(case_path);
+  refuse_input_as_output("-o", output, {file.file, file.inputs.specimen_mesh});
   const bool is_sofa = format == "sofa";
   const char* name = is_sofa ? "case.scn" : "case.feb";
   std::shared_ptr<const TissueModel> model;
   AtomicFolder target(output);
   try {
     model = specimen_of(file, case_path, options, console);
-    const InterchangeCase specimen{*model, file.settings.gravity_mm_s2, file.settings.title,
-                                   fmt::format("Written by incise {} ({}) from {}", version(), source_commit(), file.file.string())};
+    const InterchangeCase specimen{
+        *model, file.settings.gravity_mm_s2, file.settings.title,
+        fmt::format("Written by incise {} ({}) from {}", version(), source_commit(), file.file.string())};
     (is_sofa ? write_sofa_scene : write_febio_input)(target.path() / name, specimen);
   } catch (const CaseError& error) {
     throw error.in_file(file.file.string());
@@ -64,10 +66,13 @@ void add_interchange(Application& application) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
       "interchange", "Write the held specimen for another solver: a SOFA scene or FEBio input, in a folder",
-      "incise interchange specimen --format sofa -o for_sofa",
-      [arguments](const CommonOptions& options) { return export_case(arguments->case_path, arguments->format, options); });
+      "incise interchange specimen --format sofa -o for_sofa", [arguments](const CommonOptions& options) {
+        return export_case(arguments->case_path, arguments->format, options);
+      });
   verb->add_option("case", arguments->case_path, "Case file, or a folder with case.yaml")->required();
-  verb->add_option("--format", arguments->format, "sofa: case.scn; febio: case.feb")->check(CLI::IsMember({"sofa", "febio"}))->required();
+  verb->add_option("--format", arguments->format, "sofa: case.scn; febio: case.feb")
+      ->check(CLI::IsMember({"sofa", "febio"}))
+      ->required();
 }
 
 }  // namespace incise::cli

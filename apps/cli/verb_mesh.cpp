@@ -35,16 +35,19 @@ void add_mesh(Application& application) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
       "mesh", "Make a graded tetrahedral mesh from labels or a closed surface",
-      "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu", [arguments](const CommonOptions& options) {
+      "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu",
+      [arguments](const CommonOptions& options) {
         Console console(options.level());
         const std::filesystem::path output = options.required_output("tongue.vtu");
+        refuse_input_as_output("-o", output, {arguments->input, arguments->around});
         MeshingSettings settings;
         if (arguments->tets > 0 && arguments->tets < kFewestTets) {
           throw CaseError("command line", "--tets", fmt::format("{}", arguments->tets),
                           fmt::format("0, or {} and more", kFewestTets));
         }
         if (arguments->around.empty() && arguments->fine_option->count() > 0) {
-          throw CaseError("command line", "--fine-mm", "no --around", "a planned cut to be fine around", "Edges are at most --coarse-mm without it");
+          throw CaseError("command line", "--fine-mm", "no --around", "a planned cut to be fine around",
+                          "Edges are at most --coarse-mm without it");
         }
         if (output.extension() != ".vtu") {
           throw CaseError("command line", "-o", output.string(), "a file that ends in .vtu");
@@ -79,12 +82,16 @@ void add_mesh(Application& application) {
         print_result(options, result);
         return made.meets_quality && made.meets_volume ? kDone : kNotAcceptable;
       });
-  verb->add_option("input", arguments->input, "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")->required();
+  verb->add_option("input", arguments->input,
+                   "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
+      ->required();
   verb->add_option("--around", arguments->around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
-  arguments->fine_option = verb->add_option("--fine-mm", arguments->fine_mm, "Edge length around the cut")->check(CLI::Range(0.05, 50.0));
+  arguments->fine_option =
+      verb->add_option("--fine-mm", arguments->fine_mm, "Edge length around the cut")->check(CLI::Range(0.05, 50.0));
   verb->add_option("--coarse-mm", arguments->coarse_mm, "Longest edge length")->check(CLI::Range(0.05, 100.0));
   verb->add_option("--depth-mm", arguments->depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
-  verb->add_option("--tets", arguments->tets, "Count to aim for; 0: as the lengths give")->check(CLI::Range(0, 5000000));
+  verb->add_option("--tets", arguments->tets, "Count to aim for; 0: as the lengths give")
+      ->check(CLI::Range(0, 5000000));
 }
 
 }  // namespace incise::cli

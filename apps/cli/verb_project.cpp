@@ -1,3 +1,4 @@
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -24,7 +25,8 @@ namespace {
 
 constexpr double kLowScale = 0.95;  // both sensors are metric
 constexpr double kHighScale = 1.05;
-constexpr double kTipMm = 0.3;  // what an uncertain scale may move the tip by before a person is told
+constexpr double kTipMm = 0.3;        // what an uncertain scale may move the tip by before a person is told …
+constexpr double kLargestSdMm = 2.2;  // … and before the path is worth nothing: the clinical cut-off
 
 struct ProjectArguments {
   std::filesystem::path path;
@@ -43,16 +45,19 @@ struct ProjectArguments {
 /// What `register` wrote. A search that did not end well is no ground for moving a robot.
 RegistrationRecord trusted_registration(const std::filesystem::path& file, Console& console) {
   RegistrationRecord record = read_registration(file);
-  if (!record.is_converged.value_or(true) || !record.T_target_source) {
+  if (!record.is_converged.value_or(false) || !record.T_target_source) {
     throw DataError(file, record.T_target_source ? "/converged" : "/T_target_source",
-                    record.T_target_source ? "false" : "null", "a registration that converged",
+                    !record.T_target_source ? "null"
+                    : record.is_converged   ? "false"
+                                            : "nothing",
+                    "a registration that converged",
                     "Register again: with more starts, or with the cloud cropped to the tissue.");
   }
-  record.scale = std::cbrt(record.T_target_source->topLeftCorner<3, 3>().determinant());
-  if (record.scale < kLowScale || record.scale > kHighScale) {
+  const double scale = record.scale * record.camera_scale;
+  if (!(scale > kLowScale && scale < kHighScale)) {
     console.message(Severity::Warning,
                     fmt::format("{}: the scale is {:.4f}; both sensors are metric, so that {} to {} is expected",
-                                file.string(), record.scale, kLowScale, kHighScale));
+                                file.string(), scale, kLowScale, kHighScale));
   }
   return record;
 }
@@ -99,6 +104,14 @@ void take_true_size(Placement& placement, const ToolPath& path, const Registrati
   if (!registration.scale_sd) return;
   const double sd_mm = *registration.scale_sd * arm_mm;
   placement.summary["scale_shift_sd_mm"] = sd_mm;
+  if (sd_mm > kLargestSdMm) {
+    throw DataError(arguments.transform, "/certificate/scale_sd",
+                    fmt::format("{:.4f}, which is {:.2f} mm at {:.0f} mm from where lengths are right",
+                                *registration.scale_sd, sd_mm, arm_mm),
+                    fmt::format("at most {} mm", kLargestSdMm),
+                    "Hold the scale by a known length (register --scale K,K), or name a place near the tissue whose "
+                    "position the robot has confirmed (--scale-center)");
+  }
   if (sd_mm > kTipMm) {
     console.message(
         Severity::Warning,
@@ -119,6 +132,7 @@ Placement placed(const ToolPath& path, const ProjectArguments& arguments, Consol
   }
   placement.summary["metric"] = arguments.metric;
   placement.summary["scale"] = registration.scale;
+  placement.summary["camera_scale"] = registration.camera_scale;
   if (arguments.metric == "ct") take_true_size(placement, path, registration, arguments, console);
   return placement;
 }
@@ -234,6 +248,7 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("projected");
+  refuse_input_as_output("-o", output, {arguments.path, arguments.transform, arguments.surface, arguments.camera});
   OlderOutput older(output, console);
   if (output.extension() == ".json") {
     require_writable(output);
@@ -307,19 +322,19 @@ void add_project(Application& application) {
       ->check(CLI::IsMember({"path", "normal"}));
   verb->add_option("--depth-mm", arguments->depth_mm,
                    "Below the surface; 0: 1 mm for a mark, as the path says for an incision")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more("--depth-mm"));
   verb->add_option("--speed-mm-s", arguments->speed_mm_s,
                    "Of the tip; 0: 2 mm/s for a mark, as the path says for an incision")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more("--speed-mm-s"));
   verb->add_option("--max-gap-mm", arguments->settings.max_gap_mm,
                    "Farthest from a waypoint to the nearest measured point")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more("--max-gap-mm"));
   verb->add_option("--smoothing-mm", arguments->settings.smoothing_mm,
                    "Radius over which the shift onto the surface is averaged; 0: every point by itself")
       ->check(CLI::Range(0.0, 100.0));
   verb->add_option("--max-shift-mm", arguments->settings.max_shift_mm,
                    "Farthest that a point is moved onto the surface")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more("--max-shift-mm"));
   verb->add_option("--waypoints", arguments->settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 100000));
 }
 

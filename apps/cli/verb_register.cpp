@@ -2,6 +2,7 @@
 #include "option_checks.hpp"
 
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/registration/nonrigid_drift.hpp>
@@ -69,6 +70,7 @@ nlohmann::ordered_json settings_json(const RegisterArguments& arguments) {
       {"least_inliers", s.least_inliers},
       {"least_fit", s.least_fit},
       {"largest_sd", s.largest_sd},
+      {"largest_settled_sd", s.largest_settled_sd},
       {"least_sharpness", s.least_sharpness},
       {"largest_rival", s.largest_rival}};
   if (arguments.method == "nonrigid") {
@@ -111,6 +113,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("registration");
+  refuse_input_as_output("-o", output, {arguments.source, arguments.target});
   require_replaceable(output);
   RegistrationSettings& settings = arguments.settings;
   settings.scale = scale_of(arguments.scale);
@@ -121,6 +124,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   require_valid(validate(settings));
   const PointCloud source = read_points(arguments.source, 12);
   const PointCloud target = read_points(arguments.target, 12);
+  const double camera_scale = camera_scale_of(arguments.target);
   Workers workers(options.threads);
   Registration found = register_clouds(source, target, settings, workers, console);
   if (found.outcome == RegistrationOutcome::Cancelled) throw Cancelled("register: stopped");
@@ -151,6 +155,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
     write_atomically(folder.path() / "registration.svg",
                      [&figure](std::ostream& out) { out << registration_figure_svg(figure); });
   }
+  result["camera_scale"] = camera_scale;
   result["source"] = arguments.source.string();
   result["target"] = arguments.target.string();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

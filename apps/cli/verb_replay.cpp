@@ -1,3 +1,4 @@
+#include "option_checks.hpp"
 #include "options.hpp"
 #include "replay_files.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 struct ReplayArguments {
   std::filesystem::path program, path;
   double slider_percent = 100.0;
+  double max_deviation_mm = PlayerSettings{}.max_deviation_mm;
 };
 
 void write_folder(const ReplayArguments& arguments, const CommonOptions& options, const Replay& replay,
@@ -30,9 +32,11 @@ void write_folder(const ReplayArguments& arguments, const CommonOptions& options
   write_json(target.path() / "replay.json", result);
   std::vector<std::filesystem::path> inputs{arguments.program};
   if (!arguments.path.empty()) inputs.push_back(arguments.path);
-  write_manifest(target.path(),
-                 manifest_of(options, nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent}}.dump(),
-                             inputs, result.at("wall_s").get<double>()));
+  write_manifest(target.path(), manifest_of(options,
+                                            nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent},
+                                                                   {"max_deviation_mm", arguments.max_deviation_mm}}
+                                                .dump(),
+                                            inputs, result.at("wall_s").get<double>()));
   target.commit();
 }
 
@@ -48,8 +52,9 @@ Replay played(const WrittenProgram& program, const PlayerSettings& settings, con
 
 /// How it ended, where that is not well.
 std::string warning_of(const Replay& replay, const std::filesystem::path& program) {
-  const bool is_played =
-      replay.outcome == ReplayOutcome::StartsInTissue || replay.outcome == ReplayOutcome::EndsInTissue;
+  const bool is_played = replay.outcome == ReplayOutcome::StartsInTissue ||
+                         replay.outcome == ReplayOutcome::EndsInTissue || replay.outcome == ReplayOutcome::JointSpeed ||
+                         replay.outcome == ReplayOutcome::OffCourse;
   return fmt::format("{}{}: {}{}{}", program.string(), replay.line > 0 ? fmt::format(":{}", replay.line) : "",
                      is_played ? "" : "the arm cannot go on: ", to_string(replay.outcome),
                      replay.reason.empty() ? "" : fmt::format(": {}", replay.reason));
@@ -58,6 +63,7 @@ std::string warning_of(const Replay& replay, const std::filesystem::path& progra
 int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
+  refuse_input_as_output("-o", options.output, {arguments.program, arguments.path});
   if (!options.output.empty()) require_replaceable(options.output);
   const WrittenProgram program = program_from_text(read_text(arguments.program), arguments.program);
   std::optional<ToolPath> intended;
@@ -68,7 +74,8 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
     console.message(Severity::Warning,
                     "the program does not say which path it was made for: no deviations (give --path)");
   }
-  const PlayerSettings settings{.speed_slider = arguments.slider_percent / 100.0};
+  const PlayerSettings settings{.speed_slider = arguments.slider_percent / 100.0,
+                                .max_deviation_mm = arguments.max_deviation_mm};
   const Replay replay = played(program, settings, intended, arguments.path);
   nlohmann::ordered_json result = to_json(replay, settings);
   result["model"] = "incise's own kinematics and interpolation; not the maker's controller";
@@ -85,14 +92,18 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
 
 void add_replay(Application& application) {
   auto arguments = std::make_shared<ReplayArguments>();
-  CLI::App* verb =
-      application.add_verb("replay", "Play a program: what the tip of the tool would do",
-                           "incise replay cut.script --speed-slider 50 -o replay",
-                           [arguments](const CommonOptions& options) { return run_replay(*arguments, options); });
+  CLI::App* verb = application.add_verb(
+      "replay",
+      "Play a program: what the tip of the tool would do. Exit status 4 when it cannot be run, or leaves its path",
+      "incise replay cut.script --speed-slider 50 -o replay",
+      [arguments](const CommonOptions& options) { return run_replay(*arguments, options); });
   verb->add_option("program", arguments->program, "A program that `incise export` wrote: URScript, .csv or .json")
       ->required();
   verb->add_option("--speed-slider", arguments->slider_percent, "Where the controller's speed slider stands, percent")
       ->check(CLI::Range(1.0, 100.0));
+  verb->add_option("--max-deviation-mm", arguments->max_deviation_mm,
+                   "Most that the tip may leave the path by in the cut; beyond it the exit status is 4")
+      ->check(above_zero("--max-deviation-mm"));
   verb->add_option("--path", arguments->path,
                    "path.json, frame robot, to hold the tip against; by default the one in the program");
 }

@@ -33,6 +33,7 @@ void add_report(Application& application) {
         const std::filesystem::path output = !options.output.empty() ? options.output
                                              : is_of_a_study         ? arguments->folder / "report.html"
                                                                      : std::filesystem::path("report.html");
+        refuse_input_as_output("-o", output, {arguments->registration, arguments->replay});
         write_report_and_figures(data, output);
         print_result(options, {{"report", output.string()}});
         return kDone;

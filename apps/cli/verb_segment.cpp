@@ -21,10 +21,11 @@ void add_segment(Application& application) {
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
-      "segment", "Find the tissue in a CT: a label volume", "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd",
-      [arguments](const CommonOptions& options) {
+      "segment", "Find the tissue in a CT: a label volume",
+      "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd", [arguments](const CommonOptions& options) {
         Console console(options.level());
         const std::filesystem::path output = options.required_output("labels.nrrd");
+        refuse_input_as_output("-o", output, {arguments->ct});
         CtReadSettings reading;
         if (!arguments->spacing.empty()) reading.spacing_mm = Vec3(arguments->spacing.data());
         if (!arguments->hu.empty()) reading.hu = GrayToHu{arguments->hu[0], arguments->hu[1]};
@@ -35,7 +36,8 @@ void add_segment(Application& application) {
         if (!arguments->roi.empty()) {
           settings.roi_box_mm = Box3(Vec3(arguments->roi.data()), Vec3(arguments->roi.data() + 3));
           if (settings.roi_box_mm->isEmpty()) {
-            throw CaseError("command line", "--roi-box-mm", "a low corner above the high corner", "low x y z, high x y z");
+            throw CaseError("command line", "--roi-box-mm", "a low corner above the high corner",
+                            "low x y z, high x y z");
           }
         }
         if (!arguments->seed.empty()) settings.seeds_mm.emplace_back(arguments->seed.data());

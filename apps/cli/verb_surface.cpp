@@ -5,6 +5,7 @@
 #include <incise/core/units.hpp>
 #include <incise/geometry/visible_surface.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
@@ -32,6 +33,7 @@ struct SurfaceArguments {
 };
 
 constexpr std::size_t kFewestPoints = 12;
+constexpr double kLowUsualScale = 0.95, kHighUsualScale = 1.05;  // of a metric camera
 
 bool is_one_of(const std::filesystem::path& path, std::initializer_list<const char*> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return path.extension() == ending; });
@@ -109,8 +111,8 @@ nlohmann::ordered_json cleaned(const PointCloud& raw, const SurfaceArguments& ar
 /// A camera's scale, from a plane whose height in the robot's frame is known, is taken out of its cloud: all lengths
 /// from the camera's origin, that to the plane too, are too long by the same factor.
 nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::ordered_json& planes,
-                                        const SurfaceArguments& arguments) {
-  constexpr double kLow = 0.9, kHigh = 1.1, kLargestTiltDeg = 3.0;
+                                        const SurfaceArguments& arguments, Console& console) {
+  constexpr double kLargestTiltDeg = 3.0;
   const Mat4 T = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
   if (planes.empty()) {
     throw DataError(arguments.input, "planes", "none", "the plane that --plane-z-mm gives the height of",
@@ -124,11 +126,17 @@ nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::order
   const double found_mm = std::abs(plane["offset_mm"].get<double>());
   const double true_mm = std::abs(T(2, 3) - *arguments.plane_z_mm);
   const double scale = found_mm / true_mm;
-  if (!(scale > kLow && scale < kHigh) || tilt_deg > kLargestTiltDeg) {
+  if (!(scale > kLeastCameraScale && scale < kMostCameraScale) || tilt_deg > kLargestTiltDeg) {
     throw DataError(arguments.input, "the largest plane",
                     fmt::format("{:.2f} mm from the camera and {:.2f} degrees from level", found_mm, tilt_deg),
                     fmt::format("{:.2f} mm and level, as T_robot_camera and --plane-z-mm say", true_mm),
                     "Another plane may be larger, or the camera's pose is not this one.");
+  }
+  if (!(scale > kLowUsualScale && scale < kHighUsualScale)) {
+    console.message(Severity::Warning,
+                    fmt::format("the camera's scale is {:.4f}; the camera is metric, so that {} to {} is expected: is "
+                                "--plane-z-mm right? export will refuse what follows from it (registration_scale)",
+                                scale, kLowUsualScale, kHighUsualScale));
   }
   for (Vec3& p : cloud.points) p /= scale;
   return {{"camera_scale", scale}, {"plane_tilt_deg", tilt_deg}};
@@ -142,9 +150,14 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
                     "both --camera and --plane-z-mm, or none");
   }
   const bool is_vtp = output.extension() == ".vtp";
+  if (is_vtp && arguments.plane_z_mm)
+    throw CaseError("command line", "-o", output.string(), "a file that ends in .ply: it keeps the camera's scale");
   if (!is_vtp && output.extension() != ".ply")
     throw CaseError("command line", "-o", output.string(), "a file that ends in .ply or .vtp");
   require_writable(output);
+  refuse_input_as_output("-o", output, {arguments.camera});
+  // A case's folder may hold the surface of its tissue.
+  if (!std::filesystem::is_directory(arguments.input)) refuse_input_as_output("-o", output, {arguments.input});
   Workers workers(options.threads);
   Vec3 approach = arguments.approach.empty() ? Vec3(-Vec3::UnitZ()) : direction_of(arguments.approach, "--approach");
   PointCloud cloud;
@@ -164,7 +177,7 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
     if (arguments.plane_z_mm) {
       if (!read.triangles.empty())
         throw CaseError("command line", "--plane-z-mm", "a surface with triangles", "a camera's cloud");
-      result.update(take_plane_scale(cloud, result["planes"], arguments));
+      result.update(take_plane_scale(cloud, result["planes"], arguments, console));
       result["area_mm2"] = sampled_area_mm2(cloud.points);
       result["spacing_mm"] = spacing_mm(cloud.points);
     }
@@ -176,6 +189,8 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
   require_surface(cloud.points, input);
   if (is_vtp) {
     write_vtp(output, mesh_of(cloud));
+  } else if (arguments.plane_z_mm) {
+    write_ply_at_true_size(output, mesh_of(cloud), result["camera_scale"].get<double>());
   } else {
     write_ply(output, mesh_of(cloud));
   }
@@ -211,7 +226,7 @@ void add_surface(Application& application) {
       ->check(CLI::Range(0, 20));
   verb->add_option("--plane-tolerance-mm", arguments->cleaning.plane_tolerance_mm,
                    "Cloud: thickness of a plane to either side")
-      ->check(CLI::PositiveNumber);
+      ->check(above_zero("--plane-tolerance-mm"));
   verb->add_option("--camera", arguments->camera,
                    "Cloud in a camera's frame: JSON with T_robot_camera; with --plane-z-mm");
   verb->add_option(

@@ -1,4 +1,5 @@
 #include "camera_options.hpp"
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -8,6 +9,7 @@
 #include <incise/imaging/photo_contours.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/grid_cloud.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
@@ -25,6 +27,8 @@
 
 namespace incise::cli {
 namespace {
+
+constexpr double kLargestMarginMm = 50.0;  // a wider ring leaves the organ
 
 struct TrackArguments {
   std::filesystem::path color;
@@ -52,31 +56,37 @@ struct Scene {
 };
 
 /// PCL writes `obj_info num_cols W`; other programs leave it to the user.
-int columns_of(const std::filesystem::path& file, int given) {
-  if (given > 0) return given;
-  const std::string text = read_text(file);
-  const std::string header = text.substr(0, text.find("end_header"));
-  const std::string key = "num_cols ";
-  const std::size_t place = header.find(key);
-  if (place != std::string::npos) {
-    try {
-      return std::stoi(header.substr(place + key.size()));
-    } catch (const std::exception&) {  // told below, with the other reason for not knowing
-    }
+int columns_of(const GridCloud& grid, const TrackArguments& arguments) {
+  const int given = arguments.ply_width;
+  if (grid.columns == 0 && given == 0) {
+    throw DataError(arguments.color, "header", "no obj_info num_cols",
+                    "an organised cloud (rows and columns of a picture)", "Give its width with --ply-width.");
   }
-  throw DataError(file, "header", "no obj_info num_cols", "an organised cloud (rows and columns of a picture)",
-                  "Give its width with --ply-width.");
+  if (grid.columns > 0 && given > 0 && given != grid.columns) {
+    throw CaseError("command line", "--ply-width", fmt::format("{}", given),
+                    fmt::format("{}, as {} says itself", grid.columns, arguments.color.string()));
+  }
+  return given > 0 ? given : grid.columns;
+}
+
+/// Rows of that many places: as many as the file says, all of them whole.
+int rows_of(const GridCloud& grid, int columns, const std::filesystem::path& file) {
+  const std::size_t count = grid.places.size(), width = static_cast<std::size_t>(columns);
+  if (columns < 2 || count % width != 0)
+    throw DataError(file, "vertices", fmt::format("{} places in rows of {}", count, columns), "whole rows");
+  if (grid.rows > 0 && count / width != static_cast<std::size_t>(grid.rows)) {
+    throw DataError(file, "vertices", fmt::format("{} rows of {} places", count / width, columns),
+                    fmt::format("{} rows, as num_rows says", grid.rows));
+  }
+  return static_cast<int>(count / width);
 }
 
 Scene scene_from_ply(const TrackArguments& arguments) {
-  const TriMesh cloud = read_cloud(arguments.color);
-  const int width = columns_of(arguments.color, arguments.ply_width);
-  const std::size_t count = cloud.vertices.size();
-  if (width < 2 || count % static_cast<std::size_t>(width) != 0) {
-    throw DataError(arguments.color, "vertices", fmt::format("{} points in rows of {}", count, width), "whole rows");
-  }
+  const GridCloud grid = read_grid_cloud(arguments.color);
+  const TriMesh& cloud = grid.cloud;
+  const int width = columns_of(grid, arguments);
+  const int height = rows_of(grid, width, arguments.color);
   Scene scene{{}, {}, arguments.color, {arguments.color}};
-  const int height = static_cast<int>(count / static_cast<std::size_t>(width));
   scene.picture = {width, height, {}};
   scene.cloud = {width, height, {}, {}};
   const char* const names[] = {"red", "green", "blue"};
@@ -85,11 +95,14 @@ Scene scene_from_ply(const TrackArguments& arguments) {
       throw DataError(arguments.color, "header", fmt::format("no property {}", name),
                       "a coloured cloud: red, green, blue");
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    for (const char* name : names)
+  constexpr std::uint8_t kNoColor = 128;  // of a hole: grey is no ink
+  for (const std::optional<std::size_t>& place : grid.places) {
+    for (const char* name : names) {
       scene.picture.rgb.push_back(
-          static_cast<std::uint8_t>(std::clamp(cloud.point_data.at(name).values[i], 0.0, 255.0)));
-    const Vec3 p = arguments.ply_unit_mm * cloud.vertices[i];
+          place ? static_cast<std::uint8_t>(std::clamp(cloud.point_data.at(name).values[*place], 0.0, 255.0))
+                : kNoColor);
+    }
+    const Vec3 p = place ? Vec3(arguments.ply_unit_mm * cloud.vertices[*place]) : Vec3::Zero();
     scene.cloud.points.push_back(p);
     scene.cloud.is_measured.push_back(p.z() != 0.0 ? 1 : 0);
   }
@@ -207,14 +220,26 @@ std::string complaint_about(const MarkedLine& line, const ColorPicture& picture,
     return fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: whether it is closed is not to be seen",
                        end->x(), end->y());
   }
-  return fmt::format("the mark is not closed: a gap of {:.2f} mm, at most {} mm is bridged", line.max_gap_mm(),
+  return fmt::format("the mark is not closed: a gap of {:.2f} mm, at most {} mm is bridged", line.longest_unseen_mm,
                      arguments.max_gap_mm);
+}
+
+/// A ring that was taken as closed although nobody knows that its gap is as short as was asked for.
+std::optional<std::string> doubt_about(const MarkedLine& line, const TrackArguments& arguments) {
+  const bool is_doubtful = line.is_closed && line.longest_unseen_mm > 0.0 &&
+                           line.longest_unseen_mm + line.gap_tolerance_mm > arguments.max_gap_mm;
+  if (!is_doubtful) return std::nullopt;
+  return fmt::format(
+      "the mark is taken as closed, with a gap of {:.2f} mm that is known to {:.2f} mm at this pixel size: "
+      "it may be longer than --max-gap-mm {}",
+      line.longest_unseen_mm, line.gap_tolerance_mm, arguments.max_gap_mm);
 }
 
 int run(const TrackArguments& arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path folder = options.required_output("tracked");
+  refuse_input_as_output("-o", folder, {arguments.color, arguments.depth, arguments.intrinsics, arguments.camera});
   if (arguments.has_plan && arguments.camera.empty()) {
     throw CaseError("command line", "--plan", "no --camera",
                     "T_robot_camera: a path for the robot must be in the robot's frame");
@@ -247,7 +272,8 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   result["frame"] = arguments.camera.empty() ? "camera" : "robot";
   result["mark"] = arguments.mark;
   result["width_px"] = found.line.width_px;
-  result["max_gap_mm"] = found.line.max_gap_mm();
+  result["max_gap_mm"] = found.line.longest_unseen_mm;
+  result["gap_tolerance_mm"] = found.line.gap_tolerance_mm;
   result["leaves_picture"] = end_at_rim_px(found.line, scene.picture.width, scene.picture.height).has_value();
   result["max_hole_mm"] = found.lifted.max_hole_mm;
   result["bridged_points"] = found.lifted.bridged_points;
@@ -285,6 +311,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
         Severity::Warning,
         fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: it may be longer", end->x(), end->y()));
   }
+  if (const auto doubt = doubt_about(found.line, arguments)) console.message(Severity::Warning, *doubt);
   print_result(options, result);
   return is_wanted ? kDone : kNotAcceptable;
 }
@@ -308,22 +335,26 @@ void add_track(Application& application) {
   verb->add_option("--mark", arguments->mark, "Colour of the mark")->check(CLI::IsMember({"red", "green"}));
   verb->add_option("--edge", arguments->edge, "Contour of the mark: its middle, or its inner border")
       ->check(CLI::IsMember({"middle", "inner"}));
-  verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A ring with a longer gap is open")
-      ->check(CLI::NonNegativeNumber);
+  verb->add_option(
+          "--max-gap-mm", arguments->max_gap_mm,
+          "A ring with a longer gap is open. A gap is known to 0.18 mm and 2 pixels: a ring is taken as closed up "
+          "to that much more, and a warning says so")
+      ->check(zero_or_more("--max-gap-mm"));
   verb->add_option("--max-hole-mm", arguments->lift.max_hole_mm, "Longest stretch without depth that is bridged")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more("--max-hole-mm"));
   verb->add_flag("--open", arguments->is_open, "The mark is an open line");
   verb->add_flag("--plan", arguments->has_plan, "Plan an incision: path.json in the robot's frame");
   verb->add_option("--margin-mm", arguments->margin_mm, "From the mark to the incision; 0: along the mark")
-      ->check(CLI::NonNegativeNumber);
-  verb->add_option("--depth-mm", arguments->plan.depth_mm, "Of the incision")->check(CLI::PositiveNumber);
-  verb->add_option("--speed-mm-s", arguments->plan.speed_mm_s, "Of the tip")->check(CLI::PositiveNumber);
+      ->check(between("--margin-mm", 0.0, kLargestMarginMm));
+  verb->add_option("--depth-mm", arguments->plan.depth_mm, "Of the incision")->check(above_zero("--depth-mm"));
+  verb->add_option("--speed-mm-s", arguments->plan.speed_mm_s, "Of the tip")->check(above_zero("--speed-mm-s"));
   verb->add_option("--waypoints", arguments->plan.waypoints, "Of the path")->check(CLI::Range(8, 100000));
   verb->add_option("--axis", arguments->axis, "Tool axis: along the camera's view, or against the surface's normal")
       ->check(CLI::IsMember({"approach", "normal"}));
   verb->add_option("--ply-width", arguments->ply_width, "Columns of an organised cloud whose header does not tell")
-      ->check(CLI::PositiveNumber);
-  verb->add_option("--ply-unit-mm", arguments->ply_unit_mm, "Its unit: 1000 for metres")->check(CLI::PositiveNumber);
+      ->check(above_zero("--ply-width"));
+  verb->add_option("--ply-unit-mm", arguments->ply_unit_mm, "Its unit: 1000 for metres")
+      ->check(above_zero("--ply-unit-mm"));
 }
 
 }  // namespace incise::cli

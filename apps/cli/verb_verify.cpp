@@ -1,3 +1,4 @@
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -119,7 +120,7 @@ void add_verify(Application& application) {
   verb->add_option("--figures", arguments->figures, "Folder for one SVG plot per check");
   verb->add_option("--tolerance-scale", arguments->settings.tolerance_scale,
                    "Multiplies every tolerance; 0 shows the true residuals")
-      ->check(CLI::NonNegativeNumber);
+      ->check(zero_or_more("--tolerance-scale"));
 }
 
 }  // namespace incise::cli

@@ -196,14 +196,18 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
                     .is_closed = start.is_ring,
                     .gaps = {},
                     .width_px = line.width_px,
-                    .contrast = map.contrast};
+                    .contrast = map.contrast,
+                    .longest_unseen_mm = 0.0,
+                    .gap_tolerance_mm = 0.0};
   std::vector<Run> runs = unseen_runs(line.is_seen, start.is_ring);
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.count > b.count; });
-  const double allowed_mm = settings.max_gap_mm + kGapToleranceMm + kGapTolerancePx * settings.mm_per_pixel;
+  result.gap_tolerance_mm = kGapToleranceMm + kGapTolerancePx * settings.mm_per_pixel;
+  const double allowed_mm = settings.max_gap_mm + result.gap_tolerance_mm;
   std::optional<Run> opening;
   for (const Run& run : runs) {
     const LineGap gap = gap_of(run, line.points, hidden, glare, settings.mm_per_pixel);
     if (run.count > 1) result.gaps.push_back(gap);
+    if (!gap.is_hidden) result.longest_unseen_mm = std::max(result.longest_unseen_mm, gap.length_mm);
     if (!opening && !gap.is_hidden && gap.length_mm > allowed_mm) opening = run;
   }
   if (start.is_ring && opening) {
@@ -213,6 +217,7 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
   if (!start.is_ring) {
     const double across = (line.points.front() - line.points.back()).norm() * settings.mm_per_pixel;
     result.gaps.push_back({.from_px = line.points.back(), .to_px = line.points.front(), .length_mm = across});
+    result.longest_unseen_mm = std::max(result.longest_unseen_mm, across);
   }
   std::stable_sort(result.gaps.begin(), result.gaps.end(),
                    [](const LineGap& a, const LineGap& b) { return a.length_mm > b.length_mm; });

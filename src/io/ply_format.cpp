@@ -6,13 +6,18 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/camera_scale.hpp>
+#include <incise/io/grid_cloud.hpp>
 #include <incise/io/surface_io.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
+#include <limits>
 #include <ostream>
+#include <sstream>
 
 namespace incise {
 namespace io_detail {
@@ -32,7 +37,8 @@ struct Element {
 
 class PlyReader {
  public:
-  PlyReader(const std::filesystem::path& path, std::string_view text) : cursor_(path, text) {}
+  PlyReader(const std::filesystem::path& path, std::string_view text, bool keeps_holes = false)
+      : cursor_(path, text), keeps_holes_(keeps_holes) {}
 
   TriMesh read() {
     read_header();
@@ -49,6 +55,31 @@ class PlyReader {
     }
     surface_.point_data = without_types(std::move(data_));
     return std::move(surface_);
+  }
+
+  /// The same for a cloud with holes.
+  GridCloud read_grid() {
+    GridCloud grid;
+    grid.cloud = read();
+    grid.columns = columns_;
+    grid.rows = rows_;
+    const std::size_t count = grid.cloud.vertices.size();
+    if (!has_grid_) {
+      for (std::size_t i = 0; i < count; ++i) grid_.push_back({static_cast<double>(i)});
+    }
+    for (std::size_t i = 0; i < grid_.size(); ++i) {
+      const auto fail = [&](const std::string& found) {
+        throw DataError(cursor_.path(), fmt::format("range_grid {}", i), found,
+                        fmt::format("no vertex, or one below {}", count));
+      };
+      if (grid_[i].size() > 1) fail(fmt::format("{} vertices", grid_[i].size()));
+      grid.places.emplace_back();
+      if (grid_[i].empty()) continue;
+      if (!(grid_[i][0] >= 0.0 && grid_[i][0] < static_cast<double>(count))) fail(fmt::format("vertex {}", grid_[i][0]));
+      const auto vertex = static_cast<std::size_t>(grid_[i][0]);
+      if (grid.cloud.vertices[vertex].allFinite()) grid.places.back() = vertex;
+    }
+    return grid;
   }
 
  private:
@@ -69,7 +100,9 @@ class PlyReader {
       } else if (keyword == "property") {
         read_property();
       } else if (keyword == "comment" || keyword == "obj_info") {
-        is_ras_ = is_ras_ || says_ras(cursor_.line());
+        const std::string_view line = cursor_.line();
+        is_ras_ = is_ras_ || says_ras(line);
+        if (keeps_holes_) read_size(line);
         continue;
       } else {
         cursor_.fail(shown_word(keyword), "a PLY header line");
@@ -77,6 +110,19 @@ class PlyReader {
       cursor_.line();
     }
     cursor_.line();
+  }
+
+  /// `num_cols W` or `num_rows H` of an obj_info line.
+  void read_size(std::string_view line) {
+    constexpr int kMost = 100000;
+    std::istringstream words{std::string(line)};
+    std::string key, value;
+    if (!(words >> key >> value) || (key != "num_cols" && key != "num_rows")) return;
+    const auto number = to_number(value);
+    if (!number || !(*number >= 1.0 && *number <= kMost) || *number != std::floor(*number)) {
+      throw DataError(cursor_.path(), "header, " + key, shown_word(value), fmt::format("a whole number from 1 to {}", kMost));
+    }
+    (key == "num_cols" ? columns_ : rows_) = static_cast<int>(*number);
   }
 
   void read_property() {
@@ -105,8 +151,18 @@ class PlyReader {
   }
 
   double number(const std::string& type, std::string_view what) {
-    if (!is_binary_) return cursor_.number(what);
+    if (!is_binary_) return keeps_holes_ ? number_or_none(what) : cursor_.number(what);
     return numbers_from_bytes(std::string(cursor_.bytes(size_of_vtk_type(type), what)), type, false).front();
+  }
+
+  /// A number, or `nan` where nothing was measured.
+  double number_or_none(std::string_view what) {
+    const std::string_view word = cursor_.word(what);
+    const std::string text = lower_case(std::string(word));
+    if (text == "nan" || text == "-nan") return std::numeric_limits<double>::quiet_NaN();
+    const auto value = to_number(word);
+    if (!value || !std::isfinite(*value)) cursor_.fail(shown_word(word), fmt::format("{}: a finite number, or nan", what));
+    return *value;
   }
 
   void read_vertices(const Element& element) {
@@ -115,7 +171,7 @@ class PlyReader {
       for (const Property& property : element.properties) {
         if (!property.count_type.empty()) cursor_.fail("a list of the vertices", "plain numbers");
         const double value = number(property.type, property.name);
-        if (!std::isfinite(value)) {
+        if (!std::isfinite(value) && !(keeps_holes_ && std::isnan(value))) {
           throw DataError(cursor_.path(), fmt::format("vertex {}", i), fmt::format("{} = {}", property.name, value),
                           "a finite number");
         }
@@ -164,6 +220,10 @@ class PlyReader {
         std::vector<double> values;
         for (std::size_t k = 0; k < static_cast<std::size_t>(length); ++k)
           values.push_back(number(property.type, property.name));
+        if (element.name == "range_grid" && is_list) {
+          has_grid_ = true;
+          grid_.push_back(values);
+        }
         const bool is_corners = property.name == "vertex_indices" || property.name == "vertex_index";
         if (element.name == "face" && is_list && is_corners) polygons_.push_back(std::move(values));
       }
@@ -186,6 +246,10 @@ class PlyReader {
   }
 
   TextCursor cursor_;
+  bool keeps_holes_ = false;
+  int columns_ = 0, rows_ = 0;
+  bool has_grid_ = false;
+  std::vector<std::vector<double>> grid_;
   bool is_binary_ = false;
   bool is_ras_ = false;
   std::vector<Element> elements_;
@@ -217,10 +281,14 @@ TriMesh read_ply(const std::filesystem::path& path) {
 
 }  // namespace io_detail
 
-void write_ply(const std::filesystem::path& path, const TriMesh& surface) {
+namespace {
+
+constexpr const char* kScaleMark = "comment incise.camera_scale ";
+
+void write_ply_with(const std::string& comments, const std::filesystem::path& path, const TriMesh& surface) {
   io_detail::require_writable(surface);
   std::string header = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS\ncomment length unit mm\nelement vertex {}\n",
+      "ply\nformat binary_little_endian 1.0\ncomment SPACE=LPS\ncomment length unit mm\n{}element vertex {}\n", comments,
       surface.vertices.size());
   for (const char* axis : {"x", "y", "z"}) header += fmt::format("property double {}\n", axis);
   for (const auto& [name, array] : surface.point_data) {
@@ -246,6 +314,43 @@ void write_ply(const std::filesystem::path& path, const TriMesh& surface) {
       for (const VertexId id : triangle) io_detail::put(stream, id.value);
     }
   });
+}
+
+}  // namespace
+
+GridCloud read_grid_cloud(const std::filesystem::path& path) {
+  if (io_detail::lower_case(path.extension().string()) != ".ply")
+    throw DataError(path, "", fmt::format("the ending '{}'", path.extension().string()), ".ply, for an organised cloud");
+  const std::string text = read_text(path);
+  return io_detail::PlyReader(path, text, true).read_grid();
+}
+
+void write_ply(const std::filesystem::path& path, const TriMesh& surface) {
+  write_ply_with("", path, surface);
+}
+
+void write_ply_at_true_size(const std::filesystem::path& path, const TriMesh& cloud, double camera_scale) {
+  INCISE_REQUIRE(camera_scale >= kLeastCameraScale && camera_scale <= kMostCameraScale,
+                 fmt::format("expected a camera's scale from {} to {}, found {}", kLeastCameraScale, kMostCameraScale,
+                             camera_scale));
+  write_ply_with(fmt::format("{}{}\n", kScaleMark, camera_scale), path, cloud);
+}
+
+double camera_scale_of(const std::filesystem::path& path) {
+  if (io_detail::lower_case(path.extension().string()) != ".ply") return 1.0;
+  const std::string text = read_text(path);
+  const std::string_view header = std::string_view(text).substr(0, text.find("\nend_header"));
+  const std::size_t place = header.find(kScaleMark);
+  if (place == std::string_view::npos) return 1.0;
+  const std::size_t begin = place + std::string_view(kScaleMark).size();
+  const std::string value(header.substr(begin, header.find_first_of("\r\n", begin) - begin));
+  char* end = nullptr;
+  const double scale = std::strtod(value.c_str(), &end);
+  if (end == value.c_str() || *end != '\0' || !(scale >= kLeastCameraScale && scale <= kMostCameraScale)) {
+    throw DataError(path, "header, incise.camera_scale", fmt::format("'{}'", value),
+                    fmt::format("a number from {} to {}", kLeastCameraScale, kMostCameraScale));
+  }
+  return scale;
 }
 
 }  // namespace incise

@@ -87,6 +87,15 @@ std::string name_of(const Vec7& direction, double length) {
   return text;
 }
 
+/// How far turns (rad), shifts and a stretch move points about the middle, rms. A turn about any axis moves a point by two
+/// thirds of its squared arm, on the average over all directions.
+Vec7 arms_of(double length) {
+  Vec7 arms = Vec7::Ones();
+  arms.head<3>().setConstant(std::sqrt(2.0 / 3.0) * length);
+  arms[6] = length;
+  return arms;
+}
+
 }  // namespace
 
 Certificate certificate_of(const SampledSurface& source, const SampledSurface& target, const Similarity& t,
@@ -153,9 +162,15 @@ void set_covariance(Certificate& certificate, const Mat7& covariance, const Vec3
   certificate.rotation_sd_deg = units::deg_from_rad(std::sqrt(variances.head<3>().sum()));
   certificate.translation_sd_mm = std::sqrt(variances.segment<3>(3).sum());
   certificate.scale_sd = std::sqrt(variances[6]);
-  // A turn about any axis moves a point by two thirds of its squared arm, on the average over all directions.
-  certificate.sd_mm =
-      std::sqrt(variances.segment<3>(3).sum() + length * length * (variances.head<3>().sum() * 2.0 / 3.0 + variances[6]));
+  certificate.sd_mm = std::sqrt(arms_of(length).cwiseAbs2().dot(variances));
+}
+
+void find_weakest(Certificate& certificate, double length) {
+  const Vec7 arms = arms_of(length);
+  const Mat7 moved = arms.asDiagonal() * certificate.covariance * arms.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Mat7> solver(moved);
+  certificate.weakest_sd_mm = std::sqrt(std::max(0.0, solver.eigenvalues()[6]));
+  certificate.weakest = name_of(solver.eigenvectors().col(6).cwiseQuotient(arms), length);
 }
 
 }  // namespace incise

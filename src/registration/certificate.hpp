@@ -12,8 +12,12 @@ namespace incise {
                                          const Similarity& t, double width, bool with_scale, Workers& workers);
 
 /// Puts another covariance (about `center`, rms arm `length`) in the place of the one from noise alone, and the standard
-/// deviations that follow from it. What the shapes alone say (visible, sharpness, weakest) stays.
+/// deviations that follow from it. What the shapes alone say (visible, sharpness) stays; the weakest motion does, too.
 void set_covariance(Certificate& certificate, const Eigen::Matrix<double, 7, 7>& covariance, const Vec3& center,
                     double length);
+
+/// Finds the weakest motion and its standard deviation in the covariance, with a turn and a stretch as large as they move
+/// points at the rms arm `length`.
+void find_weakest(Certificate& certificate, double length);
 
 }  // namespace incise

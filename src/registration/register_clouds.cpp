@@ -29,6 +29,7 @@ constexpr double kDifferent = 0.08;         // rms distance, in radii, from whic
 constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
 constexpr double kMirrorRatio = 0.95;       // of scores and residuals: beyond it source or mirror image fits better
 constexpr double kUsualScale = 0.05;        // both sensors are metric
+constexpr double kAtLimit = 1e-6;           // relative: a scale that near to an end of its range stands there
 
 /// Both clouds about the target's middle, in units of its radius, and the way back.
 struct Frame {
@@ -227,7 +228,9 @@ class Registering {
   void take_over(Registration& result, const SettledPose& settled) const {
     result.settled_rms_mm = frame_.length * settled.settled_rms;
     result.settled_max_mm = frame_.length * settled.settled_largest;
+    if (settled.is_degenerate) return;  // told by the outcome; there is no covariance
     set_covariance(result.certificate, settled.covariance, settled.center, settled.length);
+    find_weakest(result.certificate, settled.length);
   }
 
   void measure_residuals(Registration& result, const Candidate& best) {
@@ -305,7 +308,8 @@ class Registering {
     fail(result.rmse_mm > settings_.largest_rmse * frame_.length, RegistrationOutcome::PoorFit,
          fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm,
                      settings_.largest_rmse * frame_.length));
-    fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < settings_.largest_sd),
+    const double largest_sd = settings_.settling_mm > 0.0 ? settings_.largest_settled_sd : settings_.largest_sd;
+    fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < largest_sd),
          RegistrationOutcome::IllDetermined,
          fmt::format("{} hardly changes the residual: its standard deviation is {:.3g} mm, and {:.2g} % of it shows",
                      c.weakest.empty() ? "a motion" : c.weakest, c.weakest_sd_mm * frame_.length,
@@ -313,18 +317,18 @@ class Registering {
     fail(result.rival_score > settings_.largest_rival * result.score, RegistrationOutcome::Ambiguous,
          fmt::format("another pose fits about as well: {:.0f} % of the score",
                      100.0 * result.rival_score / result.score));
+    const double scale = result.T_target_source.scale;
+    const double tiny = kAtLimit * scale;
+    result.scale_at_limit =
+        !settings_.scale.is_fixed() && (scale <= settings_.scale.low + tiny || scale >= settings_.scale.high - tiny);
+    fail(result.scale_at_limit, RegistrationOutcome::ScaleAtLimit,
+         fmt::format("the scale stands at the end of its range, {:.4g}: the clouds ask for one beyond it", scale));
     if (!is_mirrored_ && !result.is_handedness_determined) {
       result.reasons.push_back(fmt::format(
           "the source's mirror image fits about as well ({}): the shapes do not tell whether one is reflected",
           both_residuals));
     }
-    const double scale = result.T_target_source.scale;
-    const double tiny = 1e-9 * scale;
-    result.scale_at_limit =
-        !settings_.scale.is_fixed() && (scale <= settings_.scale.low + tiny || scale >= settings_.scale.high - tiny);
     result.is_scale_suspicious = std::abs(scale - 1.0) > kUsualScale;
-    if (result.scale_at_limit)
-      result.reasons.push_back(fmt::format("the scale stands at the end of its range, {:.4g}", scale));
     if (result.is_scale_suspicious) {
       result.reasons.push_back(fmt::format(
           "the scale of {:.4g} is outside 0.95 to 1.05: if both clouds are metric, something is wrong", scale));
@@ -374,6 +378,8 @@ std::vector<std::string> validate(const RegistrationSettings& s) {
   check(s.least_fit >= 0.0 && s.least_fit <= 1.0,
         fmt::format("least_fit: expected a share in [0, 1], found {}", s.least_fit));
   check(s.largest_sd > 0.0, fmt::format("largest_sd: expected a share above 0, found {}", s.largest_sd));
+  check(s.largest_settled_sd > 0.0,
+        fmt::format("largest_settled_sd: expected a share above 0, found {}", s.largest_settled_sd));
   check(s.least_sharpness >= 0.0, fmt::format("least_sharpness: expected 0 or more, found {}", s.least_sharpness));
   check(s.largest_rival > 0.0 && s.largest_rival <= 1.0,
         fmt::format("largest_rival: expected a share in (0, 1], found {}", s.largest_rival));
@@ -397,6 +403,8 @@ std::string_view to_string(RegistrationOutcome outcome) {
       return "mirrored";
     case RegistrationOutcome::PoorFit:
       return "poor_fit";
+    case RegistrationOutcome::ScaleAtLimit:
+      return "scale_at_limit";
     case RegistrationOutcome::Degenerate:
       return "degenerate";
     case RegistrationOutcome::Cancelled:

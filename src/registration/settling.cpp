@@ -223,18 +223,20 @@ class Settling {
     if (settings_.scale.is_fixed()) hold_scale(system, right, 0.0);
     Eigen::LDLT<Matrix> factor(system);
     Vector motion = factor.solve(right);
+    bool is_scale_held = settings_.scale.is_fixed();
     const double wanted = result_.transform.scale * std::exp(motion[6] / result_.length);
-    if (!settings_.scale.is_fixed() && (wanted < settings_.scale.low || wanted > settings_.scale.high)) {
+    if (!is_scale_held && (wanted < settings_.scale.low || wanted > settings_.scale.high)) {
       // At the border of its range the scale is known; the rest is found for it.
       const double kept = std::clamp(wanted, settings_.scale.low, settings_.scale.high);
       hold_scale(system, right, result_.length * std::log(kept / result_.transform.scale));
       factor.compute(system);
       motion = factor.solve(right);
+      is_scale_held = true;
     }
     ++result_.iterations;
     result_.is_degenerate = !motion.allFinite();
     if (result_.is_degenerate) return;
-    apply(motion, factor);
+    apply(motion, factor, is_scale_held);
   }
 
   static void hold_scale(Matrix& system, Vector& right, double change) {
@@ -245,7 +247,7 @@ class Settling {
     right[6] = change;
   }
 
-  void apply(const Vector& motion, const Eigen::LDLT<Matrix>& factor) {
+  void apply(const Vector& motion, const Eigen::LDLT<Matrix>& factor, bool is_scale_held) {
     Vec7 units = Vec7::Ones();
     units.head<3>().setConstant(1.0 / result_.length);
     units[6] = 1.0 / result_.length;
@@ -253,7 +255,7 @@ class Settling {
     result_.transform = nudged(result_.transform, units.cwiseProduct(motion.head<kMotions>()), result_.center);
     const Matrix columns = factor.solve(Matrix::Identity(motion.size(), kMotions));
     result_.covariance = units.asDiagonal() * columns.topRows<kMotions>() * units.asDiagonal();
-    if (settings_.scale.is_fixed()) {
+    if (is_scale_held) {  // its place holds what keeps the system solvable, no variance
       result_.covariance.row(6).setZero();
       result_.covariance.col(6).setZero();
     }

@@ -43,6 +43,12 @@ bool reads_as_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
+/// As a reader writes it.
+std::string sign_of(const std::string& relation) {
+  if (relation == ">=") return "≥ ";
+  return relation == "<=" ? "≤ " : relation + " ";
+}
+
 }  // namespace
 
 std::string evaluation_table(std::span<const ReportMeasure> measures) {
@@ -95,7 +101,7 @@ std::string check_table(std::span<const ReportCheck> checks) {
       table.number("");
     } else {
       table.number(number_text(check.value));
-      table.number((check.relation == ">=" ? "≥ " : "≤ ") + number_text(check.limit));
+      table.number(sign_of(check.relation) + number_text(check.limit));
     }
     table.unit(check.unit);
     table.raw(check.passed ? "<span class=\"good\">✓ passed</span>" : "<span class=\"bad\">✗ failed</span>");

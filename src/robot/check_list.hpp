@@ -33,6 +33,12 @@ class CheckList {
                 std::string text) {
     add({name, value >= limit, value, limit, ">=", unit, pose, std::move(text)});
   }
+  /// `value` has to lie between the two limits, at neither of them; the nearer one is named.
+  void inside(const char* name, double value, double low, double high, std::string text) {
+    const bool is_low = value - low < high - value;
+    add({name, value > low && value < high, value, is_low ? low : high, is_low ? ">" : "<", "", std::nullopt,
+         std::move(text)});
+  }
   /// A yes or no. `pose`: where it fails.
   void holds(const char* name, bool passed, std::string text, std::optional<std::size_t> pose = std::nullopt) {
     add({name, passed, passed ? 1.0 : 0.0, 1.0, "", "", pose, std::move(text)});

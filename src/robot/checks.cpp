@@ -18,6 +18,7 @@ using robot_detail::CheckList;
 using robot_detail::Worst;
 
 constexpr double kClosedToMm = 0.01;
+constexpr double kLeastAreaMm2 = 0.01;  // of a tumour edge: less is a line or a place
 constexpr std::array<const char*, 28> kNames{"finite",
                                              "frame",
                                              "closed",
@@ -123,6 +124,13 @@ Contour seen_along(const Vec3& axis, Contour contour) {
   return contour;
 }
 
+/// How many points stand for a contour, the sides between its own included.
+std::size_t places_along(const Contour& contour) {
+  constexpr double kStepMm = 0.2;
+  constexpr double kMost = 5000.0;
+  return static_cast<std::size_t>(std::clamp(std::ceil(length_mm(contour) / kStepMm), 3.0, kMost));
+}
+
 std::string place_text(const Vec3& p) {
   return fmt::format("{:.2f}, {:.2f}, {:.2f} mm", p.x(), p.y(), p.z());
 }
@@ -199,18 +207,27 @@ class CourseChecker {
 
   void margin() {
     if (path_.kind == PathKind::Mark) return edge_distance();
-    const std::size_t least = settings_.must_be_ring ? 3 : 2;
-    if (path_.tumor_edge.points.size() < least) {
-      if (!settings_.must_be_ring) return list_.not_made("margin to the tumour edge: the path holds none");
+    if (path_.tumor_edge.points.empty() && !settings_.must_be_ring)
+      return list_.not_made("margin to the tumour edge: the path holds none");
+    if (path_.tumor_edge.points.size() < 3) {
       return list_.holds("margin", false,
-                         "a ring keeps away from a tumour edge, and the path holds none of three points or more");
+                         "the cut keeps away from a tumour edge, and the path holds none of three points or more");
     }
-    if (const auto at = first_crossing_in_view(path_.tumor_edge, axis_)) {
+    if (!path_.tumor_edge.is_closed) {
+      list_.holds("margin", false,
+                  "the tumour edge is closed: this one is open, so that what lies inside it is not known");
+    } else if (const auto at = first_crossing_in_view(path_.tumor_edge, axis_)) {
       list_.holds(
           "margin", false,
           fmt::format("the tumour edge is a simple curve, seen along the mean axis: it crosses itself at {}, so "
                       "that what lies inside it is not known",
                       place_text(*at)));
+    } else if (std::abs(signed_area_mm2(path_.tumor_edge, axis_)) < kLeastAreaMm2) {
+      list_.holds(
+          "margin", false,
+          fmt::format("the tumour edge has an area, seen along the mean axis: its {} points lie on a line or in "
+                      "one place",
+                      path_.tumor_edge.points.size()));
     } else {
       keeps_away();
     }
@@ -221,7 +238,7 @@ class CourseChecker {
     const Contour seen_edge = seen_along(axis_, path_.tumor_edge);
     Worst closest;  // of the negative margin
     const auto see = [&](double distance, const Vec3& point, std::size_t pose) {
-      const bool is_inside = path_.tumor_edge.is_closed && contains_in_view(path_.tumor_edge, point, axis_);
+      const bool is_inside = contains_in_view(path_.tumor_edge, point, axis_);
       closest.see(is_inside ? distance : -distance, pose);
     };
     for (const CoursePlace& p : places_) {
@@ -282,11 +299,14 @@ class CourseChecker {
 
   void tool_table() {
     const double table_z_mm = program_.setup.table_z_mm;
+    const Vec3 flange_in_tool = program_.setup.T_flange_tool.inverse().topRightCorner<3, 1>();
     Worst lowest;
     for (std::size_t i = 0; i < program_.poses.size(); ++i) {
       const ProgramPose& pose = program_.poses[i];
-      const Vec3 shaft_mm = pose.tip_mm - settings_.needle_length_mm * pose.R_robot_tool.col(2);
-      lowest.see(table_z_mm - std::min(pose.tip_mm.z(), shaft_mm.z() - settings_.shaft_radius_mm), i);
+      const Vec3 needle_mm = pose.tip_mm - settings_.needle_length_mm * pose.R_robot_tool.col(2);
+      const Vec3 flange_mm = pose.tip_mm + pose.R_robot_tool * flange_in_tool;
+      const double shaft_z_mm = std::min(needle_mm.z(), flange_mm.z()) - settings_.shaft_radius_mm;
+      lowest.see(table_z_mm - std::min(pose.tip_mm.z(), shaft_z_mm), i);
     }
     list_.at_least("tool_table", -lowest.value, settings_.tool_table_clearance_mm, "mm", lowest.pose,
                    fmt::format("least height of the tool's tip and shaft above the table at z = {} mm", table_z_mm));
@@ -304,8 +324,18 @@ class CourseChecker {
     }
     Worst farthest;
     for (const CoursePlace& p : places_) farthest.see(nearest_on(path_.tumor_edge, p.entry_mm).distance_mm, p.pose);
+    // A part of the edge that is left out shows only from the edge's side.
+    Points edge = path_.tumor_edge.points;
+    if (length_mm(path_.tumor_edge) > 0.0) {
+      const Points between = resample(path_.tumor_edge, places_along(path_.tumor_edge)).points;
+      edge.insert(edge.end(), between.begin(), between.end());
+    }
+    for (const Vec3& point : edge) {
+      const ContourPoint place = nearest_on(entries_, point);
+      farthest.see(place.distance_mm, pose_next_to(place));
+    }
     list_.at_most("edge_distance", farthest.value, settings_.mark_distance_mm, "mm", farthest.pose,
-                  "greatest distance of the mark from the tumour edge");
+                  "greatest distance of the mark from the tumour edge, and of that from the mark");
   }
 
   /// Of `point` above the nearest place of the ring, against the mean axis; mm, negative: below.
@@ -356,11 +386,10 @@ void check_power(CheckList& list, const CheckInputs& inputs, const CheckSettings
 void check_registration(CheckList& list, const CheckInputs& inputs, const CheckSettings& s) {
   if (!inputs.registration) return list.not_made("registration: none was given");
   const RegistrationSummary& r = *inputs.registration;
-  const std::string text = fmt::format("fitted scale, in {} to {}: both sensors are metric", s.min_scale, s.max_scale);
-  if (r.scale < s.min_scale)
-    list.at_least("registration_scale", r.scale, s.min_scale, "", std::nullopt, text);
-  else
-    list.at_most("registration_scale", r.scale, s.max_scale, "", std::nullopt, text);
+  list.inside("registration_scale", r.scale, s.min_scale, s.max_scale,
+              fmt::format("scale between the two clouds as the sensors gave them, between {} and {}: both sensors are "
+                          "metric",
+                          s.min_scale, s.max_scale));
   list.at_most("registration_rmse", r.rmse_mm, s.max_rmse_mm, "mm", std::nullopt, "residual of the registration");
   list.at_least("registration_inliers", r.inlier_fraction, s.min_inlier_fraction, "", std::nullopt,
                 "share of points that the registration explains");
@@ -444,6 +473,9 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
   if (settings.must_be_ring) {
     course.closed();
     course.gap();
+  } else {
+    list.not_made(path.kind == PathKind::Mark ? "closed, gap: the path is not asked to be a ring"
+                                              : "closed, gap, encloses: the path is not asked to be a ring");
   }
   course.self_crossing();
   course.speed();

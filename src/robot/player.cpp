@@ -52,6 +52,16 @@ class Playing {
     }
   }
 
+  /// Of a program that has run to its end.
+  void judge_speed() {
+    constexpr double kRounding = 1e-6;
+    if (replay_.outcome != ReplayOutcome::Completed || replay_.max_joint_speed_share <= 1.0 + kRounding) return;
+    end(ReplayOutcome::JointSpeed, fastest_line_);
+    replay_.reason =
+        fmt::format("{} at {:.3g} times the speed that it can turn with",
+                    arm_.joint_names[static_cast<std::size_t>(fastest_joint_)], replay_.max_joint_speed_share);
+  }
+
  private:
   /// Keeps the arm as it now is. @returns whether it can go on
   bool keep(std::size_t line) {
@@ -65,10 +75,27 @@ class Playing {
       const double cycle = time_ - last.time_s;
       sample.tip_speed_mm_s = (sample.tip_mm - last.tip_mm).norm() / cycle;
       const Joints share = ((q_ - last.q_rad) / cycle).cwiseAbs().cwiseQuotient(arm_.max_speed_rad_s);
-      replay_.max_joint_speed_share = std::max(replay_.max_joint_speed_share, share.maxCoeff());
+      see_speed(share, line);
     }
     replay_.samples.push_back(sample);
     return is_within_limits(line);
+  }
+
+  void see_speed(const Joints& share, std::size_t line) {
+    int joint = 0;
+    const double fastest = share.maxCoeff(&joint);
+    if (fastest <= replay_.max_joint_speed_share) return;
+    replay_.max_joint_speed_share = fastest;
+    fastest_joint_ = joint;
+    fastest_line_ = line;
+  }
+
+  /// @returns whether so much time is left; if not, the program ends there
+  bool has_time_for(double duration_s, std::size_t line) {
+    if (time_ + duration_s <= kLongestProgramS) return true;
+    end(ReplayOutcome::TooLong, line);
+    replay_.reason = fmt::format("{:.4g} s and more, at most {} s are played", time_ + duration_s, kLongestProgramS);
+    return false;
   }
 
   bool is_within_limits(std::size_t line) {
@@ -102,6 +129,7 @@ class Playing {
       end(ReplayOutcome::BlendsOverlap, way.overlap_line());
       return commands.size();
     }
+    if (!has_time_for(way.duration_s(), commands[first].line)) return commands.size();
     const double begin = time_;
     const auto cycles = static_cast<std::size_t>(std::ceil(way.duration_s() / settings_.cycle_s - 1e-9));
     for (std::size_t k = 1; k <= cycles; ++k) {
@@ -141,6 +169,7 @@ class Playing {
     // The stream keeps its own time; the slider slows the arm.
     if (!is_streaming_) servo_until_ = time_;
     is_streaming_ = true;
+    if (!has_time_for(command.seconds, command.line)) return;
     servo_until_ += command.seconds;
     const Joints& target = command.q_rad;
     const auto pull = [&](const Joints& q, const Joints& speed) {
@@ -160,6 +189,7 @@ class Playing {
   }
 
   void rest(const ScriptCommand& command) {
+    if (!has_time_for(command.seconds, command.line)) return;
     const auto cycles = static_cast<std::size_t>(std::lround(command.seconds / settings_.cycle_s));
     for (std::size_t k = 0; k < cycles; ++k) {
       time_ += settings_.cycle_s;
@@ -171,6 +201,7 @@ class Playing {
     const auto& rows = program_.joints;
     std::size_t i = 0;
     const double end_s = rows.back().time_s - rows.front().time_s;
+    if (!has_time_for(end_s / settings_.speed_slider, rows.back().line)) return;
     for (std::size_t k = 0;; ++k) {
       time_ = settings_.cycle_s * static_cast<double>(k);
       const double at = std::min(end_s, settings_.speed_slider * time_) + rows.front().time_s;
@@ -193,6 +224,8 @@ class Playing {
   double time_ = 0.0;
   bool is_streaming_ = false;
   double servo_until_ = 0.0;
+  int fastest_joint_ = 0;
+  std::size_t fastest_line_ = 0;
   Joints q_ = Joints::Zero(), speed_ = Joints::Zero();
   ProgramPhase phase_ = ProgramPhase::Approach;
 };
@@ -207,6 +240,8 @@ std::vector<std::string> validate(const PlayerSettings& s) {
     broken.push_back(fmt::format("expected a cycle of 0.0001 to 0.02 s, found {}", s.cycle_s));
   if (!(s.end_zone_mm >= 0.0))
     broken.push_back(fmt::format("expected an end zone of 0 or more, found {}", s.end_zone_mm));
+  if (!(s.max_deviation_mm > 0.0))
+    broken.push_back(fmt::format("expected a largest deviation above 0, found {}", s.max_deviation_mm));
   return broken;
 }
 
@@ -226,6 +261,12 @@ std::string_view to_string(ReplayOutcome outcome) {
       return "starts_in_tissue";
     case ReplayOutcome::EndsInTissue:
       return "ends_in_tissue";
+    case ReplayOutcome::TooLong:
+      return "too_long";
+    case ReplayOutcome::JointSpeed:
+      return "joint_speed";
+    case ReplayOutcome::OffCourse:
+      return "off_course";
   }
   return "unknown";
 }
@@ -236,12 +277,15 @@ Replay play(const WrittenProgram& program, const ArmModel& arm, const PlayerSett
   INCISE_REQUIRE(broken.empty(), fmt::format("{}", fmt::join(broken, "; ")));
   INCISE_REQUIRE(program.joints.size() >= 2 || program.commands.size() >= 2, "expected a program with motions");
   Replay replay;
-  Playing(program, arm, settings, replay).run();
+  Playing playing(program, arm, settings, replay);
+  playing.run();
   if (intended == nullptr && program.path) intended = &*program.path;
   if (intended != nullptr) replay.intended_mm = robot_detail::intended_course(*intended, program);
   robot_detail::measure_deviation(replay);
   robot_detail::measure_speed(replay, settings.end_zone_mm);
   robot_detail::judge_ends(replay, intended);
+  playing.judge_speed();
+  robot_detail::judge_deviation(replay, settings.max_deviation_mm);
   replay.min_singular_value = std::numeric_limits<double>::infinity();
   constexpr std::size_t kStride = 10;  // every 20 ms
   for (std::size_t i = 0; i < replay.samples.size(); i += kStride)

@@ -204,6 +204,9 @@ RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings,
   const auto broken = validate(setup);
   INCISE_REQUIRE(broken.empty(), fmt::format("setup: {}", fmt::join(broken, "; ")));
   const Course course(path, settings);
+  INCISE_REQUIRE(course.duration_s() <= kLongestProgramS,
+                 fmt::format("expected speeds at which the program takes at most {} s, found {:.4g} s", kLongestProgramS,
+                             course.duration_s()));
   RobotProgram program;
   program.kind = path.kind;
   program.is_closed = path.is_closed;

@@ -6,7 +6,6 @@
 #include <incise/core/problem_text.hpp>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <cmath>
@@ -16,7 +15,8 @@ namespace incise {
 namespace robot_detail {
 namespace {
 
-constexpr double kSameToolMm = 1e-3;  // set_tcp holds fewer digits
+constexpr double kSameToolMm = 1e-3;         // set_tcp holds fewer digits
+constexpr double kLargestAngleRad = 1000.0;  // some turns: what is far beyond is no angle, and cannot be shown as one
 
 /// Exactly `count` finite numbers, separated by blanks. @throws DataError
 std::vector<double> numbers_of(const std::string& value, std::size_t count, const std::filesystem::path& file,
@@ -77,6 +77,18 @@ void LinePlace::fail(const std::string& found, const std::string& expected, cons
   throw DataError(file, fmt::format("line {}", line), found, expected, hint);
 }
 
+void add_row(WrittenProgram& program, const TimedJoints& row, const Complain& fail) {
+  if (!(row.q_rad.cwiseAbs().maxCoeff() <= kLargestAngleRad))
+    fail(fmt::format("a joint at {:.3g} rad", row.q_rad.cwiseAbs().maxCoeff()),
+         fmt::format("at most {} rad", kLargestAngleRad));
+  if (!program.joints.empty() && row.time_s <= program.joints.back().time_s)
+    fail(fmt::format("time {} s after {} s", row.time_s, program.joints.back().time_s), "times that increase");
+  const double begin_s = program.joints.empty() ? row.time_s : program.joints.front().time_s;
+  if (!(row.time_s - begin_s <= kLongestProgramS))
+    fail(fmt::format("a program of {:.4g} s", row.time_s - begin_s), fmt::format("at most {} s", kLongestProgramS));
+  program.joints.push_back(row);
+}
+
 void read_comment(const std::string& line, WrittenProgram& program) {
   const std::string mark = kHeaderMark;
   if (line.rfind(mark, 0) != 0) return;
@@ -85,13 +97,14 @@ void read_comment(const std::string& line, WrittenProgram& program) {
   program.header.emplace_back(line.substr(mark.size(), colon - mark.size()), line.substr(colon + 2));
 }
 
-ProgramPhase phase_of(const std::string& name, const LinePlace& place) {
+ProgramPhase phase_of(const std::string& name, const Complain& fail) {
   constexpr std::array kAll{ProgramPhase::Approach, ProgramPhase::Plunge, ProgramPhase::Cut,    ProgramPhase::Overlap,
                             ProgramPhase::Dwell,    ProgramPhase::Exit,   ProgramPhase::Retreat};
   for (const ProgramPhase phase : kAll) {
     if (name == to_string(phase)) return phase;
   }
-  place.fail(fmt::format("phase '{}'", name), "approach, plunge, cut, overlap, dwell, exit or retreat");
+  fail(fmt::format("phase '{:.40}'", name), "approach, plunge, cut, overlap, dwell, exit or retreat");
+  return ProgramPhase::Approach;  // not reached: `fail` throws
 }
 
 void read_header(WrittenProgram& program, const std::filesystem::path& file) {
@@ -166,55 +179,16 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
         if (end == cells[i].c_str() || *end != '\0' || !std::isfinite(numbers[i]))
           place.fail(fmt::format("'{}' in column {}", cells[i], i + 1), "a finite number");
       }
-      TimedJoints joints{numbers[0], Joints::Zero(), Joints::Zero(), phase_of(cells.back(), place), place.line};
+      TimedJoints joints{numbers[0], Joints::Zero(), Joints::Zero(), phase_of(cells.back(), place.complain()),
+                         place.line};
       for (int i = 0; i < 6; ++i) {
         joints.q_rad[i] = numbers[static_cast<std::size_t>(1 + i)];
         joints.speed_rad_s[i] = numbers[static_cast<std::size_t>(7 + i)];
       }
-      if (!program.joints.empty() && joints.time_s <= program.joints.back().time_s)
-        place.fail(fmt::format("time {} s after {} s", joints.time_s, program.joints.back().time_s),
-                   "times that increase");
-      program.joints.push_back(joints);
+      add_row(program, joints, place.complain());
     }
   }
   if (program.joints.size() < 2) place.fail(fmt::format("{} rows", program.joints.size()), "at least 2 rows of joints");
-  return program;
-}
-
-WrittenProgram read_program_json(std::string_view text, const std::filesystem::path& file) {
-  WrittenProgram program;
-  try {
-    const auto document = nlohmann::ordered_json::parse(text);
-    if (document.at("schema") != "incise.program/1")
-      throw DataError(file, "schema", document.at("schema").dump(), "\"incise.program/1\"");
-    for (const auto& item : document.at("header"))
-      program.header.emplace_back(item.at(0).get<std::string>(), item.at(1).get<std::string>());
-    std::vector<std::pair<double, ProgramPhase>> phases;
-    const LinePlace place{file};
-    for (const auto& pose : document.at("poses"))
-      phases.emplace_back(pose.at("time_s").get<double>(), phase_of(pose.at("phase").get<std::string>(), place));
-    std::size_t next = 0;
-    for (const auto& row : document.at("motion").at("samples")) {
-      TimedJoints joints{.time_s = row.at(0).get<double>()};
-      for (int i = 0; i < 6; ++i) {
-        joints.q_rad[i] = row.at(static_cast<std::size_t>(1 + i)).get<double>();
-        joints.speed_rad_s[i] = row.at(static_cast<std::size_t>(7 + i)).get<double>();
-      }
-      while (next + 1 < phases.size() && phases[next].first <= joints.time_s) ++next;
-      joints.phase = phases.at(next).second;
-      if (!program.joints.empty() && joints.time_s <= program.joints.back().time_s)
-        throw DataError(file, fmt::format("/motion/samples/{}", program.joints.size()), "a time that does not increase",
-                        "times that increase");
-      program.joints.push_back(joints);
-    }
-  } catch (const nlohmann::json::parse_error& error) {
-    throw DataError(file, fmt::format("byte {}", error.byte), "text that is not JSON",
-                    "a program that `incise export --format json` wrote");
-  } catch (const nlohmann::json::exception& error) {
-    throw DataError(file, "JSON", error.what(), "a program that `incise export --format json` wrote");
-  }
-  if (program.joints.size() < 2)
-    throw DataError(file, "/motion/samples", fmt::format("{} samples", program.joints.size()), "at least 2");
   return program;
 }
 

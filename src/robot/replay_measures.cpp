@@ -87,6 +87,11 @@ void measure_deviation(Replay& replay) {
     ++count;
   }
   if (count > 0) replay.mean_deviation_mm = sum / static_cast<double>(count);
+  // In the tissue alone: on its way down and up a tool that is tilted is the farther off the longer the way.
+  for (const ReplaySample& sample : replay.samples) {
+    if (is_cut(sample.phase) || count == 0)
+      replay.max_cut_deviation_mm = std::max(replay.max_cut_deviation_mm, sample.deviation_mm);
+  }
 }
 
 void measure_speed(Replay& replay, double end_zone_mm) {
@@ -138,6 +143,14 @@ bool is_in_air(ProgramPhase phase) {
 }
 
 }  // namespace
+
+void judge_deviation(Replay& replay, double max_deviation_mm) {
+  if (replay.outcome != ReplayOutcome::Completed || replay.max_cut_deviation_mm <= max_deviation_mm) return;
+  replay.outcome = ReplayOutcome::OffCourse;
+  replay.reason =
+      fmt::format("the tip is up to {:.2f} mm off the intended course in the cut, at most {} mm are allowed",
+                  replay.max_cut_deviation_mm, max_deviation_mm);
+}
 
 void judge_ends(Replay& replay, const ToolPath* path) {
   if (replay.outcome != ReplayOutcome::Completed) return;

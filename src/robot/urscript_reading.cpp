@@ -172,7 +172,7 @@ class ScriptReader {
   void comment(const std::string& line) {
     const std::string mark = "# phase: ";
     if (line.rfind(mark, 0) == 0)
-      phase_ = phase_of(line.substr(mark.size()), place_);
+      phase_ = phase_of(line.substr(mark.size()), place_.complain());
     else
       read_comment(line, program_);
   }
@@ -191,6 +191,10 @@ class ScriptReader {
       scan.finish();
       section_ = Section::After;
     } else if (word == "set_tcp") {
+      // One tool for all of it: the player knows no other.
+      if (has_tool_) place_.fail("a second set_tcp", "one tool for the whole program");
+      if (!program_.commands.empty()) place_.fail("set_tcp after a move", "set_tcp before the first move");
+      has_tool_ = true;
       Joints pose;
       scan.expect("(");
       scan.six("p[", pose);
@@ -212,6 +216,11 @@ class ScriptReader {
       place_.fail("another first move", "movej to the start", "It settles which way the arm is bent.");
     if (!program_.commands.empty() && command.kind == ScriptCommand::Kind::MoveJ)
       place_.fail("another movej", "movel, movep, servoj, sleep or stopj after the way to the start");
+    seconds_ += command.seconds;
+    if (seconds_ > kLongestProgramS) {
+      place_.fail(fmt::format("a program of {:.4g} s up to here", seconds_),
+                  fmt::format("at most {} s", kLongestProgramS));
+    }
     command.phase = phase_;
     program_.commands.push_back(command);
   }
@@ -221,6 +230,8 @@ class ScriptReader {
   Section section_ = Section::Before;
   std::string name_;
   ProgramPhase phase_ = ProgramPhase::Approach;
+  bool has_tool_ = false;
+  double seconds_ = 0.0;  ///< of rests and streams
 };
 
 }  // namespace

@@ -1,12 +1,16 @@
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
+#include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/transform_json.hpp>
 #include <incise/storage/registration_json.hpp>
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <limits>
 
 namespace incise {
 namespace {
@@ -97,12 +101,48 @@ Json to_json(const Registration& r) {
 namespace {
 
 /// A finite number of an object; nothing where the key is missing or null.
-std::optional<double> number_of(const Json& object, const char* key, const std::filesystem::path& file,
-                                const std::string& at = "") {
+std::optional<double> number_of(const Json& object, const char* key, const std::filesystem::path& file, double least,
+                                double most, const std::string& at = "") {
   const auto found = object.find(key);
   if (found == object.end() || found->is_null()) return std::nullopt;
   if (!found->is_number()) throw DataError(file, at + "/" + key, found->dump(), "a number");
-  return found->get<double>();
+  const double value = found->get<double>();
+  if (!(value >= least && value <= most)) {
+    throw DataError(
+        file, at + "/" + key, found->dump(),
+        std::isfinite(most) ? fmt::format("a number from {} to {}", least, most) : fmt::format("at least {}", least));
+  }
+  return value;
+}
+
+std::optional<bool> truth_of(const Json& object, const char* key, const std::filesystem::path& file) {
+  const auto found = object.find(key);
+  if (found == object.end()) return std::nullopt;
+  if (!found->is_boolean()) throw DataError(file, std::string("/") + key, found->dump(), "true or false");
+  return found->get<bool>();
+}
+
+/// One statement of a file against another: who wrote or changed it was mistaken in one of them.
+void require_no_contradiction(const Json& document, const RegistrationRecord& record,
+                              const std::filesystem::path& file) {
+  constexpr double kSameScale = 1e-4;  // relative: numbers may have been shortened
+  if (const auto scale = number_of(document, "scale", file, 0.0, std::numeric_limits<double>::infinity());
+      scale && record.T_target_source && std::abs(*scale / record.scale - 1.0) > kSameScale) {
+    throw DataError(file, "/scale", fmt::format("{:.6g}", *scale),
+                    fmt::format("{:.6g}, as T_target_source has it", record.scale));
+  }
+  const bool is_converged = record.is_converged.value_or(false);
+  if (const auto found = document.find("outcome"); found != document.end() && record.is_converged) {
+    const std::string converged(to_string(RegistrationOutcome::Converged));
+    if (is_converged != (found->is_string() && found->get<std::string>() == converged))
+      throw DataError(file, "/outcome", found->dump(), fmt::format("what fits \"converged\": {}", is_converged));
+  }
+  if (!is_converged) return;
+  if (!record.T_target_source) throw DataError(file, "/T_target_source", "null", "the matrix of what has converged");
+  if (truth_of(document, "scale_at_limit", file).value_or(false)) {
+    throw DataError(file, "/scale_at_limit", "true beside \"converged\": true", "a scale that is within its range",
+                    "Register again.");
+  }
 }
 
 }  // namespace
@@ -111,19 +151,18 @@ RegistrationRecord read_registration(const std::filesystem::path& file) {
   const Json document = read_json(file);
   if (!document.is_object()) throw DataError(file, "", "no JSON object", "what `incise register` writes");
   RegistrationRecord record;
-  if (const auto found = document.find("converged"); found != document.end()) {
-    if (!found->is_boolean()) throw DataError(file, "/converged", found->dump(), "true or false");
-    record.is_converged = found->get<bool>();
-  }
+  record.is_converged = truth_of(document, "converged", file);
   if (const auto found = document.find("T_target_source"); found == document.end() || !found->is_null()) {
     record.T_target_source = transform_in(document, "T_target_source", file);
     record.scale = std::cbrt(record.T_target_source->topLeftCorner<3, 3>().determinant());
   }
-  if (const auto scale = number_of(document, "scale", file)) record.scale = *scale;
-  record.rmse_mm = number_of(document, "rmse_mm", file);
-  record.inlier_fraction = number_of(document, "inlier_fraction", file);
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  record.rmse_mm = number_of(document, "rmse_mm", file, 0.0, kAny);
+  record.inlier_fraction = number_of(document, "inlier_fraction", file, 0.0, 1.0);
+  record.camera_scale = number_of(document, "camera_scale", file, kLeastCameraScale, kMostCameraScale).value_or(1.0);
   if (const auto found = document.find("certificate"); found != document.end() && found->is_object())
-    record.scale_sd = number_of(*found, "scale_sd", file, "/certificate");
+    record.scale_sd = number_of(*found, "scale_sd", file, 0.0, kAny, "/certificate");
+  require_no_contradiction(document, record, file);
   return record;
 }
 

@@ -229,6 +229,16 @@ class TrackTest(CommandTest):
         arguments = self.scene()
         self.assert_refused(self.incise(*arguments, "--plan"), BAD_CASE, "--camera")
         self.assert_refused(self.incise(*arguments, "--mark", "red"), BAD_DATA, "no red line")
+        self.assert_refused(self.incise(*arguments, "--camera", "mount.json", "--plan", "--margin-mm", 1000), BAD_CASE, "--margin-mm: found 1000, expected a number from 0 to 50")
+        self.assert_refused(self.incise(*arguments[:-1], "."), BAD_CASE, "-o: found ., which holds the input color.png")
+        for change, says in (
+            ({"width": 320.7}, "/width: found 320.7, expected a whole number of pixels"),
+            ({"cx": 1e9}, "/cx: found 1000000000.0, expected a place from -320 to 640"),
+            ({"colour": {}}, "/colour: found an unknown key"),
+            ({"depth": {**{k: v for k, v in CAMERA.items() if k != "depth_scale"}, "fz": 1}}, "/depth/fz: found an unknown key"),
+        ):
+            (self.folder / "camera.json").write_text(json.dumps({**CAMERA, **change}))
+            self.assert_refused(self.incise(*arguments), BAD_DATA, "camera.json: " + says)
         (self.folder / "camera.json").write_text(json.dumps({**CAMERA, "fx": -1}))
         self.assert_refused(self.incise(*arguments), BAD_DATA, "camera.json", "/fx")
         (self.folder / "camera.json").write_text(json.dumps({**CAMERA, "width": 640}))
@@ -237,19 +247,59 @@ class TrackTest(CommandTest):
         self.assert_refused(self.incise(*arguments), BAD_DATA, "depth_scale")
         self.assert_nothing_written()
 
-    def test_an_organised_cloud_is_tracked_too(self):
-        self.scene()
-        lines = ["ply", "format ascii 1.0", "obj_info num_cols 320", "obj_info num_rows 240", f"element vertex {320 * 240}"]
-        lines += [f"property float {c}" for c in "xyz"] + [f"property uchar {c}" for c in ("red", "green", "blue")] + ["end_header"]
+    def organised(self, none=None, grid=False, holes=(), size=("num_cols 320", "num_rows 240"), name="scan.ply"):
+        """The flat plate as a cloud in metres, row by row; `holes` are rectangles u0, v0, u1, v1, `none` what stands for their z."""
+        points, places = [], []
         for v in range(240):
             for u in range(320):
-                r = math.hypot(u - 160, v - 120)
-                color = GREEN if abs(r - 10.0 / PIXEL_MM) <= 2.0 else small_photo.TISSUE
-                lines.append("%.4f %.4f %.4f %d %d %d" % ((u - 160) * PIXEL_MM / 1000, (v - 120) * PIXEL_MM / 1000, Z_MM / 1000, *color))
-        (self.folder / "scan.ply").write_text("\n".join(lines) + "\n")
-        result = self.json_of("track", "scan.ply", "--ply-unit-mm", 1000, "-o", "out")
-        self.assertTrue(result["closed_loop"])
-        self.assertAlmostEqual(result["length_mm"], 2 * math.pi * 10.0, delta=0.3)
+                color = GREEN if abs(math.hypot(u - 160, v - 120) - 10.0 / PIXEL_MM) <= 2.0 else small_photo.TISSUE
+                is_hole = any(u0 <= u < u1 and v0 <= v < v1 for u0, v0, u1, v1 in holes)
+                places.append("0" if is_hole else f"1 {len(points)}")
+                if not (is_hole and grid):
+                    x, y, z = (u - 160) * PIXEL_MM / 1000, (v - 120) * PIXEL_MM / 1000, Z_MM / 1000
+                    place = f"{none} {none} {none}" if is_hole else "%.4f %.4f %.4f" % (x, y, z)
+                    points.append("%s %d %d %d" % (place, *color))
+        lines = ["ply", "format ascii 1.0"] + [f"obj_info {words}" for words in size] + [f"element vertex {len(points)}"]
+        lines += [f"property float {c}" for c in "xyz"] + [f"property uchar {c}" for c in ("red", "green", "blue")]
+        lines += ["element range_grid 76800", "property list uchar int vertex_indices"] if grid else []
+        (self.folder / name).write_text("\n".join(lines + ["end_header"] + points + (places if grid else [])) + "\n")
+        return name
+
+    def track(self, scan, *more):
+        return ("track", scan, "--ply-unit-mm", 1000, "-o", "out", *more)
+
+    def test_an_organised_cloud_is_tracked_too(self):
+        holes = [(0, 0, 40, 240), (100, 200, 320, 240)]  # a strip to the left, and one below
+        for case in ({}, {"none": "nan", "holes": holes}, {"grid": True, "holes": holes}):
+            with self.subTest(case=case):
+                result = self.json_of(*self.track(self.organised(**case)))
+                self.assertTrue(result["closed_loop"])
+                self.assertAlmostEqual(result["length_mm"], 2 * math.pi * 10.0, delta=0.3)
+                with open(self.out / "contour.csv", newline="") as file:
+                    radii = [math.hypot(float(row["x_mm"]), float(row["y_mm"])) for row in csv.DictReader(file)]
+                self.assertLess(max(abs(r - 10.0) for r in radii), 0.1)  # a row that is shifted would show
+                measured = 320 * 240 - sum((u1 - u0) * (v1 - v0) for u0, v0, u1, v1 in case.get("holes", ()))
+                self.assertEqual(result["cloud_points"], measured)
+
+    def test_a_cloud_in_other_rows_is_refused(self):
+        self.assert_refused(self.incise(*self.track(self.organised(size=("num_cols 160", "num_rows 240")))), BAD_DATA, "scan.ply: vertices: found 480 rows of 160 places, expected 240 rows")
+        self.assert_refused(self.incise(*self.track(self.organised(size=("num_cols 319",)))), BAD_DATA, "scan.ply: vertices: found 76800 places in rows of 319, expected whole rows")
+        self.assert_refused(self.incise(*self.track(self.organised(size=("num_cols x",)))), BAD_DATA, "num_cols: found 'x'")
+        self.assert_refused(self.incise(*self.track(self.organised(size=()))), BAD_DATA, "scan.ply", "no obj_info num_cols")
+        self.assert_refused(self.incise(*self.track(self.organised(), "--ply-width", 240)), BAD_CASE, "--ply-width: found 240, expected 320")
+        self.assert_refused(self.incise(*self.track(self.organised(none="inf", holes=[(0, 0, 2, 2)]))), BAD_DATA, "'inf'", "or nan")
+        self.assert_nothing_written()
+
+    def test_a_gap_that_may_be_too_long_is_told(self):
+        closed = self.incise(*self.scene(), "--json")
+        self.assertNotIn("taken as closed", closed.stderr)
+        self.assertAlmostEqual(json.loads(closed.stdout)["gap_tolerance_mm"], 0.18 + 2 * PIXEL_MM, delta=0.01)
+        for gap_mm in (1.05, 1.4):
+            done = self.incise(*self.scene(opening_deg=math.degrees(gap_mm / 10.0))[:-1], f"gap{gap_mm}", "--json")
+            result = json.loads(done.stdout)
+            told = "not closed" if not result["closed_loop"] else "the mark is taken as closed, with a gap of"
+            self.assertIn(told, done.stderr)
+            self.assertLess(abs(result["max_gap_mm"] - gap_mm), result["gap_tolerance_mm"])
 
 
 class ProjectTest(CommandTest):
@@ -389,6 +439,10 @@ class ProjectTest(CommandTest):
         done = self.incise(*self.ARGUMENTS, "--camera", "camera.json")
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertIn("is uncertain by 0.0030", done.stderr)
+        (self.folder / "robot.json").unlink()
+        self.write_transform(scale=1.02, certificate={"scale_sd": 0.03})
+        self.assert_refused(self.incise(*self.ARGUMENTS, "--camera", "camera.json"), BAD_DATA, "registration.json: /certificate/scale_sd: found 0.0300, which is 1", "at most 2.2 mm")
+        self.assert_nothing_written(self.folder / "robot.json")
 
     def refused(self, *says, status=BAD_DATA):
         self.assert_refused(self.incise(*self.ARGUMENTS), status, *says)
@@ -408,6 +462,11 @@ class ProjectTest(CommandTest):
     def test_registrations_that_cannot_be_trusted_are_refused_or_told(self):
         self.write_transform(converged=False)
         self.refused("registration.json", "converged")
+        self.write_transform(outcome="mirrored")
+        self.refused("registration.json", "/outcome", "mirrored")
+        kept = json.loads((self.folder / "registration.json").read_text())
+        (self.folder / "registration.json").write_text(json.dumps({"T_target_source": kept["T_target_source"]}))
+        self.refused("registration.json", "/converged: found nothing, expected a registration that converged")
         self.write_transform(scale=1.08)
         done = self.incise(*self.ARGUMENTS)
         self.assertEqual(done.returncode, DONE, done.stderr)

@@ -57,6 +57,26 @@ class RegisterTest(CommandTest):
         self.assertEqual(len(manifest["inputs"]), 2)
         self.assertEqual(manifest["settings"]["scale"], [0.9, 1.1])
 
+    def test_a_scale_at_the_end_of_its_range_is_not_acceptable(self):
+        result = self.json_of(*self.register("--scale", "0.99,1.2"), status=NOT_ACCEPTABLE)
+        self.assertEqual((result["outcome"], result["converged"], result["scale_at_limit"]), ("scale_at_limit", False, True))
+        self.assertTrue(any("stands at the end of its range, 0.99" in reason for reason in result["reasons"]), result["reasons"])
+        self.assert_chain_ends("/converged", "false")
+
+    def test_an_input_is_never_the_output(self):
+        before = (self.folder / "b.ply").read_bytes()
+        self.assert_refused(self.incise("surface", "b.ply", "-o", "b.ply"), BAD_CASE, "-o: found b.ply, an input")
+        (self.folder / "same.ply").symlink_to("b.ply")
+        self.assert_refused(self.incise("surface", "b.ply", "-o", "same.ply"), BAD_CASE, "-o: found same.ply, an input")
+        self.assertEqual((self.folder / "b.ply").read_bytes(), before)
+        self.json_of(*self.register("--from-identity", source="b.ply"))
+        for arguments in (
+            self.register(source="out/moved_source.ply"),
+            ("project", "a.ply", "--transform", "out/registration.json", "--surface", "b.ply", "-o", "out"),
+        ):
+            self.assert_refused(self.incise(*arguments), BAD_CASE, "-o: found out, which holds the input out/")
+        self.assertTrue((self.out / "registration.json").is_file())
+
     def test_a_flat_cloud_is_ill_determined_and_the_result_is_written(self):
         numbers = random.Random(3)
         flat = [(numbers.uniform(-30, 30), numbers.uniform(-20, 20), 0.0) for _ in range(600)]
@@ -205,7 +225,19 @@ class SurfaceTest(CommandTest):
         result = self.json_of(*arguments, "--camera", "camera.json", "--plane-z-mm", 10)
         self.assertAlmostEqual(result["camera_scale"], scale, places=5)
         self.assertLess(result["plane_tilt_deg"], 0.01)
+        # What was taken out is not forgotten: a registration on that cloud knows of it.
+        write_ply(self.folder / "a.ply", [(x + 500, -y, z) for x, y, z in hill(1500, 1)])
+        found = self.json_of("register", "--source", "tissue.ply", "--target", "tissue.ply", "--scale", "fixed", "--from-identity", "-o", "out")
+        self.assertAlmostEqual(found["camera_scale"], scale, places=5)
+        self.assertEqual(self.json_of("register", "--source", "a.ply", "--target", "a.ply", "--from-identity", "-o", "plain")["camera_scale"], 1)
         (self.folder / "tissue.ply").unlink()
+        doubtful = self.incise(*arguments, "--camera", "camera.json", "--plane-z-mm", 31, "--json")
+        self.assertEqual(doubtful.returncode, DONE, doubtful.stderr)
+        self.assertAlmostEqual(json.loads(doubtful.stdout)["camera_scale"], scale * 300 / 279, places=4)
+        self.assertIn("the camera's scale is 1.09", doubtful.stderr)
+        (self.folder / "tissue.ply").unlink()
+        vtp = [a if a != "tissue.ply" else "tissue.vtp" for a in arguments]
+        self.assert_refused(self.incise(*vtp, "--camera", "camera.json", "--plane-z-mm", 10), BAD_CASE, "-o", "tissue.vtp", ".ply")
         for more, status, says in (
             (("--camera", "camera.json", "--plane-z-mm", 100), BAD_DATA, "the largest plane"),
             (("--camera", "camera.json"), BAD_CASE, "--plane-z-mm"),

@@ -26,6 +26,11 @@ class HelpTest(CommandTest):
                 self.assertEqual(heading, "Example:")
                 self.assertTrue(example.startswith(f"  incise {verb} "), example)
 
+    def test_help_is_a_word_too(self):
+        self.assertEqual(self.incise("help").stdout, self.incise("--help").stdout)
+        asked = self.incise("help", "replay")
+        self.assertEqual((asked.returncode, asked.stdout), (DONE, self.incise("replay", "--help").stdout))
+
     def test_the_version_is_one_line(self):
         done = self.incise("--version")
         self.assertEqual(done.returncode, DONE)

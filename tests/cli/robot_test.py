@@ -114,14 +114,117 @@ class ExportTest(RobotTest):
         self.assert_nothing_written(self.folder / "cut.script")
 
     def test_a_bad_registration_is_unsafe_and_a_damaged_one_is_refused(self):
-        good = {"T_target_source": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], "scale": 1.01, "rmse_mm": 0.3, "inlier_fraction": 0.9, "converged": True}
-        for change, check in (({"scale": 0.9}, "scale"), ({"rmse_mm": 3.0}, "rmse"), ({"inlier_fraction": 0.1}, "inliers"), ({"converged": False}, "converged")):
+        def scaled(s):
+            return {"T_target_source": [[s, 0, 0, 0], [0, s, 0, 0], [0, 0, s, 0], [0, 0, 0, 1]], "scale": s}
+
+        good = {**scaled(1.01), "rmse_mm": 0.3, "inlier_fraction": 0.9, "converged": True, "outcome": "converged", "camera_scale": 1.0}
+        for change, check in (
+            (scaled(0.9), "scale"),
+            (scaled(1.05), "scale"),  # where a search within 0.95 to 1.05 stops
+            ({**scaled(1.0), "camera_scale": 1.06}, "scale"),  # what a plate took out before counts, too
+            ({**scaled(1.03), "camera_scale": 1.03}, "scale"),
+            ({"rmse_mm": 3.0}, "rmse"),
+            ({"inlier_fraction": 0.1}, "inliers"),
+            ({"converged": False, "outcome": "poor_fit"}, "converged"),
+        ):
             self.write({**good, **change}, "registration.json")
             self.assert_unsafe(ring(), "registration_" + check, options=["--registration", "registration.json"])
         del good["rmse_mm"]
         self.write(good, "registration.json")
         done = self.incise("export", self.write(ring()), "--registration", "registration.json", "-o", "cut.script")
         self.assert_refused(done, BAD_DATA, "registration.json", "rmse_mm")
+        self.write({**good, "rmse_mm": 0.3}, "registration.json")
+        self.assertEqual(self.incise("export", self.write(ring()), "--registration", "registration.json", "-o", "cut.script").returncode, DONE)
+
+    def test_a_registration_that_contradicts_itself_is_refused(self):
+        good = {"T_target_source": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], "scale": 1.0, "rmse_mm": 0.3, "inlier_fraction": 0.9, "converged": True, "outcome": "converged"}
+        for change, says in (
+            ({"T_target_source": [[1.2, 0, 0, 0], [0, 1.2, 0, 0], [0, 0, 1.2, 0], [0, 0, 0, 1]]}, "/scale: found 1, expected 1.2"),
+            ({"rmse_mm": -5}, "/rmse_mm: found -5, expected at least 0"),
+            ({"inlier_fraction": 7}, "/inlier_fraction: found 7, expected a number from 0 to 1"),
+            ({"outcome": "mirrored"}, '/outcome: found "mirrored"'),
+            ({"converged": False}, '/outcome: found "converged"'),
+            ({"scale_at_limit": True}, "/scale_at_limit: found true"),
+            ({"T_target_source": None}, "/T_target_source: found null"),
+            ({"camera_scale": 3}, "/camera_scale: found 3"),
+        ):
+            with self.subTest(change=change):
+                self.write({**good, **change}, "registration.json")
+                done = self.incise("export", self.write(ring()), "--registration", "registration.json", "-o", "cut.script")
+                self.assert_refused(done, BAD_DATA, "registration.json: " + says)
+                self.assert_nothing_written(self.folder / "cut.script")
+
+    def test_open_is_for_open_paths_and_says_what_it_leaves_out(self):
+        beside = ring()
+        beside["tumor_edge"] = [[x + 60.0, y, z] for x, y, z in beside["tumor_edge"]]
+        done = self.incise("export", self.write(beside), "--open", "-o", "cut.script")
+        self.assert_refused(done, BAD_CASE, "--open: found path.json, a closed path, expected an open path")
+        self.assert_nothing_written(self.folder / "cut.script")
+        through = {**ring(radius=2.0), "closed": False, "tumor_edge_closed": False}
+        self.assert_unsafe(through, "margin", options=["--open"])
+        line = {**ring(), "closed": False, "tumor_edge": []}
+        done = self.incise("export", self.write(line), "--open", "-o", "cut.script", "--json")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("not checked with --open: closed, gap, encloses", done.stderr)
+        self.assertIn("closed, gap, encloses: the path is not asked to be a ring", json.loads(done.stdout)["checks_not_made"])
+
+    def test_a_turned_tool_drops_no_check_of_its_shaft(self):
+        (self.folder / "flat.obj").write_text("v 300 -300 100\nv 900 -300 100\nv 900 300 100\nv 300 300 100\nf 1 2 3 4\n")
+        for tcp in ((0, 0, 150, 0, 1.5708, 0), (150, 0, 0, 0, 0, 0)):
+            self.assert_unsafe(ring(), "shaft", options=["--surface", "flat.obj", "--tcp", *map(str, tcp)])
+
+    def test_a_tumour_edge_without_area_is_unsafe(self):
+        for edge in ([[600, 0, 100]] * 3, [[600, 0, 100], [601, 0, 100], [602, 0, 100]]):
+            self.assert_unsafe({**ring(), "tumor_edge": edge}, "margin", "lie on a line or in one place")
+
+    def test_what_is_not_checked_or_less_strictly_is_told(self):
+        path = self.write(ring())
+        bare = self.incise("export", path, "-o", "cut.script").stderr
+        for option in ("--surface", "--registration", "--power-w"):
+            self.assertEqual(bare.count(f"not checked without {option}: "), 1, bare)
+        self.assertNotIn("looser", bare)
+        done = self.incise("export", path, "--close-margin-mm", 1, "--shaft-diameter-mm", 4, "--table-z-mm", -50, "--power-w", 30, "-o", "cut.script")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertNotIn("--power-w", done.stderr)
+        for words in ("--close-margin-mm is 1 mm, by default 2.2 mm", "--shaft-diameter-mm is 4 mm", "--table-z-mm is -50 mm"):
+            self.assertIn("a looser check: " + words, done.stderr)
+
+    def test_numbers_and_options_that_mean_nothing_are_refused(self):
+        path = self.write(ring())
+        for options, says in (
+            (("--power-w", 0), "--power-w: found 0, expected a number above 0"),
+            (("--needle-length-mm", -1), "--needle-length-mm: found -1, expected a number above 0"),
+            (("--near-joints-deg", 0, 0, 0, 0, 0, "1e9"), "--near-joints-deg: found 1e9, expected a number from -360 to 360"),
+            (("--depth-mm", "x"), "--depth-mm: found 'x'"),
+            (("--format", "joint-csv", "--motion", "servoj"), "--motion: found servoj for --format joint-csv"),
+        ):
+            with self.subTest(options=options):
+                output = "cut.csv" if "joint-csv" in options else "cut.script"
+                self.assert_refused(self.incise("export", path, *options, "-o", output), BAD_CASE, says)
+                self.assert_nothing_written(self.folder / output)
+
+    def test_a_device_is_of_no_earlier_run(self):
+        done = self.incise("export", self.write(ring()), "-o", "/dev/full")
+        self.assertNotEqual(done.returncode, DONE)
+        self.assertNotIn("earlier run", done.stderr)
+
+    def test_a_program_of_days_is_refused_at_once(self):
+        done = self.incise("export", self.write(ring(speed=1e-6)), "-o", "cut.script", timeout=60)
+        self.assert_refused(done, BAD_DATA, "path.json: waypoints", "at most 7200 s")
+        self.assert_nothing_written(self.folder / "cut.script")
+
+    def test_an_input_is_never_the_output(self):
+        path = self.write(ring())
+        before = (self.folder / path).read_bytes()
+        self.assert_refused(self.incise("export", path, "--format", "json", "-o", path), BAD_CASE, "-o: found path.json, an input")
+        self.assertEqual((self.folder / path).read_bytes(), before)
+        self.assertEqual(self.incise("export", path, "-o", "cut.script").returncode, DONE)
+        self.json_of("replay", "cut.script", "-o", "played")
+        (self.folder / "cut.script").rename(self.folder / "played" / "cut.script")
+        self.assert_refused(self.incise("replay", "played/cut.script", "-o", "played"), BAD_CASE, "-o: found played, which holds the input played/cut.script")
+        self.assertTrue((self.folder / "played" / "cut.script").is_file())
+        done = self.incise("report", "--replay", "played", "-o", "played/replay.json")
+        self.assert_refused(done, BAD_CASE, "-o: found played/replay.json, in the input played")
 
     def test_waypoints_that_no_tool_can_follow_are_refused(self):
         path = ring()
@@ -226,6 +329,34 @@ class ReplayTest(RobotTest):
         exit_at = self.text.index("  # phase: exit")
         (self.folder / "stays.script").write_text(self.text[:exit_at] + self.text[self.text.index("end\n"):])
         self.assertEqual(self.json_of("replay", "stays.script", status=NOT_ACCEPTABLE)["outcome"], "ends_in_tissue")
+
+    def test_a_tip_off_its_path_and_joints_too_fast_are_not_acceptable(self):
+        other = ring(center=(650.0, 0.0, 100.0))
+        done = self.incise("replay", "cut.script", "--path", self.write(other, "other.json"), "--json")
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual((result["outcome"], result["allowed_deviation_mm"]), ("off_course", 1))
+        self.assertGreater(result["max_cut_deviation_mm"], 20)
+        self.json_of("replay", "cut.script", "--path", "other.json", "--max-deviation-mm", 100)
+        self.assertEqual(self.incise("export", "path.json", "--format", "joint-csv", "-o", "cut.csv").returncode, DONE)
+        lines = (self.folder / "cut.csv").read_text().splitlines()
+        rows = [i for i, line in enumerate(lines) if line[:1].isdigit()]
+        turned, fast = list(lines), list(lines)
+        for i in rows:
+            time, q, rest = lines[i].split(",", 2)
+            turned[i] = f"{time},{float(q) + 0.3},{rest}"
+            fast[i] = f"{float(time) / 100},{q},{rest}"
+        for name, text, outcome in (("turned.csv", turned, "off_course"), ("fast.csv", fast, "joint_speed")):
+            (self.folder / name).write_text("\n".join(text) + "\n")
+            self.assertEqual(self.json_of("replay", name, status=NOT_ACCEPTABLE)["outcome"], outcome)
+
+    def test_programs_of_days_are_refused_at_once(self):
+        retreat = next(line for line in reversed(self.text.splitlines()) if line.startswith("  movel("))
+        (self.folder / "slow.script").write_text(self.text.replace(retreat, retreat.split(", v=")[0] + ", v=0.000000001)"))
+        done = self.incise("replay", "slow.script", "--json", timeout=60)
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["outcome"], "too_long")
+        self.assert_line_refused("end\n\n", "  sleep(1e9)\nend\n\n", "at most 7200 s")
 
     def test_numbers_in_the_header_that_no_program_has_are_refused(self):
         for key, value in (("overlap_mm", "1e9"), ("overlap_mm", "-8"), ("overlap_mm", "500"), ("clearance_mm", "-5"), ("approach_height_mm", "1e9")):

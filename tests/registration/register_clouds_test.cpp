@@ -231,7 +231,24 @@ TEST_F(RegisterClouds, TellsWhenTheScaleIsUnlikely) {
   EXPECT_THAT(found.reasons, Contains(HasSubstr("outside 0.95 to 1.05")));
   RegistrationSettings narrow;
   narrow.scale = {0.97, 1.03};
-  EXPECT_TRUE(run(source, moved_cloud(truth, hill(1500, random_, 0.1)), narrow).scale_at_limit);
+  const Registration held = run(source, moved_cloud(truth, hill(1500, random_, 0.1)), narrow);
+  EXPECT_TRUE(held.scale_at_limit);
+  EXPECT_NE(held.outcome, RegistrationOutcome::Converged);
+}
+
+TEST_F(RegisterClouds, AScaleAtTheEndOfItsRangeIsNoSuccess) {
+  const PointCloud source = hill(1500, random_);
+  const Similarity truth{1.0, rotation_of({0.1, 0.2, 0.3}), {1.0, 2.0, 3.0}};
+  RegistrationSettings above;
+  above.scale = {1.01, 1.2};  // a residual of a hundredth alone would pass
+  above.start = Similarity{1.01, truth.rotation, truth.translation_mm};
+  for (const double settling_mm : {0.0, 1.0}) {
+    above.settling_mm = settling_mm;
+    const Registration found = run(source, moved_cloud(truth, hill(1500, random_, 0.1)), above);
+    EXPECT_NEAR(found.T_target_source.scale, 1.01, 1e-9);
+    EXPECT_EQ(found.outcome, RegistrationOutcome::ScaleAtLimit) << to_string(found.outcome);
+    EXPECT_THAT(found.reasons, Contains(HasSubstr("stands at the end of its range, 1.01")));
+  }
 }
 
 TEST_F(RegisterClouds, FewPointsAndLinesAreDegenerate) {
@@ -289,6 +306,42 @@ TEST(Settling, ADipIsNotTakenForAShiftWhereSettlingIsLookedFor) {
   const auto shift = [](const Registration& r) { return r.T_target_source(Vec3(0.0, 0.0, 10.0)).head<2>().norm(); };
   EXPECT_LT(shift(settled), 0.5 * shift(rigid)) << shift(settled) << " and " << shift(rigid) << " mm";
   EXPECT_GT(settled.certificate.sd_mm, rigid.certificate.sd_mm) << "what settling leaves open is told";
+}
+
+TEST(Settling, WhatItLeavesOpenIsInTheWeakestMotionToo) {
+  Random random(21);
+  Workers workers(2);
+  const PointCloud source = testing::hill(2500, random);
+  const PointCloud target = with_normals(dipped_hill(4000, random), -Vec3::UnitZ(), 16, workers);
+  RegistrationSettings settings;
+  settings.start = Similarity{};
+  settings.scale = ScaleRange::fixed();
+  double before_mm = 0.0;
+  for (const double settling_mm : {1.0, 3.0, 8.0}) {
+    settings.settling_mm = settling_mm;
+    const Registration found = register_clouds(source, target, settings, workers, silent);
+    const Certificate& c = found.certificate;
+    EXPECT_GT(c.weakest_sd_mm, before_mm) << settling_mm;
+    EXPECT_LE(c.weakest_sd_mm, c.sd_mm) << settling_mm;
+    EXPECT_GE(std::sqrt(6.0) * c.weakest_sd_mm, c.sd_mm) << settling_mm;  // the largest of six
+    // Beyond some settling the pose is not known to a fiftieth of the tissue, and that is the outcome.
+    EXPECT_EQ(found.outcome == RegistrationOutcome::Converged, settling_mm < 2.0) << to_string(found.outcome);
+    before_mm = c.weakest_sd_mm;
+  }
+}
+
+TEST(Settling, AScaleThatIsHeldAtItsLimitHasNoVarianceOfItsOwn) {
+  Random random(23);
+  Workers workers(2);
+  const PointCloud source = testing::hill(1500, random);
+  const PointCloud target = with_normals(dipped_hill(2500, random), -Vec3::UnitZ(), 16, workers);
+  RegistrationSettings settings;
+  settings.start = Similarity{1.02};
+  settings.scale = {1.02, 1.2};
+  settings.settling_mm = 1.0;
+  const Registration held = register_clouds(source, target, settings, workers, silent);
+  EXPECT_TRUE(held.scale_at_limit);
+  EXPECT_EQ(held.certificate.scale_sd, 0.0);
 }
 
 TEST(Settling, IsFoundBitForBitOnAnyNumberOfThreads) {

@@ -175,6 +175,34 @@ TEST(CheckProgram, FindsARingWithoutATumourEdge) {
   }
 }
 
+TEST(CheckProgram, FindsATumourEdgeThatEnclosesNothing) {
+  const Vec3 middle(600.0, 0.0, 100.0);
+  for (const Points& edge : {Points(3, middle), Points{middle, middle + Vec3::UnitX(), middle + 2.0 * Vec3::UnitX()},
+                             Points{middle, middle + Vec3::UnitZ(), middle + 2.0 * Vec3::UnitX()}}) {
+    ToolPath path = ring_path();
+    path.tumor_edge.points = edge;
+    const auto checks = check_program(make_program(path), path);
+    EXPECT_THAT(failures(checks), ::testing::ElementsAre("margin"));
+    EXPECT_THAT(named(checks, "margin").message(), ::testing::HasSubstr("3 points lie on a line or in one place"));
+  }
+}
+
+TEST(CheckProgram, AnOpenTumourEdgeHidesNoCutThroughTheTumour) {
+  ToolPath path = ring_path();
+  path.tumor_edge.is_closed = false;
+  for (Waypoint& w : path.waypoints) w.position_mm = Vec3(600, 0, 100) + 0.3 * (w.position_mm - Vec3(600, 0, 100));
+  path.is_closed = false;
+  EXPECT_THAT(failures_of(path, {.must_be_ring = false}), ::testing::Contains("margin"));
+  path.tumor_edge.is_closed = true;
+  EXPECT_THAT(failures_of(path, {.must_be_ring = false}), ::testing::Contains("margin"));
+}
+
+TEST(CheckProgram, ListsWhatAnOpenCutIsNotHeldTo) {
+  const ToolPath path = line_path();
+  const auto checks = check_program(make_program(path), path, {.must_be_ring = false});
+  EXPECT_THAT(checks.not_made, ::testing::Contains("closed, gap, encloses: the path is not asked to be a ring"));
+}
+
 TEST(CheckProgram, FindsWaypointsThatAreMissing) {
   ToolPath path = ring_path();
   path.waypoints.erase(path.waypoints.begin(), path.waypoints.begin() + 5);
@@ -341,6 +369,33 @@ TEST(CheckProgram, FindsAShaftThatTouchesTheTissue) {
   EXPECT_THAT(failures_of(path, {}, {.surface = &surface}), ::testing::Contains("shaft"));
 }
 
+TEST(CheckProgram, ATurnedOrBentToolHasItsShaftBesideTheNeedle) {
+  const ToolPath path = ring_path();
+  TriMesh surface = sheet(100.0, false);
+  for (auto& vertex : surface.vertices)
+    vertex.head<2>() = Vec2(600.0, 0.0) + 6.0 * (vertex.head<2>() - Vec2(600.0, 0.0));
+  ArmSetup turned;  // the needle lies across the flange, whose middle is 5 mm below the tissue
+  turned.T_flange_tool.topLeftCorner<3, 3>() = Eigen::AngleAxisd(0.5 * units::kPi, Vec3::UnitY()).toRotationMatrix();
+  ArmSetup beside;  // the needle points along the flange's axis, 150 mm beside it
+  beside.T_flange_tool.topRightCorner<3, 1>() = Vec3(150.0, 0.0, 0.0);
+  for (const ArmSetup& setup : {turned, beside}) {
+    const auto checks = check_program(make_program(path, {}, setup), path, {}, {.surface = &surface});
+    EXPECT_THAT(failures(checks), ::testing::Contains("shaft"));
+    EXPECT_NEAR(named(checks, "shaft").value, -5.0, 0.1);  // it goes through the surface, 5 mm thick to either side
+  }
+  ArmSetup bent;  // by 60 degrees at the needle's upper end, 100 mm on to the flange
+  bent.T_flange_tool.topLeftCorner<3, 3>() =
+      Eigen::AngleAxisd(units::rad_from_deg(60.0), Vec3::UnitY()).toRotationMatrix();
+  bent.T_flange_tool.topRightCorner<3, 1>() =
+      Vec3(0.0, 0.0, 100.0) + 25.0 * bent.T_flange_tool.topLeftCorner<3, 3>().col(2);
+  const auto clear = check_program(make_program(path, {}, bent), path, {}, {.surface = &surface});
+  EXPECT_NEAR(named(clear, "shaft").value, 20.0 - 5.0, 1e-6);  // its nearest place is the needle's upper end
+  ArmSetup needle_alone;
+  needle_alone.T_flange_tool.topRightCorner<3, 1>() = Vec3(0.0, 0.0, 25.0);
+  const auto none = check_program(make_program(path, {}, needle_alone), path, {}, {.surface = &surface});
+  EXPECT_THAT(::testing::PrintToString(none.not_made), ::testing::HasSubstr("none behind its needle"));
+}
+
 TEST(CheckProgram, FindsAHoleInTheSurfaceBelowTheTool) {
   const ToolPath path = ring_path();
   TriMesh cloud = sheet(100.0, true);
@@ -356,6 +411,10 @@ TEST(CheckProgram, LooksAtPowerAndRegistration) {
   EXPECT_THAT(failures_of(path, {}, {.power_w = 5.0}), ::testing::ElementsAre("power"));
   EXPECT_TRUE(
       failures_of(path, {}, {.power_w = 35.0, .registration = RegistrationSummary{1.01, 0.4, 0.9, true}}).empty());
+  for (const double scale : {0.95, 1.05}) {  // where a range that was given to the search may have stopped it
+    EXPECT_THAT(failures_of(path, {}, {.registration = RegistrationSummary{scale, 0.4, 0.9, true}}),
+                ::testing::ElementsAre("registration_scale"));
+  }
   EXPECT_THAT(failures_of(path, {}, {.registration = RegistrationSummary{0.9, 2.0, 0.2, false}}),
               ::testing::ElementsAre("registration_scale", "registration_rmse", "registration_inliers",
                                      "registration_converged"));
@@ -387,6 +446,30 @@ TEST(CheckProgram, HoldsAMarkToItsOwnList) {
   path = good;
   for (auto& waypoint : path.waypoints) waypoint.speed_mm_s = 2.1;
   EXPECT_THAT(failures_of(path), ::testing::ElementsAre("speed_max"));
+}
+
+TEST(CheckProgram, AMarkLeavesNoPartOfTheTumourEdgeOut) {
+  ToolPath path = mark_path();
+  path.tumor_edge.points[12].y() += 10.0;  // a spike between two waypoints that lie on the circle
+  path.waypoints.erase(path.waypoints.begin() + 12);
+  const auto spike = check_program(make_program(path), path);
+  EXPECT_THAT(failures(spike), ::testing::Contains("edge_distance"));
+  EXPECT_NEAR(named(spike, "edge_distance").value, 10.0, 0.1);
+  path = mark_path();  // there and back along a quarter of the edge, 0.2 mm apart
+  path.waypoints.resize(12);
+  for (std::size_t i = 12; i-- > 0;) {
+    Waypoint back = path.waypoints[i];
+    back.position_mm = Vec3(600, 0, 100) + 1.02 * (back.position_mm - Vec3(600, 0, 100));
+    path.waypoints.push_back(back);
+  }
+  EXPECT_THAT(failures_of(path), ::testing::Contains("edge_distance"));
+  path = mark_path();
+  path.waypoints.resize(12);
+  path.is_closed = false;
+  EXPECT_THAT(failures_of(path, {.must_be_ring = false}), ::testing::ElementsAre("edge_distance"));
+  path.tumor_edge.points.resize(12);
+  path.tumor_edge.is_closed = false;
+  EXPECT_THAT(failures_of(path, {.must_be_ring = false}), ::testing::IsEmpty());
 }
 
 TEST(OverrideChecks, LetsAFailedCheckPassAndKeepsItInTheRecord) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -100,7 +101,9 @@ std::string corner_script(double blend_m) {
 }
 
 TEST(Player, RoundsACornerByTheCircleThatTouchesBothSides) {
-  const Replay replay = replayed(corner_script(0.005));
+  // Its header tells of another course.
+  const Replay replay =
+      play(program_from_text(corner_script(0.005), "cut.script"), ur10e(), {.max_deviation_mm = 100.0});
   ASSERT_EQ(replay.outcome, ReplayOutcome::Completed);
   const Vec3 corner(520.0, 0.0, 130.0);
   double nearest = 1e9;
@@ -185,6 +188,61 @@ TEST(Player, WithoutAPathThePhasesTellWhetherTheTipIsInTheTissue) {
   EXPECT_EQ(cut_short.reason, "the program ends in its phase 'cut'");
 }
 
+/// A table whose times are `factor` times as long.
+std::string stretched(const std::string& table, double factor) {
+  std::string result;
+  bool is_row = false;
+  for (std::size_t at = 0, next; at < table.size(); at = next) {
+    next = table.find('\n', at) + 1;
+    const std::string line = table.substr(at, next - at);
+    result += is_row ? fmt::format("{}{}", factor * std::stod(line), line.substr(line.find(','))) : line;
+    is_row = is_row || line.rfind("time_s,", 0) == 0;
+  }
+  return result;
+}
+
+TEST(Player, AJointThatIsSentFasterThanItCanTurnIsAnOutcome) {
+  const std::string table = table_of(ring_path());
+  EXPECT_EQ(replayed(stretched(table, 1.0), 1.0, "cut.csv").outcome, ReplayOutcome::Completed);
+  const Replay fast = replayed(stretched(table, 0.01), 1.0, "cut.csv");
+  EXPECT_EQ(fast.outcome, ReplayOutcome::JointSpeed);
+  EXPECT_GT(fast.max_joint_speed_share, 1.0);
+  EXPECT_GT(fast.line, 20u);
+  EXPECT_THAT(fast.reason, HasSubstr("times the speed that it can turn with"));
+}
+
+TEST(Player, ATipThatLeavesItsCourseIsAnOutcome) {
+  ToolPath beside = ring_path();
+  for (Waypoint& w : beside.waypoints) w.position_mm.x() += 1.5;
+  const WrittenProgram program = program_from_text(script_of(ring_path()), "cut.script");
+  const Replay off = play(program, ur10e(), {}, &beside);
+  EXPECT_EQ(off.outcome, ReplayOutcome::OffCourse);
+  EXPECT_NEAR(off.max_cut_deviation_mm, 1.5, 0.03);
+  EXPECT_THAT(off.reason, HasSubstr("up to 1.5"));
+  EXPECT_EQ(play(program, ur10e(), {.max_deviation_mm = 1.6}, &beside).outcome, ReplayOutcome::Completed);
+}
+
+TEST(Player, PlaysNothingForDays) {
+  const auto with = [](const std::string& old, const std::string& now) {
+    std::string text = script_of(ring_path());
+    const std::size_t at = text.rfind(old);
+    EXPECT_NE(at, std::string::npos) << old;
+    return text.replace(at, old.size(), now);
+  };
+  for (const auto& text :
+       {with("v=0.050000", "v=0.000000001"), with("a=0.1000, v=0.050000", "a=1e-12, v=0.050000")}) {
+    const Replay slow = replayed(text);
+    EXPECT_EQ(slow.outcome, ReplayOutcome::TooLong);
+    EXPECT_GT(slow.line, 10u);
+    EXPECT_THAT(slow.reason, HasSubstr("at most 7200 s are played"));
+  }
+  // A table of an hour and a half is one of a week at a slider of a hundredth.
+  const std::string table = table_of(line_path());
+  const Replay crept = replayed(stretched(table, 5400.0 / make_program(line_path()).duration_s()), 0.01, "cut.csv");
+  EXPECT_EQ(crept.outcome, ReplayOutcome::TooLong);
+  EXPECT_TRUE(crept.samples.empty());
+}
+
 TEST(Player, RefusesSettingsOutOfRange) {
   const WrittenProgram program = program_from_text(script_of(line_path()), "cut.script");
   EXPECT_THROW(static_cast<void>(play(program, ur10e(), {.speed_slider = 0.0})), InvalidArgument);
@@ -248,6 +306,23 @@ TEST(ProgramFromText, NamesTheLineOfAForeignOrDamagedStatement) {
   EXPECT_THAT(message_of(with("# phase: plunge", "# phase: plungge")), HasSubstr("phase 'plungge'"));
 }
 
+TEST(ProgramFromText, KnowsOneToolAndNoRestsOfDays) {
+  const std::string good = script_of(line_path(), {.motion = ScriptMotion::ServoJ});
+  const std::size_t tool = good.find("  set_tcp("), move = good.find("  movej(");
+  const std::string set_tcp = good.substr(tool, good.find('\n', tool) + 1 - tool);
+  EXPECT_THAT(message_of(good.substr(0, move) + set_tcp + good.substr(move)), HasSubstr("found a second set_tcp"));
+  const std::string without = good.substr(0, tool) + good.substr(tool + set_tcp.size());
+  const std::size_t behind = without.find('\n', without.find("  movej(")) + 1;
+  EXPECT_THAT(message_of(without.substr(0, behind) + set_tcp + without.substr(behind)),
+              HasSubstr("found set_tcp after a move, expected set_tcp before the first move"));
+  EXPECT_THAT(message_of(good.substr(0, good.find("end\n")) + "  sleep(1e9)\n" + good.substr(good.find("end\n"))),
+              HasSubstr("found a program of 1e+09 s up to here, expected at most 7200 s"));
+  std::string slow = good;
+  const std::size_t at = slow.find(", t=0.008") + 4;
+  slow.replace(at, slow.find(',', at) - at, "1e7");
+  EXPECT_THAT(message_of(slow), HasSubstr("found a program of 1e+07 s up to here"));
+}
+
 TEST(ProgramFromText, RefusesLengthsInTheHeaderThatNoProgramHas) {
   const std::string good = script_of(ring_path());
   const auto with = [&](const std::string& key, const std::string& value) {
@@ -281,7 +356,26 @@ TEST(ProgramFromText, NamesTheRowOfADamagedTableAndTheKeyOfADamagedJson) {
   EXPECT_THAT(message_of(csv.substr(0, csv.size() - 40), "cut.csv"), HasSubstr("columns, expected 23"));
   std::string json = to_json(program, nullptr, header);
   EXPECT_THAT(message_of(json.substr(0, 500), "cut.json"), HasSubstr("not JSON"));
-  EXPECT_THAT(message_of("{}", "cut.json"), HasSubstr("schema"));
+  EXPECT_THAT(message_of("{}", "cut.json"), HasSubstr("/schema: found nothing"));
+  const auto with = [&](const std::string& key, const nlohmann::json& value) {
+    nlohmann::json document = nlohmann::json::parse(json);
+    document[nlohmann::json::json_pointer(key)] = value;
+    return message_of(document.dump(), "cut.json");
+  };
+  EXPECT_THAT(with("/poses", nlohmann::json::array()),
+              HasSubstr("cut.json: /poses: found 0 entries, expected a list of 1 or more"));
+  EXPECT_THAT(with("/poses/3/phase", "cutt"),
+              HasSubstr("cut.json: /poses/3/phase: found phase 'cutt', expected approach"));
+  EXPECT_THAT(with("/motion/samples/7", {1, 2, 3}), HasSubstr("cut.json: /motion/samples/7: found 3 entries"));
+  EXPECT_THAT(with("/motion/samples/7/2", "x"),
+              HasSubstr("cut.json: /motion/samples/7/2: found \"x\", expected a number"));
+  EXPECT_THAT(with("/motion/samples/7/2", 1e300), HasSubstr("/motion/samples/7: found a joint at 1e+300 rad"));
+  EXPECT_THAT(with("/motion/samples/7/0", 1e12),
+              HasSubstr("/motion/samples/7: found a program of 1e+12 s, expected at most 7200 s"));
+  EXPECT_THAT(with("/motion", nlohmann::json::array()), HasSubstr("cut.json: /motion: found no object"));
+  std::string endless = json;
+  endless.replace(endless.find("\"duration_s\":") + 13, 0, "1e400, \"was\":");
+  EXPECT_THAT(message_of(endless, "cut.json"), HasSubstr("found a number beyond 1.8e308"));
   csv.replace(csv.find("elbow_joint_rad"), 5, "elbov");
   EXPECT_THAT(message_of(csv, "cut.csv"), HasSubstr("the columns that `incise export` writes"));
 }

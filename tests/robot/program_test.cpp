@@ -30,6 +30,13 @@ double ramp_s(double speed, double a = 100.0, double j = 2000.0) {
   return speed > a * a / j ? speed / a + a / j : 2.0 * std::sqrt(speed / j);
 }
 
+TEST(MakeProgram, RefusesSpeedsThatTakeDaysBeforeItSamplesThem) {
+  ToolPath path = ring_path();
+  for (auto& waypoint : path.waypoints) waypoint.speed_mm_s = 1e-6;
+  EXPECT_THAT([&] { static_cast<void>(make_program(path)); },
+              ThrowsMessage<InvalidArgument>(HasSubstr("takes at most 7200 s, found ")));
+}
+
 TEST(MakeProgram, TakesTheTimesThatLengthsSpeedsAndRampsSay) {
   const RobotProgram program = make_program(line_path(), {.approach_height_mm = 30.0,
                                                           .clearance_mm = 5.0,

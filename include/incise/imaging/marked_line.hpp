@@ -44,6 +44,8 @@ struct MarkedLine {
   std::vector<LineGap> gaps;                ///< longest first, those bridged in a closed ring included
   double width_px = 0.0;                    ///< median width of the painted line
   double contrast = 0.0;                    ///< of ink to tissue, chroma over lightness
+  double longest_unseen_mm = 0.0;  ///< as max_gap_mm, single points that were not seen included
+  double gap_tolerance_mm = 0.0;   ///< by which a gap may be longer than it is said to be, and is still bridged
   [[nodiscard]] double max_gap_mm() const;  ///< longest that is not hidden; 0 without one
 };
 

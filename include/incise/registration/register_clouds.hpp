@@ -28,6 +28,7 @@ struct RegistrationSettings {
   double least_inliers = 0.15;    ///< of the source's points; fewer are not a success
   double least_fit = 0.7;            ///< share of the source's points above the target that lie on it, for a success
   double largest_sd = 0.01;       ///< of the pose along its weakest direction, for a success
+  double largest_settled_sd = 0.02;  ///< the same where settling was looked for, which leaves more open than noise
   double least_sharpness = 7e-4;  ///< see Certificate::sharpness
   double largest_rival = 0.95;    ///< score of the runner-up over that of the best, for a success
 };
@@ -42,10 +43,11 @@ enum class RegistrationOutcome {
   Ambiguous,       ///< another pose fits about as well
   Mirrored,        ///< the source's mirror image fits clearly better: one of the clouds is reflected
   PoorFit,         ///< the residual is too large, or too little of the source finds a counterpart
+  ScaleAtLimit,    ///< the scale stands at an end of its range: what the clouds ask for lies beyond it
   Degenerate,      ///< a cloud is a point or a line, or has fewer than 12 points; no transform follows
   Cancelled,
 };
-/// converged, iteration_limit, ill_determined, ambiguous, mirrored, poor_fit, degenerate, cancelled
+/// converged, iteration_limit, ill_determined, ambiguous, mirrored, poor_fit, scale_at_limit, degenerate, cancelled
 [[nodiscard]] std::string_view to_string(RegistrationOutcome outcome);
 
 /// How well two surfaces fix the transform between them. Seven motions (three turns and three shifts about the

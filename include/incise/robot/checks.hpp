@@ -12,7 +12,7 @@ namespace incise {
 
 /// What is known of the registration that put the path into the robot's frame.
 struct RegistrationSummary {
-  double scale = 1.0;
+  double scale = 1.0;  ///< between the clouds as the sensors gave them
   double rmse_mm = 0.0;
   double inlier_fraction = 1.0;
   bool is_converged = true;
@@ -78,7 +78,7 @@ struct ProgramCheck {
   bool passed = false;
   double value = 0.0;
   double limit = 0.0;
-  std::string relation = "<=";            ///< "<=", ">=", or empty for a plain yes or no
+  std::string relation = "<=";            ///< "<=", ">=", "<", ">", or empty for a plain yes or no
   std::string unit;                       ///< mm, mm/s or empty
   std::optional<std::size_t> pose;        ///< the worst pose of the program, where there is one
   std::string text;                       ///< for a person
@@ -105,9 +105,10 @@ struct ProgramChecks {
 /// - `depth`: that planned within the tolerance, everywhere: below the surface if one is given, else as the path says
 /// - `margin` (incisions): the needle keeps `close_margin_mm` outside the tumour edge where it enters, and its tip does
 ///   so too, seen along the mean axis. A ring without an edge fails, and so does an edge that crosses itself
-///   in that view
+///   in that view, one that is open, and one without area; only an open cut may have no edge at all
 /// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height: its worst point is named
-/// - `edge_distance` (marks): the entry course follows the tumour edge within `mark_distance_mm`
+/// - `edge_distance` (marks): neither the entry course nor the tumour edge leaves the other by more than
+///   `mark_distance_mm`
 /// - `deviation` (with an intended path): neither course is farther than `max_deviation_mm` from the other
 /// - `chord_error`: straight moves and their blends stay near the smooth course
 /// - `tilt`: the tool comes from above
@@ -116,7 +117,7 @@ struct ProgramChecks {
 /// - `joint_limits`, `joint_speed`, `joint_acceleration`, `singularity`: of the arm's motion
 /// - `tip_speed`: the tip's speed, from the joints, is the nominal one away from the ends
 /// - `table`: the links stay clear of the table's plane
-/// - `shaft` (with a surface): the instrument behind its needle stays clear of it
+/// - `shaft` (with a surface): the instrument, straight from its needle's upper end to the flange, stays clear of it
 /// - `power` (if given): within the generator's usual range for cutting
 /// - `registration_scale`, `registration_rmse`, `registration_inliers`, `registration_converged` (if given)
 ///

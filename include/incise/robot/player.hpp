@@ -10,9 +10,10 @@ namespace incise {
 
 /// How a program is played.
 struct PlayerSettings {
-  double speed_slider = 1.0;  ///< share in (0, 1] that the controller's slider stands at
-  double cycle_s = 0.002;     ///< of the controller: 500 Hz
-  double end_zone_mm = 2.0;   ///< of the cut at either end, where the tip speeds up and slows down
+  double speed_slider = 1.0;      ///< share in (0, 1] that the controller's slider stands at
+  double cycle_s = 0.002;         ///< of the controller: 500 Hz
+  double end_zone_mm = 2.0;       ///< of the cut at either end, where the tip speeds up and slows down
+  double max_deviation_mm = 1.0;  ///< most that the tip may leave the intended course by in the cut, for a success
 };
 /// Every rule that the settings break, in words; empty: none.
 [[nodiscard]] std::vector<std::string> validate(const PlayerSettings& settings);
@@ -24,9 +25,13 @@ enum class ReplayOutcome {
   BlendsOverlap,   ///< two blends of a move are longer together than the way between their poses
   JointLimits,     ///< a joint is sent beyond its limits
   StartsInTissue,  ///< it runs to its end, but its first tip lies below the surface: the way there goes through tissue
-  EndsInTissue     ///< it runs to its end, and leaves the tip below the surface
+  EndsInTissue,    ///< it runs to its end, and leaves the tip below the surface
+  TooLong,         ///< it would take longer than kLongestProgramS
+  JointSpeed,      ///< it runs to its end, but a joint is sent faster than it can turn
+  OffCourse        ///< it runs to its end, but the tip leaves the intended course by more than `max_deviation_mm`
 };
-/// completed, unreachable, jump, blends_overlap, joint_limits, starts_in_tissue, ends_in_tissue
+/// completed, unreachable, jump, blends_overlap, joint_limits, starts_in_tissue, ends_in_tissue, too_long, joint_speed,
+/// off_course
 [[nodiscard]] std::string_view to_string(ReplayOutcome outcome);
 
 /// The arm in one cycle.
@@ -51,7 +56,8 @@ struct [[nodiscard]] Replay {
   std::vector<ReplaySample> samples;
   Points intended_mm;  ///< the intended course of the tip as a fine polyline: plunge, cut with overlap, exit
   double max_deviation_mm = 0.0;
-  double mean_deviation_mm = 0.0;  ///< in the cut
+  double max_cut_deviation_mm = 0.0;  ///< in the cut; of a program without one: over all of it
+  double mean_deviation_mm = 0.0;     ///< in the cut
   double max_deviation_at_s = 0.0;
   SpeedNumbers tip_speed_mm_s;  ///< in the cut, away from its ends
   double max_joint_speed_share = 0.0;
@@ -70,6 +76,7 @@ struct [[nodiscard]] Replay {
 /// @param intended  the path that the tip should follow, frame robot; by default the one in the program's header.
 /// Without either
 ///   deviations are 0 and intended_mm is empty.
+/// Where a program that runs to its end has several faults, tissue comes before speed, and speed before the course.
 [[nodiscard]] Replay play(const WrittenProgram& program, const ArmModel& arm = ur10e(),
                           const PlayerSettings& settings = {}, const ToolPath* intended = nullptr);
 

@@ -42,6 +42,8 @@ struct ProgramSettings {
 };
 /// Longest overlap, clearance, approach height or depth of a program, mm: the arm reaches no farther than 1300.
 inline constexpr double kLargestLengthMm = 1000.0;
+/// Longest that a program may take. The paper's ring takes half a minute; more than two hours is a mistaken unit.
+inline constexpr double kLongestProgramS = 2.0 * 3600.0;
 /// Farthest coordinate of a waypoint, mm: what lies beyond is no place near an arm, and its square may overflow.
 inline constexpr double kFarthestPlaceMm = 1e5;
 /// Every rule that the settings break, in words; empty: none.

@@ -18,15 +18,17 @@ namespace incise {
 /// What a file says of a registration. Another program's may hold the transform alone.
 struct RegistrationRecord {
   std::optional<Mat4> T_target_source;  ///< similarity, mm; absent where the file has null: none was found
-  double scale = 1.0;                   ///< as the key says, else that of the matrix
+  double scale = 1.0;                   ///< that of the matrix
+  double camera_scale = 1.0;            ///< what `incise surface` had taken out of the target before
   std::optional<double> rmse_mm;
   std::optional<double> inlier_fraction;
   std::optional<bool> is_converged;
   std::optional<double> scale_sd;  ///< relative
 };
 
-/// Reads registration.json. @throws DataError for a file that is missing or damaged, without the key T_target_source,
-/// or with a number that is none.
+/// Reads registration.json. @throws DataError for a file that is missing or damaged, without the key T_target_source, with
+/// a number that is none or that nothing has (a negative residual, more than all points), or that contradicts itself:
+/// another scale than the matrix has, converged beside another outcome, beside a scale at its limit or without a matrix.
 [[nodiscard]] RegistrationRecord read_registration(const std::filesystem::path& file);
 
 }  // namespace incise
