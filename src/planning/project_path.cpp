@@ -88,12 +88,18 @@ class LayDown {
     result.shift_noise_mm += aside * aside;
     return before_[k] - average * surface_.approach();
   }
-  /// The surface's normal at the k-th point, with the noise of its neighbours averaged out: a tool that nods from
-  /// waypoint to waypoint asks too much of the arm.
-  Vec3 smoothed_normal(std::size_t k) {
-    if (settings_.smoothing_mm == 0.0) return normals_[k];
-    return averaged(k, [this](std::size_t i) { return normals_[i]; }).normalized();
+  /// Averages the noise of neighbours out of the normals: a tool that nods from waypoint to waypoint asks too much of
+  /// the arm. Twice, because an average once over leaves its bends, and these are what the joints' accelerations feel.
+  void smooth_normals() {
+    constexpr int kPasses = 2;
+    for (int pass = 0; pass < kPasses && settings_.smoothing_mm > 0.0; ++pass) {
+      Points averages;
+      for (std::size_t k = 0; k < normals_.size(); ++k)
+        averages.push_back(averaged(k, [this](std::size_t i) { return normals_[i]; }).normalized());
+      normals_ = std::move(averages);
+    }
   }
+  [[nodiscard]] const Vec3& normal(std::size_t k) const { return normals_[k]; }
   ProjectedPath finish() {
     if (count_ > 0) {
       result.mean_shift_mm /= static_cast<double>(count_);
@@ -239,9 +245,10 @@ ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const 
     result.waypoints.push_back(wanted);
   }
   for (std::size_t i = 0; i < edge; ++i) result.tumor_edge.points.push_back(lay_down.smoothed(i));
+  if (settings.axis_mode == AxisMode::SurfaceNormal) lay_down.smooth_normals();
   for (std::size_t i = 0; i < result.waypoints.size(); ++i) {
     result.waypoints[i].position_mm = lay_down.smoothed(edge + i);
-    if (settings.axis_mode == AxisMode::SurfaceNormal) result.waypoints[i].axis = -lay_down.smoothed_normal(edge + i);
+    if (settings.axis_mode == AxisMode::SurfaceNormal) result.waypoints[i].axis = -lay_down.normal(edge + i);
   }
   return lay_down.finish();
 }
