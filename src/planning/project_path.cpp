@@ -70,6 +70,7 @@ class LayDown {
     in_picture_.push_back(frame_.to_view(p).head<2>());
     before_.push_back(p);
     shifts_.push_back(shift);
+    normals_.push_back(place->normal);
     names_.push_back(what);
     return *place;
   }
@@ -87,6 +88,18 @@ class LayDown {
     result.shift_noise_mm += aside * aside;
     return before_[k] - average * surface_.approach();
   }
+  /// Averages the noise of neighbours out of the normals: a tool that nods from waypoint to waypoint asks too much of
+  /// the arm. Twice, because an average once over leaves its bends, and these are what the joints' accelerations feel.
+  void smooth_normals() {
+    constexpr int kPasses = 2;
+    for (int pass = 0; pass < kPasses && settings_.smoothing_mm > 0.0; ++pass) {
+      Points averages;
+      for (std::size_t k = 0; k < normals_.size(); ++k)
+        averages.push_back(averaged(k, [this](std::size_t i) { return normals_[i]; }).normalized());
+      normals_ = std::move(averages);
+    }
+  }
+  [[nodiscard]] const Vec3& normal(std::size_t k) const { return normals_[k]; }
   ProjectedPath finish() {
     if (count_ > 0) {
       result.mean_shift_mm /= static_cast<double>(count_);
@@ -98,8 +111,14 @@ class LayDown {
 
  private:
   [[nodiscard]] double average_shift(std::size_t k) const {
+    return averaged(k, [this](std::size_t i) { return Vec3(shifts_[i], 0.0, 0.0); }).x();
+  }
+
+  /// Of three numbers that each point has: their value at the k-th point on planes fitted to those around it.
+  template <class ValueOf>
+  [[nodiscard]] Vec3 averaged(std::size_t k, const ValueOf& value_of) const {
     Mat3 system = Mat3::Zero();
-    Vec3 right = Vec3::Zero();
+    Mat3 right = Mat3::Zero();  // a column for each number
     const double radius = settings_.smoothing_mm;
     for (std::size_t i = 0; i < shifts_.size(); ++i) {
       const Vec2 d = (in_picture_[i] - in_picture_[k]) / radius;
@@ -107,10 +126,10 @@ class LayDown {
       const double weight = std::pow(1.0 - d.squaredNorm(), 2);
       const Vec3 basis(1.0, d.x(), d.y());
       system += weight * basis * basis.transpose();
-      right += weight * shifts_[i] * basis;
+      right += weight * basis * value_of(i).transpose();
     }
     system.diagonal().tail<2>().array() += 1e-9 * system(0, 0);  // points on a line leave the slope across it open
-    return system.ldlt().solve(right).x();
+    return system.ldlt().solve(right).row(0).transpose();
   }
 
   const MeasuredSurface& surface_;
@@ -120,6 +139,7 @@ class LayDown {
   std::vector<Vec2> in_picture_;
   Points before_;
   std::vector<double> shifts_;  // along the approach, mm
+  Points normals_;              // of the surface, against the approach
   std::vector<std::string> names_;
   std::size_t count_ = 0;
 };
@@ -221,13 +241,15 @@ ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const 
   for (std::size_t i = 0; i < edge; ++i)
     static_cast<void>(lay_down(similarity * path.tumor_edge.points[i], fmt::format("tumour edge point {}", i)));
   for (const Waypoint& wanted : course_of(path, similarity, surface.approach(), settings)) {
-    const CloudPlace place = lay_down(wanted.position_mm, fmt::format("waypoint {}", result.waypoints.size()));
+    static_cast<void>(lay_down(wanted.position_mm, fmt::format("waypoint {}", result.waypoints.size())));
     result.waypoints.push_back(wanted);
-    if (settings.axis_mode == AxisMode::SurfaceNormal) result.waypoints.back().axis = -place.normal;
   }
   for (std::size_t i = 0; i < edge; ++i) result.tumor_edge.points.push_back(lay_down.smoothed(i));
-  for (std::size_t i = 0; i < result.waypoints.size(); ++i)
+  if (settings.axis_mode == AxisMode::SurfaceNormal) lay_down.smooth_normals();
+  for (std::size_t i = 0; i < result.waypoints.size(); ++i) {
     result.waypoints[i].position_mm = lay_down.smoothed(edge + i);
+    if (settings.axis_mode == AxisMode::SurfaceNormal) result.waypoints[i].axis = -lay_down.normal(edge + i);
+  }
   return lay_down.finish();
 }
 

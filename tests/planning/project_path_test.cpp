@@ -111,6 +111,35 @@ TEST(ProjectPath, HoldsTheToolAgainstTheMeasuredNormalWhereAsked) {
   }
 }
 
+TEST(ProjectPath, AveragesTheNormalsAsItDoesTheShifts) {
+  const Mat4 T = registration();
+  const ToolPath path = simulated(T.inverse());
+  const TriMesh cloud = measured(0.3);
+  const MeasuredSurface surface(cloud, approach_of(path, T));
+  const auto greatest_nod_deg = [&](double smoothing_mm, double& off_deg) {
+    const ProjectSettings settings{.smoothing_mm = smoothing_mm, .axis_mode = AxisMode::SurfaceNormal};
+    const auto waypoints = project_path(path, T, surface, settings, kName).path.waypoints;
+    const auto degrees = [](const Vec3& a, const Vec3& b) {
+      return std::asin(std::min(1.0, a.cross(b).norm())) * 180.0 / 3.14159265;
+    };
+    double nod_deg = 0.0;
+    off_deg = 0.0;
+    for (std::size_t i = 0; i < waypoints.size(); ++i) {
+      const Waypoint &w = waypoints[i], &next = waypoints[(i + 1) % waypoints.size()];
+      nod_deg = std::max(nod_deg, degrees(w.axis, next.axis));
+      off_deg = std::max(off_deg,
+                         degrees(w.axis, Vec3(w.position_mm.x() / 60.0, w.position_mm.y() / 60.0, 1.0).normalized()));
+    }
+    return nod_deg;
+  };
+  double off_deg = 0.0, off_alone_deg = 0.0;
+  const double nod_deg = greatest_nod_deg(10.0, off_deg), alone_deg = greatest_nod_deg(0.0, off_alone_deg);
+  // From one waypoint to the next the dome's own normal turns by 1.8 degrees.
+  EXPECT_LT(nod_deg, 3.0);
+  EXPECT_LT(off_deg, 0.6 * off_alone_deg);
+  EXPECT_LT(nod_deg - 1.8, 0.5 * (alone_deg - 1.8));
+}
+
 std::string refusal(const TriMesh& cloud, const ProjectSettings& settings = {}, const Vec3& lift = Vec3::Zero()) {
   Mat4 T = registration();
   const ToolPath path = simulated(T.inverse());
