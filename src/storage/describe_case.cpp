@@ -270,7 +270,7 @@ void describe_cut(Case& c, FieldVisitor& v) {
            c.cut.bond_stiffness_kpa_mm2, {0.0, 1e6});
   v.number({"overlap_mm", "mm", "A ring is cut this far beyond its start, less than once round."}, c.cut.overlap_mm, {0.0, 50.0});
   v.number({"residual_tolerance", "", "Of each step's linear solve, relative to the contact force."}, c.cut.residual_tolerance,
-           {0.0, 1.0, true, true});
+           {1e-6, 0.3});
   v.integer({"frames", "", "Moments of the cut that are kept for pictures."}, c.frames, {0.0, 500.0});
   v.end_group();
 }
