@@ -280,7 +280,7 @@ void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
   v.number({"conductivity_w_m_k", "W/(m K)", "Of heat in tissue; muscle in the IT'IS database."}, t.conductivity_w_m_k, {0.01, 100.0});
   v.number({"heat_capacity_mj_m3_k", "MJ/(m3 K)", "Per volume; muscle in the IT'IS database."}, t.heat_capacity_mj_m3_k, {0.01, 100.0});
   v.number({"body_c", "°C", "Temperature of the tissue before the cut."}, t.body_c, {-20.0, 60.0});
-  v.number({"damage_c", "°C", "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); above body_c."}, t.damage_c, {-20.0, 200.0});
+  v.number({"damage_c", "°C", "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); at least 5 K above body_c."}, t.damage_c, {45.0, 200.0});
   v.number({"absorbed_fraction", "", "Share of the power that heats the tissue beside the kerf; 1: an upper bound."}, t.absorbed_fraction,
            {0.001, 1.0});
   v.end_group();
