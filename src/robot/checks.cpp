@@ -192,9 +192,16 @@ class CourseChecker {
     const double tolerance = is_mark ? settings_.mark_depth_tolerance_mm : settings_.depth_tolerance_mm;
     if (surface != nullptr) return robot_detail::check_depth_in(list_, *surface, planned, tolerance);
     Worst worst;
-    for (const CoursePlace& p : places_) worst.see(std::abs(p.depth_mm - planned), p.pose);
-    list_.at_most("depth", worst.value, tolerance, "mm", worst.pose,
-                  fmt::format("greatest difference from the planned depth of {} mm, as the path says", planned));
+    double at_worst = planned;
+    for (const CoursePlace& p : places_) {
+      const double difference = std::abs(p.depth_mm - planned);
+      if (difference > worst.value) at_worst = p.depth_mm;
+      worst.see(difference, p.pose);
+    }
+    list_.at_most(
+        "depth", worst.value, tolerance, "mm", worst.pose,
+        fmt::format("greatest difference between the depth that the path gives ({:.4g} mm there) and the planned {} mm",
+                    at_worst, planned));
   }
 
   void margin() {
