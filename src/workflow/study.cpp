@@ -103,8 +103,10 @@ class Runner {
   void require_memory(const TetMesh& mesh) {
     const std::uint64_t needed =
         expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, settings_.frames);
-    monitor_.message(Severity::Notice, fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB",
-                                                   mesh.tets.size(), mesh.vertices.size(), megabytes(needed)));
+    const std::optional<std::uint64_t> held = held_memory_bytes();
+    monitor_.message(Severity::Notice,
+                     fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB{}", mesh.tets.size(), mesh.vertices.size(),
+                                 megabytes(needed), held ? fmt::format(" beside the {:.0f} MB that the program holds now", megabytes(*held)) : ""));
     const std::optional<std::uint64_t> available = available_memory_bytes();
     if (!available || needed <= *available) return;
     throw DataError("this machine", "memory", fmt::format("{:.0f} MB that can be taken", megabytes(*available)),
