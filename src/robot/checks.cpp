@@ -18,7 +18,7 @@ using robot_detail::CheckList;
 using robot_detail::Worst;
 
 constexpr double kClosedToMm = 0.01;
-constexpr std::array<const char*, 28> kNames{"finite",
+constexpr std::array<const char*, 29> kNames{"finite",
                                              "frame",
                                              "closed",
                                              "gap",
@@ -27,6 +27,7 @@ constexpr std::array<const char*, 28> kNames{"finite",
                                              "speed_max",
                                              "depth",
                                              "margin",
+                                             "heat",
                                              "encloses",
                                              "edge_distance",
                                              "deviation",
@@ -204,8 +205,9 @@ class CourseChecker {
                     at_worst, planned));
   }
 
-  void margin() {
+  void margin(const std::optional<double>& heat_half_width_mm) {
     if (path_.kind == PathKind::Mark) return edge_distance();
+    if (!heat_half_width_mm) list_.not_made("heat beside the needle: power or tissue is not known");
     const std::size_t least = settings_.must_be_ring ? 3 : 2;
     if (path_.tumor_edge.points.size() < least) {
       if (!settings_.must_be_ring) return list_.not_made("margin to the tumour edge: the path holds none");
@@ -219,12 +221,12 @@ class CourseChecker {
                       "that what lies inside it is not known",
                       place_text(*at)));
     } else {
-      keeps_away();
+      keeps_away(heat_half_width_mm);
     }
     if (settings_.must_be_ring) encloses();
   }
 
-  void keeps_away() {
+  void keeps_away(const std::optional<double>& heat_half_width_mm) {
     const Contour seen_edge = seen_along(axis_, path_.tumor_edge);
     Worst closest;  // of the negative margin
     const auto see = [&](double distance, const Vec3& point, std::size_t pose) {
@@ -239,6 +241,10 @@ class CourseChecker {
     list_.at_least("margin", -closest.value, settings_.close_margin_mm, "mm", closest.pose,
                    "least distance of the needle from the tumour edge, where it enters and of its tip as seen along "
                    "the mean axis (negative: inside)");
+    if (!heat_half_width_mm) return;
+    list_.at_least("heat", -closest.value, *heat_half_width_mm, "mm", closest.pose,
+                   "the same distance, against how far beside the needle heat damages tissue where the path is slowest "
+                   "and shallowest");
   }
 
   void encloses() {
@@ -455,7 +461,7 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
   course.self_crossing();
   course.speed();
   course.depth(inputs.surface);
-  course.margin();
+  course.margin(inputs.heat_half_width_mm);
   course.deviation(inputs.intended);
   course.chord_error();
   course.tilt();

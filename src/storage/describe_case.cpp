@@ -276,7 +276,7 @@ void describe_cut(Case& c, FieldVisitor& v) {
 }
 
 void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
-  v.begin_group({"thermal", "", "How far beside the cut heat damages tissue, at plan.power_w and plan.speed_mm_s. Not calibrated."});
+  v.begin_group({"thermal", "", "How far beside the cut heat damages tissue, at plan.power_w and the speeds of the path. Not calibrated."});
   v.number({"conductivity_w_m_k", "W/(m K)", "Of heat in tissue; muscle in the IT'IS database."}, t.conductivity_w_m_k, {0.01, 100.0});
   v.number({"heat_capacity_mj_m3_k", "MJ/(m3 K)", "Per volume; muscle in the IT'IS database."}, t.heat_capacity_mj_m3_k, {0.01, 100.0});
   v.number({"body_c", "°C", "Temperature of the tissue before the cut."}, t.body_c, {-20.0, 60.0});

@@ -99,7 +99,7 @@ CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJ
   run.wall_s = result.incision.wall_s;
   run.tets = body.model.mesh.tets.size();
   if (!run.problem.empty()) return run;
-  const SimulatedCut cut = judge(settings, std::move(result.incision), body.plan, run.tets);
+  const SimulatedCut cut = judge(settings, std::move(result.incision), body.followed, body.plan, run.tets);
   run.outcome = cut.outcome;
   run.closed_loop = cut.incision.is_closed_loop.value_or(false);
   run.paper_success = cut.centerline.paper_success.value_or(false);
