@@ -1,6 +1,7 @@
 #include "workflow/calibration_body.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/workflow/cut_doubts.hpp>
 
 #include <fmt/format.h>
 
@@ -49,6 +50,7 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
                     "ring: a calibration compares rings round a tumour");
   }
   study_ = run_study(subject.settings, *subject.store, Stage::Plan, workers, monitor);
+  require_no_locking(*study_.model);
   require_stretched(*study_.stretched, 1.0);
   drawn_edge_ = subject.store->read_tumor_edge();
   given_path_ = subject.store->read_given_path();

@@ -5,6 +5,7 @@
 #include <incise/geometry/surface_query.hpp>
 #include <incise/procedure/incision_memory.hpp>
 #include <incise/workflow/correction.hpp>
+#include <incise/workflow/cut_doubts.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ class Runner {
     using Step = bool (Runner::*)();
     static constexpr std::array<Step, 7> kSteps{&Runner::segment,  &Runner::mesh,       &Runner::stretch_tissue, &Runner::plan,
                                                 &Runner::simulate, &Runner::compensate, &Runner::verify};
+    until_ = until;
     read_inputs();
     for (std::size_t i = 0; i <= static_cast<std::size_t>(until); ++i) {
       throw_if_cancelled(monitor_, "the study");
@@ -96,6 +98,7 @@ class Runner {
     }
     require_memory(mesh);
     study_.model = std::make_shared<TissueModel>(tissue_of(settings_, std::move(mesh)));
+    if (until_ >= Stage::Simulate) require_no_locking(*study_.model);
     return true;
   }
 
@@ -209,7 +212,11 @@ class Runner {
       check_path(*given_path_, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
     }
     study_.followed = given_path_ ? *given_path_ : *study_.plan;
+    for (const std::string& doubt : doubts_before_cut(settings_, *study_.model, study_.stretched->state.positions, *study_.followed)) {
+      monitor_.message(Severity::Warning, doubt);
+    }
     study_.as_planned = cut(Stage::Simulate, CutRole::AsPlanned, *study_.followed);
+    tell_doubts("the cut as planned", *study_.as_planned);
     study_.outcome = study_.as_planned->outcome;
     return true;
   }
@@ -232,6 +239,10 @@ class Runner {
       return false;
     }
     return true;
+  }
+
+  void tell_doubts(const char* which, const SimulatedCut& made) {
+    for (const std::string& doubt : doubts_about(made)) monitor_.message(Severity::Warning, fmt::format("{}: {}", which, doubt));
   }
 
   bool skip_correction(const char* reason) {
@@ -276,6 +287,7 @@ class Runner {
     } else {
       study_.corrected = cut(Stage::Verify, CutRole::Corrected, correction.moves.path);
     }
+    tell_doubts("the corrected cut", *study_.corrected);
     study_.outcome = study_.corrected->outcome;
     study_.is_accepted = is_accepted(settings_, correction, *study_.as_planned, *study_.corrected);
     return true;
@@ -285,6 +297,7 @@ class Runner {
   Store& store_;
   Workers& workers_;
   Monitor& monitor_;
+  Stage until_ = Stage::Verify;
   std::optional<TetMesh> given_mesh_;
   std::optional<Contour> tumor_edge_;
   std::optional<TriMesh> tumor_surface_;

@@ -229,6 +229,12 @@ class CaseTest(CommandTest):
         self.change(specimen={"material": {"poissons_ratio": 0.5}})
         self.assert_case_refused("deform", BAD_CASE, "case.yaml line ", "specimen.material.poissons_ratio", "0.5", "[0, 0.5)")
 
+    def test_tissue_that_locks_may_be_stretched_but_not_cut(self):
+        self.change(specimen={"material": {"poissons_ratio": 0.499}})
+        for verb in ("simulate", "run"):
+            self.assert_case_refused(verb, BAD_CASE, "case.yaml: specimen.material.volume: found per_tet with a Poisson's ratio of 0.499", "expected averaged")
+        self.assertEqual(self.incise("deform", "case", "-o", self.out, "--quiet").returncode, DONE)
+
     def test_a_displacement_that_is_no_number_is_refused(self):
         pull = {"kind": "displaced", "where": {"end": {"direction": "anterior", "within_mm": 5}}, "displacement_mm": [0, ".nan", 0]}
         self.change(specimen={"constraints": [self.CLAMP, pull]})
