@@ -611,10 +611,28 @@ class CommandLineTest(CommandTest):
         self.assert_misuse("plan", "case", "--frobnicate", says="--frobnicate")
 
     def test_no_verb_at_all_is_told(self):
-        self.assert_misuse(says="required")
+        self.assert_misuse(says="incise: command line: verb: found nothing, expected one of bench, demo, run,")
+        self.assert_misuse("bench", says="incise: command line: incise bench: found nothing, expected one of make, cut")
 
-    def test_a_value_out_of_range_is_told(self):
-        self.assert_misuse("plan", "case", "--threads", "-3", says="--threads")
+    def test_whatever_is_wrong_is_told_in_the_words_of_all_errors(self):
+        for words, says in (
+            ("plan case --threads -3", "--threads: found -3, expected a whole number from 0 to 1024"),
+            ("run case --isa sse", "--isa: found 'sse', expected one of portable, avx2, avx512"),
+            ("run case --frames 0", "--frames: found 0, expected a whole number from 1 to 500"),
+            ("run case --frames many", "--frames: found 'many', expected a whole number from 1 to 500"),
+            ("run case --frames", "--frames: found no value, expected 1 value"),
+            ("run case --seed -1", "--seed: found -1, expected a whole number of at least 0"),
+            ("simulate case --checkpoint-s -1", "--checkpoint-s: found -1, expected a number from 0 to 86400"),
+            ("export p.json --tcp 1 2", "--tcp: found 2 values, expected 6 values"),
+            ("run", "case: found nothing, expected "),
+            ("run case other", "incise run: found 'other', expected no further argument"),
+            ("run case --frame 3", "incise run: found '--frame', expected an option that it has. Did you mean '--frames'?"),
+            ("bench cat", "incise bench: found 'cat', expected one of make, cut"),
+        ):
+            with self.subTest(words=words):
+                done = self.incise(*words.split())
+                self.assert_refused(done, BAD_CASE, "incise: command line: " + says, "--help` explains it")
+                self.assertEqual(done.stderr.count("expected"), 1, done.stderr)
 
     def test_a_verb_that_writes_a_file_asks_where(self):
         self.assert_misuse("segment", "ct", says="-o: found nothing")

@@ -4,7 +4,7 @@ import json
 import re
 import unittest
 
-from command import DONE, CommandTest
+from command import BAD_CASE, DONE, CommandTest
 
 VERBS = ["bench", "demo", "run", "phantom", "segment", "mesh", "deform", "plan", "simulate", "compensate", "calibrate", "evaluate", "export", "register", "report", "schema", "surface", "verify", "replay", "track", "project", "compare", "audit"]
 
@@ -25,6 +25,15 @@ class HelpTest(CommandTest):
                 *_, heading, example = [line for line in done.stdout.splitlines() if line.strip()]
                 self.assertEqual(heading, "Example:")
                 self.assertTrue(example.startswith(f"  incise {verb} "), example)
+
+    def test_help_is_a_word_too(self):
+        self.assertEqual(self.incise("help").stdout, self.incise("--help").stdout)
+        for words in (["run"], ["bench", "make"]):
+            done = self.incise("help", *words)
+            self.assertEqual(done.returncode, DONE)
+            self.assertEqual(done.stdout, self.incise(*words, "--help").stdout)
+            self.assertIn("Example:", done.stdout)
+        self.assert_refused(self.incise("help", "rnu"), BAD_CASE, "'rnu'", "Did you mean 'run'?")
 
     def test_the_version_is_one_line(self):
         done = self.incise("--version")
