@@ -1,4 +1,5 @@
 #include "options.hpp"
+#include "parse_error.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
@@ -55,13 +56,13 @@ void refuse_numbers_that_are_not_finite(int argc, char** argv) {
   }
 }
 
-/// `incise help VERB` is `incise VERB --help`, and `incise help` is `incise --help`.
-std::vector<char*> spelled_out(int argc, char** argv) {
-  static char option[] = "--help";
+/// `incise help VERB` is `incise VERB --help`.
+std::vector<char*> without_help_verb(int argc, char** argv) {
+  static char help[] = "--help";
   std::vector<char*> words(argv, argv + argc);
   if (argc < 2 || std::string(argv[1]) != "help") return words;
   words.erase(words.begin() + 1);
-  words.push_back(option);
+  words.push_back(help);
   return words;
 }
 
@@ -70,7 +71,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("incise {} ({})", version(), source_commit()));
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
-  app.footer("\n`incise VERB --help` explains a verb and ends with an example.\n");
+  app.footer("\n`incise help VERB` and `incise VERB --help` explain a verb and end with an example.\n");
   Application application(app, joined(argc, argv));
   add_bench(application);
   add_demo(application);
@@ -102,8 +103,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int status = app.exit(error);
-    return status == 0 ? kDone : kBadCase;
+    if (error.get_exit_code() != 0) throw as_case_error(app, error);
+    app.exit(error);  // --help, --version
+    return kDone;
   }
   return application.status();
 }
@@ -112,7 +114,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    std::vector<char*> words = spelled_out(argc, argv);
+    std::vector<char*> words = without_help_verb(argc, argv);
     return run(static_cast<int>(words.size()), words.data());
   } catch (const CaseError& error) {
     fmt::print(stderr, "incise: {}\n", error.what());

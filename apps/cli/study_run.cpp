@@ -6,6 +6,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
+#include <incise/cutting/path_heat.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
@@ -184,6 +185,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor
   CheckInputs inputs;
   inputs.intended = &intended;
   inputs.power_w = file.settings.plan.power_w;
+  inputs.heat_half_width_mm = widest_heat(file.settings.thermal, file.settings.plan.power_w, path, file.settings.tool).half_width_mm;
   const ProgramChecks checks = check_program(program, path, settings, inputs);
   json = nlohmann::ordered_json::parse(to_json(program, &checks));
   json.erase("poses");

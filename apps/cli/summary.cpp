@@ -41,7 +41,7 @@ struct StudyLine {
   const char* text;
   const char* pointer;  // into the summary of one cut
 };
-constexpr std::array<StudyLine, 12> kStudyLines{{{"outcome", "/outcome"},
+constexpr std::array<StudyLine, 13> kStudyLines{{{"outcome", "/outcome"},
                                                  {"ring closed", "/closed_loop"},
                                                  {"mid-line: mean |error|, mm", "/abs_error_mm/mean"},
                                                  {"mid-line: greatest |error|, mm", "/abs_error_mm/max"},
@@ -52,6 +52,7 @@ constexpr std::array<StudyLine, 12> kStudyLines{{{"outcome", "/outcome"},
                                                  {"lag when cut: mean, mm", "/lag_mm/mean"},
                                                  {"kerf to tumour surface: least, mm", "/deep_margin_mm/nearest"},
                                                  {"greatest tool force, mN", "/peak_tool_force_mn"},
+                                                 {"vertex moves cut to max_step_mm", "/held_back_vertices"},
                                                  {"time of the cut, s", "/wall_s"}}};
 
 std::string shown_at(const nlohmann::ordered_json& result, const char* part, const char* pointer) {

@@ -5,6 +5,7 @@
 #include <incise/core/units.hpp>
 #include <incise/core/version.hpp>
 #include <incise/cutting/cut_settings.hpp>
+#include <incise/cutting/path_heat.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/nearest_name.hpp>
@@ -150,6 +151,12 @@ void warn_of_less(const ExportArguments& a, const CheckInputs& inputs, const Too
   looser(a.setup.table_z_mm < ArmSetup{}.table_z_mm, "--table-z-mm", a.setup.table_z_mm, ArmSetup{}.table_z_mm);
 }
 
+/// With the constants of muscle that a case has by default: a path does not say what it is cut into.
+double half_width_of_heat_mm(const ToolPath& path, const ExportArguments& arguments) {
+  const Needle needle{.length_mm = arguments.checks.needle_length_mm};
+  return widest_heat(ThermalSettings{}, arguments.power_w, path, needle).half_width_mm;
+}
+
 std::string text_of(const RobotProgram& program, const ProgramChecks& checks, const ProgramHeader& header,
                     const ExportArguments& arguments, const std::filesystem::path& output) {
   if (arguments.format == "joint-csv") return to_joint_csv(program, header);
@@ -200,7 +207,10 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   if (!arguments.intended.empty()) inputs.intended = &intended.emplace(read_robot_path(arguments.intended));
   if (!arguments.surface.empty()) inputs.surface = &surface.emplace(read_cloud(arguments.surface));
   if (!arguments.registration.empty()) inputs.registration = registration_summary(arguments.registration);
-  if (arguments.power_w > 0.0) inputs.power_w = arguments.power_w;
+  if (arguments.power_w > 0.0) {
+    inputs.power_w = arguments.power_w;
+    inputs.heat_half_width_mm = half_width_of_heat_mm(path, arguments);
+  }
   require_writable(output);
   warn_of_less(arguments, inputs, path, console);
 
@@ -262,7 +272,9 @@ void add_export(Application& application) {
                    "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth and shaft are "
                    "checked against it");
   verb->add_option("--registration", a.registration, "Result of `incise register` (.json): its quality is checked");
-  verb->add_option("--power-w", a.power_w, "Power of the electrode, to check it")->check(above_zero("--power-w"));
+  verb->add_option("--power-w", a.power_w,
+                   "Power of the electrode, to check it and how far beside the needle its heat reaches")
+      ->check(above_zero("--power-w"));
   verb->add_option("--tcp", a.tcp,
                    "Tool centre point in the flange as on the pendant: x y z (mm) rx ry rz (rad); z along the needle. "
                    "By default 0 0 150 0 0 0")

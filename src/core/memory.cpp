@@ -66,6 +66,8 @@ std::optional<std::uint64_t> available_memory_bytes() {
   return least;
 }
 
+std::optional<std::uint64_t> held_memory_bytes() { return kilobytes_in(kStatus, "VmRSS"); }
+
 std::optional<std::uint64_t> peak_memory_bytes() { return kilobytes_in(kStatus, "VmHWM"); }
 
 }  // namespace incise

@@ -7,6 +7,8 @@ namespace {
 
 constexpr double kMaxContactS = 600.0;      // until tissue is cut: beyond it no cut ends in any time worth waiting for
 constexpr double kLeastAdvanceMm = 1e-4;    // a step: below it a cut takes a million steps
+constexpr double kLeastResidualTolerance = 1e-6;  // a hundredth of what a converged cut is solved to
+constexpr double kMostResidualTolerance = 0.3;    // beyond it a step leaves more than the next takes up: another cut
 
 }  // namespace
 
@@ -35,8 +37,8 @@ std::vector<std::string> validate(const CutSettings& s, double tool_diameter_mm)
   expect(s.reach_mm >= 0.0, violations, "reach_mm", s.reach_mm, "0 mm or more");
   expect(s.bond_stiffness_kpa_mm2 >= 0.0, violations, "bond_stiffness_kpa_mm2", s.bond_stiffness_kpa_mm2, "0 kPa/mm² or more");
   expect(s.overlap_mm >= 0.0, violations, "overlap_mm", s.overlap_mm, "0 mm or more");
-  expect(s.residual_tolerance > 0.0 && s.residual_tolerance < 1.0, violations, "residual_tolerance", s.residual_tolerance,
-         "a fraction between 0 and 1");
+  expect(s.residual_tolerance >= kLeastResidualTolerance && s.residual_tolerance <= kMostResidualTolerance, violations, "residual_tolerance",
+         s.residual_tolerance, "a fraction in [1e-06, 0.3]");
   expect(s.max_step_mm > 0.0, violations, "max_step_mm", s.max_step_mm, "a distance above 0 mm");
   return violations;
 }

@@ -13,6 +13,8 @@ namespace incise {
 namespace {
 
 constexpr double kAbsoluteZeroC = -273.15;
+constexpr double kLeastDamageC = 45.0;  // below it tissue takes hours to be damaged [Pearce2010]: no temperature tells where
+constexpr double kLeastRiseK = 5.0;     // above the body: towards 0 the half width grows without bounds
 constexpr double kLeastRadius = 1e-12;     // in units of 2 a / v
 constexpr double kSeriesFrom = 40.0;       // from here the asymptotic series holds to all digits, and K itself nears underflow
 constexpr int kSeriesTerms = 20;
@@ -83,7 +85,8 @@ std::vector<std::string> validate(const ThermalSettings& s) {
   expect(s.conductivity_w_m_k > 0.0, violations, "conductivity_w_m_k", s.conductivity_w_m_k, "a conductivity above 0 W/(m K)");
   expect(s.heat_capacity_mj_m3_k > 0.0, violations, "heat_capacity_mj_m3_k", s.heat_capacity_mj_m3_k, "a heat capacity above 0 MJ/(m³ K)");
   expect(s.body_c > kAbsoluteZeroC, violations, "body_c", s.body_c, "a temperature above -273.15 °C");
-  expect(s.damage_c > s.body_c, violations, "damage_c", s.damage_c, "a temperature above body_c");
+  expect(s.damage_c >= kLeastDamageC && s.damage_c >= s.body_c + kLeastRiseK, violations, "damage_c", s.damage_c,
+         "a temperature of 45 °C or more, and at least 5 K above body_c");
   expect(s.absorbed_fraction > 0.0 && s.absorbed_fraction <= 1.0, violations, "absorbed_fraction", s.absorbed_fraction,
          "a share above 0 and at most 1");
   return violations;

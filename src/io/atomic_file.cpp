@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 
@@ -9,9 +10,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fstream>
+#include <optional>
+#include <regex>
 #include <set>
+#include <vector>
 
 namespace incise {
 namespace {
@@ -23,6 +28,17 @@ fs::path temporary_beside(const fs::path& path) {
   static std::atomic<unsigned> count = 0;  // only makes names differ; never part of a result
   return path.parent_path() / fmt::format(".{}.{}.{}.part", path.filename().string(), ::getpid(), count++);
 }
+
+/// The process that made a temporary name as above; nothing for other names.
+std::optional<pid_t> maker_of(const std::string& name) {
+  static const std::regex kTemporary(R"(\..+\.([0-9]{1,9})\.[0-9]+\.part)");
+  std::smatch match;
+  if (!std::regex_match(name, match, kTemporary)) return std::nullopt;
+  return static_cast<pid_t>(std::stol(match[1]));
+}
+
+/// Also true where nobody may ask.
+bool is_running(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
 
 /// "out/" means the folder "out".
 fs::path without_trailing_slash(const fs::path& path) {
@@ -128,6 +144,16 @@ void require_replaceable(const fs::path& folder) {
     if (std::find(own.begin(), own.end(), nlohmann::ordered_json(file)) != own.end()) continue;
     throw DataError(folder, "", fmt::format("'{}' of another origin", file), kExpected, "Move that file, or choose another place for the output");
   }
+}
+
+void remove_abandoned_temporaries(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> abandoned;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::optional<pid_t> maker = maker_of(entry->path().filename().string());
+    if (maker && (*maker == ::getpid() || !is_running(*maker))) abandoned.push_back(entry->path());
+  }
+  for (const fs::path& path : abandoned) fs::remove_all(path, error);
 }
 
 AtomicFolder::AtomicFolder(fs::path target)

@@ -17,6 +17,7 @@ constexpr double kRelaxedMm = 1e-3;  // the tissue counts as at rest when no ver
 constexpr double kSingleTolerance = 5e-2;   // of a step's residual: from here up a rounded matrix suffices
 constexpr double kSingleBulkRatio = 500.0;  // λ/μ up to which it does
 constexpr double kUnsolvedShare = 0.01;     // of the steps: with more, the cut did not converge
+constexpr double kHeldBackShare = 0.5;      // of the steps: with more that hold a vertex back, it is told
 constexpr double kTimeRoundingS = 1e-9;   // the program counts as over when less than this is left of it
 constexpr double kLeastStepShare = 0.01;  // of a step: less than this at the program's end goes with the step before it
 constexpr int kMaxRelaxationSteps = 60;   // after the tool is out
@@ -114,7 +115,7 @@ class IncisionRun {
       if (is_to_stop()) return Outcome::Cancelled;
       const double dt = next_step_s();
       const CutStepReport report = step(program_.pose_at(state().time_s + dt), dt);
-      if (!report.is_finite) return Outcome::NotConverged;
+      if (!report.is_finite) return broken_off();
       frames_.offer(state(), true);
       monitor_.progress("cutting", std::min(1.0, state().time_s / program_.duration_s()));
     }
@@ -122,7 +123,7 @@ class IncisionRun {
       if (is_to_stop()) return Outcome::Cancelled;
       const CutStepReport report = step(std::nullopt, settings_.cut.step_s());
       ++progress_.relaxation_steps;
-      if (!report.is_finite) return Outcome::NotConverged;
+      if (!report.is_finite) return broken_off();
       is_at_rest_ = report.solve.converged && report.max_step_mm < kRelaxedMm;
       if (is_at_rest_) return Outcome::Success;
     }
@@ -138,6 +139,13 @@ class IncisionRun {
 
  private:
   [[nodiscard]] CutState& state() { return progress_.state; }
+  Outcome broken_off() {
+    monitor_.message(Severity::Warning,
+                     fmt::format("the cut breaks off at {:.3f} s, in step {}: positions are no longer finite. What was cut "
+                                 "until then is no result",
+                                 state().time_s, progress_.steps.size()));
+    return Outcome::NotConverged;
+  }
   [[nodiscard]] bool is_tool_in() const {
     return progress_.relaxation_steps == 0 && progress_.state.time_s < program_.duration_s() - kTimeRoundingS;
   }
@@ -243,6 +251,19 @@ void judge_solves(IncisionResult& result, std::size_t steps, Monitor& monitor) {
   if (result.outcome == Outcome::Success && is_too_many) result.outcome = Outcome::NotConverged;
 }
 
+/// The limit is for loose bits: where it acts often it holds back the body, which then lags for no reason in its law.
+void tell_held_back(const IncisionSettings& settings, const IncisionResult& result,
+                    const std::vector<CutStepLog>& steps, Monitor& monitor) {
+  const auto with_one = static_cast<std::size_t>(
+      std::count_if(steps.begin(), steps.end(), [](const CutStepLog& step) { return step.held_back_vertices > 0; }));
+  if (result.outcome == Outcome::Cancelled) return;
+  if (static_cast<double>(with_one) <= kHeldBackShare * static_cast<double>(steps.size())) return;
+  monitor.message(Severity::Warning,
+                  fmt::format("vertices would have moved more than {} mm in a step (max_step_mm) and were held back: {} "
+                              "times, in {} of {} steps",
+                              settings.cut.max_step_mm, result.held_back_vertices, with_one, steps.size()));
+}
+
 std::size_t count_inverted(const TissueModel& model, const TissueState& tissue) {
   std::size_t count = 0;
   for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
@@ -284,6 +305,7 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
   }  // its workspace is large
   sum_up(progress.steps, result);
   judge_solves(result, progress.steps.size(), monitor);
+  tell_held_back(settings, result, progress.steps, monitor);
   result.steps = std::move(progress.steps);
   result.frames = std::move(progress.frames);
   result.record = progress.state.record;

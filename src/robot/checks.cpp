@@ -19,7 +19,7 @@ using robot_detail::Worst;
 
 constexpr double kClosedToMm = 0.01;
 constexpr double kLeastAreaMm2 = 0.01;  // of a tumour edge: less is a line or a place
-constexpr std::array<const char*, 28> kNames{"finite",
+constexpr std::array<const char*, 29> kNames{"finite",
                                              "frame",
                                              "closed",
                                              "gap",
@@ -28,6 +28,7 @@ constexpr std::array<const char*, 28> kNames{"finite",
                                              "speed_max",
                                              "depth",
                                              "margin",
+                                             "heat",
                                              "encloses",
                                              "edge_distance",
                                              "deviation",
@@ -200,13 +201,21 @@ class CourseChecker {
     const double tolerance = is_mark ? settings_.mark_depth_tolerance_mm : settings_.depth_tolerance_mm;
     if (surface != nullptr) return robot_detail::check_depth_in(list_, *surface, planned, tolerance);
     Worst worst;
-    for (const CoursePlace& p : places_) worst.see(std::abs(p.depth_mm - planned), p.pose);
-    list_.at_most("depth", worst.value, tolerance, "mm", worst.pose,
-                  fmt::format("greatest difference from the planned depth of {} mm, as the path says", planned));
+    double at_worst = planned;
+    for (const CoursePlace& p : places_) {
+      const double difference = std::abs(p.depth_mm - planned);
+      if (difference > worst.value) at_worst = p.depth_mm;
+      worst.see(difference, p.pose);
+    }
+    list_.at_most(
+        "depth", worst.value, tolerance, "mm", worst.pose,
+        fmt::format("greatest difference between the depth that the path gives ({:.4g} mm there) and the planned {} mm",
+                    at_worst, planned));
   }
 
-  void margin() {
+  void margin(const std::optional<double>& heat_half_width_mm) {
     if (path_.kind == PathKind::Mark) return edge_distance();
+    if (!heat_half_width_mm) list_.not_made("heat beside the needle: power or tissue is not known");
     if (path_.tumor_edge.points.empty() && !settings_.must_be_ring)
       return list_.not_made("margin to the tumour edge: the path holds none");
     if (path_.tumor_edge.points.size() < 3) {
@@ -229,12 +238,12 @@ class CourseChecker {
                       "one place",
                       path_.tumor_edge.points.size()));
     } else {
-      keeps_away();
+      keeps_away(heat_half_width_mm);
     }
     if (settings_.must_be_ring) encloses();
   }
 
-  void keeps_away() {
+  void keeps_away(const std::optional<double>& heat_half_width_mm) {
     const Contour seen_edge = seen_along(axis_, path_.tumor_edge);
     Worst closest;  // of the negative margin
     const auto see = [&](double distance, const Vec3& point, std::size_t pose) {
@@ -249,6 +258,10 @@ class CourseChecker {
     list_.at_least("margin", -closest.value, settings_.close_margin_mm, "mm", closest.pose,
                    "least distance of the needle from the tumour edge, where it enters and of its tip as seen along "
                    "the mean axis (negative: inside)");
+    if (!heat_half_width_mm) return;
+    list_.at_least("heat", -closest.value, *heat_half_width_mm, "mm", closest.pose,
+                   "the same distance, against how far beside the needle heat damages tissue where the path is slowest "
+                   "and shallowest");
   }
 
   void encloses() {
@@ -480,7 +493,7 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
   course.self_crossing();
   course.speed();
   course.depth(inputs.surface);
-  course.margin();
+  course.margin(inputs.heat_half_width_mm);
   course.deviation(inputs.intended);
   course.chord_error();
   course.tilt();

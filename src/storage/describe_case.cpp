@@ -270,17 +270,17 @@ void describe_cut(Case& c, FieldVisitor& v) {
            c.cut.bond_stiffness_kpa_mm2, {0.0, 1e6});
   v.number({"overlap_mm", "mm", "A ring is cut this far beyond its start, less than once round."}, c.cut.overlap_mm, {0.0, 50.0});
   v.number({"residual_tolerance", "", "Of each step's linear solve, relative to the contact force."}, c.cut.residual_tolerance,
-           {0.0, 1.0, true, true});
+           {1e-6, 0.3});
   v.integer({"frames", "", "Moments of the cut that are kept for pictures."}, c.frames, {0.0, 500.0});
   v.end_group();
 }
 
 void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
-  v.begin_group({"thermal", "", "How far beside the cut heat damages tissue, at plan.power_w and plan.speed_mm_s. Not calibrated."});
+  v.begin_group({"thermal", "", "How far beside the cut heat damages tissue, at plan.power_w and the speeds of the path. Not calibrated."});
   v.number({"conductivity_w_m_k", "W/(m K)", "Of heat in tissue; muscle in the IT'IS database."}, t.conductivity_w_m_k, {0.01, 100.0});
   v.number({"heat_capacity_mj_m3_k", "MJ/(m3 K)", "Per volume; muscle in the IT'IS database."}, t.heat_capacity_mj_m3_k, {0.01, 100.0});
   v.number({"body_c", "°C", "Temperature of the tissue before the cut."}, t.body_c, {-20.0, 60.0});
-  v.number({"damage_c", "°C", "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); above body_c."}, t.damage_c, {-20.0, 200.0});
+  v.number({"damage_c", "°C", "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); at least 5 K above body_c."}, t.damage_c, {45.0, 200.0});
   v.number({"absorbed_fraction", "", "Share of the power that heats the tissue beside the kerf; 1: an upper bound."}, t.absorbed_fraction,
            {0.001, 1.0});
   v.end_group();

@@ -3,6 +3,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
+#include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
@@ -73,6 +74,7 @@ FolderStore::FolderStore(CaseFile file, std::filesystem::path root, RunContext c
   if (error || !std::filesystem::is_directory(root_)) {
     throw DataError(root_, "", error ? error.message() : "something that is not a folder", "a folder that can be written");
   }
+  remove_abandoned_temporaries(root_);  // a run that was killed while it wrote
 }
 
 std::filesystem::path FolderStore::folder(Product product) const { return root_ / info(product).folder; }

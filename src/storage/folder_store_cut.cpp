@@ -218,7 +218,9 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
       incision.record.removals.push_back(r);
     }
     const ToolPath intended = read_tool_path(folder(Product::Plan) / "path.json");
-    SimulatedCut cut = judge(file_.settings, std::move(incision), intended, json.at("tets").get<std::size_t>());
+    // A correction moves waypoints and keeps their speeds and depths, so that all cuts of a study are heated alike.
+    const ToolPath heated = read_given_path().value_or(intended);
+    SimulatedCut cut = judge(file_.settings, std::move(incision), heated, intended, json.at("tets").get<std::size_t>());
     if (is_judged_anew(product)) {
       write_json(from / "incision.json", incision_json(cut));
       note_judgement(product);

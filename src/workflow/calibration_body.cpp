@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/workflow/assess.hpp>
+#include <incise/workflow/cut_doubts.hpp>
 
 #include <fmt/format.h>
 
@@ -50,6 +51,7 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
                     "ring: a calibration compares rings round a tumour");
   }
   study_ = run_study(subject.settings, *subject.store, Stage::Plan, workers, monitor);
+  require_no_locking(*study_.model);
   require_stretched(*study_.stretched, 1.0);
   drawn_edge_ = subject.store->read_tumor_edge();
   given_path_ = subject.store->read_given_path();
@@ -104,7 +106,7 @@ CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJ
   run.wall_s = result.incision.wall_s;
   run.tets = body.model.mesh.tets.size();
   if (!run.problem.empty()) return run;
-  const SimulatedCut cut = judge(settings, std::move(result.incision), body.plan, run.tets);
+  const SimulatedCut cut = judge(settings, std::move(result.incision), body.followed, body.plan, run.tets);
   run.outcome = cut.outcome;
   run.closed_loop = cut.incision.is_closed_loop.value_or(false);
   run.paper_success = cut.centerline.paper_success.value_or(false);

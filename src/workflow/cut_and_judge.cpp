@@ -1,3 +1,4 @@
+#include <incise/cutting/path_heat.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <algorithm>
@@ -34,15 +35,9 @@ LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const Too
   return errors;
 }
 
-/// Length of the electrode in tissue, over which its power is spread.
-double heated_length_mm(const Tool& tool, const PlanSettings& plan) {
-  const std::optional<double> length = length_mm(tool);
-  return length ? std::min(*length, plan.depth_mm) : 2.0 * radius_mm(tool);  // a ball has no shaft
-}
-
 }  // namespace
 
-SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& intended, std::size_t tets) {
+SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended, std::size_t tets) {
   SimulatedCut cut;
   cut.incision = std::move(incision);
   cut.tets = tets;
@@ -55,9 +50,8 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
     cut.inner_edge = evaluate(cut.incision.inner_edge, cut.incision.final_tumor_edge, inner_edge);
   }
   for (const KerfLayer& layer : cut.incision.kerf.layers) cut.layers.push_back(layer_errors(settings, layer, intended, centerline));
-  // Heat is that of the real tool, whatever speed the simulated one needed.
-  cut.thermal_half_width_mm =
-      thermal_half_width_mm(settings.thermal, settings.plan.power_w, settings.plan.speed_mm_s, heated_length_mm(settings.tool, settings.plan));
+  // Heat is that of the real tool, which keeps to the speeds of the path, whatever speed the simulated one needed.
+  cut.thermal_half_width_mm = widest_heat(settings.thermal, settings.plan.power_w, followed, settings.tool).half_width_mm;
   if (settings.plan.kind == PlanKind::Ring && cut.centerline.signed_error_mm) {
     cut.thermal_margin_mm = cut.centerline.target_mm + cut.centerline.signed_error_mm->min - cut.thermal_half_width_mm;
   }
@@ -83,7 +77,7 @@ SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const
   ToolPath with_edge = path;
   with_edge.tumor_edge = intended.tumor_edge;
   if (!from) from = begin_incision(model, stretched, with_edge, incision);
-  return judge(settings, continue_incision(model, stretched, with_edge, incision, std::move(*from), workers, monitor, keep), intended,
+  return judge(settings, continue_incision(model, stretched, with_edge, incision, std::move(*from), workers, monitor, keep), path, intended,
                model.mesh.tets.size());
 }
 

@@ -151,7 +151,7 @@ class TissueCuts {
       if (result.incision.outcome == Outcome::Cancelled) return;
       ScenarioRun& run = made[missing[i]];
       run.problem = result.problem;
-      if (run.problem.empty()) run.errors = errors_of(std::move(result.incision), run.setting, *held[i]);
+      if (run.problem.empty()) run.errors = errors_of(std::move(result.incision), path, run.setting, *held[i]);
       runs_.save(run, path);
       ++done;
     });
@@ -161,10 +161,10 @@ class TissueCuts {
   }
 
   /// Absent: no closed ring.
-  [[nodiscard]] std::optional<PathErrors> errors_of(IncisionResult incision, const RunSetting& setting,
-                                                    const HeldBody& held) const {
+  [[nodiscard]] std::optional<PathErrors> errors_of(IncisionResult incision, const ToolPath& followed,
+                                                    const RunSetting& setting, const HeldBody& held) const {
     const Case settings = with_setting(settings_, setting);
-    const SimulatedCut cut = judge(settings, std::move(incision), held.plan, held.model.mesh.tets.size());
+    const SimulatedCut cut = judge(settings, std::move(incision), followed, held.plan, held.model.mesh.tets.size());
     if (!cut.incision.is_closed_loop.value_or(false)) return std::nullopt;
     Monitor silent;  // any thread may come here
     return path_errors(settings, cut, held.plan.tumor_edge, silent);

@@ -5,6 +5,7 @@
 #include <incise/geometry/surface_query.hpp>
 #include <incise/procedure/incision_memory.hpp>
 #include <incise/workflow/correction.hpp>
+#include <incise/workflow/cut_doubts.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
@@ -28,6 +29,7 @@ class Runner {
     using Step = bool (Runner::*)();
     static constexpr std::array<Step, 7> kSteps{&Runner::segment,  &Runner::mesh,       &Runner::stretch_tissue, &Runner::plan,
                                                 &Runner::simulate, &Runner::compensate, &Runner::verify};
+    until_ = until;
     read_inputs();
     for (std::size_t i = 0; i <= static_cast<std::size_t>(until); ++i) {
       throw_if_cancelled(monitor_, "the study");
@@ -96,6 +98,7 @@ class Runner {
     }
     require_memory(mesh);
     study_.model = std::make_shared<TissueModel>(tissue_of(settings_, std::move(mesh)));
+    if (until_ >= Stage::Simulate) require_no_locking(*study_.model);
     return true;
   }
 
@@ -103,8 +106,10 @@ class Runner {
   void require_memory(const TetMesh& mesh) {
     const std::uint64_t needed =
         expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, settings_.frames);
-    monitor_.message(Severity::Notice, fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB",
-                                                   mesh.tets.size(), mesh.vertices.size(), megabytes(needed)));
+    const std::optional<std::uint64_t> held = held_memory_bytes();
+    monitor_.message(Severity::Notice,
+                     fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB{}", mesh.tets.size(), mesh.vertices.size(),
+                                 megabytes(needed), held ? fmt::format(" beside the {:.0f} MB that the program holds now", megabytes(*held)) : ""));
     const std::optional<std::uint64_t> available = available_memory_bytes();
     if (!available || needed <= *available) return;
     throw DataError("this machine", "memory", fmt::format("{:.0f} MB that can be taken", megabytes(*available)),
@@ -207,7 +212,11 @@ class Runner {
       check_path(*given_path_, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
     }
     study_.followed = given_path_ ? *given_path_ : *study_.plan;
+    for (const std::string& doubt : doubts_before_cut(settings_, *study_.model, study_.stretched->state.positions, *study_.followed)) {
+      monitor_.message(Severity::Warning, doubt);
+    }
     study_.as_planned = cut(Stage::Simulate, CutRole::AsPlanned, *study_.followed);
+    tell_doubts("the cut as planned", *study_.as_planned);
     study_.outcome = study_.as_planned->outcome;
     return true;
   }
@@ -230,6 +239,10 @@ class Runner {
       return false;
     }
     return true;
+  }
+
+  void tell_doubts(const char* which, const SimulatedCut& made) {
+    for (const std::string& doubt : doubts_about(made)) monitor_.message(Severity::Warning, fmt::format("{}: {}", which, doubt));
   }
 
   bool skip_correction(const char* reason) {
@@ -274,6 +287,7 @@ class Runner {
     } else {
       study_.corrected = cut(Stage::Verify, CutRole::Corrected, correction.moves.path);
     }
+    tell_doubts("the corrected cut", *study_.corrected);
     study_.outcome = study_.corrected->outcome;
     study_.is_accepted = is_accepted(settings_, correction, *study_.as_planned, *study_.corrected);
     return true;
@@ -283,6 +297,7 @@ class Runner {
   Store& store_;
   Workers& workers_;
   Monitor& monitor_;
+  Stage until_ = Stage::Verify;
   std::optional<TetMesh> given_mesh_;
   std::optional<Contour> tumor_edge_;
   std::optional<TriMesh> tumor_surface_;

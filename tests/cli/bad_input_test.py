@@ -229,6 +229,12 @@ class CaseTest(CommandTest):
         self.change(specimen={"material": {"poissons_ratio": 0.5}})
         self.assert_case_refused("deform", BAD_CASE, "case.yaml line ", "specimen.material.poissons_ratio", "0.5", "[0, 0.5)")
 
+    def test_tissue_that_locks_may_be_stretched_but_not_cut(self):
+        self.change(specimen={"material": {"poissons_ratio": 0.499}})
+        for verb in ("simulate", "run"):
+            self.assert_case_refused(verb, BAD_CASE, "case.yaml: specimen.material.volume: found per_tet with a Poisson's ratio of 0.499", "expected averaged")
+        self.assertEqual(self.incise("deform", "case", "-o", self.out, "--quiet").returncode, DONE)
+
     def test_a_displacement_that_is_no_number_is_refused(self):
         pull = {"kind": "displaced", "where": {"end": {"direction": "anterior", "within_mm": 5}}, "displacement_mm": [0, ".nan", 0]}
         self.change(specimen={"constraints": [self.CLAMP, pull]})
@@ -605,10 +611,28 @@ class CommandLineTest(CommandTest):
         self.assert_misuse("plan", "case", "--frobnicate", says="--frobnicate")
 
     def test_no_verb_at_all_is_told(self):
-        self.assert_misuse(says="required")
+        self.assert_misuse(says="incise: command line: verb: found nothing, expected one of bench, demo, run,")
+        self.assert_misuse("bench", says="incise: command line: incise bench: found nothing, expected one of make, cut")
 
-    def test_a_value_out_of_range_is_told(self):
-        self.assert_misuse("plan", "case", "--threads", "-3", says="--threads")
+    def test_whatever_is_wrong_is_told_in_the_words_of_all_errors(self):
+        for words, says in (
+            ("plan case --threads -3", "--threads: found -3, expected a whole number from 0 to 1024"),
+            ("run case --isa sse", "--isa: found 'sse', expected one of portable, avx2, avx512"),
+            ("run case --frames 0", "--frames: found 0, expected a whole number from 1 to 500"),
+            ("run case --frames many", "--frames: found 'many', expected a whole number from 1 to 500"),
+            ("run case --frames", "--frames: found no value, expected 1 value"),
+            ("run case --seed -1", "--seed: found -1, expected a whole number of at least 0"),
+            ("simulate case --checkpoint-s -1", "--checkpoint-s: found -1, expected a number from 0 to 86400"),
+            ("export p.json --tcp 1 2", "--tcp: found 2 values, expected 6 values"),
+            ("run", "case: found nothing, expected "),
+            ("run case other", "incise run: found 'other', expected no further argument"),
+            ("run case --frame 3", "incise run: found '--frame', expected an option that it has. Did you mean '--frames'?"),
+            ("bench cat", "incise bench: found 'cat', expected one of make, cut"),
+        ):
+            with self.subTest(words=words):
+                done = self.incise(*words.split())
+                self.assert_refused(done, BAD_CASE, "incise: command line: " + says, "--help` explains it")
+                self.assertEqual(done.stderr.count("expected"), 1, done.stderr)
 
     def test_a_verb_that_writes_a_file_asks_where(self):
         self.assert_misuse("segment", "ct", says="-o: found nothing")

@@ -1,6 +1,7 @@
 """A cut that is interrupted goes on from its checkpoint and ends in the same files."""
 
 import json
+import os
 import pathlib
 import shutil
 import signal
@@ -51,7 +52,9 @@ class CheckpointTest(CommandTest):
         self.assertIsNone(running.poll(), "it was over before it could be stopped")
         running.send_signal(stop_signal)
         stdout, stderr = running.communicate(timeout=120)
-        return subprocess.CompletedProcess(command, running.returncode, stdout, stderr)
+        done = subprocess.CompletedProcess(command, running.returncode, stdout, stderr)
+        done.pid = running.pid
+        return done
 
     def assert_same_cut(self, one, other):
         """Byte for byte, but for the time that it took and the record of the command."""
@@ -79,11 +82,17 @@ class CheckpointTest(CommandTest):
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
 
     def test_a_killed_run_goes_on_from_its_last_checkpoint(self):
-        self.stop("simulate", self.checkpoint, signal.SIGKILL)
+        killed = self.stop("simulate", self.checkpoint, signal.SIGKILL)
+        # Where the signal met it while it was writing, this is what it left.
+        (self.out / f".as_planned.checkpoint.{killed.pid}.9.part").write_bytes(b"half a checkpoint")
+        (self.out / f".as_planned.{killed.pid}.10.part").mkdir()
+        alive = self.out / f".as_planned.checkpoint.{os.getpid()}.0.part"
+        alive.write_bytes(b"of a process that runs")
         resumed = self.incise("simulate", "case", "-o", self.out)  # by itself
         self.assertEqual(resumed.returncode, DONE, resumed.stderr)
         self.assertIn("simulate: goes on after step", resumed.stderr)
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
+        self.assertEqual([path for path in self.out.iterdir() if path.name.startswith(".")], [alive])
 
     def test_run_goes_on_in_its_second_cut(self):
         done = self.stop("run", self.out / "pass_1.checkpoint", signal.SIGTERM)

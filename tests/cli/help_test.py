@@ -4,7 +4,7 @@ import json
 import re
 import unittest
 
-from command import DONE, CommandTest
+from command import BAD_CASE, DONE, CommandTest
 
 VERBS = ["assess", "bench", "demo", "run", "phantom", "segment", "mesh", "deform", "plan", "simulate", "compensate", "calibrate", "evaluate", "export", "register", "report", "schema", "surface", "verify", "replay", "track", "project", "power", "compare", "audit"]
 
@@ -28,8 +28,12 @@ class HelpTest(CommandTest):
 
     def test_help_is_a_word_too(self):
         self.assertEqual(self.incise("help").stdout, self.incise("--help").stdout)
-        asked = self.incise("help", "replay")
-        self.assertEqual((asked.returncode, asked.stdout), (DONE, self.incise("replay", "--help").stdout))
+        for words in (["run"], ["bench", "make"]):
+            done = self.incise("help", *words)
+            self.assertEqual(done.returncode, DONE)
+            self.assertEqual(done.stdout, self.incise(*words, "--help").stdout)
+            self.assertIn("Example:", done.stdout)
+        self.assert_refused(self.incise("help", "rnu"), BAD_CASE, "'rnu'", "Did you mean 'run'?")
 
     def test_the_version_is_one_line(self):
         done = self.incise("--version")

@@ -226,6 +226,16 @@ class ExportTest(RobotTest):
         done = self.incise("report", "--replay", "played", "-o", "played/replay.json")
         self.assert_refused(done, BAD_CASE, "-o: found played/replay.json, in the input played")
 
+    def test_heat_that_reaches_the_tumour_edge_is_not_exported(self):
+        slow = ring(speed=0.6)  # 5 mm outside the edge
+        self.json_of("export", self.write(slow), "-o", "slow.script")  # nobody knows its power
+        options = ["--power-w", "35"]
+        self.assert_unsafe(slow, "heat", "5 mm at waypoint", "has to be >= 32.", options=options)
+        self.json_of("export", self.write(ring(speed=7.0)), *options, "-o", "fast.script")
+        done = self.incise("export", self.write(slow), *options, "--override", "heat", "-o", "slow.script")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("overridden: heat", done.stderr)
+
     def test_waypoints_that_no_tool_can_follow_are_refused(self):
         path = ring()
         path["waypoints"][6] = path["waypoints"][5]

@@ -19,6 +19,13 @@ TEST(Memory, ThePeakGrowsByWhatIsHeld) {
   EXPECT_EQ(held.back(), 'x');
 }
 
+TEST(Memory, WhatIsHeldNowIsSomethingAndNoMoreThanThePeak) {
+  const auto held = held_memory_bytes();
+  ASSERT_TRUE(held.has_value());
+  EXPECT_GT(*held, kMiB) << "a process of a few megabytes";
+  EXPECT_LE(*held, *peak_memory_bytes());
+}
+
 TEST(Memory, WhatIsAvailableIsNoMoreThanTheProcessMayTake) {
   const auto free = available_memory_bytes();
   ASSERT_TRUE(free.has_value());

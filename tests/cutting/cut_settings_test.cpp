@@ -48,6 +48,18 @@ TEST(CutSettings, APowerThatTakesForEverIsRefused) {
   }
 }
 
+TEST(CutSettings, StepsSolvedSoLooselyOrTightlyThatNoCutIsToBeBelievedAreRefused) {
+  CutSettings settings;
+  for (const double good : {1e-6, 1e-4, 0.3}) {
+    settings.residual_tolerance = good;
+    EXPECT_THAT(validate(settings, kNeedleDiameterMm), IsEmpty()) << good;
+  }
+  for (const double bad : {1e-300, 9e-7, 0.31, 0.99}) {
+    settings.residual_tolerance = bad;
+    EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("expected a fraction in [1e-06, 0.3]"))) << bad;
+  }
+}
+
 TEST(CutSettings, AStepThatNoCutEndsWithIsRefused) {
   CutSettings settings;
   settings.advance_per_step_mm = 1e-9;

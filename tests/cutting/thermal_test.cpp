@@ -97,6 +97,9 @@ TEST(ThermalSettings, EveryViolationIsListedWithItsField) {
   settings.conductivity_w_m_k = 0.0;
   settings.damage_c = 37.0;
   settings.absorbed_fraction = 1.1;
+  ThermalSettings lukewarm;
+  lukewarm.damage_c = 37.0000001;  // "damaged" hundreds of kilometres away
+  EXPECT_THAT(validate(lukewarm), ElementsAre(HasSubstr("damage_c: found 37.0000001")));
   EXPECT_THAT(validate(settings), ElementsAre(HasSubstr("conductivity_w_m_k: found 0"), HasSubstr("damage_c: found 37"),
                                               HasSubstr("absorbed_fraction: found 1.1")));
 }

@@ -1,12 +1,17 @@
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <fstream>
+#include <iterator>
 #include <ostream>
 #include <stdexcept>
 
@@ -58,6 +63,25 @@ TEST(WriteAtomically, MakesNoFolders) {
 TEST(WriteAtomically, RefusesAFolderAsTheFileToWrite) {
   const incise::testing::TemporaryFolder folder;
   EXPECT_THROW(write_atomically(folder.path(), [](std::ostream&) {}), DataError);
+}
+
+TEST(RemoveAbandonedTemporaries, TakesWhatDeadProcessesLeftAndNothingElse) {
+  const incise::testing::TemporaryFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ASSERT_GT(child, 0);
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);  // a number that no process has any more
+  const auto name = [](const char* of, pid_t process) { return std::string(".") + of + "." + std::to_string(process) + ".3.part"; };
+  std::ofstream(folder / name("a.checkpoint", child)) << "half";
+  fs::create_directory(folder / name("as_planned", child));
+  std::ofstream(folder / name("as_planned", child) / "incision.json") << "half";
+  std::ofstream(folder / name("b.csv", ::getpid())) << "of an earlier process with this number";
+  remove_abandoned_temporaries(folder / "nowhere");
+  const std::string others[] = {name("c.csv", ::getppid()), "a.checkpoint", ".hidden.part", ".x.12.part", "x." + std::to_string(child) + ".3.part"};
+  for (const std::string& other : others) std::ofstream(folder / other) << "kept";
+  remove_abandoned_temporaries(folder.path());
+  for (const std::string& other : others) EXPECT_TRUE(fs::exists(folder / other)) << other;
+  EXPECT_EQ(entries_in(folder.path()), std::size(others));
 }
 
 TEST(ReadText, NamesAMissingFileAndAFolder) {

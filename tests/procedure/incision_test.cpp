@@ -168,6 +168,39 @@ TEST_F(Incision, SaysWhenItsStepsAreTooFewForTheFrames) {
   EXPECT_NE(said[0].find("frames in place of 400"), std::string::npos) << said[0];
 }
 
+TEST_F(Incision, SaysThatItBrokeOffWhereAPositionIsNoLongerFinite) {
+  // So soft, and at one corner so loaded, that the square of a displacement is beyond all numbers while that of a force is not.
+  Material soft;
+  soft.youngs_modulus_kpa = 1e-6;
+  model_ = make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), soft, {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
+  model_.dead_load_mn.back().z() = 1e151;
+  settings_.cut.residual_tolerance = 1e-3;
+  Listener listener;
+  Workers workers(1);
+  const IncisionResult result = simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, listener);
+  EXPECT_EQ(result.outcome, Outcome::NotConverged);
+  ASSERT_FALSE(listener.warnings.empty());
+  EXPECT_NE(listener.warnings[0].find("the cut breaks off at "), std::string::npos) << listener.warnings[0];
+  EXPECT_NE(listener.warnings[0].find("no longer finite"), std::string::npos) << listener.warnings[0];
+}
+
+TEST_F(Incision, SaysWhenManyStepsHoldVerticesBack) {
+  settings_.cut.bond_stiffness_kpa_mm2 = 300.0;
+  settings_.cut.dullness = 6.0;
+  const auto warnings_with = [this](double max_step_mm) {
+    settings_.cut.max_step_mm = max_step_mm;
+    Listener listener;
+    Workers workers(1);
+    const IncisionResult result = simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, listener);
+    EXPECT_EQ(result.held_back_vertices == 0, max_step_mm > 1e3) << max_step_mm;
+    return listener.warnings;
+  };
+  EXPECT_TRUE(warnings_with(1e4).empty());
+  const std::vector<std::string> said = warnings_with(0.05);  // tissue is dragged 0.8 mm in a step
+  ASSERT_FALSE(said.empty());
+  EXPECT_NE(said.back().find("more than 0.05 mm in a step (max_step_mm) and were held back"), std::string::npos) << said.back();
+}
+
 TEST_F(Incision, TakesWhatRoundingLeavesOfTheProgramWithItsLastStep) {
   const double advance = settings_.cut.advance_per_step_mm;
   const auto steps_of = [&] { return ToolProgram(ring(4.0), settings_.cut, settings_.tool).duration_s() / settings_.cut.step_s(); };

@@ -104,6 +104,20 @@ TEST(CheckProgram, FindsADepthThatIsNotThePlannedOne) {
   ToolPath path = ring_path();
   path.waypoints[20].depth_mm = 5.8;
   EXPECT_THAT(failures_of(path), ::testing::ElementsAre("depth"));
+  for (Waypoint& waypoint : path.waypoints) waypoint.depth_mm = 1.5;
+  const std::string said = named(check_program(make_program(path), path), "depth").message();
+  EXPECT_THAT(said, ::testing::HasSubstr("the depth that the path gives (1.5 mm there) and the planned 5 mm"));
+}
+
+TEST(CheckProgram, FindsHeatThatReachesTheTumourEdge) {
+  const ToolPath path = ring_path();  // 5 mm outside it
+  EXPECT_THAT(failures_of(path, {}, {.heat_half_width_mm = 4.9}), ::testing::IsEmpty());
+  const auto checks = check_program(make_program(path), path, {}, {.heat_half_width_mm = 39.5});
+  EXPECT_THAT(failures(checks), ::testing::ElementsAre("heat"));
+  EXPECT_EQ(named(checks, "heat").value, named(checks, "margin").value);
+  EXPECT_EQ(named(checks, "heat").limit, 39.5);
+  EXPECT_TRUE(can_be_overridden("heat"));
+  EXPECT_THAT(::testing::PrintToString(check_program(make_program(path), path).not_made), ::testing::HasSubstr("heat"));
 }
 
 TEST(CheckProgram, FindsACourseTooCloseToTheTumourEdge) {
@@ -490,7 +504,7 @@ TEST(OverrideChecks, RefusesWhatCannotBeOverridden) {
   auto checks = check_program(make_program(path), path);
   for (const char* name : {"finite", "frame", "reach", "margins"})
     EXPECT_THROW(override_checks(checks, {name}), InvalidArgument) << name;
-  EXPECT_EQ(check_names().size(), 28u);
+  EXPECT_EQ(check_names().size(), 29u);
 }
 
 }  // namespace

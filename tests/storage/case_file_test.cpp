@@ -155,6 +155,8 @@ TEST_F(CaseFileTest, ALawOfCuttingThatIsNoneIsRefusedNamingItsField) {
   EXPECT_THAT(refusal_with("cut: {toughness: [{label: 1, toughness: 2}, {label: 1, toughness: 3}]}\n"),
               AllOf(HasSubstr("cut.toughness[1]"), HasSubstr("label 1 again")));
   EXPECT_THAT(refusal_with("thermal: {body_c: 50, damage_c: 45}\n"), AllOf(HasSubstr("thermal"), HasSubstr("damage_c: found 45")));
+  EXPECT_THAT(refusal_with("thermal: {body_c: 50, damage_c: 54.9}\n"), HasSubstr("thermal.damage_c: found 54.9, expected a temperature of 45 °C or more, and at least 5 K above body_c"));
+  EXPECT_EQ(read(kLeast + std::string("thermal: {body_c: 50, damage_c: 55}\n")).settings.thermal.damage_c, 55.0);
   EXPECT_THAT(refusal_with("tool: {kind: blade, thickness_mm: 0.2}\n"), HasSubstr("advance_per_step_mm"));
 }
 
@@ -261,7 +263,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"cut: {speed_mm_s: 0}", "cut.speed_mm_s"}, BadValue{"cut: {dullness: -1}", "cut.dullness"},
         BadValue{"cut: {dullness: 0}", "cut.dullness"},
         BadValue{"cut: {advance_per_step_mm: 1.5}", "advance_per_step_mm"},
-        BadValue{"cut: {residual_tolerance: 1}", "cut.residual_tolerance"},
+        BadValue{"cut: {residual_tolerance: 0.31}", "cut.residual_tolerance"},
+        BadValue{"cut: {residual_tolerance: 9e-7}", "cut.residual_tolerance"},
+        BadValue{"thermal: {body_c: 36, damage_c: 44.9}", "thermal.damage_c"},
         BadValue{"plan: {speed_mm_s: 0}", "plan.speed_mm_s"}, BadValue{"plan: {depth_mm: 30}", "plan.depth_mm"},
         BadValue{"plan: {waypoints: 4}", "waypoints"}, BadValue{"plan: {approach: [0, 0, 0]}", "plan.approach"},
         BadValue{"plan: {start_direction: superior}", "start_direction"},

@@ -277,7 +277,7 @@ TEST_F(FolderStoreTest, WhatCameOutOfACutComesBackExactly) {
 TEST_F(FolderStoreTest, ALayerIsHeldAgainstTheLateralMargin) {
   FolderStore store = open();
   store.save_plan(small_ring(), 0.0);
-  const SimulatedCut judged = judge(store.case_file().settings, measured_cut().incision, small_ring(), 48);
+  const SimulatedCut judged = judge(store.case_file().settings, measured_cut().incision, small_ring(), small_ring(), 48);
   ASSERT_EQ(judged.layers.size(), 3U);
   ASSERT_TRUE(judged.layers[0].signed_error_mm);
   EXPECT_NEAR(judged.layers[0].signed_error_mm->mean, -(2.0 - 1.0 / 3.0) - 5.0, 0.1) << "a third of a millimetre round the tumour's middle";
@@ -290,6 +290,22 @@ TEST_F(FolderStoreTest, WhyADeepMarginIsNotKnownIsSaid) {
   const nlohmann::ordered_json json = to_json(cut);
   EXPECT_TRUE(json.at("deep_margin_mm").is_null());
   EXPECT_NE(json.at("deep_margin_unknown").get<std::string>().find("tumor.surface"), std::string::npos);
+}
+
+TEST_F(FolderStoreTest, HeatIsThatOfThePathThatIsFollowedAlsoWhenTheCutIsRead) {
+  ToolPath slow = small_ring();
+  for (Waypoint& waypoint : slow.waypoints) waypoint.speed_mm_s = 0.5;
+  write_tool_path(folder_ / "slow.json", slow);
+  const auto slow_store = [this] { return open("path: slow.json\n"); };
+  slow_store().save_plan(small_ring(), 0.0);
+  const SimulatedCut planned = judge(read().settings, measured_cut().incision, small_ring(), small_ring(), 48);
+  const SimulatedCut followed = judge(read().settings, measured_cut().incision, slow, small_ring(), 48);
+  EXPECT_NEAR(followed.thermal_half_width_mm / planned.thermal_half_width_mm, 7.0 / 0.5, 1e-6) << "its slowest waypoint has 7 mm/s";
+  EXPECT_LT(*followed.thermal_margin_mm, 0.0);
+  slow_store().save_cut(CutRole::AsPlanned, model(), stretched(), followed, 0.1);
+  const auto loaded = slow_store().load_cut(CutRole::AsPlanned);
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded->thermal_half_width_mm, followed.thermal_half_width_mm);
 }
 
 // --- the tumour's surface
@@ -387,7 +403,7 @@ TEST_F(FolderStoreTest, ACaseFolderThatWasMovedKeepsItsProducts) {
 
 TEST_F(FolderStoreTest, WhatIsOnlyHeldAgainstACutJudgesItAnewInItsFilesToo) {
   open().save_plan(small_ring(), 0.1);
-  const SimulatedCut made = judge(read().settings, measured_cut().incision, small_ring(), 48);
+  const SimulatedCut made = judge(read().settings, measured_cut().incision, small_ring(), small_ring(), 48);
   open().save_cut(CutRole::AsPlanned, model(), stretched(), made, 0.1);
   const std::filesystem::path cut = folder_ / "out" / "as_planned";
   const auto first = nlohmann::ordered_json::parse(read_text(cut / "incision.json"));

@@ -78,13 +78,28 @@ Case coarse_case() {
   return settings;
 }
 
+/// Collects what is said.
+class Warnings : public Monitor {
+ public:
+  void message(Severity severity, std::string_view text) override {
+    if (severity == Severity::Warning) all += std::string(text) + "\n";
+  }
+  std::string all;
+};
+
 TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
   MemoryStore store;
   Workers workers(2);
-  Monitor silent;
+  Warnings warnings;
   Case settings = coarse_case();
+  settings.plan.power_w = 90.0;
+  settings.cut.power_exponent = 0.0;  // power does nothing but heat
   settings.compensation.method = CompensationMethod::Paper;
-  const Study study = run_study(settings, store, Stage::Verify, workers, silent);
+  const Study study = run_study(settings, store, Stage::Verify, workers, warnings);
+  EXPECT_NE(warnings.all.find("the mesh is coarse for a tool of 1.6 mm"), std::string::npos) << warnings.all;
+  for (const char* cut : {"the cut as planned: heat reaches", "the corrected cut: heat reaches"}) {
+    EXPECT_NE(warnings.all.find(cut), std::string::npos) << warnings.all;
+  }
   ASSERT_TRUE(study.as_planned && study.corrected);
   EXPECT_EQ(study.as_planned->outcome, Outcome::Success);
   EXPECT_EQ(study.corrected->outcome, Outcome::Success);

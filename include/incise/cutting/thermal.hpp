@@ -12,7 +12,7 @@ struct ThermalSettings {
   double conductivity_w_m_k = 0.49;    ///< of heat in tissue, W/(m K), > 0
   double heat_capacity_mj_m3_k = 3.73; ///< per volume: 1090 kg/m³ · 3421 J/(kg K), MJ/(m³ K), > 0
   double body_c = 37.0;                ///< temperature of the tissue before the cut, °C, above -273.15
-  double damage_c = 60.0;              ///< temperature at which tissue counts as damaged, °C, above body_c
+  double damage_c = 60.0;              ///< temperature at which tissue counts as damaged, °C, 45 or more and at least 5 above body_c
   /// Share of the electrode's power that heats the tissue beside the kerf, (0, 1]. The rest goes with steam and smoke and back through the
   /// cable; no source says how much, so that 1 gives an upper bound.
   double absorbed_fraction = 1.0;

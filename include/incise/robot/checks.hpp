@@ -68,6 +68,7 @@ struct CheckInputs {
   const ToolPath* intended = nullptr;  ///< the path before correction, in the robot's frame
   const TriMesh* surface = nullptr;    ///< the tissue in the robot's frame, mm; a cloud is a mesh without triangles
   std::optional<double> power_w{};
+  std::optional<double> heat_half_width_mm{};  ///< how far beside the needle heat damages tissue
   std::optional<RegistrationSummary> registration{};
 };
 
@@ -106,6 +107,7 @@ struct ProgramChecks {
 /// - `margin` (incisions): the needle keeps `close_margin_mm` outside the tumour edge where it enters, and its tip does
 ///   so too, seen along the mean axis. A ring without an edge fails, and so does an edge that crosses itself
 ///   in that view, one that is open, and one without area; only an open cut may have no edge at all
+/// - `heat` (incisions; if the half width is given): it keeps farther from the edge than heat reaches
 /// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height: its worst point is named
 /// - `edge_distance` (marks): neither the entry course nor the tumour edge leaves the other by more than
 ///   `mark_distance_mm`

@@ -34,7 +34,7 @@ struct SimulatedCut {
   std::vector<LayerErrors> layers;  ///< one for each of incision.kerf.layers
   Outcome outcome = Outcome::NotConverged;  ///< of incision and margin together
   std::size_t tets = 0;   ///< of the mesh before the cut
-  double thermal_half_width_mm = 0.0;  ///< how far beside the real electrode heat damages tissue
+  double thermal_half_width_mm = 0.0;  ///< how far beside the real electrode heat damages tissue, where the path is slowest and shallowest
   /// Tissue left unheated beside the tumour edge, mm: least distance of the mid-line from it less the half width; below 0: heat reaches the
   /// edge. Absent without a mid-line, and for an open cut.
   std::optional<double> thermal_margin_mm;

@@ -57,8 +57,10 @@ struct Study {
 [[nodiscard]] Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor);
 
 /// The single stages, for those who have the inputs in memory.
-/// Evaluates a simulated incision: mid-line and, for a ring, inner edge. @param tets  of the mesh before the cut.
-[[nodiscard]] SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& intended, std::size_t tets);
+/// Evaluates a simulated incision: mid-line and, for a ring, inner edge; and heat along the path.
+/// @param followed  by the tool: its speeds and depths count for heat.  @param tets  of the mesh before the cut.
+[[nodiscard]] SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended,
+                                 std::size_t tets);
 [[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy, Store& store, Workers& workers,
                                                   Monitor& monitor);
 /// The specimen as the case holds it: material (label by label, where it varies), constraints (the default ones, where none are given)

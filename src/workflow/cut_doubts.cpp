@@ -1,0 +1,163 @@
+#include <incise/core/error.hpp>
+#include <incise/workflow/cut_doubts.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+namespace incise {
+namespace {
+
+// Poisson's ratios: above the first, the default, tets of their own volume begin to lock; above the second their cuts
+// are of no use.
+constexpr double kLockingFrom = 0.49;
+constexpr double kLockedFrom = 0.495;
+constexpr double kRatioRounding = 1e-9;
+constexpr double kNearPathMm = 1.5;  // tets with their centroid this near to the tool's way count as met
+// Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
+constexpr double kCoarsestEdgeMm = 1.5;
+
+struct TetRatio {
+  double ratio = 0.0;
+  std::size_t tet = 0;
+};
+
+/// The greatest Poisson's ratio of the tissue, and the first tet that has it.
+TetRatio greatest_ratio(const TissueModel& model) {
+  TetRatio greatest;
+  for (std::size_t t = 0; t < model.lame.size(); ++t) {
+    const LameParameters& lame = model.lame[t];
+    const double ratio = lame.lambda_kpa / (2.0 * (lame.lambda_kpa + lame.mu_kpa));
+    if (ratio > greatest.ratio + kRatioRounding) greatest = {ratio, t};
+  }
+  return greatest;
+}
+
+Vec3 centroid_of(const Tet& tet, std::span<const Vec3> positions) {
+  Vec3 sum = Vec3::Zero();
+  for (const VertexId corner : tet) sum += positions[corner.index()];
+  return 0.25 * sum;
+}
+
+double mean_edge_mm(const Tet& tet, std::span<const Vec3> positions) {
+  double sum = 0.0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    for (std::size_t b = a + 1; b < 4; ++b) sum += (positions[tet[a].index()] - positions[tet[b].index()]).norm();
+  }
+  return sum / 6.0;
+}
+
+/// Tells which places the tool's way comes near, as seen along the approach and no deeper than it goes.
+class WayOfTool {
+ public:
+  WayOfTool(const ToolPath& path, const Vec3& approach) : view_(view_along(approach)), entries_(entry_contour(path)) {
+    for (const Waypoint& waypoint : path.waypoints) deepest_mm_ = std::max(deepest_mm_, waypoint.depth_mm);
+    flat_.is_closed = entries_.is_closed;
+    for (const Vec3& entry : entries_.points) {
+      const Vec3 seen = view_.to_view(entry);
+      flat_.points.emplace_back(seen.x(), seen.y(), 0.0);
+      box_.extend(flat_.points.back());
+    }
+  }
+
+  [[nodiscard]] bool comes_near(const Vec3& place) const {
+    const Vec3 seen = view_.to_view(place);
+    const Vec3 flat(seen.x(), seen.y(), 0.0);
+    if (box_.exteriorDistance(flat) > kNearPathMm) return false;
+    const ContourPoint nearest = nearest_on(flat_, flat);
+    if (nearest.distance_mm > kNearPathMm) return false;
+    const Vec3& from = entries_.points[nearest.segment];
+    const Vec3& to = entries_.points[(nearest.segment + 1) % entries_.points.size()];
+    const double below_mm = view_.to_view(from + nearest.fraction * (to - from)).z() - seen.z();
+    return below_mm >= 0.0 && below_mm <= deepest_mm_;
+  }
+
+ private:
+  ViewFrame view_;
+  Contour entries_;
+  Contour flat_;
+  Box3 box_;
+  double deepest_mm_ = 0.0;
+};
+
+/// Depths of the layers within the plan that the cut left open.
+std::vector<double> open_depths_mm(const IncisionResult& incision) {
+  std::vector<double> depths;
+  for (const KerfLayer& layer : incision.kerf.layers) {
+    const bool is_cut = incision.is_closed_loop ? layer.is_closed.value_or(false) : layer.centerline.has_value();
+    if (layer.is_within_plan && !is_cut) depths.push_back(layer.depth_mm);
+  }
+  return depths;
+}
+
+}  // namespace
+
+void require_no_locking(const TissueModel& model) {
+  if (model.material.volume != VolumeTreatment::PerTet) return;
+  const TetRatio greatest = greatest_ratio(model);
+  if (greatest.ratio <= kLockedFrom + kRatioRounding) return;
+  throw CaseError("case", "specimen.material.volume",
+                  fmt::format("per_tet with a Poisson's ratio of {:.6g} (tet {})", greatest.ratio, greatest.tet),
+                  fmt::format("averaged, or a Poisson's ratio of at most {}, to cut", kLockedFrom),
+                  "Tets that keep their volume one by one lock: the cut would come out too good");
+}
+
+std::optional<double> edge_along_mm(const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path,
+                                    const Vec3& approach) {
+  const WayOfTool way(path, approach);
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Tet& tet : model.mesh.tets) {
+    if (!way.comes_near(centroid_of(tet, stretched))) continue;
+    sum += mean_edge_mm(tet, model.mesh.vertices);
+    ++count;
+  }
+  return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
+}
+
+std::vector<std::string> doubts_before_cut(const Case& settings, const TissueModel& model,
+                                           std::span<const Vec3> stretched, const ToolPath& path) {
+  std::vector<std::string> doubts;
+  const double ratio = greatest_ratio(model).ratio;
+  if (model.material.volume == VolumeTreatment::PerTet && ratio > kLockingFrom + kRatioRounding) {
+    doubts.push_back(
+        fmt::format("a Poisson's ratio of {:.6g} with specimen.material.volume: per_tet makes tets lock: the cut's "
+                    "errors come out too small. "
+                    "volume: averaged is free of that",
+                    ratio));
+  }
+  const std::optional<double> edge_mm = edge_along_mm(model, stretched, path, settings.plan.approach);
+  if (edge_mm && *edge_mm > kCoarsestEdgeMm) {
+    doubts.push_back(fmt::format(
+        "the mesh is coarse for a tool of {:.2g} mm: its edges along the path measure {:.2f} mm on average, and from "
+        "{} mm on the "
+        "cut's error is that of the mesh as much as of the tissue. meshing.tets or meshing.fine_mm make it finer",
+        2.0 * radius_mm(settings.tool), *edge_mm, kCoarsestEdgeMm));
+  }
+  return doubts;
+}
+
+std::vector<std::string> doubts_about(const SimulatedCut& cut) {
+  std::vector<std::string> doubts;
+  const std::vector<double> open_mm = open_depths_mm(cut.incision);
+  if (cut.outcome == Outcome::Success && !open_mm.empty()) {
+    const DepthReached& depth = cut.incision.kerf.depth;
+    doubts.push_back(
+        fmt::format("success speaks of the upper millimetres alone: the cut is open at a depth of {} mm. Planned are "
+                    "{:.2g} mm, reached at least "
+                    "{:.2g} mm",
+                    fmt::join(open_mm, " and "), depth.planned_mm, depth.depth_mm.min));
+  }
+  if (cut.thermal_margin_mm && *cut.thermal_margin_mm < 0.0) {
+    doubts.push_back(fmt::format(
+        "heat reaches the tumour edge: it damages tissue {:.2f} mm beside the electrode, {:.2f} mm more than the cut "
+        "keeps away "
+        "(thermal_margin_mm; a closed form, not calibrated, an upper bound unless thermal.absorbed_fraction says less)",
+        cut.thermal_half_width_mm, -*cut.thermal_margin_mm));
+  }
+  return doubts;
+}
+
+}  // namespace incise

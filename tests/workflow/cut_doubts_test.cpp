@@ -1,0 +1,135 @@
+#include <incise/core/error.hpp>
+#include <incise/workflow/cut_doubts.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// A block of 24 x 24 x 8 mm, held at its underside.
+TissueModel block(int cells_across, double poissons_ratio, VolumeTreatment volume = VolumeTreatment::PerTet) {
+  Material material;
+  material.poissons_ratio = poissons_ratio;
+  material.volume = volume;
+  return make_tissue_model(make_block({24, 24, 8}, {cells_across, cells_across, cells_across / 3}), material,
+                           {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(25, 25, 0.1))}}});
+}
+
+ToolPath ring(double radius_mm = 7.0) {
+  ToolPath path;
+  for (int i = 0; i < 24; ++i) {
+    const double angle = 2.0 * M_PI * i / 24.0;
+    Waypoint waypoint;
+    waypoint.position_mm = Vec3(12.0 + radius_mm * std::cos(angle), 12.0 + radius_mm * std::sin(angle), 8.0);
+    path.waypoints.push_back(waypoint);
+  }
+  return path;
+}
+
+std::vector<std::string> doubts(const TissueModel& model) {
+  return doubts_before_cut(Case{}, model, model.mesh.vertices, ring());
+}
+
+TEST(RequireNoLocking, RefusesToCutTetsThatKeepTheirVolumeOneByOneAndNamesTheWayOut) {
+  for (const double good : {0.45, 0.49, 0.495}) EXPECT_NO_THROW(require_no_locking(block(6, good))) << good;
+  EXPECT_NO_THROW(require_no_locking(block(6, 0.4999, VolumeTreatment::Averaged)));
+  for (const double bad : {0.4951, 0.499, 0.4999}) {
+    try {
+      require_no_locking(block(6, bad));
+      ADD_FAILURE() << bad << " was not refused";
+    } catch (const CaseError& error) {
+      EXPECT_EQ(error.field(), "specimen.material.volume");
+      EXPECT_THAT(error.what(),
+                  AllOf(HasSubstr("per_tet with a Poisson's ratio of 0.49"), HasSubstr("expected averaged")));
+    }
+  }
+}
+
+TEST(DoubtsBeforeCut, TellTissueThatBeginsToLock) {
+  EXPECT_THAT(doubts(block(24, 0.49)), IsEmpty());
+  EXPECT_THAT(doubts(block(24, 0.493)), ElementsAre(AllOf(HasSubstr("0.493"), HasSubstr("volume: averaged"))));
+  EXPECT_THAT(doubts(block(24, 0.493, VolumeTreatment::Averaged)), IsEmpty());
+}
+
+/// A cube of edge a, cut into six tets: three edges of a, two diagonals √2 a and one √3 a each.
+double mean_edge_of_cubes(double a) {
+  return a * (3.0 + 2.0 * std::sqrt(2.0) + std::sqrt(3.0)) / 6.0;
+}
+
+TEST(EdgeAlong, IsTheMeanOfTheTetsEdgesAtRest) {
+  const TissueModel model = block(12, 0.45);
+  EXPECT_NEAR(*edge_along_mm(model, model.mesh.vertices, ring(), -Vec3::UnitZ()), mean_edge_of_cubes(2.0), 1e-9);
+  Points stretched = model.mesh.vertices;
+  for (Vec3& p : stretched) p.y() *= 1.2;
+  EXPECT_NEAR(*edge_along_mm(model, stretched, ring(), -Vec3::UnitZ()), mean_edge_of_cubes(2.0), 1e-9)
+      << "stretched tissue has the edges that it was meshed with";
+  ToolPath beside = ring();
+  for (Waypoint& waypoint : beside.waypoints) waypoint.position_mm.x() += 100.0;
+  EXPECT_FALSE(edge_along_mm(model, model.mesh.vertices, beside, -Vec3::UnitZ()));
+}
+
+TEST(EdgeAlong, LooksAtTheTetsThatTheToolMeetsAndNoOthers) {
+  TetMesh mesh = make_block({24, 24, 8}, {24, 24, 8});
+  for (Vec3& p : mesh.vertices) {
+    if (p.z() < 2.5) p.z() = 2.5 - 40.0 * (2.5 - p.z());  // long tets far below the needle's tip
+  }
+  const TissueModel model = make_tissue_model(
+      std::move(mesh), Material{}, {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -200), Vec3(25, 25, -90))}}});
+  EXPECT_NEAR(*edge_along_mm(model, model.mesh.vertices, ring(), -Vec3::UnitZ()), mean_edge_of_cubes(1.0), 1e-9);
+}
+
+TEST(DoubtsBeforeCut, TellAMeshThatIsTooCoarseForTheTool) {
+  EXPECT_THAT(doubts(block(24, 0.49)), IsEmpty());  // edges of 1.26 mm
+  EXPECT_THAT(doubts(block(12, 0.49)), ElementsAre(AllOf(HasSubstr("2.52 mm"), HasSubstr("meshing.tets"))));
+}
+
+/// A ring that closed in its upper layers.
+SimulatedCut closed_cut() {
+  SimulatedCut cut;
+  cut.outcome = Outcome::Success;
+  cut.incision.is_closed_loop = true;
+  for (const double depth_mm : {1.0, 2.5, 4.0, 5.0}) {
+    KerfLayer layer;
+    layer.depth_mm = depth_mm;
+    layer.is_within_plan = true;
+    layer.is_closed = true;
+    cut.incision.kerf.layers.push_back(layer);
+  }
+  cut.incision.kerf.depth.planned_mm = 5.0;
+  cut.incision.kerf.depth.depth_mm.min = 3.2;
+  cut.thermal_half_width_mm = 2.82;
+  cut.thermal_margin_mm = 0.5;
+  return cut;
+}
+
+TEST(DoubtsAbout, TellAPlannedLayerThatStayedOpenBelowASuccess) {
+  SimulatedCut cut = closed_cut();
+  EXPECT_THAT(doubts_about(cut), IsEmpty());
+  cut.incision.kerf.layers[2].is_closed = false;
+  cut.incision.kerf.layers[3].is_closed = false;
+  EXPECT_THAT(doubts_about(cut),
+              ElementsAre(AllOf(HasSubstr("open at a depth of 4 and 5 mm"), HasSubstr("reached at least 3.2 mm"))));
+  for (KerfLayer& layer : cut.incision.kerf.layers) layer.is_within_plan = layer.depth_mm < 3.0;
+  EXPECT_THAT(doubts_about(cut), IsEmpty()) << "a shallower plan";
+}
+
+TEST(DoubtsAbout, TellHeatThatReachesTheTumourEdge) {
+  SimulatedCut cut = closed_cut();
+  cut.thermal_margin_mm = -0.48;
+  EXPECT_THAT(doubts_about(cut), ElementsAre(AllOf(HasSubstr("heat reaches the tumour edge"), HasSubstr("2.82 mm"),
+                                                   HasSubstr("0.48 mm more"))));
+  cut.thermal_margin_mm.reset();  // an open cut
+  EXPECT_THAT(doubts_about(cut), IsEmpty());
+}
+
+}  // namespace
+}  // namespace incise
