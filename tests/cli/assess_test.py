@@ -8,7 +8,8 @@ import small_case
 from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
 KEYS = ("verdict", "reasons", "expected_gain_mm", "p_worse", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
-IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+SCALE = 1.001
+T_TARGET_SOURCE = [[SCALE, 0, 0, 0], [0, SCALE, 0, 0], [0, 0, SCALE, 0], [0, 0, 0, 1]]
 PULL_N = 27.0  # about what the block pulls at the case's modulus
 
 
@@ -20,7 +21,7 @@ class AssessTest(CommandTest):
         self.registered()
 
     def registered(self, **changes):
-        record = {"T_target_source": IDENTITY, "converged": True, "scale": 1.001, "rmse_mm": 0.34, "inlier_fraction": 0.97}
+        record = {"T_target_source": T_TARGET_SOURCE, "converged": True, "scale": SCALE, "rmse_mm": 0.34, "inlier_fraction": 0.97}
         record.update(changes)
         (self.folder / "registration.json").write_text(json.dumps({key: value for key, value in record.items() if value != "absent"}))
 
