@@ -6,8 +6,8 @@
 namespace incise {
 namespace {
 
-/// Weight of the moves' detail against the error that is left: undoes a response of more than a sixth.
-constexpr double kDetailWeight = 0.03;
+/// Weight of the moves' detail against the error that is left: undoes a response of more than a third.
+constexpr double kDetailWeight = 0.1;
 
 }  // namespace
 

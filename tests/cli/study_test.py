@@ -10,7 +10,7 @@ import unittest
 
 from command import BAD_CASE, BAD_DATA, COMMAND, CommandTest
 
-SMALL = ("study", "--specimens", "2", "--quick", "--tets", "9000", "--threads", "2", "-o", "study")
+SMALL = ("study", "--specimens", "2", "--quick", "--tets", "14000", "--threads", "2", "-o", "study")
 
 
 class StudyTest(CommandTest):
