@@ -22,7 +22,9 @@ struct AssessOptions {
 /// What the registration's file says of how well the specimen was found.
 void read_specimens_registration(const std::filesystem::path& file, AssessmentRequest& request) {
   const RegistrationRecord record = read_registration(file);
-  request.is_registered = record.T_target_source && record.is_converged.value_or(true);
+  if (!record.is_converged)
+    throw DataError(file, "converged", "nothing", "true or false, as `incise register` writes it");
+  request.is_registered = record.T_target_source && *record.is_converged;
   request.registration.scale = record.scale;
   if (record.rmse_mm) {
     request.registration.rmse_mm = *record.rmse_mm;

@@ -8,6 +8,7 @@
 #include <incise/io/manifest.hpp>
 #include <incise/storage/bench_files.hpp>
 #include <incise/virtual_bench/course.hpp>
+#include <incise/workflow/planned_bench_cut.hpp>
 
 #include <fmt/format.h>
 
@@ -121,7 +122,7 @@ nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut) {
   json["outcome"] = to_string(cut.outcome);
   if (cut.inner_edge) {
     double mean = 0.0;
-    const std::vector<double> errors = true_errors_mm(body, cut, 4.5);
+    const std::vector<double> errors = true_errors_mm(body, cut, kInnerEdgeTargetMm);
     for (const double e : errors) mean += std::abs(e) / static_cast<double>(errors.size());
     json["mean_abs_error_mm"] = mean;
     json["signed_errors_mm"] = errors;

@@ -23,10 +23,8 @@
 namespace incise::cli {
 namespace {
 
-constexpr double kLowScale = 0.95;  // both sensors are metric
-constexpr double kHighScale = 1.05;
-constexpr double kTipMm = 0.3;        // what an uncertain scale may move the tip by before a person is told …
-constexpr double kLargestSdMm = 2.2;  // … and before the path is worth nothing: the clinical cut-off
+constexpr double kTipMm = 0.3;  // what an uncertain scale may move the tip by before a person is told; the path is
+                                // worth nothing from the clinical cut-off on
 
 struct ProjectArguments {
   std::filesystem::path path;
@@ -54,10 +52,11 @@ RegistrationRecord trusted_registration(const std::filesystem::path& file, Conso
                     "Register again: with more starts, or with the cloud cropped to the tissue.");
   }
   const double scale = record.scale * record.camera_scale;
-  if (!(scale > kLowScale && scale < kHighScale)) {
+  const CheckSettings checks;  // what export will hold it to
+  if (!(scale > checks.min_scale && scale < checks.max_scale)) {
     console.message(Severity::Warning,
                     fmt::format("{}: the scale is {:.4f}; both sensors are metric, so that {} to {} is expected",
-                                file.string(), scale, kLowScale, kHighScale));
+                                file.string(), scale, checks.min_scale, checks.max_scale));
   }
   return record;
 }
@@ -104,11 +103,12 @@ void take_true_size(Placement& placement, const ToolPath& path, const Registrati
   if (!registration.scale_sd) return;
   const double sd_mm = *registration.scale_sd * arm_mm;
   placement.summary["scale_shift_sd_mm"] = sd_mm;
-  if (sd_mm > kLargestSdMm) {
+  const double largest_sd_mm = CheckSettings{}.close_margin_mm;
+  if (sd_mm > largest_sd_mm) {
     throw DataError(arguments.transform, "/certificate/scale_sd",
                     fmt::format("{:.4f}, which is {:.2f} mm at {:.0f} mm from where lengths are right",
                                 *registration.scale_sd, sd_mm, arm_mm),
-                    fmt::format("at most {} mm", kLargestSdMm),
+                    fmt::format("at most {} mm", largest_sd_mm),
                     "Hold the scale by a known length (register --scale K,K), or name a place near the tissue whose "
                     "position the robot has confirmed (--scale-center)");
   }

@@ -10,6 +10,7 @@
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
+#include <incise/robot/checks.hpp>
 
 #include <fmt/format.h>
 
@@ -33,7 +34,6 @@ struct SurfaceArguments {
 };
 
 constexpr std::size_t kFewestPoints = 12;
-constexpr double kLowUsualScale = 0.95, kHighUsualScale = 1.05;  // of a metric camera
 
 bool is_one_of(const std::filesystem::path& path, std::initializer_list<const char*> endings) {
   return std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return path.extension() == ending; });
@@ -132,11 +132,12 @@ nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::order
                     fmt::format("{:.2f} mm and level, as T_robot_camera and --plane-z-mm say", true_mm),
                     "Another plane may be larger, or the camera's pose is not this one.");
   }
-  if (!(scale > kLowUsualScale && scale < kHighUsualScale)) {
+  const CheckSettings checks;  // what export will hold it to
+  if (!(scale > checks.min_scale && scale < checks.max_scale)) {
     console.message(Severity::Warning,
                     fmt::format("the camera's scale is {:.4f}; the camera is metric, so that {} to {} is expected: is "
                                 "--plane-z-mm right? export will refuse what follows from it (registration_scale)",
-                                scale, kLowUsualScale, kHighUsualScale));
+                                scale, checks.min_scale, checks.max_scale));
   }
   for (Vec3& p : cloud.points) p /= scale;
   return {{"camera_scale", scale}, {"plane_tilt_deg", tilt_deg}};

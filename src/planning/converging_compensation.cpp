@@ -179,18 +179,26 @@ std::optional<CompensationOutcome> parse_compensation_outcome(std::string_view n
   return std::nullopt;
 }
 
-std::vector<std::string> validate(const ConvergenceSettings& s) {
+std::vector<std::string> validate(const SafeRegion& r) {
   std::vector<std::string> violations;
   const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
     if (is_valid && std::isfinite(found)) return;
     violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
   };
-  const SafeRegion& r = s.region;
   expect(r.close_margin_mm > 0.0, "region.close_margin_mm", r.close_margin_mm, "a distance above 0 mm");
   expect(r.electrode_radius_mm >= 0.0, "region.electrode_radius_mm", r.electrode_radius_mm, "0 mm or more");
   expect(r.max_offset_mm > 0.0, "region.max_offset_mm", r.max_offset_mm, "a distance above 0 mm");
   expect(r.rim_clearance_mm >= 0.0, "region.rim_clearance_mm", r.rim_clearance_mm, "0 mm or more");
   expect(r.approach.norm() > 0.0, "region.approach", r.approach.norm(), "a vector of length above 0");
+  return violations;
+}
+
+std::vector<std::string> validate(const ConvergenceSettings& s) {
+  std::vector<std::string> violations = validate(s.region);
+  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
+    if (is_valid && std::isfinite(found)) return;
+    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
+  };
   expect(s.simulations >= 2, "simulations", s.simulations, "2 or more");
   expect(s.floor_mm >= 0.0, "floor_mm", s.floor_mm, "0 mm or more");
   expect(s.tolerance_mm > 0.0, "tolerance_mm", s.tolerance_mm, "a distance above 0 mm");

@@ -208,17 +208,11 @@ std::string_view to_string(RobustOutcome outcome) {
 }
 
 std::vector<std::string> validate(const RobustSettings& s) {
-  std::vector<std::string> violations;
+  std::vector<std::string> violations = validate(s.region);
   const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
     if (is_valid && std::isfinite(found)) return;
     violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
   };
-  const SafeRegion& r = s.region;
-  expect(r.close_margin_mm > 0.0, "region.close_margin_mm", r.close_margin_mm, "a distance above 0 mm");
-  expect(r.electrode_radius_mm >= 0.0, "region.electrode_radius_mm", r.electrode_radius_mm, "0 mm or more");
-  expect(r.max_offset_mm > 0.0, "region.max_offset_mm", r.max_offset_mm, "a distance above 0 mm");
-  expect(r.rim_clearance_mm >= 0.0, "region.rim_clearance_mm", r.rim_clearance_mm, "0 mm or more");
-  expect(r.approach.norm() > 0.0, "region.approach", r.approach.norm(), "a vector of length above 0");
   expect(s.target_mm > 0.0, "target_mm", s.target_mm, "a distance above 0 mm");
   expect(s.kerf_allowance_mm >= 0.0, "kerf_allowance_mm", s.kerf_allowance_mm, "0 mm or more");
   expect(s.max_probability > 0.0 && s.max_probability < 1.0, "max_probability", s.max_probability,

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace incise {
 namespace {
@@ -16,6 +17,10 @@ constexpr double kPlotWidth = 560.0;
 constexpr double kPlotHeight = 340.0;
 constexpr double kLeft = 82.0;  // room for numbers and the axis' name beside them
 constexpr double kMarkRadius = 3.2;
+constexpr double kTitleCharacter = 7.4;  // about as wide as one is
+constexpr double kNameCharacter = 6.4;
+constexpr double kTitleRow = 18.0;
+constexpr double kLegendRow = 18.0;
 
 struct Range {
   double low = 0.0;
@@ -70,8 +75,8 @@ std::vector<double> log_ticks(const Range& range) {
   return ticks;
 }
 
-void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, const std::vector<double>& preferred, bool is_log,
-               bool is_x, std::string_view name) {
+void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, const std::vector<double>& preferred,
+               bool is_log, bool is_x, std::string_view name) {
   std::vector<double> ticks = preferred;
   if (ticks.empty()) ticks = is_log ? log_ticks(range) : round_ticks(range.low, range.high, 6);
   if (!is_log) {
@@ -110,17 +115,42 @@ void draw_series(SvgWriter& svg, const PlotArea& area, const LinePlot& plot, con
   svg.close_group();
 }
 
-void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<std::string_view>& colors) {
-  double x = kLeft;
+/// The title in rows that fit into the picture, broken between words.
+std::vector<std::string> title_rows(const std::string& title) {
+  constexpr auto kMost = static_cast<std::size_t>((kPlotWidth - 16.0) / kTitleCharacter);
+  std::vector<std::string> rows{""};
+  std::istringstream words(title);
+  for (std::string word; words >> word;) {
+    if (!rows.back().empty() && rows.back().size() + 1 + word.size() > kMost) rows.emplace_back();
+    rows.back() += (rows.back().empty() ? "" : " ") + word;
+  }
+  return rows;
+}
+
+/// Where each series' name begins: beside the one before, or in a row of its own where that leaves the picture.
+std::vector<Vec2> legend_places(const LinePlot& plot, double top) {
+  std::vector<Vec2> places;
+  Vec2 at(kLeft, top);
+  for (const LineSeries& series : plot.series) {
+    const double width = 40.0 + kNameCharacter * static_cast<double>(series.name.size());
+    if (at.x() > kLeft && at.x() + width > kPlotWidth) at = {kLeft, at.y() + kLegendRow};
+    places.push_back(at);
+    at.x() += width;
+  }
+  return places;
+}
+
+void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<Vec2>& places,
+                 const std::vector<std::string_view>& colors) {
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const Vec2& at = places[i];
     if (plot.series[i].is_line) {
-      svg.line({x, 42.0}, {x + 16.0, 42.0}, fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", colors[i]));
+      svg.line(at, at + Vec2(16.0, 0.0), fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", colors[i]));
     } else {
-      svg.circle({x + 8.0, 42.0}, kMarkRadius,
+      svg.circle(at + Vec2(8.0, 0.0), kMarkRadius,
                  fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.6\"", colors[i]));
     }
-    svg.text({x + 21.0, 46.0}, plot.series[i].name);
-    x += 40.0 + 6.4 * static_cast<double>(plot.series[i].name.size());
+    svg.text(at + Vec2(21.0, 4.0), plot.series[i].name);
   }
 }
 
@@ -135,16 +165,23 @@ std::string line_plot_svg(const LinePlot& plot) {
   }
   const Range x = range_of(plot, true);
   const Range y = range_of(plot, false);
-  SvgWriter svg(kPlotWidth, kPlotHeight, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
-  svg.rectangle({0.0, 0.0}, {kPlotWidth, kPlotHeight}, "fill=\"#fff\"");
-  svg.text({0.5 * kPlotWidth, 20.0}, plot.title, "middle", "font-weight=\"600\" font-size=\"13\"");
-  const PlotArea area{{kLeft, 58.0}, {kPlotWidth - kLeft - 20.0, kPlotHeight - 112.0}, x.low, x.high, y.low, y.high};
+  const std::vector<std::string> title = title_rows(plot.title);
+  const std::vector<Vec2> legend = legend_places(plot, 42.0 + kTitleRow * static_cast<double>(title.size() - 1));
+  const double top = legend.back().y() + 16.0;  // of the axes; what more there is above them makes the picture taller
+  const double height = kPlotHeight + top - 58.0;
+  SvgWriter svg(kPlotWidth, height, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
+  svg.rectangle({0.0, 0.0}, {kPlotWidth, height}, "fill=\"#fff\"");
+  for (std::size_t i = 0; i < title.size(); ++i) {
+    svg.text({0.5 * kPlotWidth, 20.0 + kTitleRow * static_cast<double>(i)}, title[i], "middle",
+             "font-weight=\"600\" font-size=\"13\"");
+  }
+  const PlotArea area{{kLeft, top}, {kPlotWidth - kLeft - 20.0, kPlotHeight - 112.0}, x.low, x.high, y.low, y.high};
   draw_axis(svg, area, y, {}, plot.is_log_y, false, plot.y_label);
   draw_axis(svg, area, x, plot.is_log_x ? mark_ticks(plot) : std::vector<double>{}, plot.is_log_x, true, plot.x_label);
   std::vector<std::string_view> colors;
   for (std::size_t i = 0; i < plot.series.size(); ++i) colors.push_back(ink::kSeries[i % ink::kSeries.size()]);
   for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(svg, area, plot, plot.series[i], colors[i]);
-  draw_legend(svg, plot, colors);
+  draw_legend(svg, plot, legend, colors);
   return svg.finish();
 }
 

@@ -3,6 +3,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
+#include <incise/geometry/contour_checks.hpp>
 #include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
@@ -208,7 +209,10 @@ std::optional<TetMesh> FolderStore::read_specimen_mesh(Monitor& monitor) {
 
 std::optional<Contour> FolderStore::read_tumor_edge() {
   if (file_.inputs.tumor_contour.empty()) return std::nullopt;
-  return read_contour(file_.inputs.tumor_contour, true);
+  Contour edge = read_contour(file_.inputs.tumor_contour, true);
+  if (const auto problem = size_problem(edge, "a tumour", kLargestTumorMm))
+    throw DataError(file_.inputs.tumor_contour, "", problem->found, problem->expected);
+  return edge;
 }
 
 std::optional<TriMesh> FolderStore::read_tumor_surface() {

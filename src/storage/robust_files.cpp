@@ -1,5 +1,4 @@
-#include "storage/json_place.hpp"
-#include "storage/json_values.hpp"
+#include "storage/kept_record.hpp"
 
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
@@ -16,7 +15,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kScenarioRunSchema = "incise.scenario_run/1";
-constexpr const char* kScenarioRunHint = "";
 
 Json points_json(const Points& points) {
   Json list = Json::array();
@@ -76,36 +74,23 @@ std::string ScenarioRunFolder::key_of(const RunSetting& setting, const ToolPath&
 }
 
 std::filesystem::path ScenarioRunFolder::file_of(const RunSetting& setting, const ToolPath& path) const {
-  return folder_ / (key_of(setting, path).substr(0, 16) + ".json");
+  return KeptRecord(folder_, kScenarioRunSchema, key_of(setting, path)).file();
 }
 
 std::optional<ScenarioRun> ScenarioRunFolder::load(const RunSetting& setting, const ToolPath& path, Monitor& monitor) {
-  const std::filesystem::path name = file_of(setting, path);
-  if (!std::filesystem::exists(name)) return std::nullopt;
-  try {
-    const Json json = read_json(name);
-    if (!json.is_object()) throw DataError(name, "", "no object", "a simulated run");
-    const JsonPlace file{name, json, "", kScenarioRunHint};
-    if (file.text("schema") != kScenarioRunSchema) file.refuse("schema", file.text("schema"), kScenarioRunSchema);
-    if (file.text("key") != key_of(setting, path)) file.refuse("key", "that of another run", "that of this one");
-    return ScenarioRun{setting, errors_from(file), file.text("problem")};
-  } catch (const DataError& damaged) {
-    monitor.message(Severity::Warning, fmt::format("{}. The run is simulated anew", damaged.what()));
-    return std::nullopt;
-  }
+  return KeptRecord(folder_, kScenarioRunSchema, key_of(setting, path))
+      .load(monitor, "The run is simulated anew", [&setting](const JsonPlace& file) {
+        return ScenarioRun{setting, errors_from(file), file.text("problem")};
+      });
 }
 
 void ScenarioRunFolder::save(const ScenarioRun& run, const ToolPath& path) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw DataError(folder_, "", error.message(), "a folder that can be written");
-  write_json(file_of(run.setting, path), {{"schema", kScenarioRunSchema},
-                                          {"key", key_of(run.setting, path)},
-                                          {"speed_mm_s", run.setting.speed_mm_s},
-                                          {"dullness", run.setting.dullness},
-                                          {"stiffness_of_case", run.setting.stiffness_of_case},
-                                          {"problem", run.problem},
-                                          {"errors", errors_json(run.errors)}});
+  KeptRecord(folder_, kScenarioRunSchema, key_of(run.setting, path))
+      .save({{"speed_mm_s", run.setting.speed_mm_s},
+             {"dullness", run.setting.dullness},
+             {"stiffness_of_case", run.setting.stiffness_of_case},
+             {"problem", run.problem},
+             {"errors", errors_json(run.errors)}});
 }
 
 Json to_json(const PathRisk& risk) {

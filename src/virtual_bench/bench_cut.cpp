@@ -226,10 +226,10 @@ void Cut::watch_skin(const Vec3& tip, const Vec3& velocity) {
     const Vec3 moved = state_.positions[v] - body_.stretched.positions[v];
     shoved += moved.norm();
     ++count;
+    result_.max_drag_mm = std::max(result_.max_drag_mm, moved.cross(body_.approach).norm());
     if (ahead > kBulgeMm) continue;
     if (const auto below = uncut_skin_.seen_at(state_.positions[v], body_.approach))
       risen = std::max(risen, below->distance_mm);
-    result_.max_drag_mm = std::max(result_.max_drag_mm, moved.cross(body_.approach).norm());
   }
   if (count == 0) return;
   shoves_mm_.push_back(shoved / static_cast<double>(count));

@@ -86,6 +86,8 @@ class AssessTest(CommandTest):
         self.assert_refused(self.incise(*self.arguments("--stretch-force-n", -1)), BAD_CASE, "--stretch-force-n")
         self.registered(rmse_mm="absent")
         self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "registration.json", "rmse_mm")
+        self.registered(converged="absent")
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "registration.json", "converged")
         self.registered(T_target_source="absent")
         self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "registration.json", "T_target_source")
         self.registered()

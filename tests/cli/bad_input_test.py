@@ -275,6 +275,9 @@ class CaseTest(CommandTest):
     def test_a_damaged_tumor_edge_is_named_with_its_line(self):
         (self.case / "tumor.csv").write_text("x_mm,y_mm,z_mm\n0,0,14\n1,two,14\n0,2,14\n")
         self.assert_case_refused("plan", BAD_DATA, "tumor.csv", "line 3", "two")
+        # Three points of a tumour's edge beside each other are closed, and round nothing.
+        (self.case / "tumor.csv").write_text("x_mm,y_mm,z_mm\n20,20,14\n20.5,20.2,14\n20.9,20.8,14\n")
+        self.assert_case_refused("run", BAD_DATA, "tumor.csv", "a tumour", "2 to 100 mm")
 
     def test_a_ring_that_leaves_the_tissue_is_refused(self):
         small_case.write_contour(self.case / "tumor.csv", small_case.ring(center=(13.0, 20.0)))

@@ -3,6 +3,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/report/figures.hpp>
+#include <incise/report/line_plot.hpp>
 #include <incise/report/replay_figure.hpp>
 
 #include <gmock/gmock.h>
@@ -138,6 +139,24 @@ TEST(ErrorByAngle, UsesTheArcLengthForAnOpenCut) {
   expect_whole_svg(svg);
   EXPECT_THAT(svg, HasSubstr("length along the cut, mm"));
   EXPECT_THAT(svg, HasSubstr("points=\"70.00,169.00 572.50,44.00 740.00,169.00 \""));
+}
+
+TEST(LinePlotFigure, BreaksATitleAndALegendThatAreWiderThanThePicture) {
+  const auto height_of = [](const std::string& svg) {
+    const std::size_t at = svg.find("height=\"") + 8;
+    return std::stod(svg.substr(at));
+  };
+  LinePlot plot{
+      .title = "Short", .x_label = "x, mm", .y_label = "y, mm", .series = {{"one", {0.0, 1.0}, {0.0, 1.0}, true}}};
+  const std::string small = line_plot_svg(plot);
+  plot.title = "Simulated: error of the mid-line against speed x dullness; open rings are left out of this picture";
+  plot.series = {{"mean |error| as planned", {0.0, 1.0}, {0.0, 1.0}, true},
+                 {"mean |error| averaged along the path", {0.0, 1.0}, {0.0, 1.0}, true},
+                 {"floor of the mesh", {0.0, 1.0}, {0.5, 0.5}, true}};
+  const std::string large = line_plot_svg(plot);
+  EXPECT_EQ(large.find(">" + plot.title + "</text>"), std::string::npos) << "in one row it leaves the picture";
+  EXPECT_NE(large.find(">Simulated: error"), std::string::npos);
+  EXPECT_NEAR(height_of(large), height_of(small) + 36.0, 1e-9) << "one more row of each";
 }
 
 TEST(BoxNumbers, FollowAWorkedExample) {

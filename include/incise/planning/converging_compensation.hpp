@@ -33,6 +33,9 @@ struct SafeRegion {
   AxisMode axis_mode = AxisMode::Approach;
 };
 
+/// Every violation, one sentence each with the field's name after `region.`; empty: valid.
+[[nodiscard]] std::vector<std::string> validate(const SafeRegion& region);
+
 struct ConvergenceSettings {
   SafeRegion region;
   int simulations = 4;         ///< at most, the first (as intended) and the verifying one counted, >= 2
