@@ -3,7 +3,7 @@
 //   incise_cut_study mesh  ...                                          edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move
 //   incise_cut_study table ...                                          the paper's Table I: 25 pairs of speed and dullness on two virtual specimens
 #include "cost_table.hpp"
-#include "virtual_study.hpp"
+#include "support/phantom_store.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/procedure/incision.hpp>
@@ -64,7 +64,7 @@ Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& me
   body.settings.is_virtual = true;
   body.settings.meshing = meshing;
   body.settings.frames = 0;
-  PhantomStore store(phantom);
+  testing::PhantomStore store(phantom);
   Monitor silent;
   body.study = run_study(body.settings, store, Stage::Plan, workers, silent);
   fmt::print(stderr, "{}: {} tets\n", body.name, body.study.model->mesh.tets.size());

@@ -4,7 +4,7 @@
 // ascending order, are drawn against each other with --figure.
 #include "cost_table.hpp"
 #include "process_cost.hpp"
-#include "virtual_study.hpp"
+#include "support/phantom_store.hpp"
 
 #include <incise/core/isa.hpp>
 #include <incise/evaluation/contour_errors.hpp>
@@ -122,7 +122,7 @@ Size run_size(const Options& options, const Phantom& phantom, int tets, std::str
   Case settings;
   settings.is_virtual = true;
   settings.meshing.tets = tets;
-  PhantomStore store(phantom);
+  testing::PhantomStore store(phantom);
   const Study study = run_study(settings, store, Stage::Plan, workers, silent);
   Size size;
   size.tets = static_cast<double>(study.model->mesh.tets.size());

@@ -57,7 +57,7 @@ std::optional<StepRecord> SpecimenTrial::run(const ExperimentStep& step) {
 
 bool SpecimenTrial::prepare(const std::optional<ChosenTool>& tool) {
   if (!make() || !find_shape() || !find_place()) return false;
-  write_case(tool);
+  (void)write_variant("case.yaml", tool, youngs_modulus_kpa_, CompensationMethod::Default);
   return run({"plan", {"plan", case_file().string(), "-o", at("planned").string()}, {case_file(), at("tumor.csv"), at("lab/ct")}, planned_path()}).has_value();
 }
 
@@ -86,7 +86,7 @@ bool SpecimenTrial::find_shape() {
   const std::filesystem::path labels = at("labels.nrrd"), mesh = at("survey.vtu"), survey = at("survey.yaml");
   if (!run({"segment", {"segment", at("lab/ct").string(), "-o", labels.string()}, {at("lab/ct")}, labels})) return false;
   if (!run({"survey_mesh", {"mesh", labels.string(), "--coarse-mm", text(kSurveyEdgeMm), "-o", mesh.string()}, {labels}, mesh})) return false;
-  write_file(survey, fmt::format("schema: incise.case/1\nspecimen:\n  mesh: survey.vtu\n  material: {{youngs_modulus_kpa: {}}}\n", kReferenceKpa));
+  write_file(survey, fmt::format("schema: incise.case/1\nspecimen_is: virtual\nspecimen:\n  mesh: survey.vtu\n  material: {{youngs_modulus_kpa: {}}}\n", kReferenceKpa));
   const auto stretched = run({"survey_deform", {"deform", survey.string(), "-o", at("survey").string()}, {survey, mesh}, at("survey/stretched")});
   if (!stretched) return false;
   youngs_modulus_kpa_ = kReferenceKpa * stretch_force_n_ / pull_n(stretched->result);
@@ -131,23 +131,26 @@ void SpecimenTrial::write_edge(const StudyJson& registration) const {
   write_contour_csv(at("tumor.csv"), edge);
 }
 
-void SpecimenTrial::write_case(const std::optional<ChosenTool>& tool) const {
+std::filesystem::path SpecimenTrial::write_variant(const std::string& name, const std::optional<ChosenTool>& tool, double youngs_modulus_kpa,
+                                                   CompensationMethod method) const {
   std::string yaml = fmt::format(
-      "schema: incise.case/1\nct: {{volume: lab/ct}}\nmeshing: {{tets: {}}}\nspecimen:\n  material: {{youngs_modulus_kpa: {:.4f}}}\n"
+      "schema: incise.case/1\nspecimen_is: virtual\nct: {{volume: lab/ct}}\nmeshing: {{tets: {}}}\nspecimen:\n  material: {{youngs_modulus_kpa: {:.4f}}}\n"
       "tumor: {{contour: tumor.csv, configuration: stretched}}\nplan: {{power_w: {}}}\n",
-      setup_.tets, youngs_modulus_kpa_, setup_.power_w);
+      setup_.tets, youngs_modulus_kpa, setup_.power_w);
   if (tool) {
-    yaml += fmt::format("cut: {{speed_mm_s: {}, dullness: {}}}\ncompensation: {{observable: inner_edge, bias_mm: {}}}\n", tool->speed_mm_s, tool->dullness,
-                        tool->bias_mm);
+    yaml += fmt::format("cut: {{speed_mm_s: {}, dullness: {}}}\n", tool->speed_mm_s, tool->dullness);
+    yaml += method == CompensationMethod::Paper ? std::string("compensation: {method: paper}\n")
+                                                : fmt::format("compensation: {{observable: inner_edge, bias_mm: {}}}\n", tool->bias_mm);
   }
-  write_file(case_file(), yaml);
+  write_file(at(name), yaml);
+  return at(name);
 }
 
 std::optional<TrialCut> SpecimenTrial::cut(const std::filesystem::path& path, const std::string& tag) {
   const auto named = [&](const std::string& name) { return at(tag + "_" + name); };
   const std::string camera = at("lab/camera.json").string();
   const std::filesystem::path registration = this->registration();
-  const std::filesystem::path projected = named("on_tissue"), program = named("cut.script"), photo = named("cut"), found = named("evaluation.json");
+  const std::filesystem::path projected = named("on_tissue"), program = named("cut.script"), photo = named("cut"), found = at(fmt::format("{}_{}.json", setup_.name, tag));
   if (!run({tag + "_project",
             {"project", path.string(), "--transform", registration.string(), "--surface", at("tissue.ply").string(), "--camera", camera, "-o",
              projected.string()},

@@ -3,6 +3,7 @@
 #include "study_steps.hpp"
 
 #include <incise/core/monitor.hpp>
+#include <incise/workflow/case.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -46,6 +47,9 @@ class SpecimenTrial {
   /// Projects a path (sim_stretched) on the tissue, exports the program after its checks, has the bench cut, and
   /// measures the photograph. @param tag  of the files: planned, corrected.
   std::optional<TrialCut> cut(const std::filesystem::path& path, const std::string& tag);
+  /// Writes another case of the same specimen into its folder. @returns the file.
+  [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const std::optional<ChosenTool>& tool, double youngs_modulus_kpa,
+                                                    CompensationMethod method) const;
   /// Runs one more command of the planner in this specimen's folder. @returns nothing where it refused (see ended_at).
   std::optional<StepRecord> run(const ExperimentStep& step);
   /// The same for a command whose refusal is an answer, and does not end the specimen.
@@ -68,7 +72,6 @@ class SpecimenTrial {
   bool find_shape();
   bool find_place();
   void write_edge(const nlohmann::ordered_json& registration) const;
-  void write_case(const std::optional<ChosenTool>& tool) const;
 
   TrialSetup setup_;
   StepRunner runner_;

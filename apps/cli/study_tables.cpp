@@ -36,6 +36,7 @@ TableJson row_of(const Trial& trial, const char* cut_name, const std::optional<T
   row["specimen"] = trial.name;
   row["seed"] = trial.seed;
   row["role"] = to_string(trial.role);
+  row["kind"] = trial.kind.empty() ? TableJson(nullptr) : TableJson(trial.kind);
   row["cut"] = cut_name;
   row["outcome"] = cut ? measure_at(cut->measures, "/outcome") : TableJson("not_cut");
   for (const Measure& measure : kMeasures) row[measure.column] = cut ? measure_at(cut->measures, measure.pointer) : TableJson(nullptr);
@@ -102,16 +103,16 @@ const char* to_string(TrialRole role) {
   return "unknown";
 }
 
-TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role) {
+TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, std::optional<TrialCut> Trial::*after) {
   TrialSummary summary;
   for (const Trial& trial : trials) {
-    if (trial.role != role || !trial.planned || !trial.corrected) continue;
-    const double before = mean_error_mm(*trial.planned), after = mean_error_mm(*trial.corrected);
+    if (trial.role != role || !trial.planned || !(trial.*after)) continue;
+    const double before_mm = mean_error_mm(*trial.planned), after_mm = mean_error_mm(*(trial.*after));
     ++summary.pairs;
-    summary.mean_before_mm += before;
-    summary.mean_after_mm += after;
-    if (after > before) ++summary.worse;
-    summary.most_worse_mm = std::max(summary.most_worse_mm, after - before);
+    summary.mean_before_mm += before_mm;
+    summary.mean_after_mm += after_mm;
+    if (after_mm > before_mm) ++summary.worse;
+    summary.most_worse_mm = std::max(summary.most_worse_mm, after_mm - before_mm);
   }
   if (summary.pairs == 0) return summary;
   summary.mean_before_mm /= static_cast<double>(summary.pairs);
@@ -120,11 +121,34 @@ TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role) {
   return summary;
 }
 
+TableJson to_json(const TrialSummary& summary) {
+  const auto number = [&summary](double value) { return summary.pairs > 0 ? TableJson(value) : TableJson(nullptr); };
+  return {{"pairs", summary.pairs},
+          {"mean_before_mm", number(summary.mean_before_mm)},
+          {"mean_after_mm", number(summary.mean_after_mm)},
+          {"gain_percent", number(summary.gain_percent)},
+          {"worse", summary.worse},
+          {"most_worse_mm", summary.most_worse_mm}};
+}
+
+TableJson known_physics_json(const std::vector<Trial>& trials) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Trial& trial : trials) {
+    const TableJson mean = trial.known_physics.is_object() ? measure_at(trial.known_physics, "/mean_abs_error_mm") : TableJson(nullptr);
+    if (!mean.is_number()) continue;
+    sum += mean.get<double>();
+    ++count;
+  }
+  return {{"specimens", count}, {"mean_after_mm", count > 0 ? TableJson(sum / static_cast<double>(count)) : TableJson(nullptr)}};
+}
+
 TableJson table_2_json(const std::vector<Trial>& trials) {
   TableJson rows = TableJson::array();
   for (const Trial& trial : trials) {
     rows.push_back(row_of(trial, "planned", trial.planned));
     if (trial.role != TrialRole::Calibrate) rows.push_back(row_of(trial, "corrected", trial.corrected));
+    if (trial.paper_pass) rows.push_back(row_of(trial, "paper_pass", trial.paper_pass));
   }
   return rows;
 }
@@ -133,7 +157,7 @@ TableJson assessments_json(const std::vector<Trial>& trials) {
   TableJson list = TableJson::array();
   for (const Trial& trial : trials) {
     if (!trial.assessment.is_object()) continue;
-    TableJson entry{{"specimen", trial.name}, {"role", to_string(trial.role)}};
+    TableJson entry{{"specimen", trial.name}, {"role", to_string(trial.role)}, {"kind", trial.kind.empty() ? TableJson(nullptr) : TableJson(trial.kind)}};
     for (const char* key : {"verdict", "reasons", "expected_gain_mm", "p_worse", "p_close_margin", "distances"})
       entry[key] = trial.assessment.value(key, TableJson());
     const bool is_pair = trial.planned && trial.corrected;
@@ -170,6 +194,8 @@ ReportData experiment_report(const std::vector<Trial>& trials, const TableJson& 
   }
   add_picture(data, folder / "comparison/box_plot.svg", "Errors before and after", "Absolute and signed errors along the contours of the virtual photographs, after the paper's Fig. 6 a, b.");
   add_picture(data, folder / "comparison/error_by_clock.svg", "Error round the ring", "Signed error by the place on a clock face over the tumour.");
+  add_picture(data, folder / "advice/roc.svg", "Was the advice right?", "Stated probability that the corrected cut is the worse one, against which one it was.");
+  add_picture(data, folder / "advice/reliability.svg", "Close margins, stated and seen", "Stated probability of a margin below 2.2 mm somewhere, against how often there was one.");
   add_picture(data, folder / "table_1/table_1.svg", "Table I of this experiment", "Simulated speed and dullness against the photographs, after the paper's Table I.");
   add_picture(data, folder / "calibration/fit.svg", "Calibration", "Signed error photographed and simulated, and what the data say of each parameter.");
   data.tables.push_back(table_of("Table II of this experiment (virtual): every cut, measured in its photograph", table_2_json(trials)));

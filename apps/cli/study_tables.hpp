@@ -21,9 +21,14 @@ struct Trial {
   std::string name;
   std::uint64_t seed = 0;
   TrialRole role = TrialRole::Calibrate;
+  std::string kind;                                      ///< of a specimen outside the calibrated range; else empty
+  std::vector<std::pair<std::string, double>> given;     ///< hidden parameters that are not drawn from the seed
   std::optional<TrialCut> planned, corrected;
+  std::optional<TrialCut> paper_pass;                    ///< along the paper's single correction; not cut unless asked for
   nlohmann::ordered_json compensation;  ///< what `incise compensate` printed; null: not run
   nlohmann::ordered_json assessment;    ///< what `incise assess` printed; null: not run
+  nlohmann::ordered_json assessment_without_pull;  ///< the same, had the pull not been measured
+  nlohmann::ordered_json known_physics;            ///< what `incise bench floor` printed; null: not run
   double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0, registration_rmse_mm = 0.0;
   std::string ended_at;                 ///< the step that refused; empty: none did
   std::vector<std::string> commands;
@@ -37,8 +42,14 @@ struct TrialSummary {
   std::size_t worse = 0;        ///< specimens whose error grew
   double most_worse_mm = 0.0;   ///< by how much at most; 0: none
 };
-/// Of the specimens with that role. No pairs: zeros.
-[[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role);
+/// Of the specimens with that role, as planned against another cut. No pairs: zeros.
+[[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role,
+                                      std::optional<TrialCut> Trial::*after = &Trial::corrected);
+/// `pairs`, `mean_before_mm`, `mean_after_mm`, `gain_percent`, `worse`, `most_worse_mm`; numbers are null without pairs.
+[[nodiscard]] nlohmann::ordered_json to_json(const TrialSummary& summary);
+/// What is left to a planner that knows the bench's physics, of the test specimens: `specimens`, `mean_after_mm` (from
+/// the truth, not from photographs).
+[[nodiscard]] nlohmann::ordered_json known_physics_json(const std::vector<Trial>& trials);
 
 /// One row a cut: the paper's Table II in our own version.
 [[nodiscard]] nlohmann::ordered_json table_2_json(const std::vector<Trial>& trials);

@@ -36,6 +36,12 @@ struct CutArguments {
   double mm_per_pixel = PhotographSettings{}.mm_per_pixel;
 };
 
+struct FloorArguments {
+  std::filesystem::path specimen;
+  double power_w = 35.0;
+  int simulations = 3;
+};
+
 /// The seed stays out of the laboratory's folder: who knows it can draw the specimen.
 void write_run(const std::filesystem::path& folder, const CommonOptions& options, const std::string& command,
                const std::vector<std::filesystem::path>& inputs, Clock::time_point start) {
@@ -191,6 +197,34 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
   return kDone;
 }
 
+/// What no planner can beat: what is left where the bench's physics are known, and only the arm's errors are not.
+int floor_of(const CommonOptions& options, const FloorArguments& arguments) {
+  const auto start = Clock::now();
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("floor7.json");
+  refuse_input_as_output("-o", output, {arguments.specimen});
+  const Specimen specimen = read_specimen(arguments.specimen);
+  Workers workers(options.context().threads);
+  const BenchBody body = make_body(specimen, {}, workers, console);
+  if (!is_held(body, console)) return kNotAcceptable;
+  PlanSettings plan;
+  plan.power_w = arguments.power_w;
+  const KnownPhysicsCut done = cut_knowing_physics(body, plan, arguments.simulations, workers, console);
+  nlohmann::ordered_json result;
+  result["note"] = "From the truth about a virtual specimen: nothing of this may reach a planner.";
+  result["virtual"] = true;
+  result["outcome"] = to_string(done.cut.outcome);
+  result["compensation_outcome"] = to_string(done.correction.outcome);
+  result["mean_abs_error_mm"] = truth_of(body, done.cut).value("mean_abs_error_mm", nlohmann::ordered_json());
+  result["passes_mm"] = nlohmann::ordered_json::array();
+  for (const CompensationPass& pass : done.correction.passes)
+    result["passes_mm"].push_back(pass.mean_abs_error_mm ? nlohmann::ordered_json(*pass.mean_abs_error_mm) : nlohmann::ordered_json());
+  result["wall_s"] = std::chrono::duration<double>(Clock::now() - start).count();
+  write_json(output, result);
+  print_result(options, result);
+  return kDone;
+}
+
 }  // namespace
 
 void add_bench(Application& application) {
@@ -218,6 +252,15 @@ void add_bench(Application& application) {
   verb->add_option("--power-w", run->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
   verb->add_option("--mm-per-pixel", run->mm_per_pixel, "Of the photograph")->check(CLI::Range(0.01, 0.2));
   verb->add_option("--truth", run->truth, "Folder for what really happened, for tests");
+
+  auto floor = std::make_shared<FloorArguments>();
+  verb = application.add_verb_to(*bench, "floor",
+                                 "Specimen file -> the error that is left to a planner that knows the bench's physics, and not the arm's errors",
+                                 "incise bench floor hidden7/specimen.json -o floor7.json",
+                                 [floor](const CommonOptions& options) { return floor_of(options, *floor); });
+  verb->add_option("specimen", floor->specimen, "The hidden specimen.json")->required();
+  verb->add_option("--power-w", floor->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
+  verb->add_option("--simulations", floor->simulations, "Cuts of the bench that the path is corrected by")->check(CLI::Range(2, 8));
 }
 
 }  // namespace incise::cli

@@ -41,6 +41,11 @@ std::vector<std::string> objections(const EligibilityEvidence& e, const Eligibil
 std::vector<std::string> doubts(const EligibilityEvidence& e, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
   const CutGain& gain = *e.gain;
+  if (!e.is_accepted)
+    reasons.emplace_back(
+        "the correction is not accepted: its own simulated cut fails, is no nearer, or errs by the electrode's radius "
+        "or "
+        "more in the mean");
   if (!(gain.mean_mm > rules.least_gain_sds * gain.sd_mm)) {
     reasons.push_back(
         fmt::format("the expected gain of {:.2f} mm is not above {} of its standard deviation of {:.2f} mm",

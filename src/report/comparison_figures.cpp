@@ -104,7 +104,7 @@ void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& bo
   if (is_signed)
     svg.line({area.corner.x(), area.y(0.0)}, {area.corner.x() + area.size.x(), area.y(0.0)}, "stroke=\"#555\"");
   draw_x_axis(svg, area, {}, "");
-  svg.text(area.corner + Vec2(0.0, -10.0), is_signed ? "b) with sign: negative = closer to the tumour" : "a) absolute",
+  svg.text(area.corner + Vec2(0.0, -10.0), is_signed ? "b) with sign: negative = too close" : "a) absolute",
            "start", "font-weight=\"600\"");
   const double pitch = area.size.x() / static_cast<double>(boxes.size());
   for (std::size_t k = 0; k < boxes.size(); ++k) {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -164,6 +165,38 @@ std::vector<PosteriorSample> samples_from(const JsonPlace& posterior) {
   return samples;
 }
 
+double mean_of(const JsonPlace& place, const char* key) {
+  const std::vector<double> values = place.numbers(key);
+  if (values.empty()) place.refuse(key, "no numbers", "a signed error for each sector");
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// By how much each photograph differs from its fit. Calibrations whose fit is not written have none.
+void read_differences(const JsonPlace& file, CalibrationRecord& record) {
+  if (!file.has("fitted")) return;
+  const std::vector<JsonPlace> fitted = file.objects("fitted");
+  if (fitted.empty()) return;
+  if (fitted.size() != record.specimens.size()) {
+    file.refuse("fitted", fmt::format("{} specimens", fitted.size()),
+                fmt::format("{}, one for each of specimens", record.specimens.size()));
+  }
+  for (std::size_t i = 0; i < fitted.size(); ++i)
+    record.specimens[i].difference_mm = mean_of(fitted[i], "observed_mm") - mean_of(fitted[i], "fitted_mm");
+}
+
+/// Nothing where a specimen's pull or fit is not known.
+std::optional<StiffnessTrend> trend_of(const CalibrationRecord& record) {
+  std::vector<StiffnessReading> readings;
+  for (const CalibratedSpecimenRecord& specimen : record.specimens) {
+    if (!specimen.stretch_force_n || !specimen.difference_mm) return std::nullopt;
+    readings.push_back({specimen.youngs_modulus_kpa, *specimen.difference_mm});
+  }
+  if (readings.empty()) return std::nullopt;
+  const ResidualEstimate& residual = record.residual;
+  const double ring_mm = residual.sd_mm / std::sqrt(std::max(1.0, residual.n_effective));
+  return stiffness_trend(readings, std::hypot(residual.specimen_spread_mm, ring_mm));
+}
+
 }  // namespace
 
 Json to_json(const Calibration& calibration) {
@@ -218,6 +251,7 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
   for (const JsonPlace& specimen : file.objects("specimens")) record.specimens.push_back(specimen_from(specimen));
   if (record.method == CalibrationMethod::Paper) return record;
   record.samples = samples_from(file.inside("posterior"));
+  read_differences(file, record);
   const JsonPlace residual = file.inside("residual");
   record.residual.sd_mm = positive(residual, "sd_mm");
   record.residual.correlation_deg = positive(residual, "correlation_deg");
@@ -239,6 +273,7 @@ CalibratedBelief belief_of(const CalibrationRecord& record, const std::filesyste
   belief.knows_forces = !record.specimens.empty() &&
                         std::all_of(record.specimens.begin(), record.specimens.end(),
                                     [](const CalibratedSpecimenRecord& s) { return s.stretch_force_n.has_value(); });
+  belief.trend = trend_of(record);
   return belief;
 }
 

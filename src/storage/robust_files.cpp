@@ -108,6 +108,7 @@ Json scenarios_json(const ScenarioSet& scenarios, const RobustSettings& settings
   json["spread"] = {{"drag_length_sd_mm", scenarios.tissues.drag_length_sd_mm},
                     {"ln_stiffness_sd", scenarios.tissues.ln_stiffness_sd},
                     {"bias_sd_mm", scenarios.tissues.bias_sd_mm}};
+  json["stiffness_shift_mm"] = {{"mean", scenarios.stiffness_shift_mm}, {"sd", scenarios.stiffness_shift_sd_mm}};
   json["residual"] = residual_settings_json(settings);
   json["tissues"] = Json::array();
   for (const TissueScenario& tissue : scenarios.tissues.points) {

@@ -120,6 +120,7 @@ Assessment assess(const Case& settings, Store& store, const Study& done, const C
   compare_registration(request, assessment);
   evidence.no_gain_because = without_correction(done);
   if (evidence.no_gain_because.empty()) {
+    evidence.is_accepted = done.is_accepted;
     assessment.outlook = foresee_correction(settings, store, done, belief, request.scenarios, runs, workers, monitor);
     const PathOutlook& paths = assessment.outlook->paths;
     evidence.intended = paths.intended;

@@ -38,7 +38,8 @@ PathErrors inner_edge_errors(const SimulatedCut& cut) {
   return errors;
 }
 
-/// The mid-line of the shallowest layer in which the ring closed, at the skin's height.
+/// The mid-line of the shallowest layer in which the ring closed, at the skin's height; for an inner edge, half the
+/// kerf's width there nearer to the tumour.
 std::optional<PathErrors> layer_path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
                                             Monitor& monitor) {
   for (const KerfLayer& layer : cut.incision.kerf.layers) {
@@ -46,6 +47,9 @@ std::optional<PathErrors> layer_path_errors(const Case& settings, const Simulate
     Contour lifted = *layer.centerline;
     for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
     ContourErrors found = contour_errors(lifted, tumor_edge, settings.plan.lateral_margin_mm, settings.plan.approach);
+    if (settings.compensation.observable == ContourKind::InnerEdge) {  // its target is nearer by the radius, too
+      for (double& error : found.signed_error_mm) error -= 0.5 * layer.width_mm - radius_mm(settings.tool);
+    }
     monitor.message(Severity::Notice,
                     fmt::format("the ring is open near the skin; its path is corrected by the mid-line {} mm deep",
                                 layer.depth_mm));
@@ -87,10 +91,10 @@ SafeRegion safe_region(const Case& settings) {
 std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
                                       Monitor& monitor) {
   std::optional<PathErrors> errors;
-  if (settings.compensation.observable == ContourKind::InnerEdge) {
-    if (cut.incision.inner_edge && cut.incision.kerf.inner_edge_reference && cut.inner_edge.abs_error_mm)
-      errors = inner_edge_errors(cut);
-  } else if (cut.centerline.abs_error_mm && cut.incision.is_closed_loop.value_or(false)) {
+  const bool is_by_edge = settings.compensation.observable == ContourKind::InnerEdge;
+  if (is_by_edge && cut.incision.inner_edge && cut.incision.kerf.inner_edge_reference && cut.inner_edge.abs_error_mm) {
+    errors = inner_edge_errors(cut);
+  } else if (!is_by_edge && cut.centerline.abs_error_mm && cut.incision.is_closed_loop.value_or(false)) {
     const ContourErrors& found = cut.centerline.errors;
     errors = PathErrors{found.points.points, found.signed_error_mm, 0.0, cut.outcome == Outcome::Success};
   } else {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace incise {
 namespace {
@@ -80,10 +81,23 @@ class TissueCuts {
     scenarios_.tissues = tissue_scenarios(belief_.samples, belief_.residual, scenarios_.own_stiffness_sd);
     scenarios_.simulated_force_n = body_.simulated_force_n();
     scenarios_.reference_kpa = settings_.material.youngs_modulus_kpa * reference;
+    if (belief_.trend) follow_trend(*belief_.trend);
     for (const TissueScenario& tissue : scenarios_.tissues.points) {
       const double dullness = tissue.drag_length_mm / (belief_.speed_mm_s * settings_.cut.reference_step_s);
       scenarios_.settings.push_back({belief_.speed_mm_s, dullness, tissue.stiffness_factor * reference});
     }
+  }
+
+  /// The farther this specimen's stiffness lies from the calibrated ones, the less their bias says of it.
+  void follow_trend(const StiffnessTrend& trend) {
+    scenarios_.stiffness_shift_mm = request_.stretch_force_n ? trend.shift_mm(scenarios_.reference_kpa) : 0.0;
+    scenarios_.stiffness_shift_sd_mm =
+        request_.stretch_force_n ? trend.shift_sd_mm(scenarios_.reference_kpa)
+                                 : std::hypot(trend.slope_mm, trend.slope_sd_mm) * scenarios_.own_stiffness_sd;
+    TissueScenarios& tissues = scenarios_.tissues;
+    for (TissueScenario& tissue : tissues.points) tissue.bias_mm += scenarios_.stiffness_shift_mm;
+    tissues.bias_sd_mm = std::hypot(tissues.bias_sd_mm, scenarios_.stiffness_shift_sd_mm);
+    tissues.common_sd_mm = std::hypot(tissues.common_sd_mm, scenarios_.stiffness_shift_sd_mm);
   }
 
   [[nodiscard]] std::vector<CutScenario> weighted() const {

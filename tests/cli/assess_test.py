@@ -35,7 +35,10 @@ class AssessTest(CommandTest):
         found = self.assessed("--stretch-force-n", PULL_N)
         for key in KEYS:
             self.assertIn(key, found)
-        self.assertEqual(found["verdict"], "compensate", found["reasons"])
+        # The block's mesh is too coarse for a correction below the electrode's radius; nothing else speaks against it.
+        self.assertEqual(found["verdict"], "cut_as_planned", found["reasons"])
+        self.assertEqual(len(found["reasons"]), 1, found["reasons"])
+        self.assertIn("not accepted", found["reasons"][0])
         gain = found["expected_gain_mm"]
         self.assertGreater(gain["mean"], gain["sd"])
         self.assertEqual([entry["name"] for entry in found["distances"]],

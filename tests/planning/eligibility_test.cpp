@@ -45,6 +45,14 @@ TEST(JudgeEligibility, CutsAsPlannedWhereTheGainIsNotAboveItsUncertainty) {
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("-0.50 mm"), HasSubstr("probability of 0.99")));
 }
 
+TEST(JudgeEligibility, CutsAsPlannedWhereTheCorrectionIsNotAccepted) {
+  EligibilityEvidence evidence = good();
+  evidence.is_accepted = false;
+  const Eligibility judged = judge_eligibility(evidence);
+  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("not accepted")));
+}
+
 TEST(JudgeEligibility, AGainWithoutAnyUncertaintyHasToBeAGain) {
   EligibilityEvidence evidence = good();
   evidence.gain = CutGain{0.0, 0.0, 0.0};

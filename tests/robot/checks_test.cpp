@@ -419,6 +419,17 @@ TEST(CheckProgram, FindsAHoleInTheSurfaceBelowTheTool) {
   EXPECT_THAT(named(checks, "depth").message(), ::testing::HasSubstr("gap below the tool"));
 }
 
+TEST(CheckProgram, SmallHolesInACloudAreBridgedAsWhereThePathWasLaidDown) {
+  const ToolPath path = ring_path();
+  for (const double radius_mm : {1.8, 3.0}) {
+    TriMesh cloud = sheet(100.0, true);
+    std::erase_if(cloud.vertices,
+                  [radius_mm](const Vec3& p) { return (p.head<2>() - Vec2(615.0, 0.0)).norm() < radius_mm; });
+    const auto checks = check_program(make_program(path), path, {}, {.surface = &cloud});
+    EXPECT_EQ(named(checks, "depth").passed, radius_mm < 2.0) << radius_mm;
+  }
+}
+
 TEST(CheckProgram, LooksAtPowerAndRegistration) {
   const ToolPath path = ring_path();
   EXPECT_THAT(failures_of(path, {}, {.power_w = 80.0}), ::testing::ElementsAre("power"));

@@ -1,10 +1,10 @@
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
+#include <incise/core/units.hpp>
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <gtest/gtest.h>
-
 #include <sys/resource.h>
 
 #include <cmath>
@@ -43,7 +43,9 @@ class MemoryStore : public Store {
     const auto found = cuts.find(role);
     return found == cuts.end() ? std::nullopt : std::optional(found->second);
   }
-  void save_cut(CutRole role, const TissueModel&, const StaticResult&, const SimulatedCut& cut, double) override { cuts[role] = cut; }
+  void save_cut(CutRole role, const TissueModel&, const StaticResult&, const SimulatedCut& cut, double) override {
+    cuts[role] = cut;
+  }
   std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
   void keep_progress(CutRole, const IncisionProgress&, bool) override {}
   std::optional<Correction> load_correction() override { return correction; }
@@ -117,7 +119,8 @@ TEST(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
   ASSERT_TRUE(study.corrected && study.correction && study.correction->iteration);
   const ConvergedCompensation& done = *study.correction->iteration;
   EXPECT_LE(done.passes.size(), 4U);
-  EXPECT_FALSE(store.cuts.contains(CutRole::Corrected) && done.passes.size() + 1 < store.cuts.size()) << "one more cut than passes";
+  EXPECT_FALSE(store.cuts.contains(CutRole::Corrected) && done.passes.size() + 1 < store.cuts.size())
+      << "one more cut than passes";
   const auto& best = store.cuts.at(role_of_pass(static_cast<int>(done.best)));
   EXPECT_EQ(study.corrected->centerline.abs_error_mm->mean, best.centerline.abs_error_mm->mean);
   EXPECT_NEAR(*done.result().mean_abs_error_mm, study.corrected->centerline.abs_error_mm->mean, 1e-12);
@@ -131,6 +134,32 @@ TEST(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
   EXPECT_EQ(again.stages.back().state, StageState::Reused);
   EXPECT_EQ(store.cuts.size(), cuts);
   EXPECT_EQ(again.is_accepted, study.is_accepted);
+}
+
+TEST(PathErrors, AnInnerEdgeThatIsOpenNearTheSkinIsToldFromADeeperLayer) {
+  Contour edge, middle;
+  for (int i = 0; i < 120; ++i) {
+    const double angle = 2.0 * units::kPi * i / 120.0;
+    const Vec3 out(std::cos(angle), std::sin(angle), 0.0);
+    edge.points.push_back(10.0 * out);
+    middle.points.push_back(15.3 * out - 1.0 * Vec3::UnitZ());
+  }
+  Case settings;
+  settings.compensation.observable = ContourKind::InnerEdge;
+  SimulatedCut cut;
+  cut.incision.is_closed_loop = false;
+  cut.incision.kerf.layers = {
+      {.depth_mm = 1.0, .is_within_plan = true, .is_closed = true, .width_mm = 2.4, .centerline = middle}};
+  Monitor silent;
+  const auto errors = path_errors(settings, cut, edge, silent);
+  ASSERT_TRUE(errors.has_value());
+  EXPECT_FALSE(errors->is_success);
+  // 0.3 mm outside as a mid-line; the edge lies 1.2 mm nearer, where a needle's would lie 0.5 mm nearer.
+  for (const double error : errors->signed_error_mm) EXPECT_NEAR(error, 0.3 - 1.2 + 0.5, 0.02);
+  settings.compensation.observable = ContourKind::Centerline;
+  const auto of_middle = path_errors(settings, cut, edge, silent);
+  ASSERT_TRUE(of_middle.has_value());
+  for (const double error : of_middle->signed_error_mm) EXPECT_NEAR(error, 0.3, 0.02);
 }
 
 TEST(IsAccepted, ByThePapersRule) {

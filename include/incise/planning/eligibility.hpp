@@ -46,6 +46,7 @@ struct EligibilityEvidence {
   PathRisk intended, corrected;
   std::optional<CutGain> gain;              ///< absent: nothing could be simulated along both paths …
   std::string no_gain_because;              ///< … and why
+  bool is_accepted = true;                  ///< the correction, by its own simulation
   bool is_registered = true;                ///< a transform was found, and nothing spoke against it
   double registration_rmse_mm = 0.0;        ///< of the simulated surface against the measured one
   std::vector<SpecimenDistance> distances;  ///< of everything that is known of both

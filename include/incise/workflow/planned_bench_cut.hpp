@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/planning/converging_compensation.hpp>
 #include <incise/planning/plan_path.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
 
@@ -16,5 +17,18 @@ inline constexpr double kInnerEdgeTargetMm = 4.5;
 /// @throws CaseError where no such path lies on the specimen; Cancelled; InvalidArgument.
 [[nodiscard]] BenchCut cut_as_planned(const BenchBody& body, const PlanSettings& plan, Workers& workers,
                                       Monitor& monitor);
+
+/// What is left to a planner that knows how the specimen in hand is cut, and only not where the arm will err.
+struct KnownPhysicsCut {
+  ConvergedCompensation correction;  ///< by cuts of the bench itself, the arm's hidden errors left out
+  BenchCut cut;                      ///< along the corrected path, the arm's errors in it
+};
+
+/// The floor of every correction on the bench: the bench's own law corrects the path, pass by pass as
+/// compensate_converging does, and the specimen is cut along it.
+/// @param simulations  of the correction, >= 2; the cut itself is one more.
+/// @throws as cut_as_planned.
+[[nodiscard]] KnownPhysicsCut cut_knowing_physics(const BenchBody& body, const PlanSettings& plan, int simulations,
+                                                  Workers& workers, Monitor& monitor);
 
 }  // namespace incise

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/calibration/calibration_run.hpp>
+#include <incise/calibration/stiffness_trend.hpp>
 #include <incise/calibration/tissue_scenarios.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/workers.hpp>
@@ -19,8 +20,9 @@ namespace incise {
 struct CalibratedBelief {
   std::vector<PosteriorSample> samples;
   ResidualEstimate residual;
-  double speed_mm_s = 13.0;   ///< of the simulated tool; a drag length is reached by its dullness
-  bool knows_forces = false;  ///< the pull of every calibration specimen was measured: stiffness is over that
+  double speed_mm_s = 13.0;             ///< of the simulated tool; a drag length is reached by its dullness
+  bool knows_forces = false;            ///< the pull of every calibration specimen was measured: stiffness is over that
+  std::optional<StiffnessTrend> trend;  ///< of the bias with stiffness; absent: pulls or fits are not known
 };
 
 /// What is known of this specimen's stiffness, and what is asked of the path.
@@ -57,6 +59,9 @@ struct ScenarioSet {
   double simulated_force_n = 0.0;    ///< pull of the specimen at the case's modulus
   double reference_kpa = 0.0;        ///< Young's modulus that stiffness factors are over
   double own_stiffness_sd = 0.0;     ///< of its logarithm
+  /// By which the calibration's bias is expected to differ at this specimen's stiffness, and how uncertain that is;
+  /// both are in `tissues` already. 0 and 0 without a trend.
+  double stiffness_shift_mm = 0.0, stiffness_shift_sd_mm = 0.0;
 };
 
 struct RobustCorrection {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace incise::bench {
+namespace incise::testing {
 
 /// Gives a study the virtual specimen and keeps nothing.
 class PhantomStore final : public Store {
@@ -36,4 +36,4 @@ class PhantomStore final : public Store {
   const Phantom& phantom_;
 };
 
-}  // namespace incise::bench
+}  // namespace incise::testing

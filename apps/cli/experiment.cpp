@@ -1,0 +1,335 @@
+#include "experiment.hpp"
+
+#include "experiment_advice.hpp"
+#include "outside_range.hpp"
+#include "study_tables.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/report/html_report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <ostream>
+
+namespace incise::cli {
+namespace {
+
+using ExperimentJson = nlohmann::ordered_json;
+
+/// Geometric mean of the specimens that a calibration is of.
+double mean_modulus_kpa(const ExperimentJson& calibration) {
+  double sum = 0.0;
+  const ExperimentJson& specimens = calibration.at("specimens");
+  for (const ExperimentJson& specimen : specimens) sum += std::log(specimen.at("youngs_modulus_kpa").get<double>());
+  return std::exp(sum / static_cast<double>(specimens.size()));
+}
+
+class Experiment {
+ public:
+  Experiment(ExperimentSettings settings, const CommonOptions& options, Console& console)
+      : settings_(std::move(settings)), options_(options), console_(console), root_(options.required_output("study")),
+        truth_(settings_.truth.empty() ? root_ / "truth" : settings_.truth), threads_(options.context().threads) {
+    for (std::uint64_t i = 0; i < settings_.specimens; ++i) {
+      Trial trial;
+      trial.name = fmt::format("S{}", i + 1);
+      trial.seed = options.seed + i;
+      trial.role = i < settings_.specimens / 2 ? TrialRole::Calibrate : TrialRole::Test;
+      trials_.push_back(std::move(trial));
+    }
+    add_outside(options.seed);
+  }
+
+  ExperimentJson run();
+
+ private:
+  void add_outside(std::uint64_t seed);
+  [[nodiscard]] double cost_of(const Trial& trial) const;
+  [[nodiscard]] double calibration_cost() const;
+  void tell_progress(double cost);
+  void run_trials(TrialRole first, TrialRole last);
+  void run_trial(Trial& trial);
+  void assess(SpecimenTrial& specimen, Trial& trial);
+  void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
+  void correct(SpecimenTrial& specimen, Trial& trial);
+  void correct_as_paper(SpecimenTrial& specimen, Trial& trial);
+  void correct_knowing_physics(SpecimenTrial& specimen, Trial& trial);
+  void calibrate();
+  void compare();
+  void write_commands() const;
+  [[nodiscard]] std::vector<std::filesystem::path> cut_files(TrialRole role, std::optional<TrialCut> Trial::*which) const;
+
+  ExperimentSettings settings_;
+  const CommonOptions& options_;
+  Console& console_;
+  std::filesystem::path root_, truth_;
+  int threads_;
+  std::vector<Trial> trials_;
+  std::optional<ChosenTool> tool_;
+  double calibrated_kpa_ = 0.0;  // geometric mean of the calibrated specimens' moduli
+  ExperimentJson calibration_, table_1_, comparison_;
+  std::vector<std::string> common_commands_;
+  std::mutex mutex_;  // of the console while specimens go side by side
+  double done_ = 0.0;  // of the whole cost
+};
+
+ExperimentJson Experiment::run() {
+  const auto start = std::chrono::steady_clock::now();
+  run_trials(TrialRole::Calibrate, TrialRole::Calibrate);
+  calibrate();
+  run_trials(TrialRole::Test, TrialRole::Outside);
+  compare();
+  write_table_2(root_ / "table_2.csv", trials_);
+  const ExperimentJson advice = hold_advice_against_truth(trials_, truth_);
+  if (!advice.is_null()) write_advice(root_ / "advice", advice);
+  write_commands();
+  const TrialSummary summary = summary_of(trials_, TrialRole::Test);
+  ExperimentJson result;
+  result["specimen_is"] = "virtual";
+  result["specimens"] = trials_.size();
+  result["pairs"] = summary.pairs;
+  result["mean_before_mm"] = summary.pairs > 0 ? ExperimentJson(summary.mean_before_mm) : ExperimentJson(nullptr);
+  result["mean_after_mm"] = summary.pairs > 0 ? ExperimentJson(summary.mean_after_mm) : ExperimentJson(nullptr);
+  result["gain_percent"] = summary.pairs > 0 ? ExperimentJson(summary.gain_percent) : ExperimentJson(nullptr);
+  result["worse"] = summary.worse;
+  result["most_worse_mm"] = summary.most_worse_mm;
+  if (settings_.with_paper_pass) result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, &Trial::paper_pass));
+  if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
+  result["advice"] = advice;
+  result["calibration"] = calibration_.is_object() ? calibration_.value("chosen", ExperimentJson()) : ExperimentJson(nullptr);
+  result["specimens_test"] = comparison_.is_object() ? comparison_.value("specimens", ExperimentJson()) : ExperimentJson(nullptr);
+  result["table_1"] = table_1_.is_object() ? table_1_.value("rows", ExperimentJson()) : ExperimentJson(nullptr);
+  result["table_2"] = table_2_json(trials_);
+  result["assessments"] = assessments_json(trials_);
+  result["figures"] = ExperimentJson::array();
+  for (const char* figure : {"comparison/box_plot.svg", "comparison/error_by_clock.svg", "table_1/table_1.svg", "calibration/fit.svg", "advice/roc.svg", "advice/reliability.svg"}) {
+    if (std::filesystem::exists(root_ / figure)) result["figures"].push_back((root_ / figure).string());
+  }
+  result["commands"] = (root_ / "commands.sh").string();
+  write_report(experiment_report(trials_, result, root_), root_ / "report.html");
+  result["report"] = (root_ / "report.html").string();
+  result["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_manifest(root_, manifest_of(options_, "{}", {}, result["wall_s"].get<double>()));
+  write_json(root_ / "study.json", result);
+  return result;
+}
+
+void Experiment::add_outside(std::uint64_t seed) {
+  const bool is_papers = settings_.specimens == 4;  // two to calibrate, two corrected, and one that fails
+  const std::uint64_t count = settings_.outside.value_or(is_papers ? 1 : 0);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Trial trial;
+    trial.seed = seed + settings_.specimens + i;
+    trial.name = fmt::format("S{}", settings_.specimens + i + 1);
+    trial.role = TrialRole::Outside;
+    OutsideKind kind = is_papers && !settings_.outside ? failed_specimen() : outside_specimen(trial.seed, i);
+    trial.kind = std::move(kind.name);
+    trial.given = std::move(kind.given);
+    trials_.push_back(std::move(trial));
+  }
+}
+
+/// Specimens side by side, one thread each.
+void Experiment::run_trials(TrialRole first, TrialRole last) {
+  std::vector<Trial*> mine;
+  for (Trial& trial : trials_)
+    if (trial.role >= first && trial.role <= last) mine.push_back(&trial);
+  Workers lanes(std::min<int>(threads_, static_cast<int>(mine.size())));
+  lanes.for_each(mine.size(), 1, [&](std::size_t i) {
+    run_trial(*mine[i]);
+    const std::scoped_lock lock(mutex_);
+    if (!mine[i]->ended_at.empty()) console_.message(Severity::Warning, fmt::format("{} ended at {}", mine[i]->name, mine[i]->ended_at));
+    tell_progress(cost_of(*mine[i]));
+  });
+}
+
+/// Roughly how long a specimen takes, in times of one that is cut as planned and no more: measured on a machine with two
+/// cores, and used for nothing but the time that is left.
+double Experiment::cost_of(const Trial& trial) const {
+  if (trial.role == TrialRole::Calibrate) return 1.0;
+  double cost = 3.2;
+  if (settings_.with_withheld_force) cost += 1.6;
+  if (trial.role == TrialRole::Test && settings_.with_paper_pass) cost += 0.9;
+  if (trial.role == TrialRole::Test && settings_.with_known_physics) cost += 1.5;
+  return cost;
+}
+
+/// Of fit and, unless it is left out, grid.
+double Experiment::calibration_cost() const {
+  const double specimens = static_cast<double>(settings_.specimens / 2);
+  return specimens * (settings_.is_quick ? 1.2 : 3.0);
+}
+
+void Experiment::tell_progress(double cost) {
+  double total = calibration_cost();
+  for (const Trial& trial : trials_) total += cost_of(trial);
+  done_ += cost;
+  console_.progress("virtual specimens", std::min(1.0, done_ / total));
+}
+
+void Experiment::run_trial(Trial& trial) {
+  TrialSetup setup;
+  setup.name = trial.name;
+  setup.seed = trial.seed;
+  setup.given = trial.given;
+  setup.folder = root_ / trial.name;
+  setup.truth = truth_ / trial.name;
+  setup.tets = settings_.tets;
+  SpecimenTrial specimen(setup, 1, console_);
+  if (specimen.prepare(tool_)) {
+    trial.planned = specimen.cut(specimen.planned_path(), "planned");
+    if (trial.role != TrialRole::Calibrate) {
+      assess(specimen, trial);
+      correct(specimen, trial);
+      if (settings_.with_withheld_force) assess_without_pull(specimen, trial);
+    }
+    if (trial.role == TrialRole::Test && settings_.with_paper_pass) correct_as_paper(specimen, trial);
+    if (trial.role == TrialRole::Test && settings_.with_known_physics) correct_knowing_physics(specimen, trial);
+  }
+  trial.stretch_force_n = specimen.stretch_force_n();
+  trial.youngs_modulus_kpa = specimen.youngs_modulus_kpa();
+  trial.registration_rmse_mm = specimen.registration_rmse_mm();
+  trial.ended_at = specimen.ended_at();
+  trial.commands = specimen.commands();
+}
+
+/// What would be advised before the robot moves. The corrected cut is made on the bench whatever it says: whether the
+/// advice was right is part of the experiment.
+void Experiment::assess(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path folder = specimen.at("compensated"), calibration = root_ / "calibration/calibration.json";
+  const StepRecord judged = specimen.ask({"assess",
+                                          {"assess", specimen.case_file().string(), "--calibration", calibration.string(), "--registration",
+                                           specimen.registration().string(), "--stretch-force-n", fmt::format("{}", specimen.stretch_force_n()), "-o",
+                                           folder.string()},
+                                          {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration, specimen.registration()},
+                                          folder / "assessment/assess.json"});
+  trial.assessment = judged.result;
+}
+
+/// The same advice of a laboratory that cannot measure the pull: the tissue is taken to be as stiff as the calibrated one
+/// is on average.
+void Experiment::assess_without_pull(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path folder = specimen.at("withheld"), calibration = root_ / "calibration/calibration.json";
+  const std::filesystem::path file = specimen.write_variant("withheld.yaml", tool_, calibrated_kpa_, CompensationMethod::Default);
+  trial.assessment_without_pull = specimen
+                                      .ask({"assess_without_pull",
+                                            {"assess", file.string(), "--calibration", calibration.string(), "--registration",
+                                             specimen.registration().string(), "-o", folder.string()},
+                                            {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration, specimen.registration()},
+                                            folder / "assessment/assess.json"})
+                                      .result;
+}
+
+/// The paper's correction with the same tool: one pass, radially, by the mid-line.
+void Experiment::correct_as_paper(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path folder = specimen.at("paper_pass");
+  const std::filesystem::path file = specimen.write_variant("paper_pass.yaml", tool_, specimen.youngs_modulus_kpa(), CompensationMethod::Paper);
+  specimen.ask({"compensate_as_paper",
+                                             {"compensate", file.string(), "-o", folder.string()},
+                                             {file, specimen.at("tumor.csv"), specimen.at("lab/ct")},
+                                             folder / "correction/path.json"});
+  // The paper cut whatever its single pass came to: it is cut here, too, where there is a path.
+  if (std::filesystem::exists(folder / "correction/path.json")) trial.paper_pass = specimen.cut(folder / "correction/path.json", "paper_pass");
+}
+
+/// What would be left to a planner that knows how this very tissue is cut.
+void Experiment::correct_knowing_physics(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path file = truth_ / trial.name / "specimen.json";
+  trial.known_physics = specimen.ask({"known_physics", {"bench", "floor", file.string(), "-o", (truth_ / (trial.name + "_floor.json")).string()}, {file}, truth_ / (trial.name + "_floor.json")}).result;
+}
+
+/// The correction, verified in simulation, and the second cut of the same specimen.
+void Experiment::correct(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path folder = specimen.at("compensated");  // its case holds what was calibrated: tool, stiffness, bias
+  const auto corrected = specimen.run({"compensate",
+                                       {"compensate", specimen.case_file().string(), "-o", folder.string()},
+                                       {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct")},
+                                       folder / "correction/path.json"});
+  if (!corrected) return;
+  trial.compensation = corrected->result;
+  trial.corrected = specimen.cut(folder / "correction/path.json", "corrected");
+}
+
+std::vector<std::filesystem::path> Experiment::cut_files(TrialRole role, std::optional<TrialCut> Trial::*which) const {
+  std::vector<std::filesystem::path> files;
+  for (const Trial& trial : trials_) {
+    const bool is_whole = trial.planned && (role == TrialRole::Calibrate || trial.corrected);
+    if (trial.role == role && is_whole) files.push_back((trial.*which)->evaluation);
+  }
+  return files;
+}
+
+void Experiment::calibrate() {
+  std::vector<std::string> cases, observed{"--observed"}, forces{"--stretch-force-n"}, registrations{"--registration"};
+  std::vector<std::filesystem::path> inputs;
+  for (const Trial& trial : trials_) {
+    if (trial.role != TrialRole::Calibrate || !trial.planned) continue;
+    const std::filesystem::path file = root_ / trial.name / "case.yaml";
+    cases.push_back(file.string());
+    observed.push_back(trial.planned->evaluation.string());
+    forces.push_back(fmt::format("{}", trial.stretch_force_n));
+    const std::filesystem::path registration = root_ / trial.name / "registration/registration.json";
+    registrations.push_back(registration.string());
+    for (const std::filesystem::path& input : {file, root_ / trial.name / "tumor.csv", trial.planned->evaluation, registration}) inputs.push_back(input);
+  }
+  if (cases.empty()) throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
+  StepRunner runner(root_, threads_, console_);
+  const auto arguments = [&](const std::string& method, const std::filesystem::path& folder) {
+    std::vector<std::string> words{"calibrate"};
+    for (const auto* list : {&cases, &observed, &forces, &registrations}) words.insert(words.end(), list->begin(), list->end());
+    for (const std::string& word : {std::string("--method"), method, std::string("-o"), folder.string()}) words.push_back(word);
+    return words;
+  };
+  const StepRecord fit = runner.run({"calibrate", arguments("fit", root_ / "calibration"), inputs, root_ / "calibration/calibration.json"});
+  calibration_ = fit.result;
+  if (fit.status != kDone) throw DataError(root_ / "calibration", "", "a calibration in which every simulation failed", "one that can be used");
+  const ExperimentJson& chosen = calibration_.at("chosen");
+  tool_ = ChosenTool{chosen.at("speed_mm_s").get<double>(), chosen.at("dullness").get<double>(),
+                     calibration_.at("posterior").at("bias_mm").at("mean").get<double>()};
+  calibrated_kpa_ = mean_modulus_kpa(calibration_);
+  if (!settings_.is_quick) table_1_ = runner.run({"table_1", arguments("paper", root_ / "table_1"), inputs, root_ / "table_1/table_1.csv"}).result;
+  common_commands_ = runner.lines();
+  tell_progress(calibration_cost());
+}
+
+void Experiment::compare() {
+  const auto before = cut_files(TrialRole::Test, &Trial::planned), after = cut_files(TrialRole::Test, &Trial::corrected);
+  if (before.empty()) return;
+  std::vector<std::string> words{"compare", "--before"};
+  std::vector<std::filesystem::path> inputs;
+  for (const auto& file : before) words.push_back(file.string());
+  words.emplace_back("--after");
+  for (const auto& file : after) words.push_back(file.string());
+  for (const std::string& word : {std::string("--paired"), std::string("-o"), (root_ / "comparison").string()}) words.push_back(word);
+  for (const auto* files : {&before, &after}) inputs.insert(inputs.end(), files->begin(), files->end());
+  StepRunner runner(root_, threads_, console_);
+  comparison_ = runner.run({"compare", words, inputs, root_ / "comparison/compare.json"}).result;
+  for (const std::string& line : runner.lines()) common_commands_.push_back(line);
+}
+
+/// Every command in an order in which they could be given by hand.
+void Experiment::write_commands() const {
+  write_atomically(root_ / "commands.sh", [&](std::ostream& out) {
+    out << "#!/bin/sh\n# The commands of this virtual experiment. Case files and tumor.csv are written between them by `incise study`.\nset -e\n";
+    for (const Trial& trial : trials_) {
+      out << "\n# " << trial.name << " (" << to_string(trial.role) << ")\n";
+      for (const std::string& line : trial.commands) out << line << '\n';
+    }
+    out << "\n# all specimens\n";
+    for (const std::string& line : common_commands_) out << line << '\n';
+  });
+}
+
+}  // namespace
+
+nlohmann::ordered_json run_experiment(const ExperimentSettings& settings, const CommonOptions& options, Console& console) {
+  return Experiment(settings, options, console).run();
+}
+
+}  // namespace incise::cli

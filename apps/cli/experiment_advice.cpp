@@ -1,0 +1,199 @@
+#include "experiment_advice.hpp"
+
+#include <incise/evaluation/forecast_skill.hpp>
+#include <incise/imaging/photo_contours.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/report/line_plot.hpp>
+#include <incise/workflow/case.hpp>
+#include <incise/workflow/planned_bench_cut.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ostream>
+
+namespace incise::cli {
+namespace {
+
+using AdviceJson = nlohmann::ordered_json;
+
+/// What really happened in one cut.
+struct TrueCut {
+  std::optional<double> mean_abs_error_mm;  ///< absent: the ring stayed open
+  double least_margin_mm = 0.0;             ///< of a closed one
+};
+
+std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const std::string& specimen, const char* cut) {
+  const std::filesystem::path file = truth / fmt::format("{}_{}", specimen, cut) / "cut_truth.json";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const AdviceJson json = read_json(file);
+  TrueCut result;
+  if (!json.contains("mean_abs_error_mm")) return result;
+  result.mean_abs_error_mm = json.at("mean_abs_error_mm").get<double>();
+  const auto errors = json.at("signed_errors_mm").get<std::vector<double>>();
+  result.least_margin_mm = kInnerEdgeTargetMm + *std::min_element(errors.begin(), errors.end());
+  return result;
+}
+
+/// A specimen that was advised on and cut twice.
+struct AdvisedSpecimen {
+  const Trial* trial = nullptr;
+  TrueCut planned, corrected;
+  [[nodiscard]] std::optional<double> gain_mm() const {
+    if (!planned.mean_abs_error_mm || !corrected.mean_abs_error_mm) return std::nullopt;
+    return *planned.mean_abs_error_mm - *corrected.mean_abs_error_mm;
+  }
+  /// An open ring is worse than any closed one; two of them tell nothing.
+  [[nodiscard]] std::optional<bool> is_worse() const {
+    if (!planned.mean_abs_error_mm && !corrected.mean_abs_error_mm) return std::nullopt;
+    if (const std::optional<double> gain = gain_mm()) return *gain < 0.0;
+    return !corrected.mean_abs_error_mm;
+  }
+};
+
+/// Where nothing could be foretold the advice is not to use it: as wary as can be.
+double stated_p_worse(const AdviceJson& assessment) {
+  return assessment.contains("p_worse") && assessment.at("p_worse").is_number() ? assessment.at("p_worse").get<double>() : 1.0;
+}
+
+AdviceJson auc_json(const std::vector<AdvisedSpecimen>& specimens, nlohmann::ordered_json Trial::*assessment) {
+  std::vector<Forecast> forecasts;
+  for (const AdvisedSpecimen& specimen : specimens) {
+    const AdviceJson& said = specimen.trial->*assessment;
+    if (!said.is_object() || !specimen.is_worse()) continue;
+    forecasts.push_back({stated_p_worse(said), *specimen.is_worse()});
+  }
+  const auto worse = std::count_if(forecasts.begin(), forecasts.end(), [](const Forecast& f) { return f.happened; });
+  if (worse == 0 || worse == static_cast<std::ptrdiff_t>(forecasts.size())) return nullptr;
+  const RocCurve curve = roc_curve(forecasts);
+  AdviceJson points = AdviceJson::array();
+  for (const RocPoint& point : curve.points) points.push_back({point.false_alarms, point.caught});
+  return {{"area", curve.area}, {"low", curve.confidence.low}, {"high", curve.confidence.high}, {"level", BootstrapSettings{}.level},
+          {"worse", curve.happened}, {"not_worse", curve.did_not}, {"points", std::move(points)}};
+}
+
+AdviceJson close_margin_json(const std::vector<AdvisedSpecimen>& specimens) {
+  const double limit_mm = Case{}.close_margin_mm;
+  std::vector<Forecast> forecasts;
+  for (const AdvisedSpecimen& specimen : specimens) {
+    for (const auto& [path, cut] : {std::pair("intended", &specimen.planned), std::pair("corrected", &specimen.corrected)}) {
+      const AdviceJson& stated = specimen.trial->assessment.value("p_close_margin", AdviceJson());
+      if (!cut->mean_abs_error_mm || !stated.is_object() || !stated.at(path).is_number()) continue;
+      forecasts.push_back({stated.at(path).get<double>(), cut->least_margin_mm < limit_mm});
+    }
+  }
+  if (forecasts.empty()) return nullptr;
+  const Reliability found = reliability(forecasts);
+  AdviceJson bins = AdviceJson::array();
+  for (const ReliabilityBin& bin : found.bins) {
+    bins.push_back({{"cuts", bin.forecasts}, {"happened", bin.happened}, {"stated", bin.mean_said}, {"seen", bin.share},
+                    {"low", bin.confidence.low}, {"high", bin.confidence.high}});
+  }
+  return {{"close_margin_mm", limit_mm}, {"cuts", forecasts.size()}, {"brier_score", found.brier_score}, {"bins", std::move(bins)}};
+}
+
+AdviceJson specimen_json(const AdvisedSpecimen& specimen) {
+  const auto or_null = [](const auto& value) { return value ? AdviceJson(*value) : AdviceJson(nullptr); };
+  const AdviceJson& said = specimen.trial->assessment;
+  AdviceJson json{{"specimen", specimen.trial->name},
+                  {"role", to_string(specimen.trial->role)},
+                  {"kind", specimen.trial->kind},
+                  {"verdict", said.value("verdict", AdviceJson())},
+                  {"expected_gain_mm", said.value("expected_gain_mm", AdviceJson())},
+                  {"p_worse", stated_p_worse(said)},
+                  {"true_planned_mm", or_null(specimen.planned.mean_abs_error_mm)},
+                  {"true_corrected_mm", or_null(specimen.corrected.mean_abs_error_mm)},
+                  {"true_gain_mm", or_null(specimen.gain_mm())},
+                  {"is_worse", or_null(specimen.is_worse())}};
+  if (specimen.trial->assessment_without_pull.is_object()) json["p_worse_without_pull"] = stated_p_worse(specimen.trial->assessment_without_pull);
+  return json;
+}
+
+std::string with_area(const char* name, const AdviceJson& area) {
+  return fmt::format("{}: {:.2f} ({:.2f} to {:.2f})", name, area.at("area").get<double>(), area.at("low").get<double>(), area.at("high").get<double>());
+}
+
+LinePlot roc_plot(const AdviceJson& advice) {
+  LinePlot plot;
+  const AdviceJson& area = advice.at("auc");
+  plot.title = fmt::format("Virtual specimens: {} of {} made worse by their correction; area under the curve with 95 % interval",
+                           area.at("worse").get<std::size_t>(), area.at("worse").get<std::size_t>() + area.at("not_worse").get<std::size_t>());
+  plot.x_label = "false alarms: share of the others at or above a stated probability";
+  plot.y_label = "share of the worse ones at or above it";
+  const auto add = [&plot](std::string name, const AdviceJson& points) {
+    LineSeries series{std::move(name), {}, {}, true};
+    for (const AdviceJson& point : points) {
+      series.x.push_back(point.at(0).get<double>());
+      series.y.push_back(point.at(1).get<double>());
+    }
+    plot.series.push_back(std::move(series));
+  };
+  add(with_area("pull measured", area), area.at("points"));
+  const AdviceJson& withheld = advice.at("auc_without_pull");
+  if (withheld.is_object()) add(with_area("pull withheld", withheld), withheld.at("points"));
+  plot.series.push_back({"chance", {0.0, 1.0}, {0.0, 1.0}, true});
+  return plot;
+}
+
+LinePlot reliability_plot(const AdviceJson& margin) {
+  LinePlot plot;
+  plot.title = fmt::format("Virtual cuts ({}): P(margin below {} mm somewhere), Brier score {:.3f}", margin.at("cuts").get<std::size_t>(),
+                           margin.at("close_margin_mm").get<double>(), margin.at("brier_score").get<double>());
+  plot.x_label = "stated probability";
+  plot.y_label = "share in which it happened";
+  LineSeries seen{"seen", {}, {}, false};
+  for (const AdviceJson& bin : margin.at("bins")) {
+    seen.x.push_back(bin.at("stated").get<double>());
+    seen.y.push_back(bin.at("seen").get<double>());
+  }
+  plot.series.push_back(std::move(seen));
+  plot.series.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, true});
+  for (const AdviceJson& bin : margin.at("bins")) {
+    const double x = bin.at("stated").get<double>();
+    plot.series.push_back({fmt::format("95 % of {}", bin.at("cuts").get<std::size_t>()), {x, x}, {bin.at("low").get<double>(), bin.at("high").get<double>()}, true});
+  }
+  return plot;
+}
+
+void write_svg(const std::filesystem::path& file, const LinePlot& plot) {
+  const std::string svg = line_plot_svg(plot);
+  write_atomically(file, [&svg](std::ostream& out) { out << svg; });
+}
+
+}  // namespace
+
+AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std::filesystem::path& truth) {
+  std::vector<AdvisedSpecimen> specimens;
+  AdviceJson skipped = AdviceJson::array();
+  for (const Trial& trial : trials) {
+    if (trial.role == TrialRole::Calibrate) continue;
+    const std::optional<TrueCut> planned = true_cut(truth, trial.name, "planned"), corrected = true_cut(truth, trial.name, "corrected");
+    if (trial.assessment.is_object() && planned && corrected)
+      specimens.push_back({&trial, *planned, *corrected});
+    else
+      skipped.push_back({{"specimen", trial.name}, {"kind", trial.kind}, {"ended_at", trial.ended_at}});
+  }
+  if (specimens.empty()) return nullptr;
+  AdviceJson json;
+  json["specimen_is"] = "virtual";
+  json["advised"] = specimens.size();
+  json["worse"] = std::count_if(specimens.begin(), specimens.end(), [](const AdvisedSpecimen& s) { return s.is_worse().value_or(false); });
+  json["auc"] = auc_json(specimens, &Trial::assessment);
+  json["auc_without_pull"] = auc_json(specimens, &Trial::assessment_without_pull);
+  json["close_margin"] = close_margin_json(specimens);
+  json["specimens"] = AdviceJson::array();
+  for (const AdvisedSpecimen& specimen : specimens) json["specimens"].push_back(specimen_json(specimen));
+  json["skipped"] = std::move(skipped);
+  return json;
+}
+
+void write_advice(const std::filesystem::path& folder, const AdviceJson& advice) {
+  std::filesystem::create_directories(folder);
+  write_json(folder / "advice.json", advice);
+  for (const char* figure : {"roc.svg", "reliability.svg"}) std::filesystem::remove(folder / figure);
+  if (advice.at("auc").is_object()) write_svg(folder / "roc.svg", roc_plot(advice));
+  if (advice.at("close_margin").is_object()) write_svg(folder / "reliability.svg", reliability_plot(advice.at("close_margin")));
+}
+
+}  // namespace incise::cli

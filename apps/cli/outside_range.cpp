@@ -1,0 +1,30 @@
+#include "outside_range.hpp"
+
+#include <incise/core/random.hpp>
+
+namespace incise::cli {
+
+OutsideKind failed_specimen() {
+  return {"failed", {{"youngs_modulus_kpa", 48.0}, {"clamp_slip_mm", 9.0}}};
+}
+
+OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index) {
+  constexpr std::uint64_t kStream = 0x6f75747369646573ULL;  // apart from the streams that specimens are drawn from
+  Random random(seed ^ kStream);
+  switch (index % 5) {
+    case 0:
+      return {"stiff", {{"youngs_modulus_kpa", random.uniform(25.0, 60.0)}}};
+    case 2:
+      return {"fibrous", {{"fibre_ratio", random.uniform(1.5, 3.0)}, {"stiffness_spread", random.uniform(0.4, 0.6)}, {"relaxing_ratio", random.uniform(4.0, 8.0)}}};
+    case 4:
+      return {"soft", {{"youngs_modulus_kpa", random.uniform(4.5, 7.0)}}};
+    default:
+      return {"scarred",
+              {{"youngs_modulus_kpa", random.uniform(60.0, 120.0)},
+               {"toughness_j_m2", random.uniform(900.0, 1200.0)},
+               {"rupture_percent", random.uniform(0.6, 0.75)},
+               {"adhesion_kpa_s_mm2", random.uniform(40.0, 80.0)}}};
+  }
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,56 @@
+#include <incise/calibration/stiffness_trend.hpp>
+#include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace incise {
+namespace {
+
+TEST(StiffnessTrend, OneSpecimenTellsNothingOfTheSlope) {
+  const StiffnessTrend trend = stiffness_trend(std::vector<StiffnessReading>{{12.0, 0.4}}, 0.2);
+  EXPECT_DOUBLE_EQ(trend.slope_mm, 0.0);
+  EXPECT_DOUBLE_EQ(trend.slope_sd_mm, kTrendPriorMm);
+  EXPECT_DOUBLE_EQ(trend.shift_sd_mm(12.0), 0.0);
+  EXPECT_NEAR(trend.shift_sd_mm(48.0), kTrendPriorMm * std::log(4.0), 1e-12);
+  EXPECT_NEAR(trend.shift_sd_mm(3.0), trend.shift_sd_mm(48.0), 1e-12);
+}
+
+TEST(StiffnessTrend, IsTheLineWhereReadingsAreExact) {
+  const std::vector<StiffnessReading> readings{
+      {8.0, 0.1 - 0.5 * std::log(2.0)}, {16.0, 0.1}, {32.0, 0.1 + 0.5 * std::log(2.0)}};
+  const StiffnessTrend trend = stiffness_trend(readings, 1e-4);
+  EXPECT_NEAR(trend.slope_mm, 0.5, 1e-5);
+  EXPECT_NEAR(trend.shift_mm(32.0), 0.5 * std::log(2.0), 1e-5);
+  EXPECT_NEAR(trend.shift_mm(16.0), 0.0, 1e-9);
+}
+
+TEST(StiffnessTrend, ItsIntervalHoldsTheTruthAsOftenAsItSays) {
+  Random random(21);
+  constexpr int kTrials = 2000;
+  int within = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double slope = kTrendPriorMm * random.normal();
+    std::vector<StiffnessReading> readings;
+    for (int s = 0; s < 12; ++s) {
+      const double ln_kpa = std::log(12.0) + 0.2 * random.normal();
+      readings.push_back({std::exp(ln_kpa), slope * ln_kpa + 0.2 * random.normal()});
+    }
+    const StiffnessTrend trend = stiffness_trend(readings, 0.2);
+    within += std::abs(trend.slope_mm - slope) < 1.6449 * trend.slope_sd_mm ? 1 : 0;
+  }
+  EXPECT_NEAR(within / static_cast<double>(kTrials), 0.9, 0.03);  // four standard errors
+}
+
+TEST(StiffnessTrend, RefusesWhatIsNoReading) {
+  EXPECT_THROW(static_cast<void>(stiffness_trend({}, 0.2)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(stiffness_trend(std::vector<StiffnessReading>{{0.0, 0.1}}, 0.2)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(stiffness_trend(std::vector<StiffnessReading>{{1.0, NAN}}, 0.2)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(stiffness_trend(std::vector<StiffnessReading>{{1.0, 0.1}}, 0.0)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise
