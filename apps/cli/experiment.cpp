@@ -93,12 +93,10 @@ ExperimentJson Experiment::run() {
   ExperimentJson result;
   result["specimen_is"] = "virtual";
   result["specimens"] = trials_.size();
-  result["pairs"] = summary.pairs;
-  result["mean_before_mm"] = summary.pairs > 0 ? ExperimentJson(summary.mean_before_mm) : ExperimentJson(nullptr);
-  result["mean_after_mm"] = summary.pairs > 0 ? ExperimentJson(summary.mean_after_mm) : ExperimentJson(nullptr);
-  result["gain_percent"] = summary.pairs > 0 ? ExperimentJson(summary.gain_percent) : ExperimentJson(nullptr);
-  result["worse"] = summary.worse;
-  result["most_worse_mm"] = summary.most_worse_mm;
+  result["tested"] = summary.specimens;
+  const ExperimentJson of_test = to_json(summary);
+  for (const auto& [key, value] : of_test.items())
+    if (key != "specimens") result[key] = value;
   if (settings_.with_paper_pass) result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, &Trial::paper_pass));
   if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
   result["advice"] = advice;

@@ -151,7 +151,7 @@ LinePlot reliability_plot(const AdviceJson& margin) {
   plot.series.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, true});
   for (const AdviceJson& bin : margin.at("bins")) {
     const double x = bin.at("stated").get<double>();
-    plot.series.push_back({fmt::format("95 % of {}", bin.at("cuts").get<std::size_t>()), {x, x}, {bin.at("low").get<double>(), bin.at("high").get<double>()}, true});
+    plot.series.push_back({fmt::format("95 % interval, {} cuts", bin.at("cuts").get<std::size_t>()), {x, x}, {bin.at("low").get<double>(), bin.at("high").get<double>()}, true});
   }
   return plot;
 }

@@ -105,9 +105,18 @@ const char* to_string(TrialRole role) {
 
 TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, std::optional<TrialCut> Trial::*after) {
   TrialSummary summary;
+  double uncorrected_mm = 0.0;
   for (const Trial& trial : trials) {
-    if (trial.role != role || !trial.planned || !(trial.*after)) continue;
-    const double before_mm = mean_error_mm(*trial.planned), after_mm = mean_error_mm(*(trial.*after));
+    if (trial.role != role) continue;
+    ++summary.specimens;
+    if (!trial.planned) continue;
+    const double before_mm = mean_error_mm(*trial.planned);
+    if (!(trial.*after)) {
+      ++summary.uncorrected;
+      uncorrected_mm += before_mm;
+      continue;
+    }
+    const double after_mm = mean_error_mm(*(trial.*after));
     ++summary.pairs;
     summary.mean_before_mm += before_mm;
     summary.mean_after_mm += after_mm;
@@ -115,6 +124,7 @@ TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, std::o
     summary.most_worse_mm = std::max(summary.most_worse_mm, after_mm - before_mm);
   }
   if (summary.pairs == 0) return summary;
+  summary.gain_percent_of_all = 100.0 * (1.0 - (summary.mean_after_mm + uncorrected_mm) / (summary.mean_before_mm + uncorrected_mm));
   summary.mean_before_mm /= static_cast<double>(summary.pairs);
   summary.mean_after_mm /= static_cast<double>(summary.pairs);
   summary.gain_percent = 100.0 * (1.0 - summary.mean_after_mm / summary.mean_before_mm);
@@ -123,10 +133,13 @@ TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, std::o
 
 TableJson to_json(const TrialSummary& summary) {
   const auto number = [&summary](double value) { return summary.pairs > 0 ? TableJson(value) : TableJson(nullptr); };
-  return {{"pairs", summary.pairs},
+  return {{"specimens", summary.specimens},
+          {"pairs", summary.pairs},
+          {"uncorrected", summary.uncorrected},
           {"mean_before_mm", number(summary.mean_before_mm)},
           {"mean_after_mm", number(summary.mean_after_mm)},
           {"gain_percent", number(summary.gain_percent)},
+          {"gain_percent_of_all", number(summary.gain_percent_of_all)},
           {"worse", summary.worse},
           {"most_worse_mm", summary.most_worse_mm}};
 }

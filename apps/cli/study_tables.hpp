@@ -36,16 +36,19 @@ struct Trial {
 
 /// The test specimens that were cut twice, and what the correction did to them.
 struct TrialSummary {
-  std::size_t pairs = 0;
+  std::size_t specimens = 0;    ///< with that role, whatever came of them
+  std::size_t pairs = 0;        ///< of them: cut twice
+  std::size_t uncorrected = 0;  ///< cut as planned, and refused or open where it was to be cut again
   double mean_before_mm = 0.0, mean_after_mm = 0.0;  ///< mean over specimens of the mean absolute error
   double gain_percent = 0.0;
+  double gain_percent_of_all = 0.0;  ///< with the uncorrected ones, whose error stays what it was
   std::size_t worse = 0;        ///< specimens whose error grew
   double most_worse_mm = 0.0;   ///< by how much at most; 0: none
 };
 /// Of the specimens with that role, as planned against another cut. No pairs: zeros.
 [[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role,
                                       std::optional<TrialCut> Trial::*after = &Trial::corrected);
-/// `pairs`, `mean_before_mm`, `mean_after_mm`, `gain_percent`, `worse`, `most_worse_mm`; numbers are null without pairs.
+/// The same names; what is of the pairs is null without any.
 [[nodiscard]] nlohmann::ordered_json to_json(const TrialSummary& summary);
 /// What is left to a planner that knows the bench's physics, of the test specimens: `specimens`, `mean_after_mm` (from
 /// the truth, not from photographs).

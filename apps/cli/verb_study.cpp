@@ -31,6 +31,10 @@ void print_area(const char* name, const nlohmann::ordered_json& area) {
 void print_summary(const nlohmann::ordered_json& result) {
   fmt::print("VIRTUAL specimens, mean |error| of the photographs\n");
   print_gain("as planned -> corrected", result);
+  if (result.at("uncorrected").get<std::size_t>() > 0 && result.at("pairs").get<std::size_t>() > 0) {
+    fmt::print("{:<34} {:.0f} % less; {} cut as planned alone\n", "  of all that were cut", result.at("gain_percent_of_all").get<double>(),
+               result.at("uncorrected").get<std::size_t>());
+  }
   if (result.contains("paper_pass")) print_gain("as planned -> paper's single pass", result.at("paper_pass"));
   if (result.contains("known_physics") && result.at("known_physics").at("mean_after_mm").is_number()) {
     fmt::print("{:<34} {:.2f} mm ({} specimens, from the truth)\n", "physics known", result.at("known_physics").at("mean_after_mm").get<double>(),

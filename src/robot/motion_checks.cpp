@@ -109,7 +109,7 @@ void check_motion(CheckList& list, const CheckSettings& settings) {
 }
 
 void check_depth_in(CheckList& list, const TriMesh& surface, double depth_mm, double tolerance_mm) {
-  SurfaceProbe probe(surface);
+  const SurfaceProbe probe(surface);
   const RobotProgram& program = list.program();
   Worst worst;
   for (std::size_t i = 0; i < program.poses.size(); ++i) {

@@ -70,6 +70,19 @@ class BadInputTest(CommandTest):
     def test_a_missing_specimen_file_is_named(self):
         self.assert_refused(self.incise("bench", "make", "nowhere.json", "-o", self.out), BAD_DATA, "nowhere.json")
 
+    def test_the_floor_needs_a_specimen_and_a_place_for_its_file(self):
+        done = self.incise("bench", "floor", "none.json", "-o", "floor.json")
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        self.assertIn("none.json", done.stderr)
+        file = specimen_file(self.folder / "specimen.json")
+        done = self.incise("bench", "floor", file)
+        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        before = file.read_bytes()
+        done = self.incise("bench", "floor", file, "-o", file)
+        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        self.assertEqual(file.read_bytes(), before)
+        self.assert_nothing_written(self.folder / "floor.json")
+
     def test_the_truth_may_not_lie_in_the_output(self):
         done = self.incise("bench", "make", "--seed", 5, "-o", self.out, "--truth", self.out / "truth")
         self.assert_refused(done, BAD_CASE, "--truth", "apart from the output")

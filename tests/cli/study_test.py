@@ -10,7 +10,7 @@ import unittest
 
 from command import BAD_CASE, BAD_DATA, COMMAND, CommandTest
 
-SMALL = ("study", "--specimens", "2", "--quick", "--tets", "14000", "--threads", "2", "-o", "study")
+SMALL = ("study", "--specimens", "2", "--outside", "1", "--quick", "--paper-pass", "--withheld-force", "--tets", "14000", "--threads", "2", "-o", "study")
 
 
 class StudyTest(CommandTest):
@@ -39,9 +39,15 @@ class StudyTest(CommandTest):
         self.assertEqual(result["specimen_is"], "virtual")
         self.assertEqual(result["pairs"], 1)
         self.assertLess(result["mean_after_mm"], result["mean_before_mm"])
-        self.assertEqual([row["cut"] for row in result["table_2"]], ["planned", "planned", "corrected"])
-        self.assertEqual([row["verdict"] is None for row in result["table_2"]], [True, False, False])
-        (advice,) = result["assessments"]
+        self.assertEqual([row["cut"] for row in result["table_2"]], ["planned", "planned", "corrected", "paper_pass", "planned", "corrected"])
+        self.assertEqual([row["verdict"] is None for row in result["table_2"]], [True, False, False, False, False, False])
+        self.assertEqual([row["kind"] for row in result["table_2"]], [None, None, None, None, "stiff", "stiff"])
+        self.assertEqual(result["paper_pass"]["pairs"], 1)
+        self.assertEqual(result["paper_pass"]["mean_before_mm"], result["mean_before_mm"])
+        self.advice_is_held_against_the_truth(result)
+        advice, stiff = result["assessments"]
+        # Four times as stiff as what was calibrated on: the bias says less of it.
+        self.assertGreater(stiff["p_worse"], advice["p_worse"])
         self.assertIn(advice["verdict"], ("compensate", "cut_as_planned", "do_not_use"))
         self.assertEqual({entry["name"] for entry in advice["distances"]},
                          {"registration_rmse_mm", "registration_scale", "youngs_modulus_kpa", "compliance_mm_n"})
@@ -60,6 +66,21 @@ class StudyTest(CommandTest):
         done = self.incise(*SMALL)
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
         self.assertIn("bench_make.json", done.stderr)
+
+    def advice_is_held_against_the_truth(self, result):
+        held = result["advice"]
+        self.assertEqual(held["advised"], 2)
+        self.assertEqual(held["skipped"], [])
+        for entry in held["specimens"]:
+            for cut in ("planned", "corrected"):
+                truth = json.loads((self.folder / "study" / "truth" / f"{entry['specimen']}_{cut}" / "cut_truth.json").read_text())
+                self.assertEqual(entry[f"true_{cut}_mm"], truth["mean_abs_error_mm"])
+            self.assertEqual(entry["is_worse"], entry["true_corrected_mm"] > entry["true_planned_mm"])
+            self.assertIn("p_worse_without_pull", entry)
+        self.assertEqual(held["worse"], sum(entry["is_worse"] for entry in held["specimens"]))
+        self.assertEqual(held["auc"] is None, held["worse"] in (0, 2))
+        self.assertEqual(held["close_margin"]["cuts"], 4)
+        self.assertTrue((self.folder / "study" / "advice" / "reliability.svg").is_file())
 
     def planners_commands_know_nothing_of_the_truth(self, result):
         """Only the bench's commands name the truth's folder, and the others give the same without it."""

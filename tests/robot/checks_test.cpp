@@ -419,7 +419,7 @@ TEST(CheckProgram, FindsAHoleInTheSurfaceBelowTheTool) {
   EXPECT_THAT(named(checks, "depth").message(), ::testing::HasSubstr("gap below the tool"));
 }
 
-TEST(CheckProgram, SmallHolesInACloudAreBridgedAsWhereThePathWasLaidDown) {
+TEST(CheckProgram, SmallHolesInACloudAreBridged) {
   const ToolPath path = ring_path();
   for (const double radius_mm : {1.8, 3.0}) {
     TriMesh cloud = sheet(100.0, true);
