@@ -1,6 +1,7 @@
 #include "experiment.hpp"
 
 #include "experiment_advice.hpp"
+#include "experiment_report.hpp"
 #include "outside_range.hpp"
 #include "study_tables.hpp"
 
@@ -22,6 +23,22 @@ namespace incise::cli {
 namespace {
 
 using ExperimentJson = nlohmann::ordered_json;
+
+/// A correction and the cut along it.
+struct SecondCut {
+  ExperimentJson compensation;  // what `incise compensate` printed
+  TrialCut cut;
+};
+
+/// Whether `incise compensate` ended with a path of its own.
+bool has_path(const ExperimentJson& compensation) {
+  return compensation.is_object() && compensation.contains("path") && compensation.at("path").is_string();
+}
+
+/// A step of all specimens together cannot be done without.
+void require_done(const StepRecord& record, const char* step, const StepRunner& runner) {
+  if (record.status != kDone) throw DataError(runner.log(), step, refusal_of(step, record), "status 0");
+}
 
 /// Geometric mean of the specimens that a calibration is of.
 double mean_modulus_kpa(const ExperimentJson& calibration) {
@@ -49,6 +66,7 @@ class Experiment {
   ExperimentJson run();
 
  private:
+  void remove_summaries() const;
   void add_outside(std::uint64_t seed);
   [[nodiscard]] double cost_of(const Trial& trial) const;
   [[nodiscard]] double calibration_cost() const;
@@ -58,12 +76,12 @@ class Experiment {
   void assess(SpecimenTrial& specimen, Trial& trial);
   void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
   void correct(SpecimenTrial& specimen, Trial& trial);
+  [[nodiscard]] SecondCut cut_again(SpecimenTrial& specimen, const std::filesystem::path& file, const std::filesystem::path& folder, const std::string& tag);
   void correct_as_paper(SpecimenTrial& specimen, Trial& trial);
   void correct_knowing_physics(SpecimenTrial& specimen, Trial& trial);
   void calibrate();
   void compare();
   void write_commands() const;
-  [[nodiscard]] std::vector<std::filesystem::path> cut_files(TrialRole role, std::optional<TrialCut> Trial::*which) const;
 
   ExperimentSettings settings_;
   const CommonOptions& options_;
@@ -74,13 +92,14 @@ class Experiment {
   std::optional<ChosenTool> tool_;
   double calibrated_kpa_ = 0.0;  // geometric mean of the calibrated specimens' moduli
   ExperimentJson calibration_, table_1_, comparison_;
-  std::vector<std::string> common_commands_;
+  std::vector<std::string> calibration_commands_, comparison_commands_;
   std::mutex mutex_;  // of the console while specimens go side by side
   double done_ = 0.0;  // of the whole cost
 };
 
 ExperimentJson Experiment::run() {
   const auto start = std::chrono::steady_clock::now();
+  remove_summaries();
   run_trials(TrialRole::Calibrate, TrialRole::Calibrate);
   calibrate();
   run_trials(TrialRole::Test, TrialRole::Outside);
@@ -88,6 +107,7 @@ ExperimentJson Experiment::run() {
   write_table_2(root_ / "table_2.csv", trials_);
   const ExperimentJson advice = hold_advice_against_truth(trials_, truth_);
   if (!advice.is_null()) write_advice(root_ / "advice", advice);
+  if (settings_.is_quick) std::filesystem::remove_all(root_ / "table_1");
   write_commands();
   const TrialSummary summary = summary_of(trials_, TrialRole::Test);
   ExperimentJson result;
@@ -118,6 +138,12 @@ ExperimentJson Experiment::run() {
   return result;
 }
 
+/// What an earlier run with other options said of the whole: it would be taken for this one's.
+void Experiment::remove_summaries() const {
+  for (const char* name : {"study.json", "report.html", "table_2.csv", "commands.sh", "advice", "comparison"})
+    std::filesystem::remove_all(root_ / name);
+}
+
 void Experiment::add_outside(std::uint64_t seed) {
   const bool is_papers = settings_.specimens == 4;  // two to calibrate, two corrected, and one that fails
   const std::uint64_t count = settings_.outside.value_or(is_papers ? 1 : 0);
@@ -142,7 +168,7 @@ void Experiment::run_trials(TrialRole first, TrialRole last) {
   lanes.for_each(mine.size(), 1, [&](std::size_t i) {
     run_trial(*mine[i]);
     const std::scoped_lock lock(mutex_);
-    if (!mine[i]->ended_at.empty()) console_.message(Severity::Warning, fmt::format("{} ended at {}", mine[i]->name, mine[i]->ended_at));
+    for (const std::string& reason : refusals_of(*mine[i])) console_.message(Severity::Warning, fmt::format("{} ended at {}", mine[i]->name, reason));
     tell_progress(cost_of(*mine[i]));
   });
 }
@@ -182,13 +208,14 @@ void Experiment::run_trial(Trial& trial) {
   SpecimenTrial specimen(setup, 1, console_);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
-    if (trial.role != TrialRole::Calibrate) {
+    const bool goes_on = trial.planned.is_made && trial.role != TrialRole::Calibrate;
+    if (goes_on) {
       assess(specimen, trial);
       correct(specimen, trial);
-      if (settings_.with_withheld_force) assess_without_pull(specimen, trial);
     }
-    if (trial.role == TrialRole::Test && settings_.with_paper_pass) correct_as_paper(specimen, trial);
-    if (trial.role == TrialRole::Test && settings_.with_known_physics) correct_knowing_physics(specimen, trial);
+    if (goes_on && settings_.with_withheld_force) assess_without_pull(specimen, trial);
+    if (goes_on && trial.role == TrialRole::Test && settings_.with_paper_pass) correct_as_paper(specimen, trial);
+    if (goes_on && trial.role == TrialRole::Test && settings_.with_known_physics) correct_knowing_physics(specimen, trial);
   }
   trial.stretch_force_n = specimen.stretch_force_n();
   trial.youngs_modulus_kpa = specimen.youngs_modulus_kpa();
@@ -206,75 +233,71 @@ void Experiment::assess(SpecimenTrial& specimen, Trial& trial) {
                                            specimen.registration().string(), "--stretch-force-n", fmt::format("{}", specimen.stretch_force_n()), "-o",
                                            folder.string()},
                                           {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration, specimen.registration()},
-                                          folder / "assessment/assess.json"});
+                                          {folder / "assessment/assess.json"}});
   trial.assessment = judged.result;
 }
 
 /// The same advice of a laboratory that cannot measure the pull: the tissue is taken to be as stiff as the calibrated one
-/// is on average.
+/// is on average. It corrects along another path, which is cut, too.
 void Experiment::assess_without_pull(SpecimenTrial& specimen, Trial& trial) {
   const std::filesystem::path folder = specimen.at("withheld"), calibration = root_ / "calibration/calibration.json";
   const std::filesystem::path file = specimen.write_variant("withheld.yaml", tool_, calibrated_kpa_, CompensationMethod::Default);
-  trial.assessment_without_pull = specimen
-                                      .ask({"assess_without_pull",
-                                            {"assess", file.string(), "--calibration", calibration.string(), "--registration",
-                                             specimen.registration().string(), "-o", folder.string()},
-                                            {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration, specimen.registration()},
-                                            folder / "assessment/assess.json"})
-                                      .result;
+  const ExperimentStep step{"assess_without_pull",
+                            {"assess", file.string(), "--calibration", calibration.string(), "--registration", specimen.registration().string(), "-o",
+                             folder.string()},
+                            {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration, specimen.registration()},
+                            {folder / "assessment/assess.json"}};
+  trial.assessment_without_pull = specimen.ask(step).result;
+  trial.withheld = cut_again(specimen, file, folder, "withheld").cut;
 }
 
 /// The paper's correction with the same tool: one pass, radially, by the mid-line.
 void Experiment::correct_as_paper(SpecimenTrial& specimen, Trial& trial) {
-  const std::filesystem::path folder = specimen.at("paper_pass");
   const std::filesystem::path file = specimen.write_variant("paper_pass.yaml", tool_, specimen.youngs_modulus_kpa(), CompensationMethod::Paper);
-  specimen.ask({"compensate_as_paper",
+  trial.paper_pass = cut_again(specimen, file, specimen.at("paper_pass"), "paper_pass").cut;
+}
+
+/// The correction of a case, verified in simulation, and another cut of the same specimen along it. Where its own
+/// simulation does not accept it, it is cut all the same: whether that was right is part of the experiment.
+SecondCut Experiment::cut_again(SpecimenTrial& specimen, const std::filesystem::path& file, const std::filesystem::path& folder, const std::string& tag) {
+  const std::filesystem::path path = folder / "correction/path.json";
+  const StepRecord corrected = specimen.ask({tag + "_compensate",
                                              {"compensate", file.string(), "-o", folder.string()},
                                              {file, specimen.at("tumor.csv"), specimen.at("lab/ct")},
-                                             folder / "correction/path.json"});
-  // The paper cut whatever its single pass came to: it is cut here, too, where there is a path.
-  if (std::filesystem::exists(folder / "correction/path.json")) trial.paper_pass = specimen.cut(folder / "correction/path.json", "paper_pass");
+                                             {path}});
+  if (corrected.status == kDone || (corrected.status == kNotAcceptable && has_path(corrected.result)))
+    return {corrected.result, specimen.cut(path, tag)};
+  TrialCut none;
+  none.ended_at = refusal_of(tag + "_compensate", corrected);
+  return {corrected.result, none};
 }
 
 /// What would be left to a planner that knows how this very tissue is cut.
 void Experiment::correct_knowing_physics(SpecimenTrial& specimen, Trial& trial) {
   const std::filesystem::path file = truth_ / trial.name / "specimen.json";
-  trial.known_physics = specimen.ask({"known_physics", {"bench", "floor", file.string(), "-o", (truth_ / (trial.name + "_floor.json")).string()}, {file}, truth_ / (trial.name + "_floor.json")}).result;
+  trial.known_physics = specimen.ask({"known_physics", {"bench", "floor", file.string(), "-o", (truth_ / (trial.name + "_floor.json")).string()}, {file}, {truth_ / (trial.name + "_floor.json")}}).result;
 }
 
-/// The correction, verified in simulation, and the second cut of the same specimen.
 void Experiment::correct(SpecimenTrial& specimen, Trial& trial) {
-  const std::filesystem::path folder = specimen.at("compensated");  // its case holds what was calibrated: tool, stiffness, bias
-  const auto corrected = specimen.run({"compensate",
-                                       {"compensate", specimen.case_file().string(), "-o", folder.string()},
-                                       {specimen.case_file(), specimen.at("tumor.csv"), specimen.at("lab/ct")},
-                                       folder / "correction/path.json"});
-  if (!corrected) return;
-  trial.compensation = corrected->result;
-  trial.corrected = specimen.cut(folder / "correction/path.json", "corrected");
-}
-
-std::vector<std::filesystem::path> Experiment::cut_files(TrialRole role, std::optional<TrialCut> Trial::*which) const {
-  std::vector<std::filesystem::path> files;
-  for (const Trial& trial : trials_) {
-    const bool is_whole = trial.planned && (role == TrialRole::Calibrate || trial.corrected);
-    if (trial.role == role && is_whole) files.push_back((trial.*which)->evaluation);
-  }
-  return files;
+  // The case holds what was calibrated: tool, stiffness, bias.
+  SecondCut again = cut_again(specimen, specimen.case_file(), specimen.at("compensated"), "corrected");
+  trial.compensation = std::move(again.compensation);
+  trial.corrected = std::move(again.cut);
 }
 
 void Experiment::calibrate() {
   std::vector<std::string> cases, observed{"--observed"}, forces{"--stretch-force-n"}, registrations{"--registration"};
   std::vector<std::filesystem::path> inputs;
   for (const Trial& trial : trials_) {
-    if (trial.role != TrialRole::Calibrate || !trial.planned) continue;
+    if (trial.role != TrialRole::Calibrate || !trial.planned.measured) continue;
     const std::filesystem::path file = root_ / trial.name / "case.yaml";
     cases.push_back(file.string());
-    observed.push_back(trial.planned->evaluation.string());
+    const std::filesystem::path evaluation = trial.planned.measured->evaluation;
+    observed.push_back(evaluation.string());
     forces.push_back(fmt::format("{}", trial.stretch_force_n));
     const std::filesystem::path registration = root_ / trial.name / "registration/registration.json";
     registrations.push_back(registration.string());
-    for (const std::filesystem::path& input : {file, root_ / trial.name / "tumor.csv", trial.planned->evaluation, registration}) inputs.push_back(input);
+    for (const std::filesystem::path& input : {file, root_ / trial.name / "tumor.csv", root_ / trial.name / "lab/ct", evaluation, registration}) inputs.push_back(input);
   }
   if (cases.empty()) throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
   StepRunner runner(root_, threads_, console_);
@@ -284,43 +307,61 @@ void Experiment::calibrate() {
     for (const std::string& word : {std::string("--method"), method, std::string("-o"), folder.string()}) words.push_back(word);
     return words;
   };
-  const StepRecord fit = runner.run({"calibrate", arguments("fit", root_ / "calibration"), inputs, root_ / "calibration/calibration.json"});
+  const StepRecord fit = runner.run({"calibrate", arguments("fit", root_ / "calibration"), inputs, {root_ / "calibration/calibration.json"}});
+  require_done(fit, "calibrate", runner);
   calibration_ = fit.result;
-  if (fit.status != kDone) throw DataError(root_ / "calibration", "", "a calibration in which every simulation failed", "one that can be used");
   const ExperimentJson& chosen = calibration_.at("chosen");
   tool_ = ChosenTool{chosen.at("speed_mm_s").get<double>(), chosen.at("dullness").get<double>(),
                      calibration_.at("posterior").at("bias_mm").at("mean").get<double>()};
   calibrated_kpa_ = mean_modulus_kpa(calibration_);
-  if (!settings_.is_quick) table_1_ = runner.run({"table_1", arguments("paper", root_ / "table_1"), inputs, root_ / "table_1/table_1.csv"}).result;
-  common_commands_ = runner.lines();
+  if (!settings_.is_quick) {
+    const StepRecord grid = runner.run({"table_1", arguments("paper", root_ / "table_1"), inputs, {root_ / "table_1/table_1.csv"}});
+    require_done(grid, "table_1", runner);
+    table_1_ = grid.result;
+  }
+  calibration_commands_ = runner.lines();
   tell_progress(calibration_cost());
 }
 
 void Experiment::compare() {
-  const auto before = cut_files(TrialRole::Test, &Trial::planned), after = cut_files(TrialRole::Test, &Trial::corrected);
+  std::vector<std::filesystem::path> before, after, inputs;
+  for (const Trial& trial : trials_) {
+    if (trial.role != TrialRole::Test || !trial.planned.measured || !trial.corrected.measured) continue;
+    before.push_back(trial.planned.measured->evaluation);
+    after.push_back(trial.corrected.measured->evaluation);
+  }
   if (before.empty()) return;
   std::vector<std::string> words{"compare", "--before"};
-  std::vector<std::filesystem::path> inputs;
   for (const auto& file : before) words.push_back(file.string());
   words.emplace_back("--after");
   for (const auto& file : after) words.push_back(file.string());
   for (const std::string& word : {std::string("--paired"), std::string("-o"), (root_ / "comparison").string()}) words.push_back(word);
   for (const auto* files : {&before, &after}) inputs.insert(inputs.end(), files->begin(), files->end());
   StepRunner runner(root_, threads_, console_);
-  comparison_ = runner.run({"compare", words, inputs, root_ / "comparison/compare.json"}).result;
-  for (const std::string& line : runner.lines()) common_commands_.push_back(line);
+  const StepRecord compared = runner.run({"compare", words, inputs, {root_ / "comparison/compare.json"}});
+  require_done(compared, "compare", runner);
+  comparison_ = compared.result;
+  comparison_commands_ = runner.lines();
 }
 
-/// Every command in an order in which they could be given by hand.
+/// Every command in an order in which they could be given by hand. 4 is an answer: not acceptable.
 void Experiment::write_commands() const {
   write_atomically(root_ / "commands.sh", [&](std::ostream& out) {
-    out << "#!/bin/sh\n# The commands of this virtual experiment. Case files and tumor.csv are written between them by `incise study`.\nset -e\n";
-    for (const Trial& trial : trials_) {
-      out << "\n# " << trial.name << " (" << to_string(trial.role) << ")\n";
-      for (const std::string& line : trial.commands) out << line << '\n';
-    }
-    out << "\n# all specimens\n";
-    for (const std::string& line : common_commands_) out << line << '\n';
+    out << "#!/bin/sh\n# The commands of this virtual experiment. Case files and tumor.csv are written between them by `incise study`.\nset -e\n"
+           "incise() { command incise \"$@\" || [ $? -eq 4 ]; }\n";
+    const auto write = [&out](const std::string& title, const std::vector<std::string>& lines) {
+      out << "\n# " << title << '\n';
+      for (const std::string& line : lines) out << line << '\n';
+    };
+    const auto write_trials = [&](bool is_calibration) {
+      for (const Trial& trial : trials_) {
+        if ((trial.role == TrialRole::Calibrate) == is_calibration) write(fmt::format("{} ({})", trial.name, to_string(trial.role)), trial.commands);
+      }
+    };
+    write_trials(true);
+    write("calibration", calibration_commands_);
+    write_trials(false);
+    write("before and after", comparison_commands_);
   });
 }
 

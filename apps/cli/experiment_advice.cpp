@@ -24,9 +24,10 @@ struct TrueCut {
   double least_margin_mm = 0.0;             ///< of a closed one
 };
 
-std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const std::string& specimen, const char* cut) {
-  const std::filesystem::path file = truth / fmt::format("{}_{}", specimen, cut) / "cut_truth.json";
-  if (!std::filesystem::exists(file)) return std::nullopt;
+/// Nothing where this run made no such cut, whatever an earlier one left there.
+std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const Trial& trial, const TrialCut& cut, const char* name) {
+  if (!cut.is_made) return std::nullopt;
+  const std::filesystem::path file = truth / fmt::format("{}_{}", trial.name, name) / "cut_truth.json";
   const AdviceJson json = read_json(file);
   TrueCut result;
   if (!json.contains("mean_abs_error_mm")) return result;
@@ -40,30 +41,50 @@ std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const std::s
 struct AdvisedSpecimen {
   const Trial* trial = nullptr;
   TrueCut planned, corrected;
-  [[nodiscard]] std::optional<double> gain_mm() const {
-    if (!planned.mean_abs_error_mm || !corrected.mean_abs_error_mm) return std::nullopt;
-    return *planned.mean_abs_error_mm - *corrected.mean_abs_error_mm;
-  }
-  /// An open ring is worse than any closed one; two of them tell nothing.
-  [[nodiscard]] std::optional<bool> is_worse() const {
-    if (!planned.mean_abs_error_mm && !corrected.mean_abs_error_mm) return std::nullopt;
-    if (const std::optional<double> gain = gain_mm()) return *gain < 0.0;
-    return !corrected.mean_abs_error_mm;
-  }
+  std::optional<TrueCut> withheld;  ///< corrected without the pull; absent: not asked for, or refused
 };
+
+std::optional<double> gain_mm(const TrueCut& planned, const TrueCut& again) {
+  if (!planned.mean_abs_error_mm || !again.mean_abs_error_mm) return std::nullopt;
+  return *planned.mean_abs_error_mm - *again.mean_abs_error_mm;
+}
+
+/// Whether the second cut is the worse one. An open ring is worse than any closed one; two of them tell nothing.
+std::optional<bool> is_worse(const TrueCut& planned, const TrueCut& again) {
+  if (!planned.mean_abs_error_mm && !again.mean_abs_error_mm) return std::nullopt;
+  if (const std::optional<double> gain = gain_mm(planned, again)) return *gain < 0.0;
+  return !again.mean_abs_error_mm;
+}
+
+bool is_advice(const AdviceJson& assessment) { return assessment.is_object() && assessment.contains("verdict"); }
 
 /// Where nothing could be foretold the advice is not to use it: as wary as can be.
 double stated_p_worse(const AdviceJson& assessment) {
   return assessment.contains("p_worse") && assessment.at("p_worse").is_number() ? assessment.at("p_worse").get<double>() : 1.0;
 }
 
-AdviceJson auc_json(const std::vector<AdvisedSpecimen>& specimens, nlohmann::ordered_json Trial::*assessment) {
+std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& specimens, bool is_outside_alone) {
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
-    const AdviceJson& said = specimen.trial->*assessment;
-    if (!said.is_object() || !specimen.is_worse()) continue;
-    forecasts.push_back({stated_p_worse(said), *specimen.is_worse()});
+    if (is_outside_alone && specimen.trial->role != TrialRole::Outside) continue;
+    const std::optional<bool> worse = is_worse(specimen.planned, specimen.corrected);
+    if (worse) forecasts.push_back({stated_p_worse(specimen.trial->assessment), *worse});
   }
+  return forecasts;
+}
+
+std::vector<Forecast> forecasts_without_pull(const std::vector<AdvisedSpecimen>& specimens) {
+  std::vector<Forecast> forecasts;
+  for (const AdvisedSpecimen& specimen : specimens) {
+    const AdviceJson& said = specimen.trial->assessment_without_pull;
+    if (!is_advice(said) || !specimen.withheld) continue;
+    const std::optional<bool> worse = is_worse(specimen.planned, *specimen.withheld);
+    if (worse) forecasts.push_back({stated_p_worse(said), *worse});
+  }
+  return forecasts;
+}
+
+AdviceJson auc_json(const std::vector<Forecast>& forecasts) {
   const auto worse = std::count_if(forecasts.begin(), forecasts.end(), [](const Forecast& f) { return f.happened; });
   if (worse == 0 || worse == static_cast<std::ptrdiff_t>(forecasts.size())) return nullptr;
   const RocCurve curve = roc_curve(forecasts);
@@ -104,9 +125,13 @@ AdviceJson specimen_json(const AdvisedSpecimen& specimen) {
                   {"p_worse", stated_p_worse(said)},
                   {"true_planned_mm", or_null(specimen.planned.mean_abs_error_mm)},
                   {"true_corrected_mm", or_null(specimen.corrected.mean_abs_error_mm)},
-                  {"true_gain_mm", or_null(specimen.gain_mm())},
-                  {"is_worse", or_null(specimen.is_worse())}};
-  if (specimen.trial->assessment_without_pull.is_object()) json["p_worse_without_pull"] = stated_p_worse(specimen.trial->assessment_without_pull);
+                  {"true_gain_mm", or_null(gain_mm(specimen.planned, specimen.corrected))},
+                  {"is_worse", or_null(is_worse(specimen.planned, specimen.corrected))}};
+  if (is_advice(specimen.trial->assessment_without_pull) && specimen.withheld) {
+    json["p_worse_without_pull"] = stated_p_worse(specimen.trial->assessment_without_pull);
+    json["true_withheld_mm"] = or_null(specimen.withheld->mean_abs_error_mm);
+    json["is_worse_without_pull"] = or_null(is_worse(specimen.planned, *specimen.withheld));
+  }
   return json;
 }
 
@@ -168,19 +193,20 @@ AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std
   AdviceJson skipped = AdviceJson::array();
   for (const Trial& trial : trials) {
     if (trial.role == TrialRole::Calibrate) continue;
-    const std::optional<TrueCut> planned = true_cut(truth, trial.name, "planned"), corrected = true_cut(truth, trial.name, "corrected");
-    if (trial.assessment.is_object() && planned && corrected)
-      specimens.push_back({&trial, *planned, *corrected});
+    const std::optional<TrueCut> planned = true_cut(truth, trial, trial.planned, "planned"), corrected = true_cut(truth, trial, trial.corrected, "corrected");
+    if (is_advice(trial.assessment) && planned && corrected)
+      specimens.push_back({&trial, *planned, *corrected, true_cut(truth, trial, trial.withheld, "withheld")});
     else
-      skipped.push_back({{"specimen", trial.name}, {"kind", trial.kind}, {"ended_at", trial.ended_at}});
+      skipped.push_back({{"specimen", trial.name}, {"kind", trial.kind}, {"ended_at", refusals_of(trial)}});
   }
   if (specimens.empty()) return nullptr;
   AdviceJson json;
   json["specimen_is"] = "virtual";
   json["advised"] = specimens.size();
-  json["worse"] = std::count_if(specimens.begin(), specimens.end(), [](const AdvisedSpecimen& s) { return s.is_worse().value_or(false); });
-  json["auc"] = auc_json(specimens, &Trial::assessment);
-  json["auc_without_pull"] = auc_json(specimens, &Trial::assessment_without_pull);
+  json["worse"] = std::count_if(specimens.begin(), specimens.end(), [](const AdvisedSpecimen& s) { return is_worse(s.planned, s.corrected).value_or(false); });
+  json["auc"] = auc_json(forecasts_with_pull(specimens, false));
+  json["auc_outside_alone"] = auc_json(forecasts_with_pull(specimens, true));
+  json["auc_without_pull"] = auc_json(forecasts_without_pull(specimens));
   json["close_margin"] = close_margin_json(specimens);
   json["specimens"] = AdviceJson::array();
   for (const AdvisedSpecimen& specimen : specimens) json["specimens"].push_back(specimen_json(specimen));

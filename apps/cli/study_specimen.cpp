@@ -47,18 +47,14 @@ SpecimenTrial::SpecimenTrial(TrialSetup setup, int threads, const Monitor& monit
 std::optional<StepRecord> SpecimenTrial::run(const ExperimentStep& step) {
   StepRecord record = runner_.run(step);
   if (record.status == kDone) return record;
-  std::string why;
-  for (const char* key : {"outcome", "reasons"}) {
-    if (record.result.is_object() && record.result.contains(key)) why += " " + record.result.at(key).dump();
-  }
-  ended_at_ = fmt::format("{}: not acceptable{}", step.name, why);
+  ended_at_ = refusal_of(step.name, record);
   return std::nullopt;
 }
 
 bool SpecimenTrial::prepare(const std::optional<ChosenTool>& tool) {
   if (!make() || !find_shape() || !find_place()) return false;
   (void)write_variant("case.yaml", tool, youngs_modulus_kpa_, CompensationMethod::Default);
-  return run({"plan", {"plan", case_file().string(), "-o", at("planned").string()}, {case_file(), at("tumor.csv"), at("lab/ct")}, planned_path()}).has_value();
+  return run({"plan", {"plan", case_file().string(), "-o", at("planned").string()}, {case_file(), at("tumor.csv"), at("lab/ct")}, {planned_path()}}).has_value();
 }
 
 bool SpecimenTrial::make() {
@@ -76,7 +72,7 @@ bool SpecimenTrial::make() {
   }
   for (const std::string& word : {std::string("--seed"), std::to_string(setup_.seed), std::string("-o"), lab.string(), std::string("--truth"), setup_.truth.string()})
     arguments.push_back(word);
-  const auto made = run({"bench_make", arguments, inputs, lab / "readings.json"});
+  const auto made = run({"bench_make", arguments, inputs, {lab / "readings.json", setup_.truth / "specimen.json"}});
   if (!made) return false;
   stretch_force_n_ = made->result.at("stretch_force_n").get<double>();
   return true;
@@ -84,16 +80,16 @@ bool SpecimenTrial::make() {
 
 bool SpecimenTrial::find_shape() {
   const std::filesystem::path labels = at("labels.nrrd"), mesh = at("survey.vtu"), survey = at("survey.yaml");
-  if (!run({"segment", {"segment", at("lab/ct").string(), "-o", labels.string()}, {at("lab/ct")}, labels})) return false;
-  if (!run({"survey_mesh", {"mesh", labels.string(), "--coarse-mm", text(kSurveyEdgeMm), "-o", mesh.string()}, {labels}, mesh})) return false;
+  if (!run({"segment", {"segment", at("lab/ct").string(), "-o", labels.string()}, {at("lab/ct")}, {labels}})) return false;
+  if (!run({"survey_mesh", {"mesh", labels.string(), "--coarse-mm", text(kSurveyEdgeMm), "-o", mesh.string()}, {labels}, {mesh}})) return false;
   write_file(survey, fmt::format("schema: incise.case/1\nspecimen_is: virtual\nspecimen:\n  mesh: survey.vtu\n  material: {{youngs_modulus_kpa: {}}}\n", kReferenceKpa));
-  const auto stretched = run({"survey_deform", {"deform", survey.string(), "-o", at("survey").string()}, {survey, mesh}, at("survey/stretched")});
+  const auto stretched = run({"survey_deform", {"deform", survey.string(), "-o", at("survey").string()}, {survey, mesh}, {at("survey/stretched")}});
   if (!stretched) return false;
   youngs_modulus_kpa_ = kReferenceKpa * stretch_force_n_ / pull_n(stretched->result);
   return run({"simulated_surface",
               {"surface", survey.string(), "--spacing-mm", text(kSurfaceSpacingMm), "-o", at("simulated.ply").string()},
               {survey, mesh},
-              at("simulated.ply")})
+              {at("simulated.ply")}})
       .has_value();
 }
 
@@ -102,21 +98,21 @@ bool SpecimenTrial::find_place() {
   if (!run({"track",
             {"track", at("lab/rgb.png").string(), at("lab/depth.png").string(), "--intrinsics", camera, "--max-hole-mm", text(kMostHoleMm), "-o", at("tracked").string()},
             {at("lab/rgb.png"), at("lab/depth.png"), camera},
-            at("tracked/contour.csv")})) {
+            {at("tracked/contour.csv"), at("tracked/cloud.ply")}})) {
     return false;
   }
   const auto tissue = run({"tissue",
                            {"surface", at("tracked/cloud.ply").string(), "--planes", "1", "--voxel-mm", text(kSurfaceSpacingMm), "--approach", "0", "0",
                             "1", "--camera", camera, "--plane-z-mm", text(kPlatformZMm), "-o", at("tissue.ply").string()},
                            {at("tracked/cloud.ply"), camera},
-                           at("tissue.ply")});
+                           {at("tissue.ply")}});
   if (!tissue) return false;
   camera_scale_ = tissue->result.at("camera_scale").get<double>();
   const auto laid = run({"register",
                          {"register", "--source", at("simulated.ply").string(), "--target", at("tissue.ply").string(), "--scale", "fixed", "-o",
                           at("registration").string()},
                          {at("simulated.ply"), at("tissue.ply")},
-                         registration()});
+                         {registration()}});
   if (!laid) return false;
   registration_rmse_mm_ = laid->result.at("rmse_mm").get<double>();
   write_edge(laid->result);
@@ -146,40 +142,42 @@ std::filesystem::path SpecimenTrial::write_variant(const std::string& name, cons
   return at(name);
 }
 
-std::optional<TrialCut> SpecimenTrial::cut(const std::filesystem::path& path, const std::string& tag) {
+TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string& tag) {
   const auto named = [&](const std::string& name) { return at(tag + "_" + name); };
-  const std::string camera = at("lab/camera.json").string();
-  const std::filesystem::path registration = this->registration();
-  const std::filesystem::path projected = named("on_tissue"), program = named("cut.script"), photo = named("cut"), found = at(fmt::format("{}_{}.json", setup_.name, tag));
-  if (!run({tag + "_project",
-            {"project", path.string(), "--transform", registration.string(), "--surface", at("tissue.ply").string(), "--camera", camera, "-o",
-             projected.string()},
-            {path, registration, at("tissue.ply"), camera},
-            projected / "path.json"})) {
-    return std::nullopt;
+  const std::string camera = at("lab/camera.json").string(), truth = setup_.truth.string() + "_" + tag;
+  const std::filesystem::path registration = this->registration(), specimen = setup_.truth / "specimen.json";
+  const std::filesystem::path projected = named("on_tissue"), program = named("cut.script"), photo = named("cut"),
+                              found = at(fmt::format("{}_{}.json", setup_.name, tag));
+  const std::vector<ExperimentStep> steps{
+      {tag + "_project",
+       {"project", path.string(), "--transform", registration.string(), "--surface", at("tissue.ply").string(), "--camera", camera, "-o", projected.string()},
+       {path, registration, at("tissue.ply"), camera},
+       {projected / "path.json"}},
+      {tag + "_export",
+       {"export", (projected / "path.json").string(), "--surface", (projected / "surface.ply").string(), "--registration", registration.string(),
+        "--power-w", text(setup_.power_w), "-o", program.string()},
+       {projected / "path.json", projected / "surface.ply", registration},
+       {program}},
+      {tag + "_bench_cut",
+       {"bench", "cut", specimen.string(), program.string(), "--power-w", text(setup_.power_w), "-o", photo.string(), "--truth", truth},
+       {specimen, program},
+       {photo / "photo.png", std::filesystem::path(truth) / "cut_truth.json"}},
+      {tag + "_evaluate",
+       {"evaluate", (photo / "photo.png").string(), "--mm-per-pixel", text(kMmPerPixel), "--figure", named("found.png").string(), "-o", found.string()},
+       {photo / "photo.png"},
+       {found}}};
+  TrialCut result;
+  StepRecord last;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    last = runner_.run(steps[i]);
+    if (last.status != kDone) {
+      result.ended_at = refusal_of(steps[i].name, last);
+      return result;
+    }
+    result.is_made = i >= 2;  // the bench has cut
   }
-  if (!run({tag + "_export",
-            {"export", (projected / "path.json").string(), "--surface", (projected / "surface.ply").string(), "--registration", registration.string(),
-             "--power-w", text(setup_.power_w), "-o", program.string()},
-            {projected / "path.json", projected / "surface.ply", registration},
-            program})) {
-    return std::nullopt;
-  }
-  const std::filesystem::path specimen = setup_.truth / "specimen.json";
-  if (!run({tag + "_bench_cut",
-            {"bench", "cut", specimen.string(), program.string(), "--power-w", text(setup_.power_w), "-o", photo.string(), "--truth",
-             (setup_.truth.string() + "_" + tag)},
-            {specimen, program},
-            photo / "photo.png"})) {
-    return std::nullopt;
-  }
-  auto measured = run({tag + "_evaluate",
-                       {"evaluate", (photo / "photo.png").string(), "--mm-per-pixel", text(kMmPerPixel), "--figure", named("found.png").string(), "-o",
-                        found.string()},
-                       {photo / "photo.png"},
-                       found});
-  if (!measured) return std::nullopt;
-  return TrialCut{found, std::move(measured->result)};
+  result.measured = MeasuredCut{found, std::move(last.result)};
+  return result;
 }
 
 }  // namespace incise::cli

@@ -30,10 +30,17 @@ struct ChosenTool {
   double bias_mm = 0.0;
 };
 
-/// What came of a cut.
-struct TrialCut {
+/// A cut whose photograph shows a closed ring.
+struct MeasuredCut {
   std::filesystem::path evaluation;   ///< file of `incise evaluate`
   nlohmann::ordered_json measures;    ///< what it printed: of the photograph
+};
+
+/// What came of a path.
+struct TrialCut {
+  bool is_made = false;                  ///< the bench cut along it; else a step before refused, or it was not asked for
+  std::optional<MeasuredCut> measured;   ///< absent: not made, or its ring is open, or not found in the photograph
+  std::string ended_at;                  ///< the step that refused, and why; empty: none did
 };
 
 class SpecimenTrial {
@@ -45,14 +52,12 @@ class SpecimenTrial {
   /// simulation; stiffness follows from the suture's pull; the path is planned. @returns false where a step refused.
   bool prepare(const std::optional<ChosenTool>& tool);
   /// Projects a path (sim_stretched) on the tissue, exports the program after its checks, has the bench cut, and
-  /// measures the photograph. @param tag  of the files: planned, corrected.
-  std::optional<TrialCut> cut(const std::filesystem::path& path, const std::string& tag);
+  /// measures the photograph. @param tag  of the files: planned, corrected …
+  [[nodiscard]] TrialCut cut(const std::filesystem::path& path, const std::string& tag);
   /// Writes another case of the same specimen into its folder. @returns the file.
   [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const std::optional<ChosenTool>& tool, double youngs_modulus_kpa,
                                                     CompensationMethod method) const;
-  /// Runs one more command of the planner in this specimen's folder. @returns nothing where it refused (see ended_at).
-  std::optional<StepRecord> run(const ExperimentStep& step);
-  /// The same for a command whose refusal is an answer, and does not end the specimen.
+  /// Runs one more command in this specimen's folder, whose refusal is an answer.
   StepRecord ask(const ExperimentStep& step) { return runner_.run(step); }
 
   [[nodiscard]] const TrialSetup& setup() const { return setup_; }
@@ -63,11 +68,13 @@ class SpecimenTrial {
   [[nodiscard]] double stretch_force_n() const { return stretch_force_n_; }
   [[nodiscard]] double youngs_modulus_kpa() const { return youngs_modulus_kpa_; }
   [[nodiscard]] double registration_rmse_mm() const { return registration_rmse_mm_; }
-  /// The step that refused, and why; empty: none did.
+  /// The step of prepare() that refused, and why; empty: none did.
   [[nodiscard]] const std::string& ended_at() const { return ended_at_; }
   [[nodiscard]] const std::vector<std::string>& commands() const { return runner_.lines(); }
 
  private:
+  /// @returns nothing where it refused: see ended_at().
+  std::optional<StepRecord> run(const ExperimentStep& step);
   bool make();
   bool find_shape();
   bool find_place();

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 
@@ -21,13 +22,19 @@ using StepJson = nlohmann::ordered_json;
 /// What decides the outcome of a step.
 StepJson identity_of(const ExperimentStep& step) {
   StepJson json;
-  json["build"] = fmt::format("{} ({})", version(), source_commit());
+  // A version and a commit are not enough: what is built from changed files has the same.
+  static const std::string executable = sha256_of_file("/proc/self/exe");
+  json["build"] = fmt::format("{} ({}) {}", version(), source_commit(), executable);
   json["arguments"] = step.arguments;
   StepJson& inputs = json["inputs"] = StepJson::object();
   for (const std::filesystem::path& path : step.inputs) {
     inputs[path.string()] = std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path);
   }
   return json;
+}
+
+bool are_there(const std::vector<std::filesystem::path>& products) {
+  return std::all_of(products.begin(), products.end(), [](const auto& product) { return std::filesystem::exists(product); });
 }
 
 /// The last lines that a failed command wrote.
@@ -42,6 +49,14 @@ std::string end_of(const std::filesystem::path& log) {
 
 }  // namespace
 
+std::string refusal_of(const std::string& step, const StepRecord& record) {
+  std::string why;
+  for (const char* key : {"outcome", "reasons"}) {
+    if (record.result.is_object() && record.result.contains(key)) why += " " + record.result.at(key).dump();
+  }
+  return fmt::format("{}: not acceptable{}", step, why);
+}
+
 StepRunner::StepRunner(std::filesystem::path folder, int threads, const Monitor& monitor)
     : folder_(std::move(folder)), log_(folder_ / "log.txt"), threads_(threads), monitor_(monitor) {
   std::error_code error;
@@ -54,7 +69,7 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   const std::filesystem::path file = folder_ / "steps" / (step.name + ".json");
   const StepJson identity = identity_of(step);
   StepRecord record;
-  if (std::filesystem::exists(file) && (step.product.empty() || std::filesystem::exists(step.product))) {
+  if (std::filesystem::exists(file) && are_there(step.products)) {
     const StepJson older = read_json(file);
     if (older.is_object() && older.value("identity", StepJson()) == identity) {
       return {older.at("status").get<int>(), older.at("result"), older.at("wall_s").get<double>(), true};

@@ -15,7 +15,7 @@ struct ExperimentStep {
   std::string name;                           ///< of its record: letters, digits, _
   std::vector<std::string> arguments;         ///< of the verb, its name first; paths relative to the working folder
   std::vector<std::filesystem::path> inputs;  ///< files and folders whose content decides what comes out
-  std::filesystem::path product;              ///< what it makes; there is none where its JSON is all
+  std::vector<std::filesystem::path> products;  ///< what it makes; none where its JSON is all
 };
 
 /// How it ended.
@@ -26,8 +26,11 @@ struct StepRecord {
   bool is_reused = false;
 };
 
+/// Which step refused, with its own words.
+[[nodiscard]] std::string refusal_of(const std::string& step, const StepRecord& record);
+
 /// Runs the commands of one folder, each with --json --quiet. A command that has been run with the same arguments, by the
-/// same build, on inputs of the same content, and whose product is still there, is not run again: its record
+/// same executable, on inputs of the same content, and whose products are still there, is not run again: its record
 /// (`steps/NAME.json`) is read.
 class StepRunner {
  public:

@@ -204,6 +204,9 @@ int floor_of(const CommonOptions& options, const FloorArguments& arguments) {
   const std::filesystem::path output = options.required_output("floor7.json");
   refuse_input_as_output("-o", output, {arguments.specimen});
   const Specimen specimen = read_specimen(arguments.specimen);
+  if (std::filesystem::is_directory(output)) throw DataError(output, "", "a folder", "the name of a file to write");
+  const auto parent = std::filesystem::absolute(output).parent_path();
+  if (!std::filesystem::is_directory(parent)) throw DataError(parent, "", "no such folder", "a folder to write into");
   Workers workers(options.context().threads);
   const BenchBody body = make_body(specimen, {}, workers, console);
   if (!is_held(body, console)) return kNotAcceptable;
@@ -215,14 +218,15 @@ int floor_of(const CommonOptions& options, const FloorArguments& arguments) {
   result["virtual"] = true;
   result["outcome"] = to_string(done.cut.outcome);
   result["compensation_outcome"] = to_string(done.correction.outcome);
-  result["mean_abs_error_mm"] = truth_of(body, done.cut).value("mean_abs_error_mm", nlohmann::ordered_json());
+  const bool is_good = done.cut.outcome == Outcome::Success;
+  result["mean_abs_error_mm"] = is_good ? truth_of(body, done.cut).at("mean_abs_error_mm") : nlohmann::ordered_json();
   result["passes_mm"] = nlohmann::ordered_json::array();
   for (const CompensationPass& pass : done.correction.passes)
     result["passes_mm"].push_back(pass.mean_abs_error_mm ? nlohmann::ordered_json(*pass.mean_abs_error_mm) : nlohmann::ordered_json());
   result["wall_s"] = std::chrono::duration<double>(Clock::now() - start).count();
   write_json(output, result);
   print_result(options, result);
-  return kDone;
+  return is_good ? kDone : kNotAcceptable;
 }
 
 }  // namespace

@@ -16,9 +16,10 @@ void print_gain(const char* name, const nlohmann::ordered_json& summary) {
     fmt::print("{:<34} no specimen was cut twice\n", name);
     return;
   }
-  fmt::print("{:<34} {:.2f} -> {:.2f} mm ({:.0f} % less), {} of {} worse, at most by {:.2f} mm\n", name, summary.at("mean_before_mm").get<double>(),
-             summary.at("mean_after_mm").get<double>(), summary.at("gain_percent").get<double>(), summary.at("worse").get<std::size_t>(),
-             summary.at("pairs").get<std::size_t>(), summary.at("most_worse_mm").get<double>());
+  fmt::print("{:<34} {:.2f} -> {:.2f} mm ({:.0f} % less) in {} specimens; {} worse, at most by {:.2f} mm, of them {} with an open ring\n", name,
+             summary.at("mean_before_mm").get<double>(), summary.at("mean_after_mm").get<double>(), summary.at("gain_percent").get<double>(),
+             summary.at("pairs").get<std::size_t>(), summary.at("worse").get<std::size_t>(), summary.at("most_worse_mm").get<double>(),
+             summary.at("opened").get<std::size_t>());
 }
 
 void print_area(const char* name, const nlohmann::ordered_json& area) {
@@ -42,11 +43,13 @@ void print_summary(const nlohmann::ordered_json& result) {
   }
   if (result.at("advice").is_object()) {
     print_area("advice: area under the curve", result.at("advice").at("auc"));
+    print_area("  of those outside alone", result.at("advice").at("auc_outside_alone"));
     print_area("the same without the pull", result.at("advice").at("auc_without_pull"));
   }
   for (const auto& row : result.at("table_2")) {
-    if (row.at("cut") != "planned" || row.at("ended_at").is_null()) continue;
-    fmt::print("{} ({}) ended at {}\n", row.at("specimen").get<std::string>(), row.at("role").get<std::string>(), row.at("ended_at").get<std::string>().substr(0, 100));
+    if (row.at("ended_at").is_null()) continue;
+    fmt::print("{} ({}), {}: ended at {}\n", row.at("specimen").get<std::string>(), row.at("role").get<std::string>(), row.at("cut").get<std::string>(),
+               row.at("ended_at").get<std::string>().substr(0, 100));
   }
   fmt::print("report: {}\n", result.at("report").get<std::string>());
 }

@@ -84,7 +84,10 @@ RocCurve roc_curve(std::span<const Forecast> forecasts, const BootstrapSettings&
   curve.points = points_of(happened, did_not);
   Random random(settings.seed);
   std::vector<double> areas(static_cast<std::size_t>(settings.replicates));
-  for (double& area : areas) area = area_of(drawn_anew(happened, random), drawn_anew(did_not, random));
+  for (double& area : areas) {
+    const std::vector<double> first = drawn_anew(happened, random);  // in this order on every compiler
+    area = area_of(first, drawn_anew(did_not, random));
+  }
   curve.confidence = percentiles(std::move(areas), settings.level);
   return curve;
 }

@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,11 +11,10 @@ namespace incise::robot_detail {
 namespace {
 
 constexpr double kPlaneRadiusMm = 2.0;
-constexpr std::size_t kLeastPlanePoints = 4;
-constexpr double kFarthestPointMm =
-    2.0;  // of the nearest measured point from the tool's axis, as where a path is laid down
-constexpr double kBridgeRadiusMm = 4.0;  // on tissue with a radius of 25 mm a plane of this size lies 0.16 mm off
-constexpr std::size_t kLeastBridgePoints = 12;
+constexpr double kBridgeRadiusMm = 4.0;   // on tissue with a radius of 25 mm a plane of this size lies 0.2 mm off
+constexpr double kFarthestPointMm = 2.0;  // the nearest measured point from the axis, as where a path is laid down
+constexpr double kMostVariance =
+    0.3;                         // of the plane's height on the axis, over that of a point: four all round have 0.25
 constexpr double kStepMm = 1.0;  // at 5 mm distance half of it matters by 0.025 mm
 
 }  // namespace
@@ -32,31 +32,28 @@ std::optional<double> SurfaceProbe::depth_mm(const Vec3& p, const Vec3& axis) co
   double nearest2 = std::numeric_limits<double>::infinity();
   for (const Vec3& point : points_) nearest2 = std::min(nearest2, (point - p).cross(axis).squaredNorm());
   if (nearest2 > kFarthestPointMm * kFarthestPointMm) return std::nullopt;
-  std::optional<double> depth = below_plane_mm(p, axis, kPlaneRadiusMm, kLeastPlanePoints);
-  // At the border of a hole: the plane rests on more points, farther off.
-  for (double radius = kPlaneRadiusMm + 1.0; !depth && radius <= kBridgeRadiusMm; radius += 1.0)
-    depth = below_plane_mm(p, axis, radius, kLeastBridgePoints);
-  return depth;
+  // At the border of a hole, where few points lie or all on one side, the plane rests on more of them, farther off.
+  for (double radius = kPlaneRadiusMm; radius <= kBridgeRadiusMm; radius += 1.0)
+    if (const std::optional<double> depth = below_plane_mm(p, axis, radius)) return depth;
+  return std::nullopt;
 }
 
-std::optional<double> SurfaceProbe::below_plane_mm(const Vec3& p, const Vec3& axis, double radius_mm,
-                                                   std::size_t least_points) const {
+std::optional<double> SurfaceProbe::below_plane_mm(const Vec3& p, const Vec3& axis, double radius_mm) const {
   // Least squares: height against the two directions across the axis; the plane's height on the axis is wanted.
   const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
   Mat3 normal = Mat3::Zero();
   Vec3 right = Vec3::Zero();
-  std::size_t count = 0;
   for (const Vec3& point : points_) {
     const Vec3 away = point - p;
     const Vec3 row(1.0, u.dot(away), v.dot(away));
     if (row.tail<2>().squaredNorm() > radius_mm * radius_mm) continue;
     normal += row * row.transpose();
     right -= axis.dot(away) * row;
-    ++count;
   }
-  if (count < least_points) return std::nullopt;
-  const auto solver = normal.ldlt();
-  if (solver.rcond() < 1e-6) return std::nullopt;  // points on one line
+  Eigen::FullPivLU<Mat3> solver(normal);
+  solver.setThreshold(1e-6);
+  if (!solver.isInvertible()) return std::nullopt;  // fewer than three points, or all on one line
+  if (Vec3(solver.solve(Vec3::UnitX()))[0] > kMostVariance) return std::nullopt;
   return Vec3(solver.solve(right))[0];
 }
 

@@ -12,17 +12,17 @@ class SurfaceProbe {
   /// @pre at least one vertex
   explicit SurfaceProbe(const TriMesh& surface);
 
-  /// How deep p lies below the surface along the tool's axis, mm. Of a cloud: below the plane through its points within
-  /// 2 mm of the axis, or at the border of a hole, where fewer than four lie there, through twelve or more within 4 mm.
-  /// Nothing where the axis does not meet the surface, or the nearest point is more than 2 mm from it.
+  /// How deep p lies below the surface along the tool's axis (a unit vector), mm. Of a cloud: below the plane through
+  /// its points within 2 mm of the axis, or at the border of a hole, where these are few or all on one side, within up
+  /// to 4 mm: until its height on the axis varies by no more than 0.55 of a point's noise. Nothing where the axis does
+  /// not meet the surface, where no such plane is found, or where the nearest point is more than 2 mm from the axis.
   [[nodiscard]] std::optional<double> depth_mm(const Vec3& p, const Vec3& axis) const;
 
   /// Distance of a segment from the surface, mm; of triangles to 0.03 mm for distances from 5 mm on.
   [[nodiscard]] double distance_mm(const Vec3& from, const Vec3& to) const;
 
  private:
-  [[nodiscard]] std::optional<double> below_plane_mm(const Vec3& p, const Vec3& axis, double radius_mm,
-                                                     std::size_t least_points) const;
+  [[nodiscard]] std::optional<double> below_plane_mm(const Vec3& p, const Vec3& axis, double radius_mm) const;
   Points points_;
   std::optional<SurfaceQuery> triangles_;
 };

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace incise {
 namespace {
@@ -165,10 +164,20 @@ std::vector<PosteriorSample> samples_from(const JsonPlace& posterior) {
   return samples;
 }
 
-double mean_of(const JsonPlace& place, const char* key) {
-  const std::vector<double> values = place.numbers(key);
-  if (values.empty()) place.refuse(key, "no numbers", "a signed error for each sector");
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+/// Mean over the ring of photographed less fitted signed error.
+double difference_from(const JsonPlace& fitted) {
+  constexpr double kFarthestMm = 1e3;
+  const std::vector<double> observed = fitted.numbers("observed_mm"), fit = fitted.numbers("fitted_mm");
+  if (observed.empty() || fit.size() != observed.size()) {
+    fitted.refuse("fitted_mm", fmt::format("{} numbers", fit.size()),
+                  fmt::format("as many as observed_mm, {}, and at least one", observed.size()));
+  }
+  double sum = 0.0;
+  for (std::size_t i = 0; i < observed.size(); ++i) sum += observed[i] - fit[i];
+  const double mean = sum / static_cast<double>(observed.size());
+  if (!(std::abs(mean) < kFarthestMm))
+    fitted.refuse("observed_mm", fmt::format("{:.3g} mm off in the mean", mean), "millimetres");
+  return mean;
 }
 
 /// By how much each photograph differs from its fit. Calibrations whose fit is not written have none.
@@ -180,8 +189,12 @@ void read_differences(const JsonPlace& file, CalibrationRecord& record) {
     file.refuse("fitted", fmt::format("{} specimens", fitted.size()),
                 fmt::format("{}, one for each of specimens", record.specimens.size()));
   }
-  for (std::size_t i = 0; i < fitted.size(); ++i)
-    record.specimens[i].difference_mm = mean_of(fitted[i], "observed_mm") - mean_of(fitted[i], "fitted_mm");
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    CalibratedSpecimenRecord& specimen = record.specimens[i];
+    if (fitted[i].text("name") != specimen.name)
+      fitted[i].refuse("name", fitted[i].text("name"), specimen.name + ", as in specimens");
+    specimen.difference_mm = difference_from(fitted[i]);
+  }
 }
 
 /// Nothing where a specimen's pull or fit is not known.

@@ -19,6 +19,20 @@ BenchCut cut_along(const BenchBody& body, ToolPath path, const PlanSettings& pla
   return cut_specimen(body, course, plan.power_w, workers, monitor);
 }
 
+/// Points of a contour that are evenly spaced where it is seen flat along the approach, as true_errors_mm has them.
+Points places_seen_even(const Contour& contour, std::size_t count, const Vec3& approach) {
+  Contour flat = contour;
+  for (Vec3& p : flat.points) p -= p.dot(approach) * approach;
+  Points places;
+  for (const Vec3& p : resample(flat, count).points) {
+    const ContourPoint at = nearest_on(flat, p);
+    const Vec3& start = contour.points[at.segment];
+    const Vec3& end = contour.points[(at.segment + 1) % contour.points.size()];
+    places.push_back(start + at.fraction * (end - start));
+  }
+  return places;
+}
+
 /// The same specimen in the hands of an arm that does not err.
 BenchBody with_true_arm(BenchBody body) {
   Specimen& specimen = body.specimen;
@@ -46,7 +60,7 @@ KnownPhysicsCut cut_knowing_physics(const BenchBody& body, const PlanSettings& p
     if (!cut.inner_edge) return std::nullopt;
     PathErrors errors;
     errors.signed_error_mm = true_errors_mm(known, cut, kInnerEdgeTargetMm);
-    errors.places = resample(*cut.inner_edge, errors.signed_error_mm.size()).points;
+    errors.places = places_seen_even(*cut.inner_edge, errors.signed_error_mm.size(), known.approach);
     errors.lag_mm = cut.shove_mm;
     errors.is_success = cut.outcome == Outcome::Success;
     return errors;

@@ -90,12 +90,12 @@ class TissueCuts {
 
   /// The farther this specimen's stiffness lies from the calibrated ones, the less their bias says of it.
   void follow_trend(const StiffnessTrend& trend) {
-    scenarios_.stiffness_shift_mm = request_.stretch_force_n ? trend.shift_mm(scenarios_.reference_kpa) : 0.0;
-    scenarios_.stiffness_shift_sd_mm =
-        request_.stretch_force_n ? trend.shift_sd_mm(scenarios_.reference_kpa)
-                                 : std::hypot(trend.slope_mm, trend.slope_sd_mm) * scenarios_.own_stiffness_sd;
     TissueScenarios& tissues = scenarios_.tissues;
-    for (TissueScenario& tissue : tissues.points) tissue.bias_mm += scenarios_.stiffness_shift_mm;
+    const double kpa = scenarios_.reference_kpa;
+    scenarios_.stiffness_shift_mm = trend.shift_mm(kpa);
+    scenarios_.stiffness_shift_sd_mm =
+        std::hypot(trend.shift_sd_mm(kpa), trend.slope_sd_mm * scenarios_.own_stiffness_sd);
+    for (TissueScenario& tissue : tissues.points) tissue.bias_mm += trend.shift_mm(kpa * tissue.stiffness_factor);
     tissues.bias_sd_mm = std::hypot(tissues.bias_sd_mm, scenarios_.stiffness_shift_sd_mm);
     tissues.common_sd_mm = std::hypot(tissues.common_sd_mm, scenarios_.stiffness_shift_sd_mm);
   }
@@ -174,12 +174,12 @@ class TissueCuts {
                                   tasks.size() - done, tasks.size()));
   }
 
-  /// Absent: no closed ring.
+  /// Absent: no closed ring, or an inner edge that is open at the skin.
   [[nodiscard]] std::optional<PathErrors> errors_of(IncisionResult incision, const ToolPath& followed,
                                                     const RunSetting& setting, const HeldBody& held) const {
     const Case settings = with_setting(settings_, setting);
     const SimulatedCut cut = judge(settings, std::move(incision), followed, held.plan, held.model.mesh.tets.size());
-    if (!cut.incision.is_closed_loop.value_or(false)) return std::nullopt;
+    if (!cut.incision.is_closed_loop.value_or(false) || !cut.incision.inner_edge) return std::nullopt;
     Monitor silent;  // any thread may come here
     return path_errors(settings, cut, held.plan.tumor_edge, silent);
   }

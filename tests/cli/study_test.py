@@ -77,6 +77,8 @@ class StudyTest(CommandTest):
                 self.assertEqual(entry[f"true_{cut}_mm"], truth["mean_abs_error_mm"])
             self.assertEqual(entry["is_worse"], entry["true_corrected_mm"] > entry["true_planned_mm"])
             self.assertIn("p_worse_without_pull", entry)
+            truth = json.loads((self.folder / "study" / "truth" / f"{entry['specimen']}_withheld" / "cut_truth.json").read_text())
+            self.assertEqual(entry["true_withheld_mm"], truth["mean_abs_error_mm"])
         self.assertEqual(held["worse"], sum(entry["is_worse"] for entry in held["specimens"]))
         self.assertEqual(held["auc"] is None, held["worse"] in (0, 2))
         self.assertEqual(held["close_margin"]["cuts"], 4)

@@ -1,6 +1,7 @@
 #include "robot/ring_path.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
 #include <incise/robot/checks.hpp>
 
 #include <gmock/gmock.h>
@@ -427,6 +428,22 @@ TEST(CheckProgram, SmallHolesInACloudAreBridged) {
                   [radius_mm](const Vec3& p) { return (p.head<2>() - Vec2(615.0, 0.0)).norm() < radius_mm; });
     const auto checks = check_program(make_program(path), path, {}, {.surface = &cloud});
     EXPECT_EQ(named(checks, "depth").passed, radius_mm < 2.0) << radius_mm;
+  }
+}
+
+TEST(CheckProgram, DepthAtTheBorderOfAHoleInACurvedNoisyCloudIsStillTold) {
+  const ToolPath path = ring_path();
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed);
+    TriMesh cloud = sheet(0.0, true);
+    for (Vec3& p : cloud.vertices) {
+      const double r2 = (p.head<2>() - Vec2(600.0, 0.0)).squaredNorm();
+      p.z() = 100.0 - (r2 - 15.0 * 15.0) / (2.0 * 25.0) + 0.2 * random.normal();  // a dome through the ring
+    }
+    // A hole on the outer side: where the ring passes, all points near it lie on the inner one.
+    std::erase_if(cloud.vertices, [](const Vec3& p) { return (p.head<2>() - Vec2(616.5, 0.0)).norm() < 2.9; });
+    const auto checks = check_program(make_program(path), path, {}, {.surface = &cloud});
+    EXPECT_TRUE(named(checks, "depth").passed) << seed << ": " << named(checks, "depth").message();
   }
 }
 

@@ -183,6 +183,38 @@ TEST_F(CalibrationFileTest, KeepsWhatWasMeasuredOfItsSpecimens) {
   EXPECT_FALSE(read_calibration(path()).specimens[0].registration);
 }
 
+TEST_F(CalibrationFileTest, TellsHowTheBiasFollowsStiffness) {
+  Calibration calibration = fitted();
+  calibration.fit->specimens = {{.name = "s1", .observed_mm = {-1.0, -1.4}, .fitted_mm = {-0.9, -0.9}},
+                                {.name = "s2", .observed_mm = {-0.5, -0.3}, .fitted_mm = {-0.9, -0.7}}};
+  calibration.specimens[0].youngs_modulus_kpa = 10.0;
+  calibration.specimens[1].youngs_modulus_kpa = 20.0;
+  write_json(path(), to_json(calibration));
+  CalibrationRecord record = read_calibration(path());
+  EXPECT_NEAR(*record.specimens[0].difference_mm, -0.3, 1e-12);
+  EXPECT_NEAR(*record.specimens[1].difference_mm, 0.4, 1e-12);
+  EXPECT_FALSE(belief_of(record, path()).trend) << "the pulls are not known";
+  record.specimens[0].stretch_force_n = 4.0;
+  record.specimens[1].stretch_force_n = 8.0;
+  const auto trend = belief_of(record, path()).trend;
+  ASSERT_TRUE(trend);
+  EXPECT_GT(trend->slope_mm, 0.0) << "the stiffer one's edge lay farther out than fitted";
+  EXPECT_LT(trend->slope_mm, 0.7 / std::log(2.0)) << "drawn towards 0";
+
+  nlohmann::ordered_json bad = to_json(calibration);
+  bad["fitted"][1]["name"] = "s9";
+  expect_refused(bad, "fitted[1].name");
+  bad = to_json(calibration);
+  bad["fitted"][0]["fitted_mm"] = {-0.9};
+  expect_refused(bad, "fitted[0].fitted_mm");
+  bad = to_json(calibration);
+  bad["fitted"][0]["observed_mm"] = {1e308, 1e308};
+  expect_refused(bad, "fitted[0].observed_mm");
+  bad = to_json(calibration);
+  bad["fitted"].erase(1);
+  expect_refused(bad, "fitted");
+}
+
 TEST_F(CalibrationFileTest, AGridOfScoresIsNoBeliefAboutTheNextSpecimen) {
   write_json(path(), to_json(two_specimens()));
   EXPECT_THAT([&] { static_cast<void>(belief_of(read_calibration(path()), path())); },
