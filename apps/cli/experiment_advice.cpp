@@ -49,12 +49,7 @@ std::optional<double> gain_mm(const TrueCut& planned, const TrueCut& again) {
   return *planned.mean_abs_error_mm - *again.mean_abs_error_mm;
 }
 
-/// Whether the second cut is the worse one. An open ring is worse than any closed one; two of them tell nothing.
-std::optional<bool> is_worse(const TrueCut& planned, const TrueCut& again) {
-  if (!planned.mean_abs_error_mm && !again.mean_abs_error_mm) return std::nullopt;
-  if (const std::optional<double> gain = gain_mm(planned, again)) return *gain < 0.0;
-  return !again.mean_abs_error_mm;
-}
+std::optional<bool> is_worse(const TrueCut& planned, const TrueCut& again) { return is_second_worse(planned.mean_abs_error_mm, again.mean_abs_error_mm); }
 
 bool is_advice(const AdviceJson& assessment) { return assessment.is_object() && assessment.contains("verdict"); }
 

@@ -82,13 +82,13 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   const auto start = std::chrono::steady_clock::now();
   record.status = run_process(process, monitor_);
   record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (record.status == kBadData) {  // a reading that cannot be used ends this specimen, not the experiment
+  if (record.status == kBadData || record.status == kBadCase) {  // a reading or a case that cannot be used ends this specimen, not the experiment
     record.result = {{"outcome", end_of(log_)}};
     return record;
   }
   if (record.status != kDone && record.status != kNotAcceptable) {
     throw DataError(log_, step.name, fmt::format("`{}` ended with status {}: {}", lines_.back(), record.status, end_of(log_)),
-                    "status 0, 3 or 4");
+                    "status 0, 2, 3 or 4");
   }
   const std::string printed = read_text(process.output);
   if (!printed.empty()) record.result = StepJson::parse(printed);

@@ -37,8 +37,8 @@ class StepRunner {
   /// @param folder   where records and log go; it is made.  @param threads  that each command may use.
   StepRunner(std::filesystem::path folder, int threads, const Monitor& monitor);
 
-  /// Status 0, 4 (it ran, but what came of it is not acceptable) and 3 (a reading that cannot be used; not recorded, so it
-  /// is run again another time) are results.
+  /// Status 0, 4 (it ran, but what came of it is not acceptable) and 2 and 3 (a case or a reading that cannot be used; not
+  /// recorded, so it is run again another time) are results.
   /// @throws DataError naming the command and the log for every other status; Cancelled.
   StepRecord run(const ExperimentStep& step);
   /// The commands so far, in their order, as a shell would be given them.

@@ -92,6 +92,12 @@ RocCurve roc_curve(std::span<const Forecast> forecasts, const BootstrapSettings&
   return curve;
 }
 
+std::optional<bool> is_second_worse(const std::optional<double>& first_mm, const std::optional<double>& second_mm) {
+  if (first_mm && second_mm) return *second_mm > *first_mm;
+  if (!first_mm && !second_mm) return std::nullopt;
+  return !second_mm;
+}
+
 Reliability reliability(std::span<const Forecast> forecasts, std::size_t bins) {
   INCISE_REQUIRE(!forecasts.empty() && bins >= 1,
                  fmt::format("expected forecasts and at least one bin, found {} and {}", forecasts.size(), bins));

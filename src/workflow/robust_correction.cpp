@@ -151,19 +151,22 @@ class TissueCuts {
   void simulate(const ToolPath& path, const std::vector<std::size_t>& missing, std::vector<ScenarioRun>& made) {
     std::vector<IncisionTask> tasks;
     std::vector<const HeldBody*> held;
+    std::vector<std::size_t> simulated;  // those of the missing whose tissue can be held and stretched
     for (const std::size_t k : missing) {
-      const RunSetting& setting = made[k].setting;
-      held.push_back(&body_.with_stiffness(setting.stiffness_of_case, workers_, monitor_));
+      const HeldBody* body = held_at(made[k]);
+      if (body == nullptr) continue;
+      simulated.push_back(k);
+      held.push_back(body);
       ToolPath with_edge = path;
-      with_edge.tumor_edge = held.back()->plan.tumor_edge;
-      tasks.push_back({&held.back()->model,
-                       &held.back()->stretched.state,
-                       {incision_settings(with_setting(settings_, setting)), std::move(with_edge)}});
+      with_edge.tumor_edge = body->plan.tumor_edge;
+      tasks.push_back({&body->model,
+                       &body->stretched.state,
+                       {incision_settings(with_setting(settings_, made[k].setting)), std::move(with_edge)}});
     }
     std::size_t done = 0;
     simulate_incisions(tasks, workers_, monitor_, [&](std::size_t i, IncisionJobResult result) {
       if (result.incision.outcome == Outcome::Cancelled) return;
-      ScenarioRun& run = made[missing[i]];
+      ScenarioRun& run = made[simulated[i]];
       run.problem = result.problem;
       if (run.problem.empty()) run.errors = errors_of(std::move(result.incision), path, run.setting, *held[i]);
       runs_.save(run, path);
@@ -172,6 +175,16 @@ class TissueCuts {
     if (done < tasks.size())
       throw Cancelled(fmt::format("the tissues of the calibration were interrupted with {} of {} cuts to go",
                                   tasks.size() - done, tasks.size()));
+  }
+
+  /// The specimen with a scenario's stiffness; null, and the scenario's problem says why: it cannot be stretched so.
+  const HeldBody* held_at(ScenarioRun& run) {
+    try {
+      return &body_.with_stiffness(run.setting.stiffness_of_case, workers_, monitor_);
+    } catch (const CaseError& error) {
+      run.problem = error.what();
+      return nullptr;
+    }
   }
 
   /// Absent: no closed ring, or an inner edge that is open at the skin.

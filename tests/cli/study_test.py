@@ -10,7 +10,7 @@ import unittest
 
 from command import BAD_CASE, BAD_DATA, COMMAND, CommandTest
 
-SMALL = ("study", "--specimens", "2", "--outside", "1", "--quick", "--paper-pass", "--withheld-force", "--tets", "14000", "--threads", "2", "-o", "study")
+SMALL = ("study", "--specimens", "2", "--outside", "1", "--quick", "--paper-pass", "--withheld-force", "--tets", "10000", "--threads", "2", "-o", "study")
 
 
 class StudyTest(CommandTest):

@@ -56,6 +56,15 @@ TEST(RocCurve, RefusesWhatHasNoArea) {
   EXPECT_THROW(static_cast<void>(roc_curve(std::vector<Forecast>{{nan, true}, {0.2, false}})), InvalidArgument);
 }
 
+TEST(IsSecondWorse, AnOpenRingIsWorseThanAnyClosedOneAndTwoTellNothing) {
+  EXPECT_EQ(is_second_worse(1.0, 1.2), true);
+  EXPECT_EQ(is_second_worse(1.2, 1.0), false);
+  EXPECT_EQ(is_second_worse(1.0, 1.0), false);
+  EXPECT_EQ(is_second_worse(3.0, std::nullopt), true);
+  EXPECT_EQ(is_second_worse(std::nullopt, 3.0), false);
+  EXPECT_EQ(is_second_worse(std::nullopt, std::nullopt), std::nullopt);
+}
+
 TEST(Reliability, CountsByProbability) {
   const std::vector<Forecast> forecasts{{0.0, false}, {0.1, true}, {0.9, true}, {1.0, true}, {0.95, false}};
   const Reliability found = reliability(forecasts, 5);

@@ -3,6 +3,7 @@
 #include <incise/evaluation/block_bootstrap.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,11 @@ struct RocCurve {
 /// of one specimen twice would make the interval too narrow. O(replicates · n log n).
 /// @throws InvalidArgument without one of both kinds, for a score that is not finite, or for settings out of range.
 [[nodiscard]] RocCurve roc_curve(std::span<const Forecast> forecasts, const BootstrapSettings& settings = {});
+
+/// Whether the second of two cuts of one specimen is the worse one, by mean absolute error in mm; absent: an open ring,
+/// which is worse than any closed one. @returns nothing for two open rings: they tell nothing.
+[[nodiscard]] std::optional<bool> is_second_worse(const std::optional<double>& first_mm,
+                                                  const std::optional<double>& second_mm);
 
 /// Forecasts of about the same probability, and how often it happened.
 struct ReliabilityBin {

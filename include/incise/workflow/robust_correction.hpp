@@ -75,8 +75,9 @@ struct RobustCorrection {
 /// is cut along the intended, the corrected and the chosen path, side by side, one thread each. What is measured is the
 /// inner edge, tool out, as in the calibration, whatever line the case corrects by.
 /// @param done  the case's study, with a correction by the default method.
-/// @throws CaseError where force and calibration do not go together, or a tissue cannot be stretched; Cancelled when
-/// the monitor asks to stop: finished runs are in the store.
+/// A tissue that cannot be stretched counts as one that left nothing to measure.
+/// @throws CaseError where force and calibration do not go together; Cancelled when the monitor asks to stop: finished
+/// runs are in the store.
 [[nodiscard]] RobustCorrection correct_robustly(const Case& settings, Store& store, const Study& done,
                                                 const CalibratedBelief& belief, const ScenarioRequest& request,
                                                 ScenarioRunStore& runs, Workers& workers, Monitor& monitor);
