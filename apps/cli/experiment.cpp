@@ -18,6 +18,7 @@
 #include <cmath>
 #include <mutex>
 #include <ostream>
+#include <string_view>
 
 namespace incise::cli {
 namespace {
@@ -106,8 +107,12 @@ ExperimentJson Experiment::run() {
   compare();
   write_table_2(root_ / "table_2.csv", trials_);
   const ExperimentJson advice = hold_advice_against_truth(trials_, truth_);
-  if (!advice.is_null()) write_advice(root_ / "advice", advice);
-  if (settings_.is_quick) std::filesystem::remove_all(root_ / "table_1");
+  if (!advice.is_null()) {
+    AtomicFolder folder(root_ / "advice");
+    write_advice(folder.path(), advice);
+    write_manifest(folder.path(), manifest_of(options_, "{}", {}, 0.0));
+    folder.commit();
+  }
   write_commands();
   const TrialSummary summary = summary_of(trials_, TrialRole::Test);
   ExperimentJson result;
@@ -127,6 +132,8 @@ ExperimentJson Experiment::run() {
   result["assessments"] = assessments_json(trials_);
   result["figures"] = ExperimentJson::array();
   for (const char* figure : {"comparison/box_plot.svg", "comparison/error_by_clock.svg", "table_1/table_1.svg", "calibration/fit.svg", "advice/roc.svg", "advice/reliability.svg"}) {
+    const bool is_of_grid = std::string_view(figure).starts_with("table_1");
+    if (is_of_grid && !table_1_.is_object()) continue;  // an earlier run's, which is kept
     if (std::filesystem::exists(root_ / figure)) result["figures"].push_back((root_ / figure).string());
   }
   result["commands"] = (root_ / "commands.sh").string();
@@ -140,8 +147,11 @@ ExperimentJson Experiment::run() {
 
 /// What an earlier run with other options said of the whole: it would be taken for this one's.
 void Experiment::remove_summaries() const {
-  for (const char* name : {"study.json", "report.html", "table_2.csv", "commands.sh", "advice", "comparison"})
-    std::filesystem::remove_all(root_ / name);
+  for (const char* folder : {"advice", "comparison"}) {
+    require_replaceable(root_ / folder);  // somebody else's folder of that name is none of ours to remove
+    std::filesystem::remove_all(root_ / folder);
+  }
+  for (const char* file : {"study.json", "report.html", "table_2.csv", "commands.sh"}) std::filesystem::remove(root_ / file);
 }
 
 void Experiment::add_outside(std::uint64_t seed) {

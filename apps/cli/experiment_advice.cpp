@@ -210,9 +210,7 @@ AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std
 }
 
 void write_advice(const std::filesystem::path& folder, const AdviceJson& advice) {
-  std::filesystem::create_directories(folder);
   write_json(folder / "advice.json", advice);
-  for (const char* figure : {"roc.svg", "reliability.svg"}) std::filesystem::remove(folder / figure);
   if (advice.at("auc").is_object()) write_svg(folder / "roc.svg", roc_plot(advice));
   if (advice.at("close_margin").is_object()) write_svg(folder / "reliability.svg", reliability_plot(advice.at("close_margin")));
 }

@@ -13,7 +13,7 @@ namespace incise::cli {
 ///          it; each null where all or none were worse), `close_margin` (reliability of the stated probability).
 [[nodiscard]] nlohmann::ordered_json hold_advice_against_truth(const std::vector<Trial>& trials, const std::filesystem::path& truth);
 
-/// Writes advice.json, roc.svg (where there is an area) and reliability.svg into a folder.
+/// Writes advice.json, roc.svg (where there is an area) and reliability.svg into an empty folder.
 void write_advice(const std::filesystem::path& folder, const nlohmann::ordered_json& advice);
 
 }  // namespace incise::cli

@@ -109,7 +109,7 @@ ReportData experiment_report(const std::vector<Trial>& trials, const TableJson& 
   add_picture(data, folder / "comparison/error_by_clock.svg", "Error round the ring", "Signed error by the place on a clock face over the tumour.");
   add_picture(data, folder / "advice/roc.svg", "Was the advice right?", "Stated probability that the corrected cut is the worse one, against which one it was.");
   add_picture(data, folder / "advice/reliability.svg", "Close margins, stated and seen", "Stated probability of a margin below 2.2 mm somewhere, against how often there was one.");
-  add_picture(data, folder / "table_1/table_1.svg", "Table I of this experiment", "Simulated speed and dullness against the photographs, after the paper's Table I.");
+  if (result.at("table_1").is_array()) add_picture(data, folder / "table_1/table_1.svg", "Table I of this experiment", "Simulated speed and dullness against the photographs, after the paper's Table I.");
   add_picture(data, folder / "calibration/fit.svg", "Calibration", "Signed error photographed and simulated, and what the data say of each parameter.");
   data.tables.push_back(outcome_table(result));
   data.tables.push_back(table_of("Table II of this experiment (virtual): every cut, measured in its photograph", table_2_json(trials)));

@@ -61,7 +61,7 @@ KnownPhysicsCut cut_knowing_physics(const BenchBody& body, const PlanSettings& p
     PathErrors errors;
     errors.signed_error_mm = true_errors_mm(known, cut, kInnerEdgeTargetMm);
     errors.places = places_seen_even(*cut.inner_edge, errors.signed_error_mm.size(), known.approach);
-    errors.lag_mm = cut.shove_mm;
+    errors.lag_mm = cut.shove_mm;  // what the bench knows of how far tissue is dragged along, on average
     errors.is_success = cut.outcome == Outcome::Success;
     return errors;
   };

@@ -21,6 +21,15 @@ class StudyTest(CommandTest):
             self.assertIn(words, done.stderr)
         self.assert_nothing_written(self.folder / "study")
 
+    def test_a_folder_of_another_origin_is_not_removed(self):
+        notes = self.folder / "study" / "advice" / "notes.txt"
+        notes.parent.mkdir(parents=True)
+        notes.write_text("mine")
+        done = self.incise("study", "--quick", "-o", "study")
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        self.assertIn("advice", done.stderr)
+        self.assertEqual(notes.read_text(), "mine")
+
     def test_an_interrupted_experiment_goes_on_and_ends(self):
         begun = subprocess.Popen([COMMAND, *SMALL], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         record = self.folder / "study" / "S1" / "steps" / "bench_make.json"
