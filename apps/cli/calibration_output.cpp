@@ -116,6 +116,7 @@ void print_calibration(const CommonOptions& options, const Calibration& calibrat
   print_row(table.header);
   for (const auto& row : table.rows) print_row(row);
   fmt::print("\nbaseline {:.3f} mm\n", calibration.table.baseline_mm);
+  for (const LeftOutSpecimen& one : calibration.left_out) fmt::print("left out: {}: {}\n", one.name, one.reason);
   if (calibration.fit) {
     fmt::print("\n{:<24} {:>8} ± sd      {:.0f} % interval\n", "", "mean", 100.0 * DragFitSettings{}.credible);
     print_estimate("drag length mm", calibration.fit->drag_length_mm);

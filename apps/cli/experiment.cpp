@@ -126,6 +126,7 @@ ExperimentJson Experiment::run() {
   if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
   result["advice"] = advice;
   result["calibration"] = calibration_.is_object() ? calibration_.value("chosen", ExperimentJson()) : ExperimentJson(nullptr);
+  result["left_out_of_calibration"] = calibration_.is_object() ? calibration_.value("left_out", ExperimentJson::array()) : ExperimentJson::array();
   result["specimens_test"] = comparison_.is_object() ? comparison_.value("specimens", ExperimentJson()) : ExperimentJson(nullptr);
   result["table_1"] = table_1_.is_object() ? table_1_.value("rows", ExperimentJson()) : ExperimentJson(nullptr);
   result["table_2"] = table_2_json(trials_);

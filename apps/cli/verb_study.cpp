@@ -46,6 +46,9 @@ void print_summary(const nlohmann::ordered_json& result) {
     print_area("  of those outside alone", result.at("advice").at("auc_outside_alone"));
     print_area("the same without the pull", result.at("advice").at("auc_without_pull"));
   }
+  for (const auto& one : result.at("left_out_of_calibration")) {
+    fmt::print("{} (calibrate): left out of the fit: {}\n", one.at("name").get<std::string>(), one.at("reason").get<std::string>());
+  }
   for (const auto& row : result.at("table_2")) {
     if (row.at("ended_at").is_null()) continue;
     fmt::print("{} ({}), {}: ended at {}\n", row.at("specimen").get<std::string>(), row.at("role").get<std::string>(), row.at("cut").get<std::string>(),

@@ -55,34 +55,56 @@ std::vector<double> between(const std::vector<SimulatedProfile>& knots, double d
   return result;
 }
 
+void sort_by_drag_length(std::vector<SimulatedProfile>& profiles) {
+  std::sort(profiles.begin(), profiles.end(),
+            [](const SimulatedProfile& a, const SimulatedProfile& b) { return a.drag_length_mm < b.drag_length_mm; });
+}
+
+struct KnotsFound {
+  std::vector<SimulatedProfile> knots;
+  bool is_ended_by_failure = false;
+};
+
+/// The rings at the reference stiffness before the first that did not close. @pre sorted.
+KnotsFound knots_of(const std::vector<SimulatedProfile>& profiles) {
+  KnotsFound found;
+  for (const SimulatedProfile& profile : profiles) {
+    if (!is_reference(profile)) continue;
+    found.is_ended_by_failure = profile.signed_error_mm.empty();
+    if (!found.is_ended_by_failure) {
+      found.knots.push_back(profile);
+    } else if (!profile.is_closed_below) {
+      break;  // a longer drag that closed again would be luck
+    }
+  }
+  return found;
+}
+
 }  // namespace
+
+bool DragResponse::can_be_made_of(std::vector<SimulatedProfile> profiles) {
+  sort_by_drag_length(profiles);
+  return knots_of(profiles).knots.size() >= 2;
+}
 
 DragResponse::DragResponse(std::vector<SimulatedProfile> profiles) {
   require_profiles(profiles);
-  std::sort(profiles.begin(), profiles.end(),
-            [](const SimulatedProfile& a, const SimulatedProfile& b) { return a.drag_length_mm < b.drag_length_mm; });
-  for (const SimulatedProfile& profile : profiles) {
-    if (!is_reference(profile)) continue;
-    if (profile.signed_error_mm.empty()) {
-      is_ended_by_failure_ = true;
-      break;  // a longer drag that closed again would be luck
-    }
-    knots_.push_back(profile);
-  }
+  sort_by_drag_length(profiles);
+  KnotsFound found = knots_of(profiles);
+  knots_ = std::move(found.knots);
+  is_ended_by_failure_ = found.is_ended_by_failure;
   INCISE_REQUIRE(
       knots_.size() >= 2,
       fmt::format("expected at least two closed simulated rings before the first open one, found {}", knots_.size()));
   grain_mm_ = fast_waves_rms(knots_);
   for (const SimulatedProfile& profile : profiles) {
     if (is_reference(profile) || profile.signed_error_mm.empty()) continue;
-    const auto partner = std::find_if(knots_.begin(), knots_.end(), [&profile](const SimulatedProfile& knot) {
-      return std::abs(knot.drag_length_mm - profile.drag_length_mm) < 1e-9;
-    });
-    if (partner == knots_.end()) continue;
+    if (profile.drag_length_mm < least_mm() - 1e-9 || profile.drag_length_mm > most_mm() + 1e-9) continue;
+    const std::vector<double> reference = between(knots_, profile.drag_length_mm);
     SimulatedProfile slope = profile;
     const double step = std::log(profile.stiffness_factor);
     for (std::size_t i = 0; i < slope.signed_error_mm.size(); ++i) {
-      slope.signed_error_mm[i] = (profile.signed_error_mm[i] - partner->signed_error_mm[i]) / step;
+      slope.signed_error_mm[i] = (profile.signed_error_mm[i] - reference[i]) / step;
     }
     slopes_.push_back(std::move(slope));
   }

@@ -224,6 +224,10 @@ Json to_json(const Calibration& calibration) {
   json["simulations"] = calibration.simulations;
   json["specimens"] = Json::array();
   for (const CalibratedSpecimen& specimen : calibration.specimens) json["specimens"].push_back(specimen_json(specimen));
+  json["left_out"] = Json::array();
+  for (const LeftOutSpecimen& one : calibration.left_out) {
+    json["left_out"].push_back({{"name", one.name}, {"reason", one.reason}});
+  }
   json["posterior"] = nullptr;
   if (calibration.fit) {
     const DragFit& fit = *calibration.fit;

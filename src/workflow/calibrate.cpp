@@ -23,15 +23,20 @@ class CalibrationRunner {
  public:
   CalibrationRunner(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, RunStore& store,
                     Workers& workers, Monitor& monitor)
-      : subjects_(subjects), request_(request), store_(store), workers_(workers), monitor_(monitor) {}
+      : request_(request), store_(store), workers_(workers), monitor_(monitor) {
+    for (std::size_t i = 0; i < subjects.size(); ++i) subjects_.push_back({&subjects[i], i});
+  }
 
   Calibration run() {
-    for (const CalibrationSubject& subject : subjects_) prepare(subject);
+    for (const Subject& subject : subjects_) prepare(*subject.of);
     calibration_.method = request_.method;
-    calibration_.reference_step_s = subjects_.front().settings.cut.reference_step_s;
+    calibration_.reference_step_s = subjects_.front().of->settings.cut.reference_step_s;
     make_runs(request_.method == CalibrationMethod::Paper ? grid() : knots());
     match_pictures();
-    if (request_.method == CalibrationMethod::Fit) fit();
+    if (request_.method == CalibrationMethod::Fit) {
+      leave_out_what_opens();
+      fit();
+    }
     score();
     return std::move(calibration_);
   }
@@ -40,6 +45,11 @@ class CalibrationRunner {
   /// One setting, the stiffness over each specimen's own reference.
   struct Knot {
     double speed_mm_s, dullness, stiffness_factor;
+  };
+
+  struct Subject {
+    const CalibrationSubject* of = nullptr;
+    std::size_t place = 0;  ///< in the list that was given, by which the store knows it
   };
 
   void prepare(const CalibrationSubject& subject) {
@@ -117,7 +127,7 @@ class CalibrationRunner {
         const RunSetting setting{knot.speed_mm_s, knot.dullness,
                                  knot.stiffness_factor * bodies_[s]->reference_stiffness()};
         std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
-        std::optional<CalibrationRun> kept = store_.load(s, setting, monitor_);
+        std::optional<CalibrationRun> kept = store_.load(subjects_[s].place, setting, monitor_);
         if (!kept) missing.push_back({s, runs.size()});
         runs.push_back(kept ? std::move(*kept) : CalibrationRun{.setting = setting});
         factors_.resize(std::max(factors_.size(), runs.size()));
@@ -133,7 +143,7 @@ class CalibrationRunner {
     for (const Missing& one : missing) {
       const CalibrationRun& run = calibration_.specimens[one.specimen].runs[one.place];
       held.push_back(&body(one.specimen, run.setting.stiffness_of_case));
-      const Case settings = with_setting(subjects_[one.specimen].settings, run.setting);
+      const Case settings = with_setting(subjects_[one.specimen].of->settings, run.setting);
       ToolPath path = held.back()->followed;
       path.tumor_edge = held.back()->plan.tumor_edge;
       tasks.push_back(
@@ -143,9 +153,9 @@ class CalibrationRunner {
     simulate_incisions(tasks, workers_, monitor_, [&](std::size_t i, IncisionJobResult result) {
       if (result.incision.outcome == Outcome::Cancelled) return;
       CalibrationRun& run = calibration_.specimens[missing[i].specimen].runs[missing[i].place];
-      run = run_of(with_setting(subjects_[missing[i].specimen].settings, run.setting), run.setting, std::move(result),
-                   *held[i]);
-      store_.save(missing[i].specimen, run);
+      run = run_of(with_setting(subjects_[missing[i].specimen].of->settings, run.setting), run.setting,
+                   std::move(result), *held[i]);
+      store_.save(subjects_[missing[i].specimen].place, run);
       ++done;
     });
     if (done < tasks.size()) {
@@ -158,7 +168,7 @@ class CalibrationRunner {
     try {
       return bodies_[specimen]->with_stiffness(stiffness_of_case, workers_, monitor_);
     } catch (const CaseError& error) {
-      throw error.in_file(subjects_[specimen].case_file);
+      throw error.in_file(subjects_[specimen].of->case_file);
     }
   }
 
@@ -169,9 +179,9 @@ class CalibrationRunner {
       const auto closed = std::find_if(specimen.runs.begin(), specimen.runs.end(),
                                        [](const CalibrationRun& run) { return run.inner_edge.has_value(); });
       if (closed == specimen.runs.end()) continue;
-      specimen.picture = match_picture(subjects_[s].photographed.tumor_edge, subjects_[s].photographed.approach,
-                                       closed->final_tumor_edge, subjects_[s].settings.plan.approach);
-      refuse_objection(subjects_[s], specimen.picture);
+      specimen.picture = match_picture(subjects_[s].of->photographed.tumor_edge, subjects_[s].of->photographed.approach,
+                                       closed->final_tumor_edge, subjects_[s].of->settings.plan.approach);
+      refuse_objection(*subjects_[s].of, specimen.picture);
     }
   }
 
@@ -185,7 +195,7 @@ class CalibrationRunner {
 
   /// The start direction of the simulation, as it lies in the photograph.
   [[nodiscard]] std::vector<double> photographed_profile(std::size_t s) const {
-    const CalibrationSubject& subject = subjects_[s];
+    const CalibrationSubject& subject = *subjects_[s].of;
     ProfileSettings profile = simulated_profile(subject.settings);
     const ViewFrame view = view_along(subject.settings.plan.approach);
     const ViewFrame picture = view_along(subject.photographed.approach);
@@ -205,22 +215,40 @@ class CalibrationRunner {
   /// Empty: no closed ring round the tumour's middle.
   [[nodiscard]] std::vector<double> profile_of(std::size_t s, const CalibrationRun& run) const {
     if (!run.inner_edge || !run.closed_loop) return {};
-    return error_profile(*run.inner_edge, run.final_tumor_edge, simulated_profile(subjects_[s].settings))
+    return error_profile(*run.inner_edge, run.final_tumor_edge, simulated_profile(subjects_[s].of->settings))
         .value_or(std::vector<double>{});
   }
 
-  [[nodiscard]] DragResponse response_of(std::size_t s) const {
+  [[nodiscard]] std::vector<SimulatedProfile> profiles_of(std::size_t s) const {
     std::vector<SimulatedProfile> profiles;
     const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      profiles.push_back({runs[i].drag_length_mm(), factors_[i], profile_of(s, runs[i])});
+      profiles.push_back({runs[i].drag_length_mm(), factors_[i], profile_of(s, runs[i]), runs[i].closed_loop});
     }
-    try {
-      return DragResponse(std::move(profiles));
-    } catch (const InvalidArgument&) {
-      throw CaseError("case", "cut", "simulated cuts that leave no closed ring at two drag lengths",
-                      "a specimen that the simulated tool can cut round")
-          .in_file(subjects_[s].case_file);
+    return profiles;
+  }
+
+  /// A specimen whose simulated ring opens at all drag lengths but one says nothing of the others: the fit does without
+  /// it, and says so. Nothing is left without any.
+  void leave_out_what_opens() {
+    constexpr const char* kFound = "simulated cuts that leave no closed ring at two drag lengths";
+    for (std::size_t s = 0; s < subjects_.size();) {
+      if (DragResponse::can_be_made_of(profiles_of(s))) {
+        ++s;
+        continue;
+      }
+      const CalibrationSubject& subject = *subjects_[s].of;
+      if (subjects_.size() == 1) {
+        throw CaseError("case", "cut", kFound, "a specimen that the simulated tool can cut round")
+            .in_file(subject.case_file);
+      }
+      monitor_.message(Severity::Warning,
+                       fmt::format("{}: {}: the fit does without this specimen", subject.case_file, kFound));
+      calibration_.left_out.push_back({subject.photographed.name, kFound});
+      const auto place = static_cast<std::ptrdiff_t>(s);
+      subjects_.erase(subjects_.begin() + place);
+      bodies_.erase(bodies_.begin() + place);
+      calibration_.specimens.erase(calibration_.specimens.begin() + place);
     }
   }
 
@@ -261,9 +289,9 @@ class CalibrationRunner {
     DragFitSettings settings = request_.fit;
     bool is_every_force_measured = true;
     for (std::size_t s = 0; s < subjects_.size(); ++s) {
-      const bool has_force = subjects_[s].photographed.stretch_force_n.has_value();
+      const bool has_force = subjects_[s].of->photographed.stretch_force_n.has_value();
       is_every_force_measured = is_every_force_measured && has_force;
-      specimens.push_back({calibration_.specimens[s].name, photographed_profile(s), response_of(s),
+      specimens.push_back({calibration_.specimens[s].name, photographed_profile(s), DragResponse(profiles_of(s)),
                            has_force ? request_.force_sd : 0.0});
     }
     if (is_every_force_measured) settings.stiffness_sd = request_.stiffness_sd_with_force;
@@ -303,7 +331,7 @@ class CalibrationRunner {
     calibration_.score_percent = calibration_.fit ? row.inner_percent : row.percent;
   }
 
-  const std::vector<CalibrationSubject>& subjects_;
+  std::vector<Subject> subjects_;
   const CalibrationRequest& request_;
   RunStore& store_;
   Workers& workers_;

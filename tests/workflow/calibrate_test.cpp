@@ -273,6 +273,43 @@ TEST_F(CalibrateBlocks, LooksHalfWayToTheFirstFailureWhereTheAnswerMayLieThere) 
   EXPECT_THAT(fit.identifiability->sentences[1], HasSubstr("not varied"));
 }
 
+TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
+  subjects_[0].photographed.name = "opens";
+  subjects_[1].photographed.name = "closes";
+  CalibrationRequest request;
+  request.drag_lengths_mm = {0.5, 1.25, 2.0};
+  request.second_drag_lengths_mm = {};
+  const Calibration both = run(request);
+  EXPECT_TRUE(both.left_out.empty());
+  ASSERT_EQ(both.fit->specimens.size(), 2U);
+
+  const auto open_beyond = [this](std::size_t specimen, double drag_mm) {
+    for (auto& [key, run] : runs_.runs) {
+      if (std::get<0>(key) != specimen || run.drag_length_mm() < drag_mm) continue;
+      run.inner_edge.reset();
+      run.closed_loop = false;
+      run.outcome = Outcome::OpenLoop;
+    }
+  };
+  open_beyond(0, 0.6);
+  runs_.saved = 0;
+  const Calibration one = run(request);
+  ASSERT_EQ(one.left_out.size(), 1U);
+  EXPECT_EQ(one.left_out[0].name, "opens");
+  EXPECT_THAT(one.left_out[0].reason, HasSubstr("no closed ring at two drag lengths"));
+  ASSERT_EQ(one.specimens.size(), 1U);
+  EXPECT_EQ(one.specimens[0].name, "closes");
+  ASSERT_EQ(one.fit->specimens.size(), 1U);
+  EXPECT_EQ(one.fit->specimens[0].name, "closes");
+  EXPECT_LE(runs_.saved, 2);  // those near its own answer: what was kept of it is still known by its place in the list
+  for (const CalibrationRun& kept : one.specimens[0].runs)
+    EXPECT_TRUE(runs_.runs.contains(RunsInMemory::key(1, kept.setting)));
+
+  open_beyond(1, 0.6);
+  EXPECT_THAT([&] { static_cast<void>(run(request)); },
+              ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("case.yaml"), HasSubstr("closed ring"))));
+}
+
 /// A tumour edge that is unlike its mirror image by more than the tissue's give.
 class LopsidedBlock : public SoftBlock {
  public:

@@ -48,9 +48,16 @@ struct CalibratedSpecimen {
   std::vector<CalibrationRun> runs;
 };
 
+/// A specimen that a fit could make nothing of.
+struct LeftOutSpecimen {
+  std::string name;
+  std::string reason;
+};
+
 struct Calibration {
   CalibrationMethod method = CalibrationMethod::Fit;
   std::vector<CalibratedSpecimen> specimens;
+  std::vector<LeftOutSpecimen> left_out;  ///< of a fit; not among specimens
   ScoreTable table;            ///< of the n-th runs of all specimens
   std::optional<DragFit> fit;  ///< method fit
   std::optional<Identifiability> identifiability;
