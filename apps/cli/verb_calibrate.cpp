@@ -121,7 +121,7 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
     write_calibration(output, calibration, files, inputs, options, wall.count());
     older.replaced();
     print_calibration(options, calibration, output, wall.count());
-    return calibration.score_percent.value_or(0.0) > 0.0 ? kDone : kNotAcceptable;
+    return is_usable(calibration) ? kDone : kNotAcceptable;
   });
 }
 

@@ -70,12 +70,11 @@ KnotsFound knots_of(const std::vector<SimulatedProfile>& profiles) {
   KnotsFound found;
   for (const SimulatedProfile& profile : profiles) {
     if (!is_reference(profile)) continue;
-    found.is_ended_by_failure = profile.signed_error_mm.empty();
-    if (!found.is_ended_by_failure) {
-      found.knots.push_back(profile);
-    } else if (!profile.is_closed_below) {
+    if (profile.signed_error_mm.empty()) {
+      found.is_ended_by_failure = true;
       break;  // a longer drag that closed again would be luck
     }
+    found.knots.push_back(profile);
   }
   return found;
 }
@@ -99,12 +98,14 @@ DragResponse::DragResponse(std::vector<SimulatedProfile> profiles) {
   grain_mm_ = fast_waves_rms(knots_);
   for (const SimulatedProfile& profile : profiles) {
     if (is_reference(profile) || profile.signed_error_mm.empty()) continue;
-    if (profile.drag_length_mm < least_mm() - 1e-9 || profile.drag_length_mm > most_mm() + 1e-9) continue;
-    const std::vector<double> reference = between(knots_, profile.drag_length_mm);
+    const auto partner = std::find_if(knots_.begin(), knots_.end(), [&profile](const SimulatedProfile& knot) {
+      return std::abs(knot.drag_length_mm - profile.drag_length_mm) < 1e-9;
+    });
+    if (partner == knots_.end()) continue;
     SimulatedProfile slope = profile;
     const double step = std::log(profile.stiffness_factor);
     for (std::size_t i = 0; i < slope.signed_error_mm.size(); ++i) {
-      slope.signed_error_mm[i] = (profile.signed_error_mm[i] - reference[i]) / step;
+      slope.signed_error_mm[i] = (profile.signed_error_mm[i] - partner->signed_error_mm[i]) / step;
     }
     slopes_.push_back(std::move(slope));
   }

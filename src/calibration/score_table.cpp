@@ -47,12 +47,13 @@ ScoreRow row_of(const std::vector<std::vector<CalibrationRun>>& runs, std::size_
     row.max_abs_mm = sums.greatest;
     row.mean_signed_mm = sums.mean_signed / sums.count;
   }
-  if (sums.inner_count > 0.0) row.mean_inner_signed_mm = sums.inner / sums.inner_count;
+  row.inner_specimens = static_cast<std::size_t>(sums.inner_count);
   std::optional<double> score;
   if (!row.is_failure) score = registration_score_mm(*row.mean_abs_mm, *row.max_abs_mm);
   row.percent = registration_percent(score, baseline);
   std::optional<double> inner_score;
-  if (!row.is_failure && sums.inner_count == static_cast<double>(runs.size())) {
+  if (sums.inner_count > 0.0) {
+    row.mean_inner_signed_mm = sums.inner / sums.inner_count;
     inner_score = registration_score_mm(sums.inner_abs / sums.inner_count, sums.inner_greatest);
   }
   row.inner_percent = registration_percent(inner_score, baseline);

@@ -95,6 +95,16 @@ void measure_final_edges(const TissueModel& model, const TissueState& stretched,
 
 }  // namespace
 
+std::optional<ClosedRing> shallowest_closed_ring(const KerfMeasures& kerf, const Vec3& approach) {
+  for (const KerfLayer& layer : kerf.layers) {
+    if (!layer.centerline || !layer.is_closed.value_or(false)) continue;
+    ClosedRing ring{layer.depth_mm, 0.5 * layer.width_mm, *layer.centerline};
+    for (Vec3& p : ring.midline.points) p -= layer.depth_mm * approach;
+    return ring;
+  }
+  return std::nullopt;
+}
+
 void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path, const IncisionSettings& settings,
                   IncisionResult& result, Workers& workers) {
   KerfMidlineSettings midline_settings;

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kRunSchema = "incise.calibration_run/1";
+constexpr const char* kRunSchema = "incise.calibration_run/2";
 constexpr std::array<double Summary::*, 4> kSummaryParts{&Summary::mean, &Summary::sd, &Summary::min, &Summary::max};
 constexpr std::array<const char*, 4> kSummaryNames{"mean", "sd", "min", "max"};
 
@@ -40,6 +40,18 @@ std::optional<Contour> contour_or_null(const JsonPlace& file, const char* key) {
   return contour_of(file.inside(key));
 }
 
+Json ring_json(const std::optional<ClosedRing>& ring) {
+  if (!ring) return nullptr;
+  return {
+      {"depth_mm", ring->depth_mm}, {"half_width_mm", ring->half_width_mm}, {"midline", contour_json(ring->midline)}};
+}
+
+std::optional<ClosedRing> ring_of(const JsonPlace& file, const char* key) {
+  if (file.at(key, "an object or null").is_null()) return std::nullopt;
+  const JsonPlace place = file.inside(key);
+  return ClosedRing{place.number("depth_mm"), place.number("half_width_mm"), contour_of(place.inside("midline"))};
+}
+
 Json run_json(const CalibrationRun& run) {
   Json json;
   json["speed_mm_s"] = run.setting.speed_mm_s;
@@ -58,6 +70,7 @@ Json run_json(const CalibrationRun& run) {
   json["wall_s"] = run.wall_s;
   json["inner_edge"] = run.inner_edge ? contour_json(*run.inner_edge) : Json(nullptr);
   json["final_tumor_edge"] = run.final_tumor_edge.points.empty() ? Json(nullptr) : contour_json(run.final_tumor_edge);
+  json["ring"] = ring_json(run.ring);
   return json;
 }
 
@@ -77,6 +90,7 @@ CalibrationRun run_from(const JsonPlace& file, const RunSetting& setting) {
   run.wall_s = file.number("wall_s");
   run.inner_edge = contour_or_null(file, "inner_edge");
   run.final_tumor_edge = contour_or_null(file, "final_tumor_edge").value_or(Contour{});
+  run.ring = ring_of(file, "ring");
   return run;
 }
 

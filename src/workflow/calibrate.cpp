@@ -212,18 +212,53 @@ class CalibrationRunner {
     return std::move(*errors);
   }
 
-  /// Empty: no closed ring round the tumour's middle.
-  [[nodiscard]] std::vector<double> profile_of(std::size_t s, const CalibrationRun& run) const {
+  /// Empty: the ring did not part at the skin, or does not go round the tumour's middle.
+  [[nodiscard]] std::vector<double> inner_edge_profile(std::size_t s, const CalibrationRun& run) const {
     if (!run.inner_edge || !run.closed_loop) return {};
     return error_profile(*run.inner_edge, run.final_tumor_edge, simulated_profile(subjects_[s].of->settings))
         .value_or(std::vector<double>{});
   }
 
+  /// What the inner edge would be by the mid-line of the shallowest closed layer and half the kerf's width there,
+  /// before the tissue gives. Empty: the ring did not close.
+  [[nodiscard]] std::vector<double> midline_profile(std::size_t s, const CalibrationRun& run) const {
+    if (!run.ring || !run.closed_loop) return {};
+    const Case& settings = subjects_[s].of->settings;
+    ProfileSettings profile = simulated_profile(settings);
+    profile.target_mm = target_of(settings) + run.ring->half_width_mm;
+    return error_profile(run.ring->midline, bodies_[s]->tumor_edge(), profile).value_or(std::vector<double>{});
+  }
+
+  /// By how much the inner edges of one specimen lie beside what their mid-lines say, sector by sector: the mean of its
+  /// runs that have both. Empty: none has.
+  [[nodiscard]] std::vector<double> edge_beside_midline(std::size_t s) const {
+    std::vector<double> sum;
+    double count = 0.0;
+    for (const CalibrationRun& run : calibration_.specimens[s].runs) {
+      const std::vector<double> edge = inner_edge_profile(s, run);
+      const std::vector<double> midline = midline_profile(s, run);
+      if (edge.empty() || midline.empty()) continue;
+      sum.resize(edge.size(), 0.0);
+      for (std::size_t i = 0; i < edge.size(); ++i) sum[i] += edge[i] - midline[i];
+      count += 1.0;
+    }
+    for (double& difference : sum) difference /= count;
+    return sum;
+  }
+
+  /// Inner edges of all runs. Where strips of skin still hold the plug of a ring that closed beneath, that of its
+  /// mid-line, moved as the specimen's other inner edges lie beside theirs. Empty: no closed ring.
   [[nodiscard]] std::vector<SimulatedProfile> profiles_of(std::size_t s) const {
     std::vector<SimulatedProfile> profiles;
     const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
+    const std::vector<double> beside = edge_beside_midline(s);
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      profiles.push_back({runs[i].drag_length_mm(), factors_[i], profile_of(s, runs[i]), runs[i].closed_loop});
+      std::vector<double> profile = inner_edge_profile(s, runs[i]);
+      if (profile.empty() && !beside.empty()) {
+        profile = midline_profile(s, runs[i]);
+        for (std::size_t j = 0; j < profile.size(); ++j) profile[j] += beside[j];
+      }
+      profiles.push_back({runs[i].drag_length_mm(), factors_[i], std::move(profile)});
     }
     return profiles;
   }
@@ -305,8 +340,12 @@ class CalibrationRunner {
     make_runs({knot_at(fit.drag_length_mm.mean, fit.knows_stiffness ? std::exp(fit.ln_stiffness.mean) : 1.0)});
     for (std::size_t s = 0; s < subjects_.size(); ++s) {
       SpecimenFit& specimen = fit.specimens[s];
-      specimen.simulated_mm = profile_of(s, calibration_.specimens[s].runs.back());
-      if (specimen.simulated_mm.empty()) continue;
+      specimen.simulated_mm = profiles_of(s).back().signed_error_mm;
+      if (specimen.simulated_mm.empty()) {
+        monitor_.message(Severity::Warning,
+                         fmt::format("{}: the simulated ring stays open at the fitted values", specimen.name));
+        continue;
+      }
       double squares = 0.0;
       for (std::size_t i = 0; i < specimen.simulated_mm.size(); ++i) {
         squares += std::pow(specimen.simulated_mm[i] + fit.bias_mm.mean - specimen.fitted_mm[i], 2);

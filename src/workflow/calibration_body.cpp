@@ -121,6 +121,7 @@ CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJ
   }
   run.inner_edge = cut.incision.inner_edge;
   run.final_tumor_edge = cut.incision.final_tumor_edge;
+  run.ring = shallowest_closed_ring(cut.incision.kerf, settings.plan.approach.normalized());
   return run;
 }
 

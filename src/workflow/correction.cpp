@@ -42,20 +42,20 @@ PathErrors inner_edge_errors(const SimulatedCut& cut) {
 /// kerf's width there nearer to the tumour.
 std::optional<PathErrors> layer_path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
                                             Monitor& monitor) {
-  for (const KerfLayer& layer : cut.incision.kerf.layers) {
-    if (!layer.centerline || !layer.is_closed.value_or(false)) continue;
-    Contour lifted = *layer.centerline;
-    for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
-    ContourErrors found = contour_errors(lifted, tumor_edge, settings.plan.lateral_margin_mm, settings.plan.approach);
-    if (settings.compensation.observable == ContourKind::InnerEdge) {  // its target is nearer by the radius, too
-      for (double& error : found.signed_error_mm) error -= 0.5 * layer.width_mm - radius_mm(settings.tool);
-    }
-    monitor.message(Severity::Notice,
-                    fmt::format("the ring is open near the skin; its path is corrected by the mid-line {} mm deep",
-                                layer.depth_mm));
-    return PathErrors{std::move(found.points.points), std::move(found.signed_error_mm), 0.0, false};
+  const std::optional<ClosedRing> ring = shallowest_closed_ring(cut.incision.kerf, settings.plan.approach.normalized());
+  if (!ring) return std::nullopt;
+  ContourErrors found =
+      contour_errors(ring->midline, tumor_edge, settings.plan.lateral_margin_mm, settings.plan.approach);
+  if (settings.compensation.observable == ContourKind::InnerEdge) {  // its target is nearer by the radius, too
+    for (double& error : found.signed_error_mm) error -= ring->half_width_mm - radius_mm(settings.tool);
   }
-  return std::nullopt;
+  monitor.message(
+      Severity::Notice,
+      fmt::format("the ring is open near the skin; its path is corrected by the {} {} mm deep",
+                  settings.compensation.observable == ContourKind::InnerEdge ? "mid-line less half the kerf's width"
+                                                                             : "mid-line",
+                  ring->depth_mm));
+  return PathErrors{std::move(found.points.points), std::move(found.signed_error_mm), 0.0, false};
 }
 
 ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {

@@ -40,26 +40,9 @@ TEST(DragResponse, EndsBeforeTheFirstCutThatLeftNoRing) {
   EXPECT_THROW(static_cast<void>(response.at(3.0)), InvalidArgument);
 }
 
-TEST(DragResponse, GoesPastARingThatOnlyClosedBelowTheSkin) {
-  const SimulatedProfile below{2.0, 1.0, {}, true};
-  const DragResponse response({flat(1.0, 1.0, -1.0), below, flat(3.0, 1.0, -2.0), flat(2.0, 2.0, -1.2)});
-  EXPECT_EQ(response.most_mm(), 3.0);
-  EXPECT_FALSE(response.is_ended_by_failure());
-  EXPECT_THAT(response.at(2.0), Each(::testing::DoubleNear(-1.5, 1e-12)));
-  EXPECT_NEAR(response.stiffness_slope(2.0)[0], 0.3 / std::log(2.0), 1e-12);  // against the line, not against a knot
-}
-
-TEST(DragResponse, EndsWhereNoLongerDragClosedAtTheSkin) {
-  const SimulatedProfile below{3.0, 1.0, {}, true};
-  const SimulatedProfile open{4.0, 1.0, {}, false};
-  const DragResponse response({flat(1.0, 1.0, -1.0), flat(2.0, 1.0, -1.2), below, open, flat(5.0, 1.0, -3.0)});
-  EXPECT_EQ(response.most_mm(), 2.0);
-  EXPECT_TRUE(response.is_ended_by_failure());
-}
-
 TEST(DragResponse, TellsBeforehandWhetherTwoRingsAreThere) {
-  EXPECT_TRUE(DragResponse::can_be_made_of({flat(2.0, 1.0, -1.0), {1.5, 1.0, {}, true}, flat(1.0, 1.0, -1.0)}));
-  EXPECT_FALSE(DragResponse::can_be_made_of({flat(2.0, 1.0, -1.0), {1.5, 1.0, {}, false}, flat(1.0, 1.0, -1.0)}));
+  EXPECT_TRUE(DragResponse::can_be_made_of({{3.0, 1.0, {}}, flat(2.0, 1.0, -1.0), flat(1.0, 1.0, -1.0)}));
+  EXPECT_FALSE(DragResponse::can_be_made_of({flat(2.0, 1.0, -1.0), {1.5, 1.0, {}}, flat(1.0, 1.0, -1.0)}));
   EXPECT_FALSE(DragResponse::can_be_made_of({flat(1.0, 1.0, -1.0), flat(1.0, 2.0, -1.0)}));
 }
 

@@ -44,7 +44,9 @@ TEST(ScoreTable, AFailureScoresNothingAndIsNeverChosen) {
   const ScoreTable table = score_table({kFirst, kSecond}, 2.0);
   EXPECT_TRUE(table.rows[2].is_failure);
   EXPECT_EQ(table.rows[2].percent, 0.0);
-  EXPECT_EQ(table.rows[2].inner_percent, 0.0);
+  EXPECT_EQ(table.rows[2].inner_specimens, 1U);
+  EXPECT_NEAR(table.rows[2].inner_percent, 100.0 * (0.75 * 1.0 + 0.25 * 2.0) / 2.0, 1e-9);  // of the one that closed
+  EXPECT_EQ(score_table({{open_ring()}}, 2.0).rows[0].inner_percent, 0.0);
   EXPECT_NEAR(table.rows[2].mean_abs_mm.value(), 1.1, 1e-12);  // of the specimen that closed
   EXPECT_FALSE(score_table({{open_ring()}}, 2.0).chosen);
 }

@@ -58,8 +58,8 @@ struct Calibration {
   CalibrationMethod method = CalibrationMethod::Fit;
   std::vector<CalibratedSpecimen> specimens;
   std::vector<LeftOutSpecimen> left_out;  ///< of a fit; not among specimens
-  ScoreTable table;            ///< of the n-th runs of all specimens
-  std::optional<DragFit> fit;  ///< method fit
+  ScoreTable table;                       ///< of the n-th runs of all specimens
+  std::optional<DragFit> fit;             ///< method fit
   std::optional<Identifiability> identifiability;
   std::optional<RunSetting> chosen;     ///< absent: every setting failed
   std::optional<double> score_percent;  ///< of the chosen setting: the paper's, of a fit ScoreRow::inner_percent
@@ -67,5 +67,9 @@ struct Calibration {
   bool is_virtual = false;      ///< one specimen at least is
   std::size_t simulations = 0;  ///< runs in all, those reused too
 };
+
+/// Whether something was found to cut with: of a grid a setting that did not fail; of a fit, values at which the rings
+/// of more than half of the fitted specimens closed.
+[[nodiscard]] bool is_usable(const Calibration& calibration);
 
 }  // namespace incise

@@ -3,6 +3,7 @@
 #include <incise/core/outcome.hpp>
 #include <incise/evaluation/statistics.hpp>
 #include <incise/geometry/contour.hpp>
+#include <incise/procedure/kerf_measures.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -32,6 +33,7 @@ struct CalibrationRun {
   std::optional<Summary> inner_abs_error_mm;     ///< its absolute value
   std::optional<Contour> inner_edge;             ///< tool out, tissue still stretched, mm
   Contour final_tumor_edge;                      ///< likewise
+  std::optional<ClosedRing> ring;                ///< the shallowest that closed, whether or not the skin parted
   std::size_t tets = 0;
   double wall_s = 0.0;
 

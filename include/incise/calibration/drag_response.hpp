@@ -8,8 +8,7 @@ namespace incise {
 struct SimulatedProfile {
   double drag_length_mm = 0.0;          ///< speed · dwell, > 0
   double stiffness_factor = 1.0;        ///< Young's modulus over the specimen's reference, > 0
-  std::vector<double> signed_error_mm;  ///< one for each sector; empty: no closed ring, or none at the skin
-  bool is_closed_below = false;         ///< empty, but the ring closed below the skin: it says nothing of the next
+  std::vector<double> signed_error_mm;  ///< one for each sector; empty: no closed ring
 };
 
 /// What the simulation of one specimen says of its profile for any drag length and stiffness within what was simulated:
@@ -17,8 +16,7 @@ struct SimulatedProfile {
 /// that is found where a second stiffness was cut with the same drag length.
 class DragResponse {
  public:
-  /// @param profiles  in any order; those without a ring end the range of drag lengths. Lines go past one that only
-  ///                  closed below the skin, where a longer drag closed at the skin, too.
+  /// @param profiles  in any order; those without a ring end the range of drag lengths.
   /// @throws InvalidArgument without two closed rings at the reference stiffness (factor 1), for profiles of different
   /// length, or numbers out of range.
   explicit DragResponse(std::vector<SimulatedProfile> profiles);
@@ -29,7 +27,7 @@ class DragResponse {
   /// Least and greatest drag length, mm, between which all cuts at the reference stiffness closed.
   [[nodiscard]] double least_mm() const { return knots_.front().drag_length_mm; }
   [[nodiscard]] double most_mm() const { return knots_.back().drag_length_mm; }
-  /// A longer drag length than most_mm() was simulated and left no closed ring at the skin.
+  /// A longer drag length than most_mm() was simulated and left no closed ring.
   [[nodiscard]] bool is_ended_by_failure() const { return is_ended_by_failure_; }
   /// A second stiffness was cut.
   [[nodiscard]] bool knows_stiffness() const { return !slopes_.empty(); }

@@ -25,7 +25,8 @@ struct ScoreRow {
   std::optional<double> mean_inner_signed_mm;  ///< of the inner edge against margin less radius, likewise
   bool is_failure = false;                     ///< one specimen at least failed
   double percent = 0.0;                        ///< of the baseline; 0 for a failure
-  double inner_percent = 0.0;  ///< the same with the inner edge\'s errors, like against like; 0 for a failure
+  std::size_t inner_specimens = 0;             ///< that did not fail and whose plug came free at the skin
+  double inner_percent = 0.0;  ///< the same with the inner edge's errors, like against like, of those; 0 without any
 };
 
 /// The paper's Table I.

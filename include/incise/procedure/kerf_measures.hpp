@@ -78,4 +78,15 @@ struct KerfMeasures {
       inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
 };
 
+/// A ring that closed, by its mid-line.
+struct ClosedRing {
+  double depth_mm = 0.0;       ///< of the layer's middle
+  double half_width_mm = 0.0;  ///< of the kerf there
+  Contour midline;             ///< stretched tissue before the cut, lifted along the approach to the skin's height, mm
+};
+
+/// The shallowest layer in which the ring closed; nothing where none did.
+/// @param approach  unit length.
+[[nodiscard]] std::optional<ClosedRing> shallowest_closed_ring(const KerfMeasures& kerf, const Vec3& approach);
+
 }  // namespace incise
