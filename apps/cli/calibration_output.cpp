@@ -89,8 +89,9 @@ void print_estimate(const char* name, const ParameterEstimate& estimate) {
 void write_calibration(const std::filesystem::path& folder, const Calibration& calibration,
                        const std::vector<CaseFile>& cases, const std::vector<std::filesystem::path>& inputs,
                        const CommonOptions& options, double wall_s) {
-  write_text(folder / "table_1.csv", csv_text(calibration_table(calibration)));
-  write_text(folder / "table_1.tex", latex_text(calibration_table_rounded(calibration)));
+  const char* table = calibration.method == CalibrationMethod::Paper ? "table_1" : "simulations";
+  write_text(folder / fmt::format("{}.csv", table), csv_text(calibration_table(calibration)));
+  write_text(folder / fmt::format("{}.tex", table), latex_text(calibration_table_rounded(calibration)));
   if (calibration.method == CalibrationMethod::Paper) {
     write_text(folder / "table_1.svg", score_heat_map_svg(grid_of(calibration)));
   }

@@ -10,7 +10,7 @@
 
 namespace incise::cli {
 
-/// Writes table_1.csv, table_1.tex, the figures, manifest.json and, last, calibration.json: where that is, all is.
+/// Writes the table (table_1 of a grid, simulations of a fit; .csv and .tex), the figures, manifest.json and, last, calibration.json: where that is, all is.
 /// @throws DataError if a file cannot be written.
 void write_calibration(const std::filesystem::path& folder, const Calibration& calibration,
                        const std::vector<CaseFile>& cases, const std::vector<std::filesystem::path>& inputs,

@@ -6,9 +6,11 @@
 #include "study_tables.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/report/html_report.hpp>
 
 #include <fmt/format.h>
@@ -41,6 +43,29 @@ void require_done(const StepRecord& record, const char* step, const StepRunner& 
   if (record.status != kDone) throw DataError(runner.log(), step, refusal_of(step, record), "status 0");
 }
 
+ExperimentJson settings_json(const ExperimentSettings& settings) {
+  return {{"specimens", settings.specimens},
+          {"outside", settings.outside ? ExperimentJson(*settings.outside) : ExperimentJson(nullptr)},
+          {"quick", settings.is_quick},
+          {"paper_pass", settings.with_paper_pass},
+          {"known_physics", settings.with_known_physics},
+          {"withheld_force", settings.with_withheld_force},
+          {"tets", settings.tets}};
+}
+
+/// What the calibration's data say: estimates and sentences, without the posterior's samples. Null without a fit.
+ExperimentJson fit_summary(const ExperimentJson& calibration) {
+  if (!calibration.is_object() || !calibration.at("posterior").is_object()) return nullptr;
+  ExperimentJson json;
+  for (const char* parameter : {"drag_length_mm", "ln_stiffness_factor", "bias_mm"}) {
+    const ExperimentJson& estimate = calibration.at("posterior").at(parameter);
+    for (const char* key : {"mean", "sd", "at_limit"}) json[parameter][key] = estimate.at(key);
+  }
+  json["score_percent"] = calibration.at("score_percent");
+  json["identifiability"] = calibration.at("identifiability");
+  return json;
+}
+
 /// Geometric mean of the specimens that a calibration is of.
 double mean_modulus_kpa(const ExperimentJson& calibration) {
   double sum = 0.0;
@@ -67,6 +92,7 @@ class Experiment {
   ExperimentJson run();
 
  private:
+  void claim_folder() const;
   void remove_summaries() const;
   void add_outside(std::uint64_t seed);
   [[nodiscard]] double cost_of(const Trial& trial) const;
@@ -100,6 +126,7 @@ class Experiment {
 
 ExperimentJson Experiment::run() {
   const auto start = std::chrono::steady_clock::now();
+  claim_folder();
   remove_summaries();
   run_trials(TrialRole::Calibrate, TrialRole::Calibrate);
   calibrate();
@@ -110,7 +137,7 @@ ExperimentJson Experiment::run() {
   if (!advice.is_null()) {
     AtomicFolder folder(root_ / "advice");
     write_advice(folder.path(), advice);
-    write_manifest(folder.path(), manifest_of(options_, "{}", {}, 0.0));
+    write_manifest(folder.path(), manifest_of(options_, settings_json(settings_).dump(), {}, 0.0));
     folder.commit();
   }
   write_commands();
@@ -126,6 +153,7 @@ ExperimentJson Experiment::run() {
   if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
   result["advice"] = advice;
   result["calibration"] = calibration_.is_object() ? calibration_.value("chosen", ExperimentJson()) : ExperimentJson(nullptr);
+  result["fit"] = fit_summary(calibration_);
   result["left_out_of_calibration"] = calibration_.is_object() ? calibration_.value("left_out", ExperimentJson::array()) : ExperimentJson::array();
   result["specimens_test"] = comparison_.is_object() ? comparison_.value("specimens", ExperimentJson()) : ExperimentJson(nullptr);
   result["table_1"] = table_1_.is_object() ? table_1_.value("rows", ExperimentJson()) : ExperimentJson(nullptr);
@@ -138,12 +166,36 @@ ExperimentJson Experiment::run() {
     if (std::filesystem::exists(root_ / figure)) result["figures"].push_back((root_ / figure).string());
   }
   result["commands"] = (root_ / "commands.sh").string();
-  write_report(experiment_report(trials_, result, root_), root_ / "report.html");
+  ReportData page = experiment_report(trials_, result, root_);
+  const ExperimentJson asked = settings_json(settings_);
+  for (const auto& [name, value] : asked.items()) page.settings.push_back({name, value.dump(), ""});
+  page.provenance = {{"version", std::string(version()), ""}, {"commit", std::string(source_commit()), ""}, {"command", options_.command_line, ""},
+                     {"seed", std::to_string(options_.seed), ""}, {"threads", std::to_string(threads_), ""}, {"machine", machine_description(), ""}};
+  write_report(page, root_ / "report.html");
   result["report"] = (root_ / "report.html").string();
   result["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_manifest(root_, manifest_of(options_, "{}", {}, result["wall_s"].get<double>()));
+  write_manifest(root_, manifest_of(options_, settings_json(settings_).dump(), {}, result["wall_s"].get<double>()));
   write_json(root_ / "study.json", result);
   return result;
+}
+
+/// One folder holds one experiment: runs with other options go on with it, those with other specimens would mix with it.
+void Experiment::claim_folder() const {
+  const std::filesystem::path file = root_ / "experiment.json";
+  if (!std::filesystem::exists(file)) {
+    if (!std::filesystem::is_empty(root_)) {
+      throw DataError(root_, "", "a folder with files of another origin (no experiment.json)", "a free name, an empty folder, or an experiment to go on with",
+                      "Choose another place for the output");
+    }
+    write_json(file, {{"schema", "incise.experiment/1"}, {"specimen_is", "virtual"}, {"seed", options_.seed}});
+    return;
+  }
+  const ExperimentJson kept = read_json(file);
+  const ExperimentJson seed = kept.is_object() ? kept.value("seed", ExperimentJson()) : ExperimentJson();
+  if (seed != ExperimentJson(options_.seed)) {
+    throw DataError(file, "seed", seed.dump(), fmt::format("{}, that of this command", options_.seed),
+                    "Its specimens are others: choose another place for the output");
+  }
 }
 
 /// What an earlier run with other options said of the whole: it would be taken for this one's.

@@ -91,6 +91,19 @@ ReportTable outcome_table(const ReportJson& result) {
   return table;
 }
 
+/// What the cuts of the calibration's specimens say of the simulated tool.
+ReportTable fit_table(const ReportJson& result) {
+  ReportTable table{"Calibration (virtual): what the photographs say of the simulated tool", {"parameter", "mean", "sd", "at the end of what was simulated"}, {}};
+  const ReportJson& fit = result.at("fit");
+  for (const char* parameter : {"drag_length_mm", "ln_stiffness_factor", "bias_mm"}) {
+    const ReportJson& estimate = fit.at(parameter);
+    table.rows.push_back({parameter, fmt::format("{:.3f}", estimate.at("mean").get<double>()), fmt::format("{:.3f}", estimate.at("sd").get<double>()),
+                          estimate.at("at_limit").get<bool>() ? "yes" : "no"});
+  }
+  for (const ReportJson& one : result.at("left_out_of_calibration")) table.rows.push_back({"left out: " + one.at("name").get<std::string>(), "", "", one.at("reason").get<std::string>()});
+  return table;
+}
+
 }  // namespace
 
 ReportData experiment_report(const std::vector<Trial>& trials, const TableJson& result, const std::filesystem::path& folder) {
@@ -112,6 +125,7 @@ ReportData experiment_report(const std::vector<Trial>& trials, const TableJson& 
   if (result.at("table_1").is_array()) add_picture(data, folder / "table_1/table_1.svg", "Table I of this experiment", "Simulated speed and dullness against the photographs, after the paper's Table I.");
   add_picture(data, folder / "calibration/fit.svg", "Calibration", "Signed error photographed and simulated, and what the data say of each parameter.");
   data.tables.push_back(outcome_table(result));
+  if (result.at("fit").is_object()) data.tables.push_back(fit_table(result));
   data.tables.push_back(table_of("Table II of this experiment (virtual): every cut, measured in its photograph", table_2_json(trials)));
   data.tables.push_back(papers_table());
   if (result.contains("table_1") && result.at("table_1").is_array()) data.tables.push_back(table_of("Table I of this experiment (simulated, against virtual photographs)", result.at("table_1")));

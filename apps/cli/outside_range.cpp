@@ -5,7 +5,7 @@
 namespace incise::cli {
 
 OutsideKind failed_specimen() {
-  return {"failed", {{"youngs_modulus_kpa", 48.0}, {"clamp_slip_mm", 9.0}}};
+  return {"stiff_and_slipped", {{"youngs_modulus_kpa", 48.0}, {"clamp_slip_mm", 9.0}}};
 }
 
 OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index) {

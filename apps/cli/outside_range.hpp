@@ -9,7 +9,7 @@ namespace incise::cli {
 
 /// A specimen unlike those that an experiment calibrates on.
 struct OutsideKind {
-  std::string name;                                   ///< failed, stiff, scarred, fibrous, soft
+  std::string name;                                   ///< stiff_and_slipped, stiff, scarred, fibrous, soft
   std::vector<std::pair<std::string, double>> given;  ///< hidden parameters of the bench that are not drawn from the seed
 };
 

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <optional>
 
 namespace incise::cli {
 namespace {
@@ -33,8 +34,36 @@ StepJson identity_of(const ExperimentStep& step) {
   return json;
 }
 
-bool are_there(const std::vector<std::filesystem::path>& products) {
-  return std::all_of(products.begin(), products.end(), [](const auto& product) { return std::filesystem::exists(product); });
+/// What a step left, by content; of folders only that they are there, as later steps may add to them. Null where one is
+/// missing.
+StepJson products_of(const ExperimentStep& step) {
+  StepJson json = StepJson::object();
+  for (const std::filesystem::path& path : step.products) {
+    if (!std::filesystem::exists(path)) return nullptr;
+    json[path.string()] = std::filesystem::is_directory(path) ? std::string("a folder") : sha256_of_file(path);
+  }
+  return json;
+}
+
+/// The record of an earlier run, if it is of the same step and nothing that the step left has changed since.
+std::optional<StepRecord> kept_record(const std::filesystem::path& file, const ExperimentStep& step, const StepJson& identity) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  try {
+    const StepJson older = StepJson::parse(read_text(file));
+    if (older.at("identity") != identity) return std::nullopt;
+    if (const StepJson products = products_of(step); products.is_null() || older.at("products") != products) return std::nullopt;
+    return StepRecord{older.at("status").get<int>(), older.at("result"), older.at("wall_s").get<double>(), true};
+  } catch (const StepJson::exception&) {
+    return std::nullopt;  // damaged, or of another version: the step is run again, and its record takes the place of this one
+  }
+}
+
+/// A step cannot tell a reading that it cannot use from a disk that is full; the experiment has to.
+void require_room(const std::filesystem::path& folder) {
+  const std::string probe(std::size_t{1} << 20U, ' ');
+  const std::filesystem::path file = folder / "room";
+  write_atomically(file, [&probe](std::ostream& out) { out << probe; });
+  std::filesystem::remove(file);
 }
 
 /// The last lines that a failed command wrote.
@@ -69,12 +98,7 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   const std::filesystem::path file = folder_ / "steps" / (step.name + ".json");
   const StepJson identity = identity_of(step);
   StepRecord record;
-  if (std::filesystem::exists(file) && are_there(step.products)) {
-    const StepJson older = read_json(file);
-    if (older.is_object() && older.value("identity", StepJson()) == identity) {
-      return {older.at("status").get<int>(), older.at("result"), older.at("wall_s").get<double>(), true};
-    }
-  }
+  if (std::optional<StepRecord> kept = kept_record(file, step, identity)) return std::move(*kept);
   std::filesystem::remove(file);
   OwnProcess process{step.arguments, folder_ / "steps" / (step.name + ".out"), log_};
   for (const std::string& word : {std::string("--json"), std::string("--quiet"), std::string("--threads"), std::to_string(threads_)})
@@ -83,6 +107,7 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   record.status = run_process(process, monitor_);
   record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (record.status == kBadData || record.status == kBadCase) {  // a reading or a case that cannot be used ends this specimen, not the experiment
+    require_room(folder_);
     record.result = {{"outcome", end_of(log_)}};
     return record;
   }
@@ -93,7 +118,7 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   const std::string printed = read_text(process.output);
   if (!printed.empty()) record.result = StepJson::parse(printed);
   std::filesystem::remove(process.output);
-  write_json(file, {{"identity", identity}, {"status", record.status}, {"result", record.result}, {"wall_s", record.wall_s}});
+  write_json(file, {{"identity", identity}, {"products", products_of(step)}, {"status", record.status}, {"result", record.result}, {"wall_s", record.wall_s}});
   return record;
 }
 

@@ -30,8 +30,8 @@ struct StepRecord {
 [[nodiscard]] std::string refusal_of(const std::string& step, const StepRecord& record);
 
 /// Runs the commands of one folder, each with --json --quiet. A command that has been run with the same arguments, by the
-/// same executable, on inputs of the same content, and whose products are still there, is not run again: its record
-/// (`steps/NAME.json`) is read.
+/// same executable, on inputs of the same content, and whose products are still what it made, is not run again: its record
+/// (`steps/NAME.json`) is read. A damaged record counts as none.
 class StepRunner {
  public:
   /// @param folder   where records and log go; it is made.  @param threads  that each command may use.
@@ -39,7 +39,7 @@ class StepRunner {
 
   /// Status 0, 4 (it ran, but what came of it is not acceptable) and 2 and 3 (a case or a reading that cannot be used; not
   /// recorded, so it is run again another time) are results.
-  /// @throws DataError naming the command and the log for every other status; Cancelled.
+  /// @throws DataError where nothing more can be written, or naming the command and the log for every other status; Cancelled.
   StepRecord run(const ExperimentStep& step);
   /// The commands so far, in their order, as a shell would be given them.
   [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }

@@ -168,12 +168,12 @@ TableJson assessments_json(const std::vector<Trial>& trials) {
 void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials) {
   const TableJson rows = table_2_json(trials);
   write_atomically(file, [&rows](std::ostream& out) {
-    bool is_first = true;
-    for (const auto& [column, value] : rows.front().items()) out << (std::exchange(is_first, false) ? "" : ",") << column;
+    out << "specimen_is";
+    for (const auto& [column, value] : rows.front().items()) out << ',' << column;
     out << '\n';
     for (const TableJson& row : rows) {
-      is_first = true;
-      for (const TableJson& value : row) out << (std::exchange(is_first, false) ? "" : ",") << csv_cell(value);
+      out << "virtual";
+      for (const TableJson& value : row) out << ',' << csv_cell(value);
       out << '\n';
     }
   });

@@ -16,10 +16,12 @@ void print_gain(const char* name, const nlohmann::ordered_json& summary) {
     fmt::print("{:<34} no specimen was cut twice\n", name);
     return;
   }
-  fmt::print("{:<34} {:.2f} -> {:.2f} mm ({:.0f} % less) in {} specimens; {} worse, at most by {:.2f} mm, of them {} with an open ring\n", name,
-             summary.at("mean_before_mm").get<double>(), summary.at("mean_after_mm").get<double>(), summary.at("gain_percent").get<double>(),
-             summary.at("pairs").get<std::size_t>(), summary.at("worse").get<std::size_t>(), summary.at("most_worse_mm").get<double>(),
-             summary.at("opened").get<std::size_t>());
+  const auto worse = summary.at("worse").get<std::size_t>();
+  const auto opened = summary.at("opened").get<std::size_t>();
+  std::string said = worse == 0 ? "none worse" : fmt::format("{} worse, by at most {:.2f} mm", worse, summary.at("most_worse_mm").get<double>());
+  if (opened > 0) said += fmt::format(", {} of them with an open ring", opened);
+  fmt::print("{:<34} {:.2f} -> {:.2f} mm ({:.0f} % less); cut twice: {}, {}\n", name, summary.at("mean_before_mm").get<double>(),
+             summary.at("mean_after_mm").get<double>(), summary.at("gain_percent").get<double>(), summary.at("pairs").get<std::size_t>(), said);
 }
 
 void print_area(const char* name, const nlohmann::ordered_json& area) {
@@ -60,11 +62,13 @@ void print_summary(const nlohmann::ordered_json& result) {
 int study(const ExperimentSettings& settings, const CommonOptions& options) {
   if (settings.specimens % 2 != 0)
     throw CaseError("command line", "--specimens", fmt::format("{}", settings.specimens), "an even number: half to calibrate on, half to test");
-  Console console(options.level());
   const std::filesystem::path root = options.required_output("study");
+  if (!settings.truth.empty() && std::filesystem::weakly_canonical(settings.truth) == std::filesystem::weakly_canonical(root))
+    throw CaseError("command line", "--truth", settings.truth.string() + ", the output", "a folder of its own");
   std::filesystem::create_directories(root);
   nlohmann::ordered_json result;
   try {
+    Console console(options.level());  // its bar is gone before the summary
     result = run_experiment(settings, options, console);
   } catch (const Cancelled& error) {
     throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
@@ -85,7 +89,8 @@ void add_study(Application& application) {
       "The paper's whole experiment on the virtual bench: specimens are cut as planned, the simulation is calibrated to their photographs, further "
       "specimens are cut as planned and corrected, and all is measured. Everything that it yields is virtual. Run again, it goes on where it was",
       "incise study --quick -o study", [settings](const CommonOptions& options) { return study(*settings, options); });
-  verb->add_option("--specimens", settings->specimens, "Half to calibrate on, half to test; 4: the paper's, and one outside the calibrated range")
+  verb->add_option("--specimens", settings->specimens, "2 to 200, even: half to calibrate on, half to test; 4: the paper's, and one outside the calibrated range. Their seeds count up from --seed: "
+                   "of several runs each has to start beyond the last one's")
       ->check(whole_between("--specimens", 2, 200));
   verb->add_flag("--quick", settings->is_quick, "Without the grid of 25 pairs of speed and dullness (Table I)");
   verb->add_option("--outside", settings->outside,

@@ -46,12 +46,12 @@ class CalibrateTest(CommandTest):
         self.assertTrue(result["virtual"])
         self.assertEqual(len(result["identifiability"]), 3)
         files = files_below(self.out)
-        for name in ("calibration.json", "table_1.csv", "table_1.tex", "fit.svg", "manifest.json"):
+        for name in ("calibration.json", "simulations.csv", "simulations.tex", "fit.svg", "manifest.json"):
             self.assertIn(name, files)
         runs = [name for name in files if name.startswith("runs/")]
         self.assertEqual(len(runs), result["simulations"])
         self.assertLess(len(runs), 10)
-        with open(self.out / "table_1.csv", newline="") as file:
+        with open(self.out / "simulations.csv", newline="") as file:
             self.assertEqual(len(list(csv.DictReader(file))), len(result["rows"]))
 
         before = (self.out / "calibration.json").read_bytes()
@@ -80,7 +80,8 @@ class CalibrateTest(CommandTest):
         grid = ("--method", "paper", "--speeds-mm-s", 1, 13, "--dullnesses", 1, 9)
         result = self.json_of("calibrate", self.case, "--observed", self.observed, "-o", self.out, *grid)
         self.assertEqual(len(result["rows"]), 4)
-        self.assertIn("table_1.svg", files_below(self.out))
+        for name in ("table_1.csv", "table_1.tex", "table_1.svg"):
+            self.assertIn(name, files_below(self.out))
         self.assertNotIn("fit.svg", files_below(self.out))
         self.assertGreater(result["score_percent"], 0)
 

@@ -27,8 +27,30 @@ class StudyTest(CommandTest):
         notes.write_text("mine")
         done = self.incise("study", "--quick", "-o", "study")
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        self.assertIn("another origin", done.stderr)
+        (self.folder / "study" / "experiment.json").write_text('{"schema": "incise.experiment/1", "seed": 1}')
+        done = self.incise("study", "--quick", "--seed", "1", "-o", "study")
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
         self.assertIn("advice", done.stderr)
         self.assertEqual(notes.read_text(), "mine")
+
+    def test_an_experiment_with_other_specimens_is_not_mixed_with(self):
+        kept = self.folder / "study" / "experiment.json"
+        kept.parent.mkdir()
+        kept.write_text('{"schema": "incise.experiment/1", "seed": 521}')
+        report = self.folder / "study" / "report.html"
+        report.write_text("an older one")
+        done = self.incise("study", "--quick", "--seed", "999", "-o", "study")
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        for words in ("experiment.json", "seed", "521", "999"):
+            self.assertIn(words, done.stderr)
+        self.assertEqual(report.read_text(), "an older one")
+
+    def test_the_truth_needs_a_folder_of_its_own(self):
+        done = self.incise("study", "--quick", "--truth", "study", "-o", "study")
+        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        self.assertIn("--truth", done.stderr)
+        self.assertFalse((self.folder / "study").exists())
 
     def test_an_interrupted_experiment_goes_on_and_ends(self):
         begun = subprocess.Popen([COMMAND, *SMALL], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -71,10 +93,15 @@ class StudyTest(CommandTest):
         self.assertEqual(again["table_2"], result["table_2"])
         self.assertLess(again["wall_s"], 0.2 * result["wall_s"], "nothing was left to do")
 
+        # A damaged record, and a damaged product: the step is run again, and comes to the same.
         record.write_text('{"identity": ')
-        done = self.incise(*SMALL)
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
-        self.assertIn("bench_make.json", done.stderr)
+        program = self.folder / "study" / "S2" / "planned_cut.script"
+        whole = program.read_bytes()
+        program.write_bytes(whole[:100])
+        mended = self.json_of(*SMALL)
+        self.assertEqual(mended["table_2"], result["table_2"])
+        self.assertEqual(program.read_bytes(), whole)
+        self.assertIn("identity", json.loads(record.read_text()))
 
     def advice_is_held_against_the_truth(self, result):
         held = result["advice"]
