@@ -310,6 +310,29 @@ TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
               ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("case.yaml"), HasSubstr("closed ring"))));
 }
 
+TEST_F(CalibrateBlocks, ARingThatClosedBeneathTheSkinIsReadByItsMidline) {
+  subjects_.pop_back();
+  CalibrationRequest request;
+  request.drag_lengths_mm = {0.5, 1.25, 2.0, 2.75};
+  request.second_drag_lengths_mm = {};
+  const Calibration made = run(grid({13.0}, {1.25 / (13.0 * 0.02)}));
+  subjects_[0].photographed.tumor_edge = made.specimens[0].runs[0].final_tumor_edge;
+  subjects_[0].photographed.incision = *made.specimens[0].runs[0].inner_edge;
+  const Calibration whole = run(request);
+  for (auto& [key, kept] : runs_.runs) {
+    if (std::abs(kept.drag_length_mm() - 1.25) > 1e-9) continue;
+    ASSERT_TRUE(kept.closed_loop && kept.ring);
+    kept.inner_edge.reset();
+    kept.inner_signed_error_mm.reset();
+    kept.inner_abs_error_mm.reset();
+  }
+  const Calibration read = run(request);
+  EXPECT_TRUE(read.left_out.empty());
+  EXPECT_DOUBLE_EQ(read.fit->drag_length_mm.grid.back(), whole.fit->drag_length_mm.grid.back());
+  EXPECT_NEAR(read.fit->drag_length_mm.mean, whole.fit->drag_length_mm.mean, 0.3);
+  EXPECT_TRUE(is_usable(read));
+}
+
 /// A tumour edge that is unlike its mirror image by more than the tissue's give.
 class LopsidedBlock : public SoftBlock {
  public:
