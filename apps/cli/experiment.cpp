@@ -43,6 +43,10 @@ void require_done(const StepRecord& record, const char* step, const StepRunner& 
   if (record.status != kDone) throw DataError(runner.log(), step, refusal_of(step, record), "status 0");
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 ExperimentJson settings_json(const ExperimentSettings& settings) {
   return {{"specimens", settings.specimens},
           {"outside", settings.outside ? ExperimentJson(*settings.outside) : ExperimentJson(nullptr)},
@@ -137,7 +141,7 @@ ExperimentJson Experiment::run() {
   if (!advice.is_null()) {
     AtomicFolder folder(root_ / "advice");
     write_advice(folder.path(), advice);
-    write_manifest(folder.path(), manifest_of(options_, settings_json(settings_).dump(), {}, 0.0));
+    write_manifest(folder.path(), manifest_of(options_, settings_json(settings_).dump(), {}, seconds_since(start)));
     folder.commit();
   }
   write_commands();
@@ -173,7 +177,7 @@ ExperimentJson Experiment::run() {
                      {"seed", std::to_string(options_.seed), ""}, {"threads", std::to_string(threads_), ""}, {"machine", machine_description(), ""}};
   write_report(page, root_ / "report.html");
   result["report"] = (root_ / "report.html").string();
-  result["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result["wall_s"] = seconds_since(start);
   write_manifest(root_, manifest_of(options_, settings_json(settings_).dump(), {}, result["wall_s"].get<double>()));
   write_json(root_ / "study.json", result);
   return result;

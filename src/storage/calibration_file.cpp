@@ -78,7 +78,8 @@ Json specimen_json(const CalibratedSpecimen& s) {
           {"stretch_mm", s.stretch_mm},
           {"registration", registration_quality_json(s.registration)},
           {"picture_turn_deg", s.picture.turn_deg},
-          {"picture_rms_mm", s.picture.rms_mm}};
+          {"picture_rms_mm", s.picture.rms_mm},
+          {"read_by_midline", s.read_by_midline}};
 }
 
 Json estimate_json(const ParameterEstimate& e, const ParameterVerdict& verdict) {

@@ -33,10 +33,7 @@ class CalibrationRunner {
     calibration_.reference_step_s = subjects_.front().of->settings.cut.reference_step_s;
     make_runs(request_.method == CalibrationMethod::Paper ? grid() : knots());
     match_pictures();
-    if (request_.method == CalibrationMethod::Fit) {
-      leave_out_what_opens();
-      fit();
-    }
+    if (request_.method == CalibrationMethod::Fit) fit();
     score();
     return std::move(calibration_);
   }
@@ -263,8 +260,22 @@ class CalibrationRunner {
     return profiles;
   }
 
+  /// Not every ring of a fit is measured as the photograph's is.
+  void tell_midlines(std::size_t s, const std::vector<SimulatedProfile>& profiles) {
+    CalibratedSpecimen& specimen = calibration_.specimens[s];
+    for (std::size_t i = 0; i < profiles.size(); ++i) {
+      if (!profiles[i].signed_error_mm.empty() && inner_edge_profile(s, specimen.runs[i]).empty())
+        ++specimen.read_by_midline;
+    }
+    if (specimen.read_by_midline == 0) return;
+    monitor_.message(
+        Severity::Notice,
+        fmt::format("{}: {} of {} simulated rings closed beneath strips of uncut skin and are read by their mid-line",
+                    specimen.name, specimen.read_by_midline, profiles.size()));
+  }
+
   /// A specimen whose simulated ring opens at all drag lengths but one says nothing of the others: the fit does without
-  /// it, and says so. Nothing is left without any.
+  /// it, and says so. Where it is the only one left the case is refused.
   void leave_out_what_opens() {
     constexpr const char* kFound = "simulated cuts that leave no closed ring at two drag lengths";
     for (std::size_t s = 0; s < subjects_.size();) {
@@ -320,6 +331,7 @@ class CalibrationRunner {
   }
 
   void fit_once() {
+    leave_out_what_opens();  // each time: a cut made since may have opened, too
     std::vector<FitSpecimen> specimens;
     DragFitSettings settings = request_.fit;
     bool is_every_force_measured = true;
@@ -340,7 +352,9 @@ class CalibrationRunner {
     make_runs({knot_at(fit.drag_length_mm.mean, fit.knows_stiffness ? std::exp(fit.ln_stiffness.mean) : 1.0)});
     for (std::size_t s = 0; s < subjects_.size(); ++s) {
       SpecimenFit& specimen = fit.specimens[s];
-      specimen.simulated_mm = profiles_of(s).back().signed_error_mm;
+      const std::vector<SimulatedProfile> profiles = profiles_of(s);
+      specimen.simulated_mm = profiles.back().signed_error_mm;
+      tell_midlines(s, profiles);
       if (specimen.simulated_mm.empty()) {
         monitor_.message(Severity::Warning,
                          fmt::format("{}: the simulated ring stays open at the fitted values", specimen.name));

@@ -331,6 +331,8 @@ TEST_F(CalibrateBlocks, ARingThatClosedBeneathTheSkinIsReadByItsMidline) {
   EXPECT_DOUBLE_EQ(read.fit->drag_length_mm.grid.back(), whole.fit->drag_length_mm.grid.back());
   EXPECT_NEAR(read.fit->drag_length_mm.mean, whole.fit->drag_length_mm.mean, 0.3);
   EXPECT_TRUE(is_usable(read));
+  EXPECT_EQ(whole.specimens[0].read_by_midline, 0U);
+  EXPECT_GE(read.specimens[0].read_by_midline, 1U);
 }
 
 /// A tumour edge that is unlike its mirror image by more than the tissue's give.

@@ -46,6 +46,7 @@ struct CalibratedSpecimen {
   std::optional<RegistrationQuality> registration;  ///< where it was given
   PictureMatch picture;
   std::vector<CalibrationRun> runs;
+  std::size_t read_by_midline = 0;  ///< of a fit: runs whose ring closed, but not at the skin
 };
 
 /// A specimen that a fit could make nothing of.
