@@ -79,6 +79,14 @@ std::string fit_figure(const Calibration& calibration) {
   return drag_fit_svg(curves, marginals, calibration.is_virtual);
 }
 
+std::string score_in_words(const Calibration& calibration) {
+  if (!calibration.score_percent) return "no inner edge there to score";
+  const std::string score = fmt::format("{:.1f} % of the baseline", *calibration.score_percent);
+  if (!calibration.fit) return score;
+  return fmt::format("{} (inner edges of {} of {} specimens)", score,
+                     calibration.table.rows[*calibration.table.chosen].inner_specimens, calibration.specimens.size());
+}
+
 void print_estimate(const char* name, const ParameterEstimate& estimate) {
   fmt::print("{:<24} {:>8.3f} ± {:.3f}   {:.3f} to {:.3f}\n", name, estimate.mean, estimate.sd, estimate.low,
              estimate.high);
@@ -127,8 +135,8 @@ void print_calibration(const CommonOptions& options, const Calibration& calibrat
     for (const std::string& sentence : calibration.identifiability->sentences) fmt::print("{}\n", sentence);
   }
   if (calibration.chosen) {
-    fmt::print("\nchosen: {:.3g} mm/s x {:.3g}, {:.1f} % of the baseline\n", calibration.chosen->speed_mm_s,
-               calibration.chosen->dullness, *calibration.score_percent);
+    fmt::print("\nchosen: {:.3g} mm/s x {:.3g}, {}\n", calibration.chosen->speed_mm_s, calibration.chosen->dullness,
+               score_in_words(calibration));
   }
   fmt::print("everything: {}\n", (folder / "calibration.json").string());
 }

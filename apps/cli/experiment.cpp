@@ -54,7 +54,8 @@ ExperimentJson settings_json(const ExperimentSettings& settings) {
           {"paper_pass", settings.with_paper_pass},
           {"known_physics", settings.with_known_physics},
           {"withheld_force", settings.with_withheld_force},
-          {"tets", settings.tets}};
+          {"tets", settings.tets},
+          {"truth", settings.truth.string()}};
 }
 
 /// What the calibration's data say: estimates and sentences, without the posterior's samples. Null without a fit.
@@ -63,8 +64,9 @@ ExperimentJson fit_summary(const ExperimentJson& calibration) {
   ExperimentJson json;
   for (const char* parameter : {"drag_length_mm", "ln_stiffness_factor", "bias_mm"}) {
     const ExperimentJson& estimate = calibration.at("posterior").at(parameter);
-    for (const char* key : {"mean", "sd", "at_limit"}) json[parameter][key] = estimate.at(key);
+    for (const char* key : {"mean", "sd", "told", "at_limit"}) json[parameter][key] = estimate.at(key);
   }
+  json["stiffness_varied"] = calibration.at("posterior").at("stiffness_varied");
   json["score_percent"] = calibration.at("score_percent");
   json["identifiability"] = calibration.at("identifiability");
   return json;

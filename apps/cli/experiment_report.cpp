@@ -93,14 +93,18 @@ ReportTable outcome_table(const ReportJson& result) {
 
 /// What the cuts of the calibration's specimens say of the simulated tool.
 ReportTable fit_table(const ReportJson& result) {
-  ReportTable table{"Calibration (virtual): what the photographs say of the simulated tool", {"parameter", "mean", "sd", "at the end of what was simulated"}, {}};
+  ReportTable table{"Calibration (virtual): what the photographs say of the simulated tool", {"parameter", "mean", "sd", "told by the data", "at the end of what was simulated"}, {}};
   const ReportJson& fit = result.at("fit");
   for (const char* parameter : {"drag_length_mm", "ln_stiffness_factor", "bias_mm"}) {
     const ReportJson& estimate = fit.at(parameter);
+    if (std::string_view(parameter) == "ln_stiffness_factor" && !fit.at("stiffness_varied").get<bool>()) {
+      table.rows.push_back({parameter, "", "", "not varied", ""});
+      continue;
+    }
     table.rows.push_back({parameter, fmt::format("{:.3f}", estimate.at("mean").get<double>()), fmt::format("{:.3f}", estimate.at("sd").get<double>()),
-                          estimate.at("at_limit").get<bool>() ? "yes" : "no"});
+                          estimate.at("told").get<std::string>(), estimate.at("at_limit").get<bool>() ? "yes" : "no"});
   }
-  for (const ReportJson& one : result.at("left_out_of_calibration")) table.rows.push_back({"left out: " + one.at("name").get<std::string>(), "", "", one.at("reason").get<std::string>()});
+  for (const ReportJson& one : result.at("left_out_of_calibration")) table.rows.push_back({"left out: " + one.at("name").get<std::string>(), "", "", one.at("reason").get<std::string>(), ""});
   return table;
 }
 

@@ -72,7 +72,7 @@ bool SpecimenTrial::make() {
   }
   for (const std::string& word : {std::string("--seed"), std::to_string(setup_.seed), std::string("-o"), lab.string(), std::string("--truth"), setup_.truth.string()})
     arguments.push_back(word);
-  const auto made = run({"bench_make", arguments, inputs, {lab / "readings.json", setup_.truth / "specimen.json"}});
+  const auto made = run({"bench_make", arguments, inputs, {lab, setup_.truth}});
   if (!made) return false;
   stretch_force_n_ = made->result.at("stretch_force_n").get<double>();
   return true;
@@ -152,7 +152,7 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
       {tag + "_project",
        {"project", path.string(), "--transform", registration.string(), "--surface", at("tissue.ply").string(), "--camera", camera, "-o", projected.string()},
        {path, registration, at("tissue.ply"), camera},
-       {projected / "path.json"}},
+       {projected}},
       {tag + "_export",
        {"export", (projected / "path.json").string(), "--surface", (projected / "surface.ply").string(), "--registration", registration.string(),
         "--power-w", text(setup_.power_w), "-o", program.string()},

@@ -14,11 +14,19 @@
 #include <chrono>
 #include <fstream>
 #include <optional>
+#include <set>
 
 namespace incise::cli {
 namespace {
 
 using StepJson = nlohmann::ordered_json;
+
+/// More than one step of an experiment writes.
+constexpr std::size_t kRoomBytes = std::size_t{32} << 20U;
+
+std::string content_of(const std::filesystem::path& path) {
+  return std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path);
+}
 
 /// What decides the outcome of a step.
 StepJson identity_of(const ExperimentStep& step) {
@@ -29,19 +37,25 @@ StepJson identity_of(const ExperimentStep& step) {
   json["arguments"] = step.arguments;
   StepJson& inputs = json["inputs"] = StepJson::object();
   for (const std::filesystem::path& path : step.inputs) {
-    inputs[path.string()] = std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path);
+    inputs[path.string()] = content_of(path);
   }
   return json;
 }
 
-/// What a step left, by content; of folders only that they are there, as later steps may add to them. Null where one is
-/// missing.
+/// What a step left, by content. Null where one is missing.
 StepJson products_of(const ExperimentStep& step) {
   StepJson json = StepJson::object();
   for (const std::filesystem::path& path : step.products) {
     if (!std::filesystem::exists(path)) return nullptr;
-    json[path.string()] = std::filesystem::is_directory(path) ? std::string("a folder") : sha256_of_file(path);
+    json[path.string()] = content_of(path);
   }
+  return json;
+}
+
+/// Of the step, what it left, and how it ended; with a sum, as what it printed is believed later on.
+StepJson record_json(const StepJson& identity, const StepJson& products, const StepRecord& record) {
+  StepJson json{{"identity", identity}, {"products", products}, {"status", record.status}, {"result", record.result}, {"wall_s", record.wall_s}};
+  json["sha256"] = sha256_of_text(json.dump());
   return json;
 }
 
@@ -52,18 +66,27 @@ std::optional<StepRecord> kept_record(const std::filesystem::path& file, const E
     const StepJson older = StepJson::parse(read_text(file));
     if (older.at("identity") != identity) return std::nullopt;
     if (const StepJson products = products_of(step); products.is_null() || older.at("products") != products) return std::nullopt;
-    return StepRecord{older.at("status").get<int>(), older.at("result"), older.at("wall_s").get<double>(), true};
+    StepRecord record{older.at("status").get<int>(), older.at("result"), older.at("wall_s").get<double>(), true};
+    if (record_json(identity, older.at("products"), record) != older) return std::nullopt;
+    return record;
   } catch (const StepJson::exception&) {
     return std::nullopt;  // damaged, or of another version: the step is run again, and its record takes the place of this one
   }
 }
 
-/// A step cannot tell a reading that it cannot use from a disk that is full; the experiment has to.
-void require_room(const std::filesystem::path& folder) {
-  const std::string probe(std::size_t{1} << 20U, ' ');
-  const std::filesystem::path file = folder / "room";
-  write_atomically(file, [&probe](std::ostream& out) { out << probe; });
-  std::filesystem::remove(file);
+/// A step cannot tell a reading that it cannot use from a disk that is full; the experiment has to. A step that failed has
+/// given back what it wrote, so that there has to be room for all that it writes, wherever it writes.
+void require_room(const ExperimentStep& step, const std::filesystem::path& folder) {
+  std::set<std::filesystem::path> folders{folder};
+  for (const std::filesystem::path& product : step.products) {
+    if (std::filesystem::is_directory(product.parent_path())) folders.insert(product.parent_path());
+  }
+  const std::string probe(kRoomBytes, ' ');
+  for (const std::filesystem::path& one : folders) {
+    const std::filesystem::path file = one / "room";
+    write_atomically(file, [&probe](std::ostream& out) { out << probe; });
+    std::filesystem::remove(file);
+  }
 }
 
 /// The last lines that a failed command wrote.
@@ -107,7 +130,7 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   record.status = run_process(process, monitor_);
   record.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (record.status == kBadData || record.status == kBadCase) {  // a reading or a case that cannot be used ends this specimen, not the experiment
-    require_room(folder_);
+    require_room(step, folder_);
     record.result = {{"outcome", end_of(log_)}};
     return record;
   }
@@ -118,7 +141,7 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   const std::string printed = read_text(process.output);
   if (!printed.empty()) record.result = StepJson::parse(printed);
   std::filesystem::remove(process.output);
-  write_json(file, {{"identity", identity}, {"products", products_of(step)}, {"status", record.status}, {"result", record.result}, {"wall_s", record.wall_s}});
+  write_json(file, record_json(identity, products_of(step), record));
   return record;
 }
 

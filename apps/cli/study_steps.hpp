@@ -15,7 +15,7 @@ struct ExperimentStep {
   std::string name;                           ///< of its record: letters, digits, _
   std::vector<std::string> arguments;         ///< of the verb, its name first; paths relative to the working folder
   std::vector<std::filesystem::path> inputs;  ///< files and folders whose content decides what comes out
-  std::vector<std::filesystem::path> products;  ///< what it makes; none where its JSON is all
+  std::vector<std::filesystem::path> products;  ///< files and folders that it makes and no other step adds to; none where its JSON is all
 };
 
 /// How it ended.

@@ -18,7 +18,8 @@ void print_gain(const char* name, const nlohmann::ordered_json& summary) {
   }
   const auto worse = summary.at("worse").get<std::size_t>();
   const auto opened = summary.at("opened").get<std::size_t>();
-  std::string said = worse == 0 ? "none worse" : fmt::format("{} worse, by at most {:.2f} mm", worse, summary.at("most_worse_mm").get<double>());
+  std::string said = worse == 0 ? "none worse" : fmt::format("{} worse", worse);
+  if (worse > opened) said += fmt::format(", by at most {:.2f} mm", summary.at("most_worse_mm").get<double>());
   if (opened > 0) said += fmt::format(", {} of them with an open ring", opened);
   fmt::print("{:<34} {:.2f} -> {:.2f} mm ({:.0f} % less); cut twice: {}, {}\n", name, summary.at("mean_before_mm").get<double>(),
              summary.at("mean_after_mm").get<double>(), summary.at("gain_percent").get<double>(), summary.at("pairs").get<std::size_t>(), said);
@@ -59,11 +60,17 @@ void print_summary(const nlohmann::ordered_json& result) {
   fmt::print("report: {}\n", result.at("report").get<std::string>());
 }
 
+/// Whether they name one folder, which may not be there yet, however they are spelt.
+bool is_same_folder(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto plain = [](const std::filesystem::path& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path) / "").lexically_normal() / ""; };
+  return plain(a) == plain(b);
+}
+
 int study(const ExperimentSettings& settings, const CommonOptions& options) {
   if (settings.specimens % 2 != 0)
     throw CaseError("command line", "--specimens", fmt::format("{}", settings.specimens), "an even number: half to calibrate on, half to test");
   const std::filesystem::path root = options.required_output("study");
-  if (!settings.truth.empty() && std::filesystem::weakly_canonical(settings.truth) == std::filesystem::weakly_canonical(root))
+  if (!settings.truth.empty() && is_same_folder(settings.truth, root))
     throw CaseError("command line", "--truth", settings.truth.string() + ", the output", "a folder of its own");
   std::filesystem::create_directories(root);
   nlohmann::ordered_json result;

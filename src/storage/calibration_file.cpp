@@ -51,7 +51,7 @@ Json rows_json(const Calibration& calibration) {
     json["mean_signed_mm"] = or_null(row.mean_signed_mm);
     json["mean_inner_signed_mm"] = or_null(row.mean_inner_signed_mm);
     json["score_percent"] = row.percent;
-    json["inner_edge_score_percent"] = row.inner_percent;
+    json["inner_edge_score_percent"] = or_null(row.inner_percent);
     json["inner_edge_specimens"] = row.inner_specimens;
     json["specimens"] = Json::array();
     for (const CalibratedSpecimen& specimen : calibration.specimens) {

@@ -6,6 +6,7 @@ namespace incise {
 namespace {
 
 constexpr int kFullDigits = 6;
+constexpr int kScoreDigits = 4;
 
 std::string cell_text(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}f}", *value, digits) : std::string();
@@ -35,7 +36,7 @@ TextTable calibration_table(const Calibration& calibration) {
     }
   }
   for (const char* column : {"mean_mm", "sd_mm", "max_mm", "signed_error_mm", "inner_signed_error_mm", "failure",
-                             "inner_edge_score_percent", "score_percent"}) {
+                             "inner_edge_specimens", "inner_edge_score_percent", "score_percent"}) {
     table.header.emplace_back(column);
   }
   for (const ScoreRow& row : calibration.table.rows) {
@@ -58,8 +59,9 @@ TextTable calibration_table(const Calibration& calibration) {
       cells.push_back(cell_text(value, kFullDigits));
     }
     cells.emplace_back(row.is_failure ? "yes" : "no");
-    cells.push_back(fmt::format("{:.4f}", row.inner_percent));
-    cells.push_back(fmt::format("{:.4f}", row.percent));
+    cells.push_back(fmt::format("{}", row.inner_specimens));
+    cells.push_back(cell_text(row.inner_percent, kScoreDigits));
+    cells.push_back(cell_text(row.percent, kScoreDigits));
     table.rows.push_back(std::move(cells));
   }
   return table;

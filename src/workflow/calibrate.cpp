@@ -136,10 +136,17 @@ class CalibrationRunner {
     monitor_.message(Severity::Notice, fmt::format("calibration: {} simulations, {} of them are there already", asked,
                                                    asked - missing.size()));
     std::vector<IncisionTask> tasks;
+    std::vector<Missing> simulated;
     std::vector<const HeldBody*> held;
     for (const Missing& one : missing) {
-      const CalibrationRun& run = calibration_.specimens[one.specimen].runs[one.place];
-      held.push_back(&body(one.specimen, run.setting.stiffness_of_case));
+      CalibrationRun& run = calibration_.specimens[one.specimen].runs[one.place];
+      const HeldBody* body = body_or_problem(one.specimen, run);
+      if (body == nullptr) {
+        store_.save(subjects_[one.specimen].place, run);
+        continue;
+      }
+      simulated.push_back(one);
+      held.push_back(body);
       const Case settings = with_setting(subjects_[one.specimen].of->settings, run.setting);
       ToolPath path = held.back()->followed;
       path.tumor_edge = held.back()->plan.tumor_edge;
@@ -149,10 +156,11 @@ class CalibrationRunner {
     std::size_t done = 0;
     simulate_incisions(tasks, workers_, monitor_, [&](std::size_t i, IncisionJobResult result) {
       if (result.incision.outcome == Outcome::Cancelled) return;
-      CalibrationRun& run = calibration_.specimens[missing[i].specimen].runs[missing[i].place];
-      run = run_of(with_setting(subjects_[missing[i].specimen].of->settings, run.setting), run.setting,
-                   std::move(result), *held[i]);
-      store_.save(subjects_[missing[i].specimen].place, run);
+      const Missing& one = simulated[i];
+      CalibrationRun& run = calibration_.specimens[one.specimen].runs[one.place];
+      run = run_of(with_setting(subjects_[one.specimen].of->settings, run.setting), run.setting, std::move(result),
+                   *held[i]);
+      store_.save(subjects_[one.specimen].place, run);
       ++done;
     });
     if (done < tasks.size()) {
@@ -161,11 +169,15 @@ class CalibrationRunner {
     }
   }
 
-  const HeldBody& body(std::size_t specimen, double stiffness_of_case) {
+  /// The body that a run cuts. Null, and the run says why, where the specimen cannot be held at that stiffness: one of
+  /// many that cannot does not end the calibration.
+  const HeldBody* body_or_problem(std::size_t specimen, CalibrationRun& run) {
     try {
-      return bodies_[specimen]->with_stiffness(stiffness_of_case, workers_, monitor_);
+      return &bodies_[specimen]->with_stiffness(run.setting.stiffness_of_case, workers_, monitor_);
     } catch (const CaseError& error) {
-      throw error.in_file(subjects_[specimen].of->case_file);
+      run.problem = error.what();
+      monitor_.message(Severity::Warning, error.in_file(subjects_[specimen].of->case_file).what());
+      return nullptr;
     }
   }
 
@@ -268,29 +280,48 @@ class CalibrationRunner {
         ++specimen.read_by_midline;
     }
     if (specimen.read_by_midline == 0) return;
+    const auto closed = std::count_if(profiles.begin(), profiles.end(),
+                                      [](const SimulatedProfile& profile) { return !profile.signed_error_mm.empty(); });
     monitor_.message(
         Severity::Notice,
-        fmt::format("{}: {} of {} simulated rings closed beneath strips of uncut skin and are read by their mid-line",
-                    specimen.name, specimen.read_by_midline, profiles.size()));
+        fmt::format("{}: {} of {} closed simulated rings have no inner edge at the skin and are read by their mid-line",
+                    specimen.name, specimen.read_by_midline, closed));
   }
 
-  /// A specimen whose simulated ring opens at all drag lengths but one says nothing of the others: the fit does without
-  /// it, and says so. Where it is the only one left the case is refused.
+  /// Why no line through simulated drag lengths can be drawn for a specimen.
+  [[nodiscard]] std::string why_no_line(std::size_t s) const {
+    const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      if (std::abs(factors_[i] - 1.0) < 1e-9 && !runs[i].problem.empty()) return runs[i].problem;
+    }
+    const bool is_any_closed =
+        std::any_of(runs.begin(), runs.end(), [](const CalibrationRun& run) { return run.closed_loop; });
+    const bool is_any_at_skin =
+        std::any_of(runs.begin(), runs.end(), [](const CalibrationRun& run) { return run.inner_edge.has_value(); });
+    if (is_any_closed && !is_any_at_skin) return "simulated cuts of which none parts the skin all round";
+    return "simulated cuts that leave no closed ring at two drag lengths before the first that opens";
+  }
+
+  /// A specimen for which fewer than two drag lengths can be read says nothing of the others: the fit does without it,
+  /// and says so. Where it is the only one left the case is refused.
   void leave_out_what_opens() {
-    constexpr const char* kFound = "simulated cuts that leave no closed ring at two drag lengths";
     for (std::size_t s = 0; s < subjects_.size();) {
       if (DragResponse::can_be_made_of(profiles_of(s))) {
         ++s;
         continue;
       }
       const CalibrationSubject& subject = *subjects_[s].of;
+      const std::string why = why_no_line(s);
       if (subjects_.size() == 1) {
-        throw CaseError("case", "cut", kFound, "a specimen that the simulated tool can cut round")
+        throw CaseError("case", "cut", why, "a specimen that the simulated tool can cut round",
+                        calibration_.left_out.empty()
+                            ? ""
+                            : fmt::format("{} others were left out before it", calibration_.left_out.size()))
             .in_file(subject.case_file);
       }
       monitor_.message(Severity::Warning,
-                       fmt::format("{}: {}: the fit does without this specimen", subject.case_file, kFound));
-      calibration_.left_out.push_back({subject.photographed.name, kFound});
+                       fmt::format("{}: {}: the fit does without this specimen", subject.case_file, why));
+      calibration_.left_out.push_back({subject.photographed.name, why});
       const auto place = static_cast<std::ptrdiff_t>(s);
       subjects_.erase(subjects_.begin() + place);
       bodies_.erase(bodies_.begin() + place);
@@ -375,13 +406,13 @@ class CalibrationRunner {
       photographs.push_back(specimen.photographed);
       runs.push_back(specimen.runs);
     }
-    calibration_.table = score_table(runs, baseline_mm(photographs));
+    calibration_.table = score_table(runs, photographs);
     if (calibration_.fit)
       calibration_.table.chosen = calibration_.table.rows.size() - 1;  // the cut at the fitted values
     if (!calibration_.table.chosen) return;
     const ScoreRow& row = calibration_.table.rows[*calibration_.table.chosen];
     calibration_.chosen = row.setting;
-    calibration_.score_percent = calibration_.fit ? row.inner_percent : row.percent;
+    calibration_.score_percent = calibration_.fit ? row.inner_percent : std::optional(row.percent);
   }
 
   std::vector<Subject> subjects_;

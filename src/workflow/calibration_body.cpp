@@ -93,8 +93,14 @@ HeldBody CalibrationBody::make(double stiffness_of_case, Workers& workers, Monit
 }
 
 const HeldBody& CalibrationBody::with_stiffness(double stiffness_of_case, Workers& workers, Monitor& monitor) {
+  if (const auto refusal = refusals_.find(stiffness_of_case); refusal != refusals_.end()) throw refusal->second;
   std::unique_ptr<HeldBody>& body = bodies_[stiffness_of_case];
-  if (!body) body = std::make_unique<HeldBody>(make(stiffness_of_case, workers, monitor));
+  try {
+    if (!body) body = std::make_unique<HeldBody>(make(stiffness_of_case, workers, monitor));
+  } catch (const CaseError& error) {
+    refusals_.emplace(stiffness_of_case, error);
+    throw;
+  }
   return *body;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/error.hpp>
 #include <incise/procedure/incision_batch.hpp>
 #include <incise/workflow/calibrate.hpp>
 #include <incise/workflow/study.hpp>
@@ -25,6 +26,7 @@ class CalibrationBody {
   CalibrationBody(const CalibrationSubject& subject, Workers& workers, Monitor& monitor);
 
   /// @param stiffness_of_case  over the case's Young's modulus, > 0.
+  /// @throws CaseError where it cannot be stretched, or its path not be planned, at that stiffness.
   const HeldBody& with_stiffness(double stiffness_of_case, Workers& workers, Monitor& monitor);
   /// The tumour edge on the stretched tissue before the cut.
   [[nodiscard]] const Contour& tumor_edge() const { return study_.plan->tumor_edge; }
@@ -45,6 +47,7 @@ class CalibrationBody {
   std::optional<ToolPath> given_path_;
   double simulated_force_n_ = 0.0;
   std::map<double, std::unique_ptr<HeldBody>> bodies_;
+  std::map<double, CaseError> refusals_;  ///< stiffnesses at which it cannot be held
 };
 
 /// The case with another Young's modulus, and the simulated tool's speed and dullness.

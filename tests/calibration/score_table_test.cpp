@@ -28,12 +28,15 @@ CalibrationRun open_ring() {
 const std::vector<CalibrationRun> kFirst{scored(1.7, 3.3), scored(0.6, 1.9), scored(1.1, 2.3)};
 const std::vector<CalibrationRun> kSecond{scored(1.4, 2.9), scored(0.7, 1.5), open_ring()};
 
+const std::vector<PhotographedErrors> kTwo{{1.5, 2.1}, {1.9, 2.6}};
+const std::vector<PhotographedErrors> kOne{{1.5, 2.1}};
+
 TEST(ScoreTable, ScoresThePapersRowsAsThePaperDoes) {
   // The two photographed tongues: means 1.57 and 1.91 mm (Table II), and the greatest that the table's scores need.
   const std::vector<PhotographedErrors> photographs{{1.57, 2.2}, {1.91, 2.58}};
   const double baseline = baseline_mm(photographs);
   EXPECT_NEAR(baseline, 0.75 * 1.74 + 0.25 * 2.58, 1e-12);
-  const ScoreTable table = score_table({kFirst, kSecond}, baseline);
+  const ScoreTable table = score_table({kFirst, kSecond}, photographs);
   EXPECT_NEAR(table.rows[0].percent, 100.0 * (0.75 * 1.55 + 0.25 * 3.3) / baseline, 1e-9);
   EXPECT_NEAR(table.rows[0].percent, 103.6, 2.0);  // printed, from rounded numbers
   EXPECT_NEAR(table.rows[1].percent, 49.3, 2.0);
@@ -41,32 +44,34 @@ TEST(ScoreTable, ScoresThePapersRowsAsThePaperDoes) {
 }
 
 TEST(ScoreTable, AFailureScoresNothingAndIsNeverChosen) {
-  const ScoreTable table = score_table({kFirst, kSecond}, 2.0);
+  const ScoreTable table = score_table({kFirst, kSecond}, kTwo);
   EXPECT_TRUE(table.rows[2].is_failure);
   EXPECT_EQ(table.rows[2].percent, 0.0);
   EXPECT_EQ(table.rows[2].inner_specimens, 1U);
-  EXPECT_NEAR(table.rows[2].inner_percent, 100.0 * (0.75 * 1.0 + 0.25 * 2.0) / 2.0, 1e-9);  // of the one that closed
-  EXPECT_EQ(score_table({{open_ring()}}, 2.0).rows[0].inner_percent, 0.0);
+  // Of the one that closed, against its own photograph and not that of both.
+  EXPECT_NEAR(table.rows[2].inner_percent.value(), 100.0 * (0.75 * 1.0 + 0.25 * 2.0) / (0.75 * 1.5 + 0.25 * 2.1), 1e-9);
+  EXPECT_FALSE(score_table({{open_ring()}}, kOne).rows[0].inner_percent);
   EXPECT_NEAR(table.rows[2].mean_abs_mm.value(), 1.1, 1e-12);  // of the specimen that closed
-  EXPECT_FALSE(score_table({{open_ring()}}, 2.0).chosen);
+  EXPECT_FALSE(score_table({{open_ring()}}, kOne).chosen);
 }
 
 TEST(ScoreTable, APointFartherOffThanThePaperAllowsIsAFailure) {
   CalibrationRun far = scored(1.5, 4.6);
   far.paper_success = false;
-  EXPECT_TRUE(score_table({{far}}, 2.0).rows[0].is_failure);
+  EXPECT_TRUE(score_table({{far}}, kOne).rows[0].is_failure);
 }
 
 TEST(ScoreTable, ComparesInnerEdgesWithInnerEdgesBesideThePapersScore) {
-  const ScoreTable table = score_table({{scored(0.2, 0.4, 1.6, 2.8)}, {scored(0.3, 0.5, 1.4, 3.2)}}, 2.0);
-  EXPECT_NEAR(table.rows[0].inner_percent, 100.0 * (0.75 * 1.5 + 0.25 * 3.2) / 2.0, 1e-9);
+  const ScoreTable table = score_table({{scored(0.2, 0.4, 1.6, 2.8)}, {scored(0.3, 0.5, 1.4, 3.2)}}, kTwo);
+  EXPECT_NEAR(table.rows[0].inner_percent.value(), 100.0 * (0.75 * 1.5 + 0.25 * 3.2) / baseline_mm(kTwo), 1e-9);
   EXPECT_NEAR(table.rows[0].mean_inner_signed_mm.value(), -1.5, 1e-12);
   EXPECT_LT(table.rows[0].percent, 20.0);
 }
 
 TEST(ScoreTable, RefusesListsOfDifferentLength) {
-  EXPECT_THROW(static_cast<void>(score_table({kFirst, {open_ring()}}, 2.0)), InvalidArgument);
-  EXPECT_THROW(static_cast<void>(score_table({}, 2.0)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(score_table({kFirst, {open_ring()}}, kTwo)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(score_table({}, {})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(score_table({kFirst, kSecond}, kOne)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(baseline_mm({})), InvalidArgument);
 }
 

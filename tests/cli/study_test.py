@@ -47,10 +47,11 @@ class StudyTest(CommandTest):
         self.assertEqual(report.read_text(), "an older one")
 
     def test_the_truth_needs_a_folder_of_its_own(self):
-        done = self.incise("study", "--quick", "--truth", "study", "-o", "study")
-        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
-        self.assertIn("--truth", done.stderr)
-        self.assertFalse((self.folder / "study").exists())
+        for truth in ("study", "./study", "study/", "study/.", "other/../study", str(self.folder / "study")):
+            done = self.incise("study", "--quick", "--truth", truth, "-o", "study")
+            self.assertEqual(done.returncode, BAD_CASE, truth + done.stderr)
+            self.assertIn("--truth", done.stderr)
+            self.assertFalse((self.folder / "study").exists())
 
     def test_an_interrupted_experiment_goes_on_and_ends(self):
         begun = subprocess.Popen([COMMAND, *SMALL], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -93,7 +94,14 @@ class StudyTest(CommandTest):
         self.assertEqual(again["table_2"], result["table_2"])
         self.assertLess(again["wall_s"], 0.2 * result["wall_s"], "nothing was left to do")
 
-        # A damaged record, and a damaged product: the step is run again, and comes to the same.
+        # Damaged records, in form and in what they say, and damaged products, a file and one of a folder's: the steps are
+        # run again, and come to the same.
+        registered = self.folder / "study" / "S1" / "steps" / "register.json"
+        said = json.loads(registered.read_text())
+        said["result"]["rmse_mm"] = 0.001
+        registered.write_text(json.dumps(said))
+        pictures = sorted((self.folder / "study" / "S2" / "lab" / "ct").iterdir())
+        pictures[0].unlink()
         record.write_text('{"identity": ')
         program = self.folder / "study" / "S2" / "planned_cut.script"
         whole = program.read_bytes()
@@ -101,6 +109,8 @@ class StudyTest(CommandTest):
         mended = self.json_of(*SMALL)
         self.assertEqual(mended["table_2"], result["table_2"])
         self.assertEqual(program.read_bytes(), whole)
+        self.assertTrue(pictures[0].is_file())
+        self.assertNotEqual(json.loads(registered.read_text())["result"]["rmse_mm"], 0.001)
         self.assertIn("identity", json.loads(record.read_text()))
 
     def advice_is_held_against_the_truth(self, result):

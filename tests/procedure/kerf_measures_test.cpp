@@ -255,5 +255,30 @@ TEST(DeepMargin, RefusesASurfaceThatIsInsideOut) {
   EXPECT_THROW(static_cast<void>(deep_margin(body, {}, settings)), InvalidArgument);
 }
 
+TEST(ShallowestClosedRing, IsTheFirstLayerThatClosedLiftedToTheSkin) {
+  const auto layer = [](double depth_mm, std::optional<bool> is_closed, double width_mm) {
+    KerfLayer made{.depth_mm = depth_mm,
+                   .is_within_plan = true,
+                   .is_closed = is_closed,
+                   .gap_mm = {},
+                   .width_mm = width_mm,
+                   .centerline = Contour{}};
+    made.centerline->points = {kMiddle + depth_mm * kDown, kMiddle + depth_mm * kDown + Vec3(depth_mm, 0, 0)};
+    return made;
+  };
+  KerfMeasures kerf;
+  kerf.layers = {layer(0.5, false, 1.0), layer(1.5, true, 0.8), layer(2.5, true, 0.6)};
+  const ClosedRing ring = shallowest_closed_ring(kerf, kDown).value();
+  EXPECT_EQ(ring.depth_mm, 1.5);
+  EXPECT_EQ(ring.half_width_mm, 0.4);
+  EXPECT_LT((ring.midline.points[0] - kMiddle).norm(), 1e-12);
+  EXPECT_LT((ring.midline.points[1] - kMiddle - Vec3(1.5, 0, 0)).norm(), 1e-12);
+
+  kerf.layers[1].centerline.reset();
+  EXPECT_EQ(shallowest_closed_ring(kerf, kDown).value().depth_mm, 2.5);
+  kerf.layers = {layer(0.5, false, 1.0), layer(1.5, std::nullopt, 0.8)};
+  EXPECT_FALSE(shallowest_closed_ring(kerf, kDown));
+}
+
 }  // namespace
 }  // namespace incise

@@ -32,6 +32,7 @@ CalibrationRun closed_run() {
   run.inner_abs_error_mm = Summary{1.2, 0.5, 0.0, 3.0};
   run.inner_edge = testing::circle(13.1, 50);
   run.final_tumor_edge = testing::circle(9.7, 40);
+  run.ring = ClosedRing{1.25, 0.5 / 3.0, testing::circle(13.6, 30)};
   run.tets = 12345;
   return run;
 }
@@ -64,11 +65,16 @@ TEST_F(RunFolderTest, KeepsARunToTheLastBitAndAFailureAsOne) {
   EXPECT_EQ(read.signed_error_mm->mean, -1.0 / 3.0);
   EXPECT_EQ(read.inner_edge->points, closed_run().inner_edge->points);
   EXPECT_EQ(read.final_tumor_edge.points, closed_run().final_tumor_edge.points);
+  ASSERT_TRUE(read.ring);
+  EXPECT_EQ(read.ring->depth_mm, 1.25);
+  EXPECT_EQ(read.ring->half_width_mm, 0.5 / 3.0);
+  EXPECT_EQ(read.ring->midline.points, closed_run().ring->midline.points);
   EXPECT_FALSE(read.is_failure());
   const CalibrationRun failed = runs_.load(1, kSetting, monitor_).value();
   EXPECT_TRUE(failed.is_failure());
   EXPECT_EQ(failed.outcome, Outcome::OpenLoop);
   EXPECT_FALSE(failed.inner_edge);
+  EXPECT_FALSE(failed.ring);
   EXPECT_EQ(monitor_.told, "");
 }
 
@@ -98,6 +104,9 @@ TEST_F(RunFolderTest, ADamagedRunIsToldAndCountsAsAbsent) {
   EXPECT_TRUE(runs_.load(0, kSetting, monitor_));
 }
 
+/// 0.75 mean + 0.25 max: 1.95 mm
+const std::vector<PhotographedErrors> kPhotographs{{1.8, 2.4}, {1.8, 2.4}};
+
 Calibration two_specimens() {
   Calibration calibration;
   calibration.method = CalibrationMethod::Paper;
@@ -108,7 +117,7 @@ Calibration two_specimens() {
   second.name = "s2";
   second.runs[1] = failed_run();
   calibration.specimens = {first, second};
-  calibration.table = score_table({first.runs, second.runs}, 1.95);
+  calibration.table = score_table({first.runs, second.runs}, kPhotographs);
   calibration.chosen = kSetting;
   calibration.score_percent = calibration.table.rows[0].percent;
   return calibration;
@@ -254,6 +263,10 @@ TEST_F(CalibrationFileTest, AFailedCellIsARowOfTheTable) {
   EXPECT_EQ(cell(1, "s2_outcome"), "open_loop");
   EXPECT_EQ(cell(1, "s2_mean_mm"), "");
   EXPECT_EQ(cell(1, "score_percent"), "0.0000");
+  EXPECT_EQ(cell(0, "inner_edge_specimens"), "2");
+  EXPECT_EQ(cell(1, "inner_edge_specimens"), "1");
+  EXPECT_EQ(cell(1, "inner_edge_score_percent"),
+            cell(0, "inner_edge_score_percent"));  // the same two runs, the same photographs
   EXPECT_EQ(calibration_table_rounded(two_specimens()).rows[1][3], "Failure");
   EXPECT_THAT(csv_text(table), HasSubstr("speed_mm_s,dullness,drag_length_mm"));
 }

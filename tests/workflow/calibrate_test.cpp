@@ -1,6 +1,7 @@
 #include <incise/core/error.hpp>
 #include <incise/workflow/calibrate.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -308,6 +309,64 @@ TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
   open_beyond(1, 0.6);
   EXPECT_THAT([&] { static_cast<void>(run(request)); },
               ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("case.yaml"), HasSubstr("closed ring"))));
+}
+
+TEST_F(CalibrateBlocks, ASpecimenThatOpensBetweenTheTwoFitsIsLeftOutThen) {
+  CalibrationRequest request;
+  request.drag_lengths_mm = {0.5, 2.0};
+  request.second_drag_lengths_mm = {};
+  const Calibration made = run(grid({13.0}, {1.25 / (13.0 * 0.02)}));
+  for (std::size_t s = 0; s < 2; ++s) {
+    subjects_[s].photographed.name = fmt::format("s{}", s);
+    subjects_[s].photographed.tumor_edge = made.specimens[s].runs[0].final_tumor_edge;
+    subjects_[s].photographed.incision = *made.specimens[s].runs[0].inner_edge;
+  }
+  runs_ = RunsInMemory();
+  const Calibration whole = run(request);
+  ASSERT_EQ(whole.fit->specimens.size(), 2U);
+  const double near_mm = whole.specimens[0].runs[2].drag_length_mm();  // made after the first fit
+  ASSERT_GT(near_mm, 0.65);
+  ASSERT_LT(near_mm, 1.85);
+  for (auto& [key, kept] : runs_.runs) {
+    if (std::get<0>(key) != 0 || std::abs(kept.drag_length_mm() - near_mm) > 1e-9) continue;
+    kept.inner_edge.reset();
+    kept.closed_loop = false;
+    kept.outcome = Outcome::OpenLoop;
+  }
+  const Calibration one = run(request);
+  ASSERT_EQ(one.left_out.size(), 1U);
+  EXPECT_EQ(one.left_out[0].name, "s0");
+  ASSERT_EQ(one.fit->specimens.size(), 1U);
+  EXPECT_EQ(one.fit->specimens[0].name, "s1");
+  EXPECT_EQ(one.specimens[0].name, "s1");
+  EXPECT_TRUE(is_usable(whole));
+  EXPECT_FALSE(is_usable(one)) << "half of the specimens say nothing";
+}
+
+/// Soft tissue that its own weight turns inside out.
+TEST_F(CalibrateBlocks, ASpecimenThatCannotBeStretchedAtItsStiffnessIsLeftOutAndItsCellsAreFailures) {
+  for (CalibrationSubject& subject : subjects_) subject.settings.gravity_mm_s2 = Vec3(0.0, 0.0, -9810.0);
+  const CalibrationRequest one_cell = grid({13.0}, {1.0});
+  const double pull_n = run(one_cell).specimens[0].simulated_force_n;
+  subjects_[0].photographed.name = "too soft";
+  subjects_[0].photographed.stretch_force_n = 0.0005 * pull_n;
+  const Calibration table = run(one_cell);
+  EXPECT_TRUE(table.table.rows[0].is_failure);
+  EXPECT_THAT(table.specimens[0].runs[0].problem, HasSubstr("can be stretched"));
+  EXPECT_FALSE(table.specimens[1].runs[0].is_failure());
+
+  CalibrationRequest request;
+  request.drag_lengths_mm = {0.5, 1.25};
+  request.second_drag_lengths_mm = {};
+  const Calibration fit = run(request);
+  ASSERT_EQ(fit.left_out.size(), 1U);
+  EXPECT_EQ(fit.left_out[0].name, "too soft");
+  EXPECT_THAT(fit.left_out[0].reason, HasSubstr("can be stretched"));
+  ASSERT_EQ(fit.fit->specimens.size(), 1U);
+
+  subjects_.pop_back();
+  EXPECT_THAT([&] { static_cast<void>(run(request)); },
+              ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("case.yaml"), HasSubstr("be stretched"))));
 }
 
 TEST_F(CalibrateBlocks, ARingThatClosedBeneathTheSkinIsReadByItsMidline) {

@@ -70,7 +70,7 @@ struct Calibration {
 };
 
 /// Whether something was found to cut with: of a grid a setting that did not fail; of a fit, values at which the rings
-/// of more than half of the fitted specimens closed.
+/// of more than half of all specimens closed, those that were left out counted as open.
 [[nodiscard]] bool is_usable(const Calibration& calibration);
 
 }  // namespace incise

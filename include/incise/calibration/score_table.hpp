@@ -26,7 +26,7 @@ struct ScoreRow {
   bool is_failure = false;                     ///< one specimen at least failed
   double percent = 0.0;                        ///< of the baseline; 0 for a failure
   std::size_t inner_specimens = 0;             ///< that did not fail and whose plug came free at the skin
-  double inner_percent = 0.0;  ///< the same with the inner edge's errors, like against like, of those; 0 without any
+  std::optional<double> inner_percent;         ///< of the inner edges and the photographs of those, like against like
 };
 
 /// The paper's Table I.
@@ -43,9 +43,10 @@ struct ScoreTable {
 /// per cent of the photographs'; a setting with which any specimen failed scores 0 %. Mean: of the specimens' means;
 /// max: the greatest (the paper does not say how it joins two specimens). Like the paper it holds simulated mid-lines
 /// against margin less radius and compares that with photographs of inner edges; `inner_percent` compares like with
-/// like.
-/// @param runs  by specimen: the n-th of each specimen belongs to the n-th row.
+/// like, and where only some specimens have an inner edge those with their own photographs.
+/// @param runs  by specimen: the n-th of each specimen belongs to the n-th row.  @param photographs  by specimen.
 /// @throws InvalidArgument for lists of different length, without any, or a baseline that is not above 0.
-[[nodiscard]] ScoreTable score_table(const std::vector<std::vector<CalibrationRun>>& runs, double baseline_mm);
+[[nodiscard]] ScoreTable score_table(const std::vector<std::vector<CalibrationRun>>& runs,
+                                     std::span<const PhotographedErrors> photographs);
 
 }  // namespace incise
