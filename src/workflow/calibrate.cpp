@@ -387,8 +387,11 @@ class CalibrationRunner {
       specimen.simulated_mm = profiles.back().signed_error_mm;
       tell_midlines(s, profiles);
       if (specimen.simulated_mm.empty()) {
+        const std::string& problem = calibration_.specimens[s].runs.back().problem;
         monitor_.message(Severity::Warning,
-                         fmt::format("{}: the simulated ring stays open at the fitted values", specimen.name));
+                         problem.empty()
+                             ? fmt::format("{}: the simulated ring stays open at the fitted values", specimen.name)
+                             : fmt::format("{}: cannot be cut at the fitted values: {}", specimen.name, problem));
         continue;
       }
       double squares = 0.0;
