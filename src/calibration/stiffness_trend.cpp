@@ -8,11 +8,15 @@
 namespace incise {
 
 double StiffnessTrend::shift_mm(double youngs_modulus_kpa) const {
-  return slope_mm * (std::log(youngs_modulus_kpa) - mean_ln_kpa);
+  return slope_mm * (1.0 - reference_kpa / youngs_modulus_kpa);
 }
 
 double StiffnessTrend::shift_sd_mm(double youngs_modulus_kpa) const {
-  return slope_sd_mm * std::abs(std::log(youngs_modulus_kpa) - mean_ln_kpa);
+  return slope_sd_mm * std::abs(1.0 - reference_kpa / youngs_modulus_kpa);
+}
+
+double StiffnessTrend::rise_sd_mm(double youngs_modulus_kpa) const {
+  return slope_sd_mm * reference_kpa / youngs_modulus_kpa;
 }
 
 StiffnessTrend stiffness_trend(std::span<const StiffnessReading> readings, double reading_sd_mm) {
@@ -20,19 +24,21 @@ StiffnessTrend stiffness_trend(std::span<const StiffnessReading> readings, doubl
                  fmt::format("expected readings, and an sd above 0, found {} and {}", readings.size(), reading_sd_mm));
   StiffnessTrend trend;
   double mean_difference = 0.0;
+  double mean_compliance = 0.0;  // 1/kPa
   const auto count = static_cast<double>(readings.size());
   for (const StiffnessReading& reading : readings) {
     INCISE_REQUIRE(std::isfinite(reading.youngs_modulus_kpa) && reading.youngs_modulus_kpa > 0.0 &&
                        std::isfinite(reading.difference_mm),
                    fmt::format("expected a modulus above 0 and a finite difference, found {} kPa and {} mm",
                                reading.youngs_modulus_kpa, reading.difference_mm));
-    trend.mean_ln_kpa += std::log(reading.youngs_modulus_kpa) / count;
+    mean_compliance += 1.0 / (reading.youngs_modulus_kpa * count);
     mean_difference += reading.difference_mm / count;
   }
+  trend.reference_kpa = 1.0 / mean_compliance;
   double across = 0.0;
   double along = 0.0;
   for (const StiffnessReading& reading : readings) {
-    const double off = std::log(reading.youngs_modulus_kpa) - trend.mean_ln_kpa;
+    const double off = 1.0 - trend.reference_kpa / reading.youngs_modulus_kpa;
     along += off * off;
     across += off * (reading.difference_mm - mean_difference);
   }

@@ -94,7 +94,7 @@ class TissueCuts {
     const double kpa = scenarios_.reference_kpa;
     scenarios_.stiffness_shift_mm = trend.shift_mm(kpa);
     scenarios_.stiffness_shift_sd_mm =
-        std::hypot(trend.shift_sd_mm(kpa), trend.slope_sd_mm * scenarios_.own_stiffness_sd);
+        std::hypot(trend.shift_sd_mm(kpa), trend.rise_sd_mm(kpa) * scenarios_.own_stiffness_sd);
     for (TissueScenario& tissue : tissues.points) tissue.bias_mm += trend.shift_mm(kpa * tissue.stiffness_factor);
     tissues.bias_sd_mm = std::hypot(tissues.bias_sd_mm, scenarios_.stiffness_shift_sd_mm);
     tissues.common_sd_mm = std::hypot(tissues.common_sd_mm, scenarios_.stiffness_shift_sd_mm);

@@ -208,7 +208,7 @@ TEST_F(CalibrationFileTest, TellsHowTheBiasFollowsStiffness) {
   const auto trend = belief_of(record, path()).trend;
   ASSERT_TRUE(trend);
   EXPECT_GT(trend->slope_mm, 0.0) << "the stiffer one's edge lay farther out than fitted";
-  EXPECT_LT(trend->slope_mm, 0.7 / std::log(2.0)) << "drawn towards 0";
+  EXPECT_LT(trend->slope_mm, 0.7 / (2.0 / 3.0)) << "drawn towards 0";
 
   nlohmann::ordered_json bad = to_json(calibration);
   bad["fitted"][1]["name"] = "s9";
