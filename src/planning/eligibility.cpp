@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace incise {
@@ -38,7 +39,7 @@ std::vector<std::string> objections(const EligibilityEvidence& e, const Eligibil
 }
 
 /// What speaks against the correction, where the simulation is believed.
-std::vector<std::string> doubts(const EligibilityEvidence& e, const EligibilityRules& rules) {
+std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
   const CutGain& gain = *e.gain;
   if (!e.is_accepted)
@@ -51,9 +52,9 @@ std::vector<std::string> doubts(const EligibilityEvidence& e, const EligibilityR
         fmt::format("the expected gain of {:.2f} mm is not above {} of its standard deviation of {:.2f} mm",
                     gain.mean_mm, rules.least_gain_sds, gain.sd_mm));
   }
-  if (!(gain.p_worse <= rules.most_p_worse)) {
-    reasons.push_back(fmt::format("the corrected cut is the worse one with a probability of {:.2f}, above {}",
-                                  gain.p_worse, rules.most_p_worse));
+  if (!(p_worse <= rules.most_p_worse)) {
+    reasons.push_back(fmt::format("the corrected cut is the worse one with a probability of {:.2f}, above {}", p_worse,
+                                  rules.most_p_worse));
   }
   const double p = e.corrected.p_close_bound();
   if (!(p <= rules.most_p_close_margin) && !(p <= e.intended.p_close_bound())) {
@@ -114,19 +115,37 @@ std::vector<std::string> validate(const EligibilityRules& r) {
   return violations;
 }
 
+double probability_unlike(std::span<const SpecimenDistance> distances) {
+  if (distances.empty()) return kPriorUnlike;
+  double farthest = 0.0;
+  for (const SpecimenDistance& d : distances) {
+    if (!std::isfinite(d.in_sd)) return 1.0;
+    farthest = std::max(farthest, d.is_better_below ? d.in_sd : std::abs(d.in_sd));
+  }
+  // Density of the distance if alike over that if not.
+  const double likeness =
+      kUnlikeSpread * std::exp(-0.5 * farthest * farthest * (1.0 - 1.0 / (kUnlikeSpread * kUnlikeSpread)));
+  return kPriorUnlike / (kPriorUnlike + (1.0 - kPriorUnlike) * likeness);
+}
+
 Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules) {
   const std::vector<std::string> violations = validate(rules);
   INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
-  if (std::vector<std::string> against = objections(evidence, rules); !against.empty())
-    return {Verdict::DoNotUse, std::move(against)};
-  if (std::vector<std::string> against = doubts(evidence, rules); !against.empty())
-    return {Verdict::CutAsPlanned, std::move(against)};
-  const CutGain& gain = *evidence.gain;
-  return {
-      Verdict::Compensate,
-      {fmt::format(
-          "the expected gain is {:.2f} ± {:.2f} mm; the corrected cut is the worse one with a probability of {:.2f}",
-          gain.mean_mm, gain.sd_mm, gain.p_worse)}};
+  Eligibility judged;
+  judged.p_unlike = probability_unlike(evidence.distances);
+  if (evidence.gain) judged.p_worse = (1.0 - judged.p_unlike) * evidence.gain->p_worse + judged.p_unlike / 2.0;
+  judged.reasons = objections(evidence, rules);
+  if (!judged.reasons.empty()) return judged;  // do not use
+  judged.reasons = doubts(evidence, *judged.p_worse, rules);
+  if (!judged.reasons.empty()) {
+    judged.verdict = Verdict::CutAsPlanned;
+    return judged;
+  }
+  judged.verdict = Verdict::Compensate;
+  judged.reasons = {fmt::format(
+      "the expected gain is {:.2f} ± {:.2f} mm; the corrected cut is the worse one with a probability of {:.2f}",
+      evidence.gain->mean_mm, evidence.gain->sd_mm, *judged.p_worse)};
+  return judged;
 }
 
 }  // namespace incise

@@ -39,7 +39,10 @@ Json to_json(const Assessment& assessment, const AssessmentRequest& request) {
   json["reasons"] = assessment.eligibility.reasons;
   json["notes"] = assessment.notes;
   json["expected_gain_mm"] = gain ? Json{{"mean", gain->mean_mm}, {"sd", gain->sd_mm}} : Json(nullptr);
-  json["p_worse"] = gain ? Json(gain->p_worse) : Json(nullptr);
+  const std::optional<double>& p_worse = assessment.eligibility.p_worse;
+  json["p_worse"] = p_worse ? Json(*p_worse) : Json(nullptr);
+  json["p_worse_if_alike"] = gain ? Json(gain->p_worse) : Json(nullptr);
+  json["p_unlike"] = assessment.eligibility.p_unlike;
   json["p_close_margin"] = nullptr;
   json["intended"] = nullptr;
   json["corrected"] = nullptr;

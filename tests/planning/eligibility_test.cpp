@@ -117,6 +117,51 @@ TEST(JudgeEligibility, DoesNotUseWhatCannotBeForetold) {
   EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
 }
 
+TEST(ProbabilityUnlike, FollowsBayesRuleAtTheFarthestDistance) {
+  // By hand at 3: odds 0.05/0.95 times N(3; 0, 10²)/N(3; 0, 1) = 0.0526 · 0.038139/0.0044318 = 0.4529.
+  const auto at = [](double in_sd) {
+    const std::vector<SpecimenDistance> distances = {{"scale", 1.0, 1.0, 0.5}, {"modulus", 1.0, 1.0, in_sd}};
+    return probability_unlike(distances);
+  };
+  EXPECT_NEAR(at(3.0), 0.4529 / 1.4529, 1e-4);
+  EXPECT_EQ(at(-3.0), at(3.0)) << "too soft is as unlike as too stiff";
+  EXPECT_EQ(at(0.1), at(-0.5)) << "the farthest of the two counts";
+  EXPECT_LT(at(2.0), 0.05);
+  EXPECT_GT(at(5.0), 0.99);
+  EXPECT_NEAR(at(60.0), 1.0, 1e-12) << "beyond what exp() can tell from 0";
+  EXPECT_EQ(at(std::numeric_limits<double>::quiet_NaN()), 1.0);
+  EXPECT_EQ(probability_unlike({}), kPriorUnlike);
+}
+
+TEST(ProbabilityUnlike, DoesNotCountWhatIsBetterBelow) {
+  const std::vector<SpecimenDistance> better = {{"rmse", 0.1, 0.4, -8.0, true}};
+  const std::vector<SpecimenDistance> worse = {{"rmse", 3.0, 0.4, 8.0, true}};
+  EXPECT_LT(probability_unlike(better), 0.01);
+  EXPECT_GT(probability_unlike(worse), 0.99);
+}
+
+TEST(JudgeEligibility, SaysOneHalfOfWhatTheCalibrationSaysNothingOf) {
+  EligibilityEvidence evidence = good();
+  evidence.gain->p_worse = 0.02;
+  const Eligibility near = judge_eligibility(evidence);
+  EXPECT_NEAR(*near.p_worse, 0.02 * (1.0 - near.p_unlike) + 0.5 * near.p_unlike, 1e-15);
+  EXPECT_LT(*near.p_worse, 0.025);
+  evidence.distances.front().in_sd = -8.0;
+  EXPECT_NEAR(*judge_eligibility(evidence).p_worse, 0.5, 1e-9) << "a sure gain of a simulation that is not believed";
+  evidence.gain->p_worse = 0.98;
+  EXPECT_NEAR(*judge_eligibility(evidence).p_worse, 0.5, 1e-9) << "nor is a sure loss";
+  evidence.gain.reset();
+  EXPECT_FALSE(judge_eligibility(evidence).p_worse);
+}
+
+TEST(JudgeEligibility, CutsAsPlannedWhereASpecimenMayBeUnlike) {
+  EligibilityEvidence evidence = good();
+  evidence.distances.front().in_sd = 2.99;  // believed, just so
+  const Eligibility judged = judge_eligibility(evidence);
+  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("is the worse one with a probability of 0.1")));
+}
+
 TEST(JudgeEligibility, RefusesRulesThatAreNone) {
   EXPECT_TRUE(validate(EligibilityRules{}).empty());
   const EligibilityRules bad{.least_gain_sds = -1.0, .most_rmse_mm = 0.0, .most_p_close_margin = 1.0};

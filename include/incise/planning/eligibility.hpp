@@ -41,6 +41,16 @@ struct UsualSpread {
 [[nodiscard]] SpecimenDistance distance_from(std::string name, double value, std::span<const double> calibrated,
                                              const UsualSpread& usual);
 
+/// How probable it is that the calibration says nothing of a specimen, by what lies farthest from the calibration's:
+/// a mixture of specimens that are alike (distances with a standard deviation of 1) and, before anything is known of
+/// this one kPriorUnlike, of others (kUnlikeSpread). 0.005 at 0, 0.04 at 2, 0.31 at 3, 0.93 at 4. Quantities for which
+/// below is better count above the mean alone. Source: [BoxTiao1968].
+/// @return in (0, 1]; kPriorUnlike without distances; 1 where one of them is no number.
+[[nodiscard]] double probability_unlike(std::span<const SpecimenDistance> distances);
+
+inline constexpr double kPriorUnlike = 0.05;   ///< share of specimens of which a calibration says nothing. Chosen.
+inline constexpr double kUnlikeSpread = 10.0;  ///< standard deviation of their distances. Chosen: far, either way.
+
 /// What a verdict is made of.
 struct EligibilityEvidence {
   PathRisk intended, corrected;
@@ -67,6 +77,10 @@ struct EligibilityRules {
 struct Eligibility {
   Verdict verdict = Verdict::DoNotUse;
   std::vector<std::string> reasons;  ///< each with its numbers; of the verdict alone, at least one
+  double p_unlike = 0.0;             ///< probability_unlike of its distances
+  /// That the corrected cut is the worse one: the gain's p_worse as far as the calibration says something of this
+  /// specimen, one half as far as it does not, (1 − p_unlike) · p_worse + p_unlike / 2. Absent without a gain.
+  std::optional<double> p_worse;
 };
 
 /// Holds the evidence against the rules. Whatever speaks against the simulation is named before any gain is looked at.
