@@ -15,15 +15,22 @@ OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index) {
     case 0:
       return {"stiff", {{"youngs_modulus_kpa", random.uniform(25.0, 60.0)}}};
     case 2:
-      return {"fibrous", {{"fibre_ratio", random.uniform(1.5, 3.0)}, {"stiffness_spread", random.uniform(0.4, 0.6)}, {"relaxing_ratio", random.uniform(4.0, 8.0)}}};
+      return {"scarred",
+              {{"youngs_modulus_kpa", random.uniform(28.0, 38.0)},
+               {"toughness_j_m2", random.uniform(850.0, 1050.0)},
+               {"rupture_percent", random.uniform(0.7, 0.8)},
+               {"adhesion_kpa_s_mm2", random.uniform(1.0, 3.0)},
+               {"inclusion_ratio", random.uniform(10.0, 15.0)},
+               {"tumor_depth_mm", random.uniform(6.0, 8.0)}}};
     case 4:
       return {"soft", {{"youngs_modulus_kpa", random.uniform(4.5, 7.0)}}};
     default:
-      return {"scarred",
-              {{"youngs_modulus_kpa", random.uniform(60.0, 120.0)},
-               {"toughness_j_m2", random.uniform(900.0, 1200.0)},
-               {"rupture_percent", random.uniform(0.6, 0.75)},
-               {"adhesion_kpa_s_mm2", random.uniform(40.0, 80.0)}}};
+      return {"oedematous",
+              {{"youngs_modulus_kpa", random.uniform(3.0, 3.7)},
+               {"rupture_percent", random.uniform(0.7, 0.8)},
+               {"adhesion_kpa_s_mm2", random.uniform(1.0, 3.0)},
+               {"inclusion_ratio", random.uniform(10.0, 15.0)},
+               {"tumor_depth_mm", random.uniform(6.0, 8.0)}}};
   }
 }
 

@@ -101,7 +101,7 @@ void add_study(Application& application) {
       ->check(whole_between("--specimens", 2, 200));
   verb->add_flag("--quick", settings->is_quick, "Without the grid of 25 pairs of speed and dullness (Table I)");
   verb->add_option("--outside", settings->outside,
-                   "Further specimens unlike those calibrated on (stiff, scarred, fibrous, scarred, soft in turn), to hold the advice of `assess` against what happens; "
+                   "Further specimens unlike those calibrated on (stiff, oedematous, scarred, oedematous, soft in turn), to hold the advice of `assess` against what happens; "
                    "by default one with four specimens, else none")
       ->check(whole_between("--outside", 0, 200));
   verb->add_flag("--paper-pass", settings->with_paper_pass, "Also cut every test specimen along the paper's single radial correction");
