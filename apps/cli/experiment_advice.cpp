@@ -53,17 +53,21 @@ std::optional<bool> is_worse(const TrueCut& planned, const TrueCut& again) { ret
 
 bool is_advice(const AdviceJson& assessment) { return assessment.is_object() && assessment.contains("verdict"); }
 
-/// Where nothing could be foretold the advice is not to use it: as wary as can be.
-double stated_p_worse(const AdviceJson& assessment) {
-  return assessment.contains("p_worse") && assessment.at("p_worse").is_number() ? assessment.at("p_worse").get<double>() : 1.0;
+/// One of the probabilities of `assess`. Where nothing could be foretold either cut may be the worse one, and the
+/// calibration says nothing.
+double stated(const AdviceJson& assessment, const char* key) {
+  constexpr double kNothingKnown = 0.5;
+  return assessment.contains(key) && assessment.at(key).is_number() ? assessment.at(key).get<double>() : kNothingKnown;
 }
 
-std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& specimens, bool is_outside_alone) {
+double stated_p_worse(const AdviceJson& assessment) { return stated(assessment, "p_worse"); }
+
+std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& specimens, bool is_outside_alone, const char* key = "p_worse") {
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
     if (is_outside_alone && specimen.trial->role != TrialRole::Outside) continue;
     const std::optional<bool> worse = is_worse(specimen.planned, specimen.corrected);
-    if (worse) forecasts.push_back({stated_p_worse(specimen.trial->assessment), *worse});
+    if (worse) forecasts.push_back({stated(specimen.trial->assessment, key), *worse});
   }
   return forecasts;
 }
@@ -117,13 +121,15 @@ AdviceJson specimen_json(const AdvisedSpecimen& specimen) {
                   {"kind", specimen.trial->kind},
                   {"verdict", said.value("verdict", AdviceJson())},
                   {"expected_gain_mm", said.value("expected_gain_mm", AdviceJson())},
-                  {"p_worse", stated_p_worse(said)},
+                  {"p_worse", said.value("p_worse", AdviceJson())},
+                  {"p_worse_if_alike", said.value("p_worse_if_alike", AdviceJson())},
+                  {"p_unlike", said.value("p_unlike", AdviceJson())},
                   {"true_planned_mm", or_null(specimen.planned.mean_abs_error_mm)},
                   {"true_corrected_mm", or_null(specimen.corrected.mean_abs_error_mm)},
                   {"true_gain_mm", or_null(gain_mm(specimen.planned, specimen.corrected))},
                   {"is_worse", or_null(is_worse(specimen.planned, specimen.corrected))}};
   if (is_advice(specimen.trial->assessment_without_pull) && specimen.withheld) {
-    json["p_worse_without_pull"] = stated_p_worse(specimen.trial->assessment_without_pull);
+    json["p_worse_without_pull"] = specimen.trial->assessment_without_pull.value("p_worse", AdviceJson());
     json["true_withheld_mm"] = or_null(specimen.withheld->mean_abs_error_mm);
     json["is_worse_without_pull"] = or_null(is_worse(specimen.planned, *specimen.withheld));
   }
@@ -201,6 +207,10 @@ AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std
   json["worse"] = std::count_if(specimens.begin(), specimens.end(), [](const AdvisedSpecimen& s) { return is_worse(s.planned, s.corrected).value_or(false); });
   json["auc"] = auc_json(forecasts_with_pull(specimens, false));
   json["auc_outside_alone"] = auc_json(forecasts_with_pull(specimens, true));
+  for (const char* part : {"p_worse_if_alike", "p_unlike"}) {  // what p_worse is made of, each for itself
+    json["auc_of"][part] = auc_json(forecasts_with_pull(specimens, false, part));
+    json["auc_of_outside_alone"][part] = auc_json(forecasts_with_pull(specimens, true, part));
+  }
   json["auc_without_pull"] = auc_json(forecasts_without_pull(specimens));
   json["close_margin"] = close_margin_json(specimens);
   json["specimens"] = AdviceJson::array();

@@ -17,7 +17,7 @@ struct OutsideKind {
 [[nodiscard]] OutsideKind failed_specimen();
 
 /// The index-th of a series: stiff, oedematous, scarred, oedematous, soft in turn; how far out is drawn from the seed.
-/// All lie far from the calibration's in the suture's pull. Stiff and soft tissue is cut as other tissue is, and a
+/// They differ from the calibration's in the suture's pull, all but the stiffer half of the soft ones far. Stiff and soft tissue is cut as other tissue is, and a
 /// correction helps it. Oedematous and scarred tissue hardly sticks to the electrode and surrounds a hard, deep tumour,
 /// which shows in no reading of `assess`: it is dragged less far than its stiffness makes one expect, and is harmed.
 [[nodiscard]] OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index);

@@ -11,10 +11,6 @@
 namespace incise {
 namespace {
 
-bool is_reference(const SimulatedProfile& profile) {
-  return std::abs(profile.stiffness_factor - 1.0) < 1e-9;
-}
-
 void require_profiles(const std::vector<SimulatedProfile>& profiles) {
   std::size_t sectors = 0;
   for (std::size_t i = 0; i < profiles.size(); ++i) {
@@ -69,7 +65,7 @@ struct KnotsFound {
 KnotsFound knots_of(const std::vector<SimulatedProfile>& profiles) {
   KnotsFound found;
   for (const SimulatedProfile& profile : profiles) {
-    if (!is_reference(profile)) continue;
+    if (!is_reference_stiffness(profile.stiffness_factor)) continue;
     if (profile.signed_error_mm.empty()) {
       found.is_ended_by_failure = true;
       break;  // a longer drag that closed again would be luck
@@ -80,6 +76,10 @@ KnotsFound knots_of(const std::vector<SimulatedProfile>& profiles) {
 }
 
 }  // namespace
+
+bool is_reference_stiffness(double stiffness_factor) {
+  return std::abs(stiffness_factor - 1.0) < 1e-9;
+}
 
 bool DragResponse::can_be_made_of(std::vector<SimulatedProfile> profiles) {
   sort_by_drag_length(profiles);
@@ -97,7 +97,7 @@ DragResponse::DragResponse(std::vector<SimulatedProfile> profiles) {
       fmt::format("expected at least two closed simulated rings before the first open one, found {}", knots_.size()));
   grain_mm_ = fast_waves_rms(knots_);
   for (const SimulatedProfile& profile : profiles) {
-    if (is_reference(profile) || profile.signed_error_mm.empty()) continue;
+    if (is_reference_stiffness(profile.stiffness_factor) || profile.signed_error_mm.empty()) continue;
     const auto partner = std::find_if(knots_.begin(), knots_.end(), [&profile](const SimulatedProfile& knot) {
       return std::abs(knot.drag_length_mm - profile.drag_length_mm) < 1e-9;
     });

@@ -39,10 +39,18 @@ std::string compose(const std::string& where, const std::string& place, const st
 CaseError::CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint)
     : Error(compose(where, field, found, expected, hint)), field_(std::move(field)) {}
 
-CaseError CaseError::in_file(const std::string& file) const {
+std::size_t CaseError::end_of_place() const {
   // The message is "<where>: <field>: found …"; what stands before the field, or before "found" where there is none, is the place.
+  return std::string_view(what()).find(field_.empty() ? ": found " : fmt::format(": {}: found ", field_));
+}
+
+std::string CaseError::without_place() const {
+  return std::string(what()).substr(end_of_place() + 2);
+}
+
+CaseError CaseError::in_file(const std::string& file) const {
   const std::string text = what();
-  const std::size_t end = text.find(field_.empty() ? ": found " : fmt::format(": {}: found ", field_));
+  const std::size_t end = end_of_place();
   const std::string where = text.substr(0, end);
   if (where.starts_with(file)) return *this;
   CaseError named = *this;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace incise {
 namespace {
@@ -13,19 +14,13 @@ namespace {
 /// Specimens, less one, that the usual spread counts as.
 constexpr double kUsualWeight = 4.0;
 
-/// What speaks against believing the simulation of this specimen.
-std::vector<std::string> objections(const EligibilityEvidence& e, const EligibilityRules& rules) {
+/// What speaks against believing the simulation of this specimen, wherever it lies.
+std::vector<std::string> failings(const EligibilityEvidence& e, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
   if (!e.is_registered) reasons.emplace_back("the registration was refused: where the specimen lies is not known");
   if (!(e.registration_rmse_mm <= rules.most_rmse_mm)) {
     reasons.push_back(fmt::format("the simulated surface lies {:.2f} mm (rms) from the measured one, above {} mm",
                                   e.registration_rmse_mm, rules.most_rmse_mm));
-  }
-  for (const SpecimenDistance& d : e.distances) {
-    if (std::abs(d.in_sd) <= rules.most_distance_sds || (d.is_better_below && d.in_sd < 0.0)) continue;
-    reasons.push_back(fmt::format("{}: {:.4g} is {:.1f} standard deviations {} the calibration's {:.4g}, beyond {}",
-                                  d.name, d.value, std::abs(d.in_sd), d.in_sd < 0.0 ? "below" : "above", d.mean,
-                                  rules.most_distance_sds));
   }
   if (!(e.corrected.unmeasured_weight <= rules.most_unmeasured)) {
     reasons.push_back(fmt::format(
@@ -36,6 +31,25 @@ std::vector<std::string> objections(const EligibilityEvidence& e, const Eligibil
   if (e.gain && !(std::isfinite(e.gain->mean_mm) && std::isfinite(e.gain->sd_mm)))
     reasons.emplace_back("the expected gain is no number");
   return reasons;
+}
+
+/// Where it lies outside the calibrated range.
+std::vector<std::string> far_quantities(const EligibilityEvidence& e, const EligibilityRules& rules) {
+  std::vector<std::string> reasons;
+  for (const SpecimenDistance& d : e.distances) {
+    if (std::abs(d.in_sd) <= rules.most_distance_sds || (d.is_better_below && d.in_sd < 0.0)) continue;
+    reasons.push_back(fmt::format("{}: {:.4g} is {:.1f} standard deviations {} the calibration's {:.4g}, beyond {}",
+                                  d.name, d.value, std::abs(d.in_sd), d.in_sd < 0.0 ? "below" : "above", d.mean,
+                                  rules.most_distance_sds));
+  }
+  return reasons;
+}
+
+/// Student's density at t over the same one drawn out to kUnlikeSpread times its width.
+double likeness(double t, double degrees) {
+  const double far = t / kUnlikeSpread;
+  return kUnlikeSpread *
+         std::exp(0.5 * (degrees + 1.0) * (std::log1p(far * far / degrees) - std::log1p(t * t / degrees)));
 }
 
 /// What speaks against the correction, where the simulation is believed.
@@ -94,8 +108,12 @@ SpecimenDistance distance_from(std::string name, double value, std::span<const d
   double squares = kUsualWeight * usual.sd * usual.sd;
   for (const double x : calibrated) squares += std::pow(place(x) - mean, 2);
   const double sd = std::sqrt(squares / (kUsualWeight + n - 1.0) * (1.0 + 1.0 / n));
-  return {std::move(name), value, usual.is_logarithmic ? std::exp(mean) : mean, (place(value) - mean) / sd,
-          usual.is_better_below};
+  return {std::move(name),
+          value,
+          usual.is_logarithmic ? std::exp(mean) : mean,
+          (place(value) - mean) / sd,
+          usual.is_better_below,
+          kUsualWeight + n - 1.0};
 }
 
 std::vector<std::string> validate(const EligibilityRules& r) {
@@ -117,24 +135,25 @@ std::vector<std::string> validate(const EligibilityRules& r) {
 
 double probability_unlike(std::span<const SpecimenDistance> distances) {
   if (distances.empty()) return kPriorUnlike;
-  double farthest = 0.0;
+  double most = 0.0;
   for (const SpecimenDistance& d : distances) {
     if (!std::isfinite(d.in_sd)) return 1.0;
-    farthest = std::max(farthest, d.is_better_below ? d.in_sd : std::abs(d.in_sd));
+    const double off = d.is_better_below ? std::max(0.0, d.in_sd) : d.in_sd;
+    most = std::max(most, kPriorUnlike / (kPriorUnlike + (1.0 - kPriorUnlike) * likeness(off, d.degrees)));
   }
-  // Density of the distance if alike over that if not.
-  const double likeness =
-      kUnlikeSpread * std::exp(-0.5 * farthest * farthest * (1.0 - 1.0 / (kUnlikeSpread * kUnlikeSpread)));
-  return kPriorUnlike / (kPriorUnlike + (1.0 - kPriorUnlike) * likeness);
+  return most;
 }
 
 Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules) {
   const std::vector<std::string> violations = validate(rules);
   INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
   Eligibility judged;
-  judged.p_unlike = probability_unlike(evidence.distances);
-  if (evidence.gain) judged.p_worse = (1.0 - judged.p_unlike) * evidence.gain->p_worse + judged.p_unlike / 2.0;
-  judged.reasons = objections(evidence, rules);
+  judged.reasons = failings(evidence, rules);
+  judged.p_unlike = judged.reasons.empty() ? probability_unlike(evidence.distances) : 1.0;
+  if (!evidence.is_stiffness_compared) judged.p_unlike = std::max(judged.p_unlike, kPriorUnlike);
+  if (evidence.gain && std::isfinite(evidence.gain->mean_mm) && std::isfinite(evidence.gain->sd_mm))
+    judged.p_worse = (1.0 - judged.p_unlike) * evidence.gain->p_worse + judged.p_unlike / 2.0;
+  std::ranges::move(far_quantities(evidence, rules), std::back_inserter(judged.reasons));
   if (!judged.reasons.empty()) return judged;  // do not use
   judged.reasons = doubts(evidence, *judged.p_worse, rules);
   if (!judged.reasons.empty()) {

@@ -3,6 +3,8 @@
 #include <incise/io/manifest.hpp>
 #include <incise/storage/robust_files.hpp>
 
+#include <cmath>
+
 namespace incise {
 namespace {
 
@@ -38,10 +40,11 @@ Json to_json(const Assessment& assessment, const AssessmentRequest& request) {
   json["verdict"] = to_string(assessment.eligibility.verdict);
   json["reasons"] = assessment.eligibility.reasons;
   json["notes"] = assessment.notes;
-  json["expected_gain_mm"] = gain ? Json{{"mean", gain->mean_mm}, {"sd", gain->sd_mm}} : Json(nullptr);
+  const bool is_foretold = gain && std::isfinite(gain->mean_mm) && std::isfinite(gain->sd_mm);
+  json["expected_gain_mm"] = is_foretold ? Json{{"mean", gain->mean_mm}, {"sd", gain->sd_mm}} : Json(nullptr);
   const std::optional<double>& p_worse = assessment.eligibility.p_worse;
   json["p_worse"] = p_worse ? Json(*p_worse) : Json(nullptr);
-  json["p_worse_if_alike"] = gain ? Json(gain->p_worse) : Json(nullptr);
+  json["p_worse_if_alike"] = is_foretold ? Json(gain->p_worse) : Json(nullptr);
   json["p_unlike"] = assessment.eligibility.p_unlike;
   json["p_close_margin"] = nullptr;
   json["intended"] = nullptr;

@@ -14,6 +14,7 @@ namespace {
 constexpr UsualSpread kUsualStiffness{.sd = 0.3, .is_logarithmic = true};
 constexpr UsualSpread kUsualCompliance{.sd = 0.3, .is_logarithmic = true};
 constexpr UsualSpread kUsualResidual{.sd = 0.3, .is_logarithmic = true, .is_better_below = true};
+constexpr const char* kModulusName = "youngs_modulus_kpa";
 constexpr UsualSpread kUsualScale{.sd = 0.01, .is_logarithmic = true};
 
 /// Distances of what is known of this specimen and of the calibration's.
@@ -53,7 +54,7 @@ void compare_stiffness(const AssessmentRequest& request, const ScenarioSet& scen
                     scenarios.reference_kpa, scenarios.own_stiffness_sd));
     return;
   }
-  range.compare("youngs_modulus_kpa", scenarios.reference_kpa, request.calibrated.youngs_modulus_kpa, kUsualStiffness);
+  range.compare(kModulusName, scenarios.reference_kpa, request.calibrated.youngs_modulus_kpa, kUsualStiffness);
   range.compare("compliance_mm_n", stretch_mm(model) / *request.scenarios.stretch_force_n,
                 request.calibrated.compliance_mm_n, kUsualCompliance);
 }
@@ -131,6 +132,8 @@ Assessment assess(const Case& settings, Store& store, const Study& done, const C
     compare_stiffness(request, assessment.outlook->scenarios, *done.model, assessment);
     assessment.sensitivity = sensitivity_of(assessment.outlook->scenarios.tissues, paths.corrected_error_mm);
   }
+  evidence.is_stiffness_compared =
+      std::ranges::any_of(evidence.distances, [](const SpecimenDistance& d) { return d.name == kModulusName; });
   assessment.eligibility = judge_eligibility(evidence, request.rules);
   return assessment;
 }

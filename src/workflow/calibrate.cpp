@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace incise {
 namespace {
@@ -175,8 +176,10 @@ class CalibrationRunner {
     try {
       return &bodies_[specimen]->with_stiffness(run.setting.stiffness_of_case, workers_, monitor_);
     } catch (const CaseError& error) {
-      run.problem = error.what();
-      monitor_.message(Severity::Warning, error.in_file(subjects_[specimen].of->case_file).what());
+      run.problem = error.without_place();
+      std::string told = error.in_file(subjects_[specimen].of->case_file).what();
+      if (const auto [place, is_new] = told_.insert(std::move(told)); is_new)
+        monitor_.message(Severity::Warning, *place);  // once, not for every run of that stiffness
       return nullptr;
     }
   }
@@ -292,7 +295,7 @@ class CalibrationRunner {
   [[nodiscard]] std::string why_no_line(std::size_t s) const {
     const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
     for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (std::abs(factors_[i] - 1.0) < 1e-9 && !runs[i].problem.empty()) return runs[i].problem;
+      if (is_reference_stiffness(factors_[i]) && !runs[i].problem.empty()) return runs[i].problem;
     }
     const bool is_any_closed =
         std::any_of(runs.begin(), runs.end(), [](const CalibrationRun& run) { return run.closed_loop; });
@@ -304,7 +307,7 @@ class CalibrationRunner {
 
   /// A specimen for which fewer than two drag lengths can be read says nothing of the others: the fit does without it,
   /// and says so. Where it is the only one left the case is refused.
-  void leave_out_what_opens() {
+  void leave_out_what_cannot_be_read() {
     for (std::size_t s = 0; s < subjects_.size();) {
       if (DragResponse::can_be_made_of(profiles_of(s))) {
         ++s;
@@ -362,7 +365,7 @@ class CalibrationRunner {
   }
 
   void fit_once() {
-    leave_out_what_opens();  // each time: a cut made since may have opened, too
+    leave_out_what_cannot_be_read();  // each time: a cut made since may have opened, too
     std::vector<FitSpecimen> specimens;
     DragFitSettings settings = request_.fit;
     bool is_every_force_measured = true;
@@ -425,6 +428,7 @@ class CalibrationRunner {
   Monitor& monitor_;
   std::vector<std::unique_ptr<CalibrationBody>> bodies_;
   std::vector<double> factors_;  ///< stiffness factor of each row
+  std::set<std::string> told_;   ///< why specimens cannot be held
   Calibration calibration_;
 };
 

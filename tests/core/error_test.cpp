@@ -25,6 +25,8 @@ TEST(CaseError, NamesTheFileThatItsThrowerDidNotKnow) {
   EXPECT_STREQ(unknown.in_file("a/case.yaml").what(),
                "a/case.yaml: specimen.constraints[0].where: found nothing, expected a vertex. Try: a box");
   EXPECT_EQ(unknown.in_file("a/case.yaml").field(), "specimen.constraints[0].where");
+  EXPECT_EQ(unknown.without_place(), std::string(unknown.what()).substr(std::string_view("case: ").size()));
+  EXPECT_EQ(CaseError("case", "", "a list", "a table").without_place(), "found a list, expected a table");
   EXPECT_STREQ(CaseError("tumour edge", "point 3", "x", "y").in_file("case.yaml").what(),
                "case.yaml: tumour edge: point 3: found x, expected y");
   EXPECT_STREQ(CaseError("case", "", "a list", "a table").in_file("case.yaml").what(),

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace incise {
@@ -118,24 +119,33 @@ TEST(JudgeEligibility, DoesNotUseWhatCannotBeForetold) {
 }
 
 TEST(ProbabilityUnlike, FollowsBayesRuleAtTheFarthestDistance) {
-  // By hand at 3: odds 0.05/0.95 times N(3; 0, 10²)/N(3; 0, 1) = 0.0526 · 0.038139/0.0044318 = 0.4529.
-  const auto at = [](double in_sd) {
-    const std::vector<SpecimenDistance> distances = {{"scale", 1.0, 1.0, 0.5}, {"modulus", 1.0, 1.0, in_sd}};
+  const auto at = [](double in_sd, double degrees) {
+    const std::vector<SpecimenDistance> distances = {{"scale", 1.0, 1.0, 0.5, false, degrees},
+                                                     {"modulus", 1.0, 1.0, in_sd, false, degrees}};
     return probability_unlike(distances);
   };
-  EXPECT_NEAR(at(3.0), 0.4529 / 1.4529, 1e-4);
-  EXPECT_EQ(at(-3.0), at(3.0)) << "too soft is as unlike as too stiff";
-  EXPECT_EQ(at(0.1), at(-0.5)) << "the farthest of the two counts";
-  EXPECT_LT(at(2.0), 0.05);
-  EXPECT_GT(at(5.0), 0.99);
-  EXPECT_NEAR(at(60.0), 1.0, 1e-12) << "beyond what exp() can tell from 0";
-  EXPECT_EQ(at(std::numeric_limits<double>::quiet_NaN()), 1.0);
+  // By hand, five degrees of freedom, at 3: density of t 0.0172926, of ten times t 0.0359825; 0.05 / 0.95 of their
+  // ratio.
+  EXPECT_NEAR(at(3.0, 5.0), 0.05 * 0.0359825 / (0.05 * 0.0359825 + 0.95 * 0.0172926), 1e-5);
+  const std::vector<std::pair<double, double>> told = {
+      {0.6, 0.0065}, {2.0, 0.0341}, {3.0, 0.2090}, {4.0, 0.7324}, {5.0, 0.9693}};
+  for (const auto& [in_sd, expected] : told) EXPECT_NEAR(at(in_sd, 23.0), expected, 5e-4) << in_sd;
+  EXPECT_EQ(at(-3.0, 23.0), at(3.0, 23.0)) << "too soft is as unlike as too stiff";
+  EXPECT_EQ(at(0.1, 23.0), at(-0.5, 23.0)) << "the farthest of the two counts";
+  EXPECT_LT(at(4.0, 5.0), 0.5 * at(4.0, 23.0)) << "two specimens hardly tell how widely they are spread";
+  for (const double degrees : {4.0, 23.0, 500.0}) {
+    for (double in_sd = 0.5; in_sd < 40.0; in_sd *= 1.5) {
+      EXPECT_LE(at(in_sd, degrees), at(1.5 * in_sd, degrees)) << "farther is never more alike: " << in_sd;
+    }
+    EXPECT_GT(at(100.0, degrees), 0.99);
+  }
+  EXPECT_EQ(at(std::numeric_limits<double>::quiet_NaN(), 5.0), 1.0);
   EXPECT_EQ(probability_unlike({}), kPriorUnlike);
 }
 
 TEST(ProbabilityUnlike, DoesNotCountWhatIsBetterBelow) {
-  const std::vector<SpecimenDistance> better = {{"rmse", 0.1, 0.4, -8.0, true}};
-  const std::vector<SpecimenDistance> worse = {{"rmse", 3.0, 0.4, 8.0, true}};
+  const std::vector<SpecimenDistance> better = {{"rmse", 0.1, 0.4, -8.0, true, 23.0}};
+  const std::vector<SpecimenDistance> worse = {{"rmse", 3.0, 0.4, 8.0, true, 23.0}};
   EXPECT_LT(probability_unlike(better), 0.01);
   EXPECT_GT(probability_unlike(worse), 0.99);
 }
@@ -146,20 +156,42 @@ TEST(JudgeEligibility, SaysOneHalfOfWhatTheCalibrationSaysNothingOf) {
   const Eligibility near = judge_eligibility(evidence);
   EXPECT_NEAR(*near.p_worse, 0.02 * (1.0 - near.p_unlike) + 0.5 * near.p_unlike, 1e-15);
   EXPECT_LT(*near.p_worse, 0.025);
-  evidence.distances.front().in_sd = -8.0;
-  EXPECT_NEAR(*judge_eligibility(evidence).p_worse, 0.5, 1e-9) << "a sure gain of a simulation that is not believed";
+  evidence.distances.front().in_sd = -1e3;
+  EXPECT_NEAR(*judge_eligibility(evidence).p_worse, 0.5, 2e-3) << "a sure gain of a simulation that is not believed";
   evidence.gain->p_worse = 0.98;
-  EXPECT_NEAR(*judge_eligibility(evidence).p_worse, 0.5, 1e-9) << "nor is a sure loss";
+  EXPECT_NEAR(*judge_eligibility(evidence).p_worse, 0.5, 2e-3) << "nor is a sure loss";
+  evidence.gain->sd_mm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(judge_eligibility(evidence).p_worse) << "no number";
   evidence.gain.reset();
   EXPECT_FALSE(judge_eligibility(evidence).p_worse);
 }
 
+TEST(JudgeEligibility, SaysOneHalfWhereSomethingElseThanADistanceSpeaksAgainstTheSimulation) {
+  EligibilityEvidence evidence = good();
+  evidence.is_registered = false;
+  EXPECT_EQ(judge_eligibility(evidence).p_unlike, 1.0);
+  EXPECT_EQ(*judge_eligibility(evidence).p_worse, 0.5);
+  evidence = good();
+  evidence.corrected.unmeasured_weight = 0.6;
+  EXPECT_EQ(judge_eligibility(evidence).p_unlike, 1.0);
+}
+
+TEST(JudgeEligibility, IsNotSurerWithoutAPullThanBeforeAnythingWasMeasured) {
+  EligibilityEvidence evidence = good();
+  EXPECT_LT(judge_eligibility(evidence).p_unlike, 0.01);
+  evidence.is_stiffness_compared = false;
+  EXPECT_EQ(judge_eligibility(evidence).p_unlike, kPriorUnlike);
+}
+
 TEST(JudgeEligibility, CutsAsPlannedWhereASpecimenMayBeUnlike) {
   EligibilityEvidence evidence = good();
-  evidence.distances.front().in_sd = 2.99;  // believed, just so
+  evidence.distances.front() = {"youngs_modulus_kpa", 30.0, 12.0, 2.9, false, 100.0};  // believed, just so
+  evidence.gain->p_worse = 0.08;
   const Eligibility judged = judge_eligibility(evidence);
   EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("is the worse one with a probability of 0.1")));
+  evidence.distances.front().in_sd = 0.0;
+  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
 }
 
 TEST(JudgeEligibility, RefusesRulesThatAreNone) {

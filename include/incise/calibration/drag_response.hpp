@@ -11,6 +11,9 @@ struct SimulatedProfile {
   std::vector<double> signed_error_mm;  ///< one for each sector; empty: no closed ring
 };
 
+/// Whether a run is one at the specimen's reference stiffness: a factor of 1, but for rounding.
+[[nodiscard]] bool is_reference_stiffness(double stiffness_factor);
+
 /// What the simulation of one specimen says of its profile for any drag length and stiffness within what was simulated:
 /// straight lines between neighbouring drag lengths at the reference stiffness, plus ln(stiffness factor) times a slope
 /// that is found where a second stiffness was cut with the same drag length.

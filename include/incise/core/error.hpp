@@ -27,8 +27,12 @@ class CaseError : public Error {
   /// The same error with the case file named, for a thrower that did not know it: "case" gives way to `file`, a file that
   /// is named already stays, any other place follows the file's name.
   [[nodiscard]] CaseError in_file(const std::string& file) const;
+  /// The message from the field on, for whoever names the case beside it.
+  [[nodiscard]] std::string without_place() const;
 
  private:
+  [[nodiscard]] std::size_t end_of_place() const;
+
   std::string field_;
 };
 

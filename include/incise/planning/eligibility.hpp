@@ -25,6 +25,7 @@ struct SpecimenDistance {
   double mean = 0.0;   ///< of the calibration's specimens; for a logarithmic quantity the geometric one
   double in_sd = 0.0;  ///< how many standard deviations of what a next specimen would show `value` lies above the mean
   bool is_better_below = false;  ///< a value below the mean speaks for the specimen, however far
+  double degrees = 4.0;          ///< degrees of freedom of that standard deviation: n + 3, >= 4
 };
 
 /// How a quantity differs between specimens that are alike.
@@ -41,15 +42,16 @@ struct UsualSpread {
 [[nodiscard]] SpecimenDistance distance_from(std::string name, double value, std::span<const double> calibrated,
                                              const UsualSpread& usual);
 
-/// How probable it is that the calibration says nothing of a specimen, by what lies farthest from the calibration's:
-/// a mixture of specimens that are alike (distances with a standard deviation of 1) and, before anything is known of
-/// this one kPriorUnlike, of others (kUnlikeSpread). 0.005 at 0, 0.04 at 2, 0.31 at 3, 0.93 at 4. Quantities for which
-/// below is better count above the mean alone. Source: [BoxTiao1968].
+/// How probable it is that the calibration says nothing of a specimen, by the quantity that is most unlike: before
+/// anything is known kPriorUnlike; specimens that are alike have distances of Student's t (the spread is estimated,
+/// too), others of one that is kUnlikeSpread times as wide. 0.005, 0.03, 0.21, 0.73 and 0.97 at distances of 0, 2, 3, 4
+/// and 5 from twenty specimens, 0.10 and 0.26 at 3 and 4 from two. Quantities for which below is better count above the
+/// mean alone; several quantities are looked at one at a time. Source: [BoxTiao1968].
 /// @return in (0, 1]; kPriorUnlike without distances; 1 where one of them is no number.
 [[nodiscard]] double probability_unlike(std::span<const SpecimenDistance> distances);
 
 inline constexpr double kPriorUnlike = 0.05;   ///< share of specimens of which a calibration says nothing. Chosen.
-inline constexpr double kUnlikeSpread = 10.0;  ///< standard deviation of their distances. Chosen: far, either way.
+inline constexpr double kUnlikeSpread = 10.0;  ///< how many times as widely they are spread. Chosen: far, either way.
 
 /// What a verdict is made of.
 struct EligibilityEvidence {
@@ -60,6 +62,7 @@ struct EligibilityEvidence {
   bool is_registered = true;                ///< a transform was found, and nothing spoke against it
   double registration_rmse_mm = 0.0;        ///< of the simulated surface against the measured one
   std::vector<SpecimenDistance> distances;  ///< of everything that is known of both
+  bool is_stiffness_compared = true;        ///< one of them is of its stiffness
 };
 
 /// When a verdict is which. Every number is a choice; see docs/models/eligibility.md.
@@ -77,9 +80,12 @@ struct EligibilityRules {
 struct Eligibility {
   Verdict verdict = Verdict::DoNotUse;
   std::vector<std::string> reasons;  ///< each with its numbers; of the verdict alone, at least one
-  double p_unlike = 0.0;             ///< probability_unlike of its distances
+  /// probability_unlike of its distances, but at least kPriorUnlike where its stiffness is not among them, and 1 where
+  /// something else than a distance speaks against the simulation.
+  double p_unlike = 0.0;
   /// That the corrected cut is the worse one: the gain's p_worse as far as the calibration says something of this
-  /// specimen, one half as far as it does not, (1 − p_unlike) · p_worse + p_unlike / 2. Absent without a gain.
+  /// specimen, one half as far as it does not, (1 − p_unlike) · p_worse + p_unlike / 2. Absent without a gain, or where
+  /// that is no number.
   std::optional<double> p_worse;
 };
 
