@@ -123,6 +123,7 @@ AdviceJson specimen_json(const AdvisedSpecimen& specimen) {
                   {"expected_gain_mm", said.value("expected_gain_mm", AdviceJson())},
                   {"p_worse", said.value("p_worse", AdviceJson())},
                   {"p_worse_if_alike", said.value("p_worse_if_alike", AdviceJson())},
+                  {"p_worse_if_unlike", said.value("p_worse_if_unlike", AdviceJson())},
                   {"p_unlike", said.value("p_unlike", AdviceJson())},
                   {"true_planned_mm", or_null(specimen.planned.mean_abs_error_mm)},
                   {"true_corrected_mm", or_null(specimen.corrected.mean_abs_error_mm)},
@@ -207,7 +208,7 @@ AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std
   json["worse"] = std::count_if(specimens.begin(), specimens.end(), [](const AdvisedSpecimen& s) { return is_worse(s.planned, s.corrected).value_or(false); });
   json["auc"] = auc_json(forecasts_with_pull(specimens, false));
   json["auc_outside_alone"] = auc_json(forecasts_with_pull(specimens, true));
-  for (const char* part : {"p_worse_if_alike", "p_unlike"}) {  // what p_worse is made of, each for itself
+  for (const char* part : {"p_worse_if_alike", "p_worse_if_unlike", "p_unlike"}) {  // what p_worse is made of, each for itself
     json["auc_of"][part] = auc_json(forecasts_with_pull(specimens, false, part));
     json["auc_of_outside_alone"][part] = auc_json(forecasts_with_pull(specimens, true, part));
   }

@@ -27,6 +27,7 @@ OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index) {
     default:
       return {"oedematous",
               {{"youngs_modulus_kpa", random.uniform(3.0, 3.7)},
+               {"toughness_j_m2", random.uniform(500.0, 650.0)},
                {"rupture_percent", random.uniform(0.7, 0.8)},
                {"adhesion_kpa_s_mm2", random.uniform(1.0, 3.0)},
                {"inclusion_ratio", random.uniform(10.0, 15.0)},

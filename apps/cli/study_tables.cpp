@@ -155,7 +155,7 @@ TableJson assessments_json(const std::vector<Trial>& trials) {
   for (const Trial& trial : trials) {
     if (!trial.assessment.is_object()) continue;
     TableJson entry{{"specimen", trial.name}, {"role", to_string(trial.role)}, {"kind", trial.kind.empty() ? TableJson(nullptr) : TableJson(trial.kind)}};
-    for (const char* key : {"verdict", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_unlike", "p_close_margin", "distances"})
+    for (const char* key : {"verdict", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "distances"})
       entry[key] = trial.assessment.value(key, TableJson());
     const bool is_pair = trial.planned.measured && trial.corrected.measured;
     entry["accepted"] = trial.compensation.is_object() ? trial.compensation.value("accepted", TableJson()) : TableJson(nullptr);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -144,6 +146,15 @@ double probability_unlike(std::span<const SpecimenDistance> distances) {
   return most;
 }
 
+double probability_worse_if_unlike(double move_mm, std::span<const double> errors_mm) {
+  if (errors_mm.empty()) return 0.5;
+  const double mean = std::accumulate(errors_mm.begin(), errors_mm.end(), 0.0) / static_cast<double>(errors_mm.size());
+  const double outward = move_mm < 0.0 ? -1.0 : 1.0;
+  // |e + move| > |e| where e lies beyond -move / 2 on the side that the correction moves to.
+  const double spare = -0.5 * std::abs(move_mm) - outward * mean;
+  return 0.5 * std::erfc(spare / (kUnlikeErrorSdMm * std::numbers::sqrt2));
+}
+
 Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules) {
   const std::vector<std::string> violations = validate(rules);
   INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
@@ -151,8 +162,10 @@ Eligibility judge_eligibility(const EligibilityEvidence& evidence, const Eligibi
   judged.reasons = failings(evidence, rules);
   judged.p_unlike = judged.reasons.empty() ? probability_unlike(evidence.distances) : 1.0;
   if (!evidence.is_stiffness_compared) judged.p_unlike = std::max(judged.p_unlike, kPriorUnlike);
-  if (evidence.gain && std::isfinite(evidence.gain->mean_mm) && std::isfinite(evidence.gain->sd_mm))
-    judged.p_worse = (1.0 - judged.p_unlike) * evidence.gain->p_worse + judged.p_unlike / 2.0;
+  if (evidence.gain && std::isfinite(evidence.gain->mean_mm) && std::isfinite(evidence.gain->sd_mm)) {
+    judged.p_worse_if_unlike = probability_worse_if_unlike(evidence.gain->move_mm, evidence.calibrated_error_mm);
+    judged.p_worse = (1.0 - judged.p_unlike) * evidence.gain->p_worse + judged.p_unlike * *judged.p_worse_if_unlike;
+  }
   std::ranges::move(far_quantities(evidence, rules), std::back_inserter(judged.reasons));
   if (!judged.reasons.empty()) return judged;  // do not use
   judged.reasons = doubts(evidence, *judged.p_worse, rules);

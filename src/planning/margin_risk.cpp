@@ -92,6 +92,7 @@ CutGain MarginRisk::gain(const std::vector<ScenarioErrors>& first, const std::ve
   for (std::size_t s = 0; s < first.size(); ++s) {
     const double weight = share * first[s].weight;
     weights += first[s].weight;
+    gain.move_mm += first[s].weight * (second[s].error_mm - first[s].error_mm).mean();
     for (Eigen::Index k = 0; k < residuals_.cols(); ++k) {
       const double before = (first[s].error_mm + residuals_.col(k)).cwiseAbs().mean();
       const double won = before - (second[s].error_mm + residuals_.col(k)).cwiseAbs().mean();
@@ -102,6 +103,7 @@ CutGain MarginRisk::gain(const std::vector<ScenarioErrors>& first, const std::ve
   }
   gain.mean_mm /= weights;
   gain.p_worse /= weights;
+  gain.move_mm /= weights;
   gain.sd_mm = std::sqrt(std::max(0.0, squares / weights - gain.mean_mm * gain.mean_mm));
   return gain;
 }

@@ -45,6 +45,8 @@ Json to_json(const Assessment& assessment, const AssessmentRequest& request) {
   const std::optional<double>& p_worse = assessment.eligibility.p_worse;
   json["p_worse"] = p_worse ? Json(*p_worse) : Json(nullptr);
   json["p_worse_if_alike"] = is_foretold ? Json(gain->p_worse) : Json(nullptr);
+  const std::optional<double>& if_unlike = assessment.eligibility.p_worse_if_unlike;
+  json["p_worse_if_unlike"] = if_unlike ? Json(*if_unlike) : Json(nullptr);
   json["p_unlike"] = assessment.eligibility.p_unlike;
   json["p_close_margin"] = nullptr;
   json["intended"] = nullptr;

@@ -147,6 +147,7 @@ CalibratedSpecimenRecord specimen_from(const JsonPlace& place) {
   record.simulated_force_n = place.number("simulated_force_n");
   if (!place.at("stretch_force_n", "a number or null").is_null())
     record.stretch_force_n = positive(place, "stretch_force_n");
+  if (place.has("photographed_mean_signed_mm")) record.signed_error_mm = place.number("photographed_mean_signed_mm");
   if (place.has("stretch_mm")) record.stretch_mm = place.number("stretch_mm");
   record.registration = registration_quality_from(place);
   return record;
@@ -302,6 +303,7 @@ CalibratedRange range_of(const CalibrationRecord& record) {
     if (specimen.stretch_force_n) range.youngs_modulus_kpa.push_back(specimen.youngs_modulus_kpa);
     if (specimen.stretch_force_n && specimen.stretch_mm > 0.0)
       range.compliance_mm_n.push_back(specimen.stretch_mm / *specimen.stretch_force_n);
+    if (specimen.signed_error_mm) range.signed_error_mm.push_back(*specimen.signed_error_mm);
     if (!specimen.registration) continue;
     range.registration_rmse_mm.push_back(specimen.registration->rmse_mm);
     range.registration_scale.push_back(specimen.registration->scale);

@@ -117,6 +117,7 @@ Assessment assess(const Case& settings, Store& store, const Study& done, const C
   Assessment assessment;
   EligibilityEvidence& evidence = assessment.evidence;
   evidence.is_registered = request.is_registered;
+  evidence.calibrated_error_mm = request.calibrated.signed_error_mm;
   evidence.registration_rmse_mm = request.registration.rmse_mm;
   compare_registration(request, assessment);
   evidence.no_gain_because = without_correction(done);

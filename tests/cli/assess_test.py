@@ -7,7 +7,7 @@ import small_calibration
 import small_case
 from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
-KEYS = ("verdict", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_unlike", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
+KEYS = ("verdict", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
 SCALE = 1.001
 T_TARGET_SOURCE = [[SCALE, 0, 0, 0], [0, SCALE, 0, 0], [0, 0, SCALE, 0], [0, 0, 0, 1]]
 PULL_N = 27.0  # about what the block pulls at the case's modulus

@@ -150,6 +150,28 @@ TEST(ProbabilityUnlike, DoesNotCountWhatIsBetterBelow) {
   EXPECT_GT(probability_unlike(worse), 0.99);
 }
 
+TEST(ProbabilityWorseIfUnlike, IsThatOfACutThatErrsLessThanHalfTheMove) {
+  const std::vector<double> errors = {-1.5, -1.9};  // -1.7 in the mean, give or take 0.7
+  EXPECT_NEAR(probability_worse_if_unlike(2.0, errors), 0.5 * std::erfc(1.0 / std::sqrt(2.0)), 1e-12) << "e > -1.0";
+  EXPECT_NEAR(probability_worse_if_unlike(3.4, errors), 0.5, 1e-12) << "twice as far as they err";
+  EXPECT_LT(probability_worse_if_unlike(1.1, errors), probability_worse_if_unlike(1.9, errors)) << "farther is riskier";
+  EXPECT_NEAR(probability_worse_if_unlike(-0.6, errors), 0.5 * std::erfc(-2.0 / 0.7 / std::sqrt(2.0)), 1e-12)
+      << "the wrong way is nearly always worse: e < 0.3";
+  EXPECT_EQ(probability_worse_if_unlike(-2.0, std::vector<double>{1.7}), probability_worse_if_unlike(2.0, errors))
+      << "the mirror image";
+  EXPECT_EQ(probability_worse_if_unlike(2.0, {}), 0.5) << "no calibrated cut to go by";
+}
+
+TEST(JudgeEligibility, BelievesWhatIsSaidOfTheUnlikeAsFarAsASpecimenIs) {
+  EligibilityEvidence evidence = good();
+  evidence.calibrated_error_mm = {-1.7};
+  evidence.gain->move_mm = 2.0;
+  evidence.distances.front() = {"youngs_modulus_kpa", 3.0, 12.0, -4.0, false, 23.0};
+  const Eligibility judged = judge_eligibility(evidence);
+  EXPECT_EQ(*judged.p_worse_if_unlike, probability_worse_if_unlike(2.0, evidence.calibrated_error_mm));
+  EXPECT_NEAR(*judged.p_worse, (1.0 - judged.p_unlike) * 0.01 + judged.p_unlike * *judged.p_worse_if_unlike, 1e-15);
+}
+
 TEST(JudgeEligibility, SaysOneHalfOfWhatTheCalibrationSaysNothingOf) {
   EligibilityEvidence evidence = good();
   evidence.gain->p_worse = 0.02;

@@ -193,6 +193,7 @@ TEST_F(Robust, ForeseesWhatTheCorrectionWinsAndHowSurely) {
   EXPECT_NEAR(split.gain->mean_mm, 0.75 * 1.0 - 0.25 * 1.0, kChordMm);
   EXPECT_NEAR(split.gain->sd_mm, 2.0 * std::sqrt(0.75 * 0.25), 2.0 * kChordMm);
   EXPECT_NEAR(split.gain->p_worse, 0.25, 1e-12);
+  EXPECT_NEAR(split.gain->move_mm, 1.0, kChordMm);
   EXPECT_THAT(split.corrected_error_mm[1], Each(::testing::DoubleNear(1.0, kChordMm)));
 
   // Nothing is compared where one of the two cuts shows no ring.

@@ -53,6 +53,14 @@ struct UsualSpread {
 inline constexpr double kPriorUnlike = 0.05;   ///< share of specimens of which a calibration says nothing. Chosen.
 inline constexpr double kUnlikeSpread = 10.0;  ///< how many times as widely they are spread. Chosen: far, either way.
 
+/// That a correction makes the cut of a specimen worse of which the calibration says nothing: it errs as planned as
+/// others did, e ~ N(mean of errors_mm, kUnlikeErrorSdMm²) in the mean along the ring, whatever the simulation
+/// foretells of it, and e + move_mm lies farther from 0 than e: farther moves are the riskier ones.
+/// @param errors_mm  mean signed errors of the calibration's cuts, as photographed. @return one half without any.
+[[nodiscard]] double probability_worse_if_unlike(double move_mm, std::span<const double> errors_mm);
+
+inline constexpr double kUnlikeErrorSdMm = 0.7;  ///< half of what a cut errs as planned. Chosen.
+
 /// What a verdict is made of.
 struct EligibilityEvidence {
   PathRisk intended, corrected;
@@ -63,6 +71,7 @@ struct EligibilityEvidence {
   double registration_rmse_mm = 0.0;        ///< of the simulated surface against the measured one
   std::vector<SpecimenDistance> distances;  ///< of everything that is known of both
   bool is_stiffness_compared = true;        ///< one of them is of its stiffness
+  std::vector<double> calibrated_error_mm;  ///< mean signed errors of the calibration's cuts
 };
 
 /// When a verdict is which. Every number is a choice; see docs/models/eligibility.md.
@@ -83,9 +92,10 @@ struct Eligibility {
   /// probability_unlike of its distances, but at least kPriorUnlike where its stiffness is not among them, and 1 where
   /// something else than a distance speaks against the simulation.
   double p_unlike = 0.0;
+  /// probability_worse_if_unlike of the gain's move. Absent without a gain, or where that is no number.
+  std::optional<double> p_worse_if_unlike;
   /// That the corrected cut is the worse one: the gain's p_worse as far as the calibration says something of this
-  /// specimen, one half as far as it does not, (1 − p_unlike) · p_worse + p_unlike / 2. Absent without a gain, or where
-  /// that is no number.
+  /// specimen, p_worse_if_unlike as far as it does not. Absent where that is.
   std::optional<double> p_worse;
 };
 

@@ -57,6 +57,7 @@ struct CalibratedSpecimenRecord {
   double stretch_mm = 0.0;                          ///< by which it was displaced; 0: not said
   std::optional<double> stretch_force_n;            ///< measured
   std::optional<RegistrationQuality> registration;  ///< absent where it was not given to the calibration
+  std::optional<double> signed_error_mm;            ///< mean along the ring, as photographed
   std::optional<double> difference_mm;  ///< of a fit: mean along the ring of photographed less fitted signed error
 };
 

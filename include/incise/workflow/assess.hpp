@@ -16,6 +16,7 @@ struct CalibratedRange {
   std::vector<double> compliance_mm_n;  ///< stretch over pull
   std::vector<double> registration_rmse_mm;
   std::vector<double> registration_scale;
+  std::vector<double> signed_error_mm;  ///< mean along the ring, as photographed
 };
 
 struct AssessmentRequest {
