@@ -163,12 +163,15 @@ Eligibility judge_eligibility(const EligibilityEvidence& evidence, const Eligibi
   judged.p_unlike = judged.reasons.empty() ? probability_unlike(evidence.distances) : 1.0;
   if (!evidence.is_stiffness_compared) judged.p_unlike = std::max(judged.p_unlike, kPriorUnlike);
   if (evidence.gain && std::isfinite(evidence.gain->mean_mm) && std::isfinite(evidence.gain->sd_mm)) {
-    judged.p_worse_if_unlike = probability_worse_if_unlike(evidence.gain->move_mm, evidence.calibrated_error_mm);
+    judged.p_worse_if_unlike = judged.reasons.empty()
+                                   ? probability_worse_if_unlike(evidence.gain->move_mm, evidence.calibrated_error_mm)
+                                   : 0.5;
     judged.p_worse = (1.0 - judged.p_unlike) * evidence.gain->p_worse + judged.p_unlike * *judged.p_worse_if_unlike;
   }
   std::ranges::move(far_quantities(evidence, rules), std::back_inserter(judged.reasons));
   if (!judged.reasons.empty()) return judged;  // do not use
-  judged.reasons = doubts(evidence, *judged.p_worse, rules);
+  // A specimen that may be unlike is no better one to correct: its distance never lifts a doubt.
+  judged.reasons = doubts(evidence, std::max(*judged.p_worse, evidence.gain->p_worse), rules);
   if (!judged.reasons.empty()) {
     judged.verdict = Verdict::CutAsPlanned;
     return judged;

@@ -118,6 +118,11 @@ Assessment assess(const Case& settings, Store& store, const Study& done, const C
   EligibilityEvidence& evidence = assessment.evidence;
   evidence.is_registered = request.is_registered;
   evidence.calibrated_error_mm = request.calibrated.signed_error_mm;
+  if (evidence.calibrated_error_mm.empty()) {
+    assessment.notes.emplace_back(
+        "the calibration does not say how its cuts erred in the mean: of a specimen unlike its own either cut is taken "
+        "to be as likely the worse one");
+  }
   evidence.registration_rmse_mm = request.registration.rmse_mm;
   compare_registration(request, assessment);
   evidence.no_gain_because = without_correction(done);

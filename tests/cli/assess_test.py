@@ -46,6 +46,9 @@ class AssessTest(CommandTest):
         self.assertLess(max(abs(entry["in_sd"]) for entry in found["distances"]), 3.0)
         self.assertEqual([entry["name"] for entry in found["sensitivity"]], ["drag_length_mm", "ln_stiffness_factor", "bias_mm"])
         self.assertEqual(found["notes"], [])
+        self.assertTrue(0.0 < found["p_worse_if_unlike"] < 0.5, "cuts err inwards, the correction moves them outwards")
+        mixed = (1.0 - found["p_unlike"]) * found["p_worse_if_alike"] + found["p_unlike"] * found["p_worse_if_unlike"]
+        self.assertAlmostEqual(found["p_worse"], mixed, places=12)
         written = json.loads((self.out / "assessment" / "assess.json").read_text())
         self.assertEqual(written["verdict"], found["verdict"])
         self.assertIn("assessment/manifest.json", files_below(self.out))
@@ -77,6 +80,12 @@ class AssessTest(CommandTest):
         self.assertTrue(any("pull was not measured" in note for note in withheld["notes"]), withheld["notes"])
         self.assertGreater(withheld["scenarios"]["spread"]["ln_stiffness_sd"], 3.0 * known["scenarios"]["spread"]["ln_stiffness_sd"])
         self.assertEqual([entry["name"] for entry in withheld["distances"]], ["registration_rmse_mm", "registration_scale"])
+        self.assertGreaterEqual(withheld["p_unlike"], 0.05, "not surer than before anything was measured")
+        # A calibration of an earlier version does not say how its cuts erred.
+        small_calibration.write(self.calibration, lambda c: [s.pop("photographed_mean_signed_mm") for s in c["specimens"]])
+        older = self.assessed("--stretch-force-n", PULL_N)
+        self.assertEqual(older["p_worse_if_unlike"], 0.5)
+        self.assertTrue(any("erred in the mean" in note for note in older["notes"]), older["notes"])
 
     def test_a_ring_that_stays_open_cannot_be_foretold(self):
         small_case.write_case(self.folder / "case", {"cut": {"dullness": 900}})

@@ -7,9 +7,9 @@ import pathlib
 STEP_S, SPEED_MM_S = 0.02, 13.0
 SPECIMENS = [
     {"name": "s1", "youngs_modulus_kpa": 62.0, "stretch_force_n": 24.0, "simulated_force_n": 27.0, "stretch_mm": 20.0,
-     "registration": {"rmse_mm": 0.30, "scale": 1.000}},
+     "photographed_mean_signed_mm": -3.5, "registration": {"rmse_mm": 0.30, "scale": 1.000}},
     {"name": "s2", "youngs_modulus_kpa": 78.0, "stretch_force_n": 30.0, "simulated_force_n": 27.0, "stretch_mm": 20.0,
-     "registration": {"rmse_mm": 0.36, "scale": 1.004}},
+     "photographed_mean_signed_mm": -3.9, "registration": {"rmse_mm": 0.36, "scale": 1.004}},
 ]
 RESIDUAL = {"sd_mm": 0.3, "correlation_deg": 60.0, "reading_mm": 0.1, "specimen_spread_mm": 0.2, "placement_mm": 0.2, "n_effective": 4.0}
 

@@ -190,12 +190,26 @@ TEST(JudgeEligibility, SaysOneHalfOfWhatTheCalibrationSaysNothingOf) {
 
 TEST(JudgeEligibility, SaysOneHalfWhereSomethingElseThanADistanceSpeaksAgainstTheSimulation) {
   EligibilityEvidence evidence = good();
+  evidence.calibrated_error_mm = {-1.7};
+  evidence.gain->move_mm = 1.6;
+  ASSERT_LT(*judge_eligibility(evidence).p_worse, 0.1);
   evidence.is_registered = false;
   EXPECT_EQ(judge_eligibility(evidence).p_unlike, 1.0);
   EXPECT_EQ(*judge_eligibility(evidence).p_worse, 0.5);
   evidence = good();
   evidence.corrected.unmeasured_weight = 0.6;
   EXPECT_EQ(judge_eligibility(evidence).p_unlike, 1.0);
+}
+
+TEST(JudgeEligibility, ADistanceNeverLiftsADoubt) {
+  EligibilityEvidence evidence = good();
+  evidence.gain->p_worse = 0.16;
+  evidence.gain->move_mm = 0.2;
+  evidence.calibrated_error_mm = {-1.7};  // so small a move would hardly ever be too much
+  evidence.distances.front() = {"youngs_modulus_kpa", 30.0, 12.0, 2.9, false, 100.0};
+  const Eligibility judged = judge_eligibility(evidence);
+  ASSERT_LT(*judged.p_worse, 0.15);
+  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
 }
 
 TEST(JudgeEligibility, IsNotSurerWithoutAPullThanBeforeAnythingWasMeasured) {

@@ -173,6 +173,8 @@ TEST_F(CalibrationFileTest, KeepsWhatWasMeasuredOfItsSpecimens) {
   calibration.specimens[0].youngs_modulus_kpa = 12.5;
   calibration.specimens[0].stretch_force_n = 4.2;
   calibration.specimens[0].registration = RegistrationQuality{0.31, 1.02};
+  calibration.specimens[0].signed_mean_mm = -1.61;
+  calibration.specimens[1].signed_mean_mm = -1.83;
   write_json(path(), to_json(calibration));
   CalibrationRecord record = read_calibration(path());
   EXPECT_EQ(record.specimens[0].youngs_modulus_kpa, 12.5);
@@ -180,16 +182,19 @@ TEST_F(CalibrationFileTest, KeepsWhatWasMeasuredOfItsSpecimens) {
   ASSERT_TRUE(record.specimens[0].registration);
   EXPECT_EQ(record.specimens[0].registration->rmse_mm, 0.31);
   EXPECT_EQ(record.specimens[0].registration->scale, 1.02);
+  EXPECT_EQ(range_of(record).signed_error_mm, (std::vector<double>{-1.61, -1.83}));
   EXPECT_FALSE(belief_of(record, path()).knows_forces) << "the second specimen's pull is not known";
   record.specimens[1].stretch_force_n = 3.9;
   EXPECT_TRUE(belief_of(record, path()).knows_forces);
   EXPECT_EQ(belief_of(record, path()).speed_mm_s, kSetting.speed_mm_s);
 
-  // A file of an earlier version, without the key.
+  // Files of earlier versions, without the keys.
   nlohmann::ordered_json older = to_json(calibration);
   older["specimens"][0].erase("registration");
+  for (auto& specimen : older["specimens"]) specimen.erase("photographed_mean_signed_mm");
   write_json(path(), older);
   EXPECT_FALSE(read_calibration(path()).specimens[0].registration);
+  EXPECT_TRUE(range_of(read_calibration(path())).signed_error_mm.empty());
 }
 
 TEST_F(CalibrationFileTest, TellsHowTheBiasFollowsStiffness) {

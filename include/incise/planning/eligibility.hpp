@@ -76,11 +76,12 @@ struct EligibilityEvidence {
 
 /// When a verdict is which. Every number is a choice; see docs/models/eligibility.md.
 struct EligibilityRules {
-  double least_gain_sds = 1.0;     ///< the gain has to be above this many of its standard deviations, >= 0
-  double most_p_worse = 0.15;      ///< and the probability that the corrected cut is the worse one at most this, [0, 1]
-  double most_distance_sds = 3.0;  ///< of any quantity, > 0
-  double most_rmse_mm = 1.0;       ///< of the registration, > 0
-  double most_unmeasured = 0.5;    ///< of the corrected path's tissues, by weight, [0, 1]
+  double least_gain_sds = 1.0;  ///< the gain has to be above this many of its standard deviations, >= 0
+  /// and the probability that the corrected cut is the worse one at most this, alike and in all, [0, 1]
+  double most_p_worse = 0.15;
+  double most_distance_sds = 3.0;     ///< of any quantity, > 0
+  double most_rmse_mm = 1.0;          ///< of the registration, > 0
+  double most_unmeasured = 0.5;       ///< of the corrected path's tissues, by weight, [0, 1]
   double most_p_close_margin = 0.05;  ///< of the corrected path, where it is above the intended one's, (0, 1)
 };
 /// Every violation, one sentence each with the field's name; empty: valid.
@@ -92,7 +93,8 @@ struct Eligibility {
   /// probability_unlike of its distances, but at least kPriorUnlike where its stiffness is not among them, and 1 where
   /// something else than a distance speaks against the simulation.
   double p_unlike = 0.0;
-  /// probability_worse_if_unlike of the gain's move. Absent without a gain, or where that is no number.
+  /// probability_worse_if_unlike of the gain's move; one half where something else than a distance speaks against the
+  /// simulation. Absent without a gain, or where that is no number.
   std::optional<double> p_worse_if_unlike;
   /// That the corrected cut is the worse one: the gain's p_worse as far as the calibration says something of this
   /// specimen, p_worse_if_unlike as far as it does not. Absent where that is.
