@@ -60,8 +60,6 @@ double stated(const AdviceJson& assessment, const char* key) {
   return assessment.contains(key) && assessment.at(key).is_number() ? assessment.at(key).get<double>() : kNothingKnown;
 }
 
-double stated_p_worse(const AdviceJson& assessment) { return stated(assessment, "p_worse"); }
-
 std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& specimens, bool is_outside_alone, const char* key = "p_worse") {
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
@@ -78,7 +76,7 @@ std::vector<Forecast> forecasts_without_pull(const std::vector<AdvisedSpecimen>&
     const AdviceJson& said = specimen.trial->assessment_without_pull;
     if (!is_advice(said) || !specimen.withheld) continue;
     const std::optional<bool> worse = is_worse(specimen.planned, *specimen.withheld);
-    if (worse) forecasts.push_back({stated_p_worse(said), *worse});
+    if (worse) forecasts.push_back({stated(said, "p_worse"), *worse});
   }
   return forecasts;
 }
