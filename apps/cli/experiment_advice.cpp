@@ -163,21 +163,20 @@ LinePlot roc_plot(const AdviceJson& advice) {
 
 LinePlot reliability_plot(const AdviceJson& margin) {
   LinePlot plot;
-  plot.title = fmt::format("Virtual cuts ({}): P(margin below {} mm somewhere), Brier score {:.3f}", margin.at("cuts").get<std::size_t>(),
-                           margin.at("close_margin_mm").get<double>(), margin.at("brier_score").get<double>());
-  plot.x_label = "stated probability";
-  plot.y_label = "share in which it happened";
-  LineSeries seen{"seen", {}, {}, false};
+  LineSeries seen{"seen, with 95 % interval", {}, {}, false};
+  std::string counts;
   for (const AdviceJson& bin : margin.at("bins")) {
     seen.x.push_back(bin.at("stated").get<double>());
     seen.y.push_back(bin.at("seen").get<double>());
+    seen.low.push_back(bin.at("low").get<double>());
+    seen.high.push_back(bin.at("high").get<double>());
+    counts += fmt::format("{}{} of {}", counts.empty() ? "" : ", ", bin.at("happened").get<std::size_t>(), bin.at("cuts").get<std::size_t>());
   }
-  plot.series.push_back(std::move(seen));
-  plot.series.push_back({"as stated", {0.0, 1.0}, {0.0, 1.0}, true});
-  for (const AdviceJson& bin : margin.at("bins")) {
-    const double x = bin.at("stated").get<double>();
-    plot.series.push_back({fmt::format("95 % interval, {} cuts", bin.at("cuts").get<std::size_t>()), {x, x}, {bin.at("low").get<double>(), bin.at("high").get<double>()}, true});
-  }
+  plot.title = fmt::format("Virtual cuts: P(margin below {} mm somewhere), Brier score {:.3f}; from left to right seen in {}",
+                           margin.at("close_margin_mm").get<double>(), margin.at("brier_score").get<double>(), counts);
+  plot.x_label = "stated probability";
+  plot.y_label = "share in which it happened";
+  plot.series = {std::move(seen), {"as stated", {0.0, 1.0}, {0.0, 1.0}, true}};
   return plot;
 }
 

@@ -31,15 +31,20 @@ struct Range {
 Range range_of(const LinePlot& plot, bool is_x) {
   const bool is_log = is_x ? plot.is_log_x : plot.is_log_y;
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const LineSeries& series : plot.series) {
-    for (const double value : is_x ? series.x : series.y) {
+  const auto widen = [&](const std::string& name, const std::vector<double>& values) {
+    for (const double value : values) {
       const double place = is_log ? std::log10(value) : value;
-      INCISE_REQUIRE(
-          std::isfinite(place),
-          fmt::format("series \"{}\": expected numbers that the axis can show, found {}", series.name, value));
+      INCISE_REQUIRE(std::isfinite(place),
+                     fmt::format("series \"{}\": expected numbers that the axis can show, found {}", name, value));
       range.low = std::min(range.low, place);
       range.high = std::max(range.high, place);
     }
+  };
+  for (const LineSeries& series : plot.series) {
+    widen(series.name, is_x ? series.x : series.y);
+    if (is_x) continue;
+    widen(series.name, series.low);
+    widen(series.name, series.high);
   }
   double air = 0.06 * (range.high - range.low);
   if (!(air > 0.0)) air = std::max(1e-12, 0.5 * std::abs(range.high));
@@ -101,10 +106,14 @@ void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, const s
 
 void draw_series(SvgWriter& svg, const PlotArea& area, const LinePlot& plot, const LineSeries& series,
                  std::string_view color) {
+  const auto at = [&](double x, double y) {
+    return area.at(plot.is_log_x ? std::log10(x) : x, plot.is_log_y ? std::log10(y) : y);
+  };
   std::vector<Vec2> points;
-  for (std::size_t i = 0; i < series.x.size(); ++i) {
-    points.push_back(area.at(plot.is_log_x ? std::log10(series.x[i]) : series.x[i],
-                             plot.is_log_y ? std::log10(series.y[i]) : series.y[i]));
+  for (std::size_t i = 0; i < series.x.size(); ++i) points.push_back(at(series.x[i], series.y[i]));
+  for (std::size_t i = 0; i < series.low.size(); ++i) {
+    svg.line(at(series.x[i], series.low[i]), at(series.x[i], series.high[i]),
+             fmt::format("stroke=\"{}\" stroke-width=\"1.6\"", color));
   }
   if (series.is_line) {
     svg.polyline(points, false, fmt::format("stroke=\"{}\" stroke-width=\"1.8\" fill=\"none\"", color));
@@ -162,6 +171,11 @@ std::string line_plot_svg(const LinePlot& plot) {
     INCISE_REQUIRE(!series.x.empty() && series.x.size() == series.y.size(),
                    fmt::format("series \"{}\": expected as many y as x, at least one, found {} and {}", series.name,
                                series.y.size(), series.x.size()));
+    INCISE_REQUIRE(
+        series.low.size() == series.high.size() && (series.low.empty() || series.low.size() == series.x.size()),
+        fmt::format("series \"{}\": expected no error bars or as many as points, {}, found {} lower and {} upper "
+                    "ends",
+                    series.name, series.x.size(), series.low.size(), series.high.size()));
   }
   const Range x = range_of(plot, true);
   const Range y = range_of(plot, false);

@@ -159,6 +159,29 @@ TEST(LinePlotFigure, BreaksATitleAndALegendThatAreWiderThanThePicture) {
   EXPECT_NEAR(height_of(large), height_of(small) + 36.0, 1e-9) << "one more row of each";
 }
 
+TEST(LinePlotFigure, DrawsErrorBarsInTheColourOfTheirMarks) {
+  LinePlot plot{.title = "Seen", .x_label = "x", .y_label = "y", .series = {{"seen", {0.0, 1.0}, {0.2, 0.5}, false}}};
+  const auto bars_of = [](const std::string& svg) {
+    std::size_t bars = 0;
+    for (std::size_t at = svg.find("stroke-width=\"1.6\"/>"); at != std::string::npos;
+         at = svg.find("stroke-width=\"1.6\"/>", at + 1))
+      ++bars;
+    return bars;
+  };
+  const std::size_t without = bars_of(line_plot_svg(plot));
+  plot.series[0].low = {0.1, -2.0};
+  plot.series[0].high = {0.4, 3.0};
+  const std::string svg = line_plot_svg(plot);
+  expect_whole_svg(svg);
+  EXPECT_EQ(bars_of(svg), without + 2);
+  EXPECT_THAT(svg, HasSubstr(">3</text>")) << "the axis reaches to the ends of the bars";
+
+  plot.series[0].high = {0.4};
+  EXPECT_THROW(static_cast<void>(line_plot_svg(plot)), InvalidArgument);
+  plot.series[0].low = plot.series[0].high;
+  EXPECT_THROW(static_cast<void>(line_plot_svg(plot)), InvalidArgument) << "as many as points";
+}
+
 TEST(BoxNumbers, FollowAWorkedExample) {
   // 1 ... 8 and 30: quartiles at positions 2 and 6 of 0 ... 8; the fence is 7 + 1.5 * 4 = 13.
   const std::vector<double> values{30, 8, 1, 7, 2, 6, 3, 5, 4};

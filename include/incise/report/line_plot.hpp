@@ -8,8 +8,10 @@ namespace incise {
 struct LineSeries {
   std::string name;
   std::vector<double> x;
-  std::vector<double> y;  ///< as many as x
-  bool is_line = false;   ///< else one mark per point
+  std::vector<double> y;          ///< as many as x
+  bool is_line = false;           ///< else one mark per point
+  std::vector<double> low = {};   ///< lower ends of error bars along y; empty: none, else as many as x
+  std::vector<double> high = {};  ///< their upper ends, as many as lower ones
 };
 
 /// A plain x-y plot; labels carry the units.
