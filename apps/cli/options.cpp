@@ -1,4 +1,5 @@
 #include "options.hpp"
+#include "option_checks.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
@@ -7,11 +8,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <thread>
 
 namespace incise::cli {
 namespace {
+
+constexpr std::uint64_t kGreatestSeed = 1'000'000'000'000'000;  // a study counts on from it; exact in JSON
 
 void choose_isa(const std::string& name) {
   if (!is_supported(parse_isa(name))) {
@@ -121,7 +125,7 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   verb->add_flag("--quiet", options->quiet, "Warnings only");
   verb->add_flag("--verbose", options->verbose, "More detail");
   verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
-  verb->add_option("--seed", options->seed, "Seed of everything random")->check(CLI::NonNegativeNumber);
+  verb->add_option("--seed", options->seed, "Seed of everything random")->check(whole_between("--seed", 0, kGreatestSeed));
   verb->add_option("--isa", options->isa,
                    "Instruction set of the vectorised kernels; by default the best that this machine has")
       ->check(CLI::IsMember({"portable", "avx2", "avx512"}));

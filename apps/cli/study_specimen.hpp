@@ -67,7 +67,7 @@ class SpecimenTrial {
   [[nodiscard]] std::filesystem::path planned_path() const { return at("planned/plan/path.json"); }
   [[nodiscard]] double stretch_force_n() const { return stretch_force_n_; }
   [[nodiscard]] double youngs_modulus_kpa() const { return youngs_modulus_kpa_; }
-  [[nodiscard]] double registration_rmse_mm() const { return registration_rmse_mm_; }
+  [[nodiscard]] const std::optional<double>& registration_rmse_mm() const { return registration_rmse_mm_; }
   /// The step of prepare() that refused, and why; empty: none did.
   [[nodiscard]] const std::string& ended_at() const { return ended_at_; }
   [[nodiscard]] const std::vector<std::string>& commands() const { return runner_.lines(); }
@@ -86,7 +86,7 @@ class SpecimenTrial {
   double stretch_force_n_ = 0.0;
   double youngs_modulus_kpa_ = 0.0;
   double camera_scale_ = 1.0;
-  double registration_rmse_mm_ = 0.0;
+  std::optional<double> registration_rmse_mm_;  ///< absent: no registration was accepted
 };
 
 }  // namespace incise::cli

@@ -39,7 +39,7 @@ TableJson row_of(const Trial& trial, const char* cut_name, const TrialCut& cut) 
   row["outcome"] = cut.measured ? measure_at(cut.measured->measures, "/outcome") : TableJson(cut.is_made ? "no_closed_ring" : "not_cut");
   for (const Measure& measure : kMeasures) row[measure.column] = cut.measured ? measure_at(cut.measured->measures, measure.pointer) : TableJson(nullptr);
   row["stretch_force_n"] = trial.stretch_force_n;
-  row["registration_rmse_mm"] = trial.registration_rmse_mm;
+  row["registration_rmse_mm"] = trial.registration_rmse_mm ? TableJson(*trial.registration_rmse_mm) : TableJson(nullptr);
   row["verdict"] = trial.assessment.is_object() ? measure_at(trial.assessment, "/verdict") : TableJson(nullptr);
   const std::string& ended_at = trial.ended_at.empty() ? cut.ended_at : trial.ended_at;
   row["ended_at"] = ended_at.empty() ? TableJson(nullptr) : TableJson(ended_at);

@@ -28,7 +28,8 @@ struct Trial {
   nlohmann::ordered_json assessment;    ///< what `incise assess` printed; null: not run
   nlohmann::ordered_json assessment_without_pull;  ///< the same, had the pull not been measured
   nlohmann::ordered_json known_physics;            ///< what `incise bench floor` printed; null: not run
-  double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0, registration_rmse_mm = 0.0;
+  double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0;
+  std::optional<double> registration_rmse_mm;  ///< absent: `register` refused, or was not reached
   std::string ended_at;                 ///< the step before the first cut that refused; empty: none did
   std::vector<std::string> commands;
 };

@@ -54,6 +54,13 @@ double likeness(double t, double degrees) {
          std::exp(0.5 * (degrees + 1.0) * (std::log1p(far * far / degrees) - std::log1p(t * t / degrees)));
 }
 
+/// What p_worse leaves out of a corrected path; empty: nothing, its ring closed in all tissues.
+std::string open_rings(const EligibilityEvidence& e) {
+  if (!(e.corrected.unmeasured_weight > 0.0)) return {};
+  return fmt::format("; besides, its ring stays open in {:.0f} % of the calibration's tissues",
+                     100.0 * e.corrected.unmeasured_weight);
+}
+
 /// What speaks against the correction, where the simulation is believed.
 std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
@@ -69,8 +76,8 @@ std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, co
                     gain.mean_mm, rules.least_gain_sds, gain.sd_mm));
   }
   if (!(p_worse <= rules.most_p_worse)) {
-    reasons.push_back(fmt::format("the corrected cut is the worse one with a probability of {:.2f}, above {}", p_worse,
-                                  rules.most_p_worse));
+    reasons.push_back(fmt::format("the corrected cut is the worse one with a probability of {:.2f}, above {}{}",
+                                  p_worse, rules.most_p_worse, open_rings(e)));
   }
   const double p = e.corrected.p_close_bound();
   if (!(p <= rules.most_p_close_margin) && !(p <= e.intended.p_close_bound())) {
@@ -178,8 +185,8 @@ Eligibility judge_eligibility(const EligibilityEvidence& evidence, const Eligibi
   }
   judged.verdict = Verdict::Compensate;
   judged.reasons = {fmt::format(
-      "the expected gain is {:.2f} ± {:.2f} mm; the corrected cut is the worse one with a probability of {:.2f}",
-      evidence.gain->mean_mm, evidence.gain->sd_mm, *judged.p_worse)};
+      "the expected gain is {:.2f} ± {:.2f} mm; the corrected cut is the worse one with a probability of {:.2f}{}",
+      evidence.gain->mean_mm, evidence.gain->sd_mm, *judged.p_worse, open_rings(evidence))};
   return judged;
 }
 

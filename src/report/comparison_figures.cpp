@@ -104,8 +104,8 @@ void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& bo
   if (is_signed)
     svg.line({area.corner.x(), area.y(0.0)}, {area.corner.x() + area.size.x(), area.y(0.0)}, "stroke=\"#555\"");
   draw_x_axis(svg, area, {}, "");
-  svg.text(area.corner + Vec2(0.0, -10.0), is_signed ? "b) with sign: negative = too close" : "a) absolute",
-           "start", "font-weight=\"600\"");
+  svg.text(area.corner + Vec2(0.0, -10.0), is_signed ? "b) with sign: negative = too close" : "a) absolute", "start",
+           "font-weight=\"600\"");
   const double pitch = area.size.x() / static_cast<double>(boxes.size());
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     std::vector<double> values = boxes[k].signed_error_mm;
@@ -155,6 +155,26 @@ void draw_curve(SvgWriter& svg, const PlotArea& area, std::vector<Vec2> curve, c
   svg.polyline(piece, false, style);
 }
 
+/// Where each name begins: beside the one before, or in a row of its own where that leaves the picture. The first row
+/// leaves room for what dashed and full lines mean.
+std::vector<Vec2> clock_legend_places(std::span<const ErrorSeries> series) {
+  constexpr double kLeft = 70.0;
+  constexpr double kRow = 18.0;
+  std::vector<Vec2> places;
+  Vec2 at(kLeft, 24.0);
+  double right = 560.0;
+  for (const ErrorSeries& one : series) {
+    const double width = 50.0 + 7.0 * static_cast<double>(one.name.size());
+    if (at.x() > kLeft && at.x() + width > right) {
+      at = {kLeft, at.y() + kRow};
+      right = 760.0;
+    }
+    places.push_back(at);
+    at.x() += width;
+  }
+  return places;
+}
+
 }  // namespace
 
 std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
@@ -184,10 +204,13 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
 std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
   require_series(series);
   const double limit = limit_of(series, zones);
-  const PlotArea area{.corner = {70.0, 50.0}, .size = {670.0, 310.0}, .x_high = 12.0, .y_low = -limit, .y_high = limit};
-  SvgWriter svg(760.0, 420.0, "Signed error by clock position",
+  const std::vector<Vec2> legend = clock_legend_places(series);
+  const double more = legend.back().y() - legend.front().y();  // rows of the legend beyond the first
+  const PlotArea area{
+      .corner = {70.0, 50.0 + more}, .size = {670.0, 310.0}, .x_high = 12.0, .y_low = -limit, .y_high = limit};
+  SvgWriter svg(760.0, 420.0 + more, "Signed error by clock position",
                 "The error of each point against where it lies on a clock face over the tumour.");
-  svg.rectangle({0.0, 0.0}, {760.0, 420.0}, "fill=\"#fff\"");
+  svg.rectangle({0.0, 0.0}, {760.0, 420.0 + more}, "fill=\"#fff\"");
   draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm);
   draw_y_axis(svg, area, round_ticks(-limit, limit, 10), "signed error, mm");
   svg.line(area.at(0.0, 0.0), area.at(12.0, 0.0), "stroke=\"#555\" stroke-width=\"1.2\"");
@@ -196,17 +219,16 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBo
     svg.line(area.at(hour, -limit), area.at(hour, -limit) + Vec2(0.0, 5.0), "stroke=\"#555\"");
     svg.text(area.at(hour, -limit) + Vec2(0.0, 19.0), std::to_string(hour == 0 ? 12 : hour), "middle");
   }
-  Vec2 legend(70.0, 24.0);
   std::array<std::size_t, 2> used{};
-  for (const ErrorSeries& one : series) {
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const ErrorSeries& one = series[i];
     const auto& shades = one.is_after ? kAfterShades : kBeforeShades;
     const std::string_view color = shades[used[one.is_after ? 1 : 0]++ % shades.size()];
     const std::string style = fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{}", color,
                                           one.is_after ? "" : " stroke-dasharray=\"6 3\"");
     draw_curve(svg, area, round_the_clock(one), style);
-    svg.line(legend, legend + Vec2(22.0, 0.0), style);
-    svg.text(legend + Vec2(28.0, 4.0), one.name);
-    legend.x() += 50.0 + 7.0 * static_cast<double>(one.name.size());
+    svg.line(legend[i], legend[i] + Vec2(22.0, 0.0), style);
+    svg.text(legend[i] + Vec2(28.0, 4.0), one.name);
   }
   draw_error_zone_names(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
   svg.text({740.0, 28.0}, "dashed: before · full: after", "end", "font-size=\"11\" fill=\"#555\"");

@@ -624,7 +624,6 @@ class CommandLineTest(CommandTest):
             ("run case --frames 0", "--frames: found 0, expected a whole number from 1 to 500"),
             ("run case --frames many", "--frames: found 'many', expected a whole number from 1 to 500"),
             ("run case --frames", "--frames: found no value, expected 1 value"),
-            ("run case --seed -1", "--seed: found -1, expected a whole number of at least 0"),
             ("simulate case --checkpoint-s -1", "--checkpoint-s: found -1, expected a number from 0 to 86400"),
             ("export p.json --tcp 1 2", "--tcp: found 2 values, expected 6 values"),
             ("run", "case: found nothing, expected "),
@@ -636,6 +635,12 @@ class CommandLineTest(CommandTest):
                 done = self.incise(*words.split())
                 self.assert_refused(done, BAD_CASE, "incise: command line: " + says, "--help` explains it")
                 self.assertEqual(done.stderr.count("expected"), 1, done.stderr)
+
+    def test_a_seed_is_a_whole_number_and_never_cut_down(self):
+        for seed in ("-1", "2.5", "1000000000000001", "99999999999999999999999"):
+            with self.subTest(seed=seed):
+                done = self.incise("study", "--seed", seed)
+                self.assert_refused(done, BAD_CASE, f"incise: command line: --seed: found {seed}, expected a whole number from 0 to 1000000000000000")
 
     def test_a_verb_that_writes_a_file_asks_where(self):
         self.assert_misuse("segment", "ct", says="-o: found nothing")

@@ -32,6 +32,16 @@ TEST(JudgeEligibility, CompensatesWhereTheGainIsAboveItsUncertainty) {
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("1.00 ± 0.40 mm")));
 }
 
+TEST(JudgeEligibility, TellsInWhichShareOfTissuesTheCorrectedRingStaysOpen) {
+  EligibilityEvidence evidence = good();
+  evidence.intended = {1.6, 0.95, 0.0};
+  evidence.corrected.unmeasured_weight = 0.4;
+  EXPECT_THAT(judge_eligibility(evidence).reasons, ElementsAre(HasSubstr("stays open in 40 % of")));
+  evidence.gain->p_worse = 0.2;
+  EXPECT_THAT(judge_eligibility(evidence).reasons,
+              ElementsAre(::testing::AllOf(HasSubstr("above 0.15"), HasSubstr("stays open in 40 % of"))));
+}
+
 TEST(JudgeEligibility, CutsAsPlannedWhereTheGainIsNotAboveItsUncertainty) {
   EligibilityEvidence evidence = good();
   evidence.gain->mean_mm = 0.4;  // just its sd: not above

@@ -6,8 +6,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <regex>
 
 namespace incise {
 namespace {
@@ -45,6 +47,27 @@ TEST(ComparisonBoxPlot, ShowsBothSidesEachSpecimenAndBothZonesInBothPanels) {
   }
   // A box for each of 2 sides and 4 incisions in 2 panels, each with its diamond.
   EXPECT_EQ(texts_between(svg, "<polygon points=\"", "\"").size(), 12U);
+}
+
+TEST(ErrorByClock, KeepsTheNamesOfManyIncisionsInThePicture) {
+  const auto names_at = [](std::size_t count) {
+    std::vector<ErrorSeries> many;
+    for (std::size_t k = 0; k < count; ++k) many.push_back(series("specimen_12", k % 2 == 1, 0.1));
+    const std::string svg = error_by_clock_svg(many);
+    expect_whole(svg);
+    std::vector<std::pair<double, double>> places;
+    const std::regex name(R"re(<text x="([\d.]+)" y="([\d.]+)"[^>]*>specimen_12<)re");
+    for (std::sregex_iterator at(svg.begin(), svg.end(), name), end; at != end; ++at)
+      places.emplace_back(std::stod((*at)[1]), std::stod((*at)[2]));
+    return places;
+  };
+  EXPECT_EQ(names_at(3).back().second, names_at(3).front().second) << "few names stand in one row";
+  const auto places = names_at(36);
+  ASSERT_EQ(places.size(), 36U);
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    EXPECT_LT(places[k].first + 11.0 * 7.0, 760.0);
+    EXPECT_EQ(std::count(places.begin(), places.end(), places[k]), 1) << "none over another";
+  }
 }
 
 TEST(ComparisonBoxPlot, ZonesLieWhereTheirBordersSay) {

@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <limits>
+#include <regex>
 
 namespace incise {
 namespace {
@@ -161,20 +162,27 @@ TEST(LinePlotFigure, BreaksATitleAndALegendThatAreWiderThanThePicture) {
 
 TEST(LinePlotFigure, DrawsErrorBarsInTheColourOfTheirMarks) {
   LinePlot plot{.title = "Seen", .x_label = "x", .y_label = "y", .series = {{"seen", {0.0, 1.0}, {0.2, 0.5}, false}}};
-  const auto bars_of = [](const std::string& svg) {
-    std::size_t bars = 0;
-    for (std::size_t at = svg.find("stroke-width=\"1.6\"/>"); at != std::string::npos;
-         at = svg.find("stroke-width=\"1.6\"/>", at + 1))
-      ++bars;
-    return bars;
+  // A bar stands at the x of its mark and is as long as its ends are apart: three times 0.5 is 1.5.
+  const std::regex bar(
+      R"re(<line x1="([\d.]+)" y1="([\d.]+)" x2="([\d.]+)" y2="([\d.]+)" stroke="([^"]+)" stroke-width="1.6"/>)re");
+  const auto bars_of = [&bar](const std::string& svg) {
+    return std::vector<std::smatch>(std::sregex_iterator(svg.begin(), svg.end(), bar), std::sregex_iterator());
   };
-  const std::size_t without = bars_of(line_plot_svg(plot));
-  plot.series[0].low = {0.1, -2.0};
-  plot.series[0].high = {0.4, 3.0};
+  EXPECT_TRUE(bars_of(line_plot_svg(plot)).empty());
+  plot.series[0].low = {0.1, -1.0};
+  plot.series[0].high = {0.6, 0.5};
   const std::string svg = line_plot_svg(plot);
   expect_whole_svg(svg);
-  EXPECT_EQ(bars_of(svg), without + 2);
-  EXPECT_THAT(svg, HasSubstr(">3</text>")) << "the axis reaches to the ends of the bars";
+  const std::vector<std::smatch> bars = bars_of(svg);
+  ASSERT_EQ(bars.size(), 2);
+  const auto length = [](const std::smatch& m) { return std::stod(m[2]) - std::stod(m[4]); };
+  EXPECT_NEAR(length(bars[1]), 3.0 * length(bars[0]), 0.05);
+  EXPECT_GT(length(bars[0]), 10.0) << "y grows upwards";
+  for (const std::smatch& m : bars) {
+    EXPECT_EQ(m[1], m[3]);
+    EXPECT_THAT(svg, HasSubstr("<circle cx=\"" + m[1].str() + "\"")) << "at its mark";
+    EXPECT_THAT(svg, HasSubstr("stroke=\"" + m[5].str() + "\" stroke-width=\"1.6\">")) << "in the colour of the marks";
+  }
 
   plot.series[0].high = {0.4};
   EXPECT_THROW(static_cast<void>(line_plot_svg(plot)), InvalidArgument);

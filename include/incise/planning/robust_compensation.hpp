@@ -81,7 +81,7 @@ struct RobustCompensation {
 struct CutGain {
   double mean_mm = 0.0;
   double sd_mm = 0.0;    ///< over scenarios and residuals; both cuts of one specimen have the same residual
-  double p_worse = 0.0;  ///< that it is below 0
+  double p_worse = 0.0;  ///< that it is below 0; of scenarios whose ring closes along both paths, as all of this
   double move_mm =
       0.0;  ///< by which the correction moves the cut, mean along it and over scenarios; positive: outwards
 };
