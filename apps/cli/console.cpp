@@ -60,7 +60,8 @@ void Console::progress(std::string_view stage, double fraction) {
   const double since_shown = std::chrono::duration<double>(now - last_shown_).count();
   if (since_shown < (is_terminal_ ? 0.1 : 5.0)) return;
   last_shown_ = now;
-  const std::string left = time_left_.seconds() ? ", " + time_text(*time_left_.seconds()) + " left" : "";
+  constexpr double kShownAsWhole = 0.995;  // "100 %" has no time left
+  const std::string left = time_left_.seconds() && fraction < kShownAsWhole ? ", " + time_text(*time_left_.seconds()) + " left" : "";
   if (is_terminal_) {
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(fraction * kWidth);

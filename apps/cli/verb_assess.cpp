@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
 
 namespace incise::cli {
@@ -44,6 +45,20 @@ void require_ring_by_default_method(const CaseFile& file) {
       .in_file(file.file.string());
 }
 
+/// A correction by another tool than the calibration's is seldom what is meant. Empty: it is the same.
+std::string other_tool(const CutSettings& cut, const CalibrationRecord& calibration) {
+  if (!calibration.chosen) return {};
+  constexpr double kSame = 1e-3;
+  const double here_mm = cut.speed_mm_s * cut.dwell_s();
+  const double calibrated_mm =
+      calibration.chosen->speed_mm_s * calibration.chosen->dullness * calibration.reference_step_s;
+  if (std::abs(here_mm / calibrated_mm - 1.0) <= kSame) return {};
+  return fmt::format(
+      "the case's cut.speed_mm_s and cut.dullness hold tissue over {:.2f} mm, those that the calibration chose over "
+      "{:.2f} mm: the correction that is judged is not that of the calibrated tool",
+      here_mm, calibrated_mm);
+}
+
 void print_assessment(const nlohmann::ordered_json& result) {
   fmt::print("{}\n", result.at("verdict").get<std::string>());
   for (const char* key : {"reasons", "notes"})
@@ -71,15 +86,19 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   request.scenarios = scenario_request(chosen.calibrated, options);
   request.calibrated = range_of(calibration.record);
   read_specimens_registration(chosen.registration, request);
-  require_ring_by_default_method(case_as_asked(chosen.case_path, chosen.cut));
+  const CaseFile asked = case_as_asked(chosen.case_path, chosen.cut);
+  require_ring_by_default_method(asked);
+  const std::string note = other_tool(asked.settings.cut, calibration.record);
+  if (!note.empty()) console.message(Severity::Warning, note);
   const std::filesystem::path output = output_of(chosen.case_path, options);
   StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
   const Study study = run.run(options, console);
   Workers workers(options.threads);
-  const Assessment assessment = with_tissues(run, [&](ScenarioRunStore& runs) {
+  Assessment assessment = with_tissues(run, [&](ScenarioRunStore& runs) {
     return assess(run.store.case_file().settings, run.store, study, calibration.belief, request, runs, workers,
                   console);
   });
+  if (!note.empty()) assessment.notes.push_back(note);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   nlohmann::ordered_json result = to_json(assessment, request);
   result["specimen_is"] =

@@ -53,6 +53,11 @@ class BadInputTest(CommandTest):
         self.assert_refused(self.incise("power", *COARSE), BAD_CASE, "-o")
         self.out.write_text("mine")
         self.assert_refused(self.incise("power", "-o", self.out, *COARSE), BAD_DATA, "out")
+        foreign = self.folder / "foreign"
+        foreign.mkdir()
+        (foreign / "notes.txt").write_text("mine")
+        self.assert_refused(self.incise("power", "-o", foreign, *COARSE), BAD_DATA, "foreign", "files of another origin")
+        self.assertEqual([file.name for file in foreign.iterdir()], ["notes.txt"])
         self.assertEqual(self.out.read_text(), "mine")
 
 
