@@ -2,6 +2,7 @@
 
 #include "experiment_advice.hpp"
 #include "experiment_report.hpp"
+#include "kept_output.hpp"
 #include "outside_range.hpp"
 #include "study_tables.hpp"
 
@@ -189,10 +190,7 @@ ExperimentJson Experiment::run() {
 void Experiment::claim_folder() const {
   const std::filesystem::path file = root_ / "experiment.json";
   if (!std::filesystem::exists(file)) {
-    if (!std::filesystem::is_empty(root_)) {
-      throw DataError(root_, "", "a folder with files of another origin (no experiment.json)", "a free name, an empty folder, or an experiment to go on with",
-                      "Choose another place for the output");
-    }
+    require_own_or_empty(root_, {file.filename().string()}, "an experiment");
     write_json(file, {{"schema", "incise.experiment/1"}, {"specimen_is", "virtual"}, {"seed", options_.seed}});
     return;
   }

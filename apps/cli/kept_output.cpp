@@ -1,6 +1,11 @@
 #include "kept_output.hpp"
 
+#include <incise/core/error.hpp>
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 namespace incise::cli {
 namespace {
@@ -14,6 +19,13 @@ bool holds_files(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+void require_own_or_empty(const std::filesystem::path& folder, const std::vector<std::string>& signs, const std::string& what) {
+  const bool is_own = std::ranges::any_of(signs, [&folder](const std::string& sign) { return std::filesystem::exists(folder / sign); });
+  if (is_own || std::filesystem::is_empty(folder)) return;
+  throw DataError(folder, "", fmt::format("a folder with files of another origin (no {})", fmt::join(signs, ", no ")),
+                  fmt::format("a free name, an empty folder, or {} to go on with", what), "Choose another place for the output");
+}
 
 int with_parts_kept(const std::filesystem::path& output, const std::function<int()>& run) {
   std::error_code ignored;

@@ -4,8 +4,15 @@
 
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace incise::cli {
+
+/// Keeps parts out of a folder that something else filled. @param signs  files or folders of which one is there as soon
+/// as anything of ours is. @param what  the parts, for the message: "a series".
+/// @throws DataError for a folder that is not empty and has none of them.
+void require_own_or_empty(const std::filesystem::path& folder, const std::vector<std::string>& signs, const std::string& what);
 
 /// Runs what fills an output folder part by part. Stopped on request, it says that finished parts are kept. A folder
 /// that it made and that holds no file yet when it ends by an error is removed.

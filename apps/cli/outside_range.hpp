@@ -19,7 +19,7 @@ struct OutsideKind {
 /// The index-th of a series: stiff, oedematous, scarred, oedematous, soft in turn; how far out is drawn from the seed.
 /// They differ from the calibration's in the suture's pull, all but the stiffer half of the soft ones far. Stiff and
 /// soft tissue is cut as other tissue is, and a correction helps it. Oedematous and scarred tissue hardly sticks to the
-/// electrode and surrounds a hard, deep tumour, which shows in no reading of `assess`: it is dragged less far than its
+/// electrode and surrounds a hard, deep tumour, of which `assess` compares nothing: it is dragged less far than its
 /// stiffness lets one expect. Oedematous tissue is harmed by that, scarred tissue at times.
 [[nodiscard]] OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index);
 

@@ -69,11 +69,7 @@ void make_output(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw DataError(folder, "", error.message(), "a folder that can be made");
-  const bool is_ours = std::filesystem::exists(folder / "cuts") || std::filesystem::exists(folder / "power.json");
-  if (!is_ours && !std::filesystem::is_empty(folder)) {
-    throw DataError(folder, "", "a folder with files of another origin (neither power.json nor cuts)",
-                    "a free name, an empty folder, or a series to go on with", "Choose another place for the output");
-  }
+  require_own_or_empty(folder, {"power.json", "cuts"}, "a series");
   require_writable(folder / "power.json");
 }
 

@@ -155,26 +155,6 @@ void draw_curve(SvgWriter& svg, const PlotArea& area, std::vector<Vec2> curve, c
   svg.polyline(piece, false, style);
 }
 
-/// Where each name begins: beside the one before, or in a row of its own where that leaves the picture. The first row
-/// leaves room for what dashed and full lines mean.
-std::vector<Vec2> clock_legend_places(std::span<const ErrorSeries> series) {
-  constexpr double kLeft = 70.0;
-  constexpr double kRow = 18.0;
-  std::vector<Vec2> places;
-  Vec2 at(kLeft, 24.0);
-  double right = 560.0;
-  for (const ErrorSeries& one : series) {
-    const double width = 50.0 + 7.0 * static_cast<double>(one.name.size());
-    if (at.x() > kLeft && at.x() + width > right) {
-      at = {kLeft, at.y() + kRow};
-      right = 760.0;
-    }
-    places.push_back(at);
-    at.x() += width;
-  }
-  return places;
-}
-
 }  // namespace
 
 std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
@@ -204,7 +184,10 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
 std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
   require_series(series);
   const double limit = limit_of(series, zones);
-  const std::vector<Vec2> legend = clock_legend_places(series);
+  std::vector<double> widths;
+  for (const ErrorSeries& one : series) widths.push_back(50.0 + 7.0 * static_cast<double>(one.name.size()));
+  constexpr double kFirstRight = 560.0;  // beyond it stands what dashed and full lines mean
+  const std::vector<Vec2> legend = legend_places(widths, {70.0, 24.0}, 760.0, kFirstRight);
   const double more = legend.back().y() - legend.front().y();  // rows of the legend beyond the first
   const PlotArea area{
       .corner = {70.0, 50.0 + more}, .size = {670.0, 310.0}, .x_high = 12.0, .y_low = -limit, .y_high = limit};

@@ -20,7 +20,6 @@ constexpr double kMarkRadius = 3.2;
 constexpr double kTitleCharacter = 7.4;  // about as wide as one is
 constexpr double kNameCharacter = 6.4;
 constexpr double kTitleRow = 18.0;
-constexpr double kLegendRow = 18.0;
 
 struct Range {
   double low = 0.0;
@@ -136,19 +135,6 @@ std::vector<std::string> title_rows(const std::string& title) {
   return rows;
 }
 
-/// Where each series' name begins: beside the one before, or in a row of its own where that leaves the picture.
-std::vector<Vec2> legend_places(const LinePlot& plot, double top) {
-  std::vector<Vec2> places;
-  Vec2 at(kLeft, top);
-  for (const LineSeries& series : plot.series) {
-    const double width = 40.0 + kNameCharacter * static_cast<double>(series.name.size());
-    if (at.x() > kLeft && at.x() + width > kPlotWidth) at = {kLeft, at.y() + kLegendRow};
-    places.push_back(at);
-    at.x() += width;
-  }
-  return places;
-}
-
 void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<Vec2>& places,
                  const std::vector<std::string_view>& colors) {
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
@@ -180,7 +166,11 @@ std::string line_plot_svg(const LinePlot& plot) {
   const Range x = range_of(plot, true);
   const Range y = range_of(plot, false);
   const std::vector<std::string> title = title_rows(plot.title);
-  const std::vector<Vec2> legend = legend_places(plot, 42.0 + kTitleRow * static_cast<double>(title.size() - 1));
+  std::vector<double> widths;
+  for (const LineSeries& series : plot.series)
+    widths.push_back(40.0 + kNameCharacter * static_cast<double>(series.name.size()));
+  const std::vector<Vec2> legend =
+      legend_places(widths, {kLeft, 42.0 + kTitleRow * static_cast<double>(title.size() - 1)}, kPlotWidth, kPlotWidth);
   const double top = legend.back().y() + 16.0;  // of the axes; what more there is above them makes the picture taller
   const double height = kPlotHeight + top - 58.0;
   SvgWriter svg(kPlotWidth, height, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));

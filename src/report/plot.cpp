@@ -71,6 +71,18 @@ Vec3 error_color(double share, ErrorColors colors) {
   return colors == ErrorColors::Jet ? interpolated(kJet, t) : interpolated(kSafe, t);
 }
 
+std::vector<Vec2> legend_places(std::span<const double> widths, const Vec2& first, double right, double first_right) {
+  std::vector<Vec2> places;
+  Vec2 at = first;
+  for (const double width : widths) {
+    const double edge = at.y() > first.y() ? right : first_right;
+    if (at.x() > first.x() && at.x() + width > edge) at = {first.x(), at.y() + kLegendRow};
+    places.push_back(at);
+    at.x() += width;
+  }
+  return places;
+}
+
 void draw_y_axis(SvgWriter& svg, const PlotArea& area, const std::vector<double>& ticks, std::string_view name) {
   const double right = area.corner.x() + area.size.x();
   for (const double tick : ticks) {

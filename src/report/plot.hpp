@@ -4,6 +4,7 @@
 
 #include <incise/report/figures.hpp>
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,13 @@ void draw_y_axis(SvgWriter& svg, const PlotArea& area, const std::vector<double>
 /// Small marks and numbers at `ticks`, the axis line, and the axis' name below.
 void draw_x_axis(SvgWriter& svg, const PlotArea& area, const std::vector<double>& ticks, std::string_view name,
                  std::string_view tick_suffix = "");
+
+/// Where each entry of a legend begins, px: beside the one before, or at the left of a new row where it would pass the
+/// right edge. @param widths  of the entries, px. @param first  where the first begins. @param right  of the rows;
+/// @param first_right  of the first, which may have something else at its end.
+[[nodiscard]] std::vector<Vec2> legend_places(std::span<const double> widths, const Vec2& first, double right,
+                                              double first_right);
+inline constexpr double kLegendRow = 18.0;  ///< from one row to the next, px
 
 /// The colours of what has one meaning in the whole report.
 namespace ink {

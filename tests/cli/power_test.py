@@ -53,12 +53,12 @@ class BadInputTest(CommandTest):
         self.assert_refused(self.incise("power", *COARSE), BAD_CASE, "-o")
         self.out.write_text("mine")
         self.assert_refused(self.incise("power", "-o", self.out, *COARSE), BAD_DATA, "out")
+        self.assertEqual(self.out.read_text(), "mine")
         foreign = self.folder / "foreign"
         foreign.mkdir()
         (foreign / "notes.txt").write_text("mine")
         self.assert_refused(self.incise("power", "-o", foreign, *COARSE), BAD_DATA, "foreign", "files of another origin")
         self.assertEqual([file.name for file in foreign.iterdir()], ["notes.txt"])
-        self.assertEqual(self.out.read_text(), "mine")
 
 
 class SpeedTest(CommandTest):

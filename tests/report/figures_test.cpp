@@ -162,7 +162,6 @@ TEST(LinePlotFigure, BreaksATitleAndALegendThatAreWiderThanThePicture) {
 
 TEST(LinePlotFigure, DrawsErrorBarsInTheColourOfTheirMarks) {
   LinePlot plot{.title = "Seen", .x_label = "x", .y_label = "y", .series = {{"seen", {0.0, 1.0}, {0.2, 0.5}, false}}};
-  // A bar stands at the x of its mark and is as long as its ends are apart: three times 0.5 is 1.5.
   const std::regex bar(
       R"re(<line x1="([\d.]+)" y1="([\d.]+)" x2="([\d.]+)" y2="([\d.]+)" stroke="([^"]+)" stroke-width="1.6"/>)re");
   const auto bars_of = [&bar](const std::string& svg) {
@@ -176,7 +175,7 @@ TEST(LinePlotFigure, DrawsErrorBarsInTheColourOfTheirMarks) {
   const std::vector<std::smatch> bars = bars_of(svg);
   ASSERT_EQ(bars.size(), 2);
   const auto length = [](const std::smatch& m) { return std::stod(m[2]) - std::stod(m[4]); };
-  EXPECT_NEAR(length(bars[1]), 3.0 * length(bars[0]), 0.05);
+  EXPECT_NEAR(length(bars[1]), 3.0 * length(bars[0]), 0.05) << "1.5 against 0.5";
   EXPECT_GT(length(bars[0]), 10.0) << "y grows upwards";
   for (const std::smatch& m : bars) {
     EXPECT_EQ(m[1], m[3]);
