@@ -1,0 +1,89 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace incise {
+
+/// What the software says of a cut, a run or a measurement. Ordered: the greater, the worse.
+enum class VerdictStatus {
+  Ok,       ///< nothing is known against it
+  Caution,  ///< something is; a robot program is written only if a person accepts each reason by its name
+  Refused,  ///< it must not be carried out; no robot program is written
+};
+[[nodiscard]] std::string_view to_string(VerdictStatus status);  ///< ok, caution, refused
+[[nodiscard]] std::optional<VerdictStatus> parse_verdict_status(std::string_view name);
+
+/// One row of the table of limits: a reason that may be held against a cut, and the limit beyond which it is.
+struct VerdictRule {
+  std::string_view id;             ///< as users write it: `--accept depth`
+  VerdictStatus severity;          ///< Caution or Refused
+  std::optional<double> limit;     ///< in `unit`; absent: a plain yes or no, or a limit that the case sets
+  std::string_view relation;       ///< what a good value does to the limit: "<=", ">=", "<", ">"; empty for a yes or no
+  std::string_view unit;           ///< empty: a share or a count
+  std::string_view meaning;        ///< one sentence
+};
+
+/// The table of limits, in the order in which reasons of one severity are listed. docs/models/verdict.md shows the same table; a test
+/// compares the two.
+[[nodiscard]] std::span<const VerdictRule> verdict_rules();
+
+/// @throws InvalidArgument for an id that the table does not have.
+[[nodiscard]] const VerdictRule& verdict_rule(std::string_view id);
+
+/// Where along a path or in the tissue something was found.
+struct VerdictPlace {
+  std::optional<double> arclength_mm;           ///< along the path from its start, >= 0
+  std::optional<Eigen::Vector3d> position_mm;   ///< in the frame of the result that holds the verdict
+  std::string text;                             ///< for a person: "waypoint 12", "layer 4 mm deep"; may be empty
+};
+
+/// One thing that is held against a cut.
+struct VerdictReason {
+  std::string id;                                  ///< of its rule
+  VerdictStatus severity = VerdictStatus::Caution;
+  std::optional<double> value;                     ///< found, in `unit`
+  std::optional<double> limit;                     ///< that it was held against
+  std::string unit;
+  std::optional<VerdictPlace> at;
+  std::string message;                             ///< one sentence for a person, with the numbers in it
+};
+
+/// The verdict and its reasons, worst first. Every face (terminal, JSON, report, manifest, gate of the robot program) shows this object.
+class Verdict {
+ public:
+  Verdict() = default;
+
+  /// Adds a reason of the rule's severity, unit and limit (`limit`, where given, in its place). @throws InvalidArgument for an unknown id.
+  void add(std::string_view id, std::optional<double> value, std::string message, std::optional<VerdictPlace> at = {},
+           std::optional<double> limit = {});
+  /// Adds a reason as it is, such as one read from a file. One that is there already (same id and message) is not added again.
+  void add(VerdictReason reason);
+  /// Adds every reason of another verdict.
+  void add(const Verdict& other);
+
+  [[nodiscard]] VerdictStatus status() const;  ///< that of the worst reason; Ok without one
+  [[nodiscard]] const std::vector<VerdictReason>& reasons() const { return reasons_; }
+  [[nodiscard]] bool has(std::string_view id) const;
+
+ private:
+  std::vector<VerdictReason> reasons_;
+};
+
+/// What stands between a verdict and a robot program, after a person has accepted some cautions.
+struct VerdictGate {
+  bool is_open = false;                 ///< the program may be written
+  std::vector<std::string> accepted;    ///< ids of the cautions that were accepted, each once, in the verdict's order
+  std::vector<std::string> missing;     ///< ids of the cautions that nobody accepted
+  std::vector<std::string> refused;     ///< ids of the reasons that nobody can accept
+};
+
+/// @param accepted_ids  as given with `--accept`; ids of reasons that the verdict does not have are passed over.
+[[nodiscard]] VerdictGate gate_of(const Verdict& verdict, std::span<const std::string> accepted_ids);
+
+}  // namespace incise

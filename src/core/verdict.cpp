@@ -1,0 +1,116 @@
+#include <incise/core/error.hpp>
+#include <incise/core/verdict.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace incise {
+namespace {
+
+constexpr VerdictStatus kCaution = VerdictStatus::Caution;
+constexpr VerdictStatus kRefused = VerdictStatus::Refused;
+
+// The one table of limits. Change it together with docs/models/verdict.md.
+constexpr auto kRules = std::to_array<VerdictRule>({
+    {"outcome", kRefused, {}, "", "", "The simulated cut ended in anything but success, or nothing of it could be measured."},
+    {"tumor_distance", kRefused, 2.2, ">", "mm", "Nearest distance of the simulated kerf to the tumour's surface, in any direction."},
+    {"lateral_margin", kRefused, 2.2, ">", "mm", "Least tissue that the simulated cut leaves beside the tumour's edge."},
+    {"open_layer", kRefused, {}, "", "mm", "A layer within the planned depth in which the simulated ring stayed open."},
+    {"contour_surface", kRefused, 5.0, "<=", "mm", "Farthest that the tumour's edge lies from the tumour's surface."},
+    {"contour_flipped", kRefused, {}, "", "mm", "The tumour's edge fits its surface only with the axes of the other convention (RAS for LPS)."},
+    {"platform", kRefused, 0.0, ">=", "mm", "Least height of the tool's tip above the platform that supports the tissue."},
+    {"depth", kCaution, 0.9, ">=", "", "Least depth of the simulated kerf anywhere along the path, as a share of the planned depth there."},
+    {"heat", kCaution, 0.0, ">=", "mm", "Tissue left unheated between the simulated cut and the tumour's edge."},
+    {"typed_transform", kCaution, {}, "", "", "T_robot_sim was typed into the case: no registration says where the specimen lies."},
+    {"not_simulated", kCaution, {}, "", "", "No simulated cut is known for the path: nothing says where the cut will land."},
+    {"not_corrected", kCaution, {}, "", "", "The program follows a path whose correction was asked for and not accepted."},
+    {"eligibility", kCaution, {}, "", "", "The assessment of this specimen advises against the path."},
+    {"registration", kCaution, {}, "", "", "The registration's own figures argue against trusting it."},
+    {"mesh_resolution", kCaution, 1.5, "<=", "mm", "Mean edge length of the mesh along the path."},
+    {"locking", kCaution, 0.49, "<=", "", "Poisson's ratio of tetrahedra that each keep their own volume."},
+    {"convergence", kCaution, {}, "", "", "The simulation of the cut was not solved, not at rest, or held back by its own limits."},
+    {"scan", kCaution, {}, "", "", "The scan argues against the tissue that was found in it."},
+});
+
+/// Place in the table: reasons of one severity are listed in its order.
+std::size_t row_of(std::string_view id) {
+  const auto row = std::find_if(kRules.begin(), kRules.end(), [&](const VerdictRule& rule) { return rule.id == id; });
+  return static_cast<std::size_t>(row - kRules.begin());
+}
+
+bool is_worse(const VerdictReason& a, const VerdictReason& b) {
+  if (a.severity != b.severity) return a.severity > b.severity;
+  return row_of(a.id) < row_of(b.id);
+}
+
+}  // namespace
+
+std::string_view to_string(VerdictStatus status) {
+  switch (status) {
+    case VerdictStatus::Ok: return "ok";
+    case VerdictStatus::Caution: return "caution";
+    case VerdictStatus::Refused: return "refused";
+  }
+  return "unknown";
+}
+
+std::optional<VerdictStatus> parse_verdict_status(std::string_view name) {
+  for (const VerdictStatus status : {VerdictStatus::Ok, VerdictStatus::Caution, VerdictStatus::Refused}) {
+    if (name == to_string(status)) return status;
+  }
+  return std::nullopt;
+}
+
+std::span<const VerdictRule> verdict_rules() { return kRules; }
+
+const VerdictRule& verdict_rule(std::string_view id) {
+  const std::size_t row = row_of(id);
+  INCISE_REQUIRE(row < kRules.size(), fmt::format("expected the id of a rule of the verdict, found '{}'", id));
+  return kRules[row];
+}
+
+void Verdict::add(std::string_view id, std::optional<double> value, std::string message, std::optional<VerdictPlace> at,
+                  std::optional<double> limit) {
+  const VerdictRule& rule = verdict_rule(id);
+  add(VerdictReason{std::string(rule.id), rule.severity, value, limit ? limit : rule.limit, std::string(rule.unit), std::move(at),
+                    std::move(message)});
+}
+
+void Verdict::add(VerdictReason reason) {
+  const bool is_there = std::any_of(reasons_.begin(), reasons_.end(),
+                                    [&](const VerdictReason& r) { return r.id == reason.id && r.message == reason.message; });
+  if (is_there) return;
+  const auto place = std::upper_bound(reasons_.begin(), reasons_.end(), reason, is_worse);
+  reasons_.insert(place, std::move(reason));
+}
+
+void Verdict::add(const Verdict& other) {
+  for (const VerdictReason& reason : other.reasons_) add(reason);
+}
+
+VerdictStatus Verdict::status() const { return reasons_.empty() ? VerdictStatus::Ok : reasons_.front().severity; }
+
+bool Verdict::has(std::string_view id) const {
+  return std::any_of(reasons_.begin(), reasons_.end(), [&](const VerdictReason& reason) { return reason.id == id; });
+}
+
+VerdictGate gate_of(const Verdict& verdict, std::span<const std::string> accepted_ids) {
+  VerdictGate gate;
+  const auto note = [](std::vector<std::string>& list, const std::string& id) {
+    if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
+  };
+  for (const VerdictReason& reason : verdict.reasons()) {
+    const bool is_accepted = std::find(accepted_ids.begin(), accepted_ids.end(), reason.id) != accepted_ids.end();
+    if (reason.severity == VerdictStatus::Refused) {
+      note(gate.refused, reason.id);
+    } else if (reason.severity == VerdictStatus::Caution) {
+      note(is_accepted ? gate.accepted : gate.missing, reason.id);
+    }
+  }
+  gate.is_open = gate.refused.empty() && gate.missing.empty();
+  return gate;
+}
+
+}  // namespace incise
