@@ -51,7 +51,7 @@ std::optional<double> gain_mm(const TrueCut& planned, const TrueCut& again) {
 
 std::optional<bool> is_worse(const TrueCut& planned, const TrueCut& again) { return is_second_worse(planned.mean_abs_error_mm, again.mean_abs_error_mm); }
 
-bool is_advice(const AdviceJson& assessment) { return assessment.is_object() && assessment.contains("verdict"); }
+bool is_advice(const AdviceJson& assessment) { return assessment.is_object() && assessment.contains("advice"); }
 
 /// One of the probabilities of `assess`. Where nothing could be foretold either cut may be the worse one, and the
 /// calibration says nothing.
@@ -117,7 +117,7 @@ AdviceJson specimen_json(const AdvisedSpecimen& specimen) {
   AdviceJson json{{"specimen", specimen.trial->name},
                   {"role", to_string(specimen.trial->role)},
                   {"kind", specimen.trial->kind},
-                  {"verdict", said.value("verdict", AdviceJson())},
+                  {"advice", said.value("advice", AdviceJson())},
                   {"expected_gain_mm", said.value("expected_gain_mm", AdviceJson())},
                   {"p_worse", said.value("p_worse", AdviceJson())},
                   {"p_worse_if_alike", said.value("p_worse_if_alike", AdviceJson())},

@@ -13,6 +13,7 @@
 #include <incise/io/pvd_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/table_io.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/meshing/quality.hpp>
 #include <incise/report/figures.hpp>
@@ -68,6 +69,18 @@ CtVolume crop(const CtVolume& ct, const VolumeGrid& around) {
     }
   }
   return part;
+}
+
+/// That of the run; of a folder that a single stage filled, that of its last cut.
+void add_verdict(const fs::path& root, const Json& study, ReportData& data) {
+  if (study.contains("verdict")) {
+    data.verdict = verdict_from_json(study.at("verdict"), root / "study.json");
+    return;
+  }
+  for (const char* cut : {"as_planned", "corrected"}) {
+    const fs::path file = root / cut / "incision.json";
+    if (fs::exists(file)) data.verdict = verdict_from_json(read_json(file).at("verdict"), file);
+  }
 }
 
 /// Why a study went no further than the stretch.
@@ -146,6 +159,7 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
   ReportIncision incision;
   incision.name = cut.name;
   incision.outcome = read_outcome(json, "outcome", folder / "incision.json");
+  incision.verdict = verdict_from_json(json.at("verdict"), folder / "incision.json");
   if (json.at("closed_loop").is_boolean()) incision.closed_loop = json.at("closed_loop").get<bool>();
   if (json.at("negative_margin").is_boolean()) incision.negative_margin = json.at("negative_margin").get<bool>();
   incision.target_mm = file.settings.plan.lateral_margin_mm;
@@ -426,6 +440,7 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   data.approach = file.settings.plan.approach;
   add_ct(root, file, monitor, data);
   add_stretch(root, data);
+  add_verdict(root, study, data);
   fs::path mesh_file = root / "mesh" / "mesh.vtu";
   if (!file.inputs.specimen_mesh.empty()) mesh_file = file.inputs.specimen_mesh;
   if (fs::exists(mesh_file)) {

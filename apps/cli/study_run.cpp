@@ -3,6 +3,7 @@
 #include "compensation_figures.hpp"
 #include "replay_files.hpp"
 #include "study_report.hpp"
+#include "verdict_gate.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
@@ -10,6 +11,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/workflow/robot_frame.hpp>
@@ -144,74 +146,95 @@ ArmSetup arm_setup_of(const Case& settings) {
   return setup;
 }
 
-/// The program for the corrected path (or the planned one, where nothing was corrected), if it passes the checks.
-nlohmann::ordered_json write_program(StudyRun& study, const Study& done, Monitor& monitor) {
-  const CaseFile& file = study.store.case_file();
+/// What keeps a case from having a program at all; empty: nothing.
+std::string without_program(const Case& settings) {
+  if (!settings.T_robot_sim) return "robot.T_robot_sim is not given";
+  if (half_width_mm(settings.tool) > 0.0) return fmt::format("a program does not turn a {} into its direction of travel", kind_of(settings.tool));
+  return {};
+}
+
+/// A program for the path that the verdict is about, and what its checks found.
+struct CheckedProgram {
+  ToolPath path;
+  RobotProgram program;
+  ProgramChecks checks;
+};
+
+CheckedProgram checked_program(const Case& settings, const Study& done) {
+  CheckedProgram made;
+  made.path = in_robot_frame(done.is_accepted ? done.correction->moves.path : *done.followed, *settings.T_robot_sim);
+  const ToolPath intended = in_robot_frame(*done.plan, *settings.T_robot_sim);
+  ProgramSettings motion;
+  motion.overlap_mm = settings.cut.overlap_mm;
+  made.program = make_program(made.path, motion, arm_setup_of(settings));
+  CheckSettings limits;
+  limits.must_be_ring = settings.plan.kind == PlanKind::Ring;
+  limits.planned_depth_mm = settings.plan.depth_mm;
+  limits.close_margin_mm = settings.close_margin_mm;
+  CheckInputs inputs;
+  inputs.intended = &intended;
+  inputs.power_w = settings.plan.power_w;
+  inputs.heat_half_width_mm = widest_heat(settings.thermal, settings.plan.power_w, made.path, settings.tool).half_width_mm;
+  made.checks = check_program(made.program, made.path, limits, inputs);
+  return made;
+}
+
+void add_failed_checks(const ProgramChecks& checks, Verdict& verdict) {
+  for (const ProgramCheck& check : checks.checks) {
+    if (!check.passed) verdict.add("program_check", check.value, check.message());
+  }
+}
+
+void write_program_files(StudyRun& study, const CheckedProgram& made, const Verdict& verdict, const VerdictGate& gate,
+                         nlohmann::ordered_json& json) {
+  const Case& settings = study.store.case_file().settings;
+  ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())}, {"title", settings.title}};
+  if (settings.is_virtual) provenance.emplace_back("specimen", "VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.");
+  for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
+  const ProgramHeader header = program_header(made.program, made.path, made.checks, provenance);
+  AtomicFolder target(study.store.root() / "program");
+  write_tool_path(target.path() / "path.json", made.path, verdict);
+  const std::string script = to_urscript(made.program, header);
+  write_atomically(target.path() / "program.json", [&](std::ostream& out) { out << to_json(made.program, &made.checks, header); });
+  write_atomically(target.path() / "program.script", [&](std::ostream& out) { out << script; });
+  const PlayerSettings player;
+  const Replay replay = incise::play(program_from_text(script, "program.script"), made.program.setup.arm, player);
+  write_replay(target.path(), replay);
+  json["replay"] = to_json(replay, player);
+  study.store.write_manifest_to(target.path(), 0.0, &verdict);
+  target.commit();
+}
+
+/// The program for the path whose cut the verdict is about, if the checks and the verdict let it pass. Failed checks join the verdict.
+nlohmann::ordered_json write_program(StudyRun& study, const Study& done, const std::vector<std::string>& accepted, Verdict& verdict,
+                                     Monitor& monitor) {
+  const Case& settings = study.store.case_file().settings;
   const std::filesystem::path folder = study.store.root() / "program";
-  nlohmann::ordered_json json;
   require_replaceable(folder);
   std::filesystem::remove_all(folder);
-  if (!file.settings.T_robot_sim) {
-    monitor.message(Severity::Warning, "no program: the case does not say where the specimen lies (robot.T_robot_sim)");
-    json["written"] = false;
-    json["reason"] = "robot.T_robot_sim is not given";
-    return json;
-  }
-  if (half_width_mm(file.settings.tool) > 0.0) {
-    const std::string reason = fmt::format("a program does not turn a {} into its direction of travel", kind_of(file.settings.tool));
+  nlohmann::ordered_json json;
+  if (const std::string reason = without_program(settings); !reason.empty()) {
     monitor.message(Severity::Warning, "no program: " + reason);
     json["written"] = false;
     json["reason"] = reason;
     return json;
   }
-  // A program is made of the path whose simulated cut was good: the corrected one where the correction is accepted, else the first.
-  const bool is_first_good = done.as_planned && done.as_planned->outcome == Outcome::Success;
-  if (!done.is_accepted && !is_first_good) {
+  if (!done.followed) {
     json["written"] = false;
-    json["reason"] = "no simulated cut of this study ended in success";
-    monitor.message(Severity::Warning, "no program: no simulated cut of this study ended in success");
+    json["reason"] = "nothing was cut";
     return json;
   }
-  if (!done.is_accepted) monitor.message(Severity::Warning, "the correction is not accepted: the program follows the uncorrected path");
-  const ToolPath path = in_robot_frame(done.is_accepted ? done.correction->moves.path : *done.followed, *file.settings.T_robot_sim);
-  const ToolPath intended = in_robot_frame(*done.plan, *file.settings.T_robot_sim);
-  ProgramSettings motion;
-  motion.overlap_mm = file.settings.cut.overlap_mm;
-  const RobotProgram program = make_program(path, motion, arm_setup_of(file.settings));
-  CheckSettings settings;
-  settings.must_be_ring = file.settings.plan.kind == PlanKind::Ring;
-  settings.planned_depth_mm = file.settings.plan.depth_mm;
-  settings.close_margin_mm = file.settings.close_margin_mm;
-  CheckInputs inputs;
-  inputs.intended = &intended;
-  inputs.power_w = file.settings.plan.power_w;
-  inputs.heat_half_width_mm = widest_heat(file.settings.thermal, file.settings.plan.power_w, path, file.settings.tool).half_width_mm;
-  const ProgramChecks checks = check_program(program, path, settings, inputs);
-  json = nlohmann::ordered_json::parse(to_json(program, &checks));
+  const CheckedProgram made = checked_program(settings, done);
+  add_failed_checks(made.checks, verdict);
+  const VerdictGate gate = gate_of(verdict, accepted);
+  report_gate(verdict, gate, monitor);
+  json = nlohmann::ordered_json::parse(to_json(made.program, &made.checks));
   json.erase("poses");
   json["motion"].erase("samples");
   json["follows"] = done.is_accepted ? "corrected path" : "uncorrected path";
-  json["written"] = checks.all_passed();
-  if (!checks.all_passed()) {
-    for (const ProgramCheck& check : checks.checks) {
-      if (!check.passed) monitor.message(Severity::Warning, "no program: " + check.message());
-    }
-    return json;
-  }
-  ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())}, {"title", file.settings.title}};
-  if (file.settings.is_virtual) provenance.emplace_back("specimen", "VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.");
-  const ProgramHeader header = program_header(program, path, checks, provenance);
-  AtomicFolder target(folder);
-  write_tool_path(target.path() / "path.json", path);
-  const std::string script = to_urscript(program, header);
-  write_atomically(target.path() / "program.json", [&](std::ostream& out) { out << to_json(program, &checks, header); });
-  write_atomically(target.path() / "program.script", [&](std::ostream& out) { out << script; });
-  const PlayerSettings player;
-  const Replay replay = incise::play(program_from_text(script, "program.script"), program.setup.arm, player);
-  write_replay(target.path(), replay);
-  json["replay"] = to_json(replay, player);
-  study.store.write_manifest_to(target.path(), 0.0);
-  target.commit();
+  json["gate"] = to_json(gate);
+  json["written"] = gate.is_open;
+  if (gate.is_open) write_program_files(study, made, verdict, gate, json);
   return json;
 }
 
@@ -223,31 +246,37 @@ nlohmann::ordered_json headline(const nlohmann::ordered_json& cut) {
 
 }  // namespace
 
-int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monitor, nlohmann::ordered_json& result) {
+int status_of(const Study& study) {
+  return study.verdict.status() == VerdictStatus::Refused && study.outcome != Outcome::Cancelled ? kNotAcceptable : status_of(study.outcome);
+}
+
+int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vector<std::string>& accepted, Monitor& monitor,
+                   nlohmann::ordered_json& result) {
   const auto start = std::chrono::steady_clock::now();
-  const Study done = study.run(options, monitor);
+  Study done = study.run(options, monitor);
   const std::filesystem::path root = study.store.root();
+  const Case& settings = study.store.case_file().settings;
+  if (done.is_accepted) study.store.add_advice_to(done.verdict);
   result["stages"] = to_json(done.stages);
+  result["verdict"] = nullptr;  // once the program's checks have joined it
   result["outcome"] = to_string(done.outcome);
   result["before"] = done.as_planned ? headline(to_json(*done.as_planned)) : nlohmann::ordered_json(nullptr);
   result["after"] = done.corrected ? headline(to_json(*done.corrected)) : nlohmann::ordered_json(nullptr);
   result["accepted"] = done.is_accepted;
   result["correction"] = done.correction ? correction_summary_json(*done.correction) : nlohmann::ordered_json(nullptr);
-  result["specimen_is"] = study.store.case_file().settings.is_virtual ? "virtual" : "real";
-  if (done.corrected && done.corrected->outcome == Outcome::Success && done.corrected->inner_edge.outcome == Outcome::PositiveMargin) {
-    monitor.message(Severity::Warning, "the kerf's mid-line keeps its distance, but its inner edge reaches the tumour edge once the tool is out");
-  }
+  result["specimen_is"] = settings.is_virtual ? "virtual" : "real";
   bool has_program = true;
   if (done.plan) {
-    result["program"] = write_program(study, done, monitor);
-    has_program = !study.store.case_file().settings.T_robot_sim || result["program"]["written"].get<bool>();
+    result["program"] = write_program(study, done, accepted, done.verdict, monitor);
+    has_program = !settings.T_robot_sim || result["program"]["written"].get<bool>();
   }
+  result["verdict"] = to_json(done.verdict);
   const auto elapsed = [&start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   result["wall_s"] = elapsed();
   nlohmann::ordered_json record = result;
   record["case_file"] = read_json(root / "study.json").at("case_file");
   write_json(root / "study.json", record);
-  study.store.write_manifest_to(root, elapsed());
+  study.store.write_manifest_to(root, elapsed(), &done.verdict);
   monitor.message(Severity::Notice, "report: drawing");
   try {
     write_report_and_figures(study_report(root, monitor), root / "report.html");
@@ -257,7 +286,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monit
   }
   result["report"] = (root / "report.html").string();
   result["wall_s"] = elapsed();
-  return has_program ? status_of(done.outcome) : kNotAcceptable;
+  return has_program ? status_of(done) : kNotAcceptable;
 }
 
 }  // namespace incise::cli

@@ -5,6 +5,8 @@
 #include <incise/workflow/study.hpp>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace incise::cli {
 
@@ -14,6 +16,7 @@ struct CutOptions {
   bool must_resume = false;     ///< --resume: go on from a checkpoint or not at all
   double checkpoint_s = 30.0;   ///< --checkpoint-s: least wall time between two checkpoints
   std::optional<CompensationMethod> method = std::nullopt;  ///< --method: in place of the case's compensation.method
+  std::vector<std::string> accepted = {};  ///< --accept: cautions that a person takes on them
 };
 /// Adds them to a verb; `options` receives what is given.
 void add_cut_options(CLI::App& verb, CutOptions& options);
@@ -51,8 +54,13 @@ struct StudyRun {
 /// Where the results of a case go when -o is not given: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
 
+/// 4 where the verdict refuses the cut, else that of the outcome.
+[[nodiscard]] int status_of(const Study& study);
+
 /// The whole loop with program and report; the JSON summary of `run` and `demo`.
 /// @returns the exit status; `result` receives the summary.
-int run_whole_loop(StudyRun& study, const CommonOptions& options, Monitor& monitor, nlohmann::ordered_json& result);
+/// @param accepted  ids of cautions, see --accept.
+int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vector<std::string>& accepted, Monitor& monitor,
+                   nlohmann::ordered_json& result);
 
 }  // namespace incise::cli

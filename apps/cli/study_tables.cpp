@@ -40,7 +40,7 @@ TableJson row_of(const Trial& trial, const char* cut_name, const TrialCut& cut) 
   for (const Measure& measure : kMeasures) row[measure.column] = cut.measured ? measure_at(cut.measured->measures, measure.pointer) : TableJson(nullptr);
   row["stretch_force_n"] = trial.stretch_force_n;
   row["registration_rmse_mm"] = trial.registration_rmse_mm ? TableJson(*trial.registration_rmse_mm) : TableJson(nullptr);
-  row["verdict"] = trial.assessment.is_object() ? measure_at(trial.assessment, "/verdict") : TableJson(nullptr);
+  row["advice"] = trial.assessment.is_object() ? measure_at(trial.assessment, "/advice") : TableJson(nullptr);
   const std::string& ended_at = trial.ended_at.empty() ? cut.ended_at : trial.ended_at;
   row["ended_at"] = ended_at.empty() ? TableJson(nullptr) : TableJson(ended_at);
   return row;
@@ -155,7 +155,7 @@ TableJson assessments_json(const std::vector<Trial>& trials) {
   for (const Trial& trial : trials) {
     if (!trial.assessment.is_object()) continue;
     TableJson entry{{"specimen", trial.name}, {"role", to_string(trial.role)}, {"kind", trial.kind.empty() ? TableJson(nullptr) : TableJson(trial.kind)}};
-    for (const char* key : {"verdict", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "distances"})
+    for (const char* key : {"advice", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "distances"})
       entry[key] = trial.assessment.value(key, TableJson());
     const bool is_pair = trial.planned.measured && trial.corrected.measured;
     entry["accepted"] = trial.compensation.is_object() ? trial.compensation.value("accepted", TableJson()) : TableJson(nullptr);

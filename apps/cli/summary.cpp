@@ -1,4 +1,5 @@
 #include "options.hpp"
+#include "verdict_gate.hpp"
 
 #include <incise/io/json_text.hpp>
 
@@ -23,7 +24,9 @@ void print_lines(const nlohmann::ordered_json& object, const std::string& prefix
   constexpr std::size_t kLongList = 6;
   for (const auto& [key, value] : object.items()) {
     const std::string name = prefix.empty() ? key : prefix + "." + key;
-    if (value.is_object()) {
+    if (key == "verdict" && value.is_object() && value.contains("reasons")) {
+      print_verdict(value);
+    } else if (value.is_object()) {
       print_lines(value, name);
     } else if (value.is_array() && !value.empty() && value.front().is_object()) {
       for (const auto& item : value) {
@@ -98,6 +101,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
   print_passes(result);
   print_risks(result);
   fmt::print("\n");
+  if (const auto verdict = result.find("verdict"); verdict != result.end() && verdict->is_object()) print_verdict(*verdict);
   for (const char* key : {"outcome", "accepted", "specimen_is", "report", "wall_s"}) {
     if (const auto value = result.find(key); value != result.end() && !value->is_structured()) fmt::print("{:<36} {}\n", key, shown(*value));
   }

@@ -2,6 +2,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/registration_json.hpp>
 #include <incise/workflow/assess.hpp>
 
@@ -60,7 +61,7 @@ std::string other_tool(const CutSettings& cut, const CalibrationRecord& calibrat
 }
 
 void print_assessment(const nlohmann::ordered_json& result) {
-  fmt::print("{}\n", result.at("verdict").get<std::string>());
+  fmt::print("{}\n", result.at("advice").get<std::string>());
   for (const char* key : {"reasons", "notes"})
     for (const auto& line : result.at(key))
       fmt::print("  {}{}\n", key == std::string("notes") ? "note: " : "", line.get<std::string>());
@@ -103,14 +104,23 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   nlohmann::ordered_json result = to_json(assessment, request);
   result["specimen_is"] =
       run.store.case_file().settings.is_virtual || calibration.record.is_virtual ? "virtual" : "real";
+  result["verdict"] = nullptr;  // known once the assessment is kept
   write_assessment(run.store, result, calibration.file, chosen.registration, wall.count());
+  Verdict verdict = study.verdict;
+  if (study.is_accepted) run.store.add_advice_to(verdict);
+  result["verdict"] = to_json(verdict);
+  if (study.corrected) {
+    Verdict of_corrected = study.about_inputs;
+    of_corrected.add(study.corrected->verdict);
+    run.store.save_verdicts({}, of_corrected);
+  }
   result["folder"] = run.store.root().string();
   result["wall_s"] = wall.count();
   if (options.json)
     print_result(options, result);
   else
     print_assessment(result);
-  return assessment.eligibility.verdict == Verdict::DoNotUse ? kNotAcceptable : kDone;
+  return assessment.eligibility.advice == Advice::DoNotUse ? kNotAcceptable : kDone;
 }
 
 }  // namespace

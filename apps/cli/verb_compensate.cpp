@@ -3,6 +3,7 @@
 #include "option_checks.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>
@@ -40,6 +41,7 @@ nlohmann::ordered_json summary_of(const Study& study) {
                                   : study.corrected ? 2
                                                     : 1;
   json["outcome"] = to_string(study.outcome);
+  json["verdict"] = to_json(study.verdict);
   json["accepted"] = study.is_accepted;
   json["passes"] = simulations - 1;
   json["simulations"] = simulations;
@@ -131,10 +133,10 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
   print_study(options, result);
   if (study.outcome == Outcome::Success && !study.is_accepted) {
     console.message(Severity::Warning,
-                    "the correction is not accepted: the mean error has to be below the electrode's radius, and "
-                    "smaller than before");
+                    "the correction is not accepted: the mean error has to be below the electrode's radius and smaller than before, and "
+                    "depth and closure no worse");
   }
-  return study.is_accepted && is_robust_enough ? kDone : kNotAcceptable;
+  return study.is_accepted && is_robust_enough && study.verdict.status() != VerdictStatus::Refused ? kDone : kNotAcceptable;
 }
 
 }  // namespace

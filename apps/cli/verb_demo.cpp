@@ -1,5 +1,6 @@
 #include "phantom_case.hpp"
 #include "study_run.hpp"
+#include "verdict_gate.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
@@ -33,12 +34,13 @@ void add_demo(Application& application) {
       "demo", "A complete virtual case: make a specimen, then everything that `run` does", "incise demo -o demo",
       [cut](const CommonOptions& options) {
         Console console(options.level());
+        require_accepted_ids(cut->accepted);
         const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
         const std::filesystem::path specimen = specimen_for(root / "specimen", options.seed, console);
         try {
           StudyRun study(specimen, root, Stage::Verify, options, *cut);
           nlohmann::ordered_json result;
-          const int status = run_whole_loop(study, options, console, result);
+          const int status = run_whole_loop(study, options, cut->accepted, console, result);
           print_study(options, result);
           return status;
         } catch (const StagesKept&) {
@@ -49,6 +51,7 @@ void add_demo(Application& application) {
       });
   add_cut_options(*verb, *cut);
   add_compensation_method(*verb, *cut);
+  add_accept(*verb, cut->accepted);
 }
 
 }  // namespace incise::cli

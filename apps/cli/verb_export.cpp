@@ -1,3 +1,4 @@
+#include "verdict_gate.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
@@ -10,6 +11,7 @@
 #include <incise/io/manifest.hpp>
 #include <incise/io/nearest_name.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/registration_json.hpp>
@@ -35,7 +37,7 @@ struct ExportArguments {
   double shaft_diameter_mm = 2.0 * CheckSettings{}.shaft_radius_mm;
   double power_w = 0.0;  // not given
   std::vector<double> tcp, near_deg;
-  std::vector<std::string> overrides;
+  std::vector<std::string> overrides, accepted;
   bool is_open = false;
   const CLI::Option* motion_option = nullptr;
 };
@@ -95,6 +97,12 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   ToolPath path = read_tool_path(file);
   require_robot_frame(path, file);
   return path;
+}
+
+/// Of the simulated cut that verifies the path; a mark of the tumour's edge cuts nothing.
+Verdict verdict_of(const ExportArguments& arguments) {
+  if (arguments.kind == "mark") return {};
+  return read_path_verdict(arguments.path);
 }
 
 /// Settings that follow from others.
@@ -189,12 +197,14 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   refuse_input_as_output("-o", output, {arguments.path, arguments.intended, arguments.surface, arguments.registration});
   OlderOutput older(output, console);
   require_override_names(arguments.overrides);
+  require_accepted_ids(arguments.accepted);
   require_ending(output, arguments.format);
   if (arguments.format != "urscript" && arguments.motion_option->count() > 0) {
     throw CaseError("command line", "--motion", fmt::format("{} for --format {}", arguments.motion, arguments.format),
                     "no --motion: only URScript has two kinds");
   }
   ToolPath path = read_robot_path(arguments.path);
+  const Verdict verdict = verdict_of(arguments);
   if (!arguments.kind.empty()) path.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
   if (arguments.is_open && path.is_closed) {
     throw CaseError("command line", "--open", fmt::format("{}, a closed path", arguments.path.string()), "an open path",
@@ -225,16 +235,21 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   const auto elapsed = [&start] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  if (!checks.may_be_written()) {
+  const VerdictGate gate = gate_of(verdict, arguments.accepted);
+  report_gate(verdict, gate, console);
+  result["verdict"] = to_json(verdict);
+  result["gate"] = to_json(gate);
+  if (!checks.may_be_written() || !gate.is_open) {
     result["stale_output"] = older.json();
     result["wall_s"] = elapsed();
     print_result(options, result);
     return kNotAcceptable;
   }
-  const ProgramHeader header = program_header(program, path, checks,
-                                              {{"made_by", fmt::format("incise {} ({})", version(), source_commit())},
-                                               {"made_from", arguments.path.filename().string()},
-                                               {"made_from_sha256", sha256_of_file(arguments.path)}});
+  ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())},
+                           {"made_from", arguments.path.filename().string()},
+                           {"made_from_sha256", sha256_of_file(arguments.path)}};
+  for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
+  const ProgramHeader header = program_header(program, path, checks, provenance);
   const std::string text = text_of(program, checks, header, arguments, output);
   write_atomically(output, [&text](std::ostream& out) { out << text; });
   older.replaced();
@@ -267,6 +282,7 @@ void add_export(Application& application) {
                    "Write the program although this check fails; once for each, noted in the program")
       ->expected(1)
       ->take_all();
+  add_accept(*verb, a.accepted);
   verb->add_option("--intended", a.intended, "The path before correction, to check the deviation");
   verb->add_option("--surface", a.surface,
                    "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth and shaft are "

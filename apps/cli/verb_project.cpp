@@ -7,6 +7,7 @@
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
 #include <incise/planning/project_path.hpp>
@@ -226,17 +227,27 @@ nlohmann::ordered_json settings_json(const ProjectArguments& arguments, const Pr
           {"max_shift_mm", s.max_shift_mm}};
 }
 
+/// That of the simulated path goes with the projected one, as long as it is cut as deep and as fast as it was simulated. A mark cuts nothing.
+Verdict verdict_of(const ProjectArguments& arguments, const ProjectSettings& settings) {
+  if (settings.kind == PathKind::Mark) return {};
+  Verdict verdict = read_path_verdict(arguments.path);
+  if (settings.incise_depth_mm || settings.incise_speed_mm_s) {
+    verdict.add("not_simulated", {}, "the path was projected with another depth or speed than its simulated cut had");
+  }
+  return verdict;
+}
+
 /// A folder with path, tissue and manifest, or the path as one file with its manifest beside it.
-void write(const std::filesystem::path& output, const ProjectedPath& projected, const Placement& placement,
-           const Manifest& manifest, nlohmann::ordered_json& result) {
+void write(const std::filesystem::path& output, const ProjectedPath& projected, const Verdict& verdict,
+           const Placement& placement, const Manifest& manifest, nlohmann::ordered_json& result) {
   if (output.extension() == ".json") {
-    write_tool_path(output, projected.path);
+    write_tool_path(output, projected.path, verdict);
     write_manifest_beside(output, manifest);
     result["path"] = output.string();
     return;
   }
   AtomicFolder folder(output);
-  write_tool_path(folder.path() / "path.json", projected.path);
+  write_tool_path(folder.path() / "path.json", projected.path, verdict);
   write_ply(folder.path() / "surface.ply", placement.measured);
   write_manifest(folder.path(), manifest);
   folder.commit();
@@ -280,7 +291,9 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   std::vector<std::filesystem::path> inputs{arguments.path, arguments.transform, arguments.surface};
   if (!arguments.camera.empty()) inputs.push_back(arguments.camera);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write(output, projected, placement, manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s),
+  const Verdict verdict = verdict_of(arguments, settings);
+  result["verdict"] = to_json(verdict);
+  write(output, projected, verdict, placement, manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s),
         result);
   older.replaced();
   result["wall_s"] = wall_s;

@@ -1,4 +1,5 @@
 #include "study_run.hpp"
+#include "verdict_gate.hpp"
 
 #include <memory>
 
@@ -11,15 +12,17 @@ void add_run(Application& application) {
       "run", "The whole loop on your case: CT, mesh, stretch, plan, cut, correct, cut again, program, report. Resumes",
       "incise run my_patient -o my_patient/out", [case_path, cut](const CommonOptions& options) {
         Console console(options.level());
+        require_accepted_ids(cut->accepted);
         StudyRun study(*case_path, output_of(*case_path, options), Stage::Verify, options, *cut);
         nlohmann::ordered_json result;
-        const int status = run_whole_loop(study, options, console, result);
+        const int status = run_whole_loop(study, options, cut->accepted, console, result);
         print_study(options, result);
         return status;
       });
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, *cut);
   add_compensation_method(*verb, *cut);
+  add_accept(*verb, cut->accepted);
 }
 
 }  // namespace incise::cli

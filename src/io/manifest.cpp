@@ -4,6 +4,7 @@
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
+#include <incise/io/verdict_json.hpp>
 
 #include <fmt/format.h>
 
@@ -51,6 +52,7 @@ void write_to(const std::filesystem::path& file, const Manifest& manifest) {
   document["inputs"] = inputs;
   document["wall_s"] = manifest.wall_s;
   document["machine"] = manifest.machine;
+  if (manifest.verdict) document["verdict"] = to_json(*manifest.verdict);
   write_json(file, document);
 }
 
@@ -83,6 +85,7 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   }
   manifest.wall_s = root.at("wall_s").number();
   manifest.machine = root.at("machine").text();
+  if (root.find("verdict")) manifest.verdict = verdict_from_json(document["verdict"], file);
   return manifest;
 }
 

@@ -3,7 +3,9 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/verdict_json.hpp>
 
 #include <fmt/format.h>
 
@@ -17,6 +19,8 @@ using io_detail::JsonValue;
 using nlohmann::ordered_json;
 
 constexpr const char* kSchema = "incise.path/1";
+constexpr const char* kVerdict = "verdict";
+constexpr const char* kDigest = "digest_sha256";
 constexpr double kUnitAxisTolerance = 1e-4;  // an axis typed with four digits passes; 0.5 µm at 5 mm depth
 
 /// The enumerator that `place` spells, among those given. @throws DataError
@@ -58,7 +62,7 @@ std::string read_hash(const JsonValue& place) {
 
 ToolPath read_path(const JsonValue& root) {
   root.require_only({"schema", "frame", "kind", "closed", "waypoints", "tumor_edge", "tumor_edge_closed", "T_robot_sim",
-                     "source_sha256"});
+                     "source_sha256", kVerdict});
   if (const auto schema = root.find("schema"); schema && schema->text() != kSchema) {
     schema->expected(fmt::format("\"{}\"", kSchema));
   }
@@ -108,6 +112,17 @@ ordered_json document_of(const ToolPath& path) {
   return document;
 }
 
+/// Over a path and what is said of it: a change of either shows.
+std::string digest_of(const ToolPath& path, const Verdict& verdict) {
+  return sha256_of_text(document_of(path).dump() + to_json(verdict).dump());
+}
+
+Verdict not_simulated(const char* why) {
+  Verdict verdict;
+  verdict.add("not_simulated", {}, why);
+  return verdict;
+}
+
 }  // namespace
 
 ToolPath tool_path_from_json(std::string_view text, const std::filesystem::path& name) {
@@ -135,6 +150,24 @@ std::string to_json(const ToolPath& path) {
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path) {
   const std::string text = to_json(path);
   write_atomically(file, [&](std::ostream& stream) { stream << text; });
+}
+
+void write_tool_path(const std::filesystem::path& file, const ToolPath& path, const Verdict& verdict) {
+  ordered_json document = parse_json(to_json(path), file);
+  document[kVerdict] = to_json(verdict);
+  document[kVerdict][kDigest] = digest_of(path, verdict);
+  write_json(file, document);
+}
+
+Verdict read_path_verdict(const std::filesystem::path& file) {
+  const ordered_json document = read_json(file);
+  const JsonValue root(document, file);
+  const ToolPath path = read_path(root);
+  const std::optional<JsonValue> place = root.find(kVerdict);
+  if (!place) return path.kind == PathKind::Mark ? Verdict() : not_simulated("the path's file holds no verdict: no simulated cut along it is known");
+  const Verdict verdict = verdict_from_json(document.at(kVerdict), file);
+  if (place->at(kDigest).text() == digest_of(path, verdict)) return verdict;
+  return not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
 }
 
 }  // namespace incise

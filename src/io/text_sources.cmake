@@ -24,6 +24,7 @@ set(text_sources
   text_cursor.cpp
   text_table.cpp
   transform_json.cpp
+  verdict_json.cpp
   vtk_bytes.cpp
   vtk_legacy_reader.cpp
   vtk_xml_reader.cpp

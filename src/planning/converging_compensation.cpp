@@ -92,13 +92,16 @@ class ConvergingIteration {
     for (const double e : pass.error_mm)
       *pass.smooth_error_mm += std::abs(e) / static_cast<double>(pass.error_mm.size());
     pass.is_success = errors.is_success;
+    pass.shortfall_mm = errors.shortfall_mm;
+    pass.open_layers = errors.open_layers;
     pass.lag_mm = errors.lag_mm;
   }
 
   static bool is_better(const CompensationPass& a, const CompensationPass& b) {
     if (!a.mean_abs_error_mm) return false;
     if (a.is_success != b.is_success) return a.is_success;
-    return *a.mean_abs_error_mm < *b.mean_abs_error_mm;
+    if (a.open_layers != b.open_layers) return a.open_layers < b.open_layers;
+    return a.cost_mm() < b.cost_mm();
   }
 
   [[nodiscard]] bool is_converged() const {

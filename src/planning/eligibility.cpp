@@ -90,13 +90,13 @@ std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, co
 
 }  // namespace
 
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Compensate:
+std::string_view to_string(Advice advice) {
+  switch (advice) {
+    case Advice::Compensate:
       return "compensate";
-    case Verdict::CutAsPlanned:
+    case Advice::CutAsPlanned:
       return "cut_as_planned";
-    case Verdict::DoNotUse:
+    case Advice::DoNotUse:
       return "do_not_use";
   }
   return "unknown";
@@ -180,10 +180,10 @@ Eligibility judge_eligibility(const EligibilityEvidence& evidence, const Eligibi
   // A specimen that may be unlike is no better one to correct: its distance never lifts a doubt.
   judged.reasons = doubts(evidence, std::max(*judged.p_worse, evidence.gain->p_worse), rules);
   if (!judged.reasons.empty()) {
-    judged.verdict = Verdict::CutAsPlanned;
+    judged.advice = Advice::CutAsPlanned;
     return judged;
   }
-  judged.verdict = Verdict::Compensate;
+  judged.advice = Advice::Compensate;
   judged.reasons = {fmt::format(
       "the expected gain is {:.2f} ± {:.2f} mm; the corrected cut is the worse one with a probability of {:.2f}{}",
       evidence.gain->mean_mm, evidence.gain->sd_mm, *judged.p_worse, open_rings(evidence))};

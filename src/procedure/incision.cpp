@@ -237,6 +237,7 @@ void sum_up(const std::vector<CutStepLog>& steps, IncisionResult& result) {
     result.solver_iterations += static_cast<std::size_t>(step.iterations);
     result.unconverged_steps += step.converged ? 0 : 1;
     result.held_back_vertices += step.held_back_vertices;
+    result.steps_held_back += step.held_back_vertices > 0 ? 1 : 0;
     result.slipped_bonds += step.slipped;
     result.peak_tool_torque_mn_mm = std::max(result.peak_tool_torque_mn_mm, step.tool_torque_mn_mm.norm());
     result.peak_tool_force_mn = std::max(result.peak_tool_force_mn, step.tool_force_mn.norm());
@@ -254,8 +255,7 @@ void judge_solves(IncisionResult& result, std::size_t steps, Monitor& monitor) {
 /// The limit is for loose bits: where it acts often it holds back the body, which then lags for no reason in its law.
 void tell_held_back(const IncisionSettings& settings, const IncisionResult& result,
                     const std::vector<CutStepLog>& steps, Monitor& monitor) {
-  const auto with_one = static_cast<std::size_t>(
-      std::count_if(steps.begin(), steps.end(), [](const CutStepLog& step) { return step.held_back_vertices > 0; }));
+  const std::size_t with_one = result.steps_held_back;
   if (result.outcome == Outcome::Cancelled) return;
   if (static_cast<double>(with_one) <= kHeldBackShare * static_cast<double>(steps.size())) return;
   monitor.message(Severity::Warning,

@@ -49,6 +49,24 @@ bool is_within(const Vec3& p, const SurfaceQuery& surface, const Box3& bounds, c
 
 }  // namespace
 
+namespace {
+
+/// Depth of the tool's tip below the path at points of the profile, along the approach: linear between waypoints.
+std::vector<double> planned_along(const ToolPath& path, const DepthProfile& profile, const Vec3& approach) {
+  const std::size_t n = path.waypoints.size();
+  const auto depth_of = [&](std::size_t i) { return path.waypoints[i % n].depth_mm * path.waypoints[i % n].axis.dot(approach); };
+  const Contour entries = entry_contour(path);
+  std::vector<double> planned;
+  planned.reserve(profile.course.points.size());
+  for (const Vec3& p : profile.course.points) {
+    const ContourPoint at = nearest_on(entries, p);
+    planned.push_back((1.0 - at.fraction) * depth_of(at.segment) + at.fraction * depth_of(at.segment + 1));
+  }
+  return planned;
+}
+
+}  // namespace
+
 DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings) {
   DepthReached result;
   for (const Waypoint& waypoint : path.waypoints) {
@@ -60,6 +78,7 @@ DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const In
   depth.pixel_mm = std::min(depth.pixel_mm, 0.25 * depth.needle_diameter_mm);
   depth.reach_mm = std::max(depth.reach_mm, depth.needle_diameter_mm);
   result.profile = depth_along(kerf, entry_contour(path), depth);
+  result.planned_at_mm = planned_along(path, result.profile, settings.approach);
   result.depth_mm = spread_of(result.profile.depth_mm);
   return result;
 }

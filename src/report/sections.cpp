@@ -72,14 +72,36 @@ std::string headline_cards(const ReportData& data) {
                   change < 0.0 ? "good" : "bad");
   }
   for (const ReportIncision& incision : data.incisions) {
-    const bool is_good = incision.outcome == Outcome::Success;
-    cards += card("outcome, " + incision.name, (is_good ? "✓ " : "✗ ") + outcome_words(incision.outcome), "",
-                  outcome_note(incision), is_good ? "good" : "bad");
+    const bool is_success = incision.outcome == Outcome::Success;
+    const VerdictStatus verdict = incision.verdict.status();
+    const bool is_good = is_success && verdict == VerdictStatus::Ok;
+    const std::string note = verdict == VerdictStatus::Ok ? outcome_note(incision) : fmt::format("verdict: {} ({})", to_string(verdict), incision.verdict.reasons().front().id);
+    cards += card("outcome, " + incision.name, (is_good ? "✓ " : is_success ? "" : "✗ ") + outcome_words(incision.outcome), "", note,
+                  is_good ? "good" : "bad");
   }
   for (const ReportHeadline& headline : data.headlines) {
     cards += card(headline.label, headline.value, headline.unit, headline.note);
   }
   return cards.empty() ? "" : "<dl class=\"cards\">\n" + cards + "</dl>\n";
+}
+
+/// What the verdict says, before any other number; nothing where there is none.
+std::string verdict_box(const std::optional<Verdict>& verdict) {
+  if (!verdict) return "";
+  static constexpr std::array<const char*, 3> kWords{"Nothing that the simulation knows argues against this cut.",
+                                                     "Something argues against this cut: a robot program needs each reason accepted by name.",
+                                                     "This cut must not be carried out. There is no robot program for it."};
+  const auto status = verdict->status();
+  std::string html = fmt::format("<div class=\"verdict {0}\" role=\"status\"><p><strong>Verdict: {0}.</strong> {1}</p>\n", to_string(status),
+                                 kWords[static_cast<std::size_t>(status)]);
+  if (!verdict->reasons().empty()) html += "<ul>\n";
+  for (const VerdictReason& reason : verdict->reasons()) {
+    const std::string place = reason.at && !reason.at->text.empty() ? fmt::format(" ({})", reason.at->text) : std::string();
+    html += fmt::format("<li class=\"{0}\"><strong>{0}: {1}</strong>{2}: {3}</li>\n", to_string(reason.severity), escaped(reason.id), escaped(place),
+                        escaped(reason.message));
+  }
+  if (!verdict->reasons().empty()) html += "</ul>\n";
+  return html + "</div>\n";
 }
 
 std::string notice_list(const ReportData& data) {
@@ -123,7 +145,7 @@ std::string page_header(const ReportData& data) {
 
 std::string result_section(const ReportData& data) {
   const std::string cards = headline_cards(data);
-  return "<section>\n" + heading("result", "Result") +
+  return "<section>\n" + heading("result", "Result") + verdict_box(data.verdict) +
          (cards.empty() ? missing("No incision has been evaluated yet.") : cards) + notice_list(data) + "</section>\n";
 }
 

@@ -37,7 +37,7 @@ Json to_json(const Assessment& assessment, const AssessmentRequest& request) {
   const EligibilityEvidence& evidence = assessment.evidence;
   const std::optional<CutGain>& gain = evidence.gain;
   Json json;
-  json["verdict"] = to_string(assessment.eligibility.verdict);
+  json["advice"] = to_string(assessment.eligibility.advice);
   json["reasons"] = assessment.eligibility.reasons;
   json["notes"] = assessment.notes;
   const bool is_foretold = gain && std::isfinite(gain->mean_mm) && std::isfinite(gain->sd_mm);

@@ -134,8 +134,9 @@ bool FolderStore::is_current(Product product) {
   return json.is_object() && json.contains("key") && json.at("key").is_string() && json.at("key") == key(product);
 }
 
-void FolderStore::write_manifest_to(const std::filesystem::path& folder, double wall_s) {
+void FolderStore::write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict) {
   Manifest manifest;
+  if (verdict != nullptr) manifest.verdict = *verdict;
   manifest.version = version();
   manifest.commit = source_commit();
   manifest.command = context_.command;

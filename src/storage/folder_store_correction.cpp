@@ -5,6 +5,8 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/verdict_json.hpp>
+#include <incise/planning/eligibility.hpp>
 #include <incise/storage/folder_store.hpp>
 #include <incise/storage/result_json.hpp>
 
@@ -34,6 +36,8 @@ CompensationPass pass_from(const Json& json) {
   pass.smooth_error_mm = number_or_nothing(json.at("smooth_error_mm"));
   pass.lag_mm = json.at("lag_mm");
   pass.max_move_mm = json.at("max_move_mm");
+  pass.shortfall_mm = json.at("shortfall_mm");
+  pass.open_layers = json.at("open_layers");
   pass.is_success = json.at("success");
   return pass;
 }
@@ -138,6 +142,29 @@ bool FolderStore::adopt_cut(CutRole from) {
   }
   remove_passes();
   return true;
+}
+
+void FolderStore::add_advice_to(Verdict& verdict) const {
+  const std::filesystem::path file = root_ / "assessment" / "assess.json";
+  if (!std::filesystem::exists(file)) return;
+  const Json json = read_json(file);
+  const std::string advice = json.value("advice", std::string());
+  if (advice == to_string(Advice::Compensate)) return;
+  const std::string why = json.contains("reasons") && !json.at("reasons").empty() ? ": " + json.at("reasons").front().get<std::string>() : std::string();
+  verdict.add("eligibility", {}, fmt::format("assess advises {}{}", advice.empty() ? "nothing" : advice, why));
+}
+
+void FolderStore::save_verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) {
+  const auto note = [this](Product product, const std::optional<Verdict>& verdict) {
+    const std::filesystem::path file = folder(product) / "path.json";
+    if (!verdict || !is_current(product)) return;
+    Verdict whole = *verdict;
+    if (product == Product::Correction) add_advice_to(whole);
+    if (to_json(read_path_verdict(file)) == to_json(whole)) return;
+    write_tool_path(file, read_tool_path(file), whole);
+  };
+  note(Product::Plan, of_planned);
+  note(Product::Correction, of_corrected);
 }
 
 void FolderStore::remove_passes() {

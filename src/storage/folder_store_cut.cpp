@@ -10,6 +10,7 @@
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/pvd_io.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/checkpoint_file.hpp>
 #include <incise/storage/folder_store.hpp>
 #include <incise/storage/result_json.hpp>
@@ -80,6 +81,13 @@ RemovalCause cause_from(const nlohmann::ordered_json& json, const std::filesyste
     if (static_cast<int>(cause) == number) return cause;
   }
   throw DataError(file, "removals", fmt::format("a cause {}", number), "the number of one of removal_causes");
+}
+
+/// What was found of mesh and path before the cut is not found again in what the cut left.
+void keep_what_was_known_before(const Verdict& kept, Verdict& verdict) {
+  for (const VerdictReason& reason : kept.reasons()) {
+    if (reason.id == "mesh_resolution" || reason.id == "locking" || reason.id == "platform") verdict.add(reason);
+  }
 }
 
 /// All numbers of a cut, and how its program ended and what it removed.
@@ -193,6 +201,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     incision.is_at_rest = json.at("at_rest");
     incision.unconverged_steps = json.at("unconverged_steps");
     incision.held_back_vertices = json.at("held_back_vertices");
+    incision.steps_held_back = json.at("steps_held_back");
     incision.inverted_tets = json.at("inverted_tets");
     incision.slipped_bonds = json.at("slipped_bonds");
     incision.peak_tool_force_mn = json.at("peak_tool_force_mn");
@@ -221,6 +230,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     // A correction moves waypoints and keeps their speeds and depths, so that all cuts of a study are heated alike.
     const ToolPath heated = read_given_path().value_or(intended);
     SimulatedCut cut = judge(file_.settings, std::move(incision), heated, intended, json.at("tets").get<std::size_t>());
+    keep_what_was_known_before(verdict_from_json(json.at("verdict"), from / "incision.json"), cut.verdict);
     if (is_judged_anew(product)) {
       write_json(from / "incision.json", incision_json(cut));
       note_judgement(product);

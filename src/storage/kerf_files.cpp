@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::vector<std::string> kDepthColumns{"x_mm", "y_mm", "z_mm", "arclength_mm", "depth_mm"};
+const std::vector<std::string> kDepthColumns{"x_mm", "y_mm", "z_mm", "arclength_mm", "depth_mm", "planned_mm"};
 const std::vector<std::string> kLagColumns{"time_s", "arclength_mm", "lag_mm", "drift_mm"};
 
 template <class Value>
@@ -96,6 +96,7 @@ DepthReached depth_from(const std::filesystem::path& folder, const Json& json, b
   }
   depth.profile.arclength_mm = std::move(columns[3]);
   depth.profile.depth_mm = std::move(columns[4]);
+  depth.planned_at_mm = std::move(columns[5]);
   return depth;
 }
 
@@ -131,7 +132,9 @@ void write_kerf_files(const std::filesystem::path& folder, const KerfMeasures& k
   for (const KerfLayer& layer : kerf.layers) write_if_there(folder / layer_file(layer.depth_mm), layer.centerline);
   write_contour_csv(
       folder / "depth.csv", kerf.depth.profile.course,
-      {{kDepthColumns[3], kerf.depth.profile.arclength_mm}, {kDepthColumns[4], kerf.depth.profile.depth_mm}});
+      {{kDepthColumns[3], kerf.depth.profile.arclength_mm},
+       {kDepthColumns[4], kerf.depth.profile.depth_mm},
+       {kDepthColumns[5], kerf.depth.planned_at_mm}});
   if (kerf.drag) {
     write_csv_columns(folder / "lag.csv", {{kLagColumns[0], kerf.drag->time_s},
                                            {kLagColumns[1], kerf.drag->arclength_mm},

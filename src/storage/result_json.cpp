@@ -2,6 +2,7 @@
 #include "kerf_files.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>
@@ -97,12 +98,14 @@ Json to_json(const SimulatedCut& cut) {
   json["at_rest"] = incision.is_at_rest;
   json["unconverged_steps"] = incision.unconverged_steps;
   json["held_back_vertices"] = incision.held_back_vertices;
+  json["steps_held_back"] = incision.steps_held_back;
   json["inverted_tets"] = incision.inverted_tets;
   json["slipped_bonds"] = incision.slipped_bonds;
   json["peak_tool_force_mn"] = incision.peak_tool_force_mn;
   json["peak_tool_torque_mn_mm"] = incision.peak_tool_torque_mn_mm;
   json["thermal_half_width_mm"] = cut.thermal_half_width_mm;
   json["thermal_margin_mm"] = or_null(cut.thermal_margin_mm);
+  json["verdict"] = to_json(cut.verdict);
   json["wall_s"] = incision.wall_s;
   json["ms_per_step"] =
       incision.steps.empty() ? 0.0 : 1e3 * incision.wall_s / static_cast<double>(incision.steps.size());
@@ -208,6 +211,8 @@ Json correction_summary_json(const Correction& correction) {
                                {"lag_mm", pass.lag_mm},
                                {"max_move_mm", pass.max_move_mm},
                                {"limited_waypoints", std::count(pass.is_limited.begin(), pass.is_limited.end(), 1)},
+                               {"shortfall_mm", pass.shortfall_mm},
+                               {"open_layers", pass.open_layers},
                                {"success", pass.is_success}});
   }
   return json;

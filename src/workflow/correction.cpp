@@ -1,6 +1,7 @@
 #include <incise/core/error.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/workflow/correction.hpp>
+#include <incise/workflow/cut_verdict.hpp>
 #include <incise/workflow/store.hpp>
 
 #include <fmt/format.h>
@@ -58,6 +59,27 @@ std::optional<PathErrors> layer_path_errors(const Case& settings, const Simulate
   return PathErrors{std::move(found.points.points), std::move(found.signed_error_mm), 0.0, false};
 }
 
+/// What the kerf lacks of the depth that is accepted without a caution, averaged over the path.
+double mean_shortfall_mm(const Case& settings, const SimulatedCut& cut) {
+  const std::vector<double> shares = depth_shares(settings, cut.incision.kerf.depth);
+  if (shares.empty()) return 0.0;
+  const double limit = *verdict_rule("depth").limit;
+  double missing = 0.0;
+  for (const double share : shares) missing += std::max(0.0, limit - share);
+  return settings.plan.depth_mm * missing / static_cast<double>(shares.size());
+}
+
+/// A correction may not buy the lateral error with depth or closure: it leaves no more layers open than the first cut, and is as deep
+/// everywhere as a cut has to be, or as the first one was.
+bool keeps_depth_and_closure(const Case& settings, const SimulatedCut& first, const SimulatedCut& corrected) {
+  if (open_layers_mm(corrected.incision).size() > open_layers_mm(first.incision).size()) return false;
+  const auto least = [&settings](const SimulatedCut& cut) {
+    const std::vector<double> shares = depth_shares(settings, cut.incision.kerf.depth);
+    return shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
+  };
+  return least(corrected) >= std::min(*verdict_rule("depth").limit, least(first));
+}
+
 ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {
   ConvergenceSettings convergence;
   convergence.region = safe_region(settings);
@@ -100,7 +122,11 @@ std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& 
   } else {
     errors = layer_path_errors(settings, cut, tumor_edge, monitor);
   }
-  if (errors && cut.incision.kerf.drag) errors->lag_mm = std::max(0.0, cut.incision.kerf.drag->lag.mean);
+  if (!errors) return errors;
+  if (cut.incision.kerf.drag) errors->lag_mm = std::max(0.0, cut.incision.kerf.drag->lag.mean);
+  errors->shortfall_mm = mean_shortfall_mm(settings, cut);
+  errors->open_layers = static_cast<int>(open_layers_mm(cut.incision).size());
+  errors->is_success = errors->is_success && errors->open_layers == 0;
   return errors;
 }
 
@@ -150,7 +176,7 @@ Correction correct_converging(const Case& settings, const ToolPath& followed, co
 
 bool is_accepted(const Case& settings, const Correction& correction, const SimulatedCut& first,
                  const SimulatedCut& corrected) {
-  if (corrected.outcome != Outcome::Success) return false;
+  if (corrected.outcome != Outcome::Success || !keeps_depth_and_closure(settings, first, corrected)) return false;
   const double radius = radius_mm(settings.tool);
   if (correction.iteration) {
     const ConvergedCompensation& done = *correction.iteration;

@@ -1,4 +1,5 @@
 #include <incise/cutting/path_heat.hpp>
+#include <incise/workflow/cut_verdict.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <algorithm>
@@ -35,6 +36,13 @@ LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const Too
   return errors;
 }
 
+/// Layers every millimetre below those that are looked at by default, down to the path's deepest place.
+void add_layers_down_to(const ToolPath& path, const Vec3& approach, std::vector<double>& layer_depths_mm) {
+  double deepest_mm = 0.0;
+  for (const Waypoint& waypoint : path.waypoints) deepest_mm = std::max(deepest_mm, waypoint.depth_mm * waypoint.axis.dot(approach));
+  while (layer_depths_mm.back() + 1.0 <= deepest_mm) layer_depths_mm.push_back(layer_depths_mm.back() + 1.0);
+}
+
 }  // namespace
 
 SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended, std::size_t tets) {
@@ -56,6 +64,7 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
     cut.thermal_margin_mm = cut.centerline.target_mm + cut.centerline.signed_error_mm->min - cut.thermal_half_width_mm;
   }
   cut.outcome = cut.incision.outcome == Outcome::Success ? cut.centerline.outcome : cut.incision.outcome;
+  cut.verdict = verdict_of_cut(settings, cut);
   return cut;
 }
 
@@ -74,6 +83,7 @@ SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const
                            std::optional<IncisionProgress> from, const ProgressKeeper& keep) {
   IncisionSettings incision = incision_settings(settings);
   incision.tumor_surface = tumor_surface;
+  add_layers_down_to(path, incision.approach, incision.layer_depths_mm);
   ToolPath with_edge = path;
   with_edge.tumor_edge = intended.tumor_edge;
   if (!from) from = begin_incision(model, stretched, with_edge, incision);

@@ -2,22 +2,16 @@
 #include <incise/workflow/cut_doubts.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 
 namespace incise {
 namespace {
 
-// Poisson's ratios: above the first, the default, tets of their own volume begin to lock; above the second their cuts
-// are of no use.
-constexpr double kLockingFrom = 0.49;
+// Above this Poisson's ratio cuts of tets of their own volume are of no use; above that of the rule `locking` they begin to lock.
 constexpr double kLockedFrom = 0.495;
 constexpr double kRatioRounding = 1e-9;
 constexpr double kNearPathMm = 1.5;  // tets with their centroid this near to the tool's way count as met
-// Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
-constexpr double kCoarsestEdgeMm = 1.5;
 
 struct TetRatio {
   double ratio = 0.0;
@@ -82,16 +76,6 @@ class WayOfTool {
   double deepest_mm_ = 0.0;
 };
 
-/// Depths of the layers within the plan that the cut left open.
-std::vector<double> open_depths_mm(const IncisionResult& incision) {
-  std::vector<double> depths;
-  for (const KerfLayer& layer : incision.kerf.layers) {
-    const bool is_cut = incision.is_closed_loop ? layer.is_closed.value_or(false) : layer.centerline.has_value();
-    if (layer.is_within_plan && !is_cut) depths.push_back(layer.depth_mm);
-  }
-  return depths;
-}
-
 }  // namespace
 
 void require_no_locking(const TissueModel& model) {
@@ -117,47 +101,24 @@ std::optional<double> edge_along_mm(const TissueModel& model, std::span<const Ve
   return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
 }
 
-std::vector<std::string> doubts_before_cut(const Case& settings, const TissueModel& model,
-                                           std::span<const Vec3> stretched, const ToolPath& path) {
-  std::vector<std::string> doubts;
+Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path) {
+  Verdict verdict;
   const double ratio = greatest_ratio(model).ratio;
-  if (model.material.volume == VolumeTreatment::PerTet && ratio > kLockingFrom + kRatioRounding) {
-    doubts.push_back(
-        fmt::format("a Poisson's ratio of {:.6g} with specimen.material.volume: per_tet makes tets lock: the cut's "
-                    "errors come out too small. "
-                    "volume: averaged is free of that",
-                    ratio));
+  if (model.material.volume == VolumeTreatment::PerTet && ratio > *verdict_rule("locking").limit + kRatioRounding) {
+    verdict.add("locking", ratio,
+                fmt::format("a Poisson's ratio of {:.6g} with specimen.material.volume: per_tet makes tetrahedra lock: the cut's errors come "
+                            "out too small. volume: averaged is free of that",
+                            ratio));
   }
+  const double coarsest_mm = *verdict_rule("mesh_resolution").limit;
   const std::optional<double> edge_mm = edge_along_mm(model, stretched, path, settings.plan.approach);
-  if (edge_mm && *edge_mm > kCoarsestEdgeMm) {
-    doubts.push_back(fmt::format(
-        "the mesh is coarse for a tool of {:.2g} mm: its edges along the path measure {:.2f} mm on average, and from "
-        "{} mm on the "
-        "cut's error is that of the mesh as much as of the tissue. meshing.tets or meshing.fine_mm make it finer",
-        2.0 * radius_mm(settings.tool), *edge_mm, kCoarsestEdgeMm));
+  if (edge_mm && *edge_mm > coarsest_mm) {
+    verdict.add("mesh_resolution", *edge_mm,
+                fmt::format("the mesh is coarse for a tool of {:.2g} mm: its edges along the path measure {:.2f} mm on average, and from {} mm "
+                            "on the cut's error is that of the mesh as much as of the tissue. meshing.tets or meshing.fine_mm make it finer",
+                            2.0 * radius_mm(settings.tool), *edge_mm, coarsest_mm));
   }
-  return doubts;
-}
-
-std::vector<std::string> doubts_about(const SimulatedCut& cut) {
-  std::vector<std::string> doubts;
-  const std::vector<double> open_mm = open_depths_mm(cut.incision);
-  if (cut.outcome == Outcome::Success && !open_mm.empty()) {
-    const DepthReached& depth = cut.incision.kerf.depth;
-    doubts.push_back(
-        fmt::format("success speaks of the upper millimetres alone: the cut is open at a depth of {} mm. Planned are "
-                    "{:.2g} mm, reached at least "
-                    "{:.2g} mm",
-                    fmt::join(open_mm, " and "), depth.planned_mm, depth.depth_mm.min));
-  }
-  if (cut.thermal_margin_mm && *cut.thermal_margin_mm < 0.0) {
-    doubts.push_back(fmt::format(
-        "heat reaches the tumour edge: it damages tissue {:.2f} mm beside the electrode, {:.2f} mm more than the cut "
-        "keeps away "
-        "(thermal_margin_mm; a closed form, not calibrated, an upper bound unless thermal.absorbed_fraction says less)",
-        cut.thermal_half_width_mm, -*cut.thermal_margin_mm));
-  }
-  return doubts;
+  return verdict;
 }
 
 }  // namespace incise

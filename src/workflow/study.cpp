@@ -2,10 +2,12 @@
 #include <incise/core/memory.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/cutting/tool_program.hpp>
+#include <incise/geometry/contour_checks.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/procedure/incision_memory.hpp>
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/cut_doubts.hpp>
+#include <incise/workflow/cut_verdict.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
@@ -35,6 +37,9 @@ class Runner {
       throw_if_cancelled(monitor_, "the study");
       if (!(this->*kSteps[i])()) break;
     }
+    save_verdicts();
+    const bool was_correction_asked = until_ >= Stage::Verify && settings_.plan.kind == PlanKind::Ring;
+    study_.verdict = verdict_of_run(settings_, study_.about_inputs, verifying_cut(study_), was_correction_asked, study_.is_accepted);
     return std::move(study_);
   }
 
@@ -50,6 +55,17 @@ class Runner {
       throw CaseError("case", "path", given_path_->is_closed ? "a closed path" : "an open path",
                       is_ring ? "a closed path for plan.kind: ring" : "an open path for plan.kind: line");
     }
+    if (!tumor_edge_ || !tumor_surface_) return;
+    require_tumor_size(*tumor_surface_);
+    const Verdict fit = verdict_of_contour(*tumor_edge_, *tumor_surface_, settings_.plan.approach);
+    report("the tumour", fit);
+    study_.about_inputs.add(fit);
+  }
+
+  /// A surface in metres would lie somewhere within the edge and never come near the kerf.
+  static void require_tumor_size(const TriMesh& surface) {
+    const auto problem = size_problem(Contour{surface.vertices, true}, "a tumour", kLargestTumorMm);
+    if (problem) throw CaseError("case", "tumor.surface", problem->found, problem->expected, "Lengths are mm");
   }
 
   /// Takes a product from the store, or makes and saves it; notes which, and how long it took.
@@ -159,6 +175,17 @@ class Runner {
                     fmt::format("less than the {:.1f} mm of the tip's way round the ring", round_mm));
   }
 
+  /// Whoever takes a path from its file finds there what its cut is worth.
+  void save_verdicts() {
+    const auto of = [this](const std::optional<SimulatedCut>& cut) -> std::optional<Verdict> {
+      if (!cut) return std::nullopt;
+      Verdict verdict = study_.about_inputs;
+      verdict.add(cut->verdict);
+      return verdict;
+    };
+    store_.save_verdicts(given_path_ ? std::nullopt : of(study_.as_planned), of(study_.corrected));
+  }
+
   SimulatedCut cut(Stage stage, CutRole role, const ToolPath& path) {
     require_overlap_on(path);
     return load_or_make(
@@ -185,6 +212,7 @@ class Runner {
     if (made.outcome == Outcome::Cancelled) {
       throw Cancelled(fmt::format("the cut was interrupted after step {}", made.incision.final_state.step));
     }
+    made.verdict.add(verdict_before_cut(settings_, *study_.model, study_.stretched->state.positions, path));
     return made;
   }
 
@@ -212,11 +240,8 @@ class Runner {
       check_path(*given_path_, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
     }
     study_.followed = given_path_ ? *given_path_ : *study_.plan;
-    for (const std::string& doubt : doubts_before_cut(settings_, *study_.model, study_.stretched->state.positions, *study_.followed)) {
-      monitor_.message(Severity::Warning, doubt);
-    }
     study_.as_planned = cut(Stage::Simulate, CutRole::AsPlanned, *study_.followed);
-    tell_doubts("the cut as planned", *study_.as_planned);
+    report("the cut as planned", study_.as_planned->verdict);
     study_.outcome = study_.as_planned->outcome;
     return true;
   }
@@ -241,8 +266,10 @@ class Runner {
     return true;
   }
 
-  void tell_doubts(const char* which, const SimulatedCut& made) {
-    for (const std::string& doubt : doubts_about(made)) monitor_.message(Severity::Warning, fmt::format("{}: {}", which, doubt));
+  void report(std::string_view what, const Verdict& verdict) {
+    for (const VerdictReason& reason : verdict.reasons()) {
+      monitor_.message(Severity::Warning, fmt::format("{}: {}: {}: {}", what, to_string(reason.severity), reason.id, reason.message));
+    }
   }
 
   bool skip_correction(const char* reason) {
@@ -287,7 +314,7 @@ class Runner {
     } else {
       study_.corrected = cut(Stage::Verify, CutRole::Corrected, correction.moves.path);
     }
-    tell_doubts("the corrected cut", *study_.corrected);
+    report("the corrected cut", study_.corrected->verdict);
     study_.outcome = study_.corrected->outcome;
     study_.is_accepted = is_accepted(settings_, correction, *study_.as_planned, *study_.corrected);
     return true;
@@ -308,6 +335,11 @@ class Runner {
 };
 
 }  // namespace
+
+const SimulatedCut* verifying_cut(const Study& study) {
+  if (study.is_accepted && study.corrected) return &*study.corrected;
+  return study.as_planned ? &*study.as_planned : nullptr;
+}
 
 Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor) {
   return Runner(settings, store, workers, monitor).run(until);

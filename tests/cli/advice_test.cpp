@@ -30,7 +30,7 @@ class ByHand {
     Trial trial;
     trial.name = "S" + std::to_string(trials.size() + 1);
     trial.role = role;
-    trial.assessment = {{"verdict", "compensate"}, {"p_worse", p_worse ? AdviceJson(*p_worse) : AdviceJson()},
+    trial.assessment = {{"advice", "compensate"}, {"p_worse", p_worse ? AdviceJson(*p_worse) : AdviceJson()},
                         {"p_worse_if_alike", 0.1}, {"p_worse_if_unlike", 0.2},
                         {"p_unlike", 0.3},         {"p_close_margin", {{"intended", 0.9}, {"corrected", 0.1}}}};
     trials.push_back(trial);
@@ -78,7 +78,7 @@ TEST(HoldAdviceAgainstTruth, AsksWhatWasCutWithoutThePullOfItsOwnCuts) {
   ByHand hand;
   for (const double p : {0.1, 0.4}) {
     Trial& trial = hand.add(TrialRole::Test, 0.5, 1.0, 0.4);
-    trial.assessment_without_pull = {{"verdict", "compensate"}, {"p_worse", p}};
+    trial.assessment_without_pull = {{"advice", "compensate"}, {"p_worse", p}};
     hand.cut(trial, trial.withheld, "withheld", p > 0.2 ? 1.3 : 0.5);
   }
   const AdviceJson advice = hand.advice();

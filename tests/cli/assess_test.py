@@ -7,7 +7,7 @@ import small_calibration
 import small_case
 from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
-KEYS = ("verdict", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
+KEYS = ("advice", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
 SCALE = 1.001
 T_TARGET_SOURCE = [[SCALE, 0, 0, 0], [0, SCALE, 0, 0], [0, 0, SCALE, 0], [0, 0, 0, 1]]
 PULL_N = 27.0  # about what the block pulls at the case's modulus
@@ -36,7 +36,7 @@ class AssessTest(CommandTest):
         for key in KEYS:
             self.assertIn(key, found)
         # The block's mesh is too coarse for a correction below the electrode's radius; nothing else speaks against it.
-        self.assertEqual(found["verdict"], "cut_as_planned", found["reasons"])
+        self.assertEqual(found["advice"], "cut_as_planned", found["reasons"])
         self.assertEqual(len(found["reasons"]), 1, found["reasons"])
         self.assertIn("not accepted", found["reasons"][0])
         gain = found["expected_gain_mm"]
@@ -50,7 +50,7 @@ class AssessTest(CommandTest):
         mixed = (1.0 - found["p_unlike"]) * found["p_worse_if_alike"] + found["p_unlike"] * found["p_worse_if_unlike"]
         self.assertAlmostEqual(found["p_worse"], mixed, places=12)
         written = json.loads((self.out / "assessment" / "assess.json").read_text())
-        self.assertEqual(written["verdict"], found["verdict"])
+        self.assertEqual(written["advice"], found["advice"])
         self.assertIn("assessment/manifest.json", files_below(self.out))
 
         # What was cut for it serves the robust path, and the other way round.
@@ -60,12 +60,12 @@ class AssessTest(CommandTest):
         # A correction that the tissue does not need: the bias undoes what was foreseen.
         small_calibration.write(self.calibration, lambda c: c["posterior"].update(samples=small_calibration.samples(bias_mm=(3.4, 3.8))))
         found = self.assessed("--stretch-force-n", PULL_N)
-        self.assertEqual(found["verdict"], "cut_as_planned", found)
+        self.assertEqual(found["advice"], "cut_as_planned", found)
         self.assertTrue(any("gain" in reason for reason in found["reasons"]), found["reasons"])
 
     def test_outside_the_calibrated_range_or_badly_registered_is_not_to_be_used(self):
         found = self.assessed("--stretch-force-n", 5.0 * PULL_N, status=NOT_ACCEPTABLE)
-        self.assertEqual(found["verdict"], "do_not_use")
+        self.assertEqual(found["advice"], "do_not_use")
         self.assertTrue(any(reason.startswith("youngs_modulus_kpa") for reason in found["reasons"]), found["reasons"])
         self.registered(rmse_mm=1.8)
         found = self.assessed("--stretch-force-n", PULL_N, status=NOT_ACCEPTABLE)
@@ -90,7 +90,7 @@ class AssessTest(CommandTest):
     def test_a_ring_that_stays_open_cannot_be_foretold(self):
         small_case.write_case(self.folder / "case", {"cut": {"dullness": 900}})
         found = self.assessed(status=NOT_ACCEPTABLE)
-        self.assertEqual(found["verdict"], "do_not_use")
+        self.assertEqual(found["advice"], "do_not_use")
         self.assertIsNone(found["expected_gain_mm"])
         self.assertTrue(any("open_loop" in reason for reason in found["reasons"]), found["reasons"])
         self.assertTrue(any("over 234.00 mm, those that the calibration chose over 1.30 mm" in note for note in found["notes"]), found["notes"])

@@ -8,7 +8,7 @@ import unittest
 
 import small_case
 import small_dicom
-from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, HandMadePaths, files_below
 
 
 class CtTest(CommandTest):
@@ -436,7 +436,7 @@ class CaseTest(CommandTest):
         self.assertEqual((self.folder / "occupied").read_text(), "a file")
 
 
-class ExportTest(CommandTest):
+class ExportTest(HandMadePaths, CommandTest):
     """A ring of 20 mm across, 5 mm outside its tumour edge, under the robot."""
 
     def write_path(self, frame="robot", **changes):

@@ -6,7 +6,7 @@ import math
 import struct
 import unittest
 
-from command import BAD_CASE, BAD_DATA, DONE, CommandTest, files_below
+from command import BAD_CASE, BAD_DATA, DONE, CommandTest, HandMadePaths, files_below
 
 
 def specimen_file(path, **given):
@@ -101,7 +101,7 @@ class BadInputTest(CommandTest):
         self.assert_nothing_written(self.out)
 
 
-class LoopTest(CommandTest):
+class LoopTest(HandMadePaths, CommandTest):
     def test_readings_tell_no_hidden_parameter_and_a_program_becomes_a_photograph(self):
         truth = self.folder / "hidden"
         made = self.json_of("bench", "make", "--seed", 5, "-o", self.out, "--truth", truth)

@@ -7,7 +7,7 @@ import pathlib
 import struct
 import unittest
 
-from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest
+from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, HandMadePaths
 
 EXAMPLE = pathlib.Path(__file__).parents[2] / "examples" / "04_ur10e" / "path.json"
 
@@ -22,7 +22,7 @@ def ring(center=(600.0, 0.0, 100.0), radius=15.0, edge=10.0, depth=5.0, speed=7.
     return {"frame": "robot", "kind": kind, "closed": True, "waypoints": waypoints, "tumor_edge": circle(edge)}
 
 
-class RobotTest(CommandTest):
+class RobotTest(HandMadePaths, CommandTest):
     def write(self, path, name="path.json"):
         (self.folder / name).write_text(json.dumps(path))
         return name

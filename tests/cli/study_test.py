@@ -72,7 +72,7 @@ class StudyTest(CommandTest):
         self.assertEqual(result["pairs"], 1)
         self.assertLess(result["mean_after_mm"], result["mean_before_mm"])
         self.assertEqual([row["cut"] for row in result["table_2"]], ["planned", "planned", "corrected", "paper_pass", "planned", "corrected"])
-        self.assertEqual([row["verdict"] is None for row in result["table_2"]], [True, False, False, False, False, False])
+        self.assertEqual([row["advice"] is None for row in result["table_2"]], [True, False, False, False, False, False])
         self.assertEqual([row["kind"] for row in result["table_2"]], [None, None, None, None, "stiff", "stiff"])
         self.assertEqual(result["paper_pass"]["pairs"], 1)
         self.assertEqual(result["paper_pass"]["mean_before_mm"], result["mean_before_mm"])
@@ -80,7 +80,7 @@ class StudyTest(CommandTest):
         advice, stiff = result["assessments"]
         # Four times as stiff as what was calibrated on: the bias says less of it.
         self.assertGreater(stiff["p_worse"], advice["p_worse"])
-        self.assertIn(advice["verdict"], ("compensate", "cut_as_planned", "do_not_use"))
+        self.assertIn(advice["advice"], ("compensate", "cut_as_planned", "do_not_use"))
         self.assertEqual({entry["name"] for entry in advice["distances"]},
                          {"registration_rmse_mm", "registration_scale", "youngs_modulus_kpa", "compliance_mm_n"})
         self.assertAlmostEqual(advice["gain_mm"], result["mean_before_mm"] - result["mean_after_mm"], delta=1e-12)

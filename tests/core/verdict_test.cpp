@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
 #include <set>
 #include <string>
 #include <vector>
@@ -81,6 +85,25 @@ TEST(VerdictRules, HaveIdsOfTheirOwnAndAMeaning) {
     EXPECT_EQ(rule.meaning.back(), '.') << rule.id;
     EXPECT_EQ(rule.limit.has_value(), !rule.relation.empty()) << rule.id;
   }
+}
+
+/// The row that docs/models/verdict.md has for a rule.
+std::string row_of(const VerdictRule& rule) {
+  const std::string good = rule.limit ? fmt::format("{} {:g}", rule.relation, *rule.limit) : "–";
+  return fmt::format("| `{}` | {} | {} | {} | {} |", rule.id, to_string(rule.severity), good, rule.unit.empty() ? "–" : rule.unit, rule.meaning);
+}
+
+TEST(VerdictRules, StandInTheDocumentationAsTheyAreInTheLibrary) {
+  std::ifstream page(std::string(INCISE_SOURCE_DIR) + "/docs/models/verdict.md");
+  ASSERT_TRUE(page);
+  std::vector<std::string> found;
+  for (std::string line; std::getline(page, line);) {
+    const bool is_rule = line.starts_with("| `") && std::count(line.begin(), line.end(), '|') == 6;
+    if (is_rule) found.push_back(line);
+  }
+  std::vector<std::string> expected;
+  for (const VerdictRule& rule : verdict_rules()) expected.push_back(row_of(rule));
+  EXPECT_EQ(found, expected);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #include "io/io_test_support.hpp"
 
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/verdict_json.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -125,6 +127,73 @@ TEST(ToolPathFile, IsNotWrittenWhenItCouldNotBeReadBack) {
   path.waypoints[1].axis *= 1.1;
   EXPECT_THROW(write_tool_path(folder / "path.json", path), InvalidArgument);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+Verdict sample_verdict() {
+  Verdict verdict;
+  verdict.add("depth", 0.52, "2.6 mm deep", VerdictPlace{12.5, Vec3(1.0 / 3.0, 2, 3), "12 mm along the path"});
+  verdict.add("open_layer", 3.25, "open at 4 mm");
+  verdict.add("mesh_resolution", {}, "coarse");
+  return verdict;
+}
+
+TEST(VerdictJson, ReadsBackWhatWasWritten) {
+  const Verdict verdict = sample_verdict();
+  EXPECT_EQ(to_json(verdict_from_json(to_json(verdict), "x")), to_json(verdict));
+  EXPECT_EQ(to_json(verdict).at("status"), "refused");
+  EXPECT_EQ(to_json(verdict).at("reasons").at(0).at("id"), "open_layer");
+  EXPECT_EQ(to_json(verdict_from_json(to_json(Verdict()), "x")), to_json(Verdict()));
+}
+
+TEST(VerdictJson, RefusesAStatusThatIsNotThatOfItsReasonsAndASeverityThatIsNotItsRules) {
+  const auto says = [](auto change) {
+    nlohmann::ordered_json document = to_json(sample_verdict());
+    change(document);
+    return data_error_of([&] { static_cast<void>(verdict_from_json(document, "x")); });
+  };
+  EXPECT_THAT(says([](auto& found) { found["status"] = "ok"; }), HasSubstr("expected refused, that of the worst reason"));
+  EXPECT_THAT(says([](auto& found) { found["reasons"][0]["severity"] = "caution"; }), HasSubstr("/reasons/0/severity"));
+  EXPECT_THAT(says([](auto& found) { found["reasons"][0]["id"] = "nonsense"; }), HasSubstr("the id of a rule"));
+  EXPECT_THAT(says([](auto& found) { found["reasons"][1].erase("message"); }), HasSubstr("message"));
+}
+
+/// Ids of the reasons that a path's file holds against it.
+std::vector<std::string> ids_in(const std::filesystem::path& file) {
+  std::vector<std::string> ids;
+  const Verdict verdict = read_path_verdict(file);
+  for (const VerdictReason& reason : verdict.reasons()) ids.push_back(reason.id);
+  return ids;
+}
+
+TEST(PathVerdict, TravelsWithThePathAndIsOfNoUseOnceEitherWasChanged) {
+  const TemporaryFolder folder;
+  const auto file = folder / "path.json";
+  write_tool_path(file, sample_path());
+  EXPECT_THAT(ids_in(file), ::testing::ElementsAre("not_simulated")) << "a path made by hand";
+  write_tool_path(file, sample_path(), sample_verdict());
+  EXPECT_EQ(to_json(read_path_verdict(file)), to_json(sample_verdict()));
+  EXPECT_EQ(read_tool_path(file).waypoints.size(), 3U);
+  const nlohmann::ordered_json written = read_json(file);
+  for (const char* place : {"/waypoints/1/position_mm/2", "/waypoints/2/depth_mm", "/tumor_edge/0/0", "/T_robot_sim/0/3"}) {
+    nlohmann::ordered_json changed = written;
+    double& number = changed.at(nlohmann::ordered_json::json_pointer(place)).get_ref<double&>();
+    number += 1e-9;
+    write_json(file, changed);
+    EXPECT_THAT(ids_in(file), ::testing::ElementsAre("not_simulated")) << place;
+  }
+  nlohmann::ordered_json forged = written;
+  forged["verdict"]["reasons"] = nlohmann::ordered_json::array();
+  forged["verdict"]["status"] = "ok";
+  write_json(file, forged);
+  EXPECT_THAT(ids_in(file), ::testing::ElementsAre("not_simulated")) << "a verdict written by hand";
+}
+
+TEST(PathVerdict, IsNotAskedOfAMarkWhichCutsNothing) {
+  const TemporaryFolder folder;
+  ToolPath mark = sample_path();
+  mark.kind = PathKind::Mark;
+  write_tool_path(folder / "mark.json", mark);
+  EXPECT_EQ(read_path_verdict(folder / "mark.json").status(), VerdictStatus::Ok);
 }
 
 }  // namespace

@@ -199,5 +199,30 @@ TEST_F(Converge, TellsEveryViolationOfItsSettings) {
   EXPECT_THROW(static_cast<void>(compensate_converging(path_, surface_, uneven)), InvalidArgument);
 }
 
+/// The cut of the head CT: the correction of the lateral error made the kerf shallower.
+TEST_F(Converge, DoesNotBuyTheLateralErrorWithDepth) {
+  int cuts = 0;
+  const MeasureCut shallower = [&](const ToolPath& path) {
+    PathErrors errors = FakeTissue{}.cut(path);
+    errors.shortfall_mm = cuts++ == 0 ? 0.9 : 2.5;
+    return errors;
+  };
+  const ConvergedCompensation result = compensate_converging(path_, surface_, shallower);
+  EXPECT_EQ(result.best, 0U);
+  EXPECT_GT(*result.passes[0].mean_abs_error_mm, *result.passes[1].mean_abs_error_mm) << "the lateral error alone would choose another pass";
+  EXPECT_EQ(result.passes[1].shortfall_mm, 2.5);
+}
+
+TEST_F(Converge, PrefersThePassThatLeavesFewerLayersOpen) {
+  int cuts = 0;
+  const MeasureCut opens = [&](const ToolPath& path) {
+    PathErrors errors = FakeTissue{}.cut(path);
+    errors.is_success = false;
+    errors.open_layers = cuts++ == 0 ? 1 : 3;
+    return errors;
+  };
+  EXPECT_EQ(compensate_converging(path_, surface_, opens).best, 0U);
+}
+
 }  // namespace
 }  // namespace incise

@@ -28,7 +28,7 @@ EligibilityEvidence good() {
 
 TEST(JudgeEligibility, CompensatesWhereTheGainIsAboveItsUncertainty) {
   const Eligibility judged = judge_eligibility(good());
-  EXPECT_EQ(judged.verdict, Verdict::Compensate);
+  EXPECT_EQ(judged.advice, Advice::Compensate);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("1.00 ± 0.40 mm")));
 }
 
@@ -46,13 +46,13 @@ TEST(JudgeEligibility, CutsAsPlannedWhereTheGainIsNotAboveItsUncertainty) {
   EligibilityEvidence evidence = good();
   evidence.gain->mean_mm = 0.4;  // just its sd: not above
   Eligibility judged = judge_eligibility(evidence);
-  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_EQ(judged.advice, Advice::CutAsPlanned);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("expected gain of 0.40 mm")));
   evidence.gain->mean_mm = 0.401;
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate);
   evidence.gain = CutGain{-0.5, 0.1, 0.99};
   judged = judge_eligibility(evidence);
-  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_EQ(judged.advice, Advice::CutAsPlanned);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("-0.50 mm"), HasSubstr("probability of 0.99")));
 }
 
@@ -60,25 +60,25 @@ TEST(JudgeEligibility, CutsAsPlannedWhereTheCorrectionIsNotAccepted) {
   EligibilityEvidence evidence = good();
   evidence.is_accepted = false;
   const Eligibility judged = judge_eligibility(evidence);
-  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_EQ(judged.advice, Advice::CutAsPlanned);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("not accepted")));
 }
 
 TEST(JudgeEligibility, AGainWithoutAnyUncertaintyHasToBeAGain) {
   EligibilityEvidence evidence = good();
   evidence.gain = CutGain{0.0, 0.0, 0.0};
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::CutAsPlanned) << "nothing to win";
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::CutAsPlanned) << "nothing to win";
   evidence.gain = CutGain{0.01, 0.0, 0.0};
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate);
 }
 
 TEST(JudgeEligibility, CutsAsPlannedWhereTheCorrectionCostsMargin) {
   EligibilityEvidence evidence = good();
   evidence.corrected.p_close_margin = 0.2;
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate) << "much, but less than as planned";
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate) << "much, but less than as planned";
   evidence.intended.p_close_margin = 0.1;
   const Eligibility judged = judge_eligibility(evidence);
-  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_EQ(judged.advice, Advice::CutAsPlanned);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("probability of 0.200")));
 }
 
@@ -87,19 +87,19 @@ TEST(JudgeEligibility, DoesNotUseWhatLiesOutsideTheCalibratedRange) {
     EligibilityEvidence evidence = good();
     evidence.distances.push_back({"compliance_mm_n", 1.0, 5.0, in_sd});
     const Eligibility judged = judge_eligibility(evidence);
-    EXPECT_EQ(judged.verdict, Verdict::DoNotUse);
+    EXPECT_EQ(judged.advice, Advice::DoNotUse);
     EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("compliance_mm_n: 1 is 3.1 standard deviations")));
     evidence.distances.back().in_sd = 2.9;
-    EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+    EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate);
   }
 }
 
 TEST(JudgeEligibility, ABetterRegistrationThanTheCalibrationsIsNoObjection) {
   EligibilityEvidence evidence = good();
   evidence.distances = {{"registration_rmse_mm", 0.05, 0.4, -6.0, true}};
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate);
   evidence.distances = {{"registration_rmse_mm", 0.9, 0.2, 6.0, true}};
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::DoNotUse);
 }
 
 TEST(JudgeEligibility, DoesNotUseABadRegistrationAndSaysAllThatSpeaksAgainstIt) {
@@ -109,7 +109,7 @@ TEST(JudgeEligibility, DoesNotUseABadRegistrationAndSaysAllThatSpeaksAgainstIt) 
   evidence.is_registered = false;
   evidence.corrected.unmeasured_weight = 0.6;
   const Eligibility judged = judge_eligibility(evidence);
-  EXPECT_EQ(judged.verdict, Verdict::DoNotUse);
+  EXPECT_EQ(judged.advice, Advice::DoNotUse);
   EXPECT_THAT(judged.reasons,
               ElementsAre(HasSubstr("registration was refused"), HasSubstr("1.20 mm"), HasSubstr("60 %")));
 }
@@ -118,14 +118,14 @@ TEST(JudgeEligibility, DoesNotUseWhatCannotBeForetold) {
   EligibilityEvidence evidence = good();
   evidence.gain.reset();
   evidence.no_gain_because = "open_loop";
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::DoNotUse);
   EXPECT_THAT(judge_eligibility(evidence).reasons, ElementsAre(HasSubstr("open_loop")));
   evidence = good();
   evidence.registration_rmse_mm = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::DoNotUse);
   evidence = good();
   evidence.gain->mean_mm = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::DoNotUse);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::DoNotUse);
 }
 
 TEST(ProbabilityUnlike, FollowsBayesRuleAtTheFarthestDistance) {
@@ -219,7 +219,7 @@ TEST(JudgeEligibility, ADistanceNeverLiftsADoubt) {
   evidence.distances.front() = {"youngs_modulus_kpa", 30.0, 12.0, 2.9, false, 100.0};
   const Eligibility judged = judge_eligibility(evidence);
   ASSERT_LT(*judged.p_worse, 0.15);
-  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_EQ(judged.advice, Advice::CutAsPlanned);
 }
 
 TEST(JudgeEligibility, IsNotSurerWithoutAPullThanBeforeAnythingWasMeasured) {
@@ -234,10 +234,10 @@ TEST(JudgeEligibility, CutsAsPlannedWhereASpecimenMayBeUnlike) {
   evidence.distances.front() = {"youngs_modulus_kpa", 30.0, 12.0, 2.9, false, 100.0};  // believed, just so
   evidence.gain->p_worse = 0.08;
   const Eligibility judged = judge_eligibility(evidence);
-  EXPECT_EQ(judged.verdict, Verdict::CutAsPlanned);
+  EXPECT_EQ(judged.advice, Advice::CutAsPlanned);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("is the worse one with a probability of 0.1")));
   evidence.distances.front().in_sd = 0.0;
-  EXPECT_EQ(judge_eligibility(evidence).verdict, Verdict::Compensate);
+  EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate);
 }
 
 TEST(JudgeEligibility, RefusesRulesThatAreNone) {

@@ -235,7 +235,7 @@ SimulatedCut measured_cut() {
   kerf.layers = {{2.5, true, true, std::nullopt, 1.5, testing::circle(1.0 / 3.0, 9, Vec3(5, 10, 2.5))},
                  {4.0, true, false, 0.7, 0.0, std::nullopt},
                  {5.0, false, std::nullopt, std::nullopt, 0.0, std::nullopt}};
-  kerf.depth = {4.5, {testing::circle(3.1, 8), {0, 1, 2, 3, 4, 5, 6, 7}, {0.1, 4, 4, 4, 4, 4, 4, 1.0 / 3.0}}, {3.1, 0.1, 4.0}};
+  kerf.depth = {4.5, {testing::circle(3.1, 8), {0, 1, 2, 3, 4, 5, 6, 7}, {0.1, 4, 4, 4, 4, 4, 4, 1.0 / 3.0}}, {4.5, 4.5, 4.5, 4.5, 4, 4.25, 4.5, 4.5}, {3.1, 0.1, 4.0}};
   kerf.drag = TissueDrag{{0.1, 0.2}, {0, 1.0 / 7.0}, {0.5, 0.6}, {-0.1, 0.2}, {0.55, 0.5, 0.6}, {0.05, -0.1, 0.2}};
   kerf.deep_margin = DeepMargin{1.5, 2.5, std::nullopt, {0.3, 0.1, 0.5}};
   kerf.final_centerline = testing::circle(3.0, 10);
@@ -266,6 +266,7 @@ TEST_F(FolderStoreTest, WhatCameOutOfACutComesBackExactly) {
   EXPECT_EQ(found.depth.profile.depth_mm, made.depth.profile.depth_mm);
   EXPECT_EQ(found.depth.profile.course.points, made.depth.profile.course.points);
   EXPECT_EQ(found.depth.planned_mm, 4.5);
+  EXPECT_EQ(found.depth.planned_at_mm, made.depth.planned_at_mm);
   EXPECT_EQ(found.drag->arclength_mm, made.drag->arclength_mm);
   EXPECT_EQ(found.drag->drift.min, -0.1);
   EXPECT_EQ(found.deep_margin->beside_mm, 2.5);

@@ -35,8 +35,14 @@ ToolPath ring(double radius_mm = 7.0) {
   return path;
 }
 
+/// "id: message" of each reason.
 std::vector<std::string> doubts(const TissueModel& model) {
-  return doubts_before_cut(Case{}, model, model.mesh.vertices, ring());
+  std::vector<std::string> lines;
+  const Verdict verdict = verdict_before_cut(Case{}, model, model.mesh.vertices, ring());
+  for (const VerdictReason& reason : verdict.reasons()) {
+    lines.push_back(reason.id + ": " + reason.message);
+  }
+  return lines;
 }
 
 TEST(RequireNoLocking, RefusesToCutTetsThatKeepTheirVolumeOneByOneAndNamesTheWayOut) {
@@ -54,9 +60,9 @@ TEST(RequireNoLocking, RefusesToCutTetsThatKeepTheirVolumeOneByOneAndNamesTheWay
   }
 }
 
-TEST(DoubtsBeforeCut, TellTissueThatBeginsToLock) {
+TEST(VerdictBeforeCut, CautionsOfTissueThatBeginsToLock) {
   EXPECT_THAT(doubts(block(24, 0.49)), IsEmpty());
-  EXPECT_THAT(doubts(block(24, 0.493)), ElementsAre(AllOf(HasSubstr("0.493"), HasSubstr("volume: averaged"))));
+  EXPECT_THAT(doubts(block(24, 0.493)), ElementsAre(AllOf(HasSubstr("locking: "), HasSubstr("0.493"), HasSubstr("volume: averaged"))));
   EXPECT_THAT(doubts(block(24, 0.493, VolumeTreatment::Averaged)), IsEmpty());
 }
 
@@ -87,48 +93,9 @@ TEST(EdgeAlong, LooksAtTheTetsThatTheToolMeetsAndNoOthers) {
   EXPECT_NEAR(*edge_along_mm(model, model.mesh.vertices, ring(), -Vec3::UnitZ()), mean_edge_of_cubes(1.0), 1e-9);
 }
 
-TEST(DoubtsBeforeCut, TellAMeshThatIsTooCoarseForTheTool) {
+TEST(VerdictBeforeCut, CautionsOfAMeshThatIsTooCoarseForTheTool) {
   EXPECT_THAT(doubts(block(24, 0.49)), IsEmpty());  // edges of 1.26 mm
-  EXPECT_THAT(doubts(block(12, 0.49)), ElementsAre(AllOf(HasSubstr("2.52 mm"), HasSubstr("meshing.tets"))));
-}
-
-/// A ring that closed in its upper layers.
-SimulatedCut closed_cut() {
-  SimulatedCut cut;
-  cut.outcome = Outcome::Success;
-  cut.incision.is_closed_loop = true;
-  for (const double depth_mm : {1.0, 2.5, 4.0, 5.0}) {
-    KerfLayer layer;
-    layer.depth_mm = depth_mm;
-    layer.is_within_plan = true;
-    layer.is_closed = true;
-    cut.incision.kerf.layers.push_back(layer);
-  }
-  cut.incision.kerf.depth.planned_mm = 5.0;
-  cut.incision.kerf.depth.depth_mm.min = 3.2;
-  cut.thermal_half_width_mm = 2.82;
-  cut.thermal_margin_mm = 0.5;
-  return cut;
-}
-
-TEST(DoubtsAbout, TellAPlannedLayerThatStayedOpenBelowASuccess) {
-  SimulatedCut cut = closed_cut();
-  EXPECT_THAT(doubts_about(cut), IsEmpty());
-  cut.incision.kerf.layers[2].is_closed = false;
-  cut.incision.kerf.layers[3].is_closed = false;
-  EXPECT_THAT(doubts_about(cut),
-              ElementsAre(AllOf(HasSubstr("open at a depth of 4 and 5 mm"), HasSubstr("reached at least 3.2 mm"))));
-  for (KerfLayer& layer : cut.incision.kerf.layers) layer.is_within_plan = layer.depth_mm < 3.0;
-  EXPECT_THAT(doubts_about(cut), IsEmpty()) << "a shallower plan";
-}
-
-TEST(DoubtsAbout, TellHeatThatReachesTheTumourEdge) {
-  SimulatedCut cut = closed_cut();
-  cut.thermal_margin_mm = -0.48;
-  EXPECT_THAT(doubts_about(cut), ElementsAre(AllOf(HasSubstr("heat reaches the tumour edge"), HasSubstr("2.82 mm"),
-                                                   HasSubstr("0.48 mm more"))));
-  cut.thermal_margin_mm.reset();  // an open cut
-  EXPECT_THAT(doubts_about(cut), IsEmpty());
+  EXPECT_THAT(doubts(block(12, 0.49)), ElementsAre(AllOf(HasSubstr("mesh_resolution: "), HasSubstr("2.52 mm"), HasSubstr("meshing.tets"))));
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
   settings.compensation.method = CompensationMethod::Paper;
   const Study study = run_study(settings, store, Stage::Verify, workers, warnings);
   EXPECT_NE(warnings.all.find("the mesh is coarse for a tool of 1.6 mm"), std::string::npos) << warnings.all;
-  for (const char* cut : {"the cut as planned: heat reaches", "the corrected cut: heat reaches"}) {
+  for (const char* cut : {"the cut as planned: caution: heat: heat reaches", "the corrected cut: caution: heat: heat reaches"}) {
     EXPECT_NE(warnings.all.find(cut), std::string::npos) << warnings.all;
   }
   ASSERT_TRUE(study.as_planned && study.corrected);
@@ -160,6 +160,27 @@ TEST(PathErrors, AnInnerEdgeThatIsOpenNearTheSkinIsToldFromADeeperLayer) {
   const auto of_middle = path_errors(settings, cut, edge, silent);
   ASSERT_TRUE(of_middle.has_value());
   for (const double error : of_middle->signed_error_mm) EXPECT_NEAR(error, 0.3, 0.02);
+}
+
+TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
+  Case settings;
+  const auto cut_with = [](double mean_error_mm, double least_depth_mm, bool is_deep_layer_closed) {
+    SimulatedCut cut;
+    cut.outcome = Outcome::Success;
+    cut.centerline.abs_error_mm = Summary{.mean = mean_error_mm};
+    cut.incision.is_closed_loop = true;
+    cut.incision.kerf.layers = {{.depth_mm = 4.0, .is_within_plan = true, .is_closed = is_deep_layer_closed}};
+    cut.incision.kerf.depth.profile.depth_mm = {5.3, least_depth_mm, 5.1};
+    cut.incision.kerf.depth.planned_at_mm = {5.0, 5.0, 5.0};
+    return cut;
+  };
+  Correction paper;
+  paper.method = CompensationMethod::Paper;
+  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 4.6, true))) << "shallower, and deep enough";
+  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.9, 3.6, true), cut_with(0.3, 2.6, true))) << "as in the head CT";
+  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.9, 2.6, true), cut_with(0.3, 3.6, true)));
+  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 5.0, false)));
+  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.9, 5.0, false), cut_with(0.3, 5.0, false))) << "no worse; the verdict refuses both";
 }
 
 TEST(IsAccepted, ByThePapersRule) {

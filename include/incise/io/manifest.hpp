@@ -1,7 +1,10 @@
 #pragma once
 
+#include <incise/core/verdict.hpp>
+
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +29,7 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   double wall_s = 0.0;
   std::string machine;  ///< see machine_description
+  std::optional<Verdict> verdict = {};  ///< of the run that filled the folder, where it has one
 };
 
 /// Writes `folder/manifest.json`, all or nothing. @pre settings_json is JSON, wall_s is finite and not negative.

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <incise/core/verdict.hpp>
 #include <incise/geometry/tool_path.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +20,7 @@ namespace incise {
 ///   least 3 (2 if open) tumor_edge     [[x, y, z]…], same frame; optional tumor_edge_closed  optional, true
 ///   T_robot_sim    4 x 4, rows, last row 0 0 0 1; optional
 ///   source_sha256  64 hex digits; optional
+///   verdict        of the simulated cut along the path, see read_path_verdict; optional
 ///
 /// @throws DataError with the JSON pointer of the place: unknown key (naming the nearest valid one), key given twice,
 /// missing key, wrong
@@ -33,5 +36,13 @@ namespace incise {
 
 /// Writes `path.json`, all or nothing. @throws DataError if the file cannot be written; InvalidArgument as to_json.
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path);
+
+/// The same with the verdict of the simulated cut along the path, and a digest over both under `verdict.digest_sha256`.
+void write_tool_path(const std::filesystem::path& file, const ToolPath& path, const Verdict& verdict);
+
+/// The verdict that a path's file holds. A file without one, and one whose path or verdict was changed since (the digest differs), gives a
+/// caution `not_simulated` that says which: whatever was simulated, it was not this path. A mark of the tumour's edge cuts nothing: its
+/// verdict may be absent. @throws DataError as read_tool_path, and as verdict_from_json.
+[[nodiscard]] Verdict read_path_verdict(const std::filesystem::path& file);
 
 }  // namespace incise

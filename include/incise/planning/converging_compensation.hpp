@@ -17,7 +17,10 @@ struct PathErrors {
   std::vector<double> signed_error_mm;  ///< N: positive = farther from the tumour than intended
   /// How far tissue was dragged along the path when it was cut, on average, mm, >= 0 (see TissueDrag).
   double lag_mm = 0.0;
-  bool is_success = true;  ///< the cut succeeded: ring closed, negative margin
+  bool is_success = true;  ///< the cut succeeded: ring closed in every planned layer, negative margin
+  /// Mean over the path of what the kerf lacks of the least depth that is accepted without a caution, mm, >= 0.
+  double shortfall_mm = 0.0;
+  int open_layers = 0;     ///< planned layers in which the ring stayed open, >= 0
 };
 
 /// Cuts along a path (in simulation, or in a test's stand-in for tissue) and measures; nullopt: no contour to measure.
@@ -70,8 +73,12 @@ struct CompensationPass {
   std::optional<double> max_abs_error_mm;
   std::optional<double> smooth_error_mm;  ///< mean of |error_mm|: what moving waypoints can correct
   double lag_mm = 0.0;
+  double shortfall_mm = 0.0;  ///< see PathErrors
+  int open_layers = 0;        ///< likewise
   double max_move_mm = 0.0;  ///< greatest move from the pass that it was made from
   bool is_success = false;
+  /// What passes are compared by: mean |error| and what is missing in depth, mm, weighed alike. @pre measured.
+  [[nodiscard]] double cost_mm() const { return mean_abs_error_mm.value() + shortfall_mm; }
 };
 
 enum class CompensationOutcome {
@@ -88,7 +95,7 @@ enum class CompensationOutcome {
 struct ConvergedCompensation {
   ToolPath path;                         ///< of the best pass
   std::vector<CompensationPass> passes;  ///< one per simulation, in order; the first: the intended path
-  std::size_t best = 0;  ///< pass of the least mean |error| among those that succeeded (all, if none did)
+  std::size_t best = 0;  ///< pass of the least cost_mm among those that succeeded (if none did: of those with the fewest open layers)
   CompensationOutcome outcome = CompensationOutcome::NoMeasure;
   /// Geometric mean, per pass, of what was left of the mean |error|, from the first to the best; absent without two.
   std::optional<double> contraction;

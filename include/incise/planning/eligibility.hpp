@@ -11,12 +11,12 @@
 namespace incise {
 
 /// What to do with a specimen before the robot moves.
-enum class Verdict {
+enum class Advice {
   Compensate,    ///< the corrected path is expected to win more than is uncertain about it
   CutAsPlanned,  ///< the simulation may be believed, but the correction wins too little, or costs margin
   DoNotUse,      ///< the simulation is not to be believed of this specimen
 };
-[[nodiscard]] std::string_view to_string(Verdict verdict);  ///< compensate, cut_as_planned, do_not_use
+[[nodiscard]] std::string_view to_string(Advice advice);  ///< compensate, cut_as_planned, do_not_use
 
 /// One quantity of this specimen against those of the calibration's specimens.
 struct SpecimenDistance {
@@ -61,7 +61,7 @@ inline constexpr double kUnlikeSpread = 10.0;  ///< how many times as widely the
 
 inline constexpr double kUnlikeErrorSdMm = 0.7;  ///< half of what a cut errs as planned. Chosen.
 
-/// What a verdict is made of.
+/// What an advice is made of.
 struct EligibilityEvidence {
   PathRisk intended, corrected;
   std::optional<CutGain> gain;              ///< absent: nothing could be simulated along both paths …
@@ -74,7 +74,7 @@ struct EligibilityEvidence {
   std::vector<double> calibrated_error_mm;  ///< mean signed errors of the calibration's cuts
 };
 
-/// When a verdict is which. Every number is a choice; see docs/models/eligibility.md.
+/// When which advice is given. Every number is a choice; see docs/models/eligibility.md.
 struct EligibilityRules {
   double least_gain_sds = 1.0;  ///< the gain has to be above this many of its standard deviations, >= 0
   /// and the probability that the corrected cut is the worse one at most this, alike and in all, [0, 1]
@@ -88,8 +88,8 @@ struct EligibilityRules {
 [[nodiscard]] std::vector<std::string> validate(const EligibilityRules& rules);
 
 struct Eligibility {
-  Verdict verdict = Verdict::DoNotUse;
-  std::vector<std::string> reasons;  ///< each with its numbers; of the verdict alone, at least one
+  Advice advice = Advice::DoNotUse;
+  std::vector<std::string> reasons;  ///< each with its numbers; of the advice alone, at least one
   /// probability_unlike of its distances, but at least kPriorUnlike where its stiffness is not among them, and 1 where
   /// something else than a distance speaks against the simulation.
   double p_unlike = 0.0;

@@ -39,6 +39,7 @@ struct KerfBody {
 struct DepthReached {
   double planned_mm = 0.0;  ///< mean depth of the tool's tip below its entry points, along the approach
   DepthProfile profile;     ///< see depth_along
+  std::vector<double> planned_at_mm;  ///< N, as the profile: depth of the tip below the entry point there, along the approach
   Spread depth_mm;          ///< of the profile
 };
 

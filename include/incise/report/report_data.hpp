@@ -2,6 +2,7 @@
 
 #include <incise/core/monitor.hpp>
 #include <incise/core/outcome.hpp>
+#include <incise/core/verdict.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/volume.hpp>
@@ -90,6 +91,7 @@ struct ReportAnimation {
 struct ReportIncision {
   std::string name;  ///< "Before", "After"
   Outcome outcome = Outcome::Success;
+  Verdict verdict;                      ///< of this cut: a success that something argues against is not shown as good
   std::optional<bool> closed_loop;      ///< none for an open cut
   std::optional<bool> negative_margin;  ///< the cut keeps clear of the tumour edge; none: not known
   double mean_abs_error_mm = 0.0;
@@ -156,6 +158,7 @@ struct ReportTable {
 struct ReportData {
   std::string title = "Simulated incision";
   std::string subtitle;
+  std::optional<Verdict> verdict;  ///< shown first of all; absent: not judged
   std::string virtual_notice;      ///< not empty: shown as a banner above everything ("Virtual specimen: …")
   Vec3 approach = -Vec3::UnitZ();  ///< the direction in which the camera and the tool look at the tissue
   /// What the ends of the axes are called: -x, +x, -y, +y, -z, +z.

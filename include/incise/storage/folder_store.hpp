@@ -84,6 +84,10 @@ class FolderStore : public Store {
   std::optional<Correction> load_correction() override;
   void save_correction(const Correction& correction, double wall_s) override;
   bool adopt_cut(CutRole from) override;
+  void save_verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
+
+  /// Adds what an earlier `assess` of this folder advised, unless that was to compensate.
+  void add_advice_to(Verdict& verdict) const;
 
   /// Where the checkpoint of a cut is, if there is one.
   [[nodiscard]] std::filesystem::path checkpoint(CutRole role) const;
@@ -93,8 +97,8 @@ class FolderStore : public Store {
   /// settings, inputs or build, or damaged. @pre checkpoint(role) exists.
   void require_fitting_checkpoint(CutRole role);
 
-  /// A manifest for an output folder of this study.
-  void write_manifest_to(const std::filesystem::path& folder, double wall_s);
+  /// A manifest for an output folder of this study. @param verdict  of the run; null: the folder has none.
+  void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);
 
  private:
   [[nodiscard]] const std::string& key(Product product);

@@ -45,7 +45,7 @@ class ScenarioRunFolder : public ScenarioRunStore {
 void write_robust(FolderStore& store, const RobustCorrection& robust, const std::filesystem::path& calibration,
                   double wall_s);
 
-/// `verdict`, `reasons`, `notes`, `expected_gain_mm {mean, sd}`, `p_worse`, `p_worse_if_alike`, `p_worse_if_unlike`,
+/// `advice`, `reasons`, `notes`, `expected_gain_mm {mean, sd}`, `p_worse`, `p_worse_if_alike`, `p_worse_if_unlike`,
 /// `p_unlike`, `p_close_margin {intended, corrected}`, both paths' risks, `registration`, `distances`, `sensitivity`,
 /// `scenarios`, `rules`.
 [[nodiscard]] nlohmann::ordered_json to_json(const Assessment& assessment, const AssessmentRequest& request);

@@ -5,8 +5,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace incise {
 
@@ -22,13 +20,8 @@ void require_no_locking(const TissueModel& model);
 [[nodiscard]] std::optional<double> edge_along_mm(const TissueModel& model, std::span<const Vec3> stretched,
                                                   const ToolPath& path, const Vec3& approach);
 
-/// What speaks against a cut along a path before it is made, a sentence each: tissue that begins to lock, a mesh too
-/// coarse for the tool.
-[[nodiscard]] std::vector<std::string> doubts_before_cut(const Case& settings, const TissueModel& model,
-                                                         std::span<const Vec3> stretched, const ToolPath& path);
-
-/// What a cut's outcome does not say, a sentence each: layers below the mid-line's that stayed open, heat that reaches
-/// the tumour edge.
-[[nodiscard]] std::vector<std::string> doubts_about(const SimulatedCut& cut);
+/// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the tool.
+[[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+                                         const ToolPath& path);
 
 }  // namespace incise

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/verdict.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/meshing/mesher.hpp>
@@ -38,6 +39,7 @@ struct SimulatedCut {
   /// Tissue left unheated beside the tumour edge, mm: least distance of the mid-line from it less the half width; below 0: heat reaches the
   /// edge. Absent without a mid-line, and for an open cut.
   std::optional<double> thermal_margin_mm;
+  Verdict verdict;  ///< what is held against the path that was cut: verdict_of_cut, and what was known of mesh and path before it
 };
 
 /// How the path was corrected.

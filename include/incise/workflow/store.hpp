@@ -58,6 +58,11 @@ class Store {
   /// Makes the cut of a pass the corrected one, and lets the passes go. Does nothing where there is a corrected cut of today's settings.
   /// @returns whether there is one now.
   virtual bool adopt_cut(CutRole from) = 0;
+  /// Says beside the planned and beside the corrected path what the cuts along them are worth. @param of_planned  absent: the first cut did
+  /// not follow the plan.  @param of_corrected  absent: there is no corrected path.
+  virtual void save_verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) {
+    static_cast<void>(of_planned), static_cast<void>(of_corrected);
+  }
 };
 
 }  // namespace incise

@@ -44,9 +44,14 @@ struct Study {
   std::optional<SimulatedCut> corrected;
   /// See is_accepted.
   bool is_accepted = false;
+  Verdict about_inputs;   ///< what was found before anything was cut: scan, contour against surface
+  Verdict verdict;        ///< of the run, see verdict_of_run; complete once the last stage asked for has run
   /// How it ended: that of the last simulated cut, or NotConverged/Cancelled of the stage that could not go on.
   Outcome outcome = Outcome::Success;
 };
+
+/// The cut along the path that a program would follow: the corrected one where the correction is accepted, else the first. Null: none.
+[[nodiscard]] const SimulatedCut* verifying_cut(const Study& study);
 
 /// Why a stretch is of no use and what may help, for a person; empty when it is a success.
 [[nodiscard]] std::string explain_stretch(const StaticResult& stretched);

@@ -1,0 +1,67 @@
+#include "verdict_gate.hpp"
+
+#include <incise/io/nearest_name.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace incise::cli {
+
+void add_accept(CLI::App& verb, std::vector<std::string>& accepted) {
+  verb.add_option("--accept", accepted,
+                  "Write the program although the verdict has a caution of this id, such as depth; once for each, noted in the program. What "
+                  "the verdict refuses cannot be accepted")
+      ->expected(1)
+      ->take_all();
+}
+
+void require_accepted_ids(const std::vector<std::string>& accepted) {
+  std::vector<std::string> cautions;
+  for (const VerdictRule& rule : verdict_rules()) {
+    if (rule.severity == VerdictStatus::Caution) cautions.emplace_back(rule.id);
+  }
+  for (const std::string& id : accepted) {
+    if (std::find(cautions.begin(), cautions.end(), id) != cautions.end()) continue;
+    const bool is_refusal = std::any_of(verdict_rules().begin(), verdict_rules().end(), [&](const VerdictRule& rule) { return rule.id == id; });
+    throw CaseError("command line", "--accept", fmt::format("'{}'", id),
+                    is_refusal ? std::string("the id of a caution; nobody can accept what the verdict refuses")
+                               : fmt::format("one of {}", fmt::join(cautions, ", ")),
+                    is_refusal ? std::string() : fmt::format("Did you mean '{}'?", nearest_name(id, cautions)));
+  }
+}
+
+void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor) {
+  for (const VerdictReason& reason : verdict.reasons()) {
+    const bool is_accepted = std::find(gate.accepted.begin(), gate.accepted.end(), reason.id) != gate.accepted.end();
+    if (is_accepted) {
+      monitor.message(Severity::Warning, fmt::format("accepted: {}: {}", reason.id, reason.message));
+    } else if (reason.severity == VerdictStatus::Refused) {
+      monitor.message(Severity::Warning, fmt::format("no program: refused: {}: {}", reason.id, reason.message));
+    } else {
+      monitor.message(Severity::Warning, fmt::format("no program: caution: {}: {}. --accept {} takes it on you", reason.id, reason.message, reason.id));
+    }
+  }
+}
+
+nlohmann::ordered_json to_json(const VerdictGate& gate) {
+  return {{"open", gate.is_open}, {"accepted", gate.accepted}, {"missing", gate.missing}, {"refused", gate.refused}};
+}
+
+ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate) {
+  ProgramHeader header{{"verdict", std::string(to_string(verdict.status()))}};
+  for (const VerdictReason& reason : verdict.reasons()) header.emplace_back("reason", fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
+  for (const std::string& id : gate.accepted) header.emplace_back("accepted", id);
+  return header;
+}
+
+void print_verdict(const nlohmann::ordered_json& verdict) {
+  fmt::print("{:<36} {}\n", "verdict", verdict.at("status").get<std::string>());
+  for (const auto& reason : verdict.at("reasons")) {
+    fmt::print("  {}: {}: {}\n", reason.at("severity").get<std::string>(), reason.at("id").get<std::string>(),
+               reason.at("message").get<std::string>());
+  }
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "options.hpp"
+
+#include <incise/core/verdict.hpp>
+#include <incise/robot/program_text.hpp>
+
+#include <string>
+#include <vector>
+
+namespace incise::cli {
+
+/// Adds --accept to a verb that writes a robot program.
+void add_accept(CLI::App& verb, std::vector<std::string>& accepted);
+
+/// Refuses ids that are no cautions of verdict_rules() (status 2), naming the nearest one.
+void require_accepted_ids(const std::vector<std::string>& accepted);
+
+/// Says on the console what stands between a verdict and its program, or which cautions were accepted.
+void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor);
+
+/// `{open, accepted, missing, refused}`.
+[[nodiscard]] nlohmann::ordered_json to_json(const VerdictGate& gate);
+
+/// What a program's header says of its verdict: the status, each reason, each accepted caution.
+[[nodiscard]] ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate);
+
+/// The verdict for a person: its status, then a line for each reason, worst first.
+void print_verdict(const nlohmann::ordered_json& verdict);
+
+}  // namespace incise::cli

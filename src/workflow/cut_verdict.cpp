@@ -1,0 +1,264 @@
+#include <incise/core/error.hpp>
+#include <incise/geometry/contour_checks.hpp>
+#include <incise/workflow/cut_verdict.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace incise {
+namespace {
+
+constexpr double kHeldBackShare = 0.5;  // of the steps: with more that hold a vertex back, the body lags for no reason in its law
+
+void judge_outcome(const SimulatedCut& cut, Verdict& verdict) {
+  if (cut.outcome != Outcome::Success) {
+    verdict.add("outcome", {}, fmt::format("the simulated cut ended as {}", to_string(cut.outcome)));
+  } else if (!cut.centerline.signed_error_mm) {
+    verdict.add("outcome", {}, "the simulated cut left no mid-line to measure");
+  }
+}
+
+void judge_layers(const SimulatedCut& cut, Verdict& verdict) {
+  for (const KerfLayer& layer : cut.incision.kerf.layers) {
+    const bool is_cut = cut.incision.is_closed_loop ? layer.is_closed.value_or(false) : layer.centerline.has_value();
+    if (!layer.is_within_plan || is_cut) continue;
+    const std::string bridge = layer.gap_mm ? fmt::format(", its widest uncut bridge {:.1f} mm", *layer.gap_mm) : std::string();
+    verdict.add("open_layer", layer.gap_mm, fmt::format("the simulated cut is open at a depth of {} mm{}", layer.depth_mm, bridge),
+                VerdictPlace{{}, {}, fmt::format("{} mm below the skin", layer.depth_mm)});
+  }
+}
+
+void judge_depth(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
+  const DepthReached& depth = cut.incision.kerf.depth;
+  const std::vector<double> shares = depth_shares(settings, depth);
+  if (shares.empty()) return;
+  const double limit = *verdict_rule("depth").limit;
+  const auto least = static_cast<std::size_t>(std::min_element(shares.begin(), shares.end()) - shares.begin());
+  if (shares[least] >= limit) return;
+  const auto shallow = std::count_if(shares.begin(), shares.end(), [limit](double share) { return share < limit; });
+  const double reached_mm = depth.profile.depth_mm[least];
+  verdict.add("depth", shares[least],
+              fmt::format("the simulated kerf is {:.2g} mm deep at its shallowest, {:.0f} % of the planned {:.2g} mm, and too shallow on "
+                          "{:.0f} % of the path",
+                          reached_mm, 100.0 * shares[least], std::max(depth.planned_at_mm[least], settings.plan.depth_mm),
+                          100.0 * static_cast<double>(shallow) / static_cast<double>(shares.size())),
+              VerdictPlace{depth.profile.arclength_mm[least], depth.profile.course.points[least],
+                           fmt::format("{:.0f} mm along the path", depth.profile.arclength_mm[least])});
+}
+
+/// The least tissue beside the tumour's edge in one line of the cut.
+struct Tissue {
+  double left_mm = std::numeric_limits<double>::infinity();
+  std::string of;
+  std::optional<VerdictPlace> at;
+};
+
+void note_line(const Evaluation& line, double off_mm, const std::string& name, Tissue& least) {
+  const ContourErrors& errors = line.errors;
+  for (std::size_t i = 0; i < errors.signed_distance_mm.size(); ++i) {
+    if (errors.signed_distance_mm[i] - off_mm >= least.left_mm) continue;
+    least = {errors.signed_distance_mm[i] - off_mm, name, VerdictPlace{{}, errors.points.points[i], {}}};
+  }
+}
+
+void note_layers(const Case& settings, const SimulatedCut& cut, Tissue& least) {
+  for (std::size_t i = 0; i < cut.layers.size() && i < cut.incision.kerf.layers.size(); ++i) {
+    if (!cut.layers[i].signed_error_mm) continue;
+    const KerfLayer& layer = cut.incision.kerf.layers[i];
+    const double left_mm = settings.plan.lateral_margin_mm + cut.layers[i].signed_error_mm->min - 0.5 * layer.width_mm;
+    if (left_mm >= least.left_mm) continue;
+    const std::string place = fmt::format("{} mm below the skin", layer.depth_mm);
+    least = {left_mm, "kerf " + place, VerdictPlace{{}, {}, place}};
+  }
+}
+
+void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
+  if (settings.plan.kind != PlanKind::Ring) return;
+  Tissue least;
+  note_line(cut.centerline, radius_mm(settings.tool), "mid-line", least);
+  note_line(cut.inner_edge, 0.0, "inner edge, the tool out,", least);
+  if (!cut.incision.kerf.deep_margin) note_layers(settings, cut, least);
+  if (least.left_mm > settings.close_margin_mm) return;
+  if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
+  verdict.add("lateral_margin", least.left_mm,
+              fmt::format("the simulated cut's {} leaves {:.2f} mm of tissue beside the tumour's edge, and not more than {} mm", least.of,
+                          least.left_mm, settings.close_margin_mm),
+              least.at, settings.close_margin_mm);
+}
+
+void judge_tumor(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
+  const std::optional<DeepMargin>& margin = cut.incision.kerf.deep_margin;
+  if (!margin || margin->nearest_mm > settings.close_margin_mm) return;
+  const std::string what = margin->nearest_mm < 0.0 ? fmt::format("enters the tumour by {:.2f} mm", -margin->nearest_mm)
+                                                    : fmt::format("comes within {:.2f} mm of the tumour", margin->nearest_mm);
+  verdict.add("tumor_distance", margin->nearest_mm,
+              fmt::format("the simulated kerf {}: it has to keep more than {} mm away", what, settings.close_margin_mm), {},
+              settings.close_margin_mm);
+}
+
+/// Heat goes out from the electrode, which runs in the kerf's middle.
+void judge_heat(const SimulatedCut& cut, Verdict& verdict) {
+  std::optional<double> left_mm = cut.thermal_margin_mm;
+  if (const std::optional<DeepMargin>& margin = cut.incision.kerf.deep_margin) {
+    const double to_surface_mm = margin->nearest_mm + 0.5 * cut.incision.kerf_width_mm - cut.thermal_half_width_mm;
+    left_mm = std::min(left_mm.value_or(to_surface_mm), to_surface_mm);
+  }
+  if (!left_mm || *left_mm >= 0.0) return;
+  verdict.add("heat", *left_mm,
+              fmt::format("heat reaches the tumour: it damages tissue {:.2f} mm beside the electrode, {:.2f} mm more than the cut keeps away "
+                          "(a closed form, not calibrated, an upper bound unless thermal.absorbed_fraction says less)",
+                          cut.thermal_half_width_mm, -*left_mm));
+}
+
+void judge_convergence(const SimulatedCut& cut, Verdict& verdict) {
+  const IncisionResult& incision = cut.incision;
+  if (incision.outcome == Outcome::Cancelled) return;
+  if (!incision.steps.empty() && !incision.is_at_rest) {
+    verdict.add("convergence", {}, "the simulated tissue is not at rest after the tool is out: the inner edge may still move");
+  }
+  if (incision.inverted_tets > 0) {
+    verdict.add("convergence", static_cast<double>(incision.inverted_tets),
+                fmt::format("{} tetrahedra of the simulated tissue are turned inside out", incision.inverted_tets));
+  }
+  if (static_cast<double>(incision.steps_held_back) > kHeldBackShare * static_cast<double>(incision.steps.size())) {
+    verdict.add("convergence", static_cast<double>(incision.steps_held_back),
+                fmt::format("vertices were held back to cut.max_step_mm in {} of {} steps", incision.steps_held_back, incision.steps.size()));
+  }
+}
+
+double cross(const Vec2& o, const Vec2& a, const Vec2& b) {
+  return (a.x() - o.x()) * (b.y() - o.y()) - (a.y() - o.y()) * (b.x() - o.x());
+}
+
+/// Counter-clockwise convex hull, without points on its edges (Andrew's monotone chain). O(n log n).
+std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  if (points.size() < 3) return points;
+  std::vector<Vec2> hull;
+  const auto add = [&hull](const Vec2& p, std::size_t least) {
+    while (hull.size() >= least + 2 && cross(hull[hull.size() - 2], hull.back(), p) <= 0.0) hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const Vec2& p : points) add(p, 0);
+  const std::size_t lower = hull.size() - 1;
+  for (std::size_t i = points.size() - 1; i-- > 0;) add(points[i], lower);
+  hull.pop_back();
+  return hull;
+}
+
+Contour flat(const std::vector<Vec2>& points) {
+  Contour contour;
+  for (const Vec2& p : points) contour.points.emplace_back(p.x(), p.y(), 0.0);
+  return contour;
+}
+
+/// The farthest point of `points` outside a polygon in the plane z = 0.
+void note_outside(const Contour& points, const Contour& polygon, EdgeFit& fit) {
+  for (const Vec3& p : points.points) {
+    if (contains_in_view(polygon, p, -Vec3::UnitZ())) continue;
+    const double distance = nearest_on(polygon, p).distance_mm;
+    if (distance > fit.apart_mm) fit = {distance, p};
+  }
+}
+
+}  // namespace
+
+std::vector<double> depth_shares(const Case& settings, const DepthReached& depth) {
+  std::vector<double> shares;
+  // A tool along the surface's normal goes less deep along the approach: there the path's own depth counts alone.
+  const double asked_mm = settings.plan.axis_mode == AxisMode::Approach ? settings.plan.depth_mm : 0.0;
+  for (std::size_t i = 0; i < depth.profile.depth_mm.size(); ++i) {
+    const double planned = std::max(depth.planned_at_mm.at(i), asked_mm);
+    if (planned > 0.0) shares.push_back(depth.profile.depth_mm[i] / planned);
+  }
+  return shares;
+}
+
+std::vector<double> open_layers_mm(const IncisionResult& incision) {
+  std::vector<double> depths;
+  for (const KerfLayer& layer : incision.kerf.layers) {
+    const bool is_cut = incision.is_closed_loop ? layer.is_closed.value_or(false) : layer.centerline.has_value();
+    if (layer.is_within_plan && !is_cut) depths.push_back(layer.depth_mm);
+  }
+  return depths;
+}
+
+Verdict verdict_of_cut(const Case& settings, const SimulatedCut& cut) {
+  Verdict verdict;
+  judge_outcome(cut, verdict);
+  judge_tumor(settings, cut, verdict);
+  judge_margin(settings, cut, verdict);
+  judge_layers(cut, verdict);
+  judge_depth(settings, cut, verdict);
+  judge_heat(cut, verdict);
+  judge_convergence(cut, verdict);
+  return verdict;
+}
+
+EdgeFit edge_fit(const Contour& edge, const TriMesh& surface, const Vec3& approach) {
+  INCISE_REQUIRE(edge.points.size() >= 3 && !surface.vertices.empty(), "expected an edge of at least 3 points and a surface with vertices");
+  const ViewFrame view = view_along(approach);
+  const auto seen = [&view](const Points& points) {
+    std::vector<Vec2> places;
+    places.reserve(points.size());
+    for (const Vec3& p : points) places.emplace_back(view.to_view(p).head<2>());
+    return places;
+  };
+  const Contour outline = flat(convex_hull(seen(surface.vertices)));
+  const Contour drawn = flat(seen(edge.points));
+  EdgeFit fit;
+  note_outside(drawn, outline, fit);
+  note_outside(outline, drawn, fit);
+  fit.at_mm = view.from_view(fit.at_mm);
+  return fit;
+}
+
+Verdict verdict_of_contour(const Contour& edge, const TriMesh& surface, const Vec3& approach) {
+  Verdict verdict;
+  const double limit_mm = *verdict_rule("contour_surface").limit;
+  const EdgeFit fit = edge_fit(edge, surface, approach);
+  if (fit.apart_mm <= limit_mm) return verdict;
+  Contour turned = edge;
+  for (Vec3& p : turned.points) p = Vec3(-p.x(), -p.y(), p.z());
+  const EdgeFit turned_fit = edge_fit(turned, surface, approach);
+  const VerdictPlace place{{}, fit.at_mm, {}};
+  if (turned_fit.apart_mm <= limit_mm) {
+    verdict.add("contour_flipped", fit.apart_mm,
+                fmt::format("the tumour's edge lies {:.1f} mm off the tumour's surface, and {:.1f} mm with x and y turned: it looks as if it "
+                            "was drawn in RAS and saved without saying so (coordinates of files are LPS)",
+                            fit.apart_mm, turned_fit.apart_mm),
+                place, limit_mm);
+  } else {
+    verdict.add("contour_surface", fit.apart_mm,
+                fmt::format("the tumour's edge and its surface lie up to {:.1f} mm apart, seen along the approach: one of the two is of "
+                            "another place, frame or unit",
+                            fit.apart_mm),
+                place);
+  }
+  return verdict;
+}
+
+Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const SimulatedCut* cut, bool was_correction_asked,
+                       bool is_corrected) {
+  Verdict verdict = about_inputs;
+  if (cut != nullptr) {
+    verdict.add(cut->verdict);
+  } else {
+    verdict.add("outcome", {}, "no cut was simulated");
+  }
+  if (cut != nullptr && was_correction_asked && !is_corrected) {
+    verdict.add("not_corrected", {}, "the correction is not accepted: a program would follow the uncorrected path");
+  }
+  if (settings.T_robot_sim && !settings.is_virtual) {
+    verdict.add("typed_transform", {},
+                "robot.T_robot_sim was typed into the case: no registration says that the specimen lies there (register, project and export "
+                "find and check it)");
+  }
+  return verdict;
+}
+
+}  // namespace incise

@@ -1,0 +1,134 @@
+"""One verdict wherever a cut is shown, and no robot program against it."""
+
+import json
+import unittest
+
+import small_case
+from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest
+
+
+def ids(verdict, severity=None):
+    return [reason["id"] for reason in verdict["reasons"] if severity in (None, reason["severity"])]
+
+
+class VerdictTest(CommandTest):
+    def write(self, changes=small_case.SOUND):
+        case = small_case.write_case(self.folder / "case", changes)
+        small_case.write_tumor_surface(case / "tumor.stl")
+        return case
+
+    def read(self, name):
+        return json.loads((self.out / name).read_text())
+
+    def run_case(self, *options, status):
+        return self.json_of("run", "case", "-o", self.out, *options, status=status)
+
+    def assert_no_program(self):
+        self.assertFalse((self.out / "program").exists())
+
+    def test_every_face_shows_the_same_verdict(self):
+        self.write()
+        found = self.run_case(*small_case.ACCEPTED, status=DONE)
+        verdict = found["verdict"]
+        self.assertEqual(verdict["status"], "caution")
+        self.assertEqual(self.read("study.json")["verdict"], verdict)
+        self.assertEqual(self.read("manifest.json")["verdict"], verdict)
+        self.assertEqual(self.read("program/manifest.json")["verdict"], verdict)
+        in_path = self.read("program/path.json")["verdict"]
+        self.assertEqual({key: in_path[key] for key in verdict}, verdict)
+        report = (self.out / "report.html").read_text()
+        self.assertIn("Verdict: caution.", report)
+        self.assertLess(report.index("Verdict: caution."), report.index("class=\"cards\""), "before any other number")
+        for reason in verdict["reasons"]:
+            self.assertIn(reason["message"].split(":")[0], report)
+        shown = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED).stdout
+        for reason in verdict["reasons"]:
+            self.assertIn(f"{reason['severity']}: {reason['id']}: {reason['message']}", shown)
+        script = (self.out / "program" / "program.script").read_text()
+        self.assertIn("# incise.verdict: caution\n", script)
+        for caution in set(ids(verdict)):
+            self.assertIn(f"# incise.accepted: {caution}\n", script)
+
+    def test_each_caution_needs_its_own_accept(self):
+        self.write()
+        found = self.run_case(*small_case.ACCEPTED[:-2], status=NOT_ACCEPTABLE)
+        self.assertEqual(found["program"]["gate"]["missing"], ["convergence"])
+        self.assert_no_program()
+        self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.assertTrue((self.out / "program" / "program.script").is_file())
+        self.run_case(status=NOT_ACCEPTABLE)
+        self.assert_no_program()  # an older one does not outlive the refusal
+
+    def test_no_program_for_a_cut_that_its_own_simulation_sees_near_the_tumour(self):
+        self.write({**small_case.SOUND, "plan": {"lateral_margin_mm": 9}})  # the close margin of 2.2 mm
+        found = self.run_case(*small_case.ACCEPTED, status=NOT_ACCEPTABLE)
+        self.assertEqual(found["outcome"], "success", "the paper's success does not look at the tumour's surface")
+        self.assertEqual(found["verdict"]["status"], "refused")
+        self.assertEqual(found["verdict"]["reasons"][0]["id"], "tumor_distance")
+        self.assertEqual(found["verdict"]["reasons"][0]["limit"], 2.2)
+        self.assert_no_program()
+        self.assertIn("Verdict: refused.", (self.out / "report.html").read_text())
+        nobody = self.incise("run", "case", "-o", self.out, "--accept", "tumor_distance")
+        self.assert_refused(nobody, BAD_CASE, "--accept", "'tumor_distance'", "nobody can accept")
+
+    def test_a_contour_that_was_shifted_flipped_or_is_of_another_unit_than_the_surface(self):
+        for change, expected in ((lambda p: (p[0], p[1] + 8.0, p[2]), "contour_surface"), (lambda p: (-p[0], -p[1], p[2]), "contour_flipped")):
+            with self.subTest(expected):
+                case = self.write()
+                small_case.write_contour(case / "tumor.csv", [change(p) for p in small_case.ring()])
+                done = self.incise("run", "case", "-o", self.folder / expected, *small_case.ACCEPTED, "--json")
+                self.assertIn(f"refused: {expected}: ", done.stderr)
+                self.assertFalse((self.folder / expected / "program").exists())
+                self.assertIn(done.returncode, (BAD_CASE, NOT_ACCEPTABLE))  # 2: the flipped edge lies beside the tissue
+        case = self.write()
+        small_case.write_tumor_surface(case / "tumor.stl", scale=1e-3)  # metres
+        done = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED)
+        self.assert_refused(done, BAD_CASE, "tumor.surface", "2 to 100 mm", "Lengths are mm")
+
+    def test_a_typed_transform_of_a_real_body_is_a_caution(self):
+        self.write({**small_case.SOUND, "specimen_is": "real"})
+        found = self.run_case(*small_case.ACCEPTED, status=NOT_ACCEPTABLE)
+        self.assertEqual(found["program"]["gate"]["missing"], ["typed_transform"])
+        self.run_case(*small_case.ACCEPTED, "--accept", "typed_transform", status=DONE)
+
+    def test_export_goes_by_the_verdict_of_the_path_and_notices_a_changed_one(self):
+        self.write()
+        self.run_case(*small_case.ACCEPTED, status=DONE)
+        path = self.out / "program" / "path.json"
+        script = self.folder / "cut.script"
+        refused = self.json_of("export", path, "-o", script, status=NOT_ACCEPTABLE)
+        self.assertEqual(refused["gate"]["missing"], ids(refused["verdict"]))
+        self.assertFalse(script.exists())
+        self.json_of("export", path, "-o", script, *small_case.ACCEPTED)
+        self.assertIn("# incise.accepted: convergence\n", script.read_text())
+        document = json.loads(path.read_text())
+        document["waypoints"][3]["depth_mm"] += 0.1
+        (self.folder / "edited.json").write_text(json.dumps(document))
+        edited = self.json_of("export", "edited.json", "-o", self.folder / "edited.script", *small_case.ACCEPTED, status=NOT_ACCEPTABLE)
+        self.assertEqual(edited["gate"]["missing"], ["not_simulated"])
+        document["verdict"] = {"status": "ok", "reasons": [], "digest_sha256": "0" * 64}
+        (self.folder / "forged.json").write_text(json.dumps(document))
+        forged = self.json_of("export", "forged.json", "-o", self.folder / "forged.script", *small_case.ACCEPTED, status=NOT_ACCEPTABLE)
+        self.assertEqual(forged["gate"]["missing"], ["not_simulated"])
+        document["verdict"] = {"status": "ok", "reasons": [{"id": "depth"}]}
+        (self.folder / "broken.json").write_text(json.dumps(document))
+        self.assert_refused(self.incise("export", "broken.json", "-o", self.folder / "broken.script"), BAD_DATA, "broken.json", "/reasons/0")
+
+    def test_accept_names_a_caution(self):
+        self.write()
+        for verb, where in (("run", "case"), ("export", "path.json")):
+            done = self.incise(verb, where, "-o", self.out, "--accept", "dept")
+            self.assert_refused(done, BAD_CASE, "--accept", "'dept'", "Did you mean 'depth'?")
+
+    def test_simulate_and_compensate_show_it_too(self):
+        self.write()
+        cut = self.json_of("simulate", "case", "-o", self.out)
+        self.assertEqual(cut["verdict"], self.read("as_planned/incision.json")["verdict"])
+        planned = self.read("plan/path.json")["verdict"]
+        self.assertEqual(planned["reasons"], cut["verdict"]["reasons"])
+        again = self.json_of("simulate", "case", "-o", self.out)
+        self.assertEqual(again["verdict"], cut["verdict"], "read back from the folder")
+
+
+if __name__ == "__main__":
+    unittest.main()

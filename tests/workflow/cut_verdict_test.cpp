@@ -1,0 +1,227 @@
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/geometry/contour.hpp>
+#include <incise/workflow/cut_verdict.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace incise {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::vector<std::string> ids_of(const Verdict& verdict) {
+  std::vector<std::string> ids;
+  for (const VerdictReason& reason : verdict.reasons()) ids.push_back(reason.id);
+  return ids;
+}
+
+Contour circle(double radius_mm, const Vec3& center = Vec3::Zero()) {
+  Contour contour;
+  for (int i = 0; i < 120; ++i) {
+    const double angle = 2.0 * units::kPi * i / 120.0;
+    contour.points.push_back(center + radius_mm * Vec3(std::cos(angle), std::sin(angle), 0.0));
+  }
+  return contour;
+}
+
+/// A ring at its intended place round a tumour of 20 mm, sound in every respect.
+SimulatedCut sound_cut() {
+  SimulatedCut cut;
+  cut.outcome = Outcome::Success;
+  IncisionResult& incision = cut.incision;
+  incision.outcome = Outcome::Success;
+  incision.is_closed_loop = true;
+  incision.is_at_rest = true;
+  incision.kerf_width_mm = 1.8;
+  incision.steps.resize(100);
+  for (const double depth_mm : {1.0, 2.5, 4.0, 5.0}) {
+    KerfLayer layer;
+    layer.depth_mm = depth_mm;
+    layer.is_within_plan = true;
+    layer.is_closed = true;
+    layer.width_mm = 1.8;
+    incision.kerf.layers.push_back(layer);
+    cut.layers.push_back({Summary{.mean = 0.0, .min = -0.4, .max = 0.4}, {}});
+  }
+  DepthReached& depth = incision.kerf.depth;
+  depth.profile.course = circle(15.0);
+  for (std::size_t i = 0; i < depth.profile.course.points.size(); ++i) {
+    depth.profile.arclength_mm.push_back(0.785 * static_cast<double>(i));
+    depth.profile.depth_mm.push_back(5.2);
+    depth.planned_at_mm.push_back(5.0);
+  }
+  incision.kerf.deep_margin = DeepMargin{.nearest_mm = 3.5, .beside_mm = 3.5, .beneath_mm = {}, .floor_below_mm = {}};
+  cut.centerline.errors = contour_errors(circle(15.0), circle(10.0), 5.0, -Vec3::UnitZ());
+  cut.centerline.signed_error_mm = Summary{.mean = 0.0, .min = -0.1, .max = 0.1};
+  cut.centerline.target_mm = 5.0;
+  cut.inner_edge.errors = contour_errors(circle(14.1), circle(10.0), 4.5, -Vec3::UnitZ());
+  cut.thermal_half_width_mm = 2.8;
+  cut.thermal_margin_mm = 2.1;
+  return cut;
+}
+
+TEST(VerdictOfCut, IsOkForASoundCut) { EXPECT_THAT(ids_of(verdict_of_cut(Case{}, sound_cut())), IsEmpty()); }
+
+TEST(VerdictOfCut, RefusesAKerfAtOrBelowTheCloseMarginFromTheTumour) {
+  SimulatedCut cut = sound_cut();
+  cut.incision.kerf.deep_margin->nearest_mm = 2.21;
+  EXPECT_EQ(verdict_of_cut(Case{}, cut).status(), VerdictStatus::Ok);
+  for (const double nearest_mm : {2.2, 0.78, 0.0, -1.66}) {
+    cut.incision.kerf.deep_margin->nearest_mm = nearest_mm;
+    const Verdict verdict = verdict_of_cut(Case{}, cut);
+    ASSERT_FALSE(verdict.reasons().empty()) << nearest_mm;
+    EXPECT_EQ(verdict.reasons().front().id, "tumor_distance") << nearest_mm;
+    EXPECT_EQ(verdict.status(), VerdictStatus::Refused) << nearest_mm;
+    EXPECT_EQ(verdict.reasons().front().value, nearest_mm);
+    EXPECT_EQ(verdict.reasons().front().limit, 2.2);
+  }
+  EXPECT_THAT(verdict_of_cut(Case{}, cut).reasons().front().message, HasSubstr("enters the tumour by 1.66 mm"));
+  Case careful;
+  careful.close_margin_mm = 4.0;
+  cut = sound_cut();
+  EXPECT_EQ(verdict_of_cut(careful, cut).reasons().front().id, "tumor_distance") << "the limit is the case's close margin";
+}
+
+TEST(VerdictOfCut, RefusesALayerWithinThePlanThatStayedOpen) {
+  SimulatedCut cut = sound_cut();
+  cut.incision.kerf.layers[1].is_closed = false;
+  cut.incision.kerf.layers[2].is_closed = false;
+  cut.incision.kerf.layers[2].gap_mm = 3.25;
+  const Verdict verdict = verdict_of_cut(Case{}, cut);
+  EXPECT_THAT(ids_of(verdict), ElementsAre("open_layer", "open_layer"));
+  EXPECT_EQ(verdict.status(), VerdictStatus::Refused);
+  EXPECT_EQ(verdict.reasons()[1].value, 3.25);
+  EXPECT_EQ(verdict.reasons()[1].at->text, "4 mm below the skin");
+  for (KerfLayer& layer : cut.incision.kerf.layers) layer.is_within_plan = layer.depth_mm < 2.0;
+  EXPECT_EQ(verdict_of_cut(Case{}, cut).status(), VerdictStatus::Ok) << "a shallower plan";
+}
+
+TEST(VerdictOfCut, CautionsWhereTheKerfIsShallowerThanNineTenthsOfThePlan) {
+  SimulatedCut cut = sound_cut();
+  cut.incision.kerf.depth.profile.depth_mm[40] = 4.51;
+  EXPECT_EQ(verdict_of_cut(Case{}, cut).status(), VerdictStatus::Ok);
+  cut.incision.kerf.depth.profile.depth_mm[40] = 4.49;
+  cut.incision.kerf.depth.profile.depth_mm[41] = 1.0;
+  const Verdict verdict = verdict_of_cut(Case{}, cut);
+  ASSERT_THAT(ids_of(verdict), ElementsAre("depth"));
+  EXPECT_EQ(verdict.status(), VerdictStatus::Caution);
+  EXPECT_NEAR(*verdict.reasons()[0].value, 0.2, 1e-12);
+  EXPECT_NEAR(*verdict.reasons()[0].at->arclength_mm, 0.785 * 41, 1e-9);
+  EXPECT_THAT(verdict.reasons()[0].message, HasSubstr("1 mm deep at its shallowest, 20 % of the planned 5 mm, and too shallow on 2 % of the path"));
+}
+
+TEST(VerdictOfCut, HoldsAShallowPathAgainstTheDepthThatTheCasePlans) {
+  SimulatedCut cut = sound_cut();
+  for (double& depth : cut.incision.kerf.depth.profile.depth_mm) depth = 3.1;
+  for (double& planned : cut.incision.kerf.depth.planned_at_mm) planned = 3.0;
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("depth"));
+  Case shallow;
+  shallow.plan.depth_mm = 3.0;
+  EXPECT_EQ(verdict_of_cut(shallow, cut).status(), VerdictStatus::Ok);
+}
+
+TEST(VerdictOfCut, RefusesTooLittleTissueBesideTheEdgeInTheMidLineTheInnerEdgeOrALayer) {
+  SimulatedCut cut = sound_cut();
+  cut.inner_edge.errors = contour_errors(circle(12.15), circle(10.0), 4.5, -Vec3::UnitZ());
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("lateral_margin"));
+  cut = sound_cut();
+  cut.centerline.errors = contour_errors(circle(12.6), circle(10.0), 5.0, -Vec3::UnitZ());
+  const Verdict by_midline = verdict_of_cut(Case{}, cut);
+  ASSERT_THAT(ids_of(by_midline), ElementsAre("lateral_margin")) << "2.6 mm less the electrode's radius";
+  EXPECT_NEAR(*by_midline.reasons()[0].value, 2.1, 0.02);
+  EXPECT_TRUE(by_midline.reasons()[0].at->position_mm.has_value());
+  cut = sound_cut();
+  cut.layers[3].signed_error_mm->min = -2.0;  // 5.0 - 2.0 - 0.9 of kerf
+  EXPECT_EQ(verdict_of_cut(Case{}, cut).status(), VerdictStatus::Ok) << "the tumour's surface says how near the kerf comes";
+  cut.incision.kerf.deep_margin.reset();
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("lateral_margin"));
+}
+
+TEST(VerdictOfCut, CautionsOfHeatThatReachesEdgeOrSurface) {
+  SimulatedCut cut = sound_cut();
+  cut.thermal_margin_mm = -0.48;
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("heat"));
+  cut = sound_cut();
+  cut.thermal_half_width_mm = 4.5;  // 3.5 + 0.9 mm from the electrode to the surface
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("heat"));
+}
+
+TEST(VerdictOfCut, CautionsOfASimulationThatIsNotSolved) {
+  SimulatedCut cut = sound_cut();
+  cut.incision.is_at_rest = false;
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("convergence"));
+  cut = sound_cut();
+  cut.incision.inverted_tets = 3;
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("convergence"));
+  cut = sound_cut();
+  cut.incision.steps_held_back = 51;
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("convergence"));
+}
+
+TEST(VerdictOfCut, RefusesEveryOutcomeButSuccess) {
+  for (const Outcome outcome : {Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::NotConverged, Outcome::ElementInverted}) {
+    SimulatedCut cut = sound_cut();
+    cut.outcome = outcome;
+    EXPECT_EQ(verdict_of_cut(Case{}, cut).reasons().front().id, "outcome") << to_string(outcome);
+  }
+}
+
+/// A ball that stands for a tumour's surface; only its corners count.
+TriMesh ball(double radius_mm, const Vec3& center = Vec3::Zero()) {
+  TriMesh mesh;
+  for (int i = 0; i <= 12; ++i) {
+    for (const Vec3& p : circle(radius_mm * std::sin(units::kPi * i / 12.0)).points) {
+      mesh.vertices.push_back(center + p + Vec3(0.0, 0.0, radius_mm * std::cos(units::kPi * i / 12.0)));
+    }
+  }
+  return mesh;
+}
+
+TEST(EdgeFit, IsHowFarTheTwoLieOutsideEachOtherWhateverTheirHeights) {
+  const Vec3 down = -Vec3::UnitZ();
+  EXPECT_NEAR(edge_fit(circle(10.0, Vec3(3, 4, 50)), ball(10.0, Vec3(3, 4, 0)), down).apart_mm, 0.0, 0.02);
+  EXPECT_NEAR(edge_fit(circle(10.0), ball(12.0), down).apart_mm, 2.0, 0.02) << "the tumour is wider than its edge";
+  EXPECT_NEAR(edge_fit(circle(10.0), ball(7.0), down).apart_mm, 3.0, 0.02);
+  EXPECT_NEAR(edge_fit(circle(10.0), ball(10.0, Vec3(15, 0, 0)), down).apart_mm, 15.0, 0.05);
+}
+
+TEST(VerdictOfContour, RefusesAShiftedEdgeASurfaceInMetresAndAFlip) {
+  const Vec3 down = -Vec3::UnitZ();
+  const TriMesh surface = ball(10.0, Vec3(12, -30, 20));
+  const auto verdict = [&](const Contour& edge) { return ids_of(verdict_of_contour(edge, surface, down)); };
+  EXPECT_THAT(verdict(circle(10.0, Vec3(12, -30, 25))), IsEmpty());
+  EXPECT_THAT(verdict(circle(10.0, Vec3(14, -31, 25))), IsEmpty()) << "a hand's error";
+  EXPECT_THAT(verdict(circle(10.0, Vec3(27, -30, 25))), ElementsAre("contour_surface"));
+  EXPECT_THAT(verdict(circle(10.0, Vec3(-12, 30, 25))), ElementsAre("contour_flipped"));
+  TriMesh in_metres = surface;
+  for (Vec3& p : in_metres.vertices) p *= 1e-3;
+  EXPECT_THAT(ids_of(verdict_of_contour(circle(10.0, Vec3(0, 0, 25)), in_metres, down)), ElementsAre("contour_surface"));
+}
+
+TEST(VerdictOfRun, CautionsOfATypedTransformOfABodyThatIsNotVirtual) {
+  const SimulatedCut cut = sound_cut();
+  Case settings;
+  settings.T_robot_sim = Mat4::Identity();
+  EXPECT_THAT(ids_of(verdict_of_run(settings, {}, &cut, true, true)), ElementsAre("typed_transform"));
+  settings.is_virtual = true;
+  EXPECT_THAT(ids_of(verdict_of_run(settings, {}, &cut, true, true)), IsEmpty());
+}
+
+TEST(VerdictOfRun, IsThatOfTheCutWhichVerifiesThePathAndOfTheInputs) {
+  Verdict inputs;
+  inputs.add("contour_flipped", 60.0, "RAS");
+  SimulatedCut cut = sound_cut();
+  cut.verdict.add("depth", 0.5, "shallow");
+  EXPECT_THAT(ids_of(verdict_of_run(Case{}, inputs, &cut, true, true)), ElementsAre("contour_flipped", "depth"));
+  EXPECT_THAT(ids_of(verdict_of_run(Case{}, {}, &cut, true, false)), ElementsAre("depth", "not_corrected"));
+  EXPECT_THAT(ids_of(verdict_of_run(Case{}, {}, nullptr, false, false)), ElementsAre("outcome"));
+}
+
+}  // namespace
+}  // namespace incise
