@@ -4,6 +4,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
+#include <incise/io/input_file.hpp>
 
 #include <fmt/format.h>
 
@@ -44,7 +45,7 @@ Manifest manifest_of(const CommonOptions& options, std::string settings_json,
   manifest.instruction_set = to_string(active_isa());
   for (const std::filesystem::path& path : inputs) {
     manifest.inputs.push_back(
-        {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path)});
+        {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path)});
   }
   manifest.wall_s = wall_s;
   manifest.machine = machine_description();

@@ -4,6 +4,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
@@ -25,7 +26,7 @@ using StepJson = nlohmann::ordered_json;
 constexpr std::size_t kRoomBytes = std::size_t{32} << 20U;
 
 std::string content_of(const std::filesystem::path& path) {
-  return std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path);
+  return std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path);
 }
 
 /// What decides the outcome of a step.

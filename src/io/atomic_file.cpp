@@ -1,6 +1,7 @@
 #include <incise/core/error.hpp>
 #include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 
 #include <fmt/format.h>
@@ -112,10 +113,7 @@ void write_atomically(const fs::path& name, const std::function<void(std::ostrea
 }
 
 std::string read_text(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw DataError(path, "", "no such file", "a readable file");
-  if (fs::is_directory(status)) throw DataError(path, "", "a folder", "a file");
+  require_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw DataError(path, "", std::strerror(errno), "a readable file");
   std::string text;

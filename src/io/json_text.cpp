@@ -1,5 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 
 #include <fmt/format.h>
@@ -14,6 +15,8 @@ namespace incise {
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr int kDeepestJson = 64;  // deeper than any file of ours; whatever walks through the values calls itself once a level
 
 void require_finite(const ordered_json& value, const std::string& pointer) {
   if (value.is_number_float()) {
@@ -38,7 +41,8 @@ class DuplicateKeys {
  public:
   explicit DuplicateKeys(const std::filesystem::path& name) : name_(name) {}
 
-  bool operator()(int /*depth*/, ordered_json::parse_event_t event, ordered_json& parsed) {
+  bool operator()(int depth, ordered_json::parse_event_t event, ordered_json& parsed) {
+    if (depth > kDeepestJson) throw DataError(name_, "", fmt::format("values nested more than {} deep", kDeepestJson), "JSON that is less deep");
     if (event == ordered_json::parse_event_t::object_start) keys_.emplace_back();
     if (event == ordered_json::parse_event_t::object_end) keys_.pop_back();
     if (event == ordered_json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
@@ -66,6 +70,7 @@ void write_json(const std::filesystem::path& path, const ordered_json& value) {
 }
 
 ordered_json parse_json(std::string_view text, const std::filesystem::path& name) {
+  if (text.size() > kLargestJsonBytes) throw DataError(name, "size", fmt::format("{} bytes", text.size()), fmt::format("at most {} bytes of JSON", kLargestJsonBytes));
   try {
     return ordered_json::parse(text, DuplicateKeys(name));
   } catch (const nlohmann::json::parse_error& error) {

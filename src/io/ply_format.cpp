@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -43,6 +44,8 @@ class PlyReader {
   TriMesh read() {
     read_header();
     for (const Element& element : elements_) {
+      require_room(element);
+      require_one_of_each(element);
       if (element.name == "vertex")
         read_vertices(element);
       else
@@ -165,7 +168,40 @@ class PlyReader {
     return *value;
   }
 
+  /// The fewest bytes that one item of an element takes: an ascii number is a digit and a blank.
+  [[nodiscard]] std::size_t least_bytes(const Element& element) const {
+    std::size_t bytes = 0;
+    for (const Property& property : element.properties) {
+      const std::string& type = property.count_type.empty() ? property.type : property.count_type;
+      bytes += is_binary_ ? size_of_vtk_type(type) : 2;
+    }
+    return bytes;
+  }
+
+  /// Before anything is made room for: as many items as the header states have to fit into what is left of the file.
+  void require_room(const Element& element) const {
+    const std::size_t last_blank = is_binary_ ? 0 : 1;  // the last number of a file may end it
+    if (element.count <= (cursor_.bytes_left() + last_blank) / std::max<std::size_t>(1, least_bytes(element))) return;
+    throw DataError(cursor_.path(), "header", fmt::format("{} items of '{}' in the last {} bytes", element.count, element.name, cursor_.bytes_left()),
+                    "a complete file", "It looks truncated.");
+  }
+
+  void require_one_of_each(const Element& element) const {
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        if (element.properties[i].name != element.properties[k].name) continue;
+        throw DataError(cursor_.path(), "header", fmt::format("the property '{}' of '{}' twice", shown_word(element.properties[i].name), element.name), "each property once");
+      }
+    }
+  }
+
   void read_vertices(const Element& element) {
+    if (has_vertices_) throw DataError(cursor_.path(), "header", "a second element vertex", "one");
+    has_vertices_ = true;
+    for (const char* axis : {"x", "y", "z"}) {
+      const bool is_there = std::any_of(element.properties.begin(), element.properties.end(), [axis](const Property& p) { return p.name == axis; });
+      if (!is_there) throw DataError(cursor_.path(), "header", fmt::format("no vertex property {}", axis), "x, y and z");
+    }
     surface_.vertices.resize(element.count);
     for (std::size_t i = 0; i < element.count; ++i) {
       for (const Property& property : element.properties) {
@@ -177,12 +213,6 @@ class PlyReader {
         }
         store(i, element.count, property, value);
       }
-    }
-    for (const char* axis : {"x", "y", "z"}) {
-      bool is_there = false;
-      for (const Property& property : element.properties) is_there = is_there || property.name == axis;
-      if (!is_there)
-        throw DataError(cursor_.path(), "header", fmt::format("no vertex property {}", axis), "x, y and z");
     }
   }
 
@@ -205,6 +235,9 @@ class PlyReader {
       array.data = {components, std::vector<double>(count * static_cast<std::size_t>(components), 0.0)};
       array.is_floating = property.type.rfind("Float", 0) == 0;
     }
+    if (array.data.components != components) {
+      throw DataError(cursor_.path(), "header", fmt::format("the vertex properties '{}' and 'nx', 'ny', 'nz'", array_name), "one or the other");
+    }
     array.data.values[i * static_cast<std::size_t>(components) + component] = value;
   }
 
@@ -225,7 +258,9 @@ class PlyReader {
           grid_.push_back(values);
         }
         const bool is_corners = property.name == "vertex_indices" || property.name == "vertex_index";
-        if (element.name == "face" && is_list && is_corners) polygons_.push_back(std::move(values));
+        if (element.name != "face" || !is_list || !is_corners) continue;
+        if (values.size() < 3) throw DataError(cursor_.path(), fmt::format("face {}", polygons_.size()), fmt::format("{} corners", values.size()), "3 or more");
+        polygons_.push_back(std::move(values));
       }
     }
   }
@@ -240,8 +275,6 @@ class PlyReader {
       }
       corners.push_back(VertexId(static_cast<std::size_t>(index)));
     }
-    if (corners.size() < 3)
-      throw DataError(cursor_.path(), place(), fmt::format("{} corners", corners.size()), "3 or more");
     add_polygon(surface_, corners);
   }
 
@@ -251,6 +284,7 @@ class PlyReader {
   bool has_grid_ = false;
   std::vector<std::vector<double>> grid_;
   bool is_binary_ = false;
+  bool has_vertices_ = false;
   bool is_ras_ = false;
   std::vector<Element> elements_;
   TriMesh surface_;

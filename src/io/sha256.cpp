@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/manifest.hpp>
 
 #include <fmt/format.h>
@@ -45,10 +46,7 @@ std::string sha256_of_text(std::string_view text) {
 }
 
 std::string sha256_of_file(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw DataError(path, "", "no such file", "a readable file");
-  if (fs::is_directory(status)) throw DataError(path, "", "a folder", "a file");
+  require_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw DataError(path, "", "a file that cannot be opened", "a readable file");
   Sha256 hash;

@@ -3,8 +3,10 @@ find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
 set(text_sources
   atomic_file.cpp
+  child_process.cpp
   contour_io.cpp
   gmsh_reader.cpp
+  input_file.cpp
   json_reading.cpp
   json_text.cpp
   manifest.cpp

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -99,6 +100,10 @@ SliceFrame frame_of(const DicomFile& file) {
     throw DataError(file.path(), kPixelSpacing.name, fmt::format("{} x {} mm", spacing[0], spacing[1]),
                     "positive lengths");
   }
+  if (std::min(spacing[0], spacing[1]) < kFinestVoxelMm || std::max(spacing[0], spacing[1]) > kCoarsestVoxelMm) {
+    throw DataError(file.path(), kPixelSpacing.name, fmt::format("{:.4g} x {:.4g} mm", spacing[0], spacing[1]),
+                    fmt::format("pixels of {} to {} mm", kFinestVoxelMm, kCoarsestVoxelMm), "Lengths are mm");
+  }
   const auto axes = numbers_of(file, kOrientation, 6);
   const Vec3 row(axes[0], axes[1], axes[2]);
   const Vec3 column(axes[3], axes[4], axes[5]);
@@ -158,6 +163,10 @@ DicomHeader read_dicom_header(const fs::path& path) {
   header.frame = frame_of(file);
   const auto position = numbers_of(file, kPosition, 3);
   header.position_mm = Vec3(position[0], position[1], position[2]);
+  if (header.position_mm.cwiseAbs().maxCoeff() > kFarthestPlaceOfScanMm) {
+    throw DataError(path, kPosition.name, fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", position[0], position[1], position[2]),
+                    fmt::format("a place within {} mm", kFarthestPlaceOfScanMm), "Lengths are mm");
+  }
   header.bits_allocated = required_word(file, kBitsAllocated);
   if (header.bits_allocated != 8 && header.bits_allocated != 16) {
     throw DataError(path, kBitsAllocated.name, fmt::format("{}", header.bits_allocated), "8 or 16");

@@ -1,3 +1,4 @@
+#include "io/child_process.hpp"
 #include "io/volume_dicom.hpp"
 #include "io/volume_dicom_file.hpp"
 #include "io/volume_quiet.hpp"
@@ -13,6 +14,7 @@
 #include <cstring>
 #include <map>
 #include <sstream>
+#include <string_view>
 
 namespace incise {
 namespace {
@@ -119,43 +121,57 @@ void require_whole_pixels(const DicomHeader& header, const DicomFile& file) {
   }
 }
 
-/// The stored values of one slice, before rescale; the bits above BitsStored do not count.
-std::vector<int> stored_values(const DicomHeader& header) {
-  const DicomFile file(header.file);
-  require_whole_pixels(header, file);
+/// A slice's pixels as GDCM decodes them: sizes in bits, the sign, then the words.
+struct DecodedPixels {
+  std::uint16_t allocated_bits = 0, stored_bits = 0, high_bit = 0, is_signed = 0;
+};
+
+/// GDCM's part, in a process of its own. Empty: GDCM could not decode it.
+std::string decode_pixels(const DicomFile& file) {
   const QuietImageLibraries quiet;
   std::istringstream stream(file.up_to_pixels());
   gdcm::PixmapReader reader;
   reader.SetStream(stream);
-  bool is_decoded = false;
-  std::vector<char> bytes;
   try {
-    if (reader.Read()) {
-      const gdcm::Pixmap& picture = reader.GetPixmap();
-      bytes.resize(picture.GetBufferLength());
-      is_decoded = !bytes.empty() && picture.GetBuffer(bytes.data());
-    }
+    if (!reader.Read()) return {};
+    const gdcm::Pixmap& picture = reader.GetPixmap();
+    const gdcm::PixelFormat format = picture.GetPixelFormat();
+    const DecodedPixels decoded{format.GetBitsAllocated(), format.GetBitsStored(), format.GetHighBit(), format.GetPixelRepresentation()};
+    std::string answer(reinterpret_cast<const char*>(&decoded), sizeof decoded);
+    const std::size_t begin = answer.size();
+    if (picture.GetBufferLength() == 0) return {};
+    answer.resize(begin + picture.GetBufferLength());
+    return picture.GetBuffer(answer.data() + begin) ? answer : std::string();
   } catch (const std::exception&) {
-    is_decoded = false;  // told below, in our words
+    return {};  // told below, in our words
   }
+}
+
+/// The stored values of one slice, before rescale; the bits above BitsStored do not count.
+std::vector<int> stored_values(const DicomHeader& header) {
+  const DicomFile file(header.file);
+  require_whole_pixels(header, file);
+  const std::size_t pixels = static_cast<std::size_t>(header.frame.columns) * header.frame.rows;
+  const io_detail::ChildLimits limits{(512ULL << 20) + 32 * pixels, 60};
+  const std::string answer = io_detail::in_child_process(header.file, "DICOM", limits, [&] { return decode_pixels(file); });
   // Native pixels under the name of a compressed encoding would be taken for what they are not.
-  if (!is_decoded || file.native_pixel_bytes().has_value() == is_compressed(file.transfer_syntax())) {
+  if (answer.size() < sizeof(DecodedPixels) || file.native_pixel_bytes().has_value() == is_compressed(file.transfer_syntax())) {
     throw DataError(header.file, "PixelData",
                     fmt::format("pixels that cannot be decoded, in transfer syntax {}", transfer_syntax_words(file)),
                     "a whole picture in a known encoding", "Is the file damaged? Otherwise try 'gdcmconv --raw'.");
   }
-  const gdcm::PixelFormat format = reader.GetPixmap().GetPixelFormat();
-  const std::size_t pixels = static_cast<std::size_t>(header.frame.columns) * header.frame.rows;
-  const std::size_t size = format.GetBitsAllocated() / 8U;
-  if ((size != 1 && size != 2) || format.GetHighBit() + 1 != format.GetBitsStored() || bytes.size() != pixels * size) {
-    throw DataError(
-        header.file, "PixelData",
-        fmt::format("{} bytes, {} of {} bits", bytes.size(), format.GetBitsStored(), format.GetBitsAllocated()),
-        fmt::format("{} pixels of 8 or 16 bits", pixels));
+  DecodedPixels format;
+  std::memcpy(&format, answer.data(), sizeof format);
+  const std::string_view bytes = std::string_view(answer).substr(sizeof format);
+  const std::size_t size = format.allocated_bits / 8U;
+  if ((size != 1 && size != 2) || format.stored_bits < 1 || format.stored_bits > 16 || format.high_bit + 1 != format.stored_bits ||
+      bytes.size() != pixels * size) {
+    throw DataError(header.file, "PixelData",
+                    fmt::format("{} bytes, {} of {} bits", bytes.size(), format.stored_bits, format.allocated_bits),
+                    fmt::format("{} pixels of 8 or 16 bits", pixels));
   }
-  const unsigned stored_bits = format.GetBitsStored();
-  const int mask = static_cast<int>((1U << stored_bits) - 1U);
-  const int sign_bit = format.GetPixelRepresentation() == 1 ? 1 << (stored_bits - 1U) : 0;
+  const int mask = static_cast<int>((1U << format.stored_bits) - 1U);
+  const int sign_bit = format.is_signed == 1 ? 1 << (format.stored_bits - 1U) : 0;
   std::vector<int> values(pixels);
   for (std::size_t p = 0; p < pixels; ++p) {
     std::uint16_t word = 0;

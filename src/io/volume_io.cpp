@@ -4,6 +4,7 @@
 #include "io/volume_pictures.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/volume_io.hpp>
 
 #include <fmt/format.h>
@@ -80,6 +81,7 @@ bool convert(const fs::path& path, const RawImage& image, Fractions fractions, s
 void require_exists(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) throw DataError(path, "", "no such file or folder", "a volume");
+  require_file_or_folder(path);
 }
 
 /// The format of a single file. @throws DataError for names that stand for none.

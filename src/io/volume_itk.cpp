@@ -1,22 +1,26 @@
 #include "io/volume_itk.hpp"
 
+#include "io/child_process.hpp"
+#include "io/number_text.hpp"
 #include "io/volume_complete.hpp"
 #include "io/volume_itk_eigen.hpp"
 #include "io/volume_quiet.hpp"
+#include "io/volume_stack.hpp"
 #include "io/volume_staging.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/input_file.hpp>
 
 #include <fmt/format.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <itkPNGImageIO.h>
 
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <new>
@@ -46,11 +50,10 @@ itk::ImageIOBase::Pointer make_image_io(VolumeFormat format) {
       return io.GetPointer();
     }
     case VolumeFormat::PictureStack:
-      return itk::PNGImageIO::New().GetPointer();
     case VolumeFormat::DicomSeries:
       break;
   }
-  throw InvalidArgument("make_image_io: expected a format of single files, found a DICOM series");
+  throw InvalidArgument("make_image_io: expected NRRD, NIfTI or MetaImage");
 }
 
 /// The sentence of an ITK exception that says what happened: ITK puts file, line and object address around it.
@@ -135,7 +138,7 @@ void require_stated_geometry(const fs::path& path, VolumeFormat format, std::vec
   }
 }
 
-void require_gray_volume(const fs::path& path, VolumeFormat format, const itk::ImageIOBase& io) {
+void require_gray_volume(const fs::path& path, const itk::ImageIOBase& io) {
   if (io.GetNumberOfComponents() != 1) {
     throw DataError(path, "pixels", fmt::format("{} values per pixel (colour or vectors)", io.GetNumberOfComponents()),
                     "gray values, one per pixel");
@@ -150,8 +153,7 @@ void require_gray_volume(const fs::path& path, VolumeFormat format, const itk::I
       throw DataError(path, "size", fmt::format("{} dimensions", dimensions), "one volume of three dimensions");
     }
   }
-  const bool is_picture = format == VolumeFormat::PictureStack;
-  if (!is_picture && (dimensions < 3 || io.GetDimensions(2) < 2)) {
+  if (dimensions < 3 || io.GetDimensions(2) < 2) {
     throw DataError(path, "size", "a single slice", "a volume of two slices or more");
   }
   double voxels = 1;
@@ -163,6 +165,61 @@ void require_gray_volume(const fs::path& path, VolumeFormat format, const itk::I
     voxels *= static_cast<double>(io.GetDimensions(axis));
   }
   if (voxels > 4e9) throw DataError(path, "size", fmt::format("{:.2g} voxels", voxels), "at most 4e9 voxels");
+}
+
+constexpr std::uint64_t kLargestGain = 1100;               // of packed data: zlib's is 1032
+constexpr std::uint64_t kLibraryMemory = 1ULL << 30;       // that ITK may take beside the voxels
+
+/// Of a volume's file and all that its header names, bytes.
+std::uint64_t total_size(const fs::path& path) {
+  std::uint64_t total = 0;
+  for (const fs::path& file : input_files(path)) {
+    std::error_code error;
+    if (!fs::exists(file, error)) continue;  // the reader says which one is missing
+    require_regular_file(file);
+    total += fs::file_size(file, error);
+  }
+  return total;
+}
+
+/// No packing makes this much of so few bytes.
+void require_possible_size(const fs::path& path, std::uint64_t voxel_bytes) {
+  const std::uint64_t size = total_size(path);
+  if (voxel_bytes <= kLargestGain * size) return;
+  throw DataError(path, "size", fmt::format("a header that claims {} bytes of voxels, and {} bytes of data", voxel_bytes, size),
+                  "all voxels of the volume", "Is the file cut short?");
+}
+
+/// ITK goes through as many axes as the header states, however many, before it looks at anything else.
+void require_plain_meta_header(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string line;
+  constexpr int kLongest = 200;           // lines
+  constexpr std::size_t kLongestLine = 4096;
+  for (int count = 0; count < kLongest && std::getline(stream, line); ++count) {
+    if (line.size() > kLongestLine) break;
+    const std::size_t equals = line.find('=');
+    if (equals == std::string::npos) continue;
+    const std::string key = lower_case(std::string(io_detail::trimmed(std::string_view(line).substr(0, equals))));
+    const std::string value(io_detail::trimmed(std::string_view(line).substr(equals + 1)));
+    if (key == "ndims") {
+      const auto dimensions = io_detail::to_integer(value);
+      if (!dimensions || *dimensions < 2 || *dimensions > 4) throw DataError(path, "NDims", fmt::format("'{}'", value.substr(0, 40)), "3");
+    }
+    if (key == "elementdatafile") return;
+  }
+  throw DataError(path, "header", "no ElementDataFile in the first lines", "a MetaImage header");
+}
+
+/// A NRRD file whose header does not end in a blank line holds no data; only a detached header may end with its file.
+void require_ended_nrrd_header(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(64 << 10, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  const bool is_ended = text.find("\n\n") != std::string::npos || text.find("\r\n\r\n") != std::string::npos;
+  if (is_ended || input_files(path).size() > 1) return;
+  throw DataError(path, "header", "no blank line after the header", "a header, a blank line and the voxels", "Is the file cut short?");
 }
 
 VolumeGrid grid_of(const fs::path& path, const itk::ImageIOBase& io) {
@@ -180,7 +237,15 @@ VolumeGrid grid_of(const fs::path& path, const itk::ImageIOBase& io) {
                     fmt::format("{} x {} x {} mm", grid.spacing_mm[0], grid.spacing_mm[1], grid.spacing_mm[2]),
                     "positive, finite lengths");
   }
+  if (grid.spacing_mm.minCoeff() < kFinestVoxelMm || grid.spacing_mm.maxCoeff() > kCoarsestVoxelMm) {
+    throw DataError(path, "spacing", fmt::format("{:.4g} x {:.4g} x {:.4g} mm", grid.spacing_mm[0], grid.spacing_mm[1], grid.spacing_mm[2]),
+                    fmt::format("voxels of {} to {} mm", kFinestVoxelMm, kCoarsestVoxelMm), "Lengths are mm");
+  }
   if (!grid.origin_mm.allFinite()) throw DataError(path, "origin", "a value that is not finite", "millimetres");
+  if (grid.origin_mm.cwiseAbs().maxCoeff() > kFarthestPlaceOfScanMm) {
+    throw DataError(path, "origin", fmt::format("({:.4g}, {:.4g}, {:.4g}) mm", grid.origin_mm[0], grid.origin_mm[1], grid.origin_mm[2]),
+                    fmt::format("a place within {} mm", kFarthestPlaceOfScanMm), "Lengths are mm");
+  }
   const double skew = (grid.direction.transpose() * grid.direction - Mat3::Identity()).cwiseAbs().maxCoeff();
   if (!(skew < kOrthonormalTolerance)) {
     throw DataError(path, "axes", fmt::format("voxel axes that are not at right angles (by {:.2g})", skew),
@@ -216,7 +281,9 @@ std::optional<VolumeFormat> format_of_name(const fs::path& path) {
   return std::nullopt;
 }
 
-RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
+namespace {
+
+RawImage read_here(const fs::path& path, VolumeFormat format) {
   const QuietImageLibraries quiet;
   const auto io = make_image_io(format);
   RawImage image;
@@ -227,11 +294,12 @@ RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
     }
     io->SetFileName(path.string());
     io->ReadImageInformation();
-    require_gray_volume(path, format, *io);
+    require_gray_volume(path, *io);
     require_stated_geometry(path, format, image.notices);
     image.grid = grid_of(path, *io);
     image.component = *component_of(io->GetComponentType());
     set_whole_region(*io);
+    require_possible_size(path, image.grid.voxel_count() * io->GetComponentSize());
     require_complete_voxels(path, format, image.grid.voxel_count() * io->GetComponentSize());
     image.bytes.resize(image.grid.voxel_count() * io->GetComponentSize());
     io->Read(image.bytes.data());
@@ -244,6 +312,70 @@ RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
                     fmt::format("a complete {} file", to_string(format)), "Is the file cut short?");
   }
   return image;
+}
+
+template <class T>
+void pack(const T& value, std::string& bytes) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+template <class T>
+T unpack(const std::string& bytes, std::size_t& at) {
+  T value{};
+  if (at + sizeof value > bytes.size()) throw Error("an image that was cut off on its way from another process");
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  at += sizeof value;
+  return value;
+}
+
+/// An image as bytes, from one process to another of the same program.
+std::string packed(const RawImage& image) {
+  std::string bytes;
+  for (const int size : image.grid.size) pack(size, bytes);
+  for (const double* numbers : {image.grid.spacing_mm.data(), image.grid.origin_mm.data()}) {
+    for (int k = 0; k < 3; ++k) pack(numbers[k], bytes);
+  }
+  for (int k = 0; k < 9; ++k) pack(image.grid.direction.data()[k], bytes);
+  pack(image.component, bytes);
+  pack(image.notices.size(), bytes);
+  for (const std::string& notice : image.notices) {
+    pack(notice.size(), bytes);
+    bytes += notice;
+  }
+  bytes.append(image.bytes.data(), image.bytes.size());
+  return bytes;
+}
+
+RawImage unpacked(const std::string& bytes) {
+  RawImage image;
+  std::size_t at = 0;
+  for (int& size : image.grid.size) size = unpack<int>(bytes, at);
+  for (double* numbers : {image.grid.spacing_mm.data(), image.grid.origin_mm.data()}) {
+    for (int k = 0; k < 3; ++k) numbers[k] = unpack<double>(bytes, at);
+  }
+  for (int k = 0; k < 9; ++k) image.grid.direction.data()[k] = unpack<double>(bytes, at);
+  image.component = unpack<Component>(bytes, at);
+  const auto notices = unpack<std::size_t>(bytes, at);
+  for (std::size_t i = 0; i < notices; ++i) {
+    const auto size = unpack<std::size_t>(bytes, at);
+    image.notices.push_back(bytes.substr(at, size));
+    at += size;
+  }
+  image.bytes.assign(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end());
+  return image;
+}
+
+}  // namespace
+
+RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
+  require_regular_file(path);
+  if (format == VolumeFormat::MetaImage) require_plain_meta_header(path);
+  if (format == VolumeFormat::Nrrd) require_ended_nrrd_header(path);
+  io_detail::ChildLimits limits;
+  const std::uint64_t size = total_size(path);
+  limits.memory_bytes = kLibraryMemory + 3 * std::min(kLargestGain * size, kLargestInputBytes);
+  limits.processor_s = static_cast<unsigned>(60 + size / (4 << 20));
+  return unpacked(io_detail::in_child_process(path, to_string(format), limits, [&] { return packed(read_here(path, format)); }));
 }
 
 void write_itk_image(const fs::path& path, const VolumeGrid& grid, Component component, const void* voxels) {

@@ -1,13 +1,12 @@
 #include "io/volume_pictures.hpp"
 
 #include "io/volume_itk.hpp"
+#include "io/volume_png.hpp"
 #include "io/volume_stack.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/atomic_file.hpp>
 
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <charconv>
@@ -75,44 +74,6 @@ std::vector<Picture> sorted_pictures(const fs::path& folder, int& other_files) {
   return pictures;
 }
 
-/// A big-endian number of four bytes.
-std::uint32_t number_at(const std::string& bytes, std::size_t position) {
-  std::uint32_t number = 0;
-  for (std::size_t b = 0; b < 4; ++b) number = number << 8U | static_cast<unsigned char>(bytes[position + b]);
-  return number;
-}
-
-/// Follows the chunks of the file from the signature to its end mark and checks their sums: the PNG library behind ITK
-/// stops the whole process on a damaged picture. Then colour and depth, as the first chunk states them: the reader
-/// would turn palettes and grays of few bits into something else. Source: PNG specification (W3C), 5.2 to 5.5
-/// and 11.2.2.
-void require_gray_png(const fs::path& file) {
-  const std::string bytes = read_text(file);
-  const std::string signature = "\x89PNG\r\n\x1a\n";
-  if (bytes.compare(0, signature.size(), signature) != 0) {
-    throw DataError(file, "first bytes", "something else", "a PNG picture",
-                    "Is the file damaged, or its extension wrong?");
-  }
-  constexpr std::size_t around = 12;  // length, name and sum of a chunk
-  std::string name;
-  for (std::size_t position = signature.size(); name != "IEND";) {
-    const std::size_t length = position + around <= bytes.size() ? number_at(bytes, position) : bytes.size();
-    const bool is_whole = position + around + length <= bytes.size();
-    const auto* sum_begin = reinterpret_cast<const Bytef*>(bytes.data() + position + 4);
-    if (!is_whole || crc32(0, sum_begin, static_cast<uInt>(length + 4)) != number_at(bytes, position + 8 + length)) {
-      throw DataError(file, fmt::format("byte {} of {}", position, bytes.size()), "a damaged chunk",
-                      "a complete PNG picture", "Is the file cut short?");
-    }
-    name = bytes.substr(position + 4, 4);
-    if (position == signature.size() && (name != "IHDR" || length != 13)) throw DataError(file, "header", name, "IHDR");
-    position += around + length;
-  }
-  const int depth = bytes[24];
-  const int colour = bytes[25];
-  if (colour != 0) throw DataError(file, "colour type", colour == 4 ? "gray with transparency" : "colour", "gray only");
-  if (depth != 8 && depth != 16) throw DataError(file, "bit depth", fmt::format("{}", depth), "8 or 16");
-}
-
 void require_settings(const fs::path& folder, const CtReadSettings& settings) {
   const std::string hint = "Pictures carry neither millimetres nor Hounsfield units.";
   if (!settings.spacing_mm) {
@@ -121,9 +82,9 @@ void require_settings(const fs::path& folder, const CtReadSettings& settings) {
   if (!settings.hu)
     throw CaseError(folder.string(), "ct.hu", "nothing", "{slope, intercept} from gray level to HU", hint);
   const Vec3& spacing = *settings.spacing_mm;
-  if (!spacing.allFinite() || spacing.minCoeff() <= 0) {
+  if (!spacing.allFinite() || spacing.minCoeff() < kFinestVoxelMm || spacing.maxCoeff() > kCoarsestVoxelMm) {
     throw CaseError(folder.string(), "ct.spacing_mm", fmt::format("[{}, {}, {}]", spacing[0], spacing[1], spacing[2]),
-                    "three positive, finite lengths");
+                    fmt::format("three positive, finite lengths of {} to {} mm", kFinestVoxelMm, kCoarsestVoxelMm));
   }
   if (!std::isfinite(settings.hu->slope) || settings.hu->slope == 0 || !std::isfinite(settings.hu->intercept)) {
     throw CaseError(folder.string(), "ct.hu",
@@ -166,8 +127,7 @@ ReadVolume read_picture_folder(const fs::path& folder, const CtReadSettings& set
   for (std::size_t k = 0; k < pictures.size(); ++k) {
     throw_if_cancelled(monitor, "reading CT");
     monitor.progress("reading CT", static_cast<double>(k) / static_cast<double>(pictures.size()));
-    require_gray_png(pictures[k].file);
-    const RawImage image = read_itk_image(pictures[k].file, VolumeFormat::PictureStack);
+    const RawImage image = read_gray_png(pictures[k].file);
     VolumeGrid& grid = result.volume.grid;
     if (k == 0) {
       grid.size = {image.grid.size[0], image.grid.size[1], diagnostics.slices};

@@ -5,10 +5,11 @@
 #   find_dependency(ITK 5.2 COMPONENTS <the components below>)
 #   find_dependency(ZLIB)
 # Debian: libinsighttoolkit5-dev, and libgdcm-tools (GDCM's own CMake files look for its programs).
-set(INCISE_IO_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIONIFTI ITKIOMeta ITKIOPNG ITKGDCM)
+set(INCISE_IO_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIONIFTI ITKIOMeta ITKGDCM)
 find_package(ITK 5.2 REQUIRED COMPONENTS ${INCISE_IO_ITK_COMPONENTS} GLOBAL)
+find_package(PNG REQUIRED)    # slices as pictures
 find_package(ZLIB REQUIRED)   # to count what is packed in a file; ITK needs it as well
-list(APPEND ITK_LIBRARIES ZLIB::ZLIB)
+list(APPEND ITK_LIBRARIES ZLIB::ZLIB PNG::PNG)
 set_property(GLOBAL PROPERTY INCISE_IO_ITK_COMPONENTS ${INCISE_IO_ITK_COMPONENTS})
 
 # ITK's imported targets carry no include folders; added once incise_io exists.
@@ -23,5 +24,6 @@ set(volume_sources
   volume_io.cpp
   volume_itk.cpp
   volume_pictures.cpp
+  volume_png.cpp
   volume_quiet.cpp
   volume_stack.cpp)

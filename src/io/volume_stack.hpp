@@ -1,5 +1,13 @@
 #pragma once
 
+// What a scan may measure: from a micro-CT's voxel to a slice farther from the next than any scanner moves its table, and places that a
+// scanner's own frame can have.
+namespace incise {
+inline constexpr double kFinestVoxelMm = 1e-4;
+inline constexpr double kCoarsestVoxelMm = 100.0;
+inline constexpr double kFarthestPlaceOfScanMm = 1e5;
+}  // namespace incise
+
 #include <incise/core/monitor.hpp>
 #include <incise/geometry/volume.hpp>
 #include <incise/io/volume_io.hpp>

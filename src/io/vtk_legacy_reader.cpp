@@ -100,6 +100,7 @@ class LegacyReader {
 
   /// Binary numbers are big endian and begin after the line that announces them.
   std::vector<double> numbers(std::size_t count, const std::string& type) {
+    if (count > cursor_.bytes_left()) cursor_.fail(fmt::format("{} numbers in the last {} bytes", count, cursor_.bytes_left()), "a complete file", "It looks truncated.");
     if (is_binary_) {
       cursor_.line();
       return numbers_from_bytes(std::string(cursor_.bytes(count * size_of_vtk_type(type), "numbers")), type, true);

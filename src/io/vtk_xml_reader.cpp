@@ -15,6 +15,9 @@
 namespace incise::io_detail {
 namespace {
 
+// All arrays of a file together, unpacked, as doubles: coordinates and connectivity shrink to a third or so, whole constant arrays to nothing.
+constexpr std::size_t kFreeBytes = 64 << 20;
+constexpr std::size_t kMostBytesPerByte = 64;
 constexpr std::size_t kZlibLargestGain = 1032;  // deflate cannot shrink more than this, so larger claims are damage
 
 std::uint64_t header_word(const std::string& bytes, std::size_t word, bool is_long, bool is_big_endian) {
@@ -136,6 +139,16 @@ std::size_t VtkXmlFile::count(const char* attribute) const {
   return static_cast<std::size_t>(*value);
 }
 
+/// Refuses a file of few bytes that unpacks to very many.
+void VtkXmlFile::take_from_budget(const pugi::xml_node& node, std::size_t bytes) const {
+  const std::size_t most = kFreeBytes + kMostBytesPerByte * text_.size();
+  if (bytes <= most - std::min(most, unpacked_bytes_)) {
+    unpacked_bytes_ += bytes;
+    return;
+  }
+  fail(node, fmt::format("data that unpack to more than {} bytes, in a file of {}", most, text_.size()), "a file that is not packed so far");
+}
+
 /// The decoded, decompressed bytes of an array that is not ascii.
 std::string VtkXmlFile::payload(const pugi::xml_node& node) const {
   const bool is_appended = std::string_view(node.attribute("format").as_string()) == "appended";
@@ -157,6 +170,8 @@ std::string VtkXmlFile::payload(const pugi::xml_node& node) const {
     return header_word(bytes, i, has_long_headers_, is_big_endian_);
   };
   if (!is_compressed_) return take(word(take(word_size), 0));
+  // What is unpacked becomes doubles: a byte of a small integer takes eight.
+  const std::size_t value_gain = sizeof(double) / std::max<std::size_t>(1, size_of_vtk_type(node.attribute("type").as_string())) + 1;
 
   const std::string sizes = take(3 * word_size);
   const std::uint64_t blocks = word(sizes, 0), block_size = word(sizes, 1), last_size = word(sizes, 2);
@@ -168,6 +183,7 @@ std::string VtkXmlFile::payload(const pugi::xml_node& node) const {
     const std::string packed = take(word(lengths, i));
     const std::uint64_t size = i + 1 == blocks && last_size > 0 ? last_size : block_size;
     const bool is_possible = size <= (packed.size() + 16) * kZlibLargestGain;
+    if (is_possible) take_from_budget(node, size * value_gain);
     const auto unpacked = is_possible ? inflated(packed, size) : std::nullopt;
     if (!unpacked) fail(node, fmt::format("damaged block {}", i), "zlib-compressed data");
     result += *unpacked;

@@ -41,6 +41,8 @@ class VtkXmlFile {
  private:
   [[nodiscard]] VtkArray decode(const pugi::xml_node& node) const;
   [[nodiscard]] std::string payload(const pugi::xml_node& node) const;
+  void take_from_budget(const pugi::xml_node& node, std::size_t bytes) const;
+  mutable std::size_t unpacked_bytes_ = 0;  ///< of all arrays so far
   [[noreturn]] void fail(const pugi::xml_node& node, std::string found, std::string expected,
                          std::string hint = "") const;
 

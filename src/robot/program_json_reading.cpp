@@ -69,7 +69,12 @@ class ProgramPlace {
 ProgramJson parsed_program(std::string_view text, const std::filesystem::path& file) {
   constexpr const char* kExpected = "a program that `incise export --format json` wrote";
   try {
-    return ProgramJson::parse(text);
+    static constexpr int kDeepest = 16;  // a program's values are less deep; whatever walks through them calls itself once a level
+    const auto watch = [&file](int depth, ProgramJson::parse_event_t, ProgramJson&) {
+      if (depth > kDeepest) throw DataError(file, "JSON", fmt::format("values nested more than {} deep", kDeepest), kExpected);
+      return true;
+    };
+    return ProgramJson::parse(text, watch);
   } catch (const nlohmann::json::parse_error& error) {
     throw DataError(file, fmt::format("byte {}", error.byte), "text that is not JSON", kExpected);
   } catch (const nlohmann::json::out_of_range&) {

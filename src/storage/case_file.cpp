@@ -4,6 +4,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
@@ -11,15 +12,57 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <yaml-cpp/eventhandler.h>
 
+#include <sstream>
 #include <utility>
 
 namespace incise {
 namespace {
 
+/// Walks through the text before anything is made of it: aliases can stand for more than memory holds, and every level of nesting is a call.
+class BoundedYaml : public YAML::EventHandler {
+ public:
+  explicit BoundedYaml(const std::filesystem::path& file) : file_(file) {}
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse(mark, "an alias (*name)", "values written out"); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override { count(mark); }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override { enter(mark); }
+  void OnSequenceEnd() override { --depth_; }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override { enter(mark); }
+  void OnMapEnd() override { --depth_; }
+
+ private:
+  static constexpr int kDeepest = 32;
+  static constexpr int kMostValues = 200000;
+
+  [[noreturn]] void refuse(const YAML::Mark& mark, const std::string& found, const std::string& expected) const {
+    throw DataError(file_, fmt::format("line {}", mark.line + 1), found, expected);
+  }
+  void count(const YAML::Mark& mark) {
+    if (++values_ > kMostValues) refuse(mark, fmt::format("more than {} values", kMostValues), "a case file");
+  }
+  void enter(const YAML::Mark& mark) {
+    count(mark);
+    if (++depth_ > kDeepest) refuse(mark, fmt::format("values nested more than {} deep", kDeepest), "a case file");
+  }
+
+  const std::filesystem::path& file_;
+  int values_ = 0;
+  int depth_ = 0;
+};
+
 YAML::Node parse(const std::filesystem::path& file) {
   try {
-    return YAML::Load(read_text(file));
+    require_regular_file(file, kLargestCaseBytes);
+    const std::string text = read_text(file);
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    BoundedYaml bounds(file);
+    parser.HandleNextDocument(bounds);
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw DataError(file, fmt::format("line {}", error.mark.line + 1), error.msg, "YAML or JSON");
   }

@@ -7,6 +7,7 @@
 #include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
@@ -94,7 +95,7 @@ std::string FolderStore::settings_with(const std::vector<std::string>& prefixes,
 std::string FolderStore::input_hash(const std::filesystem::path& path) {
   if (path.empty()) return "none";
   std::string& hash = hashes_[path];
-  if (hash.empty()) hash = std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_file(path);
+  if (hash.empty()) hash = std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path);
   return hash;
 }
 

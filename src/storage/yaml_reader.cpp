@@ -16,7 +16,9 @@ std::string shown(const YAML::Node& node) {
   if (!node.IsDefined() || node.IsNull()) return "nothing";
   if (node.IsMap()) return "a group";
   if (node.IsSequence()) return fmt::format("a list of {}", node.size());
-  return fmt::format("'{}'", node.Scalar());
+  constexpr std::size_t kShown = 60;
+  const std::string text = node.Scalar();
+  return text.size() <= kShown ? fmt::format("'{}'", text) : fmt::format("'{}…'", text.substr(0, kShown));
 }
 
 }  // namespace

@@ -275,7 +275,7 @@ TEST(UnevenSeries, WithAForeignSliceFarAwayIsRefusedRatherThanBlownUp) {
   Scan scan = tilted_scan(0, {0, 1, 2, 3.5, 1e9});
   scan.pixels = 2;
   write_scan(folder, scan, [](const Vec3&) { return 0.0; });
-  EXPECT_THAT(failure_of(folder), HasSubstr("4e+09 voxels"));
+  EXPECT_THAT(failure_of(folder), AllOf(HasSubstr("4.dcm"), HasSubstr("ImagePositionPatient"), HasSubstr("within 100000 mm")));
 }
 
 TEST(IrregularSeries, StopsOnRequest) {
