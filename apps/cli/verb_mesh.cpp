@@ -1,3 +1,4 @@
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -18,6 +19,19 @@ namespace {
 bool is_surface(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
   return ending == ".stl" || ending == ".ply" || ending == ".obj" || ending == ".vtp";
+}
+
+/// Whatever the mesher requires of its input, it came from the file and the lengths.
+MeshingResult meshed(const std::filesystem::path& input, const SizingField& sizing, const MeshingSettings& settings, Monitor& monitor) {
+  try {
+    if (!is_surface(input)) return mesh_labels(read_labels(input), sizing, settings, monitor);
+    const TriMesh surface = read_surface(input);
+    require_closed_manifold(surface, input);
+    require_body_size(bounding_box(surface.vertices), input);
+    return mesh_surface(surface, sizing, settings, monitor);
+  } catch (const InvalidArgument& error) {
+    throw fault_of_file(input, "", error, "a body that can be meshed with these lengths");
+  }
 }
 
 }  // namespace
@@ -67,14 +81,7 @@ void add_mesh(Application& application) {
           sizes.coarse_mm = arguments->coarse_mm;
           sizing = SizingField::around_cut(cut, sizes);
         }
-        MeshingResult made;
-        if (is_surface(arguments->input)) {
-          const TriMesh surface = read_surface(arguments->input);
-          require_closed_manifold(surface, arguments->input);
-          made = mesh_surface(surface, sizing, settings, console);
-        } else {
-          made = mesh_labels(read_labels(arguments->input), sizing, settings, console);
-        }
+        const MeshingResult made = meshed(arguments->input, sizing, settings, console);
         write_vtu(output, made.mesh);
         if (!options.quiet) console.message(Severity::Detail, to_text(made.quality));
         nlohmann::ordered_json result = to_json(made);

@@ -42,6 +42,9 @@ void add_segment(Application& application) {
         }
         if (!arguments->seed.empty()) settings.seeds_mm.emplace_back(arguments->seed.data());
         const Segmentation found = segment(read_ct(arguments->ct, reading, console).volume, settings, console);
+        for (const VerdictReason& reason : found.verdict.reasons()) {
+          console.message(Severity::Warning, fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
+        }
         write_labels(output, found.labels);
         nlohmann::ordered_json result = to_json(found);
         result["labels"] = output.string();

@@ -3,6 +3,7 @@
 #include "imaging/volume_filters.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/imaging/scan_checks.hpp>
 #include <incise/imaging/segmentation.hpp>
 
 #include <fmt/format.h>
@@ -182,16 +183,16 @@ IndexBox grown(IndexBox box, int voxels) {
   return box;
 }
 
-void warn_of_cut_faces(const Segmentation& result, Monitor& monitor) {
+void note_cut_faces(Segmentation& result) {
   if (result.cut_faces() == 0) return;
   std::vector<std::string> faces;
   for (std::size_t f = 0; f < 6; ++f)
     if (result.cut_voxels[f] > 0)
       faces.push_back(fmt::format("{} ({} voxels)", to_string(static_cast<RegionFace>(f)), result.cut_voxels[f]));
-  monitor.message(Severity::Warning, fmt::format("The specimen touches {} of 6 sides of the region of interest: {}. It "
-                                                 "is cut off there; if that is not meant, "
-                                                 "it leaks into its surroundings",
-                                                 faces.size(), fmt::join(faces, ", ")));
+  result.verdict.add("scan", static_cast<double>(faces.size()),
+                     fmt::format("the specimen touches {} of 6 sides of the region of interest: {}. It is cut off there; if that is not meant, "
+                                 "it leaks into its surroundings",
+                                 faces.size(), fmt::join(faces, ", ")));
 }
 
 }  // namespace
@@ -269,7 +270,8 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   report(0.4);
   if (settings.fill_holes) fill_holes(body, result);
   result.cut_voxels = count_cut_voxels(body, whole.region);
-  warn_of_cut_faces(result, monitor);
+  note_cut_faces(result);
+  result.verdict.add(check_scan(ct));
 
   const IndexBox around = grown(box_of(body), pad);
   const CtVolume hu = crop(whole.hu, around);

@@ -174,4 +174,11 @@ void write_vtu(const std::filesystem::path& path, const TetMesh& mesh) {
   write_atomically(path, [&](std::ostream& stream) { stream << content; });
 }
 
+void require_body_size(const Box3& box, const std::filesystem::path& path) {
+  const double longest_mm = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+  if (longest_mm >= kSmallestBodyMm && longest_mm <= kLargestBodyMm) return;
+  throw DataError(path, "size", fmt::format("a body of {:.4g} mm along its longest side", longest_mm),
+                  fmt::format("{} to {} mm", kSmallestBodyMm, kLargestBodyMm), "Lengths are mm: a mesh in metres has to be scaled by 1000");
+}
+
 }  // namespace incise

@@ -207,6 +207,9 @@ TetMesh read_specimen_mesh(const CaseFile& file, Monitor& monitor) {
   const std::filesystem::path& path = file.inputs.specimen_mesh;
   INCISE_REQUIRE(!path.empty(), "expected a case that names a mesh");
   TetMesh mesh = read_tet_mesh(path, monitor);
+  Box3 box;
+  for (const Vec3& p : mesh.vertices) box.extend(p);
+  require_body_size(box, path);
   const std::vector<MeshProblem> problems = find_problems(mesh);
   if (problems.empty()) return mesh;
   std::string others;

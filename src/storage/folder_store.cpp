@@ -13,6 +13,7 @@
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/folder_store.hpp>
 #include <incise/storage/result_json.hpp>
 
@@ -251,6 +252,7 @@ std::optional<Segmentation> FolderStore::load_segmentation() {
     segmentation.tissue_hu = json.at("tissue_hu");
     segmentation.components = json.at("components");
     segmentation.holes_filled = json.at("holes_filled");
+    segmentation.verdict = verdict_from_json(json.at("verdict"), folder(Product::Labels) / "segment.json");
     return segmentation;
   });
 }

@@ -96,6 +96,8 @@ class Runner {
         Stage::Segment, [&] { return store_.load_segmentation(); },
         [&] { return incise::segment(store_.read_ct(monitor_), settings_.segmentation, monitor_); },
         [&](const Segmentation& s, double wall_s) { store_.save_segmentation(s, wall_s); });
+    report("the scan", study_.segmentation->verdict);
+    study_.about_inputs.add(study_.segmentation->verdict);
     return true;
   }
 

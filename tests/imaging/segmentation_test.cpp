@@ -208,14 +208,10 @@ TEST(Segmentation, LeavesOutTheThinShellBetweenBoneAndAirThatLooksLikeTissue) {
   EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.03);
 }
 
-TEST(Segmentation, WarnsWithTheSidesThatTheSpecimenRunsInto) {
+TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
   struct : Monitor {
-    std::vector<std::string> warnings;
     double last = -1.0;
     bool is_monotone = true;
-    void message(Severity severity, std::string_view text) override {
-      if (severity == Severity::Warning) warnings.emplace_back(text);
-    }
     void progress(std::string_view, double fraction) override {
       is_monotone = is_monotone && fraction >= last;
       last = fraction;
@@ -223,10 +219,10 @@ TEST(Segmentation, WarnsWithTheSidesThatTheSpecimenRunsInto) {
   } monitor;
   SegmentationSettings settings;
   settings.roi_box_mm = Box3(Vec3(10, 0, 0), Vec3(30, 30, 20));
-  static_cast<void>(segment(ball_of_tissue(), settings, monitor));
-  ASSERT_EQ(monitor.warnings.size(), 1U);
-  EXPECT_THAT(monitor.warnings[0],
-              testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
+  const Segmentation found = segment(ball_of_tissue(), settings, monitor);
+  ASSERT_EQ(found.verdict.reasons().size(), 1U);
+  EXPECT_EQ(found.verdict.reasons()[0].id, "scan");
+  EXPECT_THAT(found.verdict.reasons()[0].message, testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
   EXPECT_TRUE(monitor.is_monotone);
   EXPECT_EQ(monitor.last, 1.0);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/monitor.hpp>
+#include <incise/core/verdict.hpp>
 #include <incise/geometry/volume.hpp>
 
 #include <array>
@@ -46,6 +47,7 @@ struct Segmentation {
   std::size_t hole_voxels = 0;   ///< and their voxels
   std::array<std::size_t, 6>
       cut_voxels{};                     ///< body voxels at each RegionFace: > 0 where the region cuts through tissue
+  Verdict verdict;                      ///< what argues against this tissue: check_scan, and a body that the region cuts off
   [[nodiscard]] int cut_faces() const;  ///< how many of the six are touched
 };
 
@@ -56,8 +58,8 @@ struct Segmentation {
 /// outside), limited to [0, 1], where inside and outside are means of the pure tissue and the pure surroundings near by
 /// (air, fat, plastic or bone alike); where the region or the opening cuts through tissue it is 0 or 1. Smoothing
 /// convolves with 2 G - G * G, G a Gaussian of standard deviation `smoothing_mm`: it averages noise and steps as G does
-/// and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Reports a Warning
-/// through `monitor` when the body touches the region's sides (a leak, or tissue cut on purpose).
+/// and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Its verdict has a
+/// caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), and those of check_scan.
 /// @throws CaseError: settings invalid (all violations listed), region or a seed outside the volume, a seed outside the
 /// window or the region
 ///         or in a part that the opening removes, seeds in separate pieces, nothing in the window.

@@ -35,6 +35,14 @@ namespace incise {
 /// none is turned over.
 [[nodiscard]] TetMesh read_deformed_tet_mesh(const std::filesystem::path& path);
 
+/// What a specimen may measure along its longest side, mm.
+inline constexpr double kSmallestBodyMm = 2.0;
+inline constexpr double kLargestBodyMm = 2000.0;
+
+/// Refuses the box round a specimen that is no specimen's: lengths in metres, or in some unit a thousand times smaller than the millimetre.
+/// @throws DataError naming the file and the box's longest side.
+void require_body_size(const Box3& box, const std::filesystem::path& path);
+
 /// Writes a `.vtu` that ParaView opens and read_tet_mesh returns exactly: little endian, 64-bit floats, zlib-compressed
 /// base64. Field data say SPACE = LPS and length_unit = mm. The file appears complete or not at all.
 /// @pre every number is finite, indices are in range, data arrays have the right length (InvalidArgument otherwise).
