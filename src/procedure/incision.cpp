@@ -17,7 +17,6 @@ constexpr double kRelaxedMm = 1e-3;  // the tissue counts as at rest when no ver
 constexpr double kSingleTolerance = 5e-2;   // of a step's residual: from here up a rounded matrix suffices
 constexpr double kSingleBulkRatio = 500.0;  // λ/μ up to which it does
 constexpr double kUnsolvedShare = 0.01;     // of the steps: with more, the cut did not converge
-constexpr double kHeldBackShare = 0.5;      // of the steps: with more that hold a vertex back, it is told
 constexpr double kTimeRoundingS = 1e-9;   // the program counts as over when less than this is left of it
 constexpr double kLeastStepShare = 0.01;  // of a step: less than this at the program's end goes with the step before it
 constexpr int kMaxRelaxationSteps = 60;   // after the tool is out
@@ -237,7 +236,6 @@ void sum_up(const std::vector<CutStepLog>& steps, IncisionResult& result) {
     result.solver_iterations += static_cast<std::size_t>(step.iterations);
     result.unconverged_steps += step.converged ? 0 : 1;
     result.held_back_vertices += step.held_back_vertices;
-    result.steps_held_back += step.held_back_vertices > 0 ? 1 : 0;
     result.slipped_bonds += step.slipped;
     result.peak_tool_torque_mn_mm = std::max(result.peak_tool_torque_mn_mm, step.tool_torque_mn_mm.norm());
     result.peak_tool_force_mn = std::max(result.peak_tool_force_mn, step.tool_force_mn.norm());
@@ -250,18 +248,6 @@ void judge_solves(IncisionResult& result, std::size_t steps, Monitor& monitor) {
   monitor.message(Severity::Warning, fmt::format("{} of {} steps were not solved to the tolerance", result.unconverged_steps, steps));
   const bool is_too_many = static_cast<double>(result.unconverged_steps) > kUnsolvedShare * static_cast<double>(steps);
   if (result.outcome == Outcome::Success && is_too_many) result.outcome = Outcome::NotConverged;
-}
-
-/// The limit is for loose bits: where it acts often it holds back the body, which then lags for no reason in its law.
-void tell_held_back(const IncisionSettings& settings, const IncisionResult& result,
-                    const std::vector<CutStepLog>& steps, Monitor& monitor) {
-  const std::size_t with_one = result.steps_held_back;
-  if (result.outcome == Outcome::Cancelled) return;
-  if (static_cast<double>(with_one) <= kHeldBackShare * static_cast<double>(steps.size())) return;
-  monitor.message(Severity::Warning,
-                  fmt::format("vertices would have moved more than {} mm in a step (max_step_mm) and were held back: {} "
-                              "times, in {} of {} steps",
-                              settings.cut.max_step_mm, result.held_back_vertices, with_one, steps.size()));
 }
 
 std::size_t count_inverted(const TissueModel& model, const TissueState& tissue) {
@@ -305,7 +291,6 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
   }  // its workspace is large
   sum_up(progress.steps, result);
   judge_solves(result, progress.steps.size(), monitor);
-  tell_held_back(settings, result, progress.steps, monitor);
   result.steps = std::move(progress.steps);
   result.frames = std::move(progress.frames);
   result.record = progress.state.record;

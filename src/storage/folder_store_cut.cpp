@@ -201,7 +201,6 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     incision.is_at_rest = json.at("at_rest");
     incision.unconverged_steps = json.at("unconverged_steps");
     incision.held_back_vertices = json.at("held_back_vertices");
-    incision.steps_held_back = json.at("steps_held_back");
     incision.inverted_tets = json.at("inverted_tets");
     incision.slipped_bonds = json.at("slipped_bonds");
     incision.peak_tool_force_mn = json.at("peak_tool_force_mn");

@@ -98,7 +98,6 @@ Json to_json(const SimulatedCut& cut) {
   json["at_rest"] = incision.is_at_rest;
   json["unconverged_steps"] = incision.unconverged_steps;
   json["held_back_vertices"] = incision.held_back_vertices;
-  json["steps_held_back"] = incision.steps_held_back;
   json["inverted_tets"] = incision.inverted_tets;
   json["slipped_bonds"] = incision.slipped_bonds;
   json["peak_tool_force_mn"] = incision.peak_tool_force_mn;

@@ -184,21 +184,17 @@ TEST_F(Incision, SaysThatItBrokeOffWhereAPositionIsNoLongerFinite) {
   EXPECT_NE(listener.warnings[0].find("no longer finite"), std::string::npos) << listener.warnings[0];
 }
 
-TEST_F(Incision, SaysWhenManyStepsHoldVerticesBack) {
+TEST_F(Incision, CountsTheVerticesThatWereHeldBack) {
   settings_.cut.bond_stiffness_kpa_mm2 = 300.0;
   settings_.cut.dullness = 6.0;
-  const auto warnings_with = [this](double max_step_mm) {
+  const auto held_back_with = [this](double max_step_mm) {
     settings_.cut.max_step_mm = max_step_mm;
-    Listener listener;
+    Monitor silent;
     Workers workers(1);
-    const IncisionResult result = simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, listener);
-    EXPECT_EQ(result.held_back_vertices == 0, max_step_mm > 1e3) << max_step_mm;
-    return listener.warnings;
+    return simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, silent).held_back_vertices;
   };
-  EXPECT_TRUE(warnings_with(1e4).empty());
-  const std::vector<std::string> said = warnings_with(0.05);  // tissue is dragged 0.8 mm in a step
-  ASSERT_FALSE(said.empty());
-  EXPECT_NE(said.back().find("more than 0.05 mm in a step (max_step_mm) and were held back"), std::string::npos) << said.back();
+  EXPECT_EQ(held_back_with(1e4), 0U);
+  EXPECT_GT(held_back_with(0.05), 100U) << "tissue is dragged 0.8 mm in a step";
 }
 
 TEST_F(Incision, TakesWhatRoundingLeavesOfTheProgramWithItsLastStep) {

@@ -160,7 +160,10 @@ TEST(VerdictOfCut, CautionsOfASimulationThatIsNotSolved) {
   cut.incision.inverted_tets = 3;
   EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("convergence"));
   cut = sound_cut();
-  cut.incision.steps_held_back = 51;
+  cut.tets = 1000;
+  cut.incision.held_back_vertices = 199;  // in 100 steps
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), IsEmpty());
+  cut.incision.held_back_vertices = 201;
   EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("convergence"));
 }
 

@@ -47,7 +47,6 @@ struct IncisionResult {
   bool is_at_rest = false;               ///< no vertex moved by more than 0.001 mm in the last step, the tool out
   std::size_t unconverged_steps = 0;     ///< steps whose linear solve reached its limit
   std::size_t held_back_vertices = 0;    ///< vertex steps cut to CutSettings::max_step_mm
-  std::size_t steps_held_back = 0;       ///< steps with at least one of them
   std::size_t inverted_tets = 0;         ///< live tets of negative volume at the end
   std::size_t slipped_bonds = 0;         ///< slips, summed over all steps
   double peak_tool_force_mn = 0.0;
