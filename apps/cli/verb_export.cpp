@@ -96,6 +96,7 @@ RegistrationSummary registration_summary(const std::filesystem::path& file) {
 ToolPath read_robot_path(const std::filesystem::path& file) {
   ToolPath path = read_tool_path(file);
   require_robot_frame(path, file);
+  require_tumor_size(path, file);
   return path;
 }
 

@@ -5,6 +5,7 @@
 #include <incise/core/problem_text.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/verdict_json.hpp>
@@ -158,6 +159,7 @@ ToolPath simulated_path(const std::filesystem::path& file, PathKind kind) {
     throw DataError(file, "frame", std::string(to_string(path.frame)), "sim_stretched",
                     "The camera sees the stretched tissue: only a path on it can be laid down.");
   }
+  require_tumor_size(path, file);
   if (kind == PathKind::Mark && path.tumor_edge.points.size() < 3) {
     throw DataError(file, "tumor_edge", fmt::format("{} points", path.tumor_edge.points.size()),
                     "the edge that is to be marked");
@@ -233,6 +235,10 @@ Verdict verdict_of(const ProjectArguments& arguments, const ProjectSettings& set
   Verdict verdict = read_path_verdict(arguments.path);
   if (settings.incise_depth_mm || settings.incise_speed_mm_s) {
     verdict.add("not_simulated", {}, "the path was projected with another depth or speed than its simulated cut had");
+  }
+  const std::string target = read_registration(arguments.transform).target_sha256;
+  if (!target.empty() && target != sha256_of_input(arguments.surface)) {
+    verdict.add("registration", {}, fmt::format("{} was found on another cloud than {}", arguments.transform.string(), arguments.surface.string()));
   }
   return verdict;
 }

@@ -1,6 +1,7 @@
 #include "cloud_input.hpp"
 #include "option_checks.hpp"
 
+#include <incise/io/input_file.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
@@ -158,6 +159,8 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   result["camera_scale"] = camera_scale;
   result["source"] = arguments.source.string();
   result["target"] = arguments.target.string();
+  result["source_sha256"] = sha256_of_input(arguments.source);
+  result["target_sha256"] = sha256_of_input(arguments.target);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result["wall_s"] = wall_s;
   write_json(folder.path() / "registration.json", result);

@@ -94,6 +94,13 @@ Mat4 JsonValue::transform() const {
     fail(fmt::format("a rotation part with determinant {:.6g}", determinant),
          "a positive determinant (no mirror image)");
   }
+  // A tissue that was found in space is turned, moved and perhaps scaled; shear and unequal axes would bend the path.
+  constexpr double kSimilar = 1e-3;  // relative: numbers may have been shortened
+  const Mat3 turn = matrix.topLeftCorner<3, 3>() / std::cbrt(determinant);
+  const double skew = (turn.transpose() * turn - Mat3::Identity()).cwiseAbs().maxCoeff();
+  if (!(skew <= kSimilar)) {
+    fail(fmt::format("axes of unequal length or not at right angles (by {:.3g})", skew), "a similarity: a rotation, one scale and a shift");
+  }
   return matrix;
 }
 

@@ -1,6 +1,7 @@
 #include "io/json_reading.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/geometry/contour_checks.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
@@ -132,6 +133,11 @@ ToolPath tool_path_from_json(std::string_view text, const std::filesystem::path&
 
 ToolPath read_tool_path(const std::filesystem::path& path) {
   return tool_path_from_json(read_text(path), path);
+}
+
+void require_tumor_size(const ToolPath& path, const std::filesystem::path& file) {
+  if (path.tumor_edge.points.empty()) return;
+  if (const auto problem = size_problem(path.tumor_edge, "a tumour", kLargestTumorMm)) throw DataError(file, "/tumor_edge", problem->found, problem->expected, "Lengths are mm");
 }
 
 std::string to_json(const ToolPath& path) {

@@ -162,6 +162,10 @@ RegistrationRecord read_registration(const std::filesystem::path& file) {
   record.camera_scale = number_of(document, "camera_scale", file, kLeastCameraScale, kMostCameraScale).value_or(1.0);
   if (const auto found = document.find("certificate"); found != document.end() && found->is_object())
     record.scale_sd = number_of(*found, "scale_sd", file, 0.0, kAny, "/certificate");
+  if (const auto found = document.find("target_sha256"); found != document.end()) {
+    if (!found->is_string()) throw DataError(file, "/target_sha256", found->dump(), "64 hex digits");
+    record.target_sha256 = found->get<std::string>();
+  }
   require_no_contradiction(document, record, file);
   return record;
 }

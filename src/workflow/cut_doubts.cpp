@@ -101,6 +101,21 @@ std::optional<double> edge_along_mm(const TissueModel& model, std::span<const Ve
   return count > 0 ? std::optional(sum / static_cast<double>(count)) : std::nullopt;
 }
 
+std::optional<PlatformClearance> platform_clearance(const TissueModel& model, const ToolPath& path) {
+  std::optional<PlatformClearance> least;
+  for (const Constraint& constraint : model.constraints) {
+    const auto* support = std::get_if<SupportConstraint>(&constraint);
+    if (support == nullptr || support->holder) continue;
+    const Vec3 normal = support->normal.normalized();
+    for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
+      const Waypoint& waypoint = path.waypoints[i];
+      const double height_mm = normal.dot(waypoint.position_mm + waypoint.depth_mm * waypoint.axis - support->point_mm);
+      if (!least || height_mm < least->height_mm) least = {height_mm, i};
+    }
+  }
+  return least;
+}
+
 Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path) {
   Verdict verdict;
   const double ratio = greatest_ratio(model).ratio;
@@ -117,6 +132,12 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::
                 fmt::format("the mesh is coarse for a tool of {:.2g} mm: its edges along the path measure {:.2f} mm on average, and from {} mm "
                             "on the cut's error is that of the mesh as much as of the tissue. meshing.tets or meshing.fine_mm make it finer",
                             2.0 * radius_mm(settings.tool), *edge_mm, coarsest_mm));
+  }
+  const std::optional<PlatformClearance> platform = platform_clearance(model, path);
+  if (platform && platform->height_mm < *verdict_rule("platform").limit) {
+    verdict.add("platform", platform->height_mm,
+                fmt::format("the tool's tip goes {:.2f} mm below the platform that supports the tissue, at waypoint {}", -platform->height_mm, platform->waypoint),
+                VerdictPlace{{}, path.waypoints[platform->waypoint].position_mm, fmt::format("waypoint {}", platform->waypoint)});
   }
   return verdict;
 }

@@ -15,6 +15,7 @@ namespace {
 // Vertices held back to cut.max_step_mm, per step and tet. The limit is for loose bits: sound cuts of 41 000 tets have 5e-5 to 3e-4, a block of
 // tets of 4 mm, whose body lags for no reason in its law, 0.02 to 0.03.
 constexpr double kHeldBackShare = 0.002;
+constexpr double kInvertedShare = 1e-4;  // of the tets: one or two slivers at the kerf's teeth do not move a line that is measured over many
 
 void judge_outcome(const SimulatedCut& cut, Verdict& verdict) {
   if (cut.outcome != Outcome::Success) {
@@ -122,7 +123,7 @@ void judge_convergence(const SimulatedCut& cut, Verdict& verdict) {
   if (!incision.steps.empty() && !incision.is_at_rest) {
     verdict.add("convergence", {}, "the simulated tissue is not at rest after the tool is out: the inner edge may still move");
   }
-  if (incision.inverted_tets > 0) {
+  if (static_cast<double>(incision.inverted_tets) > kInvertedShare * static_cast<double>(cut.tets)) {
     verdict.add("convergence", static_cast<double>(incision.inverted_tets),
                 fmt::format("{} tetrahedra of the simulated tissue are turned inside out", incision.inverted_tets));
   }

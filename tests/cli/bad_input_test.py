@@ -35,7 +35,7 @@ class CtTest(CommandTest):
 
     def test_text_in_place_of_nrrd_is_told(self):
         (self.folder / "ct.nrrd").write_text("This is a letter, not a volume.\n")
-        self.assert_segment_refused("ct.nrrd", "ct.nrrd", "expected a NRRD file")
+        self.assert_segment_refused("ct.nrrd", "ct.nrrd", "header", "expected a header")
 
     def test_a_truncated_nrrd_is_told(self):
         (self.folder / "ct.nrrd").write_bytes(

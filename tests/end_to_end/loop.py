@@ -38,14 +38,24 @@ def require_paper_promise(summary):
     assert after["inner_edge"]["abs_error_mm"]["mean"] < before["inner_edge"]["abs_error_mm"]["mean"]
 
 
-def require_products(folder, stages=STAGES_OF_A_SCAN):
-    """Every stage left its files, each folder its manifest."""
+def require_verdict(summary, status, *ids):
+    """The verdict's status, and reasons that it must have."""
+    verdict = summary["verdict"]
+    found = [reason["id"] for reason in verdict["reasons"]]
+    assert verdict["status"] == status and set(ids) <= set(found), verdict
+
+
+def require_products(folder, stages=STAGES_OF_A_SCAN, has_program=True):
+    """Every stage left its files, each folder its manifest; no program unless there is to be one."""
+    assert (folder / "program").exists() == has_program, "program"
     if "mesh" in stages:
         assert (folder / "mesh" / "mesh.vtu").stat().st_size > 0, "mesh/mesh.vtu"
-    for name in ("report.html", "stretched/deformed.vtu", "plan/path.json", "as_planned/frames.pvd",
-                 "as_planned/incision.json", "corrected/centerline.csv", "program/program.script", "program/program.json"):
+    files = ["report.html", "stretched/deformed.vtu", "plan/path.json", "as_planned/frames.pvd", "as_planned/incision.json", "corrected/centerline.csv"]
+    for name in files + ["program/program.script", "program/program.json"] * has_program:
         assert (folder / name).stat().st_size > 0, name
     for stage in stages:
+        if stage == "program" and not has_program:
+            continue
         manifest = json.loads((folder / stage / "manifest.json").read_text())
         assert manifest["inputs"] and all(len(entry["sha256"]) == 64 for entry in manifest["inputs"]), stage
 

@@ -196,5 +196,16 @@ TEST(PathVerdict, IsNotAskedOfAMarkWhichCutsNothing) {
   EXPECT_EQ(read_path_verdict(folder / "mark.json").status(), VerdictStatus::Ok);
 }
 
+TEST(ToolPathFile, ItsTransformIsASimilarity) {
+  const auto with = [](auto change) {
+    return message_after([&](json& document) { change(document["T_robot_sim"]); });
+  };
+  EXPECT_THAT(with([](json& T) { T[0][1] = 0.05; }), AllOf(HasSubstr("/T_robot_sim"), HasSubstr("a similarity"))) << "shear";
+  EXPECT_THAT(with([](json& T) { T[2][2] = 1.05; }), HasSubstr("a similarity")) << "unequal axes";
+  json scaled = json::parse(to_json(sample_path()));
+  for (int i = 0; i < 3; ++i) scaled["T_robot_sim"][i][i] = 1.02;
+  EXPECT_NO_THROW(static_cast<void>(tool_path_from_json(scaled.dump(), "x")));
+}
+
 }  // namespace
 }  // namespace incise

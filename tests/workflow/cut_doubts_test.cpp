@@ -98,5 +98,19 @@ TEST(VerdictBeforeCut, CautionsOfAMeshThatIsTooCoarseForTheTool) {
   EXPECT_THAT(doubts(block(12, 0.49)), ElementsAre(AllOf(HasSubstr("mesh_resolution: "), HasSubstr("2.52 mm"), HasSubstr("meshing.tets"))));
 }
 
+TEST(VerdictBeforeCut, RefusesATipThatGoesThroughThePlatform) {
+  const TissueModel model = make_tissue_model(make_block({24, 24, 8}, {24, 24, 8}), Material{},
+                                              {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(1, 25, 9))}}, SupportConstraint{Vec3(0, 0, 2), Vec3::UnitZ()}});
+  ToolPath path = ring();  // on z = 8, 5 mm deep: a millimetre above the platform
+  EXPECT_NEAR(platform_clearance(model, path)->height_mm, 1.0, 1e-12);
+  EXPECT_FALSE(verdict_before_cut(Case{}, model, model.mesh.vertices, path).has("platform"));
+  path.waypoints[7].depth_mm = 6.5;
+  const Verdict verdict = verdict_before_cut(Case{}, model, model.mesh.vertices, path);
+  ASSERT_TRUE(verdict.has("platform"));
+  EXPECT_NEAR(*verdict.reasons().front().value, -0.5, 1e-12);
+  EXPECT_EQ(verdict.reasons().front().at->text, "waypoint 7");
+  EXPECT_FALSE(platform_clearance(block(6, 0.45), path)) << "no platform";
+}
+
 }  // namespace
 }  // namespace incise

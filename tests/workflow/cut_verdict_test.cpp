@@ -157,6 +157,9 @@ TEST(VerdictOfCut, CautionsOfASimulationThatIsNotSolved) {
   cut.incision.is_at_rest = false;
   EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("convergence"));
   cut = sound_cut();
+  cut.tets = 10000;
+  cut.incision.inverted_tets = 1;
+  EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), IsEmpty());
   cut.incision.inverted_tets = 3;
   EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("convergence"));
   cut = sound_cut();

@@ -27,6 +27,10 @@ namespace incise {
 ///         type, number out of range, text that is not JSON (line and column).
 [[nodiscard]] ToolPath read_tool_path(const std::filesystem::path& path);
 
+/// Refuses a path whose tumour edge is no tumour's: smaller or larger across than one can be. A path without an edge passes.
+/// @throws DataError naming the file.
+void require_tumor_size(const ToolPath& path, const std::filesystem::path& file);
+
 /// As read_tool_path, from memory. @param name  stands for the file in messages.
 [[nodiscard]] ToolPath tool_path_from_json(std::string_view text, const std::filesystem::path& name);
 

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace incise {
 
@@ -24,6 +25,7 @@ struct RegistrationRecord {
   std::optional<double> inlier_fraction;
   std::optional<bool> is_converged;
   std::optional<double> scale_sd;  ///< relative
+  std::string target_sha256;       ///< of the measured cloud that it was found on; empty: not stated
 };
 
 /// Reads registration.json. @throws DataError for a file that is missing or damaged, without the key T_target_source, with

@@ -20,7 +20,17 @@ void require_no_locking(const TissueModel& model);
 [[nodiscard]] std::optional<double> edge_along_mm(const TissueModel& model, std::span<const Vec3> stretched,
                                                   const ToolPath& path, const Vec3& approach);
 
-/// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the tool.
+/// Where the tool's tip comes nearest to a platform that supports the tissue, or farthest below it.
+struct PlatformClearance {
+  double height_mm = 0.0;   ///< of the tip above the plane, along its normal; negative: below
+  std::size_t waypoint = 0;
+};
+/// Over all waypoints and all planes of the case's support constraints (of the default ones, where none are given); nothing without a plane.
+/// A holder's surface is no plane and is not looked at.
+[[nodiscard]] std::optional<PlatformClearance> platform_clearance(const TissueModel& model, const ToolPath& path);
+
+/// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the tool, a tip that goes
+/// through the platform.
 [[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                          const ToolPath& path);
 
