@@ -1,3 +1,4 @@
+#include "robot/hull.hpp"
 #include "robot/joint_motion.hpp"
 
 #include <incise/core/units.hpp>
@@ -78,11 +79,14 @@ void take_nearest_turns(std::vector<Joints>& q, const ArmSetup& setup) {
 double merit_of(const std::vector<Joints>& q, const ArmSetup& setup, const BranchPreferences& preferences,
                 double floor) {
   const std::size_t stride = std::max<std::size_t>(1, q.size() / static_cast<std::size_t>(preferences.places));
+  const Instrument instrument{setup.T_flange_tool};
   double merit = 1.0;
   for (std::size_t i = 0; i < q.size() && merit >= floor; i += stride) {
     const double margin = std::min((q[i] - setup.arm.min_rad).minCoeff(), (setup.arm.max_rad - q[i]).minCoeff());
     merit = std::min(merit, units::deg_from_rad(margin) / preferences.good_joint_margin_deg);
     merit = std::min(merit, table_clearance_mm(setup.arm, q[i], setup.table_z_mm) / preferences.good_clearance_mm);
+    merit = std::min(merit, arm_clearance_mm(hulls_at(setup.arm, q[i], instrument, setup.table_z_mm)) /
+                                preferences.good_arm_clearance_mm);
     merit = std::min(merit, smallest_singular_value(setup.arm, q[i]) / preferences.good_singular_value);
   }
   return merit;

@@ -59,8 +59,10 @@ class CheckList {
 /// reach, joint_limits, joint_speed, joint_acceleration, singularity, tip_speed, table
 void check_motion(CheckList& list, const CheckSettings& settings);
 
-/// depth in a surface, shaft
+/// depth in a surface
 void check_depth_in(CheckList& list, const TriMesh& surface, double depth_mm, double tolerance_mm);
-void check_shaft(CheckList& list, const TriMesh& surface, const CheckSettings& settings);
+
+/// self_collision, base and, with a surface, surface_collision, shaft, needle
+void check_collisions(CheckList& list, const TriMesh* surface, const CheckSettings& settings);
 
 }  // namespace incise::robot_detail

@@ -19,7 +19,7 @@ using robot_detail::Worst;
 
 constexpr double kClosedToMm = 0.01;
 constexpr double kLeastAreaMm2 = 0.01;  // of a tumour edge: less is a line or a place
-constexpr std::array<const char*, 29> kNames{"finite",
+constexpr std::array<const char*, 33> kNames{"finite",
                                              "frame",
                                              "closed",
                                              "gap",
@@ -42,7 +42,11 @@ constexpr std::array<const char*, 29> kNames{"finite",
                                              "singularity",
                                              "tip_speed",
                                              "table",
+                                             "self_collision",
+                                             "base",
+                                             "surface_collision",
                                              "shaft",
+                                             "needle",
                                              "power",
                                              "registration_scale",
                                              "registration_rmse",
@@ -473,7 +477,8 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
                  "expected the intended path in the frame of the path");
   ProgramChecks result;
   result.not_made = {"forces on the tissue and on the tool; switching of the electrode",
-                     "collisions with anything but the table's plane and the given surface; cables",
+                     "collisions with anything but the arm itself, its base, the table's plane and the given surface; cables; the "
+                     "way to the start",
                      "how well the controller keeps to the program (see the player)"};
   CheckList list(program, result);
   if (!check_finite(list)) {
@@ -499,10 +504,7 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
   course.tilt();
   course.tool_table();
   robot_detail::check_motion(list, settings);
-  if (inputs.surface != nullptr)
-    robot_detail::check_shaft(list, *inputs.surface, settings);
-  else
-    list.not_made("shaft against the tissue: no surface was given");
+  robot_detail::check_collisions(list, inputs.surface, settings);
   check_power(list, inputs, settings);
   check_registration(list, inputs, settings);
   return result;

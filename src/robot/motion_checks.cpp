@@ -61,13 +61,6 @@ void check_tip_speed(CheckList& list, const CheckSettings& settings) {
   }
 }
 
-/// The flange sits on the straight needle itself: nothing of the tool lies behind it.
-bool is_on_needle(const Vec3& flange_in_tool, double needle_length_mm) {
-  constexpr double kBesideMm = 1e-6;
-  return flange_in_tool.head<2>().norm() < kBesideMm && flange_in_tool.z() <= 0.0 &&
-         -flange_in_tool.z() <= needle_length_mm + kBesideMm;
-}
-
 }  // namespace
 
 void check_motion(CheckList& list, const CheckSettings& settings) {
@@ -127,29 +120,6 @@ void check_depth_in(CheckList& list, const TriMesh& surface, double depth_mm, do
   list.at_most(
       "depth", worst.value, tolerance_mm, "mm", worst.pose,
       fmt::format("greatest difference from the planned depth of {} mm, measured below the surface", depth_mm));
-}
-
-void check_shaft(CheckList& list, const TriMesh& surface, const CheckSettings& settings) {
-  const RobotProgram& program = list.program();
-  const Vec3 flange_in_tool = program.setup.T_flange_tool.inverse().topRightCorner<3, 1>();
-  const Vec3 needle_in_tool = -settings.needle_length_mm * Vec3::UnitZ();
-  if (is_on_needle(flange_in_tool, settings.needle_length_mm)) {
-    list.not_made("shaft: the tool has none behind its needle");
-    return;
-  }
-  const SurfaceProbe probe(surface);
-  Worst nearest;
-  for (std::size_t i = 0; i < program.poses.size(); ++i) {
-    const ProgramPose& pose = program.poses[i];
-    const double distance = probe.distance_mm(pose.tip_mm + pose.R_robot_tool * needle_in_tool,
-                                              pose.tip_mm + pose.R_robot_tool * flange_in_tool);
-    nearest.see(settings.shaft_radius_mm - distance, i);
-  }
-  list.at_least(
-      "shaft", -nearest.value, settings.shaft_clearance_mm, "mm", nearest.pose,
-      fmt::format("least distance of the instrument's shaft ({} mm thick, from {} mm behind the tip) from the surface, "
-                  "straight from there to the flange",
-                  2.0 * settings.shaft_radius_mm, settings.needle_length_mm));
 }
 
 }  // namespace incise::robot_detail

@@ -1,7 +1,5 @@
 #include "robot/surface_probe.hpp"
 
-#include <incise/core/error.hpp>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -15,12 +13,10 @@ constexpr double kBridgeRadiusMm = 4.0;   // on tissue with a radius of 25 mm a 
 constexpr double kFarthestPointMm = 2.0;  // the nearest measured point from the axis, as where a path is laid down
 constexpr double kMostVariance =
     0.3;                         // of the plane's height on the axis, over that of a point: four all round have 0.25
-constexpr double kStepMm = 1.0;  // at 5 mm distance half of it matters by 0.025 mm
 
 }  // namespace
 
-SurfaceProbe::SurfaceProbe(const TriMesh& surface) : points_(surface.vertices) {
-  INCISE_REQUIRE(!points_.empty(), "expected a surface with points, found none");
+SurfaceProbe::SurfaceProbe(const TriMesh& surface) : points_(surface.vertices), cloud_(points_) {
   if (!surface.triangles.empty()) triangles_.emplace(surface);
 }
 
@@ -57,23 +53,8 @@ std::optional<double> SurfaceProbe::below_plane_mm(const Vec3& p, const Vec3& ax
   return Vec3(solver.solve(right))[0];
 }
 
-double SurfaceProbe::distance_mm(const Vec3& from, const Vec3& to) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  const Vec3 along = to - from;
-  if (triangles_) {
-    const int steps = std::max(1, static_cast<int>(std::ceil(along.norm() / kStepMm)));
-    for (int i = 0; i <= steps; ++i) {
-      const Vec3 at = from + along * (static_cast<double>(i) / steps);
-      nearest = std::min(nearest, triangles_->nearest(at).distance_mm);
-    }
-    return nearest;
-  }
-  const double length2 = along.squaredNorm();
-  for (const Vec3& point : points_) {
-    const double t = length2 > 0.0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0.0;
-    nearest = std::min(nearest, (point - from - t * along).squaredNorm());
-  }
-  return std::sqrt(nearest);
+double SurfaceProbe::distance_mm(const Vec3& p) const {
+  return triangles_ ? triangles_->nearest(p).distance_mm : std::sqrt(cloud_.nearest(p).squared_mm2);
 }
 
 }  // namespace incise::robot_detail

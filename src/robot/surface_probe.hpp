@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/geometry/neighbours.hpp>
 #include <incise/geometry/surface_query.hpp>
 
 #include <optional>
@@ -18,12 +19,13 @@ class SurfaceProbe {
   /// not meet the surface, where no such plane is found, or where the nearest point is more than 2 mm from the axis.
   [[nodiscard]] std::optional<double> depth_mm(const Vec3& p, const Vec3& axis) const;
 
-  /// Distance of a segment from the surface, mm; of triangles to 0.03 mm for distances from 5 mm on.
-  [[nodiscard]] double distance_mm(const Vec3& from, const Vec3& to) const;
+  /// Distance of a point from the nearest triangle, or of a cloud from its nearest point, mm.
+  [[nodiscard]] double distance_mm(const Vec3& p) const;
 
  private:
   [[nodiscard]] std::optional<double> below_plane_mm(const Vec3& p, const Vec3& axis, double radius_mm) const;
   Points points_;
+  NeighbourSearch cloud_;
   std::optional<SurfaceQuery> triangles_;
 };
 

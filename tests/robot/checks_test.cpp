@@ -45,7 +45,8 @@ TEST(CheckProgram, PassesASoundRingAndSaysWhatItFound) {
   EXPECT_THAT(names, ::testing::ElementsAre("finite", "frame", "closed", "gap", "self_crossing", "speed_min",
                                             "speed_max", "depth", "margin", "encloses", "deviation", "chord_error",
                                             "tilt", "tool_table", "reach", "joint_limits", "joint_speed",
-                                            "joint_acceleration", "singularity", "tip_speed", "table"));
+                                            "joint_acceleration", "singularity", "tip_speed", "table", "self_collision",
+                                            "base"));
   EXPECT_NEAR(named(checks, "margin").value, 5.0, 0.05);
   EXPECT_NEAR(named(checks, "speed_max").value, 7.0, 1e-12);
   EXPECT_LT(named(checks, "deviation").value, 0.05);
@@ -344,6 +345,8 @@ TEST(CheckProgram, FindsJointLimitsSpeedsAndAccelerations) {
   EXPECT_THAT(failures_of(path, {.max_joint_acceleration_rad_s2 = 1e-3}), ::testing::ElementsAre("joint_acceleration"));
 }
 
+constexpr double kHalfStepMm = 0.2;  // at 50 mm/s in half a period of 8 ms: checks of distance allow for it
+
 /// A flat sheet at a height, as triangles or as points 1 mm apart.
 TriMesh sheet(double z_mm, bool as_points) {
   TriMesh mesh;
@@ -369,7 +372,7 @@ TEST(CheckProgram, MeasuresDepthBelowASurfaceOfTrianglesOrPoints) {
     EXPECT_TRUE(checks.all_passed()) << ::testing::PrintToString(failures(checks));
     EXPECT_NEAR(named(checks, "depth").value, 0.2, 1e-6);
     // The shaft begins 20 mm above the surface and is 5 mm thick to either side.
-    EXPECT_NEAR(named(checks, "shaft").value, 20.0 - 0.2 - 5.0, 1e-6);
+    EXPECT_NEAR(named(checks, "shaft").value, 20.0 - 0.2 - 5.0, kHalfStepMm);
     EXPECT_THAT(failures_of(path, {}, {.surface = &wrong}), ::testing::ElementsAre("depth"));
   }
 }
@@ -382,6 +385,58 @@ TEST(CheckProgram, FindsAShaftThatTouchesTheTissue) {
     if (away > 17.0) vertex.z() += 30.0;  // a wall 2 mm beside the ring, higher than the needle is long
   }
   EXPECT_THAT(failures_of(path, {}, {.surface = &surface}), ::testing::Contains("shaft"));
+}
+
+TEST(CheckProgram, FindsANeedleLedAlongTheBasesAxis) {
+  for (const double beside_mm : {0.0, 2.0, 40.0}) {
+    ToolPath path = line_path();
+    for (auto& waypoint : path.waypoints) {
+      waypoint.position_mm = Vec3(beside_mm, waypoint.position_mm.x() - 510.0, 150.0);
+      waypoint.axis = Vec3(-std::sin(1.2), 0.0, -std::cos(1.2));  // from the side: the wrist cannot go over the base
+    }
+    const auto checks = check_program(make_program(path), path, {.must_be_ring = false});
+    ASSERT_TRUE(named(checks, "reach").passed) << named(checks, "reach").message();
+    EXPECT_THAT(failures(checks), ::testing::Contains("base")) << beside_mm;
+    EXPECT_NEAR(named(checks, "base").value, beside_mm - 95.0 - 5.0, 8.0);
+  }
+}
+
+TEST(CheckProgram, FindsAFlangeAboveTheTissue) {
+  const ToolPath path = ring_path();
+  const TriMesh surface = sheet(100.0, false);
+  ArmSetup setup;  // 20 mm above the tip, which is 5 mm deep in the tissue … as a shaft of no length
+  setup.T_flange_tool(2, 3) = 30.1;
+  const CheckSettings short_needle{.needle_length_mm = 30.0};
+  const auto near = check_program(make_program(path, {}, setup), path, short_needle, {.surface = &surface});
+  EXPECT_THAT(failures(near), ::testing::Contains("surface_collision"));
+  // The flange is 25.1 mm above the tissue, and wrist 3's round end stands out by 25 mm.
+  EXPECT_NEAR(named(near, "surface_collision").value, 0.1, kHalfStepMm);
+  EXPECT_THAT(named(near, "surface_collision").message(), ::testing::HasSubstr("wrist 3"));
+}
+
+TEST(CheckProgram, FindsAWallBesideTheRingThatTheArmWouldMeet) {
+  const ToolPath path = ring_path();
+  for (const bool as_points : {false, true}) {
+    TriMesh surface = sheet(100.0, as_points);
+    TriMesh wall = sheet(0.0, as_points);
+    const auto first = static_cast<std::uint32_t>(surface.vertices.size());
+    for (const Vec3& vertex : wall.vertices) surface.vertices.emplace_back(656.0, vertex.x() - 600.0, 250.0 + vertex.y() * 3.0);
+    for (auto triangle : wall.triangles) {
+      for (auto& corner : triangle) corner = VertexId(static_cast<std::uint32_t>(corner.index()) + first);
+      surface.triangles.push_back(triangle);
+    }
+    const auto checks = check_program(make_program(path), path, {}, {.surface = &surface});
+    EXPECT_THAT(failures(checks), ::testing::ElementsAre("surface_collision")) << as_points;
+  }
+}
+
+TEST(CheckProgram, FindsTissueThatTheNeedleMeetsOnItsWayThroughTheAir) {
+  const ToolPath path = ring_path();
+  TriMesh surface = sheet(100.0, true);  // points: a shelf 20 mm above the first entry, smaller than the shaft's way
+  surface.vertices.emplace_back(615.0, 0.0, 118.0);
+  const auto checks = check_program(make_program(path), path, {.shaft_clearance_mm = -10.0}, {.surface = &surface});
+  EXPECT_THAT(failures(checks), ::testing::Contains("needle"));
+  EXPECT_LE(named(checks, "needle").value, 0.0);
 }
 
 TEST(CheckProgram, ATurnedOrBentToolHasItsShaftBesideTheNeedle) {
@@ -404,7 +459,7 @@ TEST(CheckProgram, ATurnedOrBentToolHasItsShaftBesideTheNeedle) {
   bent.T_flange_tool.topRightCorner<3, 1>() =
       Vec3(0.0, 0.0, 100.0) + 25.0 * bent.T_flange_tool.topLeftCorner<3, 3>().col(2);
   const auto clear = check_program(make_program(path, {}, bent), path, {}, {.surface = &surface});
-  EXPECT_NEAR(named(clear, "shaft").value, 20.0 - 5.0, 1e-6);  // its nearest place is the needle's upper end
+  EXPECT_NEAR(named(clear, "shaft").value, 20.0 - 5.0, kHalfStepMm);  // its nearest place is the needle's upper end
   ArmSetup needle_alone;
   needle_alone.T_flange_tool.topRightCorner<3, 1>() = Vec3(0.0, 0.0, 25.0);
   const auto none = check_program(make_program(path, {}, needle_alone), path, {}, {.surface = &surface});
@@ -532,7 +587,7 @@ TEST(OverrideChecks, RefusesWhatCannotBeOverridden) {
   auto checks = check_program(make_program(path), path);
   for (const char* name : {"finite", "frame", "reach", "margins"})
     EXPECT_THROW(override_checks(checks, {name}), InvalidArgument) << name;
-  EXPECT_EQ(check_names().size(), 29u);
+  EXPECT_EQ(check_names().size(), 33u);
 }
 
 }  // namespace

@@ -14,6 +14,23 @@ namespace incise {
 using Joints = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
+/// Radii of the round hulls that are held clear of each other, of the base and of the tissue, mm. They are our own
+/// estimates, rounded up, from the published outline of the arm (foot 190 mm wide, flange 63 mm) and its tubes; compare
+/// them with the maker's drawings, cables and covers before relying on them.
+struct ArmHullRadii {
+  double base = 95.0;
+  double shoulder = 90.0;
+  double upper_arm = 80.0;
+  double elbow = 65.0;
+  double forearm = 65.0;
+  double wrist_1 = 55.0;
+  double wrist_2 = 55.0;
+  double wrist_3 = 50.0;
+  /// The axis of wrist 3's hull ends this far behind the flange: its round end covers a flange of 86 mm and stands out
+  /// by 25 mm.
+  double flange_setback = 25.0;
+};
+
 /// A six-joint arm of Universal Robots' build: shoulder, upper arm and forearm in one plane, and a wrist of three
 /// joints whose axes meet in pairs. Lengths are Denavit and Hartenberg's, mm: joint i is Rz(q) Tz(d) Tx(a) Rx(alpha)
 /// with alpha = (90, 0, 0, 90, -90, 0) degrees.
@@ -28,6 +45,7 @@ struct ArmModel {
   std::array<double, 5> link_radius_mm{};
   double shoulder_offset_mm = 0.0;  ///< the upper arm runs beside the plane of the joint frames by this much
   double elbow_offset_mm = 0.0;     ///< and the forearm by this much
+  ArmHullRadii hull_radius_mm{};
 };
 
 /// Universal Robots UR10e. Lengths, joint limits and speeds as published [UrDh, UrDescription]; the elbow is limited

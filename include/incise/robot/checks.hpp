@@ -48,13 +48,17 @@ struct CheckSettings {
   double joint_speed_share = 0.5;              ///< of what the maker allows
   double max_joint_acceleration_rad_s2 = 5.0;  ///< the maker publishes none; his own programs' default is 1.4
   double table_clearance_mm = 20.0;            ///< of the links' hulls
+  double arm_clearance_mm = 10.0;      ///< of the hulls of arm and instrument from each other and from the base
+  double surface_clearance_mm = 10.0;  ///< of the arm's hulls from the tissue
   double tip_speed_tolerance = 0.01;           ///< as a share of the speed, away from the ends
   double max_chord_error_mm = 0.02;            ///< of the moves and their blends from the smooth course
 
   // The instrument: a needle, then a shaft up to the flange.
   double needle_length_mm = 25.0;
+  double needle_radius_mm = 0.5;
   double shaft_radius_mm = 5.0;
   double shaft_clearance_mm = 1.0;
+  double needle_clearance_mm = 1.0;  ///< of the needle above the place where it enters
 
   double min_power_w = 10.0, max_power_w = 60.0;
 
@@ -119,7 +123,16 @@ struct ProgramChecks {
 /// - `joint_limits`, `joint_speed`, `joint_acceleration`, `singularity`: of the arm's motion
 /// - `tip_speed`: the tip's speed, from the joints, is the nominal one away from the ends
 /// - `table`: the links stay clear of the table's plane
+/// - `self_collision`: the hulls of the arm's links and of the instrument stay clear of each other
+/// - `base`: they stay clear of the base's column and of the shoulder
+/// - `surface_collision` (with a surface): the arm's hulls, flange included, stay clear of it
 /// - `shaft` (with a surface): the instrument, straight from its needle's upper end to the flange, stays clear of it
+/// - `needle` (with a surface): so does the needle: all of it on the way through the air, and in the tissue what lies
+///   higher than the clearance (ProgramSettings::clearance_mm) above the entry
+///
+/// The last five look at the whole motion, from the first approach to the end of the retreat, and between its samples:
+/// their values are least distances, less what the hulls can move by in half a period.
+///
 /// - `power` (if given): within the generator's usual range for cutting
 /// - `registration_scale`, `registration_rmse`, `registration_inliers`, `registration_converged` (if given)
 ///

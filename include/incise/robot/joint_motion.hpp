@@ -28,6 +28,7 @@ struct BranchPreferences {
   double good_singular_value = 0.10;    ///< more distance from singularities is not worth any travel
   double good_joint_margin_deg = 20.0;  ///< likewise from joint limits
   double good_clearance_mm = 50.0;      ///< likewise from the table
+  double good_arm_clearance_mm = 12.0;  ///< likewise between its own hulls and from the base
   int spin_steps = 36;                  ///< turns of the tool about its own axis to look at; it is round
   int places = 24;                      ///< of the course where a candidate's merit is looked at
 };
