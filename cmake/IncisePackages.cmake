@@ -4,7 +4,7 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(yaml-cpp REQUIRED)
-find_package(OpenSSL REQUIRED)        # SHA-256 of inputs, in io
+find_package(OpenSSL REQUIRED)        # SHA-256, in core
 find_package(nanoflann REQUIRED)      # nearest points, in geometry
 
 find_package(OpenMP REQUIRED COMPONENTS CXX)   # only to hold CHOLMOD's own threads back

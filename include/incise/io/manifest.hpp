@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/sha256.hpp>
 #include <incise/core/verdict.hpp>
 
 #include <cstdint>
@@ -42,9 +43,7 @@ void write_manifest_beside(const std::filesystem::path& file, const Manifest& ma
 /// Reads `folder/manifest.json`; keys that this version does not know are ignored. @throws DataError naming the place.
 [[nodiscard]] Manifest read_manifest(const std::filesystem::path& folder);
 
-/// SHA-256 (FIPS 180-4) as 64 lower-case hex digits.
-[[nodiscard]] std::string sha256_of_text(std::string_view text);
-/// Of a file's bytes. @throws DataError if it is missing, is a folder, or cannot be read.
+/// SHA-256 of a file's bytes (of a text: core/sha256.hpp). @throws DataError if it is missing, is a folder, or cannot be read.
 [[nodiscard]] std::string sha256_of_file(const std::filesystem::path& path);
 /// Of a folder: the hash of the lines "<sha256>  <relative/path>\n", sorted by path, over all regular files below it.
 /// So it changes with any content or name, and not with the order in which a disk lists them. @throws DataError if it
