@@ -44,6 +44,25 @@ nlohmann::ordered_json to_json(const Replay& replay, const PlayerSettings& setti
   return json;
 }
 
+nlohmann::ordered_json to_json(const ProgramAudit& audit, const ProgramHeader& header) {
+  nlohmann::ordered_json json;
+  json["checked"] = audit.is_checked();
+  json["digest_matches"] = audit.digest == ProgramDigest::Absent
+                               ? nlohmann::ordered_json(nullptr)
+                               : nlohmann::ordered_json(audit.digest == ProgramDigest::Matches);
+  json["contradictions"] = audit.contradictions;
+  json["recomputed"] = audit.recomputed;
+  json["not_recomputed"] = audit.not_recomputed;
+  json["moved_limits"] = audit.moved_limits;
+  for (const char* key : {"verdict", "reason", "accepted", "override", "not_checked"}) {
+    json[key] = nlohmann::ordered_json::array();
+    for (const auto& [name, value] : header) {
+      if (name == key) json[key].push_back(value);
+    }
+  }
+  return json;
+}
+
 void write_replay(const std::filesystem::path& folder, const Replay& replay) {
   std::vector<NamedColumn> columns{{"time_s", {}},   {"tip_x_mm", {}},       {"tip_y_mm", {}},
                                    {"tip_z_mm", {}}, {"tip_speed_mm_s", {}}, {"deviation_mm", {}}};

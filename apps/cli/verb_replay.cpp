@@ -9,6 +9,7 @@
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/robot/program_audit.hpp>
 
 #include <fmt/format.h>
 
@@ -52,11 +53,11 @@ Replay played(const WrittenProgram& program, const PlayerSettings& settings, con
 
 /// How it ended, where that is not well.
 std::string warning_of(const Replay& replay, const std::filesystem::path& program) {
-  const bool is_played = replay.outcome == ReplayOutcome::StartsInTissue ||
-                         replay.outcome == ReplayOutcome::EndsInTissue || replay.outcome == ReplayOutcome::JointSpeed ||
-                         replay.outcome == ReplayOutcome::OffCourse;
+  const bool is_stopped = replay.outcome == ReplayOutcome::Unreachable || replay.outcome == ReplayOutcome::Jump ||
+                          replay.outcome == ReplayOutcome::BlendsOverlap ||
+                          replay.outcome == ReplayOutcome::JointLimits || replay.outcome == ReplayOutcome::TooLong;
   return fmt::format("{}{}: {}{}{}", program.string(), replay.line > 0 ? fmt::format(":{}", replay.line) : "",
-                     is_played ? "" : "the arm cannot go on: ", to_string(replay.outcome),
+                     is_stopped ? "the arm cannot go on: " : "", to_string(replay.outcome),
                      replay.reason.empty() ? "" : fmt::format(": {}", replay.reason));
 }
 
@@ -76,8 +77,13 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
   }
   const PlayerSettings settings{.speed_slider = arguments.slider_percent / 100.0,
                                 .max_deviation_mm = arguments.max_deviation_mm};
-  const Replay replay = played(program, settings, intended, arguments.path);
+  Replay replay = played(program, settings, intended, arguments.path);
+  const ProgramAudit audit = audit_program(program);
+  judge_audit(replay, audit);
+  if (audit.digest == ProgramDigest::Absent)
+    console.message(Severity::Warning, "not checked: the program carries no digest, so nobody knows whether it is the one that was checked");
   nlohmann::ordered_json result = to_json(replay, settings);
+  result["program_audit"] = to_json(audit, program.header);
   result["model"] = "incise's own kinematics and interpolation; not the maker's controller";
   result["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!options.output.empty()) write_folder(arguments, options, replay, result);

@@ -476,6 +476,7 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
   INCISE_REQUIRE(inputs.intended == nullptr || inputs.intended->frame == path.frame,
                  "expected the intended path in the frame of the path");
   ProgramChecks result;
+  result.settings = settings;
   result.not_made = {"forces on the tissue and on the tool; switching of the electrode",
                      "collisions with anything but the arm itself, its base, the table's plane and the given surface; cables; the "
                      "way to the start",

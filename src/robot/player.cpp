@@ -1,3 +1,4 @@
+#include "robot/own_course.hpp"
 #include "robot/replay_measures.hpp"
 #include "robot/tip_route.hpp"
 
@@ -68,7 +69,9 @@ class Playing {
     ReplaySample sample;
     sample.time_s = time_;
     sample.q_rad = q_;
-    sample.tip_mm = (forward_kinematics(arm_, q_) * program_.T_flange_tool).topRightCorner<3, 1>();
+    const Mat4 T_base_tool = forward_kinematics(arm_, q_) * program_.T_flange_tool;
+    sample.tip_mm = T_base_tool.topRightCorner<3, 1>();
+    sample.axis = T_base_tool.block<3, 1>(0, 2);
     sample.phase = phase_;
     if (!replay_.samples.empty()) {
       const ReplaySample& last = replay_.samples.back();
@@ -242,6 +245,12 @@ std::vector<std::string> validate(const PlayerSettings& s) {
     broken.push_back(fmt::format("expected an end zone of 0 or more, found {}", s.end_zone_mm));
   if (!(s.max_deviation_mm > 0.0))
     broken.push_back(fmt::format("expected a largest deviation above 0, found {}", s.max_deviation_mm));
+  for (const auto& [value, name] :
+       {std::pair(s.max_lean_deg, "max_lean_deg"), std::pair(s.speed_tolerance, "speed_tolerance"),
+        std::pair(s.max_way_back_mm, "max_way_back_mm"), std::pair(s.max_way_left_mm, "max_way_left_mm"),
+        std::pair(s.max_rest_s, "max_rest_s")}) {
+    if (!(value > 0.0)) broken.push_back(fmt::format("{}: expected a number above 0, found {}", name, value));
+  }
   return broken;
 }
 
@@ -267,6 +276,20 @@ std::string_view to_string(ReplayOutcome outcome) {
       return "joint_speed";
     case ReplayOutcome::OffCourse:
       return "off_course";
+    case ReplayOutcome::WrongAxis:
+      return "wrong_axis";
+    case ReplayOutcome::WrongOrder:
+      return "wrong_order";
+    case ReplayOutcome::WrongSpeed:
+      return "wrong_speed";
+    case ReplayOutcome::RestsInTissue:
+      return "rests_in_tissue";
+    case ReplayOutcome::BreaksLimit:
+      return "breaks_limit";
+    case ReplayOutcome::Altered:
+      return "altered";
+    case ReplayOutcome::FalseChecks:
+      return "false_checks";
   }
   return "unknown";
 }
@@ -286,6 +309,8 @@ Replay play(const WrittenProgram& program, const ArmModel& arm, const PlayerSett
   robot_detail::judge_ends(replay, intended);
   playing.judge_speed();
   robot_detail::judge_deviation(replay, settings.max_deviation_mm);
+  robot_detail::judge_own_course(replay, program, settings);
+  robot_detail::judge_limits(replay, program, arm);
   replay.min_singular_value = std::numeric_limits<double>::infinity();
   constexpr std::size_t kStride = 10;  // every 20 ms
   for (std::size_t i = 0; i < replay.samples.size(); i += kStride)

@@ -1,12 +1,14 @@
+#include "robot/comment_text.hpp"
+#include "robot/program_digest.hpp"
+#include "robot/program_record.hpp"
 #include "robot/text_form.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/robot/program_text.hpp>
+#include <incise/robot/program_reading.hpp>
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <sstream>
 
 namespace incise {
 namespace robot_detail {
@@ -28,22 +30,11 @@ void require_motion(const RobotProgram& program) {
 
 std::string header_lines(const ProgramHeader& header) {
   std::string text;
-  for (const auto& [key, value] : header) {
-    // A value with line ends becomes one entry a line: nothing in it can leave the comment.
-    std::istringstream lines(value);
-    for (std::string line; std::getline(lines, line);) {
-      std::erase(line, '\r');
-      text += fmt::format("{}{}: {}\n", kHeaderMark, key, line);
-    }
-  }
+  for (const auto& [key, value] : plain_header(with_digest_entry(header)))
+    text += fmt::format("{}{}: {}\n", kHeaderMark, key, value);
   return text;
 }
 
-}  // namespace robot_detail
-
-namespace {
-
-/// With the limit, which options may have moved: "margin passed: 5.03 mm >= 2.2 mm".
 std::string held_against_its_limit(const ProgramCheck& check) {
   const std::string verdict = fmt::format("{} {}", check.name, check.passed ? "passed" : "FAILED");
   if (check.relation.empty()) return verdict;
@@ -51,7 +42,7 @@ std::string held_against_its_limit(const ProgramCheck& check) {
   return fmt::format("{}: {:.4g}{} {} {:.4g}{}", verdict, check.value, unit, check.relation, check.limit, unit);
 }
 
-}  // namespace
+}  // namespace robot_detail
 
 ProgramHeader program_header(const RobotProgram& program, const ToolPath& path, const ProgramChecks& checks,
                              const ProgramHeader& provenance) {
@@ -73,16 +64,23 @@ ProgramHeader program_header(const RobotProgram& program, const ToolPath& path, 
   add("T_flange_tool", tool);
   add("branch", to_string(program.motion.branch));
   add("spin_deg", fmt::format("{}", program.motion.spin_deg));
+  const ProgramRecord record{program.settings, program.setup, checks.settings};
+  robot_detail::describe(record, [&add](const char* key, const char* name, const auto& number) {
+    add(key, fmt::format("{} {}", name, static_cast<double>(number)));
+  });
   for (const Waypoint& w : path.waypoints) {
     add("waypoint",
         fmt::format("{:.6f} {:.6f} {:.6f} {:.8f} {:.8f} {:.8f} {:.6f} {:.6f}", w.position_mm.x(), w.position_mm.y(),
                     w.position_mm.z(), w.axis.x(), w.axis.y(), w.axis.z(), w.depth_mm, w.speed_mm_s));
   }
+  add("tumor_edge_closed", path.tumor_edge.is_closed ? "true" : "false");
+  for (const Vec3& point : path.tumor_edge.points)
+    add("tumor_edge", fmt::format("{:.6f} {:.6f} {:.6f}", point.x(), point.y(), point.z()));
   for (const ProgramCheck& check : checks.checks) {
     if (check.is_overridden)
       add("override", check.message());
     else
-      add("check", held_against_its_limit(check));
+      add("check", robot_detail::held_against_its_limit(check));
   }
   for (const std::string& what : checks.not_made) add("not_checked", what);
   return header;

@@ -1,9 +1,12 @@
 #include "robot/program_reading.hpp"
+#include "robot/program_record.hpp"
 
 #include <incise/core/error.hpp>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <limits>
 
 namespace incise::robot_detail {
 namespace {
@@ -40,6 +43,11 @@ class ProgramPlace {
   [[nodiscard]] double number() const {
     if (!value_.is_number()) fail(shown(), "a number");
     return value_.get<double>();
+  }
+  [[nodiscard]] bool is_null() const { return value_.is_null(); }
+  [[nodiscard]] bool truth() const {
+    if (!value_.is_boolean()) fail(shown(), "true or false");
+    return value_.get<bool>();
   }
   [[nodiscard]] std::string text() const {
     if (!value_.is_string()) fail(shown(), "a text");
@@ -82,6 +90,23 @@ ProgramJson parsed_program(std::string_view text, const std::filesystem::path& f
   }
 }
 
+/// A check of the list, in the words of the header.
+std::string check_of(const ProgramPlace& place) {
+  // JSON has no infinity: it is written as null.
+  const auto number = [&place](const char* key) {
+    const ProgramPlace at = place.at(key);
+    return at.is_null() ? std::numeric_limits<double>::infinity() : at.number();
+  };
+  return held_against_its_limit({.name = place.at("name").text(),
+                                 .passed = place.at("passed").truth(),
+                                 .value = number("value"),
+                                 .limit = number("limit"),
+                                 .relation = place.at("relation").text(),
+                                 .unit = place.at("unit").text(),
+                                 .pose = {},
+                                 .text = {}});
+}
+
 }  // namespace
 
 WrittenProgram read_program_json(std::string_view text, const std::filesystem::path& file) {
@@ -98,6 +123,11 @@ WrittenProgram read_program_json(std::string_view text, const std::filesystem::p
   for (const ProgramPlace& pose : root.at("poses").items(1)) {
     const ProgramPlace phase = pose.at("phase");
     phases.emplace_back(pose.at("time_s").number(), phase_of(phase.text(), phase.complain()));
+    const std::vector<double> tip = pose.at("tip_mm").numbers(3);
+    program.listed_tips_mm.emplace_back(tip[0], tip[1], tip[2]);
+  }
+  if (document.contains("checks")) {
+    for (const ProgramPlace& check : root.at("checks").items(0)) program.listed_checks.push_back(check_of(check));
   }
   std::size_t next = 0;
   for (const ProgramPlace& place : root.at("motion").at("samples").items(0)) {

@@ -1,5 +1,7 @@
 #include "robot/program_reading.hpp"
 
+#include "robot/program_digest.hpp"
+#include "robot/program_record.hpp"
 #include "robot/text_form.hpp"
 #include "robot/tip_curve.hpp"
 
@@ -9,7 +11,9 @@
 
 #include <array>
 #include <cmath>
+#include <map>
 #include <sstream>
+#include <type_traits>
 
 namespace incise {
 namespace robot_detail {
@@ -107,17 +111,56 @@ ProgramPhase phase_of(const std::string& name, const Complain& fail) {
   return ProgramPhase::Approach;  // not reached: `fail` throws
 }
 
+namespace {
+
+/// Named numbers of the header: `# incise.KEY: NAME NUMBER`, each once.
+class NamedNumbers {
+ public:
+  explicit NamedNumbers(const std::filesystem::path& file) : file_(file) {}
+  void add(const std::string& key, const std::string& value) {
+    const std::size_t blank = value.find(' ');
+    const std::string name = value.substr(0, blank), place = key + " " + name;
+    if (blank == std::string::npos || !numbers_.emplace(place, numbers_of(value.substr(blank), 1, file_, place)[0]).second)
+      throw DataError(file_, "header " + key, fmt::format("'{}'", value), "a name and its number, each name once");
+  }
+  /// Nothing where one is missing or none knows it.
+  [[nodiscard]] std::optional<ProgramRecord> record() const {
+    ProgramRecord record;
+    std::size_t found = 0, expected = 0;
+    describe(record, [&](const char* key, const char* name, auto& number) {
+      ++expected;
+      const auto at = numbers_.find(std::string(key) + " " + name);
+      if (at == numbers_.end()) return;
+      ++found;
+      number = static_cast<std::remove_reference_t<decltype(number)>>(at->second);
+    });
+    return found == expected && found == numbers_.size() ? std::optional(record) : std::nullopt;
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  std::map<std::string, double> numbers_;
+};
+
+bool truth_of(const std::string& value, const std::filesystem::path& file, const std::string& key) {
+  if (value != "true" && value != "false") throw DataError(file, "header " + key, value, "true or false");
+  return value == "true";
+}
+
+}  // namespace
+
 void read_header(WrittenProgram& program, const std::filesystem::path& file) {
   ToolPath path;
   path.frame = PathFrame::Robot;
   bool has_tool = false;
+  NamedNumbers named(file);
+  std::optional<double> spin_deg;
   for (const auto& [key, value] : program.header) {
     if (key == "kind") {
       if (value != "incise" && value != "mark") throw DataError(file, "header kind", value, "incise or mark");
       path.kind = value == "mark" ? PathKind::Mark : PathKind::Incise;
     } else if (key == "closed") {
-      if (value != "true" && value != "false") throw DataError(file, "header closed", value, "true or false");
-      path.is_closed = value == "true";
+      path.is_closed = truth_of(value, file, key);
     } else if (key == "overlap_mm") {
       program.overlap_mm = length_of(value, file, key);
     } else if (key == "clearance_mm") {
@@ -133,6 +176,15 @@ void read_header(WrittenProgram& program, const std::filesystem::path& file) {
       has_tool = true;
     } else if (key == "waypoint") {
       path.waypoints.push_back(waypoint_of(value, file));
+    } else if (key == "tumor_edge_closed") {
+      path.tumor_edge.is_closed = truth_of(value, file, key);
+    } else if (key == "tumor_edge") {
+      const auto n = numbers_of(value, 3, file, key);
+      path.tumor_edge.points.emplace_back(n[0], n[1], n[2]);
+    } else if (key == "setting" || key == "limit") {
+      named.add(key, value);
+    } else if (key == "spin_deg") {
+      spin_deg = numbers_of(value, 1, file, key)[0];
     }
   }
   const Mat3 R = program.T_flange_tool.topLeftCorner<3, 3>();
@@ -143,6 +195,13 @@ void read_header(WrittenProgram& program, const std::filesystem::path& file) {
   if (path.waypoints.size() < (path.is_closed ? 3u : 2u)) return;
   require_course(path, program.overlap_mm, file);
   program.path = path;
+  program.record = named.record();
+  if (!program.record) return;
+  program.record->settings.spin_deg = spin_deg;
+  program.record->settings.overlap_mm = program.overlap_mm;
+  program.record->settings.clearance_mm = program.clearance_mm;
+  program.record->settings.approach_height_mm = program.approach_height_mm;
+  program.record->setup.T_flange_tool = program.T_flange_tool;
 }
 
 WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path& file) {
@@ -194,6 +253,18 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
 
 }  // namespace robot_detail
 
+std::string_view to_string(ProgramDigest digest) {
+  switch (digest) {
+    case ProgramDigest::Absent:
+      return "absent";
+    case ProgramDigest::Matches:
+      return "matches";
+    case ProgramDigest::Differs:
+      return "differs";
+  }
+  return "unknown";
+}
+
 WrittenProgram program_from_text(std::string_view text, const std::filesystem::path& name) {
   const std::string ending = name.extension().string();
   if (ending == ".yaml" || ending == ".yml" || ending == ".bag") {
@@ -204,6 +275,7 @@ WrittenProgram program_from_text(std::string_view text, const std::filesystem::p
                            : ending == ".json" ? robot_detail::read_program_json(text, name)
                                                : robot_detail::read_urscript(text, name);
   robot_detail::read_header(program, name);
+  program.digest = robot_detail::digest_state(text, program.header);
   return program;
 }
 

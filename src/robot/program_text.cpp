@@ -1,3 +1,5 @@
+#include "robot/comment_text.hpp"
+#include "robot/program_digest.hpp"
 #include "robot/text_form.hpp"
 
 #include <incise/core/units.hpp>
@@ -79,7 +81,7 @@ std::string to_joint_csv(const RobotProgram& program, const ProgramHeader& heade
     const ProgramPhase phase = program.poses[std::min(s.pose + 1, program.poses.size() - 1)].phase;
     text += fmt::format(",{:.6f},{:.6f},{:.6f},{}\n", tip.x(), tip.y(), tip.z(), to_string(phase));
   }
-  return text;
+  return robot_detail::sealed(std::move(text));
 }
 
 std::string to_ros_yaml(const RobotProgram& program, const ProgramHeader& header) {
@@ -96,7 +98,7 @@ std::string to_ros_yaml(const RobotProgram& program, const ProgramHeader& header
         "  time_from_start: {{sec: {}, nanosec: {}}}\n",
         list_of(s.q_rad), list_of(s.speed_rad_s), list_of(s.acceleration_rad_s2), ns / 1000000000, ns % 1000000000);
   }
-  return text;
+  return robot_detail::sealed(std::move(text));
 }
 
 std::string to_json(const RobotProgram& program, const ProgramChecks* checks, const ProgramHeader& header) {
@@ -106,7 +108,8 @@ std::string to_json(const RobotProgram& program, const ProgramChecks* checks, co
   document["frame"] = "robot";
   if (!header.empty()) {
     document["header"] = ordered_json::array();
-    for (const auto& [key, value] : header) document["header"].push_back({key, value});
+    for (const auto& [key, value] : robot_detail::plain_header(robot_detail::with_digest_entry(header)))
+      document["header"].push_back({key, value});
   }
   document["kind"] = to_string(program.kind);
   document["closed"] = program.is_closed;
@@ -131,7 +134,7 @@ std::string to_json(const RobotProgram& program, const ProgramChecks* checks, co
     for (const ProgramCheck& check : checks->checks) document["checks"].push_back(json_of(check));
     document["checks_not_made"] = checks->not_made;
   }
-  return document.dump(2) + "\n";
+  return robot_detail::sealed(document.dump(2) + "\n");
 }
 
 }  // namespace incise

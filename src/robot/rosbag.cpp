@@ -1,3 +1,4 @@
+#include "robot/program_digest.hpp"
 #include "robot/text_form.hpp"
 
 #include <bit>
@@ -146,8 +147,8 @@ std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header) 
                                             .field_number("end_time", stamp())
                                             .field_number("count", std::uint32_t{2}),
                                         counts.data());
-  return magic + record(bag_header, std::string(padding, ' ')) + chunk_record + indices + connection_records +
-         chunk_info;
+  return robot_detail::sealed(magic + record(bag_header, std::string(padding, ' ')) + chunk_record + indices +
+                              connection_records + chunk_info);
 }
 
 }  // namespace incise

@@ -16,8 +16,11 @@ void require_finite(const RobotProgram& program);
 /// @throws InvalidArgument where there are no joints to write
 void require_motion(const RobotProgram& program);
 
-/// `# incise.KEY: VALUE`, one line each.
+/// `# incise.KEY: VALUE`, one line each, with an entry for the digest (see sealed).
 [[nodiscard]] std::string header_lines(const ProgramHeader& header);
+
+inline constexpr double kStartAcceleration = 0.5;  // rad/s² and rad/s: an unhurried way to the start
+inline constexpr double kStartSpeed = 0.3;
 
 inline constexpr const char* kHeaderMark = "# incise.";
 

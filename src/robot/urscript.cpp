@@ -1,3 +1,4 @@
+#include "robot/program_digest.hpp"
 #include "robot/text_form.hpp"
 
 #include <incise/core/error.hpp>
@@ -12,9 +13,6 @@ namespace incise {
 namespace {
 
 using robot_detail::is_cut;
-
-constexpr double kStartAcceleration = 0.5;  // rad/s² and rad/s: an unhurried way to the start
-constexpr double kStartSpeed = 0.3;
 
 bool is_identifier(const std::string& name) {
   const std::string letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
@@ -125,9 +123,9 @@ std::string to_urscript(const RobotProgram& program, const ProgramHeader& header
       "stands.\n";
   text += fmt::format("def {}():\n", settings.function_name) + tcp_line(program.setup.T_flange_tool);
   text += fmt::format("  movej({}, a={:.4f}, v={:.4f})\n", joints_text(program.motion.samples.front().q_rad),
-                      kStartAcceleration, kStartSpeed);
+                      robot_detail::kStartAcceleration, robot_detail::kStartSpeed);
   text += settings.motion == ScriptMotion::MoveP ? moves(program, settings) : stream(program, settings);
-  return text + fmt::format("end\n\n{}()\n", settings.function_name);
+  return robot_detail::sealed(text + fmt::format("end\n\n{}()\n", settings.function_name));
 }
 
 }  // namespace incise

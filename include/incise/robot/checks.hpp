@@ -96,6 +96,7 @@ struct ProgramCheck {
 struct ProgramChecks {
   std::vector<ProgramCheck> checks;
   std::vector<std::string> not_made;  ///< what nobody has looked at: read it before a robot moves
+  CheckSettings settings{};           ///< that they were made with
   [[nodiscard]] bool all_passed() const;
   [[nodiscard]] bool may_be_written() const;  ///< every check has passed or is overridden
 };

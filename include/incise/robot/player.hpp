@@ -13,7 +13,13 @@ struct PlayerSettings {
   double speed_slider = 1.0;      ///< share in (0, 1] that the controller's slider stands at
   double cycle_s = 0.002;         ///< of the controller: 500 Hz
   double end_zone_mm = 2.0;       ///< of the cut at either end, where the tip speeds up and slows down
-  double max_deviation_mm = 1.0;  ///< most that the tip may leave the intended course by in the cut, for a success
+  double max_deviation_mm = 1.0;  ///< most that the tip may leave the intended course by, for a success
+  // Of a program that says which path it was made for and how, on its own course.
+  double max_lean_deg = 2.0;       ///< of the tool's axis from the intended one
+  double speed_tolerance = 0.05;   ///< share by which the tip may be faster than intended, or slower in the cut
+  double max_way_back_mm = 0.5;    ///< along the course
+  double max_way_left_mm = 2.0;    ///< of the course, before its first and after its last place
+  double max_rest_s = 1.5;         ///< in the tissue, beyond the intended dwell: a stream holds still where motions end
 };
 /// Every rule that the settings break, in words; empty: none.
 [[nodiscard]] std::vector<std::string> validate(const PlayerSettings& settings);
@@ -28,10 +34,17 @@ enum class ReplayOutcome {
   EndsInTissue,    ///< it runs to its end, and leaves the tip below the surface
   TooLong,         ///< it would take longer than kLongestProgramS
   JointSpeed,      ///< it runs to its end, but a joint is sent faster than it can turn
-  OffCourse        ///< it runs to its end, but the tip leaves the intended course by more than `max_deviation_mm`
+  OffCourse,       ///< it runs to its end, but the tip leaves the intended course by more than `max_deviation_mm`
+  WrongAxis,       ///< … but the tool leans from the intended axis
+  WrongOrder,      ///< … but it goes back on its course, or leaves its beginning or end out
+  WrongSpeed,      ///< … but the tip, or a move's acceleration, is faster than intended, or slower in the cut
+  RestsInTissue,   ///< … but the tip rests in the tissue
+  BreaksLimit,     ///< … but the arm comes too near to the table, its base, itself, a joint's limit or a singularity
+  Altered,         ///< … but it is not the program that was checked: its digest differs
+  FalseChecks      ///< … but its header tells of checks that come out otherwise when they are made again
 };
 /// completed, unreachable, jump, blends_overlap, joint_limits, starts_in_tissue, ends_in_tissue, too_long, joint_speed,
-/// off_course
+/// off_course, wrong_axis, wrong_order, wrong_speed, rests_in_tissue, breaks_limit, altered, false_checks
 [[nodiscard]] std::string_view to_string(ReplayOutcome outcome);
 
 /// The arm in one cycle.
@@ -39,6 +52,7 @@ struct ReplaySample {
   double time_s = 0.0;
   Joints q_rad = Joints::Zero();
   Vec3 tip_mm = Vec3::Zero();
+  Vec3 axis = -Vec3::UnitZ();   ///< of the tool, out of its tip
   double tip_speed_mm_s = 0.0;  ///< over the cycle before
   double deviation_mm = 0.0;    ///< distance of the tip from the intended course; 0 where none is known
   ProgramPhase phase = ProgramPhase::Approach;
@@ -51,7 +65,7 @@ struct SpeedNumbers {
 /// What the arm would do.
 struct [[nodiscard]] Replay {
   ReplayOutcome outcome = ReplayOutcome::Completed;
-  std::size_t line = 0;  ///< of the program, where it ended too early; 0: at no line (tissue, JSON)
+  std::size_t line = 0;  ///< of the program, where it ended too early or asks for too much; 0: at no line
   std::string reason;    ///< what was found, for a person, where the outcome alone does not say it
   std::vector<ReplaySample> samples;
   Points intended_mm;  ///< the intended course of the tip as a fine polyline: plunge, cut with overlap, exit
@@ -76,7 +90,10 @@ struct [[nodiscard]] Replay {
 /// @param intended  the path that the tip should follow, frame robot; by default the one in the program's header.
 /// Without either
 ///   deviations are 0 and intended_mm is empty.
-/// Where a program that runs to its end has several faults, tissue comes before speed, and speed before the course.
+/// A program that says in its header which path it was made for and how is held to that in every phase, the way through the air
+/// included: place, axis, order, speed, rests, and the limits of the arm's checks. With `intended`, the cut is held to it as well.
+/// Where a program that runs to its end has several faults, the outcome is the first in the order of ReplayOutcome's list
+/// from StartsInTissue on, joint speed before the course.
 [[nodiscard]] Replay play(const WrittenProgram& program, const ArmModel& arm = ur10e(),
                           const PlayerSettings& settings = {}, const ToolPath* intended = nullptr);
 

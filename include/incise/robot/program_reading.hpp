@@ -34,6 +34,21 @@ struct TimedJoints {
   std::size_t line = 0;  ///< of the table; 0: none (JSON)
 };
 
+/// Whether a program is, to the byte, the one that was written and checked.
+enum class ProgramDigest {
+  Absent,   ///< it carries no digest: it is another's, or older than digests
+  Matches,  ///< it is
+  Differs   ///< it was changed afterwards, or put together by hand
+};
+[[nodiscard]] std::string_view to_string(ProgramDigest digest);  ///< absent, matches, differs
+
+/// What a program was made with and held to.
+struct ProgramRecord {
+  ProgramSettings settings;
+  ArmSetup setup;
+  CheckSettings limits;
+};
+
 /// A program that was written by to_urscript, to_joint_csv or to_json, read back. Either `commands` or `joints` is
 /// filled.
 struct WrittenProgram {
@@ -42,6 +57,10 @@ struct WrittenProgram {
   std::vector<TimedJoints> joints;
   Mat4 T_flange_tool = Mat4::Identity();
   std::optional<ToolPath> path;  ///< that it was made for, from its header, in the robot's frame
+  std::optional<ProgramRecord> record;  ///< from its header, where that is complete
+  ProgramDigest digest = ProgramDigest::Absent;
+  std::vector<std::string> listed_checks;  ///< of JSON: the checks beside the header, in the header's words
+  Points listed_tips_mm;                   ///< of JSON: the poses' tips beside the motion
   double overlap_mm = 0.0, clearance_mm = 0.0, approach_height_mm = 0.0;
 };
 

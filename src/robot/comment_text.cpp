@@ -1,0 +1,92 @@
+#include "robot/comment_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace incise::robot_detail {
+namespace {
+
+struct Range {
+  std::uint32_t first, last;
+};
+
+/// What may end a line, turn the direction of reading, or is not seen [Unicode: Cc, Cf, Zl, Zp, noncharacters].
+constexpr std::array<Range, 17> kNotPlain{{{0x00, 0x1F},
+                                           {0x7F, 0x9F},
+                                           {0xAD, 0xAD},
+                                           {0x61C, 0x61C},
+                                           {0x180E, 0x180E},
+                                           {0x200B, 0x200F},
+                                           {0x2028, 0x202E},
+                                           {0x2060, 0x206F},
+                                           {0xFDD0, 0xFDEF},
+                                           {0xFE00, 0xFE0F},
+                                           {0xFEFF, 0xFEFF},
+                                           {0xFFF9, 0xFFFB},
+                                           {0xFFFE, 0xFFFF},
+                                           {0x1D173, 0x1D17A},
+                                           {0x1FFFE, 0x1FFFF},
+                                           {0xE0000, 0xE0FFF},
+                                           {0xF0000, 0x10FFFF}}};
+
+bool is_plain(std::uint32_t code) {
+  return std::none_of(kNotPlain.begin(), kNotPlain.end(),
+                      [code](const Range& range) { return code >= range.first && code <= range.last; });
+}
+
+/// Bytes of the UTF-8 character at the beginning of a text and its code; 0 bytes: there is none.
+struct Utf8Character {
+  std::size_t bytes = 0;
+  std::uint32_t code = 0;
+};
+
+Utf8Character first_character(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return {1, lead};
+  const std::size_t bytes = lead >= 0xF0 && lead < 0xF5 ? 4 : lead >= 0xE0 && lead < 0xF0 ? 3 : lead >= 0xC2 && lead < 0xE0 ? 2 : 0;
+  if (bytes == 0 || text.size() < bytes) return {};
+  std::uint32_t code = lead & (0xFFU >> (bytes + 1));
+  for (std::size_t i = 1; i < bytes; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80U) return {};
+    code = (code << 6U) | (byte(i) & 0x3FU);
+  }
+  const bool is_overlong = (bytes == 3 && code < 0x800) || (bytes == 4 && code < 0x10000);
+  const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
+  return is_overlong || is_surrogate || code > 0x10FFFF ? Utf8Character{} : Utf8Character{bytes, code};
+}
+
+}  // namespace
+
+std::string comment_text(std::string_view text) {
+  std::string plain;
+  while (!text.empty()) {
+    const Utf8Character character = first_character(text);
+    if (character.bytes == 0)
+      plain += '?';
+    else if (is_plain(character.code))
+      plain += text.substr(0, character.bytes);
+    else
+      plain += ' ';
+    text.remove_prefix(std::max<std::size_t>(1, character.bytes));
+  }
+  return plain;
+}
+
+ProgramHeader plain_header(const ProgramHeader& header) {
+  ProgramHeader plain;
+  for (const auto& [key, value] : header) {
+    for (std::string_view rest = value;;) {
+      const std::size_t end = rest.find('\n');
+      std::string_view line = rest.substr(0, end);
+      if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+      plain.emplace_back(comment_text(key), comment_text(line));
+      if (end == std::string_view::npos) break;
+      rest.remove_prefix(end + 1);
+    }
+  }
+  return plain;
+}
+
+}  // namespace incise::robot_detail

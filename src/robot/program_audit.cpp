@@ -1,0 +1,203 @@
+#include "robot/own_course.hpp"
+#include "robot/program_record.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
+#include <incise/robot/program_audit.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <sstream>
+#include <string_view>
+
+namespace incise {
+namespace {
+
+constexpr std::string_view kNeedMore[]{"heat",           "deviation",           "surface_collision",
+                                       "shaft",          "needle",              "power",
+                                       "registration_scale", "registration_rmse", "registration_inliers",
+                                       "registration_converged"};
+constexpr double kSameShare = 0.01;  // of value and limit: the header holds waypoints to 1 nm and values to 4 digits
+constexpr double kSame = 1e-3;
+
+bool needs_more(const std::string& check) {
+  return std::find(std::begin(kNeedMore), std::end(kNeedMore), check) != std::end(kNeedMore);
+}
+
+/// A line of the header: "margin passed: 5.03 mm >= 2.2 mm" or "frame passed".
+struct Claim {
+  std::string text;
+  bool is_passed = false;
+  std::optional<double> value, limit;
+};
+
+std::optional<std::pair<std::string, Claim>> claim_of(const std::string& text) {
+  std::istringstream words(text);
+  std::string name, verdict, word, relation;
+  words >> name >> verdict;
+  Claim claim{.text = text, .is_passed = verdict == "passed" || verdict == "passed:"};
+  const bool has_value = verdict.ends_with(':');
+  if (!claim.is_passed && verdict != "FAILED" && verdict != "FAILED:") return std::nullopt;
+  const auto number = [&word] {
+    char* end = nullptr;
+    const double value = std::strtod(word.c_str(), &end);
+    return end != word.c_str() && *end == '\0' ? std::optional(value) : std::nullopt;
+  };
+  if (has_value) {
+    if (!(words >> word) || !(claim.value = number())) return std::nullopt;
+    while (words >> word && word != "<=" && word != ">=" && word != "<" && word != ">") {
+    }
+    if (!(words >> word) || !(claim.limit = number())) return std::nullopt;
+  }
+  return std::pair(name, claim);
+}
+
+bool is_same(double claimed, double found, double scale) {
+  return claimed == found || std::abs(claimed - found) <= kSame + kSameShare * std::abs(scale);
+}
+
+class Auditor {
+ public:
+  explicit Auditor(const WrittenProgram& program) : program_(program) { audit_.digest = program.digest; }
+
+  ProgramAudit audit() {
+    read_claims();
+    if (!program_.path || !program_.record || !is_sane(*program_.record)) {
+      audit_.not_recomputed.emplace_back("all: the header does not say what the program was made with");
+      return std::move(audit_);
+    }
+    list_moved_limits();
+    try {
+      make_again();
+    } catch (const InvalidArgument& error) {
+      contradict("no program can be made of its header: " + as_sentence(error));
+    }
+    return std::move(audit_);
+  }
+
+ private:
+  /// Nothing that would make it take for ever or fill the memory.
+  static bool is_sane(const ProgramRecord& record) {
+    return record.settings.max_spacing_mm >= 0.05 && record.settings.chord_error_mm >= 1e-4 &&
+           record.setup.period_s >= 0.002 && record.settings.approach_speed_mm_s >= 0.1 &&
+           record.settings.plunge_speed_mm_s >= 0.1;
+  }
+
+  void contradict(std::string what) { audit_.contradictions.push_back(std::move(what)); }
+
+  void read_claims() {
+    for (const auto& [key, value] : program_.header) {
+      if (key != "check") continue;
+      const auto claim = claim_of(value);
+      if (!claim)
+        contradict(fmt::format("'{}' is no line of a check", value));
+      else if (!claims_.emplace(*claim).second)
+        contradict(fmt::format("{} is listed twice", claim->first));
+      else if (!claim->second.is_passed)
+        contradict(fmt::format("{} has failed, and nobody took it on them", claim->first));
+    }
+    for (const std::string& listed : program_.listed_checks) {
+      const std::string name = listed.substr(0, listed.find(' '));
+      const auto claim = claims_.find(name);
+      const bool is_told = claim != claims_.end() ? claim->second.text == listed : robot_detail::is_overridden(program_.header, name);
+      if (!is_told) contradict(fmt::format("the list of checks says '{}', the header does not", listed));
+    }
+  }
+
+  void list_moved_limits() {
+    ProgramRecord usual;
+    std::map<std::string, double> by_default;
+    robot_detail::describe(usual, [&](const char*, const char* name, const auto& number) { by_default[name] = number; });
+    robot_detail::describe(*program_.record, [&](const char* key, const char* name, const auto& number) {
+      if (std::string_view(key) == "limit" && by_default[name] != static_cast<double>(number))
+        audit_.moved_limits.push_back(fmt::format("{} {}, by default {}", name, static_cast<double>(number), by_default[name]));
+    });
+  }
+
+  void make_again() {
+    const ProgramRecord& record = *program_.record;
+    const RobotProgram made = make_program(*program_.path, record.settings, record.setup);
+    const ProgramChecks checks = check_program(made, *program_.path, record.limits);
+    const bool has_surface = claims_.contains("surface_collision") || claims_.contains("shaft");
+    for (const ProgramCheck& check : checks.checks) {
+      if (check.name == "depth" && has_surface) {
+        audit_.not_recomputed.push_back(check.name);
+        continue;
+      }
+      audit_.recomputed.push_back(check.name);
+      hold(check);
+    }
+    for (const auto& [name, claim] : claims_) {
+      const bool is_made = std::any_of(checks.checks.begin(), checks.checks.end(), [&](const auto& c) { return c.name == name; });
+      if (is_made) continue;
+      if (needs_more(name))
+        audit_.not_recomputed.push_back(name);
+      else
+        contradict(fmt::format("'{}' is no check of such a program", claim.text));
+    }
+    hold_numbers(made);
+  }
+
+  /// One line of the header against the check made again.
+  void hold(const ProgramCheck& check) {
+    if (robot_detail::is_overridden(program_.header, check.name)) return;
+    const auto at = claims_.find(check.name);
+    if (at == claims_.end()) return contradict(fmt::format("nothing is said of {}", check.name));
+    const Claim& claim = at->second;
+    if (!check.passed) return contradict(fmt::format("'{}', but: {}", claim.text, check.message()));
+    const bool is_same_kind = claim.value.has_value() == !check.relation.empty();
+    const double scale = std::max(std::abs(check.value), std::abs(check.limit));
+    if (!is_same_kind || (claim.value && (!is_same(*claim.value, check.value, scale) || !is_same(*claim.limit, check.limit, check.limit))))
+      contradict(fmt::format("'{}', made again '{}'", claim.text, robot_detail::held_against_its_limit(check)));
+  }
+
+  /// The header's own numbers, and the poses of JSON.
+  void hold_numbers(const RobotProgram& made) {
+    const auto told = [this](const char* key) {
+      const auto at = std::find_if(program_.header.begin(), program_.header.end(), [&](const auto& e) { return e.first == key; });
+      return at == program_.header.end() ? std::string("nothing") : at->second;
+    };
+    for (const auto& [key, value] : {std::pair("duration_s", made.duration_s()), std::pair("cut_length_mm", made.cut_length_mm)}) {
+      const std::string text = told(key);
+      char* end = nullptr;
+      const double number = std::strtod(text.c_str(), &end);
+      if (end == text.c_str() || *end != '\0' || !is_same(number, value, 0.0))
+        contradict(fmt::format("{} {}, made again {:.6f}", key, text, value));
+    }
+    for (const auto& [key, value] : {std::pair("branch", to_string(made.motion.branch)), std::pair("robot", made.setup.arm.name)})
+      if (told(key) != value) contradict(fmt::format("{} {}, made again {}", key, told(key), value));
+    if (program_.listed_tips_mm.empty()) return;
+    bool is_same_course = program_.listed_tips_mm.size() == made.poses.size();
+    for (std::size_t i = 0; is_same_course && i < made.poses.size(); ++i)
+      is_same_course = (program_.listed_tips_mm[i] - made.poses[i].tip_mm).norm() < 0.01;
+    if (!is_same_course) contradict("the poses are not those of the path in the header");
+  }
+
+  const WrittenProgram& program_;
+  ProgramAudit audit_;
+  std::map<std::string, Claim> claims_;
+};
+
+}  // namespace
+
+ProgramAudit audit_program(const WrittenProgram& program) {
+  return Auditor(program).audit();
+}
+
+void judge_audit(Replay& replay, const ProgramAudit& audit) {
+  if (replay.outcome != ReplayOutcome::Completed) return;
+  if (audit.digest == ProgramDigest::Differs) {
+    replay.outcome = ReplayOutcome::Altered;
+    replay.reason = "its digest is another: it was changed after it was checked";
+  } else if (!audit.contradictions.empty()) {
+    replay.outcome = ReplayOutcome::FalseChecks;
+    replay.reason = audit.contradictions.front();
+  }
+}
+
+}  // namespace incise
