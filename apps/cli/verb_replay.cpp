@@ -81,7 +81,9 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
   const ProgramAudit audit = audit_program(program);
   judge_audit(replay, audit);
   if (audit.digest == ProgramDigest::Absent)
-    console.message(Severity::Warning, "not checked: the program carries no digest, so nobody knows whether it is the one that was checked");
+    console.message(
+        Severity::Warning,
+        "not checked: the program carries no digest, so nobody knows whether it is the one that was checked");
   nlohmann::ordered_json result = to_json(replay, settings);
   result["program_audit"] = to_json(audit, program.header);
   result["model"] = "incise's own kinematics and interpolation; not the maker's controller";

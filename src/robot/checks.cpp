@@ -477,10 +477,11 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
                  "expected the intended path in the frame of the path");
   ProgramChecks result;
   result.settings = settings;
-  result.not_made = {"forces on the tissue and on the tool; switching of the electrode",
-                     "collisions with anything but the arm itself, its base, the table's plane and the given surface; cables; the "
-                     "way to the start",
-                     "how well the controller keeps to the program (see the player)"};
+  result.not_made = {
+      "forces on the tissue and on the tool; switching of the electrode",
+      "collisions with anything but the arm itself, its base, the table's plane and the given surface; cables; the "
+      "way to the start",
+      "how well the controller keeps to the program (see the player)"};
   CheckList list(program, result);
   if (!check_finite(list)) {
     result.not_made.insert(result.not_made.begin(), "all others: the program holds numbers that are not finite");

@@ -13,9 +13,9 @@
 namespace incise::robot_detail {
 namespace {
 
-constexpr double kNearTheLimitMm = 0.5;   // where a distance that is only known as a range is looked at closely …
-constexpr double kCloselyMm = 0.05;       // … to this
-constexpr double kRoughShare = 0.1;       // elsewhere a tenth will do
+constexpr double kNearTheLimitMm = 0.5;  // where a distance that is only known as a range is looked at closely …
+constexpr double kCloselyMm = 0.05;      // … to this
+constexpr double kRoughShare = 0.1;      // elsewhere a tenth will do
 
 const Capsule& of(const Hulls& hulls, Hull hull) {
   return hulls[static_cast<std::size_t>(hull)];
@@ -121,10 +121,9 @@ void check_surface(CheckList& list, const TriMesh& surface, const std::vector<Hu
   const SurfaceProbe probe(surface);
   SurfaceWatch links(probe, settings.surface_clearance_mm), shaft(probe, settings.shaft_clearance_mm),
       needle(probe, settings.needle_clearance_mm);
-  const bool has_shaft =
-      !Instrument{program.setup.T_flange_tool, settings.needle_length_mm, settings.needle_radius_mm,
-                  settings.shaft_radius_mm}
-           .is_needle_alone();
+  const bool has_shaft = !Instrument{program.setup.T_flange_tool, settings.needle_length_mm, settings.needle_radius_mm,
+                                     settings.shaft_radius_mm}
+                              .is_needle_alone();
   for (std::size_t i = 0; i < hulls.size(); ++i) {
     const std::size_t pose = program.motion.samples[i].pose;
     for (const Hull hull : kLinks) links.see(hull, of(hulls[i], hull), half_step_mm(hulls, i, hull), pose);

@@ -7,9 +7,9 @@
 
 namespace incise::robot_detail {
 
-/// A text that stays on its line and shows what it holds, wherever it is read: every control character (C0, DEL, C1), every
-/// character that ends a line somewhere (VT, FF, NEL, U+2028, U+2029), those that turn the direction of reading or are
-/// not seen at all become a blank, each byte that is not UTF-8 a question mark.
+/// A text that stays on its line and shows what it holds, wherever it is read: every control character (C0, DEL, C1),
+/// every character that ends a line somewhere (VT, FF, NEL, U+2028, U+2029), those that turn the direction of reading
+/// or are not seen at all become a blank, each byte that is not UTF-8 a question mark.
 [[nodiscard]] std::string comment_text(std::string_view text);
 
 /// The header with such values; one with line ends (LF, CR LF) becomes one entry a line.

@@ -13,10 +13,10 @@ constexpr std::array<std::string_view, kHullCount> kNames{"base",    "shoulder",
 
 // The upper arm swings beside the base and the forearm beside wrist 2, by the build of the arm.
 constexpr HullPair kBasePairs[]{
-    {Hull::Base, Hull::Elbow},       {Hull::Base, Hull::Forearm},    {Hull::Base, Hull::Wrist1},
-    {Hull::Base, Hull::Wrist2},      {Hull::Base, Hull::Wrist3},     {Hull::Base, Hull::Shaft},
-    {Hull::Base, Hull::Needle},      {Hull::Shoulder, Hull::Forearm}, {Hull::Shoulder, Hull::Wrist1},
-    {Hull::Shoulder, Hull::Wrist2},  {Hull::Shoulder, Hull::Wrist3}, {Hull::Shoulder, Hull::Shaft},
+    {Hull::Base, Hull::Elbow},      {Hull::Base, Hull::Forearm},     {Hull::Base, Hull::Wrist1},
+    {Hull::Base, Hull::Wrist2},     {Hull::Base, Hull::Wrist3},      {Hull::Base, Hull::Shaft},
+    {Hull::Base, Hull::Needle},     {Hull::Shoulder, Hull::Forearm}, {Hull::Shoulder, Hull::Wrist1},
+    {Hull::Shoulder, Hull::Wrist2}, {Hull::Shoulder, Hull::Wrist3},  {Hull::Shoulder, Hull::Shaft},
     {Hull::Shoulder, Hull::Needle}};
 constexpr HullPair kSelfPairs[]{
     {Hull::UpperArm, Hull::Wrist1}, {Hull::UpperArm, Hull::Wrist2}, {Hull::UpperArm, Hull::Wrist3},
@@ -98,7 +98,8 @@ double distance_mm(const Capsule& a, const Capsule& b) {
 }
 
 double motion_mm(const Capsule& before, const Capsule& after) {
-  return std::sqrt(std::max((after.from_mm - before.from_mm).squaredNorm(), (after.to_mm - before.to_mm).squaredNorm()));
+  return std::sqrt(
+      std::max((after.from_mm - before.from_mm).squaredNorm(), (after.to_mm - before.to_mm).squaredNorm()));
 }
 
 std::span<const HullPair> base_pairs() {
@@ -113,7 +114,8 @@ double arm_clearance_mm(const Hulls& hulls) {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& pairs : {base_pairs(), self_pairs()}) {
     for (const HullPair& pair : pairs)
-      least = std::min(least, distance_mm(hulls[static_cast<std::size_t>(pair.a)], hulls[static_cast<std::size_t>(pair.b)]));
+      least = std::min(least,
+                       distance_mm(hulls[static_cast<std::size_t>(pair.a)], hulls[static_cast<std::size_t>(pair.b)]));
   }
   return least;
 }

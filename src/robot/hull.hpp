@@ -40,8 +40,8 @@ struct Instrument {
 };
 
 using Hulls = std::array<Capsule, kHullCount>;
-/// The hulls at these joints. The base's column begins on the table, or at the base's foot if that lies lower. The shaft
-/// of a tool that is a needle alone is a piece of the needle.
+/// The hulls at these joints. The base's column begins on the table, or at the base's foot if that lies lower. The
+/// shaft of a tool that is a needle alone is a piece of the needle.
 [[nodiscard]] Hulls hulls_at(const ArmModel& arm, const Joints& q, const Instrument& instrument, double table_z_mm);
 
 /// Least distance between the hulls' skins, mm; negative where they overlap.
@@ -53,8 +53,8 @@ using Hulls = std::array<Capsule, kHullCount>;
 struct HullPair {
   Hull a, b;
 };
-/// Pairs that the joints can bring together: not those that a joint connects or whose distance no joint changes, and not
-/// those that the arm's build holds apart sideways.
+/// Pairs that the joints can bring together: not those that a joint connects or whose distance no joint changes, and
+/// not those that the arm's build holds apart sideways.
 [[nodiscard]] std::span<const HullPair> base_pairs();  ///< with the base or the shoulder
 [[nodiscard]] std::span<const HullPair> self_pairs();  ///< of the others
 

@@ -15,7 +15,7 @@
 namespace incise::robot_detail {
 namespace {
 
-constexpr double kSpacingMm = 0.05;   // chords deviate by 2e-5 mm at 15 mm radius
+constexpr double kSpacingMm = 0.05;    // chords deviate by 2e-5 mm at 15 mm radius
 constexpr double kRoundingMm_s = 0.2;  // of speeds: a table of six decimals and cycles of 2 ms
 
 /// One place of the course, and what holds on the way from it to the next.
@@ -66,14 +66,14 @@ class OwnCourse {
     }
     return true;
   }
-  /// The greatest speed about a place: where it changes, either may hold.
-  [[nodiscard]] double speed_about(std::size_t place) const {
+  /// The greatest speed about a place of the way from `place` on: where it changes, either may hold.
+  [[nodiscard]] double speed_about(std::size_t place, double arc_mm) const {
     constexpr double kNearMm = 0.3;
     double speed = places_[place].speed_mm_s;
-    for (std::size_t i = place; i > 0 && places_[i].arc_mm > places_[place].arc_mm - kNearMm; --i)
+    for (std::size_t i = place; i > 0 && places_[i].arc_mm > arc_mm - kNearMm; --i)
       speed = std::max(speed, places_[i - 1].speed_mm_s);
-    for (std::size_t i = place; i + 1 < places_.size() && places_[i].arc_mm < places_[place].arc_mm + kNearMm; ++i)
-      speed = std::max(speed, places_[i + 1].speed_mm_s);
+    for (std::size_t i = place + 1; i < places_.size() && places_[i].arc_mm < arc_mm + kNearMm; ++i)
+      speed = std::max(speed, places_[i].speed_mm_s);
     return speed;
   }
 
@@ -155,11 +155,12 @@ Conduct conduct_of(const Replay& replay, const OwnCourse& course, const PlayerSe
     conduct.last_arc_mm = place.arc_mm;
     conduct.deviation_mm.see(place.distance_mm, sample.time_s);
     conduct.lean_deg.see(
-        units::deg_from_rad(std::atan2(place.axis.cross(sample.axis).norm(), place.axis.dot(sample.axis))), sample.time_s);
+        units::deg_from_rad(std::atan2(place.axis.cross(sample.axis).norm(), place.axis.dot(sample.axis))),
+        sample.time_s);
     farthest_mm = std::max(farthest_mm, place.arc_mm);
     conduct.way_back_mm.see(farthest_mm - place.arc_mm, sample.time_s);
     const double speed = sample.tip_speed_mm_s, nominal = course.places()[place.index].speed_mm_s;
-    const double most = course.speed_about(place.index);
+    const double most = course.speed_about(place.index, place.arc_mm);
     conduct.too_fast.see(speed - most * (1.0 + settings.speed_tolerance) - kRoundingMm_s, sample.time_s, most);
     const double least = settings.speed_slider * nominal;
     if (course.is_steady(place.index))
@@ -177,7 +178,8 @@ const ScriptCommand* hasty_command(const WrittenProgram& program) {
     using Kind = ScriptCommand::Kind;
     const bool is_straight = command.kind == Kind::MoveL || command.kind == Kind::MoveP;
     if (is_straight && command.acceleration > kRounding * program.record->settings.acceleration_mm_s2) return &command;
-    if (command.kind == Kind::MoveJ && (command.acceleration > kRounding * kStartAcceleration || command.speed > kRounding * kStartSpeed))
+    if (command.kind == Kind::MoveJ &&
+        (command.acceleration > kRounding * kStartAcceleration || command.speed > kRounding * kStartSpeed))
       return &command;
   }
   return nullptr;
@@ -193,8 +195,9 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
   const bool is_at_full_speed = settings.speed_slider == 1.0;  // a slowed stream ends before the arm arrives
   if (conduct.deviation_mm.value > settings.max_deviation_mm) {
     end(replay, ReplayOutcome::OffCourse,
-        fmt::format("at {:.2f} s the tip is {:.2f} mm off the course that the header tells of, at most {} mm are allowed",
-                    conduct.deviation_mm.time_s, conduct.deviation_mm.value, settings.max_deviation_mm));
+        fmt::format(
+            "at {:.2f} s the tip is {:.2f} mm off the course that the header tells of, at most {} mm are allowed",
+            conduct.deviation_mm.time_s, conduct.deviation_mm.value, settings.max_deviation_mm));
   } else if (conduct.lean_deg.value > settings.max_lean_deg) {
     end(replay, ReplayOutcome::WrongAxis,
         fmt::format("at {:.2f} s the tool leans {:.1f} degrees from its intended axis, at most {} are allowed",
@@ -204,8 +207,9 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
         fmt::format("at {:.2f} s the tip has gone back {:.2f} mm on its course", conduct.way_back_mm.time_s,
                     conduct.way_back_mm.value));
   } else if (is_at_full_speed && left_mm > settings.max_way_left_mm) {
-    end(replay, ReplayOutcome::WrongOrder, fmt::format("{:.2f} mm of its course are left out at the {}", left_mm,
-                                                       left_mm == conduct.first_arc_mm ? "beginning" : "end"));
+    end(replay, ReplayOutcome::WrongOrder,
+        fmt::format("{:.2f} mm of its course are left out at the {}", left_mm,
+                    left_mm == conduct.first_arc_mm ? "beginning" : "end"));
   } else if (conduct.too_fast.value > 0.0 || conduct.too_slow.value > 0.0) {
     const bool is_fast = conduct.too_fast.value > 0.0;
     const Peak& worst = is_fast ? conduct.too_fast : conduct.too_slow;
@@ -213,7 +217,8 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
         fmt::format("at {:.2f} s the tip is {} than the intended {} mm/s, by {:.3g} mm/s more than the tolerance",
                     worst.time_s, is_fast ? "faster" : "slower", worst.limit, worst.value));
   } else if (const ScriptCommand* command = hasty_command(program)) {
-    end(replay, ReplayOutcome::WrongSpeed, "a move with more acceleration or speed than the program was made with", command->line);
+    end(replay, ReplayOutcome::WrongSpeed, "a move with more acceleration or speed than the program was made with",
+        command->line);
   } else if (is_at_full_speed && conduct.rest_s > program.record->settings.dwell_s + settings.max_rest_s) {
     end(replay, ReplayOutcome::RestsInTissue,
         fmt::format("the tip rests in the tissue for {:.2f} s, intended are {} s", conduct.rest_s,
@@ -228,14 +233,15 @@ bool is_overridden(const ProgramHeader& header, const std::string& check) {
 }
 
 void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel& arm) {
-  constexpr std::size_t kStride = 2;     // every 4 ms: 0.2 mm at 50 mm/s …
-  constexpr double kMarginMm = 0.5;      // … with which, and with chords, a value may lie below that of the export
+  constexpr std::size_t kStride = 2;  // every 4 ms: 0.2 mm at 50 mm/s …
+  constexpr double kMarginMm = 0.5;   // … with which, and with chords, a value may lie below that of the export
   constexpr double kMarginDeg = 0.1;
   if (replay.outcome != ReplayOutcome::Completed) return;
   const ProgramRecord record = program.record.value_or(ProgramRecord{});
   const CheckSettings& limits = record.limits;
   const double table_z_mm = record.setup.table_z_mm;
-  const Instrument instrument{program.T_flange_tool, limits.needle_length_mm, limits.needle_radius_mm, limits.shaft_radius_mm};
+  const Instrument instrument{program.T_flange_tool, limits.needle_length_mm, limits.needle_radius_mm,
+                              limits.shaft_radius_mm};
   struct Limit {
     const char* name;
     double least, found, time_s;
@@ -253,7 +259,8 @@ void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel&
     const auto least_of = [&hulls](std::span<const HullPair> pairs) {
       double least = kFar;
       for (const HullPair& pair : pairs)
-        least = std::min(least, distance_mm(hulls[static_cast<std::size_t>(pair.a)], hulls[static_cast<std::size_t>(pair.b)]));
+        least = std::min(least,
+                         distance_mm(hulls[static_cast<std::size_t>(pair.a)], hulls[static_cast<std::size_t>(pair.b)]));
       return least;
     };
     const Capsule& shaft = hulls[static_cast<std::size_t>(Hull::Shaft)];
@@ -272,8 +279,9 @@ void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel&
   }
   for (const Limit& limit : all) {
     if (limit.found >= limit.least || is_overridden(program.header, limit.name)) continue;
-    return end(replay, ReplayOutcome::BreaksLimit,
-               fmt::format("{}: {:.4g} at {:.2f} s, has to be >= {:.4g}", limit.name, limit.found, limit.time_s, limit.least));
+    return end(
+        replay, ReplayOutcome::BreaksLimit,
+        fmt::format("{}: {:.4g} at {:.2f} s, has to be >= {:.4g}", limit.name, limit.found, limit.time_s, limit.least));
   }
 }
 

@@ -18,9 +18,15 @@
 namespace incise {
 namespace {
 
-constexpr std::string_view kNeedMore[]{"heat",           "deviation",           "surface_collision",
-                                       "shaft",          "needle",              "power",
-                                       "registration_scale", "registration_rmse", "registration_inliers",
+constexpr std::string_view kNeedMore[]{"heat",
+                                       "deviation",
+                                       "surface_collision",
+                                       "shaft",
+                                       "needle",
+                                       "power",
+                                       "registration_scale",
+                                       "registration_rmse",
+                                       "registration_inliers",
                                        "registration_converged"};
 constexpr double kSameShare = 0.01;  // of value and limit: the header holds waypoints to 1 nm and values to 4 digits
 constexpr double kSame = 1e-3;
@@ -104,7 +110,8 @@ class Auditor {
     for (const std::string& listed : program_.listed_checks) {
       const std::string name = listed.substr(0, listed.find(' '));
       const auto claim = claims_.find(name);
-      const bool is_told = claim != claims_.end() ? claim->second.text == listed : robot_detail::is_overridden(program_.header, name);
+      const bool is_told =
+          claim != claims_.end() ? claim->second.text == listed : robot_detail::is_overridden(program_.header, name);
       if (!is_told) contradict(fmt::format("the list of checks says '{}', the header does not", listed));
     }
   }
@@ -112,10 +119,12 @@ class Auditor {
   void list_moved_limits() {
     ProgramRecord usual;
     std::map<std::string, double> by_default;
-    robot_detail::describe(usual, [&](const char*, const char* name, const auto& number) { by_default[name] = number; });
+    robot_detail::describe(usual,
+                           [&](const char*, const char* name, const auto& number) { by_default[name] = number; });
     robot_detail::describe(*program_.record, [&](const char* key, const char* name, const auto& number) {
       if (std::string_view(key) == "limit" && by_default[name] != static_cast<double>(number))
-        audit_.moved_limits.push_back(fmt::format("{} {}, by default {}", name, static_cast<double>(number), by_default[name]));
+        audit_.moved_limits.push_back(
+            fmt::format("{} {}, by default {}", name, static_cast<double>(number), by_default[name]));
     });
   }
 
@@ -133,7 +142,8 @@ class Auditor {
       hold(check);
     }
     for (const auto& [name, claim] : claims_) {
-      const bool is_made = std::any_of(checks.checks.begin(), checks.checks.end(), [&](const auto& c) { return c.name == name; });
+      const bool is_made =
+          std::any_of(checks.checks.begin(), checks.checks.end(), [&](const auto& c) { return c.name == name; });
       if (is_made) continue;
       if (needs_more(name))
         audit_.not_recomputed.push_back(name);
@@ -141,6 +151,7 @@ class Auditor {
         contradict(fmt::format("'{}' is no check of such a program", claim.text));
     }
     hold_numbers(made);
+    hold_motion(made);
   }
 
   /// One line of the header against the check made again.
@@ -152,30 +163,87 @@ class Auditor {
     if (!check.passed) return contradict(fmt::format("'{}', but: {}", claim.text, check.message()));
     const bool is_same_kind = claim.value.has_value() == !check.relation.empty();
     const double scale = std::max(std::abs(check.value), std::abs(check.limit));
-    if (!is_same_kind || (claim.value && (!is_same(*claim.value, check.value, scale) || !is_same(*claim.limit, check.limit, check.limit))))
+    if (!is_same_kind || (claim.value && (!is_same(*claim.value, check.value, scale) ||
+                                          !is_same(*claim.limit, check.limit, check.limit))))
       contradict(fmt::format("'{}', made again '{}'", claim.text, robot_detail::held_against_its_limit(check)));
   }
 
   /// The header's own numbers, and the poses of JSON.
   void hold_numbers(const RobotProgram& made) {
     const auto told = [this](const char* key) {
-      const auto at = std::find_if(program_.header.begin(), program_.header.end(), [&](const auto& e) { return e.first == key; });
+      const auto at =
+          std::find_if(program_.header.begin(), program_.header.end(), [&](const auto& e) { return e.first == key; });
       return at == program_.header.end() ? std::string("nothing") : at->second;
     };
-    for (const auto& [key, value] : {std::pair("duration_s", made.duration_s()), std::pair("cut_length_mm", made.cut_length_mm)}) {
+    for (const auto& [key, value] :
+         {std::pair("duration_s", made.duration_s()), std::pair("cut_length_mm", made.cut_length_mm)}) {
       const std::string text = told(key);
       char* end = nullptr;
       const double number = std::strtod(text.c_str(), &end);
       if (end == text.c_str() || *end != '\0' || !is_same(number, value, 0.0))
         contradict(fmt::format("{} {}, made again {:.6f}", key, text, value));
     }
-    for (const auto& [key, value] : {std::pair("branch", to_string(made.motion.branch)), std::pair("robot", made.setup.arm.name)})
+    for (const auto& [key, value] :
+         {std::pair("branch", to_string(made.motion.branch)), std::pair("robot", made.setup.arm.name)})
       if (told(key) != value) contradict(fmt::format("{} {}, made again {}", key, told(key), value));
     if (program_.listed_tips_mm.empty()) return;
     bool is_same_course = program_.listed_tips_mm.size() == made.poses.size();
     for (std::size_t i = 0; is_same_course && i < made.poses.size(); ++i)
       is_same_course = (program_.listed_tips_mm[i] - made.poses[i].tip_mm).norm() < 0.01;
     if (!is_same_course) contradict("the poses are not those of the path in the header");
+  }
+
+  /// The moves or rows against those that are written for the program made again.
+  void hold_motion(const RobotProgram& made) {
+    if (made.motion.outcome != MotionOutcome::Found) return;
+    if (!program_.joints.empty()) return hold_rows(made.motion.samples);
+    const bool is_stream = std::any_of(program_.commands.begin(), program_.commands.end(),
+                                       [](const auto& c) { return c.kind == ScriptCommand::Kind::ServoJ; });
+    const std::string script =
+        to_urscript(made, program_.header, {.motion = is_stream ? ScriptMotion::ServoJ : ScriptMotion::MoveP});
+    const auto expected = without_rests(program_from_text(script, "made again").commands),
+               found = without_rests(program_.commands);
+    for (std::size_t i = 0; i < std::min(expected.size(), found.size()); ++i) {
+      if (!is_same_command(found[i], expected[i]))
+        return contradict(
+            fmt::format("line {}: another statement than is written for the path in the header", found[i].line));
+    }
+    if (expected.size() != found.size())
+      contradict(fmt::format("{} moves, for the path in the header {} are written", found.size(), expected.size()));
+  }
+
+  void hold_rows(const std::vector<JointSample>& samples) {
+    constexpr double kSameRad = 1e-4, kSameRad_s = 1e-2, kSameS = 1e-5;
+    const auto& rows = program_.joints;
+    for (std::size_t i = 0; i < std::min(rows.size(), samples.size()); ++i) {
+      const bool is_same_row = (rows[i].q_rad - samples[i].q_rad).cwiseAbs().maxCoeff() <= kSameRad &&
+                               (rows[i].speed_rad_s - samples[i].speed_rad_s).cwiseAbs().maxCoeff() <= kSameRad_s &&
+                               std::abs(rows[i].time_s - samples[i].time_s) <= kSameS;
+      if (!is_same_row) return contradict(fmt::format("row {}: other joints than those for the path in the header", i));
+    }
+    if (rows.size() != samples.size())
+      contradict(fmt::format("{} rows, for the path in the header {} are written", rows.size(), samples.size()));
+  }
+
+  /// A stream holds still where a motion ends; for how long is a setting that the header does not hold.
+  static std::vector<ScriptCommand> without_rests(const std::vector<ScriptCommand>& commands) {
+    std::vector<ScriptCommand> moves;
+    for (const ScriptCommand& command : commands) {
+      const bool is_rest = !moves.empty() && command.kind == ScriptCommand::Kind::ServoJ &&
+                           moves.back().kind == ScriptCommand::Kind::ServoJ && command.q_rad == moves.back().q_rad;
+      if (!is_rest) moves.push_back(command);
+    }
+    return moves;
+  }
+
+  static bool is_same_command(const ScriptCommand& a, const ScriptCommand& b) {
+    constexpr double kSameRad = 1e-4, kSameMm = 0.01,
+                     kSameBlendShare = 0.3;  // blends: in [0, 0.5) of the spacing, usually 0.4
+    const auto is_near = [](double x, double y) { return std::abs(x - y) <= 1e-3 * std::abs(y) + 1e-9; };
+    return a.kind == b.kind && a.phase == b.phase && (a.q_rad - b.q_rad).cwiseAbs().maxCoeff() <= kSameRad &&
+           (a.tip_mm - b.tip_mm).norm() <= kSameMm && (a.rotation_vector - b.rotation_vector).norm() <= kSameRad &&
+           is_near(a.acceleration, b.acceleration) && is_near(a.speed, b.speed) && is_near(a.seconds, b.seconds) &&
+           a.blend_mm <= (1.0 + kSameBlendShare) * b.blend_mm + kSame;
   }
 
   const WrittenProgram& program_;

@@ -45,7 +45,8 @@ std::string sealed(std::string text) {
 }
 
 ProgramDigest digest_state(std::string_view text, const ProgramHeader& header) {
-  const bool is_there = std::any_of(header.begin(), header.end(), [](const auto& entry) { return entry.first == kDigestKey; });
+  const bool is_there =
+      std::any_of(header.begin(), header.end(), [](const auto& entry) { return entry.first == kDigestKey; });
   if (!is_there) return ProgramDigest::Absent;
   const auto place = place_of_digits(text);
   if (!place) return ProgramDigest::Differs;

@@ -120,7 +120,8 @@ class NamedNumbers {
   void add(const std::string& key, const std::string& value) {
     const std::size_t blank = value.find(' ');
     const std::string name = value.substr(0, blank), place = key + " " + name;
-    if (blank == std::string::npos || !numbers_.emplace(place, numbers_of(value.substr(blank), 1, file_, place)[0]).second)
+    if (blank == std::string::npos ||
+        !numbers_.emplace(place, numbers_of(value.substr(blank), 1, file_, place)[0]).second)
       throw DataError(file_, "header " + key, fmt::format("'{}'", value), "a name and its number, each name once");
   }
   /// Nothing where one is missing or none knows it.

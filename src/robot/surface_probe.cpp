@@ -12,7 +12,7 @@ constexpr double kPlaneRadiusMm = 2.0;
 constexpr double kBridgeRadiusMm = 4.0;   // on tissue with a radius of 25 mm a plane of this size lies 0.2 mm off
 constexpr double kFarthestPointMm = 2.0;  // the nearest measured point from the axis, as where a path is laid down
 constexpr double kMostVariance =
-    0.3;                         // of the plane's height on the axis, over that of a point: four all round have 0.25
+    0.3;  // of the plane's height on the axis, over that of a point: four all round have 0.25
 
 }  // namespace
 

@@ -42,11 +42,11 @@ TEST(CheckProgram, PassesASoundRingAndSaysWhatItFound) {
   EXPECT_TRUE(checks.all_passed()) << ::testing::PrintToString(failures(checks));
   std::vector<std::string> names;
   for (const auto& check : checks.checks) names.push_back(check.name);
-  EXPECT_THAT(names, ::testing::ElementsAre("finite", "frame", "closed", "gap", "self_crossing", "speed_min",
-                                            "speed_max", "depth", "margin", "encloses", "deviation", "chord_error",
-                                            "tilt", "tool_table", "reach", "joint_limits", "joint_speed",
-                                            "joint_acceleration", "singularity", "tip_speed", "table", "self_collision",
-                                            "base"));
+  EXPECT_THAT(names,
+              ::testing::ElementsAre("finite", "frame", "closed", "gap", "self_crossing", "speed_min", "speed_max",
+                                     "depth", "margin", "encloses", "deviation", "chord_error", "tilt", "tool_table",
+                                     "reach", "joint_limits", "joint_speed", "joint_acceleration", "singularity",
+                                     "tip_speed", "table", "self_collision", "base"));
   EXPECT_NEAR(named(checks, "margin").value, 5.0, 0.05);
   EXPECT_NEAR(named(checks, "speed_max").value, 7.0, 1e-12);
   EXPECT_LT(named(checks, "deviation").value, 0.05);
@@ -420,7 +420,8 @@ TEST(CheckProgram, FindsAWallBesideTheRingThatTheArmWouldMeet) {
     TriMesh surface = sheet(100.0, as_points);
     TriMesh wall = sheet(0.0, as_points);
     const auto first = static_cast<std::uint32_t>(surface.vertices.size());
-    for (const Vec3& vertex : wall.vertices) surface.vertices.emplace_back(656.0, vertex.x() - 600.0, 250.0 + vertex.y() * 3.0);
+    for (const Vec3& vertex : wall.vertices)
+      surface.vertices.emplace_back(656.0, vertex.x() - 600.0, 250.0 + vertex.y() * 3.0);
     for (auto triangle : wall.triangles) {
       for (auto& corner : triangle) corner = VertexId(static_cast<std::uint32_t>(corner.index()) + first);
       surface.triangles.push_back(triangle);

@@ -232,8 +232,7 @@ TEST(Player, PlaysNothingForDays) {
     EXPECT_NE(at, std::string::npos) << old;
     return text.replace(at, old.size(), now);
   };
-  for (const auto& text :
-       {with("v=0.050000", "v=0.000000001"), with("a=0.1000, v=0.050000", "a=1e-12, v=0.050000")}) {
+  for (const auto& text : {with("v=0.050000", "v=0.000000001"), with("a=0.1000, v=0.050000", "a=1e-12, v=0.050000")}) {
     const Replay slow = replayed(text);
     EXPECT_EQ(slow.outcome, ReplayOutcome::TooLong);
     EXPECT_GT(slow.line, 10u);

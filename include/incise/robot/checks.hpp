@@ -48,8 +48,8 @@ struct CheckSettings {
   double joint_speed_share = 0.5;              ///< of what the maker allows
   double max_joint_acceleration_rad_s2 = 5.0;  ///< the maker publishes none; his own programs' default is 1.4
   double table_clearance_mm = 20.0;            ///< of the links' hulls
-  double arm_clearance_mm = 10.0;      ///< of the hulls of arm and instrument from each other and from the base
-  double surface_clearance_mm = 10.0;  ///< of the arm's hulls from the tissue
+  double arm_clearance_mm = 10.0;              ///< of the hulls of arm and instrument from each other and from the base
+  double surface_clearance_mm = 10.0;          ///< of the arm's hulls from the tissue
   double tip_speed_tolerance = 0.01;           ///< as a share of the speed, away from the ends
   double max_chord_error_mm = 0.02;            ///< of the moves and their blends from the smooth course
 
@@ -113,7 +113,8 @@ struct ProgramChecks {
 ///   so too, seen along the mean axis. A ring without an edge fails, and so does an edge that crosses itself
 ///   in that view, one that is open, and one without area; only an open cut may have no edge at all
 /// - `heat` (incisions; if the half width is given): it keeps farther from the edge than heat reaches
-/// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height: its worst point is named
+/// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height: its worst point is
+/// named
 /// - `edge_distance` (marks): neither the entry course nor the tumour edge leaves the other by more than
 ///   `mark_distance_mm`
 /// - `deviation` (with an intended path): neither course is farther than `max_deviation_mm` from the other

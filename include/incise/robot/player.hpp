@@ -15,11 +15,11 @@ struct PlayerSettings {
   double end_zone_mm = 2.0;       ///< of the cut at either end, where the tip speeds up and slows down
   double max_deviation_mm = 1.0;  ///< most that the tip may leave the intended course by, for a success
   // Of a program that says which path it was made for and how, on its own course.
-  double max_lean_deg = 2.0;       ///< of the tool's axis from the intended one
-  double speed_tolerance = 0.05;   ///< share by which the tip may be faster than intended, or slower in the cut
-  double max_way_back_mm = 0.5;    ///< along the course
-  double max_way_left_mm = 2.0;    ///< of the course, before its first and after its last place
-  double max_rest_s = 1.5;         ///< in the tissue, beyond the intended dwell: a stream holds still where motions end
+  double max_lean_deg = 2.0;      ///< of the tool's axis from the intended one
+  double speed_tolerance = 0.05;  ///< share by which the tip may be faster than intended, or slower in the cut
+  double max_way_back_mm = 0.2;   ///< along the course
+  double max_way_left_mm = 2.0;   ///< of the course, before its first and after its last place
+  double max_rest_s = 1.5;        ///< in the tissue, beyond the intended dwell: a stream holds still where motions end
 };
 /// Every rule that the settings break, in words; empty: none.
 [[nodiscard]] std::vector<std::string> validate(const PlayerSettings& settings);
@@ -90,10 +90,10 @@ struct [[nodiscard]] Replay {
 /// @param intended  the path that the tip should follow, frame robot; by default the one in the program's header.
 /// Without either
 ///   deviations are 0 and intended_mm is empty.
-/// A program that says in its header which path it was made for and how is held to that in every phase, the way through the air
-/// included: place, axis, order, speed, rests, and the limits of the arm's checks. With `intended`, the cut is held to it as well.
-/// Where a program that runs to its end has several faults, the outcome is the first in the order of ReplayOutcome's list
-/// from StartsInTissue on, joint speed before the course.
+/// A program that says in its header which path it was made for and how is held to that in every phase, the way through
+/// the air included: place, axis, order, speed, rests, and the limits of the arm's checks. With `intended`, the cut is
+/// held to it as well. Where a program that runs to its end has several faults, the outcome is the first in the order
+/// of ReplayOutcome's list from StartsInTissue on, joint speed before the course.
 [[nodiscard]] Replay play(const WrittenProgram& program, const ArmModel& arm = ur10e(),
                           const PlayerSettings& settings = {}, const ToolPath* intended = nullptr);
 

@@ -19,8 +19,9 @@ struct [[nodiscard]] ProgramAudit {
   [[nodiscard]] bool is_checked() const { return digest == ProgramDigest::Matches && contradictions.empty(); }
 };
 
-/// Makes the program again from its header (path, tumour edge, settings, limits), checks it again and holds the header's
-/// lines against what comes out. What needs the tissue's surface, the registration or the path before correction cannot be made again.
+/// Makes the program again from its header (path, tumour edge, settings, limits), checks it again and holds the
+/// header's lines against what comes out. What needs the tissue's surface, the registration or the path before
+/// correction cannot be made again.
 [[nodiscard]] ProgramAudit audit_program(const WrittenProgram& program);
 
 /// A completed replay of a program whose digest differs, or whose header is not so, gets that outcome. A program

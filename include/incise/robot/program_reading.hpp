@@ -56,7 +56,7 @@ struct WrittenProgram {
   std::vector<ScriptCommand> commands;
   std::vector<TimedJoints> joints;
   Mat4 T_flange_tool = Mat4::Identity();
-  std::optional<ToolPath> path;  ///< that it was made for, from its header, in the robot's frame
+  std::optional<ToolPath> path;         ///< that it was made for, from its header, in the robot's frame
   std::optional<ProgramRecord> record;  ///< from its header, where that is complete
   ProgramDigest digest = ProgramDigest::Absent;
   std::vector<std::string> listed_checks;  ///< of JSON: the checks beside the header, in the header's words
