@@ -107,6 +107,9 @@ std::string refusal_of(const std::string& step, const StepRecord& record) {
   for (const char* key : {"outcome", "reasons"}) {
     if (record.result.is_object() && record.result.contains(key)) why += " " + record.result.at(key).dump();
   }
+  // Of a program that the verdict refused, its worst reason.
+  const nlohmann::json worst = record.result.is_object() ? record.result.value("/verdict/reasons/0/id"_json_pointer, nlohmann::json()) : nlohmann::json();
+  if (worst.is_string()) why += fmt::format(" ({}: {})", record.result.at("/verdict/status"_json_pointer).get<std::string>(), worst.get<std::string>());
   return fmt::format("{}: not acceptable{}", step, why);
 }
 

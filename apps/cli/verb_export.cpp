@@ -138,7 +138,7 @@ void warn_of_less(const ExportArguments& a, const CheckInputs& inputs, const Too
     if (is_given) return;
     console.message(Severity::Warning, fmt::format("not checked without {}: {}", option, checks));
   };
-  missing(inputs.surface != nullptr, "--surface", "the shaft, and the depth below the tissue");
+  missing(inputs.surface != nullptr, "--surface", "arm, shaft and needle against the tissue, and the depth below it");
   missing(inputs.registration.has_value(), "--registration", "how well the tissue was found");
   missing(inputs.power_w.has_value(), "--power-w", "the electrode's power");
   if (a.is_open) console.message(Severity::Warning, "not checked with --open: closed, gap, encloses");
@@ -286,8 +286,8 @@ void add_export(Application& application) {
   add_accept(*verb, a.accepted);
   verb->add_option("--intended", a.intended, "The path before correction, to check the deviation");
   verb->add_option("--surface", a.surface,
-                   "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth and shaft are "
-                   "checked against it");
+                   "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth, arm, "
+                   "shaft and needle are checked against it");
   verb->add_option("--registration", a.registration, "Result of `incise register` (.json): its quality is checked");
   verb->add_option("--power-w", a.power_w,
                    "Power of the electrode, to check it and how far beside the needle its heat reaches")

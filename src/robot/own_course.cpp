@@ -31,6 +31,9 @@ class OwnCourse {
   explicit OwnCourse(const WrittenProgram& program) {
     const ToolPath& path = *program.path;
     const ProgramSettings& s = program.record->settings;
+    double fastest = 0.0;
+    for (const Waypoint& waypoint : path.waypoints) fastest = std::max(fastest, waypoint.speed_mm_s);
+    ramp_mm_ = 2.0 * s.max_spacing_mm + fastest * fastest / s.acceleration_mm_s2;
     const TipCurve curve(path);
     const double length_mm = curve.length_mm() + (path.is_closed ? s.overlap_mm : 0.0);
     const TipSample first = curve.at(0.0), last = curve.at(length_mm);
@@ -55,24 +58,27 @@ class OwnCourse {
   [[nodiscard]] bool is_in_tissue(double arc_mm) const { return arc_mm > surface_in_mm_ && arc_mm < surface_out_mm_; }
   /// On the curve, so far from its ends and from other speeds that the tip has its full speed.
   [[nodiscard]] bool is_steady(std::size_t place) const {
-    constexpr double kRampMm = 3.0;
     const double arc_mm = places_[place].arc_mm, speed = places_[place].speed_mm_s;
-    if (arc_mm < cut_begin_mm_ + kRampMm || arc_mm > cut_end_mm_ - kRampMm) return false;
-    for (std::size_t i = place; places_[i].arc_mm > arc_mm - kRampMm; --i) {
+    if (arc_mm < cut_begin_mm_ + ramp_mm_ || arc_mm > cut_end_mm_ - ramp_mm_) return false;
+    for (std::size_t i = place; places_[i].arc_mm > arc_mm - ramp_mm_; --i) {
       if (places_[i].speed_mm_s != speed) return false;
     }
-    for (std::size_t i = place; places_[i].arc_mm < arc_mm + kRampMm; ++i) {
+    for (std::size_t i = place; places_[i].arc_mm < arc_mm + ramp_mm_; ++i) {
       if (places_[i].speed_mm_s != speed) return false;
     }
     return true;
   }
-  /// The greatest speed about a place of the way from `place` on: where it changes, either may hold.
+  /// The greatest speed about a place of the way from `place` on: where it changes, either may hold. The straight legs
+  /// end at rest; along the curve a move may begin before its waypoint, and slowing down takes its way.
   [[nodiscard]] double speed_about(std::size_t place, double arc_mm) const {
     constexpr double kNearMm = 0.3;
+    const bool is_cut = arc_mm > cut_begin_mm_ + kNearMm && arc_mm < cut_end_mm_ - kNearMm;
+    const double first_mm = is_cut ? std::max(cut_begin_mm_, arc_mm - ramp_mm_) : arc_mm - kNearMm;
+    const double last_mm = is_cut ? std::min(cut_end_mm_, arc_mm + ramp_mm_) : arc_mm + kNearMm;
     double speed = places_[place].speed_mm_s;
-    for (std::size_t i = place; i > 0 && places_[i].arc_mm > arc_mm - kNearMm; --i)
+    for (std::size_t i = place; i > 0 && places_[i].arc_mm > first_mm; --i)
       speed = std::max(speed, places_[i - 1].speed_mm_s);
-    for (std::size_t i = place + 1; i < places_.size() && places_[i].arc_mm < arc_mm + kNearMm; ++i)
+    for (std::size_t i = place + 1; i < places_.size() && places_[i].arc_mm < last_mm; ++i)
       speed = std::max(speed, places_[i].speed_mm_s);
     return speed;
   }
@@ -86,6 +92,7 @@ class OwnCourse {
     add(place.tip_mm - (place.depth_mm + height_mm) * place.axis, place.axis, speed_mm_s);
   }
   std::vector<CoursePlace> places_;
+  double ramp_mm_ = 0.0;  ///< twice the way to the fastest speed, and a move either way
   double surface_in_mm_ = 0.0, surface_out_mm_ = 0.0, cut_begin_mm_ = 0.0, cut_end_mm_ = 0.0;
 };
 

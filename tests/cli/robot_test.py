@@ -1,6 +1,7 @@
 """A path in the robot's frame becomes a program, or a clear refusal; programs are played."""
 
 import csv
+import hashlib
 import json
 import math
 import pathlib
@@ -173,9 +174,26 @@ class ExportTest(RobotTest):
         for tcp in ((0, 0, 150, 0, 1.5708, 0), (150, 0, 0, 0, 0, 0)):
             self.assert_unsafe(ring(), "shaft", options=["--surface", "flat.obj", "--tcp", *map(str, tcp)])
 
+    def test_the_arm_is_held_clear_of_its_base_and_of_the_tissue(self):
+        # A needle that leans and is led 2 mm past the base's axis.
+        leaning = [{"position_mm": [2.0, y, 150.0], "axis": [-math.sin(1.2), 0, -math.cos(1.2)], "depth_mm": 5, "speed_mm_s": 7} for y in (-8.0, -3.0, 2.0, 7.0)]
+        self.assert_unsafe({**ring(), "closed": False, "tumor_edge": [], "waypoints": leaning}, "base", "base and needle", options=["--open"])
+        # A flange that is 0.1 mm above the tissue, and a wall beside the ring that only the arm would meet.
+        (self.folder / "flat.obj").write_text("v 300 -300 100\nv 900 -300 100\nv 900 300 100\nv 300 300 100\nf 1 2 3 4\n")
+        self.assert_unsafe(ring(), "surface_collision", "wrist 3", options=["--surface", "flat.obj", "--tcp", 0, 0, 25, 0, 0, 0])
+        (self.folder / "wall.obj").write_text("v 300 -300 100\nv 900 -300 100\nv 900 300 100\nv 300 300 100\nv 660 -60 200\nv 660 60 200\nv 660 60 400\nv 660 -60 400\nf 1 2 3 4\nf 5 6 7 8\n")
+        self.assert_unsafe(ring(), "surface_collision", options=["--surface", "wall.obj"])
+
     def test_a_tumour_edge_without_area_is_unsafe(self):
-        for edge in ([[600, 0, 100]] * 3, [[600, 0, 100], [601, 0, 100], [602, 0, 100]]):
-            self.assert_unsafe({**ring(), "tumor_edge": edge}, "margin", "lie on a line or in one place")
+        line = [[600, 0, 100], [605, 0, 100], [610, 0, 100]]
+        self.assert_unsafe({**ring(), "tumor_edge": line}, "margin", "lie on a line or in one place")
+
+    def test_a_tumour_edge_that_is_no_tumour_is_refused(self):
+        triangle = [[600, 0, 100], [600.2, 0, 100], [600.1, 0.1, 100]]
+        for edge in ([[600, 0, 100]] * 3, triangle, [[1000 * x for x in point] for point in triangle]):
+            done = self.incise("export", self.write({**ring(), "tumor_edge": edge}), "-o", "cut.script")
+            self.assert_refused(done, BAD_DATA, "/tumor_edge: found a tumour", "expected 2 to 100 mm")
+            self.assert_nothing_written(self.folder / "cut.script")
 
     def test_what_is_not_checked_or_less_strictly_is_told(self):
         path = self.write(ring())
@@ -246,8 +264,8 @@ class ExportTest(RobotTest):
         path["waypoints"][6]["position_mm"][0] = 1e200
         done = self.incise("export", self.write(path), "-o", "cut.script")
         self.assert_refused(done, BAD_DATA, "path.json: waypoints: found 1e+200 mm at waypoint 6, expected places within 1e+05 mm")
-        tiny = ring(radius=1.0, edge=0.5)
-        self.assert_refused(self.incise("export", self.write(tiny), "-o", "cut.script"), BAD_DATA, "found 8 mm, expected an overlap below the path's 6.28")
+        tiny = ring(radius=1.2, edge=1.0)
+        self.assert_refused(self.incise("export", self.write(tiny), "-o", "cut.script"), BAD_DATA, "found 8 mm, expected an overlap below the path's 7.54")
         self.assert_nothing_written(self.folder / "cut.script")
 
 
@@ -284,6 +302,38 @@ class ReplayTest(RobotTest):
         super().setUp()
         self.assertEqual(self.incise("export", self.write(ring()), "-o", "cut.script").returncode, DONE)
         self.text = (self.folder / "cut.script").read_text()
+
+    def test_a_program_that_was_changed_is_not_the_one_that_was_checked(self):
+        audit = self.json_of("replay", "cut.script")["program_audit"]
+        self.assertTrue(audit["checked"] and audit["digest_matches"], audit)
+        self.assertIn("margin", audit["recomputed"])
+        lines = self.text.splitlines(keepends=True)
+        first = next(i for i, line in enumerate(lines) if line.startswith("  movel("))
+        start = next(i for i, line in enumerate(lines) if line.startswith("  movej("))
+        dive = lines[first].replace(lines[first].split(", ")[2], "-0.05000000", 1)
+        joint = lines[start].split("[")[1].split(",")[0]
+        changed = {
+            "a dive below the table": (lines[:first] + [dive] + lines[first:], "off_course"),
+            "a start half a radian off": (lines[:start] + [lines[start].replace(joint, f"{float(joint) + 0.5:.8f}", 1)] + lines[start + 1:], "off_course"),
+            "a hundredfold speed": ([line.replace("v=0.007000", "v=0.700000") for line in lines], "wrong_speed"),
+            "a forged check": ([line.replace("margin passed: 5 mm", "margin passed: 9 mm") for line in lines], "altered"),
+            "another title": (["# incise.title: another\n", *lines], "altered"),
+        }
+        for what, (text, outcome) in changed.items():
+            with self.subTest(change=what):
+                (self.folder / "changed.script").write_text("".join(text))
+                played = self.json_of("replay", "changed.script", status=NOT_ACCEPTABLE)
+                self.assertEqual(played["outcome"], outcome, played.get("reason"))
+                self.assertIs(played["program_audit"]["checked"], False)
+        (self.folder / "foreign.script").write_text("".join(line for line in lines if "incise.digest" not in line))
+        done = self.incise("replay", "foreign.script", "--json")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertIn("carries no digest", done.stderr)
+        self.assertEqual((json.loads(done.stdout)["program_audit"]["checked"], json.loads(done.stdout)["program_audit"]["digest_matches"]), (False, None))
+
+    def test_the_digest_is_that_of_the_file_with_zeros_in_its_place(self):
+        digest = self.text.split("# incise.digest: sha256 ")[1][:64]
+        self.assertEqual(hashlib.sha256(self.text.replace(digest, 64 * "0").encode()).hexdigest(), digest)
 
     def test_the_slider_halves_the_speed(self):
         played = self.json_of("replay", "cut.script", "--speed-slider", "50")

@@ -3,6 +3,7 @@
 #include "robot/ring_path.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
 #include <incise/robot/program_audit.hpp>
 
 #include <fmt/format.h>
@@ -76,6 +77,8 @@ std::string ending_of(const std::string& text, const char* name = "cut.script") 
   }
 }
 
+constexpr int kSoundPrograms = 16;
+
 /// Its digest shows that it was changed, or the reader refuses it.
 bool is_another(const std::string& text, const char* name = "cut.script") {
   try {
@@ -123,6 +126,71 @@ TEST(Tamper, AnUntouchedProgramOfEachFormIsTheCheckedOne) {
         << name;
     EXPECT_EQ(ending_of(sealed_again(text), name), "completed") << name;
   }
+}
+
+/// A ring of some size and height anywhere in front of the arm, with leaning axes, and speeds that change along it.
+ToolPath random_ring(Random& random) {
+  ToolPath path = ring_path(static_cast<std::size_t>(24 + random.below(60)));
+  const double size = random.uniform(0.6, 1.6), lean = random.uniform(-0.3, 0.3), turn = random.uniform(-1.0, 1.0);
+  const double slow = random.uniform(2.0, 12.0), fast = random.below(2) == 0 ? slow : random.uniform(slow, 25.0);
+  const Vec3 old_middle(600.0, 0.0, 100.0), middle(random.uniform(450.0, 850.0), 0.0, random.uniform(60.0, 350.0));
+  const Mat3 R = Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix();
+  for (Waypoint& w : path.waypoints) {
+    const Vec3 outwards = w.position_mm - old_middle;
+    w.axis = R * (lean * outwards.normalized() - Vec3::UnitZ()).normalized();
+    w.position_mm = R * (middle + size * outwards + 0.01 * outwards.x() * outwards.x() * Vec3::UnitZ());
+    w.speed_mm_s = outwards.x() > 0.0 ? slow : fast;
+  }
+  for (Vec3& point : path.tumor_edge.points) point = R * (middle + (size - 0.2) * (point - old_middle));
+  return path;
+}
+
+TEST(Tamper, SoundProgramsOfManyKindsAreAllCheckedAndCompleted) {
+  Random random(5);
+  int sound = 0;
+  for (int i = 0; i < kSoundPrograms; ++i) {
+    const ToolPath path = random_ring(random);
+    const RobotProgram program = make_program(path);
+    ASSERT_EQ(program.motion.outcome, MotionOutcome::Found) << i;
+    const ProgramChecks checks = check_program(program, path);
+    if (!checks.all_passed()) continue;  // speeds that change faster than the tip can
+    ++sound;
+    const ProgramHeader header = program_header(program, path, checks, provenance());
+    const int form = i % 4;
+    const char* name = form == 2 ? "cut.csv" : form == 3 ? "cut.json" : "cut.script";
+    const std::string text =
+        form == 2   ? to_joint_csv(program, header)
+        : form == 3 ? to_json(program, &checks, header)
+                    : to_urscript(program, header, {.motion = form == 0 ? ScriptMotion::MoveP : ScriptMotion::ServoJ});
+    const WrittenProgram written = program_from_text(text, name);
+    const ProgramAudit audit = audit_program(written);
+    EXPECT_TRUE(audit.is_checked()) << i << ::testing::PrintToString(audit.contradictions);
+    for (const double slider : {1.0, 0.5}) {
+      const Replay replay = play(written, ur10e(), {.speed_slider = slider});
+      EXPECT_EQ(replay.outcome, ReplayOutcome::Completed)
+          << i << " " << name << ", slider " << slider << ": " << to_string(replay.outcome) << ": " << replay.reason;
+    }
+  }
+  EXPECT_GT(2 * sound, kSoundPrograms);
+}
+
+TEST(Tamper, ASoundMarkAndAProgramWithAnOverrideAreChecked) {
+  ToolPath mark = ring_path();
+  mark.kind = PathKind::Mark;
+  for (std::size_t i = 0; i < mark.waypoints.size(); ++i)
+    mark.waypoints[i] = {mark.tumor_edge.points[i], -Vec3::UnitZ(), 1.0, 2.0};
+  const RobotProgram marked = make_program(mark, {.plunge_speed_mm_s = 2.0, .overlap_mm = 0.0, .dwell_s = 0.3});
+  EXPECT_EQ(ending_of(to_urscript(marked, program_header(marked, mark, check_program(marked, mark)))), "completed");
+  ToolPath close = ring_path();
+  close.waypoints[12].position_mm = Vec3(600.0, 12.0, 100.0);
+  const RobotProgram program = make_program(close);
+  ProgramChecks checks = check_program(program, close);
+  override_checks(checks, {"margin"});
+  ASSERT_TRUE(checks.may_be_written());
+  for (const auto& [text, name] :
+       {std::pair(to_urscript(program, program_header(program, close, checks)), "a.script"),
+        std::pair(to_json(program, &checks, program_header(program, close, checks)), "b.json")})
+    EXPECT_EQ(ending_of(text, name), "completed") << name;
 }
 
 constexpr const char* kPhases[]{"approach", "plunge", "cut", "overlap", "exit", "retreat"};
