@@ -1,5 +1,7 @@
 #include "console.hpp"
 
+#include "standard_streams.hpp"
+
 #include <fmt/format.h>
 
 #include <csignal>
@@ -36,7 +38,7 @@ Console::Console(Level level) : level_(level), is_terminal_(::isatty(STDERR_FILE
 Console::~Console() { clear_bar(); }
 
 void Console::clear_bar() {
-  if (has_bar_) fmt::print(stderr, "\r\033[K");
+  if (has_bar_) say("\r\033[K");
   has_bar_ = false;
 }
 
@@ -44,7 +46,7 @@ void Console::message(Severity severity, std::string_view text) {
   if (level_ == Level::Quiet && severity != Severity::Warning) return;
   if (level_ != Level::Verbose && severity == Severity::Detail) return;
   clear_bar();
-  fmt::print(stderr, "{}{}\n", severity == Severity::Warning ? "warning: " : "", text);
+  say(fmt::format("{}{}\n", severity == Severity::Warning ? "warning: " : "", text));
 }
 
 void Console::progress(std::string_view stage, double fraction) {
@@ -65,11 +67,11 @@ void Console::progress(std::string_view stage, double fraction) {
   if (is_terminal_) {
     constexpr int kWidth = 30;
     const int filled = static_cast<int>(fraction * kWidth);
-    fmt::print(stderr, "\r\033[K{:<12} [{:#<{}}{:.<{}}] {:3.0f} %{}", stage, "", filled, "", kWidth - filled, 100.0 * fraction, left);
+    say(fmt::format("\r\033[K{:<12} [{:#<{}}{:.<{}}] {:3.0f} %{}", stage, "", filled, "", kWidth - filled, 100.0 * fraction, left));
     std::fflush(stderr);
     has_bar_ = true;
   } else {
-    fmt::print(stderr, "{}: {:.0f} %{}\n", stage, 100.0 * fraction, left);
+    say(fmt::format("{}: {:.0f} %{}\n", stage, 100.0 * fraction, left));
   }
 }
 

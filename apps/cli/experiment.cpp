@@ -10,6 +10,7 @@
 #include <incise/core/version.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/folder_lock.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/report/html_report.hpp>
@@ -121,6 +122,7 @@ class Experiment {
   const CommonOptions& options_;
   Console& console_;
   std::filesystem::path root_, truth_;
+  FolderLock lock_{root_};
   int threads_;
   std::vector<Trial> trials_;
   std::optional<ChosenTool> tool_;
@@ -205,8 +207,7 @@ void Experiment::claim_folder() const {
 /// What an earlier run with other options said of the whole: it would be taken for this one's.
 void Experiment::remove_summaries() const {
   for (const char* folder : {"advice", "comparison"}) {
-    require_replaceable(root_ / folder);  // somebody else's folder of that name is none of ours to remove
-    std::filesystem::remove_all(root_ / folder);
+    remove_replaceable(root_ / folder);  // somebody else's folder of that name is none of ours to remove
   }
   for (const char* file : {"study.json", "report.html", "table_2.csv", "commands.sh"}) std::filesystem::remove(root_ / file);
 }

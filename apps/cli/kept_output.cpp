@@ -1,6 +1,7 @@
 #include "kept_output.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/folder_lock.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,7 +14,7 @@ namespace {
 bool holds_files(const std::filesystem::path& folder) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder, ignored)) {
-    if (entry.is_regular_file(ignored)) return true;
+    if (entry.is_symlink(ignored) || !entry.is_directory(ignored)) return true;
   }
   return false;
 }
@@ -33,6 +34,7 @@ int with_parts_kept(const std::filesystem::path& output, const std::function<int
   const auto remove_if_new = [&] {
     if (!was_there) std::filesystem::remove_all(output, ignored);
   };
+  const FolderLock lock(output);
   try {
     return run();
   } catch (const Cancelled& error) {

@@ -1,7 +1,9 @@
 #include "options.hpp"
 #include "parse_error.hpp"
+#include "standard_streams.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/utf8.hpp>
 #include <incise/core/version.hpp>
 #include <incise/io/nearest_name.hpp>
 
@@ -14,6 +16,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -54,6 +57,24 @@ void refuse_numbers_that_are_not_finite(int argc, char** argv) {
       throw CaseError("command line", name, word, "a finite number", "A file of that name can be given as ./" + word);
     }
   }
+}
+
+/// What a terminal can show: '?' for every byte that is not ASCII.
+std::string printable(std::string text) {
+  std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) >= 0x80 || static_cast<unsigned char>(c) < 0x20; }, '?');
+  return text;
+}
+
+/// Names end up in JSON files (manifests, results), which hold nothing but UTF-8: found out at their writing, it would be too late.
+void refuse_names_that_are_not_utf8(int argc, char** argv) {
+  constexpr const char* kExpected = "UTF-8";
+  constexpr const char* kHint = "Rename that file or folder";
+  for (int i = 1; i < argc; ++i) {
+    if (const auto at = first_not_utf8(argv[i])) throw CaseError("command line", fmt::format("word {}", i + 1), fmt::format("'{}' with a byte 0x{:02X}", printable(argv[i]), static_cast<unsigned char>(argv[i][*at])), kExpected, kHint);
+  }
+  std::error_code absent;
+  const std::string here = std::filesystem::current_path(absent).string();
+  if (first_not_utf8(here)) throw CaseError("command line", "working folder", fmt::format("'{}'", printable(here)), kExpected, kHint);
 }
 
 /// `incise help VERB` is `incise VERB --help`.
@@ -114,35 +135,38 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    prepare_standard_streams();
+    refuse_names_that_are_not_utf8(argc, argv);
     std::vector<char*> words = without_help_verb(argc, argv);
-    return run(static_cast<int>(words.size()), words.data());
+    const int status = run(static_cast<int>(words.size()), words.data());
+    finish_standard_output();
+    return status;
   } catch (const CaseError& error) {
-    fmt::print(stderr, "incise: {}\n", error.what());
+    say(fmt::format("incise: {}\n", error.what()));
     return kBadCase;
   } catch (const DataError& error) {
-    fmt::print(stderr, "incise: {}\n", error.what());
+    say(fmt::format("incise: {}\n", error.what()));
     return kBadData;
   } catch (const StagesKept& error) {
-    fmt::print(stderr, "incise: {}\n", error.what());
+    say(fmt::format("incise: {}\n", error.what()));
     return kInterrupted;
   } catch (const Cancelled& error) {
-    fmt::print(stderr, "incise: {}; nothing was written\n", error.what());
+    say(fmt::format("incise: {}; nothing was written\n", error.what()));
     return kInterrupted;
   } catch (const std::filesystem::filesystem_error& error) {
-    fmt::print(stderr, "incise: {}: found {}, expected a path that can be used\n", error.path1().string(),
-               error.code().message());
+    say(fmt::format("incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message()));
+    return kBadData;
+  } catch (const std::system_error& error) {  // fmt, where standard output takes no more
+    say(fmt::format("incise: standard output: found {}, expected one that takes all that is printed\n", error.code().message()));
     return kBadData;
   } catch (const nlohmann::json::exception& error) {
-    fmt::print(stderr,
-               "incise: a file of the results: found {}, expected what an earlier run wrote. Remove the result folder "
-               "to make it anew\n",
-               error.what());
+    say(fmt::format("incise: a JSON file that was read: found {}, expected what incise writes\n", error.what()));
     return kBadData;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "incise: out of memory\n");
+    say("incise: out of memory\n");
     return kBadData;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "incise: internal error: {}\n", error.what());
+    say(fmt::format("incise: internal error: {}\n", error.what()));
     return kOwnFault;
   }
 }

@@ -27,6 +27,30 @@ namespace {
 constexpr int kMostFrames = 500;               // as in the case file
 constexpr double kLongestCheckpointS = 86400;  // a day
 
+[[noreturn]] void refuse_foreign(const std::filesystem::path& file, const char* found) {
+  throw DataError(file, "", found, "a free name, or what an earlier run wrote", "Move that file, or choose another place for the output");
+}
+
+/// The files that a run writes beside its folders of results: never through a link, never over what something else wrote.
+void require_own_files(const std::filesystem::path& output) {
+  for (const char* name : {"study.json", "report.html"}) {
+    if (std::filesystem::is_symlink(output / name)) refuse_foreign(output / name, "a link");
+  }
+  const std::filesystem::path record = output / "study.json", report = output / "report.html";
+  if (std::filesystem::exists(record)) {
+    const nlohmann::ordered_json json = read_json(record);
+    if (!json.is_object() || !json.contains("case_file")) refuse_foreign(record, "a file of another origin");
+  }
+  if (std::filesystem::exists(report) && read_text(report).find("name=\"generator\" content=\"incise\"") == std::string::npos) refuse_foreign(report, "a file of another origin");
+}
+
+/// Takes an output folder once the case is known to be sound, and refuses one whose own names belong to something else.
+CaseFile with_folder_locked(CaseFile file, const std::filesystem::path& output, std::optional<FolderLock>& lock) {
+  require_own_files(output);
+  lock.emplace(output);
+  return file;
+}
+
 }  // namespace
 
 std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options) {
@@ -59,7 +83,7 @@ CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions&
 StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until,
                    const CommonOptions& options, const CutOptions& cut)
     : is_new_folder(!std::filesystem::exists(output)),
-      store(case_as_asked(case_path, cut), output, options.context(), cut.checkpoint_s),
+      store(with_folder_locked(case_as_asked(case_path, cut), output, lock_), output, options.context(), cut.checkpoint_s),
       until_(until) {
   if (cut.must_resume) require_checkpoint();
   // Kept apart from the products: which case they are of, for `incise report`.
@@ -135,7 +159,8 @@ void StudyRun::remove_if_nothing_was_made() const {
   for (const auto& entry : std::filesystem::directory_iterator(store.root(), ignored)) {
     if (entry.path().filename() != "study.json") return;
   }
-  std::filesystem::remove_all(store.root(), ignored);
+  std::filesystem::remove(store.root() / "study.json", ignored);
+  std::filesystem::remove(store.root(), ignored);
 }
 
 namespace {
@@ -210,8 +235,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, const s
                                      Monitor& monitor) {
   const Case& settings = study.store.case_file().settings;
   const std::filesystem::path folder = study.store.root() / "program";
-  require_replaceable(folder);
-  std::filesystem::remove_all(folder);
+  remove_replaceable(folder);
   nlohmann::ordered_json json;
   if (const std::string reason = without_program(settings); !reason.empty()) {
     monitor.message(Severity::Warning, "no program: " + reason);

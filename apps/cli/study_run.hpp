@@ -2,6 +2,7 @@
 
 #include "options.hpp"
 
+#include <incise/io/folder_lock.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <optional>
@@ -33,6 +34,11 @@ struct StudyRun {
   Study run(const CommonOptions& options, Monitor& monitor);
 
   const bool is_new_folder;  ///< the output did not exist before
+
+ private:
+  std::optional<FolderLock> lock_;  ///< on the output, before the store looks at it
+
+ public:
   FolderStore store;
 
  private:

@@ -3,8 +3,10 @@
 #include "tissue_report.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/folder_lock.hpp>
 
 #include <memory>
+#include <optional>
 
 namespace incise::cli {
 
@@ -23,7 +25,9 @@ void add_report(Application& application) {
           throw CaseError("command line", "report", "no folder", "a study's folder, --registration or --replay");
         }
         ReportData data;
+        std::optional<FolderLock> lock;  // a run that goes on in that folder would mix older and newer results
         if (is_of_a_study) {
+          if (std::filesystem::is_directory(arguments->folder)) lock.emplace(arguments->folder);
           data = study_report(arguments->folder, console);
         } else {
           data.title = "Program on measured tissue";

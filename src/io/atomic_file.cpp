@@ -1,11 +1,15 @@
+#include "durable.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +18,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <regex>
 #include <set>
@@ -24,18 +29,66 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kPart = "part";    // what is being written
+constexpr const char* kOlder = "older";  // what a new folder is about to replace
+
 /// A name beside `path` that no other thread or process uses, hidden from listings.
-fs::path temporary_beside(const fs::path& path) {
+fs::path temporary_beside(const fs::path& path, const char* ending = kPart) {
   static std::atomic<unsigned> count = 0;  // only makes names differ; never part of a result
-  return path.parent_path() / fmt::format(".{}.{}.{}.part", path.filename().string(), ::getpid(), count++);
+  std::error_code error;
+  while (true) {
+    const fs::path name = path.parent_path() / fmt::format(".{}.{}.{}.{}", path.filename().string(), ::getpid(), count++, ending);
+    if (!fs::exists(fs::symlink_status(name, error))) return name;  // an earlier process with this number may have left one
+  }
 }
 
-/// The process that made a temporary name as above; nothing for other names.
-std::optional<pid_t> maker_of(const std::string& name) {
-  static const std::regex kTemporary(R"(\..+\.([0-9]{1,9})\.[0-9]+\.part)");
+/// What a temporary name as above says.
+struct TemporaryName {
+  std::string of;
+  pid_t maker;
+  bool is_older;
+};
+
+std::optional<TemporaryName> parsed(const std::string& name) {
+  static const std::regex kTemporary(R"(\.([^/]+)\.([0-9]{1,9})\.[0-9]+\.(part|older))");
   std::smatch match;
   if (!std::regex_match(name, match, kTemporary)) return std::nullopt;
-  return static_cast<pid_t>(std::stol(match[1]));
+  return TemporaryName{match[1], static_cast<pid_t>(std::stol(match[2])), match[3] == kOlder};
+}
+
+/// Whether a folder that appears as a whole is being filled here: it is brought to the disk as a whole, too.
+bool is_in_temporary(const fs::path& path) {
+  const fs::path parent = path.parent_path();
+  return std::any_of(parent.begin(), parent.end(), [](const fs::path& part) { return parsed(part.string()).has_value(); });
+}
+
+}  // namespace
+
+/// A file or folder that is kept locked as long as it has a temporary name, so that nobody takes it for an abandoned one: numbers of processes
+/// are no proof where two machines or containers share a folder.
+class HeldTemporary {
+ public:
+  explicit HeldTemporary(int file) : file_(file) {
+    if (file_ >= 0) ::flock(file_, LOCK_EX | LOCK_NB);  // where no locks are known, the number of the process has to do
+  }
+  ~HeldTemporary() {
+    if (file_ >= 0) ::close(file_);
+  }
+  HeldTemporary(const HeldTemporary&) = delete;
+  HeldTemporary& operator=(const HeldTemporary&) = delete;
+
+ private:
+  int file_;
+};
+
+namespace {
+
+bool is_held(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return false;
+  const bool is_locked = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(file);
+  return is_locked;
 }
 
 /// Also true where nobody may ask.
@@ -73,12 +126,54 @@ void list_files_in_manifest(const fs::path& folder) {
   write_json(file, manifest);
 }
 
+fs::path folder_of(const fs::path& path) { return path.parent_path().empty() ? fs::path(".") : path.parent_path(); }
+
 void require_parent_folder(const fs::path& path) {
-  const fs::path parent = path.parent_path().empty() ? fs::path(".") : path.parent_path();
+  const fs::path parent = folder_of(path);
   std::error_code error;
   if (!fs::is_directory(parent, error)) {
     throw DataError(path, "", fmt::format("no folder '{}'", parent.string()), "an existing folder to write into");
   }
+}
+
+struct Abandoned {
+  fs::path path;
+  TemporaryName name;
+};
+
+/// Temporary names that nobody writes to any more; with `only`, those of that one target.
+std::vector<Abandoned> abandoned_in(const fs::path& folder, const std::string& only, bool with_own) {
+  std::error_code error;
+  std::vector<Abandoned> found;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::optional<TemporaryName> name = parsed(entry->path().filename().string());
+    if (!name || (!only.empty() && name->of != only)) continue;
+    const bool is_own = name->maker == ::getpid();
+    if ((is_own ? with_own : !is_running(name->maker)) && !is_held(entry->path())) found.push_back({entry->path(), *name});
+  }
+  return found;
+}
+
+/// An older folder whose successor never arrived takes its name again; everything else goes.
+void tidy(const std::vector<Abandoned>& found, const fs::path& folder) {
+  std::error_code error;
+  for (const Abandoned& one : found) {
+    const fs::path target = folder / one.name.of;
+    if (one.name.is_older && !fs::exists(fs::symlink_status(target, error))) {
+      fs::rename(one.path, target, error);
+    } else {
+      fs::remove_all(one.path, error);
+    }
+  }
+}
+
+void remove_abandoned_of(const fs::path& target) {
+  tidy(abandoned_in(folder_of(target), target.filename().string(), false), folder_of(target));
+}
+
+/// Of incise: the keys that every manifest.json has had.
+bool is_manifest(const nlohmann::ordered_json& json) {
+  return json.is_object() && json.contains("version") && json.contains("commit") && json.contains("command") && json.contains("settings");
 }
 
 }  // namespace
@@ -96,20 +191,31 @@ void require_writable(const fs::path& name) {
 void write_atomically(const fs::path& name, const std::function<void(std::ostream&)>& write) {
   require_writable(name);
   const fs::path path = replaced_by(name);
+  const bool is_part_of_folder = is_in_temporary(fs::absolute(path));
+  if (!is_part_of_folder) remove_abandoned_of(path);
   std::error_code error;
   const fs::path temporary = temporary_beside(path);
+  constexpr mode_t kMode = 0666;
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  if (file < 0) throw DataError(path, "", std::strerror(errno), "a file that can be written");
+  const HeldTemporary held(file);
+  const auto require_done = [&path](const std::string& problem) {
+    if (!problem.empty()) throw DataError(path, "", problem, "a file that can be written", "Is the disk full?");
+  };
   try {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
     if (!stream) throw DataError(path, "", std::strerror(errno), "a file that can be written");
     write(stream);
     stream.close();
     if (!stream) throw DataError(path, "", "a failed write", "a complete file", "Is the disk full?");
+    if (!is_part_of_folder) require_done(synced(temporary));
     fs::rename(temporary, path, error);
     if (error) throw DataError(path, "", error.message(), "a file that can be written");
   } catch (...) {
     fs::remove(temporary, error);
     throw;
   }
+  if (!is_part_of_folder) require_done(synced(folder_of(path)));
 }
 
 std::string read_text(const fs::path& path) {
@@ -125,8 +231,13 @@ std::string read_text(const fs::path& path) {
   return text;
 }
 
-void require_replaceable(const fs::path& folder) {
+void require_replaceable(const fs::path& name) {
   std::error_code error;
+  const fs::path folder = without_trailing_slash(name);
+  remove_abandoned_of(folder);
+  if (fs::is_symlink(folder, error)) {
+    throw DataError(folder, "", "a link", "a free name, an empty folder, or a result to replace", "Name the folder that it leads to, or choose another place");
+  }
   if (!fs::exists(folder, error) || !fs::is_directory(folder, error) || fs::is_empty(folder, error)) return;
   constexpr const char* kExpected = "a free name, an empty folder, or a result to replace";
   constexpr const char* kHint = "Choose another place for the output";
@@ -134,7 +245,8 @@ void require_replaceable(const fs::path& folder) {
     throw DataError(folder, "", "a folder with files of another origin (no manifest.json)", kExpected, kHint);
   }
   const nlohmann::ordered_json manifest = read_json(folder / kManifest);
-  if (!manifest.is_object() || !manifest.contains(kFiles) || !manifest.at(kFiles).is_array()) {
+  if (!is_manifest(manifest)) throw DataError(folder, "", "a folder with a manifest.json of another origin", kExpected, kHint);
+  if (!manifest.contains(kFiles) || !manifest.at(kFiles).is_array()) {
     throw DataError(folder, "", "a folder whose manifest.json lists no files", kExpected, kHint);
   }
   const nlohmann::ordered_json& own = manifest.at(kFiles);
@@ -144,25 +256,31 @@ void require_replaceable(const fs::path& folder) {
   }
 }
 
-void remove_abandoned_temporaries(const fs::path& folder) {
+void remove_replaceable(const fs::path& name) {
+  require_replaceable(name);
+  const fs::path folder = without_trailing_slash(name);
   std::error_code error;
-  std::vector<fs::path> abandoned;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    const std::optional<pid_t> maker = maker_of(entry->path().filename().string());
-    if (maker && (*maker == ::getpid() || !is_running(*maker))) abandoned.push_back(entry->path());
-  }
-  for (const fs::path& path : abandoned) fs::remove_all(path, error);
+  if (!fs::is_directory(folder, error)) return;
+  // Under a temporary name first: killed halfway, the rest is nobody's result and is removed later.
+  const fs::path temporary = temporary_beside(folder);
+  fs::rename(folder, temporary, error);
+  if (!error) fs::remove_all(temporary, error);
+  if (error) throw DataError(folder, "", error.message(), "a folder that can be removed");
 }
 
-AtomicFolder::AtomicFolder(fs::path target)
-    : target_(without_trailing_slash(target)), temporary_(temporary_beside(target_)) {
+void remove_abandoned_temporaries(const fs::path& folder) { tidy(abandoned_in(folder, "", true), folder); }
+
+AtomicFolder::AtomicFolder(fs::path target) : target_(without_trailing_slash(target)) {
   require_parent_folder(target_);
   std::error_code error;
   if (fs::exists(target_, error) && !fs::is_directory(target_, error)) {
     throw DataError(target_, "", "a file", "a folder, or a name that is free");
   }
+  require_replaceable(target_);
+  temporary_ = temporary_beside(target_);
   fs::create_directory(temporary_, error);
   if (error) throw DataError(target_, "", error.message(), "a folder that can be written");
+  held_ = std::make_unique<HeldTemporary>(::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 
 AtomicFolder::~AtomicFolder() {
@@ -173,18 +291,17 @@ AtomicFolder::~AtomicFolder() {
 void AtomicFolder::commit() {
   INCISE_REQUIRE(!is_committed_, "expected one commit, found a second");
   list_files_in_manifest(temporary_);
-  std::error_code error;
-  const fs::path older = temporary_beside(target_);
-  const bool replaces = fs::exists(target_, error);
-  if (replaces) fs::rename(target_, older, error);
-  if (!error) {
-    fs::rename(temporary_, target_, error);
-    std::error_code ignored;
-    if (error && replaces) fs::rename(older, target_, ignored);
-  }
-  if (error) throw DataError(target_, "", error.message(), "a folder that can be replaced");
+  require_replaceable(target_);  // something may have come in while this was computed
+  fs::path replaced;
+  std::string problem = synced_tree(temporary_);
+  if (problem.empty()) problem = put_in_place(temporary_, target_, temporary_beside(target_, kOlder), replaced);
+  if (!problem.empty()) throw DataError(target_, "", problem, "a folder that can be replaced");
   is_committed_ = true;
-  if (replaces) fs::remove_all(older, error);
+  problem = synced(folder_of(target_));
+  held_.reset();
+  std::error_code ignored;
+  if (!replaced.empty()) fs::remove_all(replaced, ignored);
+  if (!problem.empty()) throw DataError(target_, "", problem, "a folder that can be brought to the disk");
 }
 
 }  // namespace incise

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -56,6 +57,7 @@ bool write_all(int to, const char* data, std::size_t size) {
 
 /// The copy's part: it says how the work ended, in one byte, then gives the bytes or the sentence.
 [[noreturn]] void be_the_child(int to, const ChildLimits& limits, const std::function<std::string()>& work) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // killed, the waiting process leaves nobody behind who holds its locks
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the process that waits
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.processor_s);

@@ -5,6 +5,8 @@ set(text_sources
   atomic_file.cpp
   child_process.cpp
   contour_io.cpp
+  durable.cpp
+  folder_lock.cpp
   gmsh_reader.cpp
   input_file.cpp
   json_reading.cpp

@@ -3,6 +3,7 @@
 #include "yaml_reader.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/utf8.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
@@ -14,6 +15,7 @@
 #include <fmt/ranges.h>
 #include <yaml-cpp/eventhandler.h>
 
+#include <algorithm>
 #include <sstream>
 #include <utility>
 
@@ -58,6 +60,10 @@ YAML::Node parse(const std::filesystem::path& file) {
   try {
     require_regular_file(file, kLargestCaseBytes);
     const std::string text = read_text(file);
+    if (const auto at = first_not_utf8(text)) {
+      throw DataError(file, fmt::format("line {}", 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*at), '\n')),
+                      fmt::format("a byte 0x{:02X}", static_cast<unsigned char>(text[*at])), "UTF-8 text", "Save the file as UTF-8");
+    }
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     BoundedYaml bounds(file);

@@ -172,9 +172,9 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   target.commit();
   // What was made from the older product is of no use any more, and a report must not mix the two.
   for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
-    if (is_stale(static_cast<Product>(later))) std::filesystem::remove_all(folder(static_cast<Product>(later)));
+    if (is_stale(static_cast<Product>(later))) remove_replaceable(folder(static_cast<Product>(later)));
   }
-  for (const char* made_of_it : {"program", "robust", "assessment"}) std::filesystem::remove_all(root_ / made_of_it);
+  for (const char* made_of_it : {"program", "robust", "assessment"}) remove_replaceable(root_ / made_of_it);
   remove_checkpoints_of_no_use(product);
 }
 

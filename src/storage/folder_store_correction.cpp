@@ -169,7 +169,7 @@ void FolderStore::save_verdicts(const std::optional<Verdict>& of_planned, const 
 
 void FolderStore::remove_passes() {
   for (const Product pass : kPasses) require_replaceable(folder(pass));
-  for (const Product pass : kPasses) std::filesystem::remove_all(folder(pass));
+  for (const Product pass : kPasses) remove_replaceable(folder(pass));
 }
 
 }  // namespace incise

@@ -46,17 +46,7 @@ class CheckpointTest(CommandTest):
 
     def stop(self, verb, checkpoint, stop_signal, *options):
         """The command with a checkpoint at every occasion, stopped by a signal once there is one."""
-        command = [COMMAND, verb, "case", "-o", str(self.out), "--checkpoint-s", "0", *options]
-        running = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 120
-        while not checkpoint.exists() and running.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.002)
-        self.assertIsNone(running.poll(), "it was over before it could be stopped")
-        running.send_signal(stop_signal)
-        stdout, stderr = running.communicate(timeout=120)
-        done = subprocess.CompletedProcess(command, running.returncode, stdout, stderr)
-        done.pid = running.pid
-        return done
+        return self.stopped((verb, "case", "-o", str(self.out), "--checkpoint-s", "0", *options), checkpoint.exists, stop_signal)
 
     def assert_same_cut(self, one, other):
         """Byte for byte, but for the time that it took and the record of the command."""

@@ -3,15 +3,56 @@
 import json
 import os
 import pathlib
+import resource
+import shutil
 import signal
 import subprocess
 import tempfile
+import time
 import unittest
 
 COMMAND = os.environ["INCISE_COMMAND"]
 
 # Exit statuses of the command.
 DONE, OWN_FAULT, BAD_CASE, BAD_DATA, NOT_ACCEPTABLE, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+
+# No verdict depends on how long something takes: a machine may be as busy as it likes. A command hangs when, look after look, none of its
+# processes runs, waits to run or waits for a disk, and none has used any processor time; one that never ends is stopped by its processor time.
+LOOK_S = 1.0
+IDLE_LOOKS = 180
+MOST_CPU_S = 7200
+
+
+def processes_of(session):
+    """State and processor time of every process of a session."""
+    found = []
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:  # it ended meanwhile
+            continue
+        if int(fields[3]) == session:
+            found.append((fields[0], int(fields[11]) + int(fields[12])))
+    return found
+
+
+class Watch:
+    """Finds out that the processes of a session no longer get anywhere."""
+
+    def __init__(self, process):
+        self.process, self.used, self.idle = process, -1, 0
+
+    def look(self):
+        processes = processes_of(self.process.pid)
+        used = sum(time for _, time in processes)
+        is_idle = used == self.used and all(state in "STtZ" for state, _ in processes)
+        self.idle = self.idle + 1 if is_idle else 0
+        self.used = used
+        if self.idle < IDLE_LOOKS:
+            return
+        os.killpg(self.process.pid, signal.SIGKILL)
+        raise AssertionError(f"it hangs: {IDLE_LOOKS} looks without a process that runs: {self.process.args}")
 
 
 class HandMadePaths:
@@ -39,21 +80,67 @@ class CommandTest(unittest.TestCase):
         self.folder = pathlib.Path(temporary.name)
         self.out = self.folder / "out"
 
-    def incise(self, *arguments, timeout=600):
-        return subprocess.run([COMMAND, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, timeout=timeout)
+    def start(self, *arguments, cpu_s=MOST_CPU_S):
+        """The command, in a session of its own. @param cpu_s: processor time after which the system ends it."""
+        return subprocess.Popen([COMMAND, *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                start_new_session=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s)))
+
+    def finished(self, process):
+        """What `start` began, once it has ended."""
+        watch = Watch(process)
+        while True:
+            try:
+                out, said = process.communicate(timeout=LOOK_S)
+                return subprocess.CompletedProcess(process.args, process.returncode, out, said)
+            except subprocess.TimeoutExpired:
+                watch.look()
+
+    def wait_until(self, process, is_so):
+        """Until `is_so()`, or the process has ended."""
+        watch, next_look = Watch(process), time.monotonic() + LOOK_S
+        while not is_so() and process.poll() is None:
+            time.sleep(0.002)
+            if time.monotonic() > next_look:
+                watch.look()
+                next_look = time.monotonic() + LOOK_S
+
+    def stopped(self, arguments, is_so, stop_signal):
+        """The command, sent a signal once `is_so()`. On a machine so busy that it ends before that, its output is put back, and it starts again."""
+        before = self.folder / "before_it_was_stopped"
+        if self.out.exists():
+            shutil.copytree(self.out, before, symlinks=True)
+        while True:
+            process = self.start(*arguments)
+            self.wait_until(process, is_so)
+            is_met = is_so() and process.poll() is None
+            if is_met:
+                process.send_signal(stop_signal)
+            done = self.finished(process)
+            if not is_met and done.returncode != DONE and done.returncode != NOT_ACCEPTABLE:
+                raise AssertionError(f"it ended before it could be stopped: {done.returncode} {done.stderr}")
+            if is_met and done.returncode not in (DONE, NOT_ACCEPTABLE):
+                shutil.rmtree(before, ignore_errors=True)
+                done.pid = process.pid
+                return done
+            shutil.rmtree(self.out)
+            if before.exists():
+                shutil.copytree(before, self.out, symlinks=True)
+
+    def incise(self, *arguments, cpu_s=MOST_CPU_S):
+        return self.finished(self.start(*arguments, cpu_s=cpu_s))
 
     def interrupted(self, *arguments, after):
         """The command, asked to stop (as by Ctrl-C) once `after` stands on standard error."""
-        command = [COMMAND, *map(str, arguments)]
-        with subprocess.Popen(command, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-            said = ""
-            for line in process.stderr:
-                said += line
-                if after in line:
-                    process.send_signal(signal.SIGINT)
-                    break
-            out, rest = process.communicate(timeout=600)
-        return subprocess.CompletedProcess(command, process.returncode, out, said + rest)
+        process = self.start(*arguments)
+        said = ""
+        for line in process.stderr:
+            said += line
+            if after in line:
+                process.send_signal(signal.SIGINT)
+                break
+        done = self.finished(process)
+        done.stderr = said + done.stderr
+        return done
 
     def json_of(self, *arguments, status=DONE):
         """The one JSON object that a command prints with --json."""

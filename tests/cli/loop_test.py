@@ -145,14 +145,8 @@ class SameBitsTest(CommandTest):
         self.assertEqual(self.deformed(self.folder / "two", "--threads", 2), straight)
         self.assertEqual(self.deformed(self.folder / "again", "--threads", 1), straight)
 
-        running = subprocess.Popen([COMMAND, "deform", "case", "-o", str(self.out)], cwd=self.folder, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 60
-        while not (self.out / "study.json").exists() and running.poll() is None and time.monotonic() < deadline:
-            time.sleep(0.005)
-        running.send_signal(signal.SIGINT)
-        _, stderr = running.communicate(timeout=120)
-        self.assertEqual(running.returncode, INTERRUPTED, stderr)
+        done = self.stopped(("deform", "case", "-o", str(self.out)), (self.out / "study.json").exists, signal.SIGINT)
+        self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         self.assertFalse((self.out / "stretched").exists())
         self.assertEqual(self.deformed(self.out), straight)
 

@@ -227,7 +227,7 @@ class ExportTest(RobotTest):
         self.assertNotIn("earlier run", done.stderr)
 
     def test_a_program_of_days_is_refused_at_once(self):
-        done = self.incise("export", self.write(ring(speed=1e-6)), "-o", "cut.script", timeout=60)
+        done = self.incise("export", self.write(ring(speed=1e-6)), "-o", "cut.script", cpu_s=60)
         self.assert_refused(done, BAD_DATA, "path.json: waypoints", "at most 7200 s")
         self.assert_nothing_written(self.folder / "cut.script")
 
@@ -413,7 +413,7 @@ class ReplayTest(RobotTest):
     def test_programs_of_days_are_refused_at_once(self):
         retreat = next(line for line in reversed(self.text.splitlines()) if line.startswith("  movel("))
         (self.folder / "slow.script").write_text(self.text.replace(retreat, retreat.split(", v=")[0] + ", v=0.000000001)"))
-        done = self.incise("replay", "slow.script", "--json", timeout=60)
+        done = self.incise("replay", "slow.script", "--json", cpu_s=60)
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
         self.assertEqual(json.loads(done.stdout)["outcome"], "too_long")
         self.assert_line_refused("end\n\n", "  sleep(1e9)\nend\n\n", "at most 7200 s")

@@ -5,10 +5,9 @@ import pathlib
 import shlex
 import signal
 import subprocess
-import time
 import unittest
 
-from command import BAD_CASE, BAD_DATA, COMMAND, CommandTest
+from command import BAD_CASE, BAD_DATA, INTERRUPTED, CommandTest
 
 SMALL = ("study", "--specimens", "2", "--outside", "1", "--quick", "--paper-pass", "--withheld-force", "--tets", "10000", "--threads", "2", "-o", "study")
 
@@ -54,16 +53,13 @@ class StudyTest(CommandTest):
             self.assertFalse((self.folder / "study").exists())
 
     def test_an_interrupted_experiment_goes_on_and_ends(self):
-        begun = subprocess.Popen([COMMAND, *SMALL], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        begun = self.start(*SMALL)
         record = self.folder / "study" / "S1" / "steps" / "bench_make.json"
-        for _ in range(3000):
-            if record.is_file():
-                break
-            time.sleep(0.1)
+        self.wait_until(begun, record.is_file)
         begun.send_signal(signal.SIGINT)
-        _, said = begun.communicate(timeout=120)
-        self.assertEqual(begun.returncode, 130, said)
-        self.assertIn("kept", said)
+        done = self.finished(begun)
+        self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
+        self.assertIn("kept", done.stderr)
         made = record.stat().st_mtime_ns
 
         result = self.json_of(*SMALL)

@@ -1,3 +1,4 @@
+#include "io/output_folder.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
@@ -21,10 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-std::size_t entries_in(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
+using testing::entries_in;
+using testing::kManifest;
 
 TEST(WriteAtomically, WritesTheBytesAndLeavesNothingElse) {
   const incise::testing::TemporaryFolder folder;
@@ -97,6 +96,7 @@ TEST(AtomicFolder, AppearsOnlyWithCommitAndReplacesTheOlderOne) {
   for (const char* text : {"old", "new"}) {
     AtomicFolder output(folder / "out/");
     std::ofstream(output.path() / text) << text;
+    std::ofstream(output.path() / "manifest.json") << kManifest;
     output.commit();
   }
   EXPECT_TRUE(fs::exists(folder / "out" / "new"));
@@ -106,8 +106,12 @@ TEST(AtomicFolder, AppearsOnlyWithCommitAndReplacesTheOlderOne) {
 
 TEST(AtomicFolder, IsGoneWithoutCommitAndTheOlderOneStays) {
   const incise::testing::TemporaryFolder folder;
-  fs::create_directory(folder / "out");
-  std::ofstream(folder / "out" / "old") << "old";
+  {
+    AtomicFolder older(folder / "out");
+    std::ofstream(older.path() / "old") << "old";
+    std::ofstream(older.path() / "manifest.json") << kManifest;
+    older.commit();
+  }
   {
     const AtomicFolder output(folder / "out");
     std::ofstream(output.path() / "new") << "new";
@@ -123,7 +127,7 @@ TEST(AtomicFolder, IsReplaceableOnlyWhileItHoldsNothingButItsOwnFiles) {
   AtomicFolder output(out);
   fs::create_directory(output.path() / "frames");
   std::ofstream(output.path() / "frames" / "0.vtu") << "frame";
-  std::ofstream(output.path() / "manifest.json") << "{}";
+  std::ofstream(output.path() / "manifest.json") << kManifest;
   output.commit();
   EXPECT_NO_THROW(require_replaceable(out));
   EXPECT_THAT(read_text(out / "manifest.json"), HasSubstr("frames/0.vtu"));
@@ -134,7 +138,7 @@ TEST(AtomicFolder, IsReplaceableOnlyWhileItHoldsNothingButItsOwnFiles) {
   EXPECT_THAT([&] { require_replaceable(out); }, ThrowsMessage<DataError>(HasSubstr("'link'")));
   fs::remove(out / "link");
   EXPECT_NO_THROW(require_replaceable(out));
-  std::ofstream(out / "manifest.json") << "{}";
+  std::ofstream(out / "manifest.json") << kManifest;
   EXPECT_THAT([&] { require_replaceable(out); }, ThrowsMessage<DataError>(HasSubstr("lists no files")));
 }
 

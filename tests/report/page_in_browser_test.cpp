@@ -33,7 +33,7 @@ std::optional<std::string> browser() {
 std::string opened(const testing::TemporaryFolder& folder, const std::filesystem::path& page, const std::string& more) {
   const std::filesystem::path document = folder / "document.html";
   const std::string command =
-      "timeout -k 5 150 " + *browser() +
+      "timeout -k 5 3600 " + *browser() +
       " --headless --no-sandbox --disable-dev-shm-usage --disable-quic --no-first-run --disable-background-networking "
       "--disable-component-update --disable-sync --proxy-server=127.0.0.1:9 --hide-scrollbars "
       "--virtual-time-budget=5000 " +

@@ -1,0 +1,38 @@
+#include <incise/core/utf8.hpp>
+
+namespace incise {
+namespace {
+
+/// Bytes of the character that begins with `lead`; 0: none does.
+std::size_t length_of(unsigned char lead) {
+  if (lead < 0x80) return 1;
+  if (lead >= 0xC2 && lead <= 0xDF) return 2;
+  if (lead >= 0xE0 && lead <= 0xEF) return 3;
+  return lead >= 0xF0 && lead <= 0xF4 ? 4 : 0;
+}
+
+/// Overlong forms, surrogates and what lies beyond U+10FFFF show in the second byte.
+bool fits(unsigned char lead, unsigned char second) {
+  if (lead == 0xE0) return second >= 0xA0;
+  if (lead == 0xED) return second < 0xA0;
+  if (lead == 0xF0) return second >= 0x90;
+  return lead != 0xF4 || second < 0x90;
+}
+
+}  // namespace
+
+std::optional<std::size_t> first_not_utf8(std::string_view text) {
+  const auto byte = [&text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = length_of(byte(i));
+    if (length == 0 || i + length > text.size()) return i;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((byte(i + k) & 0xC0U) != 0x80U) return i;
+    }
+    if (length > 1 && !fits(byte(i), byte(i + 1))) return i;
+    i += length;
+  }
+  return std::nullopt;
+}
+
+}  // namespace incise
