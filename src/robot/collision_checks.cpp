@@ -13,9 +13,8 @@
 namespace incise::robot_detail {
 namespace {
 
-constexpr double kNearTheLimitMm = 0.5;  // where a distance that is only known as a range is looked at closely …
-constexpr double kCloselyMm = 0.05;      // … to this
-constexpr double kRoughShare = 0.1;      // elsewhere a tenth will do
+constexpr double kCloselyMm = 0.05;  // what may be the least distance is known to this
+constexpr double kRoughShare = 0.1;  // for the rest a tenth will do
 
 const Capsule& of(const Hulls& hulls, Hull hull) {
   return hulls[static_cast<std::size_t>(hull)];
@@ -66,10 +65,7 @@ struct NearestHull {
 /// Holds hulls against the surface, sample by sample, and passes over those that cannot be nearer than what was seen.
 class SurfaceWatch {
  public:
-  SurfaceWatch(const SurfaceProbe& probe, double limit_mm)
-      : distance_([&probe](const Vec3& p) { return probe.distance_mm(p); }), limit_mm_(limit_mm) {
-    forget();
-  }
+  explicit SurfaceWatch(const SurfaceProbe& probe) : distance_([&probe](const Vec3& p) { return probe.distance_mm(p); }) { forget(); }
 
   /// @param step_mm  how far it can move until the next sample is nearer
   void see(Hull hull, const Capsule& capsule, double step_mm, std::size_t pose) {
@@ -82,7 +78,7 @@ class SurfaceWatch {
     };
     DistanceRange range = range_to(kCloselyMm, kRoughShare);
     least_mm = range.least_mm - capsule.radius_mm;
-    if (least_mm - step_mm < std::min(best_mm, limit_mm_ + kNearTheLimitMm)) {
+    if (least_mm - step_mm < best_mm) {
       range = range_to(kCloselyMm, 0.0);
       least_mm = range.least_mm - capsule.radius_mm;
     }
@@ -97,7 +93,6 @@ class SurfaceWatch {
 
  private:
   PointDistance distance_;
-  double limit_mm_;
   NearestHull nearest_;
   std::array<double, kHullCount> least_mm_{};  ///< what each hull's distance is at least by now
 };
@@ -119,8 +114,7 @@ void check_surface(CheckList& list, const TriMesh& surface, const std::vector<Hu
   constexpr Hull kLinks[]{Hull::UpperArm, Hull::Elbow, Hull::Forearm, Hull::Wrist1, Hull::Wrist2, Hull::Wrist3};
   const RobotProgram& program = list.program();
   const SurfaceProbe probe(surface);
-  SurfaceWatch links(probe, settings.surface_clearance_mm), shaft(probe, settings.shaft_clearance_mm),
-      needle(probe, settings.needle_clearance_mm);
+  SurfaceWatch links(probe), shaft(probe), needle(probe);
   const bool has_shaft = !Instrument{program.setup.T_flange_tool, settings.needle_length_mm, settings.needle_radius_mm,
                                      settings.shaft_radius_mm}
                               .is_needle_alone();

@@ -302,18 +302,17 @@ TEST(WriteDicomSeries, WritesValuesBelowAirAsSignedPixels) {
   EXPECT_THAT(message_of<DataError>([&] { write_dicom_series(folder / "ct", ct); }), HasSubstr("-32768 to 32767 HU"));
 }
 
-TEST(WriteDicomSeries, ReplacesAnOlderFolderAndLeavesItWhereItFails) {
+TEST(WriteDicomSeries, LeavesASeriesThatIsThere) {
   const TemporaryFolder folder;
   CtVolume ct = oblique_ct();
   write_dicom_series(folder / "ct", ct);
-  ct.grid.size[2] = 2;
-  ct.voxels.resize(ct.grid.voxel_count());
-  write_dicom_series(folder / "ct", ct);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "ct"), {}), 2);
+  const auto files = std::distance(fs::directory_iterator(folder / "ct"), {});
+  EXPECT_GT(files, 0);
+  EXPECT_THROW(write_dicom_series(folder / "ct", ct), DataError) << "nobody knows whose scan that is";
   EXPECT_THROW(write_dicom_series(folder / "ct", ct, {.patient_id = "a\\b"}), InvalidArgument);
   EXPECT_THROW(write_dicom_series(folder / "ct", ct, {.patient_id = std::string(65, 'a')}), InvalidArgument);
   EXPECT_THROW(write_dicom_series(folder / "none/ct", ct), DataError);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "ct"), {}), 2);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "ct"), {}), files);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
 }
 

@@ -107,7 +107,7 @@ struct DicomTags {
 };
 
 /// Writes a folder of CT Image Storage files IM0001.dcm, … (one per slice, 16 bit, uncompressed, explicit little
-/// endian), all or nothing; an older folder of that name is replaced. Every UID follows from the voxels, the grid and
+/// endian), all or nothing; a series that is there already is left and refused. Every UID follows from the voxels, the grid and
 /// the tags: the same volume gives the same bytes. No date is written.
 /// @throws DataError if the folder cannot be written or the values span more than 16 bits can hold with intercept
 /// -1024.
