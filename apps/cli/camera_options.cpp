@@ -82,6 +82,15 @@ CameraIntrinsics intrinsics_in(const Json& document, const std::filesystem::path
   return camera;
 }
 
+Json shape_json(const RulerShape& shape) {
+  const auto figure = [](const RulerFigure& f) { return Json{{"value", f.value}, {"standard_error", f.error}}; };
+  return {{"spacing_change", figure(shape.spacing_change)},
+          {"convergence_deg", figure(shape.convergence_deg)},
+          {"skew_deg", figure(shape.skew_deg)},
+          {"end_stretch", figure(shape.end_stretch)},
+          {"bow", figure(shape.bow)}};
+}
+
 }  // namespace
 
 DepthCamera read_depth_camera(const std::filesystem::path& file) {
@@ -155,6 +164,8 @@ FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture, co
   found.scale = scale_from_mm_per_pixel(ruler.mm_per_pixel, picture.height);
   found.marks_px = ruler.marks_px;
   found.summary = {{"source", "ruler"}, {"marks", ruler.marks_px.size()}, {"error_percent", ruler.error_percent}};
+  found.summary["shape"] = ruler.shape ? shape_json(*ruler.shape) : Json(nullptr);
+  found.ruler = ruler;
   return found;
 }
 

@@ -35,6 +35,7 @@ struct FoundScale {
   PhotoScale scale;
   nlohmann::ordered_json summary;
   std::vector<Vec2> marks_px;
+  std::optional<Ruler> ruler;  ///< that the scale was read from
 };
 /// @throws CaseError unless exactly one way is given; DataError where the ruler is not found.
 [[nodiscard]] FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture,

@@ -9,9 +9,11 @@
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/imaging/photo_contours.hpp>
+#include <incise/imaging/photo_doubts.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>
 
@@ -124,6 +126,7 @@ struct Measured {
   Evaluation evaluation;
   nlohmann::ordered_json json;
   std::vector<std::string> warnings;
+  Verdict verdict;  ///< of the measurement: whether its numbers can be trusted
 };
 
 /// What `measure` finds, in JSON too. The settings are known to be valid here, so what it refuses is the fault of the
@@ -131,7 +134,7 @@ struct Measured {
 template <typename Measure>
 Measured measured(const std::filesystem::path& file, const Measure& measure) {
   try {
-    Measured result{measure(), {}, {}};
+    Measured result{measure(), {}, {}, {}};
     result.json = to_json(result.evaluation);
     result.json["points"] = points_json(result.evaluation);
     return result;
@@ -147,7 +150,7 @@ nlohmann::ordered_json marks_json(const std::vector<PhotoMark>& marks) {
   return json;
 }
 
-/// Red in the tumour that is no line may be blood, or a cut that went astray: no number shows it, so it is told.
+/// Red in the tumour that is no line may be blood, or a cut that went astray: no number shows it, so a warning does.
 void tell_red_in_tumor(const std::vector<PhotoMark>& marks, Measured& result) {
   result.json["red_in_tumor"] = marks_json(marks);
   if (marks.empty()) return;
@@ -187,7 +190,13 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   result.json["green_line"] = line_json(found.green);
   tell_red_in_tumor(found.red_in_tumor, result);
   tell_green_beside(found.green_beside, result);
+  if (scale.ruler) add_ruler_doubts(*scale.ruler, result.verdict);
+  add_ring_doubts(found, result.verdict);
+  for (const VerdictReason& reason : result.verdict.reasons()) {
+    result.warnings.push_back(fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
+  }
   result.json["warnings"] = result.warnings;
+  result.json["verdict"] = to_json(result.verdict);
   if (!arguments.figure.empty()) {
     const std::string png = encode_png(draw_found(picture, {&found.green, &found.red}, scale.marks_px));
     write_atomically(arguments.figure, [&](std::ostream& out) { out << png; });
@@ -243,6 +252,7 @@ void add_evaluate(Application& application) {
                              for (const std::string& warning : result.warnings)
                                console.message(Severity::Warning, warning);
                              print_result(options, result.json);
+                             if (result.verdict.status() == VerdictStatus::Refused) return kNotAcceptable;
                              return status_of(result.evaluation.outcome);
                            });
   verb->add_option("photo", arguments->photo,

@@ -92,7 +92,8 @@ PictureMatch match_picture(const Contour& photographed, const Vec3& photo_approa
   const double prior = std::pow(settings.edge_sd_mm / settings.turn_sd_deg, 2) / kPlaces;
   Turn best = best_turn(seen, made, -settings.most_turn_deg, settings.most_turn_deg, kCoarseStepDeg, prior);
   best = best_turn(seen, made, best.degrees - kCoarseStepDeg, best.degrees + kCoarseStepDeg, kFineStepDeg, prior);
-  PictureMatch match{best.degrees, to - from, best.rms_mm, {}};
+  PictureMatch match{best.degrees, to - from, best.rms_mm, false, {}};
+  match.is_doubtful = best.rms_mm > settings.edge_sd_mm || std::abs(best.degrees) > settings.doubtful_turn_deg;
   if (best.rms_mm <= settings.edge_sd_mm) return match;
   const Turn far = best_turn(seen, made, -180.0, 180.0 - kCoarseStepDeg, kCoarseStepDeg, 0.0);
   const Turn mirror = best_turn(mirrored(seen), made, -180.0, 180.0 - kCoarseStepDeg, kCoarseStepDeg, 0.0);

@@ -22,6 +22,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"contour_flipped", kRefused, {}, "", "mm", "The tumour's edge fits its surface only with the axes of the other convention (RAS for LPS)."},
     {"platform", kRefused, 0.0, ">=", "mm", "Least height of the tool's tip above the platform that supports the tissue."},
     {"program_check", kRefused, {}, "", "", "A safety check of the robot program failed."},
+    {"photo_oblique", kRefused, 0.03, "<=", "", "Change of scale along the ruler of a photograph: the camera does not look straight down."},
+    {"photo_lens", kRefused, 0.02, "<=", "", "Bending or uneven spacing of the ruler in a photograph: the lens's distortion was left in."},
     {"depth", kCaution, 0.9, ">=", "", "Least depth of the simulated kerf anywhere along the path, as a share of the planned depth there."},
     {"heat", kCaution, 0.0, ">=", "mm", "Tissue left unheated between the simulated cut and the tumour's edge."},
     {"typed_transform", kCaution, {}, "", "", "T_robot_sim was typed into the case: no registration says where the specimen lies."},
@@ -33,6 +35,9 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"mesh_resolution", kCaution, 1.5, "<=", "mm", "Mean edge length of the mesh along the path."},
     {"locking", kCaution, 0.49, "<=", "", "Poisson's ratio of tetrahedra that each keep their own volume."},
     {"convergence", kCaution, {}, "", "", "The simulation of the cut was not solved, not at rest, or held back by its own limits."},
+    {"photo_scale", kCaution, 1.0, "<=", "%", "Standard error of the scale that the ruler in a photograph gives."},
+    {"photo_specimen", kCaution, 0.3, "<=", "mm", "Distance of a photographed tumour edge from the simulated one, or a turn beyond 10 degrees; a greater one may mean another specimen."},
+    {"photo_ring", kCaution, {}, "", "mm", "Stretch of a closed red ring that is unlike the rest of it: blood may close an opening."},
     {"scan", kCaution, {}, "", "", "The scan argues against the tissue that was found in it."},
 });
 

@@ -1,3 +1,4 @@
+#include "imaging/odd_stretch.hpp"
 #include "imaging/photo_checks.hpp"
 
 #include <incise/core/error.hpp>
@@ -121,6 +122,9 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   require_no_crossing(result.incision, InkColor::Red, name);
   result.red_in_tumor = imaging_detail::marks_beside(cut, imaging_detail::faint_ink(red, result.green.points_px),
                                                      &result.green.points_px);
+  cv::Mat covered = strengths.glare.clone();
+  if (!green_mask.empty()) covered |= widened(green_mask);
+  result.odd_stretch = imaging_detail::odd_stretch_of(picture, red, result.red, covered, line);
   return result;
 }
 

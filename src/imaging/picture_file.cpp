@@ -53,9 +53,20 @@ class Bytes {
     throw DataError(name_, fmt::format("byte {}", place), "a block whose checksum does not match", "a sound PNG file",
                     "Was the file damaged when it was copied?");
   }
-  void require_size(double width, double height) const {
-    if (width * height <= kMostPixels) return;
-    throw DataError(name_, "", fmt::format("{:.0f} x {:.0f} pixels", width, height), "at most 200 million pixels");
+  /// @param most_pixels_per_byte  that the format's compression can reach: a file that claims more would fill the memory
+  ///                              with nothing.
+  void require_size(double width, double height, double most_pixels_per_byte) const {
+    const std::string found = fmt::format("{:.0f} x {:.0f} pixels", width, height);
+    if (!(width > 0.0 && height > 0.0)) throw DataError(name_, "", found, "a picture with pixels");
+    if (width * height > kMostPixels) throw DataError(name_, "", found, "at most 200 million pixels");
+    if (width * height > most_pixels_per_byte * static_cast<double>(size())) {
+      throw DataError(name_, "", fmt::format("{} in {} bytes", found, size()),
+                      fmt::format("at most {:.0f} pixels for a byte, as its format has them", most_pixels_per_byte),
+                      "Is it damaged?");
+    }
+  }
+  [[noreturn]] void refuse_header(const char* found) const {
+    throw DataError(name_, "", found, kWhole, "Is it damaged?");
   }
   [[noreturn]] void cmyk() const {
     throw DataError(name_, "", "a CMYK picture (made for printing)", "an RGB picture",
@@ -67,15 +78,26 @@ class Bytes {
   const std::filesystem::path& name_;
 };
 
+// What compression can reach: DEFLATE 1032 bytes for one, of pixels of one bit at least; LZW 4096 symbols in codes of 12 bits;
+// JPEG one bit for each block of 8 x 8 pixels.
+constexpr double kPngPixelsPerByte = 8.0 * 1032.0;
+constexpr double kTiffPixelsPerByte = 8.0 * 2800.0;
+constexpr double kJpegPixelsPerByte = 8.0 * 64.0;
+
 void check_png(const Bytes& file) {
-  constexpr std::uint32_t kEnd = 0x49454E44;  // "IEND"
+  constexpr std::uint32_t kHeader = 0x49484452;  // "IHDR"
+  constexpr std::uint32_t kEnd = 0x49454E44;     // "IEND"
+  constexpr std::uint32_t kHeaderLength = 13;
   std::size_t place = 8;
   while (true) {
     const std::uint32_t length = file.at(place, 4, true);
     const std::uint32_t kind = file.at(place + 4, 4, true);
     if (file.size() - place < 12 + static_cast<std::size_t>(length)) file.end_at(file.size());
     file.require_checksum(place + 4, 4 + static_cast<std::size_t>(length), file.at(place + 8 + length, 4, true));
-    if (place == 8) file.require_size(file.at(16, 4, true), file.at(20, 4, true));
+    if (place == 8) {
+      if (kind != kHeader || length != kHeaderLength) file.refuse_header("no PNG header (IHDR) at its start");
+      file.require_size(file.at(16, 4, true), file.at(20, 4, true), kPngPixelsPerByte);
+    }
     if (kind == kEnd) return;
     place += 12 + static_cast<std::size_t>(length);
   }
@@ -84,6 +106,7 @@ void check_png(const Bytes& file) {
 /// Walks the segments to the frame header, which tells the number of channels, and asks for the end marker.
 void check_jpeg(const Bytes& file) {
   std::size_t place = 2;
+  bool has_frame = false;
   while (true) {
     while (file.at(place, 1, true) == 0xFF && file.at(place + 1, 1, true) == 0xFF) ++place;
     const std::uint32_t marker = file.at(place, 2, true);
@@ -91,10 +114,14 @@ void check_jpeg(const Bytes& file) {
     const bool is_frame =
         marker >= 0xFFC0 && marker <= 0xFFCF && marker != 0xFFC4 && marker != 0xFFC8 && marker != 0xFFCC;
     if (is_frame && file.at(place + 9, 1, true) == 4) file.cmyk();
-    if (is_frame) file.require_size(file.at(place + 7, 2, true), file.at(place + 5, 2, true));
+    if (is_frame) {
+      file.require_size(file.at(place + 7, 2, true), file.at(place + 5, 2, true), kJpegPixelsPerByte);
+      has_frame = true;
+    }
     if (marker == 0xFFDA || marker >> 8 != 0xFF) break;
     place += 2 + length;
   }
+  if (!has_frame) file.refuse_header("no frame header before its picture");
   // Cameras append previews and padding after the end marker.
   for (std::size_t i = file.size() - 1; i > place; --i) {
     if (file.at(i - 1, 2, true) == 0xFFD9) return;
@@ -112,6 +139,7 @@ void check_tiff(const Bytes& file) {
     std::uint32_t count = 0;
     int size = 0;
   } offsets, counts;
+  double width = 0.0, height = 0.0;
   for (std::uint32_t i = 0; i < entries; ++i) {
     const std::size_t entry = directory + 2 + 12 * static_cast<std::size_t>(i);
     const std::uint32_t tag = file.at(entry, 2, big);
@@ -120,9 +148,12 @@ void check_tiff(const Bytes& file) {
     const bool is_inline = static_cast<std::size_t>(size) * count <= 4;
     const Numbers numbers{is_inline ? entry + 8 : file.at(entry + 8, 4, big), count, size};
     if (tag == 262 && file.at(entry + 8, 2, big) == 5) file.cmyk();
+    if (tag == 256 && count == 1) width = file.at(entry + 8, size, big);
+    if (tag == 257 && count == 1) height = file.at(entry + 8, size, big);
     if (tag == 273 || tag == 324) offsets = numbers;
     if (tag == 279 || tag == 325) counts = numbers;
   }
+  file.require_size(width, height, kTiffPixelsPerByte);
   for (std::uint32_t i = 0; i < std::min(offsets.count, counts.count); ++i) {
     const auto number = [&](const Numbers& list) {
       return file.at(list.place + static_cast<std::size_t>(list.size) * i, list.size, big);
@@ -135,6 +166,9 @@ void check_tiff(const Bytes& file) {
 
 void require_whole_picture(std::string_view bytes, const std::filesystem::path& name) {
   const Bytes file(bytes, name);
+  if (bytes.size() > kMostBytes) {
+    throw DataError(name, "", fmt::format("{} bytes", bytes.size()), fmt::format("at most {} bytes", kMostBytes));
+  }
   if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return check_png(file);
   if (bytes.starts_with("\xFF\xD8\xFF")) {
     check_jpeg(file);

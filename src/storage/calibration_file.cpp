@@ -2,6 +2,7 @@
 #include "storage/json_values.hpp"
 
 #include <incise/io/json_text.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/calibration_file.hpp>
 
 #include <fmt/format.h>
@@ -225,6 +226,7 @@ Json to_json(const Calibration& calibration) {
   json["baseline_mm"] = calibration.table.baseline_mm;
   json["reference_step_s"] = calibration.reference_step_s;
   json["simulations"] = calibration.simulations;
+  json["verdict"] = to_json(calibration.verdict);
   json["specimens"] = Json::array();
   for (const CalibratedSpecimen& specimen : calibration.specimens) json["specimens"].push_back(specimen_json(specimen));
   json["left_out"] = Json::array();

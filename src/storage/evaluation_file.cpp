@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>
 
@@ -40,6 +41,16 @@ void read_points(const JsonPlace& file, EvaluationFile& result) {
   for (const double hour : result.clock_h) {
     if (!(hour >= 0.0 && hour < 12.0)) points.refuse("clock_h", fmt::format("{}", hour), "hours in [0, 12)");
   }
+}
+
+/// A photograph whose scale or perspective is wrong has numbers, but none that a comparison or a calibration may use.
+void require_not_refused(const Json& json, const std::filesystem::path& path) {
+  if (!json.contains("verdict")) return;  // of contours, or of a version before verdicts
+  const Verdict verdict = verdict_from_json(json.at("verdict"), path);
+  if (verdict.status() != VerdictStatus::Refused) return;
+  const VerdictReason& worst = verdict.reasons().front();
+  throw DataError(path, "verdict", fmt::format("a refused measurement ({}: {})", worst.id, worst.message),
+                  "a measurement that is ok or a caution", "Take the photograph again, or give its scale another way.");
 }
 
 }  // namespace
@@ -85,6 +96,7 @@ EvaluationFile read_evaluation_file(const std::filesystem::path& path) {
   const Json json = read_json(path);
   if (!json.is_object()) throw DataError(path, "", "no object", "the result of an evaluation", kEvaluationHint);
   const JsonPlace file{path, json, "", kEvaluationHint};
+  require_not_refused(json, path);
   EvaluationFile result;
   result.specimen.name = path.stem().string();
   static_cast<void>(file.text("outcome"));

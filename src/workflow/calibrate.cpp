@@ -194,7 +194,39 @@ class CalibrationRunner {
       specimen.picture = match_picture(subjects_[s].of->photographed.tumor_edge, subjects_[s].of->photographed.approach,
                                        closed->final_tumor_edge, subjects_[s].of->settings.plan.approach);
       refuse_objection(*subjects_[s].of, specimen.picture);
+      if (!specimen.picture.is_doubtful) continue;
+      refuse_if_of_another_case(s);
+      doubt_specimen(subjects_[s].of->photograph_file, specimen.picture);
     }
+  }
+
+  /// A photograph that fits another case of the calibration far better than its own has been mixed up with it.
+  void refuse_if_of_another_case(std::size_t s) const {
+    constexpr double kBetterBy = 2.0;
+    const CalibrationSubject& subject = *subjects_[s].of;
+    const PictureMatch& own = calibration_.specimens[s].picture;
+    for (std::size_t other = 0; other < subjects_.size(); ++other) {
+      const auto& runs = calibration_.specimens[other].runs;
+      const auto closed = std::find_if(runs.begin(), runs.end(), [](const CalibrationRun& run) { return run.inner_edge.has_value(); });
+      if (other == s || closed == runs.end()) continue;
+      const PictureMatch match = match_picture(subject.photographed.tumor_edge, subject.photographed.approach, closed->final_tumor_edge,
+                                               subjects_[other].of->settings.plan.approach);
+      if (kBetterBy * match.rms_mm > own.rms_mm) continue;
+      throw DataError(subject.photograph_file, "tumor_edge",
+                      fmt::format("a tumour edge that fits the case {} ({:.2f} mm apart, turned by {:.1f} degrees), not its own case {} "
+                                  "({:.2f} mm, {:.1f} degrees)",
+                                  subjects_[other].of->case_file, match.rms_mm, match.turn_deg, subject.case_file, own.rms_mm, own.turn_deg),
+                      "the edge of its own case's tumour", "Are --observed and the cases in the same order?");
+    }
+  }
+
+  void doubt_specimen(const std::string& file, const PictureMatch& match) {
+    const std::string message = fmt::format(
+        "{}: its tumour edge lies {:.2f} mm off the simulated one, turned by {:.1f} degrees; a photograph of the same specimen lies within "
+        "{} mm and {} degrees. Is it of another specimen?",
+        file, match.rms_mm, match.turn_deg, PictureMatchSettings{}.edge_sd_mm, PictureMatchSettings{}.doubtful_turn_deg);
+    calibration_.verdict.add("photo_specimen", match.rms_mm, message);
+    monitor_.message(Severity::Warning, "caution: photo_specimen: " + message);
   }
 
   [[nodiscard]] static ProfileSettings simulated_profile(const Case& settings) {

@@ -61,6 +61,36 @@ TEST(DecodePicture, RefusesOtherFiles) {
   EXPECT_THAT(refusal(""), HasSubstr("an empty file"));
 }
 
+/// Big endian.
+void put(std::string& bytes, std::size_t place, std::uint32_t value) {
+  for (int i = 0; i < 4; ++i) bytes[place + static_cast<std::size_t>(i)] = static_cast<char>(value >> (24 - 8 * i));
+}
+
+TEST(DecodePicture, RefusesAJpegThatClaimsMoreThanItHolds) {
+  std::string jpeg = encode_jpeg(small_picture(), 90);
+  const std::size_t frame = jpeg.find("\xFF\xC0");
+  ASSERT_NE(frame, std::string::npos);
+  for (const std::size_t place : {5, 7}) {
+    jpeg[frame + place] = '\x2E';  // 11 776 rows and columns
+    jpeg[frame + place + 1] = 0;
+  }
+  EXPECT_THAT(refusal(jpeg), HasSubstr("11776 x 11776 pixels in "));
+}
+
+TEST(DecodePicture, RefusesATiffThatClaimsMoreThanItHolds) {
+  std::string tiff("MM\0*\0\0\0\x08\0\x02", 10);
+  for (const std::uint32_t tag : {256U, 257U}) {
+    std::string entry(12, '\0');
+    put(entry, 0, tag << 16 | 4U);
+    put(entry, 4, 1);
+    put(entry, 8, 14000);
+    tiff += entry;
+  }
+  EXPECT_THAT(refusal(tiff), HasSubstr("14000 x 14000 pixels in 34 bytes"));
+  put(tiff, 18, 0);
+  EXPECT_THAT(refusal(tiff), HasSubstr("0 x 14000 pixels"));
+}
+
 TEST(DecodePicture, RefusesPicturesWithoutColor) {
   ColorPicture grey = small_picture();
   for (std::size_t i = 0; i < grey.rgb.size(); ++i) grey.rgb[i] = grey.rgb[i - i % 3];

@@ -218,6 +218,27 @@ TEST_F(CalibrateBlocks, AnInterruptedCalibrationGoesOnToTheSameNumbersAndMakesNo
   EXPECT_EQ(straight.score_percent, resumed.score_percent);
 }
 
+TEST_F(CalibrateBlocks, PhotographsThatAreSwappedOrOfAnotherSpecimenAreNoticed) {
+  const CalibrationRequest request = grid({13.0}, {1.0});
+  const Calibration made = run(request);
+  for (std::size_t s = 0; s < 2; ++s) {
+    subjects_[s].photographed.tumor_edge = made.specimens[s].runs[0].final_tumor_edge;
+    subjects_[s].photographed.incision = *made.specimens[s].runs[0].inner_edge;
+    subjects_[s].case_file = fmt::format("case_{}.yaml", s + 1);
+  }
+  EXPECT_EQ(run(request).verdict.status(), VerdictStatus::Ok);
+
+  std::swap(subjects_[0].photographed, subjects_[1].photographed);
+  EXPECT_THAT([&] { static_cast<void>(run(request)); },
+              ::testing::ThrowsMessage<DataError>(HasSubstr("fits the case case_2.yaml")));
+
+  // Of two photographs of the second specimen one is wrong, and the case that it belongs to is not there.
+  subjects_.pop_back();
+  const Calibration doubtful = run(request);
+  EXPECT_EQ(doubtful.verdict.status(), VerdictStatus::Caution);
+  EXPECT_TRUE(doubtful.verdict.has("photo_specimen"));
+}
+
 TEST_F(CalibrateBlocks, TheFitFindsTheDragLengthAndTheStiffnessIsThatOfTheForce) {
   subjects_.pop_back();
   // The photograph: the same block, twice as stiff, cut at a drag length between those that the fit simulates, and 0.2

@@ -4,6 +4,7 @@
 #include <incise/calibration/drag_fit.hpp>
 #include <incise/calibration/identifiability.hpp>
 #include <incise/calibration/picture_match.hpp>
+#include <incise/core/verdict.hpp>
 #include <incise/calibration/score_table.hpp>
 
 #include <optional>
@@ -67,6 +68,7 @@ struct Calibration {
   double reference_step_s = 0.02;
   bool is_virtual = false;      ///< one specimen at least is
   std::size_t simulations = 0;  ///< runs in all, those reused too
+  Verdict verdict;              ///< `photo_specimen` for each photograph that may be of another specimen
 };
 
 /// Whether something was found to cut with: of a grid a setting that did not fail; of a fit, values at which the rings

@@ -5,6 +5,7 @@
 #include <incise/imaging/photo_scale.hpp>
 
 #include <optional>
+#include <string>
 
 namespace incise {
 
@@ -26,6 +27,13 @@ struct PhotoMark {
   double longest_mm = 0.0;    ///< longer side of the box round it
 };
 
+/// A stretch of a line that looks unlike the rest of it.
+struct OddStretch {
+  Vec2 at_px = Vec2::Zero();  ///< where it is oddest
+  double length_mm = 0.0;     ///< along the line
+  std::string what;           ///< which feature is off, and by how much
+};
+
 /// The curves of one top-view photograph, mm in the picture's plane (x to the right, y up, z = 0): seen along -z.
 struct PhotoContours {
   Contour tumor_edge;  ///< closed, counter-clockwise, from its topmost point on
@@ -38,6 +46,9 @@ struct PhotoContours {
   std::vector<PhotoMark> red_in_tumor;
   /// Green that is not the green line, largest first, from 24 truly green pixels to less than kSmallestTumorMm.
   std::vector<PhotoMark> green_beside;
+  /// Of a closed red ring: a stretch longer than the largest gap in width, colour or lightness unlike the rest. Blood
+  /// as thin as the line may close an opening there.
+  std::optional<OddStretch> odd_stretch;
 };
 
 /// Measures red and green lines of a photograph; see find_marked_line. Where one line crosses the other, the hidden

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -33,16 +34,34 @@ enum class RulerKind {
   Ticks,  ///< a comb of parallel dark lines on something light and colourless, evenly spaced
   Bar,    ///< a solid straight bar without colour
 };
+/// A figure and its standard error.
+struct RulerFigure {
+  double value = 0.0;
+  double error = 0.0;  ///< > 0
+};
+/// What a ruler's row of ticks tells of the camera. All are 0 where the camera looks straight down through a corrected
+/// lens; a camera that looks along or across the ruler from far away leaves them at 0, too.
+struct RulerShape {
+  RulerFigure spacing_change;   ///< between the first and the last tick, share of the spacing: perspective
+  RulerFigure convergence_deg;  ///< angle between the first and the last tick: perspective
+  RulerFigure skew_deg;         ///< of the ticks from the normal of their row: foreshortening
+  RulerFigure end_stretch;      ///< of the spacing at both ends over the middle's, share: lens
+  RulerFigure bow;              ///< of the row from a straight line, share of its length: lens
+};
+
 /// A ruler or scale bar found in a picture.
 struct Ruler {
   double mm_per_pixel = 0.0;
   double error_percent = 0.0;  ///< standard error of the scale
   std::vector<Vec2> marks_px;  ///< the ticks' middles in order, or the bar's two ends
+  std::optional<RulerShape> shape;  ///< of ticks
 };
 
 /// Finds a ruler. @param length_mm  from tick to tick (of the finest ticks), or of the whole bar.
 /// @throws DataError where none is found (fewer than 8 evenly spaced ticks; no solid bar), naming what was seen; where
-/// a second bar is at least a quarter as long as the longest, with lengths and places.
+/// a second bar is at least a quarter as long as the longest, with lengths and places; where ticks of two spacings are
+/// in view, on one ruler or on two, with spacings and places; for a bar, where ticks are in view: the bar may be the
+/// ruler's body, or a tick.
 [[nodiscard]] Ruler find_ruler(const ColorPicture& picture, RulerKind kind, double length_mm,
                                const std::filesystem::path& name);
 

@@ -22,11 +22,16 @@ struct DepthPicture {
   std::vector<std::uint16_t> counts;  ///< width * height
 };
 
+/// Looks through a picture file's structure before any decoder sees it: format, claimed size against the file's length,
+/// ends and checksums, every coefficient of a JPEG. decode_picture and decode_depth begin with it.
+/// @throws DataError as decode_picture, but for what only the pixels show.
+void require_picture_file(std::string_view bytes, const std::filesystem::path& name);
+
 /// Decodes a `.png`, `.jpg` or `.tif` held in memory. 16-bit channels are rounded to 8; a transparent pixel is laid on
 /// white; the orientation that a camera wrote into a JPEG is applied.
 /// @param bytes  the whole file.  @param name  stands for the file in messages.
 /// @throws DataError for another format, a file that is cut short or damaged, grey or CMYK pictures, a picture whose
-/// channels are all equal (no colour to see), or more than 200 million pixels.
+/// channels are all equal (no colour to see), more than 200 million pixels, or more than its bytes can hold.
 [[nodiscard]] ColorPicture decode_picture(std::string_view bytes, const std::filesystem::path& name);
 
 /// Decodes a depth picture: one channel of 16 bits (`.png`, `.tif`). @throws DataError as decode_picture, for another

@@ -34,7 +34,8 @@ struct EvaluationFile {
   std::optional<double> positive_at_mm, too_close_at_mm;  ///< upper borders of the two zones
 };
 
-/// @throws DataError naming the file and the key that is missing, of another kind, not finite, or of another length.
+/// @throws DataError naming the file and the key that is missing, of another kind, not finite, or of another length; for
+/// a file whose `verdict` is refused.
 [[nodiscard]] EvaluationFile read_evaluation_file(const std::filesystem::path& path);
 
 /// What a calibration takes from one file of `incise evaluate`: the contours of a closed ring, named after the file.

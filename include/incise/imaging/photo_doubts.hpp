@@ -1,0 +1,17 @@
+#pragma once
+
+#include <incise/core/verdict.hpp>
+#include <incise/imaging/photo_contours.hpp>
+#include <incise/imaging/photo_scale.hpp>
+
+namespace incise {
+
+/// Adds what a ruler's own figures hold against the scale that it gives: `photo_scale` for a scale that is known badly,
+/// `photo_oblique` for a camera that does not look straight down, `photo_lens` for a lens whose distortion was left in.
+/// A figure counts where it exceeds its limit and 4 times its standard error. docs/models/photograph.md
+void add_ruler_doubts(const Ruler& ruler, Verdict& verdict);
+
+/// Adds `photo_ring` where a closed red ring would be open without a stretch that looks unlike the rest of it.
+void add_ring_doubts(const PhotoContours& contours, Verdict& verdict);
+
+}  // namespace incise

@@ -1,0 +1,81 @@
+#include <incise/core/units.hpp>
+#include <incise/imaging/photo_doubts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace incise {
+namespace {
+
+constexpr double kStandardErrors = 4.0;  // one sound figure in 16 000 lies farther out
+
+/// One figure of a ruler as a share of the scale, and what it means.
+struct Finding {
+  RulerFigure share;
+  std::string text;
+};
+
+/// An angle of a, radians, between ticks, or of them from their row's normal, comes with twice as large a change of
+/// scale along a ruler that lies the other way.
+RulerFigure share_of_angle(const RulerFigure& degrees) {
+  return {2.0 * units::rad_from_deg(degrees.value), 2.0 * units::rad_from_deg(degrees.error)};
+}
+
+/// Adds the worst of the findings that cannot be chance.
+template <std::size_t N>
+void add_worst(const std::array<Finding, N>& findings, const char* id, const char* meaning, Verdict& verdict) {
+  const double limit = *verdict_rule(id).limit;
+  const Finding* worst = nullptr;
+  for (const Finding& finding : findings) {
+    const double share = std::abs(finding.share.value);
+    if (share <= limit || share <= kStandardErrors * finding.share.error) continue;
+    if (worst == nullptr || share > std::abs(worst->share.value)) worst = &finding;
+  }
+  if (worst == nullptr) return;
+  verdict.add(id, std::abs(worst->share.value), fmt::format("{}: {}", meaning, worst->text));
+}
+
+}  // namespace
+
+void add_ruler_doubts(const Ruler& ruler, Verdict& verdict) {
+  if (ruler.error_percent > *verdict_rule("photo_scale").limit) {
+    verdict.add("photo_scale", ruler.error_percent,
+                fmt::format("the scale is known to {:.1f} % only", ruler.error_percent));
+  }
+  if (!ruler.shape) return;
+  const RulerShape& shape = *ruler.shape;
+  add_worst<3>({{{shape.spacing_change,
+                  fmt::format("the ruler's ticks change their spacing by {:.1f} % from one end to the other",
+                              100.0 * std::abs(shape.spacing_change.value))},
+                 {share_of_angle(shape.convergence_deg),
+                  fmt::format("the ruler's first and last tick are {:.1f} degrees from parallel",
+                              std::abs(shape.convergence_deg.value))},
+                 {share_of_angle(shape.skew_deg),
+                  fmt::format("the ruler's ticks lie {:.1f} degrees from the normal of their row",
+                              std::abs(shape.skew_deg.value))}}},
+               "photo_oblique", "the camera does not look straight down, or its lens was not corrected", verdict);
+  add_worst<2>(
+      {{{shape.end_stretch, fmt::format("the ruler's spacing at its ends differs by {:.1f} % from that of its middle",
+                                        100.0 * std::abs(shape.end_stretch.value))},
+        {shape.bow, fmt::format("the ruler is bent by {:.2f} % of its length", 100.0 * std::abs(shape.bow.value))}}},
+      "photo_lens", "the lens's distortion was left in the picture", verdict);
+}
+
+void add_ring_doubts(const PhotoContours& contours, Verdict& verdict) {
+  if (!contours.red.is_closed || !contours.odd_stretch) return;
+  const OddStretch& odd = *contours.odd_stretch;
+  verdict.add(
+      "photo_ring", odd.length_mm,
+      fmt::format(
+          "the red ring is closed by {:.2f} mm at pixel {:.0f}, {:.0f} that are unlike the rest of it ({}): blood "
+          "over an opening?",
+          odd.length_mm, odd.at_px.x(), odd.at_px.y(), odd.what),
+      VerdictPlace{{}, {}, fmt::format("pixel {:.0f}, {:.0f}", odd.at_px.x(), odd.at_px.y())});
+}
+
+}  // namespace incise
