@@ -70,8 +70,23 @@ TriMesh stretched_skin(const std::filesystem::path& case_path, const CommonOptio
   return skin;
 }
 
+/// Refuses what no specimen is, and a sample so dense that nobody can want it: both would take all memory there is.
+void require_sampleable(const TriMesh& skin, double spacing_mm, const std::filesystem::path& input) {
+  constexpr double kMostPoints = 5e6;
+  require_body_size(bounding_box(skin.vertices), input);
+  double area_mm2 = 0.0;
+  for (const Triangle& triangle : skin.triangles) {
+    const Vec3& p = vertex(skin.vertices, triangle[0]);
+    area_mm2 += 0.5 * (vertex(skin.vertices, triangle[1]) - p).cross(vertex(skin.vertices, triangle[2]) - p).norm();
+  }
+  if (area_mm2 <= kMostPoints * spacing_mm * spacing_mm) return;
+  throw DataError(input, "surface", fmt::format("{:.3g} mm2, which are {:.2g} points", area_mm2, area_mm2 / (spacing_mm * spacing_mm)),
+                  fmt::format("at most {:.0e} points", kMostPoints), "A larger --spacing-mm makes fewer");
+}
+
 nlohmann::ordered_json seen(const TriMesh& skin, const SurfaceArguments& arguments, const Vec3& approach,
                             Workers& workers, PointCloud& cloud) {
+  require_sampleable(skin, arguments.view.spacing_mm, arguments.input);
   VisibleSurfaceSettings view = arguments.view;
   view.approach = approach;
   VisibleSurface surface = visible_surface(skin, view, workers);

@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/mesh_io.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>
@@ -33,6 +34,9 @@ void read_points(const JsonPlace& file, EvaluationFile& result) {
     points.refuse("signed_error_mm", fmt::format("{} numbers", errors.size()), fmt::format("n_points = {}", count));
   }
   if (errors.size() < 3) points.refuse("signed_error_mm", fmt::format("{} numbers", errors.size()), "at least 3");
+  for (const double error : errors) {
+    if (std::abs(error) > kLargestBodyMm) points.refuse("signed_error_mm", fmt::format("{:.4g}", error), fmt::format("distances within {} mm", kLargestBodyMm));
+  }
   if (!points.object.contains("clock_h")) return;
   result.clock_h = points.numbers("clock_h");
   if (result.clock_h.size() != errors.size()) {

@@ -236,7 +236,9 @@ Json to_json(const std::vector<StageReport>& stages) {
 }
 
 Outcome read_outcome(const nlohmann::ordered_json& json, const char* key, const std::filesystem::path& file) {
-  const auto name = json.at(key).get<std::string>();
+  const auto found = json.find(key);  // the end where this is no object
+  if (found == json.end() || !found->is_string()) throw DataError(file, key, "no text", "the name of an outcome");
+  const auto name = found->get<std::string>();
   const std::optional<Outcome> outcome = parse_outcome(name);
   if (!outcome) throw DataError(file, key, fmt::format("'{}'", name), "the name of an outcome");
   return *outcome;

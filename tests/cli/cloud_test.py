@@ -207,6 +207,15 @@ class SurfaceTest(CommandTest):
         text = (self.folder / "top.ply").read_bytes()[:400].decode("ascii", "replace")
         self.assertIn("property double nx", text)
 
+    def test_a_vertex_far_away_and_a_spacing_far_too_fine_take_no_memory(self):
+        vertices, tets = small_case.block(cells=(4, 6, 2))
+        for far in (2147483647.0, 1e300):
+            small_case.write_msh(self.folder / "far.msh", [(20.0, far, 0.0), *vertices[1:]], tets)
+            self.assert_refused(self.incise("surface", "far.msh", "-o", "top.ply", cpu_s=60), BAD_DATA, "far.msh")
+        small_case.write_msh(self.folder / "block.msh", vertices, tets)
+        self.assert_refused(self.incise("surface", "block.msh", "--spacing-mm", 0.01, "-o", "top.ply", cpu_s=60), BAD_DATA, "block.msh", "--spacing-mm")
+        self.assert_nothing_written(self.folder / "top.ply")
+
     def test_a_scan_loses_its_table(self):
         table = [(float(i), float(j), -3.0) for i in range(-40, 41, 2) for j in range(-30, 31, 2)]
         write_ply(self.folder / "scan.ply", [p for p in hill(1500, 1) if p[2] > 0] + table)

@@ -73,6 +73,16 @@ TEST_F(EvaluationFileTest, WithoutAnIncisionHasNoErrors) {
   EXPECT_FALSE(file.too_close_at_mm.has_value());
 }
 
+TEST_F(EvaluationFileTest, HoldsDistancesOfSpecimensOnlyAndAnOutcomeByName) {
+  nlohmann::ordered_json json = file_json(shifted_ring());
+  json["points"]["signed_error_mm"][3] = 1e200;  // its square is no number
+  expect_refused(json, "points.signed_error_mm", "1e+200");
+  json = file_json(shifted_ring());
+  json["outcome"] = 4;
+  expect_refused(json, "outcome", "4");
+  EXPECT_THROW(static_cast<void>(read_outcome(nlohmann::ordered_json::array(), "outcome", "incision.json")), DataError);
+}
+
 TEST_F(EvaluationFileTest, ThatIsDamagedIsRefusedWithThePlace) {
   const nlohmann::ordered_json good = file_json(shifted_ring());
   nlohmann::ordered_json json = good;
