@@ -142,7 +142,9 @@ double widest_gap_deg(const Raster& mask, const Vec2& inside) {
 }
 
 double widest_gap_mm(const Raster& mask, const Vec2& inside) {
-  const auto [i, j] = pixel_of(mask, inside);
+  const auto pixel = pixel_of(mask, inside);
+  const int i = pixel[0];  // plain numbers: not every compiler lets a lambda use names of a structured binding
+  const int j = pixel[1];
   if (!mask.contains(i, j)) return std::numeric_limits<double>::infinity();
   if (mask.at(i, j) != 0) return 0.0;
   const ScalarRaster distance = distance_to(mask, 1);

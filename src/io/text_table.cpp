@@ -1,6 +1,7 @@
 #include "io/number_text.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/utf8.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/table_io.hpp>
 
@@ -41,6 +42,15 @@ std::vector<std::string> cells_of(std::string_view row, const std::filesystem::p
     if (at >= row.size()) return cells;
     ++at;  // the comma
   }
+}
+
+/// Cells end up in tables, JSON and messages, which hold text alone.
+void require_text(std::string_view row, const std::filesystem::path& path, std::size_t line) {
+  const auto is_control = [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == '\x7f'; };
+  const auto bad = std::find_if(row.begin(), row.end(), is_control);
+  const std::string place = fmt::format("line {}", line);
+  if (bad != row.end()) throw DataError(path, place, fmt::format("a control character (0x{:02x})", static_cast<unsigned char>(*bad)), "text");
+  if (first_not_utf8(row)) throw DataError(path, place, "bytes that are not UTF-8", "text in UTF-8", "Save the table as UTF-8");
 }
 
 void require_names(const std::vector<std::string>& header, const std::filesystem::path& path, std::size_t line) {
@@ -112,6 +122,7 @@ TextTable read_csv_text(const std::filesystem::path& path) {
     const std::string_view row = io_detail::trimmed(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (row.empty()) continue;
+    require_text(row, path, line);
     std::vector<std::string> cells = cells_of(row, path, line);
     if (table.header.empty()) {
       require_names(cells, path, line);

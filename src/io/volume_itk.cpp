@@ -70,7 +70,7 @@ std::string essence(const std::exception& error) {
 }
 
 std::optional<Component> component_of(itk::IOComponentEnum type) {
-  using enum itk::IOComponentEnum;
+  using enum itk::CommonEnums::IOComponent;
   const bool long_is_64_bit = sizeof(long) == 8;
   switch (type) {
     case UCHAR:

@@ -147,7 +147,7 @@ class Auditor {
     }
     for (const auto& [name, claim] : claims_) {
       const bool is_made =
-          std::any_of(checks.checks.begin(), checks.checks.end(), [&](const auto& c) { return c.name == name; });
+          std::any_of(checks.checks.begin(), checks.checks.end(), [&name = name](const auto& c) { return c.name == name; });
       if (is_made) continue;
       if (needs_more(name))
         audit_.not_recomputed.push_back(name);

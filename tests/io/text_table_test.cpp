@@ -47,6 +47,8 @@ TEST(TextTable, RefusesDamageWithItsLine) {
   refusal("a,\n1,2\n", "no name");
   refusal("a,b\n1,\"2\n", "a quote that does not end");
   refusal("a,b\n1,\"2\"x\n", "after a closing quote");
+  refusal("a,b\n1,x\ry\n", "control character (0x0d)");
+  refusal("a,b\n1,caf\xe9\n", "not UTF-8");
 }
 
 TEST(LatexText, EscapesWhatLatexWouldReadAsACommand) {

@@ -28,7 +28,7 @@ struct TextTable {
 /// Reads every cell of a `.csv` as text, blanks round it removed; for columns whose printed digits matter. Cells in
 /// double quotes may hold commas; a quote inside is doubled; a line end is not known there.
 /// @throws DataError naming the line: a row of another width, a quote that does not end, a column name given twice or
-/// empty, an empty file.
+/// empty, a control character, bytes that are not UTF-8, an empty file.
 [[nodiscard]] TextTable read_csv_text(const std::filesystem::path& path);
 
 /// The table as CSV (LF; cells with comma or quote are quoted). @pre rows as wide as the header, no line ends.
