@@ -43,6 +43,7 @@ struct Now {
   std::size_t number = 0;
   const std::string* bytes = nullptr;
 } now;
+const pid_t own_process = ::getpid();
 
 [[noreturn]] void finding(const char* what) {
   std::fprintf(stderr, "finding: %s: case %zu: %s\n", now.reader, now.number, what);
@@ -56,7 +57,15 @@ struct Now {
   ::_exit(1);
 }
 
-void on_signal(int number) { finding(number == SIGPROF ? "more than 10 s of processor time" : ::strsignal(number)); }
+// A process that the reader started for what may break down breaks down by itself: that is no finding.
+void on_signal(int number) {
+  if (::getpid() != own_process) {
+    std::signal(number, SIG_DFL);
+    std::raise(number);
+    return;
+  }
+  finding(number == SIGPROF ? "more than 10 s of processor time" : ::strsignal(number));
+}
 
 std::string bytes_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
