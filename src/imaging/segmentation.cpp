@@ -195,6 +195,17 @@ void note_cut_faces(Segmentation& result) {
                                  faces.size(), fmt::join(faces, ", ")));
 }
 
+/// Smoothing shrinks what is curved as strongly as its length: a body of a few millimetres loses a part that counts.
+void note_lost_volume(double sharp_mm3, const SegmentationSettings& settings, Segmentation& result) {
+  constexpr double kMostShare = 0.02;
+  const double share = std::abs(result.occupancy_volume_mm3 - sharp_mm3) / std::max(result.occupancy_volume_mm3, sharp_mm3);
+  if (!(settings.smoothing_mm > 0.0) || !(share > kMostShare)) return;
+  result.verdict.add("scan", share,
+                     fmt::format("smoothing over {:g} mm changes the specimen's volume by {:.1f} %: it is too long for a body so small or thin. A shorter "
+                                 "segmentation.smoothing_mm (about a voxel) keeps the shape",
+                                 settings.smoothing_mm, 100.0 * share));
+}
+
 }  // namespace
 
 std::vector<std::string> validate(const SegmentationSettings& settings) {
@@ -276,8 +287,8 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   const IndexBox around = grown(box_of(body), pad);
   const CtVolume hu = crop(whole.hu, around);
   report(0.5);
-  GrayVolume occupancy = smoothed(occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings),
-                                  settings.smoothing_mm);
+  const GrayVolume sharp = occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings);
+  GrayVolume occupancy = smoothed(sharp, settings.smoothing_mm);
   report(0.9);
   const Mask label = make_one_piece(occupancy, settings.fill_holes);
   result.tissue_hu = median_hu(hu, label, settings);
@@ -288,6 +299,7 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
   result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
   result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5);
+  note_lost_volume(iso_volume_mm3(sharp, 0.5), settings, result);
   report(1.0);
   return result;
 }

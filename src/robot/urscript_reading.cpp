@@ -27,7 +27,9 @@ class Scanner {
     // strtod would also take "nan", "inf" and hexadecimals, which no script of ours holds.
     const bool starts_well = std::string_view("+-.0123456789").find(*begin) != std::string_view::npos && *begin != '\0';
     const double value = starts_well ? std::strtod(begin, &end) : 0.0;
-    if (!starts_well || end == begin || !std::isfinite(value)) fail("a number");
+    // m, rad, m/s, s: what is far beyond has no square that could be computed with.
+    constexpr double kLargest = 1e12;
+    if (!starts_well || end == begin || !(std::abs(value) <= kLargest)) fail("a number within 1e12");
     at_ += static_cast<std::size_t>(end - begin);
     return value;
   }

@@ -138,7 +138,14 @@ std::vector<Constraint> default_constraints(const TetMesh& mesh) {
   constexpr double kClampMm = 15.0;    // what the posterior clamp of a specimen holder takes hold of
   constexpr double kSutureMm = 10.0;   // round the retraction suture
   constexpr double kStretchMm = 20.0;  // paper II-A
-  const double lowest = bounding_box(mesh.vertices).min().z();
+  constexpr double kShortestMm = 40.0;  // what lies between the two ends is then stretched to 2.3 times its length, and no more
+  const Box3 box = bounding_box(mesh.vertices);
+  const double length_mm = box.sizes().y(), lowest = box.min().z();
+  if (!(length_mm >= kShortestMm)) {
+    throw CaseError("case", "specimen.constraints", fmt::format("none, and a body {:.3g} mm long from front to back", length_mm),
+                    fmt::format("constraints of its own for a body shorter than {:g} mm: by default {:g} mm are clamped at the back and {:g} mm at the front are pulled by {:g} mm",
+                                kShortestMm, kClampMm, kSutureMm, kStretchMm));
+  }
   return {FixedConstraint{EndRegion{Vec3::UnitY(), kClampMm}, {true, true, true}},
           DisplacedConstraint{EndRegion{-Vec3::UnitY(), kSutureMm}, Vec3(0.0, -kStretchMm, 0.0)},
           SupportConstraint{Vec3(0.0, 0.0, lowest), Vec3::UnitZ()}};

@@ -208,6 +208,25 @@ TEST(Segmentation, LeavesOutTheThinShellBetweenBoneAndAirThatLooksLikeTissue) {
   EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.03);
 }
 
+TEST(Segmentation, CautionsWhereSmoothingTakesAPartOfASmallBody) {
+  const auto body = [](double radius_mm) {
+    const double spacing = radius_mm / 15.0;
+    return scan_of(grid_of(40, 40, 40, Vec3::Constant(spacing)),
+                   [&](const Vec3& p) { return -1000.0 + 1040.0 * ball(p, Vec3::Constant(20.0 * spacing), radius_mm); });
+  };
+  const Segmentation small = run(body(3.0));  // 6 mm across, by the default of 0.6 mm
+  ASSERT_EQ(small.verdict.reasons().size(), 1U);
+  EXPECT_EQ(small.verdict.reasons()[0].id, "scan");
+  EXPECT_THAT(small.verdict.reasons()[0].message, testing::AllOf(HasSubstr("smoothing over 0.6 mm"), HasSubstr("segmentation.smoothing_mm")));
+  EXPECT_LT(small.occupancy_volume_mm3, 0.97 * 36.0 * 3.14159265);
+  SegmentationSettings shorter;
+  shorter.smoothing_mm = 0.2;
+  const Segmentation kept = run(body(3.0), shorter);
+  EXPECT_EQ(kept.verdict.status(), VerdictStatus::Ok);
+  EXPECT_NEAR(kept.occupancy_volume_mm3 / (36.0 * 3.14159265), 1.0, 0.015);
+  EXPECT_EQ(run(body(25.0)).verdict.status(), VerdictStatus::Ok);
+}
+
 TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
   struct : Monitor {
     double last = -1.0;

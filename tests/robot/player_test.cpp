@@ -294,6 +294,7 @@ TEST(ProgramFromText, NamesTheLineOfAForeignOrDamagedStatement) {
               HasSubstr(place + ": found 'set_digital_out', expected set_tcp, movej"));
   EXPECT_THAT(message_of(with("  movep(p[", "  movep([")), HasSubstr(place + ": found '[0.5"));
   EXPECT_THAT(message_of(with("  movep(p[0.5", "  movep(p[nan")), HasSubstr("expected a number"));
+  EXPECT_THAT(message_of(with("  movep(p[0.5", "  movep(p[-1e308")), HasSubstr("expected a number within"));
   EXPECT_THAT(message_of(with(", v=0.004000", "")), HasSubstr("expected 'v='"));
   EXPECT_THAT(message_of(with("v=0.004000", "v=-0.004000")), HasSubstr("expected v above 0"));
   EXPECT_THAT(message_of(with("  movel(", "  movej(")), HasSubstr(line_of("  movel(")));

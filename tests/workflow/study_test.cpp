@@ -265,5 +265,11 @@ TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {
   EXPECT_EQ(std::get<SupportConstraint>(constraints[2]).point_mm.z(), 0.0);
 }
 
+TEST(DefaultConstraints, AreRefusedForABodyThatTheirLengthsWereNotMadeFor) {
+  const TetMesh small = make_block({6, 9, 5}, {3, 4, 2});
+  EXPECT_THAT([&] { static_cast<void>(default_constraints(small)); },
+              testing::ThrowsMessage<CaseError>(testing::AllOf(testing::HasSubstr("specimen.constraints"), testing::HasSubstr("9 mm long"))));
+}
+
 }  // namespace
 }  // namespace incise

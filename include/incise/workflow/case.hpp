@@ -102,7 +102,7 @@ struct Case {
 [[nodiscard]] std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& variation);
 
 /// The paper's set-up (II-A) for a tongue in LPS: posterior 15 mm clamped, anterior 10 mm pulled 20 mm forward, underside resting on a platform
-/// at the mesh's lowest point.
+/// at the mesh's lowest point. @throws CaseError for a body shorter than 40 mm along y, for which these lengths are not made.
 [[nodiscard]] std::vector<Constraint> default_constraints(const TetMesh& mesh);
 
 }  // namespace incise
