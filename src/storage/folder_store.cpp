@@ -169,12 +169,13 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   nlohmann::ordered_json stage{{"key", key(product)}, {"wall_s", wall_s}};
   if (is_cut(product)) stage["judged_by"] = judgement_key();
   write_json(target.path() / kStageFile, stage);
+  // What was made from the older product is of no use any more, and a report must not mix the two. A later product has a key that tells
+  // its age; the others have none and go first: a run that is killed here leaves nothing that would look like the new product's.
+  for (const char* made_of_it : {"program", "robust", "assessment"}) remove_replaceable(root_ / made_of_it);
   target.commit();
-  // What was made from the older product is of no use any more, and a report must not mix the two.
   for (int later = static_cast<int>(product) + 1; later <= static_cast<int>(Product::Corrected); ++later) {
     if (is_stale(static_cast<Product>(later))) remove_replaceable(folder(static_cast<Product>(later)));
   }
-  for (const char* made_of_it : {"program", "robust", "assessment"}) remove_replaceable(root_ / made_of_it);
   remove_checkpoints_of_no_use(product);
 }
 

@@ -188,6 +188,7 @@ void FolderStore::remove_checkpoints_of_no_use(Product saved) {
 std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
   const Product product = product_of(role);
   if (!is_current(product)) return std::nullopt;
+  remove_what_it_was_made_from(role);  // a run that was killed once it had saved the cut has left it
   return of_earlier_run(folder(product), [&]() -> std::optional<SimulatedCut> {
     const std::filesystem::path from = folder(product);
     const nlohmann::ordered_json json = read_json(from / "incision.json");
@@ -253,6 +254,11 @@ void FolderStore::save_cut(CutRole role, const TissueModel& model, const StaticR
     write_kerf_files(to, incision.kerf);
     write_frames(to, model.mesh, incision.frames);
   });
+  remove_what_it_was_made_from(role);
+}
+
+void FolderStore::remove_what_it_was_made_from(CutRole role) {
+  std::filesystem::remove(checkpoint(role));
   if (role == CutRole::Corrected) remove_passes();
 }
 

@@ -73,6 +73,14 @@ class CheckpointTest(CommandTest):
         self.assertFalse(self.checkpoint.exists(), "a cut that is finished needs none")
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
 
+    def test_a_checkpoint_beside_its_finished_cut_goes(self):
+        self.stop("simulate", self.checkpoint, signal.SIGINT)
+        left = self.checkpoint.read_bytes()
+        self.assertEqual(self.incise("simulate", "case", "-o", self.out).returncode, DONE)
+        self.checkpoint.write_bytes(left)  # as a run leaves it that is killed once the cut is in place, and before its checkpoint is removed
+        self.assertEqual(self.incise("simulate", "case", "-o", self.out).returncode, DONE)
+        self.assertFalse(self.checkpoint.exists(), "a cut that is finished needs none")
+
     def test_a_killed_run_goes_on_from_its_last_checkpoint(self):
         killed = self.stop("simulate", self.checkpoint, signal.SIGKILL)
         # Where the signal met it while it was writing, this is what it left.

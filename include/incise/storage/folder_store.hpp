@@ -114,6 +114,7 @@ class FolderStore : public Store {
   void remove_checkpoints_of_no_use(Product saved);
   /// What the cuts on the way to the correction left, once there is a corrected one.
   void remove_passes();
+  void remove_what_it_was_made_from(CutRole role);
   void save(Product product, double wall_s, const std::function<void(const std::filesystem::path&)>& write);
 
   CaseFile file_;
