@@ -70,6 +70,7 @@ nlohmann::ordered_json settings_json(const RegisterArguments& arguments) {
       {"largest_rmse_mm", arguments.max_rmse_mm > 0.0 ? nlohmann::ordered_json(arguments.max_rmse_mm) : nullptr},
       {"least_inliers", s.least_inliers},
       {"least_fit", s.least_fit},
+      {"largest_shape_residual", s.largest_shape_residual},
       {"largest_sd", s.largest_sd},
       {"largest_settled_sd", s.largest_settled_sd},
       {"least_sharpness", s.least_sharpness},

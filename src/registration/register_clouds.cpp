@@ -4,6 +4,7 @@
 #include "registration/mirror_image.hpp"
 #include "registration/pose_search.hpp"
 #include "registration/settling.hpp"
+#include "registration/shape_residual.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/registration/register_clouds.hpp>
@@ -29,6 +30,7 @@ constexpr double kDifferent = 0.08;         // rms distance, in radii, from whic
 constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
 constexpr double kMirrorRatio = 0.95;       // of scores and residuals: beyond it source or mirror image fits better
 constexpr double kUsualScale = 0.05;        // both sensors are metric
+constexpr double kSettled = 0.008;          // rms, in the target's radius: 0.2 mm on a tongue; 0.1 mm is found where nothing has settled
 constexpr double kAtLimit = 1e-6;           // relative: a scale that near to an end of its range stands there
 
 /// Both clouds about the target's middle, in units of its radius, and the way back.
@@ -207,7 +209,11 @@ class Registering {
     result.certificate =
         certificate_of(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
     if (settled) take_over(result, *settled);
+    const ShapeResidual shape =
+        shape_residual(source_, target_, best.transform, settings_.scale, settings_.settling_mm / frame_.length, workers_);
+    result.shape_residual_mm = frame_.length * shape.left;
     judge(result, best);
+    note_settling(result, shape);
     to_millimetres(result.certificate);
   }
 
@@ -308,6 +314,9 @@ class Registering {
     fail(result.rmse_mm > settings_.largest_rmse * frame_.length, RegistrationOutcome::PoorFit,
          fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm,
                      settings_.largest_rmse * frame_.length));
+    fail(result.shape_residual_mm > settings_.largest_shape_residual * frame_.length, RegistrationOutcome::OtherShape,
+         fmt::format("another shape: {:.3g} mm of the residual are neither noise nor settling, expected at most {:.3g} mm",
+                     result.shape_residual_mm, settings_.largest_shape_residual * frame_.length));
     const double largest_sd = settings_.settling_mm > 0.0 ? settings_.largest_settled_sd : settings_.largest_sd;
     fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < largest_sd),
          RegistrationOutcome::IllDetermined,
@@ -333,6 +342,15 @@ class Registering {
       result.reasons.push_back(fmt::format(
           "the scale of {:.4g} is outside 0.95 to 1.05: if both clouds are metric, something is wrong", scale));
     }
+  }
+
+  /// Tissue that has settled passes for a shift or a tilt where settling is not looked for.
+  void note_settling(Registration& result, const ShapeResidual& shape) const {
+    if (settings_.settling_mm > 0.0 || shape.settled_rms <= kSettled) return;
+    result.reasons.push_back(
+        fmt::format("apart from the pose the surfaces differ smoothly by {:.2g} mm (rms), up to {:.2g} mm, as tissue does that has settled or "
+                    "is held differently; the pose may be off by as much, settling_mm looks for both",
+                    frame_.length * shape.settled_rms, frame_.length * shape.settled_largest));
   }
 
   void to_millimetres(Certificate& c) const {
@@ -377,6 +395,8 @@ std::vector<std::string> validate(const RegistrationSettings& s) {
         fmt::format("least_inliers: expected a share in [0, 1], found {}", s.least_inliers));
   check(s.least_fit >= 0.0 && s.least_fit <= 1.0,
         fmt::format("least_fit: expected a share in [0, 1], found {}", s.least_fit));
+  check(s.largest_shape_residual > 0.0,
+        fmt::format("largest_shape_residual: expected a share above 0, found {}", s.largest_shape_residual));
   check(s.largest_sd > 0.0, fmt::format("largest_sd: expected a share above 0, found {}", s.largest_sd));
   check(s.largest_settled_sd > 0.0,
         fmt::format("largest_settled_sd: expected a share above 0, found {}", s.largest_settled_sd));
@@ -403,6 +423,8 @@ std::string_view to_string(RegistrationOutcome outcome) {
       return "mirrored";
     case RegistrationOutcome::PoorFit:
       return "poor_fit";
+    case RegistrationOutcome::OtherShape:
+      return "other_shape";
     case RegistrationOutcome::ScaleAtLimit:
       return "scale_at_limit";
     case RegistrationOutcome::Degenerate:

@@ -139,6 +139,7 @@ class Settling {
     const Vector settled = result_.transform.scale * (asked_.basis * weights_);
     result_.settled_rms = std::sqrt(settled.squaredNorm() / static_cast<double>(settled.size()));
     result_.settled_largest = settled.cwiseAbs().maxCoeff();
+    result_.settled = settled_source(settled);
     return result_;
   }
 
@@ -162,6 +163,17 @@ class Settling {
     std::vector<Patch> all;
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
     return all;
+  }
+
+  [[nodiscard]] PointCloud settled_source(const Vector& raised) const {
+    PointCloud cloud;
+    const Vec3 up = result_.transform.rotation * asked_.up;
+    for (std::size_t row = 0; row < asked_.indices.size(); ++row) {
+      const std::size_t i = asked_.indices[row];
+      cloud.points.push_back(result_.transform(source_.cloud.points[i]) + raised[static_cast<Eigen::Index>(row)] * up);
+      cloud.normals.push_back(result_.transform.rotation * source_.cloud.normals[i]);
+    }
+    return cloud;
   }
 
   /// One Gauss-Newton step of pose and settling together.

@@ -27,6 +27,7 @@ struct SettledPose {
   bool has_converged = false;
   bool is_degenerate = false;  ///< too few pairs
   int iterations = 0;
+  PointCloud settled;  ///< in the answer, moved and settled: the source's points that were asked, at most 3000
 };
 
 /// The similarity between a surface and a measured one that has settled since: pose and a smooth displacement along the

@@ -89,6 +89,7 @@ Json to_json(const Registration& r) {
   json["rival_score"] = number(r.rival_score);
   json["rival_T_target_source"] = r.rival ? rows(matrix_of(*r.rival)) : Json(nullptr);
   json["shape_rmse_mm"] = number(r.shape_rmse_mm);
+  json["shape_residual_mm"] = number(r.shape_residual_mm);
   json["mirror_score"] = number(r.mirror_score);
   json["mirror_rmse_mm"] = number(r.mirror_rmse_mm);
   json["handedness_determined"] = r.is_handedness_determined;

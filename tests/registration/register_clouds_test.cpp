@@ -289,6 +289,41 @@ PointCloud dipped_hill(std::size_t count, Random& random) {
   return cloud;
 }
 
+/// The hill of another specimen: waves as long as a tongue's bumps on it, other ones for each seed.
+PointCloud hill_with_bumps(std::size_t count, std::uint64_t seed, double height_mm, Random& random) {
+  PointCloud cloud = hill(count, random);
+  Random shape(seed);
+  for (int k = 0; k < 4; ++k) {
+    const double number = 2.0 * units::kPi / shape.uniform(18.0, 35.0);
+    const double angle = shape.uniform(0.0, 2.0 * units::kPi);
+    const double phase = shape.uniform(0.0, 2.0 * units::kPi);
+    const Vec3 along = number * Vec3(std::cos(angle), std::sin(angle), 0.0);
+    for (Vec3& p : cloud.points) p.z() += height_mm * std::cos(along.dot(p) + phase);
+  }
+  for (Vec3& p : cloud.points) p += 0.2 * Vec3(random.normal(), random.normal(), random.normal());
+  return cloud;
+}
+
+TEST(OtherShape, IsNoSuccessAndTheSameShapeWithItsNoiseIsOne) {
+  Random random(31);
+  Workers workers(2);
+  RegistrationSettings settings;
+  settings.start = Similarity{};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    const PointCloud source = hill(2500, random);
+    for (const double height_mm : {0.0, 0.4}) {
+      PointCloud target = hill_with_bumps(4000, seed, height_mm, random);
+      target = with_normals(crop(target, Box3(Vec3(-40, -30, -50), Vec3(20, 30, 50))), -Vec3::UnitZ(), 16, workers);
+      const Registration found = register_clouds(source, target, settings, workers, silent);
+      SCOPED_TRACE(::testing::Message() << "seed " << seed << ", " << height_mm << " mm: " << found.shape_residual_mm
+                                        << " mm, rmse " << found.rmse_mm << ", " << to_string(found.outcome));
+      EXPECT_EQ(found.outcome == RegistrationOutcome::Converged, height_mm == 0.0);
+      if (height_mm == 0.0) continue;
+      EXPECT_THAT(found.reasons, Contains(HasSubstr("another shape")));
+    }
+  }
+}
+
 TEST(Settling, ADipIsNotTakenForAShiftWhereSettlingIsLookedFor) {
   Random random(21);
   Workers workers(2);

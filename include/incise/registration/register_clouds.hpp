@@ -27,6 +27,7 @@ struct RegistrationSettings {
   double largest_rmse = 0.03;     ///< poorer fits are not a success
   double least_inliers = 0.15;    ///< of the source's points; fewer are not a success
   double least_fit = 0.7;            ///< share of the source's points above the target that lie on it, for a success
+  double largest_shape_residual = 0.0055;  ///< misfit that neither noise nor settling explains, for a success
   double largest_sd = 0.01;       ///< of the pose along its weakest direction, for a success
   double largest_settled_sd = 0.02;  ///< the same where settling was looked for, which leaves more open than noise
   double least_sharpness = 7e-4;  ///< see Certificate::sharpness
@@ -43,11 +44,12 @@ enum class RegistrationOutcome {
   Ambiguous,       ///< another pose fits about as well
   Mirrored,        ///< the source's mirror image fits clearly better: one of the clouds is reflected
   PoorFit,         ///< the residual is too large, or too little of the source finds a counterpart
+  OtherShape,      ///< ridges and hollows of one surface are not those of the other: another specimen, or changed tissue
   ScaleAtLimit,    ///< the scale stands at an end of its range: what the clouds ask for lies beyond it
   Degenerate,      ///< a cloud is a point or a line, or has fewer than 12 points; no transform follows
   Cancelled,
 };
-/// converged, iteration_limit, ill_determined, ambiguous, mirrored, poor_fit, scale_at_limit, degenerate, cancelled
+/// converged, iteration_limit, ill_determined, ambiguous, mirrored, poor_fit, other_shape, scale_at_limit, degenerate, cancelled
 [[nodiscard]] std::string_view to_string(RegistrationOutcome outcome);
 
 /// How well two surfaces fix the transform between them. Seven motions (three turns and three shifts about the
@@ -97,6 +99,9 @@ struct Registration {
   /// Distances along the normals, target to source, of the source's points that lie above the target (within a tenth of
   /// its radius), mm.
   std::vector<double> residuals_mm;
+  /// Misfit that neither noise nor settling explains: what nine tenths of the surface keep within, of the residual
+  /// averaged over some third of the target's radius.
+  double shape_residual_mm = 0.0;
   double settled_rms_mm = 0.0;  ///< of the settling that was found beside the pose; 0 where none was looked for
   double settled_max_mm = 0.0;
   bool scale_at_limit = false;       ///< the scale stands at an end of its range

@@ -1,0 +1,89 @@
+#include "registration/shape_residual.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace incise {
+namespace {
+
+constexpr double kNeighbourhood = 0.2;    // radius of a neighbourhood, in the target's: some 10 mm across on a tongue
+constexpr std::size_t kFewest = 8;        // target points in a neighbourhood, for noise to cancel
+constexpr double kFarthest = 0.15;        // from the source, in the target's radius: beyond lies something else
+constexpr double kUsualSettling = 0.035;  // in the target's radius: 1 mm on a tongue
+constexpr double kOfMedian = 1.2533;      // standard error of a median over that of a mean, of normal noise
+constexpr double kOfDeviation = 1.4826;   // standard deviation over the median absolute deviation, of normal noise
+constexpr double kNineTenths = 1.645;     // standard deviations that nine tenths of normal noise keep within
+constexpr double kShare = 0.9;            // of the neighbourhoods: the rest may be a rim, a hole or a hair
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Height of a target point above the source's surface, along the normal of the source's nearest point.
+struct Height {
+  Vec3 place = Vec3::Zero();
+  double value = 0.0;
+};
+
+std::vector<Height> heights(const PointCloud& source, const SampledSurface& target) {
+  const NeighbourSearch search(source.points);
+  std::vector<double> apart;  // of the source's points
+  for (const Vec3& p : source.points) apart.push_back(std::sqrt(search.nearest(p, 2).back().squared_mm2));
+  const double beside = kEdgeSpacings * median(apart);
+  std::vector<Height> found;
+  for (const Vec3& p : target.cloud.points) {
+    const std::size_t nearest = search.nearest(p).index;
+    const Vec3 offset = p - source.points[nearest];
+    const double height = offset.dot(source.normals[nearest]);
+    if (std::abs(height) > kFarthest || (offset - height * source.normals[nearest]).norm() > beside) continue;
+    found.push_back({p, height});
+  }
+  return found;
+}
+
+/// What of the heights' median is not their noise: the part beyond the standard error that nine tenths of noise keep within.
+double beyond_noise(std::vector<double> heights) {
+  const double common = median(heights);
+  for (double& height : heights) height = std::abs(height - common);
+  const double error = kOfMedian * kOfDeviation * median(heights) / std::sqrt(static_cast<double>(heights.size()));
+  return std::sqrt(std::max(0.0, common * common - std::pow(kNineTenths * error, 2)));
+}
+
+/// The common height in the neighbourhood of each of the source's points that lie above enough of the target.
+std::vector<double> common_heights(const Points& around, const std::vector<Height>& heights) {
+  std::vector<double> sizes;
+  if (heights.empty()) return sizes;
+  Points places;
+  for (const Height& one : heights) places.push_back(one.place);
+  const NeighbourSearch search(places);
+  std::vector<double> near;
+  for (const Vec3& center : around) {
+    near.clear();
+    for (const Neighbour& other : search.within(center, kNeighbourhood)) near.push_back(heights[other.index].value);
+    if (near.size() < kFewest) continue;
+    sizes.push_back(beyond_noise(near));
+  }
+  return sizes;
+}
+
+}  // namespace
+
+ShapeResidual shape_residual(const SampledSurface& source, const SampledSurface& target, const Similarity& start,
+                             const ScaleRange& scale, double settling, Workers& workers) {
+  SettlingSettings settings;
+  settings.scale = scale;
+  settings.largest = std::max(settling, kUsualSettling);
+  const SettledPose settled = settled_pose(source, target, start, settings, workers);
+  if (settled.is_degenerate) return {};
+  std::vector<double> sizes = common_heights(settled.settled.points, heights(settled.settled, target));
+  if (sizes.empty()) return {};
+  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), at, sizes.end());
+  return {*at, settled.settled_rms, settled.settled_largest};
+}
+
+}  // namespace incise
