@@ -11,7 +11,9 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <memory>
+#include <optional>
 
 namespace incise::cli {
 namespace {
@@ -21,14 +23,21 @@ bool is_surface(const std::filesystem::path& path) {
   return ending == ".stl" || ending == ".ply" || ending == ".obj" || ending == ".vtp";
 }
 
+/// Edge lengths for a body whose longest side is this long, mm.
+using SizingFor = std::function<SizingField(double)>;
+
 /// Whatever the mesher requires of its input, it came from the file and the lengths.
-MeshingResult meshed(const std::filesystem::path& input, const SizingField& sizing, const MeshingSettings& settings, Monitor& monitor) {
+MeshingResult meshed(const std::filesystem::path& input, const SizingFor& sizing, const MeshingSettings& settings, Monitor& monitor) {
   try {
-    if (!is_surface(input)) return mesh_labels(read_labels(input), sizing, settings, monitor);
+    if (!is_surface(input)) {
+      const LabelVolume labels = read_labels(input);
+      return mesh_labels(labels, sizing(longest_side_mm(labels)), settings, monitor);
+    }
     const TriMesh surface = read_surface(input);
     require_closed_manifold(surface, input);
-    require_body_size(bounding_box(surface.vertices), input);
-    return mesh_surface(surface, sizing, settings, monitor);
+    const Box3 box = bounding_box(surface.vertices);
+    require_body_size(box, input);
+    return mesh_surface(surface, sizing(box.sizes().maxCoeff()), settings, monitor);
   } catch (const InvalidArgument& error) {
     throw fault_of_file(input, "", error, "a body that can be meshed with these lengths");
   }
@@ -40,11 +49,10 @@ void add_mesh(Application& application) {
   struct Arguments {
     std::filesystem::path input;
     std::filesystem::path around;
-    double fine_mm = SizingSettings{}.fine_mm;
-    double coarse_mm = SizingSettings{}.coarse_mm;
+    std::optional<double> fine_mm;
+    std::optional<double> coarse_mm;
     double depth_mm = 5.0;
     int tets = 0;
-    CLI::Option* fine_option = nullptr;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
@@ -59,7 +67,7 @@ void add_mesh(Application& application) {
           throw CaseError("command line", "--tets", fmt::format("{}", arguments->tets),
                           fmt::format("0, or {} and more", kFewestTets));
         }
-        if (arguments->around.empty() && arguments->fine_option->count() > 0) {
+        if (arguments->around.empty() && arguments->fine_mm) {
           throw CaseError("command line", "--fine-mm", "no --around", "a planned cut to be fine around",
                           "Edges are at most --coarse-mm without it");
         }
@@ -67,20 +75,22 @@ void add_mesh(Application& application) {
           throw CaseError("command line", "-o", output.string(), "a file that ends in .vtu");
         }
         if (arguments->tets > 0) settings.target_tets = arguments->tets;
-        SizingField sizing = SizingField::uniform(arguments->coarse_mm);
-        if (!arguments->around.empty()) {
-          if (arguments->fine_mm > arguments->coarse_mm) {
-            throw CaseError("command line", "--fine-mm", fmt::format("{} mm", arguments->fine_mm),
-                            fmt::format("at most --coarse-mm = {} mm", arguments->coarse_mm));
-          }
-          PlannedCut cut;
-          cut.path = read_contour(arguments->around, true);
-          cut.depth_mm = arguments->depth_mm;
-          SizingSettings sizes;
-          sizes.fine_mm = arguments->fine_mm;
-          sizes.coarse_mm = arguments->coarse_mm;
-          sizing = SizingField::around_cut(cut, sizes);
-        }
+        const auto require_order = [](double fine_mm, double coarse_mm) {
+          if (fine_mm <= coarse_mm) return;
+          throw CaseError("command line", "--fine-mm", fmt::format("{:.3g} mm", fine_mm), fmt::format("at most --coarse-mm = {:.3g} mm", coarse_mm));
+        };
+        if (arguments->fine_mm && arguments->coarse_mm) require_order(*arguments->fine_mm, *arguments->coarse_mm);
+        PlannedCut cut;
+        if (!arguments->around.empty()) cut.path = read_contour(arguments->around, true);
+        cut.depth_mm = arguments->depth_mm;
+        const auto sizing = [&](double longest_mm) {
+          SizingSettings sizes = default_lengths(longest_mm);
+          sizes.fine_mm = arguments->fine_mm.value_or(sizes.fine_mm);
+          sizes.coarse_mm = arguments->coarse_mm.value_or(sizes.coarse_mm);
+          if (arguments->around.empty()) return SizingField::uniform(sizes.coarse_mm);
+          require_order(sizes.fine_mm, sizes.coarse_mm);
+          return SizingField::around_cut(cut, sizes);
+        };
         const MeshingResult made = meshed(arguments->input, sizing, settings, console);
         write_vtu(output, made.mesh);
         if (!options.quiet) console.message(Severity::Detail, to_text(made.quality));
@@ -93,9 +103,9 @@ void add_mesh(Application& application) {
                    "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
       ->required();
   verb->add_option("--around", arguments->around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
-  arguments->fine_option =
-      verb->add_option("--fine-mm", arguments->fine_mm, "Edge length around the cut")->check(CLI::Range(0.05, 50.0));
-  verb->add_option("--coarse-mm", arguments->coarse_mm, "Longest edge length")->check(CLI::Range(0.05, 100.0));
+  verb->add_option("--fine-mm", arguments->fine_mm, "Edge length around the cut; by default 0.8, in proportion for a body shorter than 40 mm")
+      ->check(CLI::Range(0.05, 50.0));
+  verb->add_option("--coarse-mm", arguments->coarse_mm, "Longest edge length; by default 4, in proportion for a body shorter than 40 mm")->check(CLI::Range(0.05, 100.0));
   verb->add_option("--depth-mm", arguments->depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
   verb->add_option("--tets", arguments->tets, "Count to aim for; 0: as the lengths give")
       ->check(CLI::Range(0, 5000000));

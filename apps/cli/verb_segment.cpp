@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 namespace incise::cli {
 
@@ -18,6 +19,7 @@ void add_segment(Application& application) {
     std::vector<double> spacing;
     std::vector<double> hu;
     double opening_mm = 0.0;
+    std::optional<double> smoothing_mm;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
@@ -26,6 +28,7 @@ void add_segment(Application& application) {
         Console console(options.level());
         const std::filesystem::path output = options.required_output("labels.nrrd");
         refuse_input_as_output("-o", output, {arguments->ct});
+        require_volume_name(output);
         CtReadSettings reading;
         if (!arguments->spacing.empty()) reading.spacing_mm = Vec3(arguments->spacing.data());
         if (!arguments->hu.empty()) reading.hu = GrayToHu{arguments->hu[0], arguments->hu[1]};
@@ -33,6 +36,7 @@ void add_segment(Application& application) {
         settings.window_low_hu = arguments->window[0];
         settings.window_high_hu = arguments->window[1];
         settings.opening_radius_mm = arguments->opening_mm;
+        settings.smoothing_mm = arguments->smoothing_mm;
         if (!arguments->roi.empty()) {
           settings.roi_box_mm = Box3(Vec3(arguments->roi.data()), Vec3(arguments->roi.data() + 3));
           if (settings.roi_box_mm->isEmpty()) {
@@ -56,6 +60,8 @@ void add_segment(Application& application) {
   verb->add_option("--roi-box-mm", arguments->roi, "Low x y z and high x y z of the box to look in, LPS")->expected(6);
   verb->add_option("--seed-mm", arguments->seed, "A point inside the specimen, LPS")->expected(3);
   verb->add_option("--opening-mm", arguments->opening_mm, "Cut bridges thinner than twice this");
+  verb->add_option("--smoothing-mm", arguments->smoothing_mm, "Length that the tissue's surface is smoothed over; by default 0.6, or 1.2 voxels where that is less")
+      ->check(CLI::Range(0.0, 5.0));
   verb->add_option("--spacing-mm", arguments->spacing, "PNG slices: column, row and slice spacing")->expected(3);
   verb->add_option("--hu", arguments->hu, "PNG slices: slope and intercept")->expected(2);
 }

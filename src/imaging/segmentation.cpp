@@ -196,14 +196,14 @@ void note_cut_faces(Segmentation& result) {
 }
 
 /// Smoothing shrinks what is curved as strongly as its length: a body of a few millimetres loses a part that counts.
-void note_lost_volume(double sharp_mm3, const SegmentationSettings& settings, Segmentation& result) {
+void note_lost_volume(double sharp_mm3, Segmentation& result) {
   constexpr double kMostShare = 0.02;
   const double share = std::abs(result.occupancy_volume_mm3 - sharp_mm3) / std::max(result.occupancy_volume_mm3, sharp_mm3);
-  if (!(settings.smoothing_mm > 0.0) || !(share > kMostShare)) return;
+  if (!(result.smoothing_mm > 0.0) || !(share > kMostShare)) return;
   result.verdict.add("scan", share,
                      fmt::format("smoothing over {:g} mm changes the specimen's volume by {:.1f} %: it is too long for a body so small or thin. A shorter "
-                                 "segmentation.smoothing_mm (about a voxel) keeps the shape",
-                                 settings.smoothing_mm, 100.0 * share));
+                                 "smoothing_mm (about a voxel) keeps the shape",
+                                 result.smoothing_mm, 100.0 * share));
 }
 
 }  // namespace
@@ -231,9 +231,15 @@ std::vector<std::string> validate(const SegmentationSettings& settings) {
       problems.push_back(fmt::format("seed_mm[{}]: found [{}, {}, {}], expected finite numbers", s,
                                      settings.seeds_mm[s].x(), settings.seeds_mm[s].y(), settings.seeds_mm[s].z()));
   check("opening_radius_mm", settings.opening_radius_mm, 0.0, 20.0);
-  check("smoothing_mm", settings.smoothing_mm, 0.0, 5.0);
+  check("smoothing_mm", settings.smoothing_mm.value_or(0.0), 0.0, 5.0);
   check("margin_voxels", settings.margin_voxels, 3, 50);
   return problems;
+}
+
+double smoothing_length_mm(const SegmentationSettings& settings, const Vec3& spacing_mm) {
+  constexpr double kUsualMm = 0.6;
+  constexpr double kVoxels = 1.2;
+  return settings.smoothing_mm.value_or(std::min(kUsualMm, kVoxels * spacing_mm.maxCoeff()));
 }
 
 std::string_view to_string(RegionFace face) {
@@ -288,7 +294,8 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   const CtVolume hu = crop(whole.hu, around);
   report(0.5);
   const GrayVolume sharp = occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings);
-  GrayVolume occupancy = smoothed(sharp, settings.smoothing_mm);
+  result.smoothing_mm = smoothing_length_mm(settings, ct.grid.spacing_mm);
+  GrayVolume occupancy = smoothed(sharp, result.smoothing_mm);
   report(0.9);
   const Mask label = make_one_piece(occupancy, settings.fill_holes);
   result.tissue_hu = median_hu(hu, label, settings);
@@ -299,7 +306,7 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
   result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
   result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5);
-  note_lost_volume(iso_volume_mm3(sharp, 0.5), settings, result);
+  note_lost_volume(iso_volume_mm3(sharp, 0.5), result);
   report(1.0);
   return result;
 }

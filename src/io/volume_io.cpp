@@ -203,6 +203,8 @@ void write_ct(const fs::path& path, const CtVolume& volume) {
   write_itk_image(path, volume.grid, Component::I16, volume.voxels.data());
 }
 
+void require_volume_name(const fs::path& path) { static_cast<void>(format_to_write(path)); }
+
 void write_labels(const fs::path& path, const LabelVolume& labels) {
   require_writable_grid(labels.grid, labels.voxels.size());
   write_itk_image(path, labels.grid, Component::U8, labels.voxels.data());

@@ -378,15 +378,17 @@ RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
   return unpacked(io_detail::in_child_process(path, to_string(format), limits, [&] { return packed(read_here(path, format)); }));
 }
 
-void write_itk_image(const fs::path& path, const VolumeGrid& grid, Component component, const void* voxels) {
+VolumeFormat format_to_write(const fs::path& path) {
   const auto format = format_of_name(path);
-  if (!format || *format == VolumeFormat::PictureStack) {
-    throw DataError(path, "extension", fmt::format("'{}'", path.extension().string()),
-                    ".nrrd, .nii, .nii.gz, .mhd or .mha");
-  }
+  if (format && *format != VolumeFormat::PictureStack) return *format;
+  throw DataError(path, "extension", fmt::format("'{}'", path.extension().string()), ".nrrd, .nii, .nii.gz, .mhd or .mha");
+}
+
+void write_itk_image(const fs::path& path, const VolumeGrid& grid, Component component, const void* voxels) {
+  const VolumeFormat format = format_to_write(path);
   const QuietImageLibraries quiet;
   const StagingFolder staging(path);
-  const auto io = make_image_io(*format);
+  const auto io = make_image_io(format);
   try {
     io->SetFileName(staging.file().string());
     io->SetNumberOfDimensions(3);
@@ -405,7 +407,7 @@ void write_itk_image(const fs::path& path, const VolumeGrid& grid, Component com
     set_whole_region(*io);
     io->WriteImageInformation();
     io->Write(voxels);
-    require_complete_voxels(staging.file(), *format, grid.voxel_count() * io->GetComponentSize());
+    require_complete_voxels(staging.file(), format, grid.voxel_count() * io->GetComponentSize());
   } catch (const DataError&) {
     throw DataError(path, "", "a failed write", "a file that can be written", "Is the disk full?");
   } catch (const std::exception& error) {

@@ -26,6 +26,9 @@ struct RawImage {
 /// Reads one gray image in the given format. @throws DataError
 [[nodiscard]] RawImage read_itk_image(const std::filesystem::path& path, VolumeFormat format);
 
+/// The format of a file to be written. @throws DataError for an extension that is none of them.
+[[nodiscard]] VolumeFormat format_to_write(const std::filesystem::path& path);
+
 /// Writes one gray volume, compressed where the format can be, all or nothing. @throws DataError
 void write_itk_image(const std::filesystem::path& path, const VolumeGrid& grid, Component component,
                      const void* voxels);

@@ -260,12 +260,33 @@ class Meshing {
   MeshingResult result_;
 };
 
+template <class Value, class IsTissue>
+double longest_side_mm(const Volume<Value>& volume, const IsTissue& is_tissue) {
+  const auto& size = volume.grid.size;
+  INCISE_REQUIRE(volume.voxels.size() == volume.grid.voxel_count(), "expected one value per voxel");
+  Eigen::AlignedBox3i box;
+  for (int k = 0; k < size[2]; ++k)
+    for (int j = 0; j < size[1]; ++j)
+      for (int i = 0; i < size[0]; ++i)
+        if (is_tissue(volume.at(i, j, k))) box.extend(Eigen::Vector3i(i, j, k));
+  if (box.isEmpty()) return 0.0;
+  return (box.sizes() + Eigen::Vector3i::Ones()).cast<double>().cwiseProduct(volume.grid.spacing_mm).maxCoeff();
+}
+
 void require_sound(const MeshingSettings& settings) {
   const std::vector<std::string> violations = validate(settings);
   if (!violations.empty()) throw InvalidArgument(fmt::format("meshing settings: {}", fmt::join(violations, "; ")));
 }
 
 }  // namespace
+
+double longest_side_mm(const GrayVolume& occupancy) {
+  return longest_side_mm(occupancy, [](float share) { return share >= 0.5F; });
+}
+
+double longest_side_mm(const LabelVolume& labels) {
+  return longest_side_mm(labels, [](std::uint8_t label) { return label != 0; });
+}
 
 MeshingResult mesh_labels(const GrayVolume& occupancy, const SizingField& sizing, const MeshingSettings& settings,
                           Monitor& monitor) {

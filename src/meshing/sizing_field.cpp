@@ -85,6 +85,15 @@ PlaneDistance plane_distance(const Points& path, bool is_closed, const Vec3& q) 
 
 }  // namespace
 
+SizingSettings default_lengths(double longest_side_mm) {
+  constexpr double kMadeForMm = 40.0;  // as the default constraints are
+  const double share = longest_side_mm > 0.0 ? std::min(1.0, longest_side_mm / kMadeForMm) : 1.0;
+  SizingSettings settings;
+  settings.fine_mm *= share;
+  settings.coarse_mm *= share;
+  return settings;
+}
+
 std::vector<std::string> validate(const SizingSettings& settings) {
   std::vector<std::string> violations;
   require_positive(violations, "fine_mm", settings.fine_mm);

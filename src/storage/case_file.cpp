@@ -9,6 +9,7 @@
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/meshing/sizing_field.hpp>
 #include <incise/storage/case_file.hpp>
 
 #include <fmt/format.h>
@@ -94,9 +95,9 @@ void require_consistent(const CaseFile& file, const std::string& name) {
   refuse("tool", validate(c.tool), "a usable tool");
   refuse("cut", validate(c.cut, 2.0 * radius_mm(c.tool)), "usable cut settings");
   refuse("thermal", validate(c.thermal), "usable constants of heat");
-  if (c.meshing.fine_mm > c.meshing.coarse_mm) {
-    throw CaseError(name, "meshing.fine_mm", fmt::format("{} mm", c.meshing.fine_mm),
-                    fmt::format("at most meshing.coarse_mm = {} mm", c.meshing.coarse_mm));
+  const double coarse_mm = c.meshing.coarse_mm.value_or(SizingSettings{}.coarse_mm);  // or less, in a small body
+  if (c.meshing.fine_mm && *c.meshing.fine_mm > coarse_mm) {
+    throw CaseError(name, "meshing.fine_mm", fmt::format("{} mm", *c.meshing.fine_mm), fmt::format("at most meshing.coarse_mm = {} mm", coarse_mm));
   }
   if (c.meshing.tets > 0 && c.meshing.tets < 100) {
     throw CaseError(name, "meshing.tets", fmt::format("{}", c.meshing.tets), "0 (as the lengths give) or at least 100");

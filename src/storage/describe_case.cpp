@@ -68,7 +68,8 @@ void describe_ct(CaseFile& file, FieldVisitor& v) {
   if (seed) s.seeds_mm.push_back(*seed);
   v.number({"opening_radius_mm", "mm", "Pieces joined only by bridges thinner than twice this are separated."},
            s.opening_radius_mm, {0.0, 20.0});
-  v.number({"smoothing_mm", "mm", "Standard deviation of the Gaussian that smooths the tissue's surface."}, s.smoothing_mm, {0.0, 5.0});
+  v.optional_number({"smoothing_mm", "mm", "Standard deviation of the Gaussian that smooths the tissue's surface; absent: 0.6, or 1.2 voxels where that is less."},
+                    s.smoothing_mm, {0.0, 5.0});
   v.text({"series_uid", "", "DICOM: which series to read, where a folder holds several."}, file.ct_reading.series_uid);
   static constexpr std::array<const char*, 2> kIrregular{"resample", "refuse"};
   choice(v, {"irregular_slices", "", "What to do with a tilted or unevenly spaced series."}, file.ct_reading.irregular, kIrregular);
@@ -88,11 +89,13 @@ void describe_ct(CaseFile& file, FieldVisitor& v) {
 
 void describe_meshing(MeshingChoice& m, FieldVisitor& v) {
   v.begin_group({"meshing", "", "The tetrahedral mesh made from the tissue."});
-  v.number({"fine_mm", "mm", "Edge length where the needle and its neighbourhood pass."}, m.fine_mm, {0.1, 20.0});
-  v.number({"coarse_mm", "mm", "Longest edge length, far from the cut."}, m.coarse_mm, {0.1, 50.0});
+  v.optional_number({"fine_mm", "mm", "Edge length where the needle and its neighbourhood pass; absent: 0.8, in proportion for a body shorter than 40 mm."}, m.fine_mm,
+                    {0.1, 20.0});
+  v.optional_number({"coarse_mm", "mm", "Longest edge length, far from the cut; absent: 4, in proportion for a body shorter than 40 mm."}, m.coarse_mm, {0.1, 50.0});
   v.integer({"tets", "", "Count to aim for by scaling both lengths; 0: as the lengths give."}, m.tets, {0.0, 5e6});
-  v.number({"survey_mm", "mm", "Edge length of the coarse mesh with which the planned cut is found in the unstretched body."},
-           m.survey_mm, {0.5, 20.0});
+  v.optional_number({"survey_mm", "mm",
+                     "Edge length of the coarse mesh with which the planned cut is found in the unstretched body; absent: 4, in proportion for a body shorter than 40 mm."},
+                    m.survey_mm, {0.5, 20.0});
   v.end_group();
 }
 

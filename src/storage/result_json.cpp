@@ -149,6 +149,7 @@ Json to_json(const Segmentation& s) {
   json["components"] = s.components;
   json["holes_filled"] = s.holes_filled;
   json["cut_faces"] = s.cut_faces();
+  json["smoothing_mm"] = s.smoothing_mm;
   json["verdict"] = to_json(s.verdict);
   return json;
 }

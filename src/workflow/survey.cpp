@@ -52,7 +52,15 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
                                     Monitor& monitor) {
   // The cut is planned on the stretched tissue, but the mesh is made of the unstretched body: a coarse mesh is stretched first to
   // find where the planned cut lies at rest.
-  MeshingResult survey = mesh_labels(occupancy, SizingField::uniform(settings.meshing.survey_mm), MeshingSettings{}, monitor);
+  SizingSettings sizing = default_lengths(longest_side_mm(occupancy));
+  const double survey_mm = settings.meshing.survey_mm.value_or(sizing.coarse_mm);
+  sizing.fine_mm = settings.meshing.fine_mm.value_or(sizing.fine_mm);
+  sizing.coarse_mm = settings.meshing.coarse_mm.value_or(sizing.coarse_mm);
+  if (sizing.fine_mm > sizing.coarse_mm) {
+    throw CaseError("case", "meshing.fine_mm", fmt::format("{:.3g} mm", sizing.fine_mm),
+                    fmt::format("at most coarse_mm, {:.3g} mm for a body of this size", sizing.coarse_mm));
+  }
+  MeshingResult survey = mesh_labels(occupancy, SizingField::uniform(survey_mm), MeshingSettings{}, monitor);
   const TissueModel coarse = tissue_of(settings, std::move(survey.mesh));
   const StaticResult stretched = stretch(coarse, workers, monitor);
   require_equilibrium(stretched, "coarse survey mesh");
@@ -61,9 +69,6 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
   MeshProduct product;
   product.planned_cut_rest =
       carried_to_rest(entry_contour(plan), coarse.mesh, stretched.state.positions, settings.surface_tolerance_mm);
-  SizingSettings sizing;
-  sizing.fine_mm = settings.meshing.fine_mm;
-  sizing.coarse_mm = settings.meshing.coarse_mm;
   MeshingSettings meshing;
   if (settings.meshing.tets > 0) meshing.target_tets = settings.meshing.tets;
   product.meshing = mesh_labels(

@@ -645,6 +645,10 @@ class CommandLineTest(CommandTest):
     def test_a_verb_that_writes_a_file_asks_where(self):
         self.assert_misuse("segment", "ct", says="-o: found nothing")
 
+    def test_segment_judges_its_output_before_it_reads(self):
+        done = self.incise("segment", "nowhere.nrrd", "-o", "labels.vtk")
+        self.assert_refused(done, BAD_DATA, "labels.vtk", "extension", "expected .nrrd")
+
     def test_a_fine_length_above_the_coarse_one_is_told(self):
         self.assert_misuse("mesh", "box.stl", "--around", "cut.csv", "--fine-mm", "5", "--coarse-mm", "3", "-o", "out.vtu", says="--fine-mm")
 

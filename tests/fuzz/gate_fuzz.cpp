@@ -388,6 +388,8 @@ void try_sound_run(std::uint64_t seed, const Options& options, int jitters, int 
   const std::string where = fmt::format("sound run of seed {}", seed);
   if (!done) return fail(tally, where, "a sound case was refused before it was cut");
   note_sound(done->study.verdict, tally);
+  if (done->study.verdict.status() != VerdictStatus::Ok)
+    fmt::print("{} is {}: {}\n", where, to_string(done->study.verdict.status()), done->study.verdict.reasons().front().message), std::fflush(stdout);
   const SimulatedCut& cut = *verifying_cut(done->study);
   hold_to_oracle(where, done->study.verdict, oracle_mm(cut.incision.kerf.body.surface, done->tumor), 2.2, tally);
   for (int k = 0; k < jitters; ++k) {  // as a hand draws the tumour: a tenth of a millimetre off, a hundredth larger or smaller

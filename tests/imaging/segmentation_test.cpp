@@ -214,17 +214,20 @@ TEST(Segmentation, CautionsWhereSmoothingTakesAPartOfASmallBody) {
     return scan_of(grid_of(40, 40, 40, Vec3::Constant(spacing)),
                    [&](const Vec3& p) { return -1000.0 + 1040.0 * ball(p, Vec3::Constant(20.0 * spacing), radius_mm); });
   };
-  const Segmentation small = run(body(3.0));  // 6 mm across, by the default of 0.6 mm
+  SegmentationSettings longer;
+  longer.smoothing_mm = 0.6;
+  const Segmentation small = run(body(3.0), longer);  // 6 mm across
   ASSERT_EQ(small.verdict.reasons().size(), 1U);
   EXPECT_EQ(small.verdict.reasons()[0].id, "scan");
-  EXPECT_THAT(small.verdict.reasons()[0].message, testing::AllOf(HasSubstr("smoothing over 0.6 mm"), HasSubstr("segmentation.smoothing_mm")));
+  EXPECT_THAT(small.verdict.reasons()[0].message, testing::AllOf(HasSubstr("smoothing over 0.6 mm"), HasSubstr("smoothing_mm (about a voxel)")));
   EXPECT_LT(small.occupancy_volume_mm3, 0.97 * 36.0 * 3.14159265);
-  SegmentationSettings shorter;
-  shorter.smoothing_mm = 0.2;
-  const Segmentation kept = run(body(3.0), shorter);
+  const Segmentation kept = run(body(3.0));  // by default over 1.2 voxels of 0.2 mm
+  EXPECT_DOUBLE_EQ(kept.smoothing_mm, 0.24);
   EXPECT_EQ(kept.verdict.status(), VerdictStatus::Ok);
   EXPECT_NEAR(kept.occupancy_volume_mm3 / (36.0 * 3.14159265), 1.0, 0.015);
-  EXPECT_EQ(run(body(25.0)).verdict.status(), VerdictStatus::Ok);
+  const Segmentation large = run(body(25.0));
+  EXPECT_EQ(large.verdict.status(), VerdictStatus::Ok);
+  EXPECT_DOUBLE_EQ(large.smoothing_mm, 0.6);
 }
 
 TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {

@@ -73,6 +73,16 @@ TEST(MeshLabels, FillsABallWithinOnePercentOfItsVolumeWithoutSlivers) {
   EXPECT_NEAR(result.quality.edges.mean_mm, 1.5, 0.15 * 1.5);
 }
 
+TEST(MeshLabels, ABodyOfNineMillimetresIsMeshedByTheDefaultLengths) {
+  const LabelVolume small = ball(4.5, 0.15);
+  EXPECT_NEAR(longest_side_mm(small), 9.0, 0.3);
+  EXPECT_EQ(longest_side_mm(LabelVolume{}), 0.0);
+  const MeshingResult made =
+      mesh_labels(small, SizingField::uniform(default_lengths(longest_side_mm(small)).coarse_mm), MeshingSettings{}, silent());
+  EXPECT_TRUE(made.meets_volume) << made.relative_volume_error;
+  EXPECT_GT(made.mesh.tets.size(), 1000U);
+}
+
 TEST(MeshLabels, PutsTheSurfaceOnTheBall) {
   const MeshingResult result = mesh_labels(ball(), SizingField::uniform(1.5), {}, silent());
   for (const BoundaryFace& face : boundary_faces(result.mesh)) {

@@ -40,6 +40,17 @@ TEST(SizingField, IsTheSameEverywhereWhenUniform) {
   EXPECT_FALSE(field.is_in_band(Vec3(0, 0, 0)));
 }
 
+TEST(DefaultLengths, FollowTheSizeOfASmallBody) {
+  const SizingSettings usual;
+  for (const double large_mm : {40.0, 100.0}) {
+    EXPECT_EQ(default_lengths(large_mm).fine_mm, usual.fine_mm);
+    EXPECT_EQ(default_lengths(large_mm).coarse_mm, usual.coarse_mm);
+  }
+  EXPECT_DOUBLE_EQ(default_lengths(9.0).fine_mm, 0.18);
+  EXPECT_DOUBLE_EQ(default_lengths(9.0).coarse_mm, 0.9);
+  EXPECT_EQ(default_lengths(9.0).growth, usual.growth);
+}
+
 TEST(SizingField, IsFineOnTheWallFromTheSurfaceToBelowTheTip) {
   const SizingField field = SizingField::around_cut(square_cut());
   for (const double z : {0.0, -3.0, -5.0, -6.4}) {

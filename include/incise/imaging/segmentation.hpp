@@ -21,12 +21,16 @@ struct SegmentationSettings {
   double opening_radius_mm =
       0.0;                    ///< pieces joined only by bridges thinner than twice this are separated; 0: none; [0, 20]
   bool fill_holes = true;     ///< cavities without a way out through voxel faces become tissue, whatever their HU
-  double smoothing_mm = 0.6;  ///< length over which the occupancy is smoothed; 0: none; [0, 5]
+  std::optional<double> smoothing_mm;  ///< length over which the occupancy is smoothed; 0: none; [0, 5]; absent: see smoothing_length_mm
   int margin_voxels = 4;      ///< of air around the body, also where the region of interest cuts through it; [3, 50]
 };
 
 /// Every violation, one sentence each; empty: valid.
 [[nodiscard]] std::vector<std::string> validate(const SegmentationSettings& settings);
+
+/// What the occupancy is smoothed over: as the settings say, else 0.6 mm, or 1.2 of the longest side of a voxel where that is less: the
+/// finer the scan, the smaller what it shows.
+[[nodiscard]] double smoothing_length_mm(const SegmentationSettings& settings, const Vec3& spacing_mm);
 
 /// The sides of the region of interest (or of the volume) that the body runs into, in this order.
 enum class RegionFace { Right, Left, Anterior, Posterior, Inferior, Superior };
@@ -47,6 +51,7 @@ struct Segmentation {
   std::size_t hole_voxels = 0;   ///< and their voxels
   std::array<std::size_t, 6>
       cut_voxels{};                     ///< body voxels at each RegionFace: > 0 where the region cuts through tissue
+  double smoothing_mm = 0.0;            ///< that was taken
   Verdict verdict;                      ///< what argues against this tissue: check_scan, and a body that the region cuts off
   [[nodiscard]] int cut_faces() const;  ///< how many of the six are touched
 };
@@ -57,7 +62,7 @@ struct Segmentation {
 /// label where >= 0.5. The occupancy of a voxel within two voxels of the body's border is (HU - outside)/(inside -
 /// outside), limited to [0, 1], where inside and outside are means of the pure tissue and the pure surroundings near by
 /// (air, fat, plastic or bone alike); where the region or the opening cuts through tissue it is 0 or 1. Smoothing
-/// convolves with 2 G - G * G, G a Gaussian of standard deviation `smoothing_mm`: it averages noise and steps as G does
+/// convolves with 2 G - G * G, G a Gaussian of standard deviation `smoothing_length_mm`: it averages noise and steps as G does
 /// and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Its verdict has a
 /// caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), and those of check_scan.
 /// @throws CaseError: settings invalid (all violations listed), region or a seed outside the volume, a seed outside the

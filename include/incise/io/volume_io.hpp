@@ -91,6 +91,8 @@ struct ReadVolume {
 /// @throws InvalidArgument if the volume is empty or its grid is not finite, positive and orthonormal.
 void write_ct(const std::filesystem::path& path, const CtVolume& volume);
 void write_labels(const std::filesystem::path& path, const LabelVolume& labels);
+/// Judges a name before what is to be written is computed. @throws DataError if its extension is none of the above.
+void require_volume_name(const std::filesystem::path& path);
 
 /// Gray values of any meaning, kept exactly as 32-bit floats. The same formats, @throws as read_labels and write_ct; a value that is not
 /// finite, or a file that holds anything but 32-bit floats, is refused.

@@ -65,6 +65,10 @@ struct [[nodiscard]] MeshingResult {
   double wall_s = 0.0;
 };
 
+/// Longest side, along the grid's axes, of the box round all tissue (occupancy of at least 0.5, any label but 0), mm; 0 without tissue.
+[[nodiscard]] double longest_side_mm(const GrayVolume& occupancy);
+[[nodiscard]] double longest_side_mm(const LabelVolume& labels);
+
 /// Tetrahedra that fill the tissue of an occupancy volume (values in [0, 1], the fraction of each voxel that is tissue;
 /// see occupancy.hpp), with edge lengths from the sizing field: the CT becomes a body that can be simulated. Delaunay
 /// refinement of the trilinearly interpolated occupancy, then perturbation and exudation of slivers (CGAL Mesh_3,

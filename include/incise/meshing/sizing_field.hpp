@@ -19,6 +19,10 @@ struct SizingSettings {
   double band_below_mm = 1.5;    ///< band below the tip of the tool, >= 0
 };
 
+/// The settings with the edge lengths of a body whose longest side is this long: the default ones are made for 40 mm and more, a smaller
+/// body has them in proportion. No body (0, refused by the mesher): those of a large one.
+[[nodiscard]] SizingSettings default_lengths(double longest_side_mm);
+
 /// Everything that is wrong with the settings, a sentence each; empty: usable.
 [[nodiscard]] std::vector<std::string> validate(const SizingSettings& settings);
 

@@ -19,10 +19,10 @@ namespace incise {
 
 /// Edge lengths of the mesh that is made from a label.
 struct MeshingChoice {
-  double fine_mm = 0.8;      ///< in the band that the needle can reach
-  double coarse_mm = 4.0;    ///< far from the cut
-  int tets = 0;              ///< count to aim for by scaling both lengths; 0: as the lengths give
-  double survey_mm = 4.0;    ///< of the coarse mesh with which the planned cut is found in the unstretched body
+  std::optional<double> fine_mm;    ///< in the band that the needle can reach; absent: as default_lengths says
+  std::optional<double> coarse_mm;  ///< far from the cut; absent: as default_lengths says
+  int tets = 0;                     ///< count to aim for by scaling both lengths; 0: as the lengths give
+  std::optional<double> survey_mm;  ///< of the coarse mesh with which the planned cut is found in the unstretched body; absent: the default coarse_mm
 };
 
 /// What the tets with one value of the mesh's cell array `label` are made of, where they differ from the rest.
