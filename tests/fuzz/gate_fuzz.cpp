@@ -382,10 +382,11 @@ void note_sound(const Verdict& verdict, Tally& tally) {
 
 void try_sound_run(std::uint64_t seed, const Options& options, int jitters, int variants, Workers& workers, Tally& tally) {
   Random random(seed + 7777777);
-  const Phantom phantom = specimen(1 + random.below(1000000));
+  const std::uint64_t phantom_seed = 1 + random.below(1000000);
+  const Phantom phantom = specimen(phantom_seed);
   SpecimenStore store(phantom);
   const std::optional<Finished> done = run_case(sound_case(options.sound_tets), store, workers);
-  const std::string where = fmt::format("sound run of seed {}", seed);
+  const std::string where = fmt::format("sound run of seed {} (incise phantom --seed {})", seed, phantom_seed);
   if (!done) return fail(tally, where, "a sound case was refused before it was cut");
   note_sound(done->study.verdict, tally);
   if (done->study.verdict.status() != VerdictStatus::Ok)

@@ -213,6 +213,23 @@ TEST_F(Converge, DoesNotBuyTheLateralErrorWithDepth) {
   EXPECT_EQ(result.passes[1].shortfall_mm, 2.5);
 }
 
+/// A ring that stays open by a hair's breadth a tenth of a millimetre off its course: the next pass starts there, not at the planned path.
+TEST_F(Converge, GoesOnFromANearRingThatStayedOpen) {
+  int cuts = 0;
+  const FakeTissue drifting{.drift_mm = [](double angle) { return -1.2 + 0.6 * std::cos(2.0 * angle); }, .gain = 0.7};
+  const MeasureCut opens_once = [&](const ToolPath& path) {
+    PathErrors errors = drifting.cut(path);
+    errors.is_success = cuts != 1;
+    errors.open_layers = cuts++ == 1 ? 1 : 0;
+    return errors;
+  };
+  const ConvergedCompensation result = compensate_converging(path_, surface_, opens_once);
+  ASSERT_GE(result.passes.size(), 3U);
+  EXPECT_GE(result.best, 2U);
+  EXPECT_LT(*result.passes[2].mean_abs_error_mm, *result.passes[1].mean_abs_error_mm);
+  EXPECT_TRUE(result.result().is_success);
+}
+
 TEST_F(Converge, PrefersThePassThatLeavesFewerLayersOpen) {
   int cuts = 0;
   const MeasureCut opens = [&](const ToolPath& path) {
