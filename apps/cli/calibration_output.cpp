@@ -95,8 +95,8 @@ void print_estimate(const char* name, const ParameterEstimate& estimate) {
 }  // namespace
 
 void write_calibration(const std::filesystem::path& folder, const Calibration& calibration,
-                       const std::vector<CaseFile>& cases, const std::vector<std::filesystem::path>& inputs,
-                       const CommonOptions& options, double wall_s) {
+                       const std::vector<CaseFile>& cases, const std::vector<std::string>& specimen_ids,
+                       const std::vector<std::filesystem::path>& inputs, const CommonOptions& options, double wall_s) {
   const char* table = calibration.method == CalibrationMethod::Paper ? "table_1" : "simulations";
   write_text(folder / fmt::format("{}.csv", table), csv_text(calibration_table(calibration)));
   write_text(folder / fmt::format("{}.tex", table), latex_text(calibration_table_rounded(calibration)));
@@ -105,7 +105,9 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
   }
   if (calibration.fit) write_text(folder / "fit.svg", fit_figure(calibration));
   write_manifest(folder, manifest_of(options, settings_of_all(cases), inputs, wall_s));
-  write_json(folder / "calibration.json", to_json(calibration));
+  Json json = to_json(calibration);
+  json["specimen_ids"] = specimen_ids;
+  write_json(folder / "calibration.json", json);
 }
 
 void print_calibration(const CommonOptions& options, const Calibration& calibration,

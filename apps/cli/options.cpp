@@ -5,6 +5,7 @@
 #include <incise/core/isa.hpp>
 #include <incise/core/version.hpp>
 #include <incise/io/input_file.hpp>
+#include <incise/io/specimen_id.hpp>
 
 #include <fmt/format.h>
 
@@ -33,6 +34,21 @@ RunContext CommonOptions::context() const {
   return {command_line, seed, threads > 0 ? threads : all};
 }
 
+namespace {
+
+/// A result that is made of several specimens' files is of none.
+std::string id_that_all_state(const std::vector<std::filesystem::path>& inputs) {
+  std::string id;
+  for (const std::filesystem::path& path : inputs) {
+    const std::string found = specimen_id_of(path);
+    if (are_of_different_specimens(id, found)) return "";
+    if (!found.empty()) id = found;
+  }
+  return id;
+}
+
+}  // namespace
+
 Manifest manifest_of(const CommonOptions& options, std::string settings_json,
                      const std::vector<std::filesystem::path>& inputs, double wall_s) {
   Manifest manifest;
@@ -47,6 +63,7 @@ Manifest manifest_of(const CommonOptions& options, std::string settings_json,
     manifest.inputs.push_back(
         {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path)});
   }
+  manifest.specimen_id = id_that_all_state(inputs);
   manifest.wall_s = wall_s;
   manifest.machine = machine_description();
   return manifest;

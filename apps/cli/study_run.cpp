@@ -214,11 +214,14 @@ void write_program_files(StudyRun& study, const CheckedProgram& made, const Verd
                          nlohmann::ordered_json& json) {
   const Case& settings = study.store.case_file().settings;
   ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())}, {"title", settings.title}};
+  provenance.emplace_back("specimen_id", study.store.specimen_id());
   if (settings.is_virtual) provenance.emplace_back("specimen", "VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.");
   for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
   const ProgramHeader header = program_header(made.program, made.path, made.checks, provenance);
   AtomicFolder target(study.store.root() / "program");
-  write_tool_path(target.path() / "path.json", made.path, verdict);
+  ToolPath path = made.path;
+  path.specimen_id = study.store.specimen_id();
+  write_tool_path(target.path() / "path.json", path, verdict);
   const std::string script = to_urscript(made.program, header);
   write_atomically(target.path() / "program.json", [&](std::ostream& out) { out << to_json(made.program, &made.checks, header); });
   write_atomically(target.path() / "program.script", [&](std::ostream& out) { out << script; });
@@ -289,6 +292,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vec
   result["accepted"] = done.is_accepted;
   result["correction"] = done.correction ? correction_summary_json(*done.correction) : nlohmann::ordered_json(nullptr);
   result["specimen_is"] = settings.is_virtual ? "virtual" : "real";
+  result["specimen_id"] = study.store.specimen_id();
   bool has_program = true;
   if (done.plan) {
     result["program"] = write_program(study, done, accepted, done.verdict, monitor);

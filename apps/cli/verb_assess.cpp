@@ -2,6 +2,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/storage/registration_json.hpp>
 #include <incise/workflow/assess.hpp>
@@ -93,6 +94,7 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   if (!note.empty()) console.message(Severity::Warning, note);
   const std::filesystem::path output = output_of(chosen.case_path, options);
   StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
+  require_same_specimen(chosen.registration, run.store.specimen_id(), "the case's");
   const Study study = run.run(options, console);
   Workers workers(options.threads);
   Assessment assessment = with_tissues(run, [&](ScenarioRunStore& runs) {
@@ -104,6 +106,7 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   nlohmann::ordered_json result = to_json(assessment, request);
   result["specimen_is"] =
       run.store.case_file().settings.is_virtual || calibration.record.is_virtual ? "virtual" : "real";
+  result["specimen_id"] = run.store.specimen_id();
   result["verdict"] = nullptr;  // known once the assessment is kept
   write_assessment(run.store, result, calibration.file, chosen.registration, wall.count());
   Verdict verdict = study.verdict;

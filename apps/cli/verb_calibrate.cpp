@@ -5,6 +5,7 @@
 #include "study_run.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/registration_json.hpp>
@@ -103,7 +104,7 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
   const std::vector<CaseFile> files = read_inputs(arguments, subjects);
   OlderOutput older(output / "calibration.json", console);
   std::vector<std::unique_ptr<FolderStore>> stores;
-  std::vector<std::string> keys;
+  std::vector<std::string> keys, specimen_ids;
   Workers workers(options.threads);
   return with_parts_kept(output, [&] {
     for (std::size_t i = 0; i < files.size(); ++i) {
@@ -111,6 +112,9 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
       stores.push_back(std::make_unique<FolderStore>(files[i], folder, options.context()));
       keys.push_back(stores.back()->product_key(Product::AsPlanned));
       subjects[i].store = stores.back().get();
+      specimen_ids.push_back(stores.back()->specimen_id());
+      require_same_specimen(arguments.observed[i], specimen_ids.back(), "its case's");
+      if (!arguments.registrations.empty()) require_same_specimen(arguments.registrations[i], specimen_ids.back(), "its case's");
     }
     RunFolder runs(output / "runs", keys);
     const Calibration calibration = calibrate(subjects, arguments.request, runs, workers, console);
@@ -118,7 +122,7 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
     std::vector<std::filesystem::path> inputs = arguments.observed;
     inputs.insert(inputs.end(), arguments.registrations.begin(), arguments.registrations.end());
     for (const CaseFile& file : files) inputs.push_back(file.file);
-    write_calibration(output, calibration, files, inputs, options, wall.count());
+    write_calibration(output, calibration, files, specimen_ids, inputs, options, wall.count());
     older.replaced();
     print_calibration(options, calibration, output, wall.count());
     return is_usable(calibration) ? kDone : kNotAcceptable;

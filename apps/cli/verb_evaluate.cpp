@@ -13,6 +13,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>
@@ -32,6 +33,7 @@ struct EvaluateArguments {
   std::filesystem::path tumor;
   std::filesystem::path line;
   std::filesystem::path figure;
+  std::string specimen_id;
   std::string contour;
   std::string red = "annotation";
   double target_mm = 0.0;
@@ -245,8 +247,11 @@ void add_evaluate(Application& application) {
                              refuse_input_as_output("-o", options.output, inputs);
                              refuse_input_as_output("--figure", arguments->figure, inputs);
                              const EvaluationSettings settings = settings_of(*arguments);
-                             const Measured result = arguments->photo.empty() ? from_files(*arguments, settings)
+                             std::string specimen_id = common_specimen_id(inputs);
+                             if (!arguments->specimen_id.empty()) specimen_id = arguments->specimen_id;
+                             Measured result = arguments->photo.empty() ? from_files(*arguments, settings)
                                                                               : from_photo(*arguments, settings);
+                             if (!specimen_id.empty()) result.json["specimen_id"] = specimen_id;
                              if (!options.output.empty()) write_json(options.output, result.json);
                              Console console(options.level());
                              for (const std::string& warning : result.warnings)
@@ -257,6 +262,8 @@ void add_evaluate(Application& application) {
                            });
   verb->add_option("photo", arguments->photo,
                    "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
+  verb->add_option("--specimen-id", arguments->specimen_id, "Whose cut it is, as its case says: calibrate refuses another specimen's")
+      ->check(CLI::Validator([](const std::string& text) { return is_specimen_id(text) ? std::string() : "1 to 64 letters, digits, '.', '_' and '-'"; }, "ID"));
   verb->add_option("--incision", arguments->incision, "The incision: .csv (x_mm,y_mm,z_mm), .vtp or .mrk.json");
   verb->add_option("--tumor", arguments->tumor, "The tumour edge, same formats and frame");
   verb->add_option(

@@ -11,6 +11,8 @@
 #include <incise/io/manifest.hpp>
 #include <incise/io/nearest_name.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/input_file.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/robot/program_text.hpp>
@@ -91,6 +93,18 @@ RegistrationSummary registration_summary(const std::filesystem::path& file) {
   require(record.inlier_fraction.has_value(), "inlier_fraction");
   require(record.is_converged.has_value(), "converged");
   return {record.scale * record.camera_scale, *record.rmse_mm, *record.inlier_fraction, *record.is_converged};
+}
+
+/// A registration is worth what its clouds were when it was made.
+void require_clouds_unchanged(const std::filesystem::path& file, Console& console) {
+  for (const RegistrationInput& cloud : read_registration(file).inputs) {
+    std::error_code absent;
+    if (!std::filesystem::exists(cloud.path, absent)) {
+      console.message(Severity::Warning, fmt::format("not checked: whether {}, which {} was made from, is still what it was; it is not there", cloud.path, file.string()));
+    } else if (sha256_of_input(cloud.path) != cloud.sha256) {
+      throw DataError(file, cloud.key, fmt::format("that of another {}", cloud.path), "the digest of the cloud as it is now", "It was changed since: register again");
+    }
+  }
 }
 
 ToolPath read_robot_path(const std::filesystem::path& file) {
@@ -217,7 +231,13 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   std::optional<TriMesh> surface;
   if (!arguments.intended.empty()) inputs.intended = &intended.emplace(read_robot_path(arguments.intended));
   if (!arguments.surface.empty()) inputs.surface = &surface.emplace(read_cloud(arguments.surface));
-  if (!arguments.registration.empty()) inputs.registration = registration_summary(arguments.registration);
+  if (!arguments.registration.empty()) {
+    require_same_specimen(arguments.registration, path.specimen_id, "the path's");
+    require_clouds_unchanged(arguments.registration, console);
+    inputs.registration = registration_summary(arguments.registration);
+  }
+  if (!arguments.surface.empty()) require_same_specimen(arguments.surface, path.specimen_id, "the path's");
+  if (intended) require_same_specimen(arguments.intended, path.specimen_id, "the path's");
   if (arguments.power_w > 0.0) {
     inputs.power_w = arguments.power_w;
     inputs.heat_half_width_mm = half_width_of_heat_mm(path, arguments);
@@ -249,6 +269,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())},
                            {"made_from", arguments.path.filename().string()},
                            {"made_from_sha256", sha256_of_file(arguments.path)}};
+  if (!path.specimen_id.empty()) provenance.emplace_back("specimen_id", path.specimen_id);
   for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
   const ProgramHeader header = program_header(program, path, checks, provenance);
   const std::string text = text_of(program, checks, header, arguments, output);

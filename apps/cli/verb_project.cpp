@@ -8,6 +8,7 @@
 #include <incise/io/input_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
@@ -153,8 +154,9 @@ ProjectSettings settings_of(const ProjectArguments& arguments) {
   return settings;
 }
 
-ToolPath simulated_path(const std::filesystem::path& file, PathKind kind) {
+ToolPath simulated_path(const std::filesystem::path& file, const std::filesystem::path& registration, const std::filesystem::path& surface, PathKind kind) {
   ToolPath path = read_tool_path(file);
+  for (const std::filesystem::path& other : {registration, surface}) require_same_specimen(other, path.specimen_id, "the path's");
   if (path.frame != PathFrame::SimStretched) {
     throw DataError(file, "frame", std::string(to_string(path.frame)), "sim_stretched",
                     "The camera sees the stretched tissue: only a path on it can be laid down.");
@@ -254,7 +256,7 @@ void write(const std::filesystem::path& output, const ProjectedPath& projected, 
   }
   AtomicFolder folder(output);
   write_tool_path(folder.path() / "path.json", projected.path, verdict);
-  write_ply(folder.path() / "surface.ply", placement.measured);
+  write_ply(folder.path() / "surface.ply", placement.measured, projected.path.specimen_id);
   write_manifest(folder.path(), manifest);
   folder.commit();
   result["path"] = (output / "path.json").string();
@@ -276,7 +278,7 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
     throw CaseError("command line", "--scale-center", "--metric camera", "--metric ct: else nothing is scaled");
   }
   const ProjectSettings settings = settings_of(arguments);
-  const ToolPath path = simulated_path(arguments.path, settings.kind);
+  const ToolPath path = simulated_path(arguments.path, arguments.transform, arguments.surface, settings.kind);
   const Placement placement = placed(path, arguments, console);
   const ProjectedPath projected = laid_down(path, placement, settings, arguments);
   nlohmann::ordered_json result;

@@ -5,6 +5,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/registration/nonrigid_drift.hpp>
 #include <incise/report/registration_figure.hpp>
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <memory>
 #include <ostream>
@@ -124,6 +126,8 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   const Vec3 approach = direction_of(arguments.approach, "--approach");
   settings.settling_mm = arguments.settling_mm;
   require_valid(validate(settings));
+  const std::array<std::filesystem::path, 2> clouds{arguments.source, arguments.target};
+  const std::string specimen_id = common_specimen_id(clouds);
   const PointCloud source = read_points(arguments.source, 12);
   const PointCloud target = read_points(arguments.target, 12);
   const double camera_scale = camera_scale_of(arguments.target);
@@ -145,7 +149,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
     const Laid laid = laid_source(source, target, found, arguments, workers, console);
     is_acceptable = is_acceptable && laid.is_acceptable;
     if (!laid.nonrigid.is_null()) result["nonrigid"] = laid.nonrigid;
-    write_ply(folder.path() / "moved_source.ply", mesh_of(laid.source));
+    write_ply(folder.path() / "moved_source.ply", mesh_of(laid.source), specimen_id);
     RegistrationFigure figure{
         fmt::format("{} on {}", arguments.source.filename().string(), arguments.target.filename().string()),
         fmt::format("{}; scale {:.4f}, rmse {:.3g} mm, {:.0f} % of the source on the target", to_string(found.outcome),
@@ -160,6 +164,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   result["camera_scale"] = camera_scale;
   result["source"] = arguments.source.string();
   result["target"] = arguments.target.string();
+  if (!specimen_id.empty()) result["specimen_id"] = specimen_id;
   result["source_sha256"] = sha256_of_input(arguments.source);
   result["target_sha256"] = sha256_of_input(arguments.target);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

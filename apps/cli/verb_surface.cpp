@@ -8,6 +8,7 @@
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
 #include <incise/robot/checks.hpp>
@@ -55,7 +56,7 @@ TriMesh skin_of(const TetMesh& mesh, const std::filesystem::path& file) {
 /// The skin of the case's stretched specimen, made or found beside the case as every verb does; the approach is the
 /// plan's.
 TriMesh stretched_skin(const std::filesystem::path& case_path, const CommonOptions& options, Monitor& monitor,
-                       Vec3& approach) {
+                       Vec3& approach, std::string& specimen_id) {
   CommonOptions of_study = options;
   of_study.output.clear();
   StudyRun run(case_path, output_of(case_path, of_study), Stage::Stretch, of_study);
@@ -65,6 +66,7 @@ TriMesh stretched_skin(const std::filesystem::path& case_path, const CommonOptio
                     "a specimen that comes to rest");
   }
   approach = run.store.case_file().settings.plan.approach;
+  specimen_id = run.store.specimen_id();
   TriMesh skin = boundary_surface(study.model->mesh);
   skin.vertices = study.stretched->state.positions;
   return skin;
@@ -179,9 +181,10 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
   PointCloud cloud;
   nlohmann::ordered_json result;
   const std::filesystem::path& input = arguments.input;
+  std::string specimen_id = specimen_id_of(input);
   if (std::filesystem::is_directory(input) || is_one_of(input, {".yaml", ".yml", ".json"})) {
     Vec3 of_case;
-    const TriMesh skin = stretched_skin(input, options, console, of_case);
+    const TriMesh skin = stretched_skin(input, options, console, of_case, specimen_id);
     result = seen(skin, arguments, arguments.approach.empty() ? of_case : approach, workers, cloud);
   } else if (is_one_of(input, {".vtu", ".vtk", ".msh", ".node", ".ele"})) {
     result = seen(skin_of(read_tet_mesh(input, console), input), arguments, approach, workers, cloud);
@@ -206,10 +209,11 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
   if (is_vtp) {
     write_vtp(output, mesh_of(cloud));
   } else if (arguments.plane_z_mm) {
-    write_ply_at_true_size(output, mesh_of(cloud), result["camera_scale"].get<double>());
+    write_ply_at_true_size(output, mesh_of(cloud), result["camera_scale"].get<double>(), specimen_id);
   } else {
-    write_ply(output, mesh_of(cloud));
+    write_ply(output, mesh_of(cloud), specimen_id);
   }
+  result["specimen_id"] = specimen_id.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(specimen_id);
   result["surface"] = output.string();
   print_result(options, result);
   return kDone;

@@ -52,6 +52,7 @@ void write_to(const std::filesystem::path& file, const Manifest& manifest) {
   document["inputs"] = inputs;
   document["wall_s"] = manifest.wall_s;
   document["machine"] = manifest.machine;
+  if (!manifest.specimen_id.empty()) document["specimen_id"] = manifest.specimen_id;
   if (manifest.verdict) document["verdict"] = to_json(*manifest.verdict);
   write_json(file, document);
 }
@@ -85,6 +86,7 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   }
   manifest.wall_s = root.at("wall_s").number();
   manifest.machine = root.at("machine").text();
+  if (const auto id = root.find("specimen_id")) manifest.specimen_id = id->text();
   if (root.find("verdict")) manifest.verdict = verdict_from_json(document["verdict"], file);
   return manifest;
 }

@@ -6,6 +6,7 @@
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/verdict_json.hpp>
 
 #include <fmt/format.h>
@@ -63,7 +64,7 @@ std::string read_hash(const JsonValue& place) {
 
 ToolPath read_path(const JsonValue& root) {
   root.require_only({"schema", "frame", "kind", "closed", "waypoints", "tumor_edge", "tumor_edge_closed", "T_robot_sim",
-                     "source_sha256", kVerdict});
+                     "source_sha256", "specimen_id", kVerdict});
   if (const auto schema = root.find("schema"); schema && schema->text() != kSchema) {
     schema->expected(fmt::format("\"{}\"", kSchema));
   }
@@ -80,6 +81,10 @@ ToolPath read_path(const JsonValue& root) {
   if (const auto closed = root.find("tumor_edge_closed")) path.tumor_edge.is_closed = closed->boolean();
   if (const auto transform = root.find("T_robot_sim")) path.T_robot_sim = transform->transform();
   if (const auto hash = root.find("source_sha256")) path.source_sha256 = read_hash(*hash);
+  if (const auto id = root.find("specimen_id")) {
+    path.specimen_id = id->text();
+    if (!is_specimen_id(path.specimen_id)) id->expected("1 to 64 letters, digits, '.', '_' and '-'");
+  }
   return path;
 }
 
@@ -110,6 +115,7 @@ ordered_json document_of(const ToolPath& path) {
     }
   }
   if (!path.source_sha256.empty()) document["source_sha256"] = path.source_sha256;
+  if (!path.specimen_id.empty()) document["specimen_id"] = path.specimen_id;
   return document;
 }
 

@@ -319,6 +319,10 @@ namespace {
 
 constexpr const char* kScaleMark = "comment incise.camera_scale ";
 
+std::string id_comment(std::string_view specimen_id) {
+  return specimen_id.empty() ? std::string() : fmt::format("comment incise.specimen_id {}\n", specimen_id);
+}
+
 void write_ply_with(const std::string& comments, const std::filesystem::path& path, const TriMesh& surface) {
   io_detail::require_writable(surface);
   std::string header = fmt::format(
@@ -359,15 +363,15 @@ GridCloud read_grid_cloud(const std::filesystem::path& path) {
   return io_detail::PlyReader(path, text, true).read_grid();
 }
 
-void write_ply(const std::filesystem::path& path, const TriMesh& surface) {
-  write_ply_with("", path, surface);
+void write_ply(const std::filesystem::path& path, const TriMesh& surface, std::string_view specimen_id) {
+  write_ply_with(id_comment(specimen_id), path, surface);
 }
 
-void write_ply_at_true_size(const std::filesystem::path& path, const TriMesh& cloud, double camera_scale) {
+void write_ply_at_true_size(const std::filesystem::path& path, const TriMesh& cloud, double camera_scale, std::string_view specimen_id) {
   INCISE_REQUIRE(camera_scale >= kLeastCameraScale && camera_scale <= kMostCameraScale,
                  fmt::format("expected a camera's scale from {} to {}, found {}", kLeastCameraScale, kMostCameraScale,
                              camera_scale));
-  write_ply_with(fmt::format("{}{}\n", kScaleMark, camera_scale), path, cloud);
+  write_ply_with(fmt::format("{}{}\n", kScaleMark, camera_scale) + id_comment(specimen_id), path, cloud);
 }
 
 double camera_scale_of(const std::filesystem::path& path) {

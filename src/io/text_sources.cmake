@@ -32,5 +32,6 @@ set(text_sources
   vtk_bytes.cpp
   vtk_legacy_reader.cpp
   vtk_xml_reader.cpp
-  vtk_xml_writer.cpp)
+  vtk_xml_writer.cpp
+  specimen_id.cpp)
 set(text_libraries pugixml::pugixml ZLIB::ZLIB)

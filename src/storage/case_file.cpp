@@ -8,6 +8,7 @@
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/meshing/sizing_field.hpp>
 #include <incise/storage/case_file.hpp>
@@ -89,6 +90,8 @@ void require_consistent(const CaseFile& file, const std::string& name) {
     }
     throw CaseError(name, group + "." + first.substr(0, colon), first.substr(colon + 8, comma - colon - 8), first.substr(comma + 11));
   };
+  if (!c.specimen_id.empty() && !is_specimen_id(c.specimen_id))
+    throw CaseError(name, "specimen_id", fmt::format("'{}'", c.specimen_id), "1 to 64 letters, digits, '.', '_' and '-'");
   refuse("ct", validate(c.segmentation), "a usable segmentation");
   refuse("specimen.material", validate(c.material), "a usable material");
   refuse("plan", validate(c.plan), "a usable plan");

@@ -12,6 +12,7 @@
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/storage/folder_store.hpp>
@@ -100,6 +101,19 @@ std::string FolderStore::input_hash(const std::filesystem::path& path) {
   return hash;
 }
 
+std::string FolderStore::specimen_id() {
+  constexpr std::size_t kDigits = 12;
+  if (!file_.settings.specimen_id.empty()) return file_.settings.specimen_id;
+  const bool is_mesh = !file_.inputs.specimen_mesh.empty();
+  const std::filesystem::path& data = is_mesh ? file_.inputs.specimen_mesh : file_.inputs.ct_volume;
+  return data.empty() ? "" : (is_mesh ? "mesh-" : "ct-") + input_hash(data).substr(0, kDigits);
+}
+
+ToolPath FolderStore::with_specimen(ToolPath path) {
+  path.specimen_id = specimen_id();
+  return path;
+}
+
 const std::string& FolderStore::key(Product product) {
   std::string& key = keys_[static_cast<std::size_t>(product)];
   if (!key.empty()) return key;
@@ -139,6 +153,7 @@ bool FolderStore::is_current(Product product) {
 void FolderStore::write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict) {
   Manifest manifest;
   if (verdict != nullptr) manifest.verdict = *verdict;
+  manifest.specimen_id = specimen_id();
   manifest.version = version();
   manifest.commit = source_commit();
   manifest.command = context_.command;
@@ -234,6 +249,7 @@ std::optional<Contour> FolderStore::read_line() {
 std::optional<ToolPath> FolderStore::read_given_path() {
   if (file_.inputs.tool_path.empty()) return std::nullopt;
   ToolPath path = read_tool_path(file_.inputs.tool_path);
+  require_same_specimen(file_.inputs.tool_path, specimen_id(), "the case's");
   if (path.frame != PathFrame::SimStretched) {
     throw DataError(file_.inputs.tool_path, "frame", std::string(to_string(path.frame)), "sim_stretched");
   }
@@ -342,7 +358,7 @@ std::optional<ToolPath> FolderStore::load_plan() {
 
 void FolderStore::save_plan(const ToolPath& path, double wall_s) {
   save(Product::Plan, wall_s, [&](const std::filesystem::path& to) {
-    write_tool_path(to / "path.json", path);
+    write_tool_path(to / "path.json", with_specimen(path));
     write_contour_vtp(to / "path.vtp", entry_contour(path));
     write_json(to / "plan.json", plan_summary_json(path));
   });

@@ -116,7 +116,7 @@ std::optional<Correction> FolderStore::load_correction() {
 
 void FolderStore::save_correction(const Correction& correction, double wall_s) {
   save(Product::Correction, wall_s, [&](const std::filesystem::path& to) {
-    write_tool_path(to / "path.json", correction.moves.path);
+    write_tool_path(to / "path.json", with_specimen(correction.moves.path));
     write_contour_vtp(to / "path.vtp", entry_contour(correction.moves.path));
     write_json(to / "compensate.json", to_json(correction));
     if (!correction.iteration) return;

@@ -167,6 +167,14 @@ RegistrationRecord read_registration(const std::filesystem::path& file) {
     if (!found->is_string()) throw DataError(file, "/target_sha256", found->dump(), "64 hex digits");
     record.target_sha256 = found->get<std::string>();
   }
+  for (const char* name : {"source", "target"}) {
+    const std::string digest = fmt::format("{}_sha256", name);
+    const auto path = document.find(name), sha256 = document.find(digest);
+    if (path == document.end() || sha256 == document.end()) continue;
+    if (!path->is_string()) throw DataError(file, fmt::format("/{}", name), path->dump(), "the name of a file");
+    if (!sha256->is_string()) throw DataError(file, "/" + digest, sha256->dump(), "64 hex digits");
+    record.inputs.push_back({digest, path->get<std::string>(), sha256->get<std::string>()});
+  }
   require_no_contradiction(document, record, file);
   return record;
 }

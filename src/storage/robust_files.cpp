@@ -68,6 +68,7 @@ ScenarioRunFolder::ScenarioRunFolder(std::filesystem::path folder, std::string c
 std::string ScenarioRunFolder::key_of(const RunSetting& setting, const ToolPath& path) const {
   ToolPath followed = path;
   followed.source_sha256.clear();  // where it lies counts, not what it was read from
+  followed.specimen_id.clear();    // the case's key has it
   return sha256_of_text(fmt::format("{} {} speed={} dullness={} stiffness={} path={}", kScenarioRunSchema, case_key_,
                                     setting.speed_mm_s, setting.dullness, setting.stiffness_of_case,
                                     to_json(followed)));
@@ -141,7 +142,9 @@ void write_robust(FolderStore& store, const RobustCorrection& robust, const std:
   require_replaceable(folder);
   AtomicFolder target(folder);
   const RobustCompensation& chosen = robust.compensation;
-  write_tool_path(target.path() / "path.json", chosen.path);
+  ToolPath path = chosen.path;
+  path.specimen_id = store.specimen_id();
+  write_tool_path(target.path() / "path.json", path);
   write_contour_vtp(target.path() / "path.vtp", entry_contour(chosen.path));
   Json json = robust_summary_json(robust);
   json["calibration_sha256"] = sha256_of_file(calibration);

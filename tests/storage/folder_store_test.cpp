@@ -650,6 +650,7 @@ TEST_F(FolderStoreTest, TheSchemaOfAPathNamesEveryFieldThatIsWritten) {
   path.T_robot_sim = Mat4::Identity();
   path.tumor_edge.is_closed = false;
   path.source_sha256 = sha256_of_text("");
+  path.specimen_id = "tongue-07";
   const auto written = nlohmann::json::parse(to_json(path));
   const auto keys_of = [](const nlohmann::json& object) {
     std::vector<std::string> keys;

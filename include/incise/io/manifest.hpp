@@ -30,6 +30,7 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   double wall_s = 0.0;
   std::string machine;  ///< see machine_description
+  std::string specimen_id = {};         ///< of the specimen that the folder's files are of (specimen_id.hpp); empty: of none, or of several
   std::optional<Verdict> verdict = {};  ///< of the run that filled the folder, where it has one
 };
 

@@ -20,6 +20,7 @@ namespace incise {
 ///   least 3 (2 if open) tumor_edge     [[x, y, z]…], same frame; optional tumor_edge_closed  optional, true
 ///   T_robot_sim    4 x 4, rows, last row 0 0 0 1; optional
 ///   source_sha256  64 hex digits; optional
+///   specimen_id    of the specimen that the path was planned on (specimen_id.hpp); optional
 ///   verdict        of the simulated cut along the path, see read_path_verdict; optional
 ///
 /// @throws DataError with the JSON pointer of the place: unknown key (naming the nearest valid one), key given twice,

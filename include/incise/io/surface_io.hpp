@@ -7,6 +7,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace incise {
@@ -29,8 +30,9 @@ namespace incise {
 /// Writes a binary little endian `.ply` with 64-bit coordinates, point data, and a comment SPACE=LPS. A cloud is a mesh
 /// without triangles. Reading it back gives the same doubles; `normals` become nx, ny, nz, other arrays with several
 /// components the scalar properties NAME_0, NAME_1….
+/// @param specimen_id  kept in a comment (specimen_id.hpp); empty: none.
 /// @pre finite numbers, indices in range, data of the right length.  @throws DataError if the file cannot be written.
-void write_ply(const std::filesystem::path& path, const TriMesh& surface);
+void write_ply(const std::filesystem::path& path, const TriMesh& surface, std::string_view specimen_id = {});
 
 /// Writes a `.vtp` for ParaView: triangles, or points when there are none. @pre, @throws as write_ply.
 void write_vtp(const std::filesystem::path& path, const TriMesh& surface);

@@ -97,10 +97,13 @@ class FolderStore : public Store {
   /// settings, inputs or build, or damaged. @pre checkpoint(role) exists.
   void require_fitting_checkpoint(CutRole role);
 
+  /// Of the case, or of its scan or mesh. @throws DataError where that cannot be read.
+  [[nodiscard]] std::string specimen_id();
   /// A manifest for an output folder of this study. @param verdict  of the run; null: the folder has none.
   void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);
 
  private:
+  [[nodiscard]] ToolPath with_specimen(ToolPath path);
   [[nodiscard]] const std::string& key(Product product);
   [[nodiscard]] std::string settings_with(const std::vector<std::string>& prefixes, const std::vector<std::string>& but) const;
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace incise {
 
@@ -15,6 +16,13 @@ namespace incise {
 /// when nothing speaks against the transform), outcome, reasons, and under `certificate` how well it is determined.
 /// Numbers that are not finite become null.
 [[nodiscard]] nlohmann::ordered_json to_json(const Registration& registration);
+
+/// A cloud that a registration was made from.
+struct RegistrationInput {
+  std::string key;     ///< of its digest: source_sha256, target_sha256
+  std::string path;    ///< as `incise register` was given it
+  std::string sha256;
+};
 
 /// What a file says of a registration. Another program's may hold the transform alone.
 struct RegistrationRecord {
@@ -25,6 +33,7 @@ struct RegistrationRecord {
   std::optional<double> inlier_fraction;
   std::optional<bool> is_converged;
   std::optional<double> scale_sd;  ///< relative
+  std::vector<RegistrationInput> inputs;  ///< those whose name and digest it states
   std::string target_sha256;       ///< of the measured cloud that it was found on; empty: not stated
 };
 

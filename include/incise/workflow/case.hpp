@@ -71,6 +71,7 @@ struct CompensationChoice {
 /// What a study asks for, whatever files it came from. Every default is written here or in the structs that it holds.
 struct Case {
   std::string title = "Incision study";
+  std::string specimen_id;                  ///< see io/specimen_id.hpp; empty: follows from the scan or mesh
   bool is_virtual = false;                  ///< the specimen is synthetic; said on every page that is made of it
   SegmentationSettings segmentation;
   MeshingChoice meshing;
