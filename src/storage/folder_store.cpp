@@ -35,7 +35,7 @@ struct ProductInfo {
 
 // What is only held against a cut that was made (see FolderStore::judgement_key) makes no cut anew.
 const ProductInfo& info(Product product) {
-  static const std::array<ProductInfo, 10> kInfo{{
+  static const std::array<ProductInfo, 12> kInfo{{
       {"labels", {"ct."}},
       {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}, {"plan.power_w", "plan.speed_mm_s", "plan.close_margin_mm"}},
       {"stretched", {"specimen."}},
@@ -44,6 +44,8 @@ const ProductInfo& info(Product product) {
       {"pass_1", {"plan.close_margin_mm", "compensation."}},
       {"pass_2", {}},
       {"pass_3", {}},
+      {"pass_4", {}},
+      {"pass_5", {}},
       {"correction", {}},
       {"corrected", {}},
   }};

@@ -83,7 +83,8 @@ bool keeps_depth_and_closure(const Case& settings, const SimulatedCut& first, co
 ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {
   ConvergenceSettings convergence;
   convergence.region = safe_region(settings);
-  convergence.simulations = 1 + kMostPasses;
+  convergence.simulations = 1 + kUsualPasses;
+  convergence.more_simulations = kMostPasses - kUsualPasses;
   convergence.floor_mm = floor_mm;
   if (settings.compensation.bias_mm != 0.0) convergence.bias_mm = {settings.compensation.bias_mm};
   return convergence;

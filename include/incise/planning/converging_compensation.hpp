@@ -42,6 +42,8 @@ struct SafeRegion {
 struct ConvergenceSettings {
   SafeRegion region;
   int simulations = 4;         ///< at most, the first (as intended) and the verifying one counted, >= 2
+  int more_simulations = 0;    ///< beyond these, at most, while the nearest ring has stayed open in a layer: it is moved by more_move_mm, out and in
+  double more_move_mm = 0.1;   ///< of each waypoint, > 0: enough for other tissue to hang on at the seam, far less than the electrode's radius
   double floor_mm = 0.0;       ///< mean |error| that the mesh leaves in tissue that does not move, >= 0
   double tolerance_mm = 0.05;  ///< converged: mean |error| within this of the floor, > 0
   double smoothing_mm = 1.5;   ///< errors are averaged along the path with a Gaussian of this standard deviation, > 0
