@@ -147,7 +147,7 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
           [&options](const std::string& name) {
             options.method = name == "paper" ? CompensationMethod::Paper : CompensationMethod::Default;
           },
-          "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all; paper: each waypoint "
+          "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (6 where the nearest ring stays open); paper: each waypoint "
           "moves once by the error "
           "measured there. In place of the case's compensation.method")
       ->check(CLI::IsMember({"default", "paper"}));
