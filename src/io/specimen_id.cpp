@@ -43,9 +43,19 @@ std::string id_in_header(const fs::path& file, std::string_view mark) {
   return checked(text.substr(begin, text.find_first_of("\r\n", begin) - begin), file);
 }
 
+/// A manifest.json may be another program's: what cannot be read as one of ours lists nothing.
+nlohmann::ordered_json manifest_or_nothing(const fs::path& file) {
+  try {
+    nlohmann::ordered_json document = read_json(file);
+    if (document.is_object() && document.contains("version") && document.contains("files") && document.at("files").is_array()) return document;
+  } catch (const DataError&) {
+  }
+  return nullptr;
+}
+
 bool lists(const fs::path& manifest, const std::string& name) {
-  const nlohmann::ordered_json document = read_json(manifest);
-  if (!document.is_object() || !document.contains("files") || !document.at("files").is_array()) return false;
+  const nlohmann::ordered_json document = manifest_or_nothing(manifest);
+  if (document.is_null()) return false;
   const auto& files = document.at("files");
   return std::any_of(files.begin(), files.end(), [&name](const auto& entry) { return entry.is_string() && entry.template get<std::string>() == name; });
 }
@@ -77,7 +87,7 @@ bool is_specimen_id(std::string_view text) {
 
 std::string specimen_id_of(const fs::path& path) {
   if (path.empty() || !fs::exists(path)) return "";
-  if (fs::is_directory(path)) return fs::exists(path / "manifest.json") ? id_in_json(path / "manifest.json") : "";
+  if (fs::is_directory(path)) return !manifest_or_nothing(path / "manifest.json").is_null() ? id_in_json(path / "manifest.json") : "";
   if (!fs::is_regular_file(path)) return "";
   const std::string ending = io_detail::lower_case(path.extension().string());
   std::string id;

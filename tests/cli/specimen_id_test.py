@@ -113,6 +113,15 @@ class SpecimenIdTest(CommandTest):
         self.assert_other_specimen(self.incise("calibrate", case, "--observed", "cut.json", "-o", self.out), "cut.json")
         self.assert_refused(self.incise("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--specimen-id", "a b", "-o", "cut.json"), BAD_CASE, "--specimen-id")
 
+    def test_another_programs_manifest_is_none_of_ours(self):
+        for name, radius in (("cut", 8.6), ("edge", small_case.TUMOR_RADIUS_MM)):
+            small_case.write_contour(self.folder / f"{name}.csv", small_case.ring(radius=radius))
+        for text in ("{", "[]", '{"files": 7, "specimen_id": 7}'):
+            (self.folder / "manifest.json").write_text(text)
+            done = self.incise("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--contour", "inner_edge", "--json")
+            self.assertIn(done.returncode, (DONE, NOT_ACCEPTABLE), done.stderr)
+            self.assertNotIn("specimen_id", json.loads(done.stdout))
+
     def test_a_given_path_of_another_specimen_is_refused(self):
         self.path(OTHER, frame="sim_stretched")
         case = self.case(specimen_id=OWN, path=str(self.folder / "path.json"))
