@@ -35,15 +35,15 @@ class ConvergingIteration {
     const std::size_t n = intended_.waypoints.size();
     carry_out({intended_, std::vector<double>(n, 0.0), std::vector<std::uint8_t>(n, 0)}, 0.0);
     if (!passes_.front().mean_abs_error_mm) return finish(CompensationOutcome::NoMeasure);
-    while (true) {
-      if (is_converged()) return finish(CompensationOutcome::Converged);
-      if (static_cast<int>(passes_.size()) >= settings_.simulations) break;
+    bool is_at_rest = false;
+    while (!is_converged() && !is_at_rest && static_cast<int>(passes_.size()) < settings_.simulations) {
       const std::optional<MovablePath::Moved> next = next_path();
-      if (!next) return finish(CompensationOutcome::AtRest);
-      carry_out(*next, greatest_move(passes_[nearest_].offset_mm, next->offset_mm));
+      if (next) carry_out(*next, greatest_move(passes_[nearest_].offset_mm, next->offset_mm));
+      is_at_rest = !next;
     }
-    close_by_moving();
+    mend_by_moving();
     if (is_converged()) return finish(CompensationOutcome::Converged);
+    if (is_at_rest) return finish(CompensationOutcome::AtRest);
     const bool is_last_best = best_ + 1 == passes_.size();
     return finish(is_last_best ? CompensationOutcome::BudgetSpent : CompensationOutcome::BestKept);
   }
@@ -56,16 +56,15 @@ class ConvergingIteration {
   }
 
   /// A ring can stay open by a bridge of a fraction of a millimetre where its end meets its start: tissue that hangs there is pushed
-  /// aside. A tenth of a millimetre farther out or in, it is cut through.
-  void close_by_moving() {
+  /// aside. A tenth of a millimetre farther out or in, it is cut through. So it is with a place that is a hair too shallow.
+  void mend_by_moving() {
     double move_mm = settings_.more_move_mm;
-    for (int k = 0; k < settings_.more_simulations && best_ != nearest_; ++k, move_mm = -move_mm) {
+    for (int k = 0; k < settings_.more_simulations && !is_best_near(); ++k, move_mm = -move_mm) {
       std::vector<double> offset = passes_[nearest_].offset_mm;
       for (double& o : offset) o += move_mm;
       const MovablePath::Moved moved = movable_.at(offset);
       if (!movable_.can_be_cut(moved.path)) continue;
       carry_out(moved, greatest_move(passes_[nearest_].offset_mm, moved.offset_mm));
-      if (best_ + 1 == passes_.size()) return;  // closed
     }
   }
 
@@ -113,6 +112,7 @@ class ConvergingIteration {
     pass.is_success = errors.is_success;
     pass.shortfall_mm = errors.shortfall_mm;
     pass.open_layers = errors.open_layers;
+    pass.verdict = errors.verdict;
     pass.lag_mm = errors.lag_mm;
   }
 
@@ -120,6 +120,7 @@ class ConvergingIteration {
     if (!a.mean_abs_error_mm) return false;
     if (a.is_success != b.is_success) return a.is_success;
     if (a.open_layers != b.open_layers) return a.open_layers < b.open_layers;
+    if (a.verdict != b.verdict) return a.verdict < b.verdict;
     return a.cost_mm() < b.cost_mm();
   }
 
@@ -127,9 +128,18 @@ class ConvergingIteration {
   /// to a closed one sooner than a closed ring that is a millimetre off.
   static bool is_nearer(const CompensationPass& a, const CompensationPass& b) { return a.mean_abs_error_mm && a.cost_mm() < b.cost_mm(); }
 
+  /// Nothing is held against its cut that another course may mend.
+  static bool is_sound(const CompensationPass& pass) { return pass.is_success && pass.verdict == VerdictStatus::Ok; }
+
+  /// The best pass is the nearest one, or sound and as near within the tolerance.
+  [[nodiscard]] bool is_best_near() const {
+    const CompensationPass& best = passes_[best_];
+    return best_ == nearest_ || (is_sound(best) && best.cost_mm() <= passes_[nearest_].cost_mm() + settings_.tolerance_mm);
+  }
+
   [[nodiscard]] bool is_converged() const {
     const CompensationPass& best = passes_[best_];
-    return best.is_success && *best.mean_abs_error_mm <= settings_.floor_mm + settings_.tolerance_mm;
+    return is_sound(best) && *best.mean_abs_error_mm <= settings_.floor_mm + settings_.tolerance_mm;
   }
 
   [[nodiscard]] IterationPoint as_point(const CompensationPass& pass) const {

@@ -25,7 +25,7 @@ std::optional<double> number_or_nothing(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
 
-CompensationPass pass_from(const Json& json) {
+CompensationPass pass_from(const Json& json, const std::filesystem::path& file) {
   CompensationPass pass;
   pass.offset_mm = json.at("offset_mm").get<std::vector<double>>();
   pass.error_mm = json.at("error_mm").get<std::vector<double>>();
@@ -38,6 +38,10 @@ CompensationPass pass_from(const Json& json) {
   pass.max_move_mm = json.at("max_move_mm");
   pass.shortfall_mm = json.at("shortfall_mm");
   pass.open_layers = json.at("open_layers");
+  const auto name = json.at("verdict").get<std::string>();
+  const std::optional<VerdictStatus> verdict = parse_verdict_status(name);
+  if (!verdict) throw DataError(file, "history.verdict", fmt::format("'{}'", name), "ok, caution or refused");
+  pass.verdict = *verdict;
   pass.is_success = json.at("success");
   return pass;
 }
@@ -46,7 +50,7 @@ CompensationPass pass_from(const Json& json) {
 ConvergedCompensation iteration_from(const Json& json, const ToolPath& path, const std::filesystem::path& file) {
   ConvergedCompensation iteration;
   iteration.path = path;
-  for (const Json& pass : json.at("history")) iteration.passes.push_back(pass_from(pass));
+  for (const Json& pass : json.at("history")) iteration.passes.push_back(pass_from(pass, file));
   iteration.best = json.at("best_pass");
   if (iteration.best >= iteration.passes.size()) {
     throw DataError(file, "best_pass", fmt::format("{}", iteration.best),

@@ -214,6 +214,7 @@ Json correction_summary_json(const Correction& correction) {
                                {"limited_waypoints", std::count(pass.is_limited.begin(), pass.is_limited.end(), 1)},
                                {"shortfall_mm", pass.shortfall_mm},
                                {"open_layers", pass.open_layers},
+                               {"verdict", to_string(pass.verdict)},
                                {"success", pass.is_success}});
   }
   return json;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace incise {
@@ -69,6 +70,16 @@ double mean_shortfall_mm(const Case& settings, const SimulatedCut& cut) {
   return settings.plan.depth_mm * missing / static_cast<double>(shares.size());
 }
 
+/// The verdict on a cut, of what another course may mend. Heat is not: it follows from where the cut is meant to lie.
+VerdictStatus status_of_course(const Verdict& verdict) {
+  constexpr std::array<std::string_view, 6> kOfCourse{"outcome", "tumor_distance", "lateral_margin", "open_layer", "depth", "convergence"};
+  VerdictStatus worst = VerdictStatus::Ok;
+  for (const VerdictReason& reason : verdict.reasons()) {
+    if (std::find(kOfCourse.begin(), kOfCourse.end(), reason.id) != kOfCourse.end()) worst = std::max(worst, reason.severity);
+  }
+  return worst;
+}
+
 /// A correction may not buy the lateral error with depth or closure: it leaves no more layers open than the first cut, and is as deep
 /// everywhere as a cut has to be, or as the first one was.
 bool keeps_depth_and_closure(const Case& settings, const SimulatedCut& first, const SimulatedCut& corrected) {
@@ -128,6 +139,7 @@ std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& 
   errors->shortfall_mm = mean_shortfall_mm(settings, cut);
   errors->open_layers = static_cast<int>(open_layers_mm(cut.incision).size());
   errors->is_success = errors->is_success && errors->open_layers == 0;
+  errors->verdict = status_of_course(cut.verdict);
   return errors;
 }
 

@@ -256,6 +256,43 @@ TEST_F(Converge, MovesANearRingThatStaysOpenUntilItCloses) {
   EXPECT_NEAR(moved_mm, 0.2, 1e-9) << "out, then in";
 }
 
+/// A pass 0.01 mm nearer whose kerf is a hair too shallow at one place loses to a sound one that is as near but for that.
+TEST_F(Converge, PrefersASoundPassToANearerOneThatTheVerdictIsAgainst) {
+  const FakeTissue drifting{.drift_mm = [](double angle) { return -1.2 + 0.6 * std::cos(2.0 * angle); }, .gain = 0.7};
+  for (const VerdictStatus status : {VerdictStatus::Caution, VerdictStatus::Refused}) {
+    int cuts = 0;
+    const MeasureCut only_the_second_is_sound = [&](const ToolPath& path) {
+      PathErrors errors = drifting.cut(path);
+      errors.verdict = cuts++ == 1 ? VerdictStatus::Ok : status;
+      return errors;
+    };
+    const ConvergedCompensation result = compensate_converging(path_, surface_, only_the_second_is_sound, {.tolerance_mm = 1e-6, .least_move_mm = 0.0});
+    ASSERT_EQ(result.passes.size(), 4U);
+    EXPECT_LT(*result.passes[2].mean_abs_error_mm, *result.passes[1].mean_abs_error_mm) << "the error alone would choose another pass";
+    EXPECT_EQ(result.best, 1U);
+    EXPECT_EQ(result.passes[2].verdict, status);
+  }
+}
+
+/// An error within the tolerance does not end the iteration while the verdict is against the cut: the ring is made again beside it.
+TEST_F(Converge, GoesOnWhileTheVerdictIsAgainstTheNearestPass) {
+  const FakeTissue drifting{.drift_mm = [](double) { return -1.2; }};
+  int cuts = 0;
+  const MeasureCut sound_at_last = [&](const ToolPath& path) {
+    PathErrors errors = drifting.cut(path);
+    errors.verdict = cuts == 1 ? VerdictStatus::Caution : VerdictStatus::Ok;
+    ++cuts;
+    return errors;
+  };
+  ConvergenceSettings settings;
+  settings.more_simulations = 2;
+  settings.tolerance_mm = 0.15;
+  const ConvergedCompensation result = compensate_converging(path_, surface_, sound_at_last, settings);
+  EXPECT_EQ(result.outcome, CompensationOutcome::Converged) << to_string(result.outcome);
+  ASSERT_EQ(result.passes.size(), 3U);
+  EXPECT_EQ(result.best, 2U);
+}
+
 TEST_F(Converge, PrefersThePassThatLeavesFewerLayersOpen) {
   int cuts = 0;
   const MeasureCut opens = [&](const ToolPath& path) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/verdict.hpp>
 #include <incise/planning/plan_path.hpp>
 
 #include <cstdint>
@@ -21,6 +22,8 @@ struct PathErrors {
   /// Mean over the path of what the kerf lacks of the least depth that is accepted without a caution, mm, >= 0.
   double shortfall_mm = 0.0;
   int open_layers = 0;     ///< planned layers in which the ring stayed open, >= 0
+  /// The verdict on this cut, of what another course may mend: distance to the tumour, margin, layers, depth, a sound end of the simulation.
+  VerdictStatus verdict = VerdictStatus::Ok;
 };
 
 /// Cuts along a path (in simulation, or in a test's stand-in for tissue) and measures; nullopt: no contour to measure.
@@ -42,7 +45,7 @@ struct SafeRegion {
 struct ConvergenceSettings {
   SafeRegion region;
   int simulations = 4;         ///< at most, the first (as intended) and the verifying one counted, >= 2
-  int more_simulations = 0;    ///< beyond these, at most, while the nearest ring has stayed open in a layer: it is moved by more_move_mm, out and in
+  int more_simulations = 0;    ///< beyond these, at most, while the nearest pass has an open layer or a verdict against it: it is moved by more_move_mm, out and in
   double more_move_mm = 0.1;   ///< of each waypoint, > 0: enough for other tissue to hang on at the seam, far less than the electrode's radius
   double floor_mm = 0.0;       ///< mean |error| that the mesh leaves in tissue that does not move, >= 0
   double tolerance_mm = 0.05;  ///< converged: mean |error| within this of the floor, > 0
@@ -77,6 +80,7 @@ struct CompensationPass {
   double lag_mm = 0.0;
   double shortfall_mm = 0.0;  ///< see PathErrors
   int open_layers = 0;        ///< likewise
+  VerdictStatus verdict = VerdictStatus::Ok;  ///< likewise
   double max_move_mm = 0.0;  ///< greatest move from the pass that it was made from
   bool is_success = false;
   /// What passes are compared by: mean |error| and what is missing in depth, mm, weighed alike. @pre measured.
@@ -84,7 +88,7 @@ struct CompensationPass {
 };
 
 enum class CompensationOutcome {
-  Converged,    ///< mean |error| within the tolerance of the floor
+  Converged,    ///< mean |error| within the tolerance of the floor, and the cut sound
   BudgetSpent,  ///< all simulations made; the last one is the best, and not within the tolerance
   BestKept,     ///< all simulations made; an earlier one was better, and is what is returned
   AtRest,       ///< nothing to move: the error along the path is below least_move_mm, or the safe region holds it
@@ -97,7 +101,7 @@ enum class CompensationOutcome {
 struct ConvergedCompensation {
   ToolPath path;                         ///< of the best pass
   std::vector<CompensationPass> passes;  ///< one per simulation, in order; the first: the intended path
-  std::size_t best = 0;  ///< pass of the least cost_mm among those that succeeded (if none did: of those with the fewest open layers)
+  std::size_t best = 0;  ///< of those that succeeded (if none did: that left the fewest layers open), of these of the best verdict, that of the least cost_mm
   CompensationOutcome outcome = CompensationOutcome::NoMeasure;
   /// Geometric mean, per pass, of what was left of the mean |error|, from the first to the best; absent without two.
   std::optional<double> contraction;
