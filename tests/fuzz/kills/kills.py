@@ -3,7 +3,7 @@
 
 Where a kill falls is drawn from the seed: after a share of the time that a whole run takes, or at the n-th change of what the output folder
 lists, which meets the moments at which results change places. Time decides where a kill falls, never whether the test passes.
-After each kill: every result folder that is there is whole. At the end: same files and bytes (but for times), nothing left over, and a foreign
+Every fourth folder starts from a CT, the others from a mesh. After each kill: every result folder that is there is whole. At the end: same files and bytes (but for times), nothing left over, and a foreign
 file in the output folder as it was.
 """
 
@@ -13,6 +13,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -24,8 +25,11 @@ import small_case  # noqa: E402
 
 MOST_KILLS_IN_A_ROW = 8  # of one folder, before it is run to its end
 OF_TIME = ("wall_s", "ms_per_step", "stages", "folder")  # keys that say how long something took
-PRODUCTS = ("stretched", "plan", "as_planned", "pass_1", "pass_2", "pass_3", "pass_4", "pass_5", "correction", "corrected", "program")
+PRODUCTS = ("labels", "mesh", "stretched", "plan", "as_planned", "pass_1", "pass_2", "pass_3", "pass_4", "pass_5", "correction", "corrected", "program")
 FOREIGN = "notes.txt"
+CT_EVERY = 4  # of the folders, the first among them
+CT_TETS = 2500
+ACCEPTED = (*small_case.ACCEPTED, "--accept", "depth", "--accept", "heat")
 
 
 class Finding(Exception):
@@ -65,11 +69,27 @@ def listing(folder):
     return names
 
 
+def mesh_case(_command, folder):
+    small_case.write_case(folder, small_case.SOUND)
+    small_case.write_tumor_surface(folder / "tumor.stl")
+
+
+def ct_case(command, folder):
+    """A virtual tongue, coarse and with a wide margin, so that it is cut within seconds and a program is written."""
+    subprocess.run([command, "phantom", "--seed", "1", "--format", "nrrd", "-o", str(folder), "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    file = folder / "case.yaml"
+    text = re.sub(r"tets: .*", f"tets: {CT_TETS}", file.read_text())
+    text = re.sub(r"lateral_margin_mm: .*", "lateral_margin_mm: 7\n  close_margin_mm: 0.2", text)
+    file.write_text(text + "cut: {dullness: 5, advance_per_step_mm: 0.8, frames: 2}\n")
+
+
 class Harness:
-    def __init__(self, command, seed, root):
-        self.command, self.random, self.root = command, random.Random(seed), root
-        self.case = small_case.write_case(root / "case", small_case.SOUND)
-        small_case.write_tumor_surface(self.case / "tumor.stl")
+    """Runs of one case."""
+
+    def __init__(self, command, write_case, generator, root):
+        self.command, self.random, self.root = command, generator, root
+        self.case = root / "case"
+        write_case(command, self.case)
         self.killed_at = collections.Counter()
         begun = time.monotonic()
         self.reference = self.finished(self.fresh("reference"))
@@ -82,7 +102,7 @@ class Harness:
         return out
 
     def start(self, out):
-        words = [self.command, "run", str(self.case), "-o", "out", "--json", "--quiet", "--threads", "1", "--checkpoint-s", "0", *small_case.ACCEPTED]
+        words = [self.command, "run", str(self.case), "-o", "out", "--json", "--quiet", "--threads", "1", "--checkpoint-s", "0", *ACCEPTED]
         return subprocess.Popen(words, cwd=out.parent, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
     def finished(self, out):
@@ -149,12 +169,18 @@ def main():
     options = parser.parse_args()
     begun = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="incise_kills_") as root:
-        harness = Harness(str(pathlib.Path(options.command).resolve()), options.seed, pathlib.Path(root))
+        command, generator = str(pathlib.Path(options.command).resolve()), random.Random(options.seed)
+        harnesses = {}
+        for name, write_case in (("CT", ct_case), ("mesh", mesh_case)):
+            (pathlib.Path(root) / name).mkdir()
+            harnesses[name] = Harness(command, write_case, generator, pathlib.Path(root) / name)
+        most_in_a_row = min(MOST_KILLS_IN_A_ROW, (options.count + 1) // 2)  # so that both kinds are met
         kills = chains = 0
         while kills < options.count and (options.end_at is None or time.monotonic() - begun < options.end_at):
             chains += 1
+            harness = harnesses["CT" if chains % CT_EVERY == 1 else "mesh"]
             try:
-                kills += harness.chain(chains, min(harness.random.randint(1, MOST_KILLS_IN_A_ROW), options.count - kills))
+                kills += harness.chain(chains, min(generator.randint(1, most_in_a_row), options.count - kills))
             except Finding as finding:
                 kept = pathlib.Path(tempfile.mkdtemp(prefix="incise_kills_found_"))
                 subprocess.run(["cp", "-a", root, str(kept)], check=True)
@@ -162,9 +188,11 @@ def main():
                 return 1
             if chains % 10 == 0:
                 print(f"{kills} kills", flush=True)
-        print(f"{kills} kills of {chains} runs, 0 findings; a whole run takes {harness.whole_s:.1f} s")
-        for place, count in sorted(harness.killed_at.items()):
-            print(f"  {count:4d} {place}")
+        print(f"{kills} kills of {chains} runs, 0 findings")
+        for name, harness in harnesses.items():
+            print(f"from {name}, {harness.whole_s:.1f} s a run")
+            for place, count in sorted(harness.killed_at.items()):
+                print(f"  {count:4d} {place}")
     return 0
 
 
