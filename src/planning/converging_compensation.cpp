@@ -59,7 +59,7 @@ class ConvergingIteration {
   /// aside. A tenth of a millimetre farther out or in, it is cut through. So it is with a place that is a hair too shallow.
   void mend_by_moving() {
     double move_mm = settings_.more_move_mm;
-    for (int k = 0; k < settings_.more_simulations && !is_best_near(); ++k, move_mm = -move_mm) {
+    for (int k = 0; k < settings_.more_simulations && is_to_be_mended(); ++k, move_mm = -move_mm) {
       std::vector<double> offset = passes_[nearest_].offset_mm;
       for (double& o : offset) o += move_mm;
       const MovablePath::Moved moved = movable_.at(offset);
@@ -131,10 +131,14 @@ class ConvergingIteration {
   /// Nothing is held against its cut that another course may mend.
   static bool is_sound(const CompensationPass& pass) { return pass.is_success && pass.verdict == VerdictStatus::Ok; }
 
-  /// The best pass is the nearest one, or sound and as near within the tolerance.
-  [[nodiscard]] bool is_best_near() const {
+  /// No sound pass is as near as the nearest one within the tolerance, and that one is near enough to be accepted. Where nothing better
+  /// than it is known, it has to lack little: what is open or shallow all round stays so a tenth of a millimetre away.
+  [[nodiscard]] bool is_to_be_mended() const {
     const CompensationPass& best = passes_[best_];
-    return best_ == nearest_ || (is_sound(best) && best.cost_mm() <= passes_[nearest_].cost_mm() + settings_.tolerance_mm);
+    const CompensationPass& nearest = passes_[nearest_];
+    if (is_sound(best) && best.cost_mm() <= nearest.cost_mm() + settings_.tolerance_mm) return false;
+    if (*nearest.mean_abs_error_mm >= settings_.region.electrode_radius_mm) return false;
+    return best_ != nearest_ || (nearest.open_layers <= 1 && nearest.shortfall_mm <= settings_.tolerance_mm);
   }
 
   [[nodiscard]] bool is_converged() const {

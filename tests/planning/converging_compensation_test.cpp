@@ -293,6 +293,26 @@ TEST_F(Converge, GoesOnWhileTheVerdictIsAgainstTheNearestPass) {
   EXPECT_EQ(result.best, 2U);
 }
 
+/// Not even the planned ring closed: the nearest is mended all the same, unless it lacks so much that a tenth of a millimetre is no help.
+TEST_F(Converge, MendsTheNearestRingWhereNoneCloses) {
+  for (const int open : {1, 2}) {
+    int cuts = 0;
+    const FakeTissue drifting{.drift_mm = [](double angle) { return -1.2 + 0.6 * std::cos(2.0 * angle); }, .gain = 0.7};
+    const MeasureCut closes_at_last = [&](const ToolPath& path) {
+      PathErrors errors = drifting.cut(path);
+      errors.open_layers = cuts++ == 4 ? 0 : open;
+      errors.is_success = errors.open_layers == 0;
+      return errors;
+    };
+    ConvergenceSettings settings;
+    settings.more_simulations = 2;
+    settings.tolerance_mm = 1e-3;
+    const ConvergedCompensation result = compensate_converging(path_, surface_, closes_at_last, settings);
+    EXPECT_EQ(result.result().is_success, open == 1);
+    EXPECT_EQ(result.passes.size() > 4, open == 1);
+  }
+}
+
 TEST_F(Converge, PrefersThePassThatLeavesFewerLayersOpen) {
   int cuts = 0;
   const MeasureCut opens = [&](const ToolPath& path) {
