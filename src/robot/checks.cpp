@@ -52,7 +52,7 @@ constexpr std::array<const char*, 33> kNames{"finite",
                                              "registration_rmse",
                                              "registration_inliers",
                                              "registration_converged"};
-constexpr std::array<const char*, 3> kFixed{"finite", "frame", "reach"};
+constexpr std::array<const char*, 4> kFixed{"finite", "frame", "reach", "margin"};
 
 /// Poses that cut, the plunge's end (where the cut begins) included, the overlap not.
 std::vector<std::size_t> cut_poses(const RobotProgram& program) {

@@ -99,18 +99,18 @@ class ExportTest(RobotTest):
         self.assert_unsafe(ring(radius=10.0, depth=1.0, speed=7.0, kind="mark"), "speed_max")
 
     def test_an_override_is_typed_for_each_check_and_stands_in_the_program(self):
-        path = ring(radius=11.0, depth=6.0)
-        self.assert_unsafe(path, "margin", options=["--override", "depth"])
-        done = self.incise("export", self.write(path), "--override", "depth", "--override", "margin", "-o", "cut.script")
+        path = ring(depth=6.0, speed=31.0)
+        self.assert_unsafe(path, "speed_max", options=["--override", "depth"])
+        done = self.incise("export", self.write(path), "--override", "depth", "--override", "speed_max", "-o", "cut.script")
         self.assertEqual(done.returncode, DONE, done.stderr)
         text = (self.folder / "cut.script").read_text()
         self.assertIn("# incise.override: depth: 1 mm at waypoint", text)
-        self.assertIn("# incise.override: margin: ", text)
+        self.assertIn("# incise.override: speed_max: ", text)
 
     def test_an_override_that_is_no_check_or_may_not_be_is_refused(self):
         path = self.write(ring())
-        self.assert_refused(self.incise("export", path, "--override", "margn", "-o", "cut.script"), BAD_CASE, "--override", "'margn'", "Did you mean 'margin'?")
-        for name in ("finite", "frame", "reach"):
+        self.assert_refused(self.incise("export", path, "--override", "depht", "-o", "cut.script"), BAD_CASE, "--override", "'depht'", "Did you mean 'depth'?")
+        for name in ("finite", "frame", "reach", "margin"):
             self.assert_refused(self.incise("export", path, "--override", name, "-o", "cut.script"), BAD_CASE, f"'{name}'", "this one cannot")
         self.assert_nothing_written(self.folder / "cut.script")
 

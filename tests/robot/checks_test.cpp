@@ -572,21 +572,21 @@ TEST(CheckProgram, AMarkLeavesNoPartOfTheTumourEdgeOut) {
 
 TEST(OverrideChecks, LetsAFailedCheckPassAndKeepsItInTheRecord) {
   ToolPath path = ring_path();
-  path.waypoints[12].position_mm = Vec3(600.0, 12.0, 100.0);
+  path.waypoints[12].depth_mm = 5.8;
   auto checks = check_program(make_program(path), path);
   EXPECT_FALSE(checks.may_be_written());
-  EXPECT_THAT(named(checks, "margin").message(), ::testing::HasSubstr("mm at waypoint 12 (pose "));
-  override_checks(checks, {"margin", "depth"});
+  EXPECT_THAT(named(checks, "depth").message(), ::testing::HasSubstr("mm at waypoint 12 (pose "));
+  override_checks(checks, {"depth", "speed_max"});
   EXPECT_TRUE(checks.may_be_written());
   EXPECT_FALSE(checks.all_passed());
-  EXPECT_TRUE(named(checks, "margin").is_overridden);
-  EXPECT_FALSE(named(checks, "depth").is_overridden);  // it has not failed
+  EXPECT_TRUE(named(checks, "depth").is_overridden);
+  EXPECT_FALSE(named(checks, "speed_max").is_overridden);  // it has not failed
 }
 
 TEST(OverrideChecks, RefusesWhatCannotBeOverridden) {
   const ToolPath path = ring_path();
   auto checks = check_program(make_program(path), path);
-  for (const char* name : {"finite", "frame", "reach", "margins"})
+  for (const char* name : {"finite", "frame", "reach", "margin", "margins"})
     EXPECT_THROW(override_checks(checks, {name}), InvalidArgument) << name;
   EXPECT_EQ(check_names().size(), 33u);
 }

@@ -181,16 +181,27 @@ TEST(Tamper, ASoundMarkAndAProgramWithAnOverrideAreChecked) {
     mark.waypoints[i] = {mark.tumor_edge.points[i], -Vec3::UnitZ(), 1.0, 2.0};
   const RobotProgram marked = make_program(mark, {.plunge_speed_mm_s = 2.0, .overlap_mm = 0.0, .dwell_s = 0.3});
   EXPECT_EQ(ending_of(to_urscript(marked, program_header(marked, mark, check_program(marked, mark)))), "completed");
+  ToolPath deep = ring_path();
+  deep.waypoints[12].depth_mm = 5.8;
+  const RobotProgram program = make_program(deep);
+  ProgramChecks checks = check_program(program, deep);
+  override_checks(checks, {"depth"});
+  ASSERT_TRUE(checks.may_be_written());
+  for (const auto& [text, name] :
+       {std::pair(to_urscript(program, program_header(program, deep, checks)), "a.script"),
+        std::pair(to_json(program, &checks, program_header(program, deep, checks)), "b.json")})
+    EXPECT_EQ(ending_of(text, name), "completed") << name;
+}
+
+/// Nobody can take a cut that comes near the tumour on them, not by writing so into the program either.
+TEST(Tamper, AnOverrideOfTheMarginIsNoneToReplay) {
   ToolPath close = ring_path();
   close.waypoints[12].position_mm = Vec3(600.0, 12.0, 100.0);
   const RobotProgram program = make_program(close);
   ProgramChecks checks = check_program(program, close);
-  override_checks(checks, {"margin"});
-  ASSERT_TRUE(checks.may_be_written());
-  for (const auto& [text, name] :
-       {std::pair(to_urscript(program, program_header(program, close, checks)), "a.script"),
-        std::pair(to_json(program, &checks, program_header(program, close, checks)), "b.json")})
-    EXPECT_EQ(ending_of(text, name), "completed") << name;
+  ASSERT_FALSE(checks.may_be_written());
+  for (ProgramCheck& check : checks.checks) check.is_overridden = !check.passed;  // as an edited header would have it
+  EXPECT_NE(ending_of(to_urscript(program, program_header(program, close, checks))), "completed");
 }
 
 constexpr const char* kPhases[]{"approach", "plunge", "cut", "overlap", "exit", "retreat"};
