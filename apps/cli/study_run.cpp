@@ -11,6 +11,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/result_json.hpp>
@@ -33,10 +34,11 @@ constexpr double kLongestCheckpointS = 86400;  // a day
 
 /// The files that a run writes beside its folders of results: never through a link, never over what something else wrote.
 void require_own_files(const std::filesystem::path& output) {
-  for (const char* name : {"study.json", "report.html"}) {
+  for (const char* name : {"study.json", "report.html", "manifest.json"}) {
     if (std::filesystem::is_symlink(output / name)) refuse_foreign(output / name, "a link");
   }
-  const std::filesystem::path record = output / "study.json", report = output / "report.html";
+  const std::filesystem::path record = output / "study.json", report = output / "report.html", manifest = output / "manifest.json";
+  if (std::filesystem::exists(manifest) && !is_own_manifest(manifest)) refuse_foreign(manifest, "a file of another origin");
   if (std::filesystem::exists(record)) {
     const nlohmann::ordered_json json = read_json(record);
     if (!json.is_object() || !json.contains("case_file")) refuse_foreign(record, "a file of another origin");

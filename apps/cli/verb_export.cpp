@@ -114,10 +114,20 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   return path;
 }
 
-/// Of the simulated cut that verifies the path; a mark of the tumour's edge cuts nothing.
+/// Of the simulated cut that verifies the path; a mark of the tumour's edge cuts nothing. What was refused as a cut is not written as a
+/// mark either.
 Verdict verdict_of(const ExportArguments& arguments) {
-  if (arguments.kind == "mark") return {};
-  return read_path_verdict(arguments.path);
+  Verdict verdict = read_path_verdict(arguments.path);
+  const bool is_asked_as_mark = arguments.kind == "mark" && verdict.status() != VerdictStatus::Refused;
+  return is_asked_as_mark ? Verdict() : verdict;
+}
+
+/// What makes a mark one: it follows the edge, hardly scratches it, and slowly. Without these it is a cut without a verdict.
+void require_a_mark(const std::vector<std::string>& overrides) {
+  for (const std::string& name : overrides) {
+    if (name != "depth" && name != "speed_max" && name != "edge_distance") continue;
+    throw CaseError("command line", "--override", fmt::format("'{}' for a mark", name), "another check: without this one it is no mark of the tumour's edge");
+  }
 }
 
 /// Settings that follow from others.
@@ -174,6 +184,8 @@ void warn_of_less(const ExportArguments& a, const CheckInputs& inputs, const Too
   looser(a.setup.table_z_mm < ArmSetup{}.table_z_mm, "--table-z-mm", a.setup.table_z_mm, ArmSetup{}.table_z_mm);
 }
 
+constexpr double kMostPowerW = 400.0;  // no electrosurgical generator gives more (IEC 60601-2-2)
+
 /// With the constants of muscle that a case has by default: a path does not say what it is cut into.
 double half_width_of_heat_mm(const ToolPath& path, const ExportArguments& arguments) {
   const Needle needle{.length_mm = arguments.checks.needle_length_mm};
@@ -221,6 +233,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   ToolPath path = read_robot_path(arguments.path);
   const Verdict verdict = verdict_of(arguments);
   if (!arguments.kind.empty()) path.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
+  if (path.kind == PathKind::Mark) require_a_mark(arguments.overrides);
   if (arguments.is_open && path.is_closed) {
     throw CaseError("command line", "--open", fmt::format("{}, a closed path", arguments.path.string()), "an open path",
                     "Leave --open out: a ring is held to closed, gap and encloses.");
@@ -312,7 +325,8 @@ void add_export(Application& application) {
   verb->add_option("--registration", a.registration, "Result of `incise register` (.json): its quality is checked");
   verb->add_option("--power-w", a.power_w,
                    "Power of the electrode, to check it and how far beside the needle its heat reaches")
-      ->check(above_zero("--power-w"));
+      ->check(above_zero("--power-w"))
+      ->check(CLI::Range(0.0, kMostPowerW));
   verb->add_option("--tcp", a.tcp,
                    "Tool centre point in the flange as on the pendant: x y z (mm) rx ry rz (rad); z along the needle. "
                    "By default 0 0 150 0 0 0")

@@ -182,4 +182,13 @@ Verdict read_path_verdict(const std::filesystem::path& file) {
   return not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
 }
 
+void require_path_unchanged(const std::filesystem::path& file) {
+  const ordered_json document = read_json(file);
+  const JsonValue root(document, file);
+  const std::optional<JsonValue> place = root.find(kVerdict);
+  if (!place) return;
+  const std::string digest = digest_of(read_path(root), verdict_from_json(document.at(kVerdict), file));
+  if (place->at(kDigest).text() != digest) throw DataError(file, "/verdict/digest_sha256", "that of another path", digest + ", that of the path in this file");
+}
+
 }  // namespace incise

@@ -47,7 +47,7 @@ std::string id_in_header(const fs::path& file, std::string_view mark) {
 nlohmann::ordered_json manifest_or_nothing(const fs::path& file) {
   try {
     nlohmann::ordered_json document = read_json(file);
-    if (document.is_object() && document.contains("version") && document.contains("files") && document.at("files").is_array()) return document;
+    if (document.is_object() && document.contains("version") && document.contains("commit") && document.contains("instruction_set")) return document;
   } catch (const DataError&) {
   }
   return nullptr;
@@ -55,7 +55,7 @@ nlohmann::ordered_json manifest_or_nothing(const fs::path& file) {
 
 bool lists(const fs::path& manifest, const std::string& name) {
   const nlohmann::ordered_json document = manifest_or_nothing(manifest);
-  if (document.is_null()) return false;
+  if (document.is_null() || !document.contains("files") || !document.at("files").is_array()) return false;
   const auto& files = document.at("files");
   return std::any_of(files.begin(), files.end(), [&name](const auto& entry) { return entry.is_string() && entry.template get<std::string>() == name; });
 }
@@ -77,6 +77,10 @@ std::string id_in_manifest(const fs::path& file) {
 }
 
 }  // namespace
+
+bool is_own_manifest(const fs::path& file) {
+  return !manifest_or_nothing(file).is_null();
+}
 
 bool is_specimen_id(std::string_view text) {
   const auto may_stand = [](char c) {

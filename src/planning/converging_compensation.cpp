@@ -58,8 +58,8 @@ class ConvergingIteration {
   /// A ring can stay open by a bridge of a fraction of a millimetre where its end meets its start: tissue that hangs there is pushed
   /// aside. A tenth of a millimetre farther out or in, it is cut through. So it is with a place that is a hair too shallow.
   void mend_by_moving() {
-    double move_mm = settings_.more_move_mm;
-    for (int k = 0; k < settings_.more_simulations && is_to_be_mended(); ++k, move_mm = -move_mm) {
+    for (int k = 0; k < settings_.more_simulations && is_to_be_mended(); ++k) {
+      const double move_mm = settings_.more_move_mm * (k / 2 + 1) * (k % 2 == 0 ? 1.0 : -1.0);  // out, in, farther out, farther in
       std::vector<double> offset = passes_[nearest_].offset_mm;
       for (double& o : offset) o += move_mm;
       const MovablePath::Moved moved = movable_.at(offset);

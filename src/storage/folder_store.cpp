@@ -35,7 +35,7 @@ struct ProductInfo {
 
 // What is only held against a cut that was made (see FolderStore::judgement_key) makes no cut anew.
 const ProductInfo& info(Product product) {
-  static const std::array<ProductInfo, 12> kInfo{{
+  static const std::array<ProductInfo, kProductCount> kInfo{{
       {"labels", {"ct."}},
       {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}, {"plan.power_w", "plan.speed_mm_s", "plan.close_margin_mm"}},
       {"stretched", {"specimen."}},
@@ -46,6 +46,8 @@ const ProductInfo& info(Product product) {
       {"pass_3", {}},
       {"pass_4", {}},
       {"pass_5", {}},
+      {"pass_6", {}},
+      {"pass_7", {}},
       {"correction", {}},
       {"corrected", {}},
   }};
@@ -354,6 +356,7 @@ TetMesh deformed_mesh(const TissueModel& model, const TissueState& state) {
 std::optional<ToolPath> FolderStore::load_plan() {
   if (!is_current(Product::Plan)) return std::nullopt;
   return of_earlier_run(folder(Product::Plan), [&]() -> std::optional<ToolPath> {
+    require_path_unchanged(folder(Product::Plan) / "path.json");
     return read_tool_path(folder(Product::Plan) / "path.json");
   });
 }

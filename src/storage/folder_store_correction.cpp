@@ -19,7 +19,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kPasses{Product::Pass1, Product::Pass2, Product::Pass3, Product::Pass4, Product::Pass5};
+constexpr std::array kPasses{Product::Pass1, Product::Pass2, Product::Pass3, Product::Pass4, Product::Pass5, Product::Pass6, Product::Pass7};
 
 std::optional<double> number_or_nothing(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
@@ -106,6 +106,7 @@ std::optional<Correction> FolderStore::load_correction() {
     correction.method = json.at("method") == to_string(CompensationMethod::Paper) ? CompensationMethod::Paper
                                                                                   : CompensationMethod::Default;
     Compensation& moves = correction.moves;
+    require_path_unchanged(folder(Product::Correction) / "path.json");
     moves.path = read_tool_path(folder(Product::Correction) / "path.json");
     moves.error_mm = json.at("error_mm").get<std::vector<double>>();
     moves.move_mm = json.at("move_mm").get<std::vector<double>>();

@@ -127,7 +127,8 @@ class ForeignFilesTest(CommandTest):
             self.assert_untouched()
             (self.out / name).unlink()
         (self.out / "study.json").unlink(missing_ok=True)
-        for name in ("study.json", "report.html"):
+        for name in ("study.json", "report.html", "manifest.json"):
+            (self.out / name).unlink(missing_ok=True)
             (self.out / name).symlink_to(self.elsewhere / "thesis.txt")
             self.assert_refused(self.incise("plan", "case", "-o", "out"), BAD_DATA, name, "found a link")
             self.assert_untouched()
@@ -144,7 +145,8 @@ class ForeignFilesTest(CommandTest):
 
     def test_files_of_the_same_names(self):
         self.out.mkdir()
-        for name, text in (("study.json", '{"by": "me"}'), ("report.html", "<html>my thesis</html>")):
+        for name, text in (("study.json", '{"by": "me"}'), ("report.html", "<html>my thesis</html>"),
+                           ("manifest.json", '{"name": "my web app"}'), ("manifest.json", "{")):
             (self.out / name).write_text(text)
             self.assert_refused(self.incise("plan", "case", "-o", "out"), BAD_DATA, name, "another origin")
             self.assertEqual((self.out / name).read_text(), text)

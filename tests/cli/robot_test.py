@@ -107,6 +107,15 @@ class ExportTest(RobotTest):
         self.assertIn("# incise.override: depth: 1 mm at waypoint", text)
         self.assertIn("# incise.override: speed_max: ", text)
 
+    def test_a_mark_cannot_be_made_a_cut_by_overrides(self):
+        path = self.write(ring(kind="mark"))
+        for name in ("depth", "speed_max", "edge_distance"):
+            self.assert_refused(self.incise("export", path, "--override", name, "-o", "cut.script"), BAD_CASE, "--override", f"'{name}' for a mark")
+        self.assert_nothing_written(self.folder / "cut.script")
+
+    def test_a_power_that_no_generator_has_is_refused(self):
+        self.assert_refused(self.incise("export", self.write(ring()), "--power-w", "1e308", "-o", "cut.script"), BAD_CASE, "--power-w")
+
     def test_an_override_that_is_no_check_or_may_not_be_is_refused(self):
         path = self.write(ring())
         self.assert_refused(self.incise("export", path, "--override", "depht", "-o", "cut.script"), BAD_CASE, "--override", "'depht'", "Did you mean 'depth'?")

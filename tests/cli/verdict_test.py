@@ -114,6 +114,20 @@ class VerdictTest(CommandTest):
         (self.folder / "broken.json").write_text(json.dumps(document))
         self.assert_refused(self.incise("export", "broken.json", "-o", self.folder / "broken.script"), BAD_DATA, "broken.json", "/reasons/0")
 
+    def test_a_stored_plan_that_was_edited_is_not_the_one_that_was_cut(self):
+        small_case.write_case(self.folder / "case")
+        self.incise("run", "case", "-o", "out")
+        file = self.folder / "out" / "plan" / "path.json"
+        sound = file.read_text()
+        path = json.loads(sound)
+        for waypoint in path["waypoints"]:
+            waypoint["depth_mm"] = 5.4
+        file.write_text(json.dumps(path))
+        self.assert_refused(self.incise("run", "case", "-o", "out"), BAD_DATA, "plan/path.json", "that of another path")
+        file.write_text(sound)
+        again = self.json_of("run", "case", "-o", "out", status=NOT_ACCEPTABLE)
+        self.assertEqual({stage["state"] for stage in again["stages"]} - {"skipped"}, {"reused"})
+
     def test_accept_names_a_caution(self):
         self.write()
         for verb, where in (("run", "case"), ("export", "path.json")):

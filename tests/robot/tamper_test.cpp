@@ -93,6 +93,7 @@ ProgramHeader provenance() {
           {"made_from", "path.json"},
           {"title", "A ring"},
           {"verdict", "caution"},
+          {"reason", "caution: depth: shallow at one place"},
           {"accepted", "depth"}};
 }
 
@@ -202,6 +203,34 @@ TEST(Tamper, AnOverrideOfTheMarginIsNoneToReplay) {
   ASSERT_FALSE(checks.may_be_written());
   for (ProgramCheck& check : checks.checks) check.is_overridden = !check.passed;  // as an edited header would have it
   EXPECT_NE(ending_of(to_urscript(program, program_header(program, close, checks))), "completed");
+}
+
+/// A header that does not say what its program was made with leaves nothing to check again: the digest alone makes no checked program.
+TEST(Tamper, AProgramThatCannotBeMadeAgainIsNotChecked) {
+  Lines lines(script_of());
+  lines.all.erase(std::find_if(lines.all.begin(), lines.all.end(), [](const std::string& l) { return l.find("setting: dwell_s") != std::string::npos; }));
+  const WrittenProgram written = program_from_text(sealed_again(lines.text()), "a.script");
+  const ProgramAudit audit = audit_program(written);
+  EXPECT_EQ(audit.digest, ProgramDigest::Matches);
+  EXPECT_FALSE(audit.is_checked());
+}
+
+/// The verdict's lines are held against the gate, whoever made the digest again.
+TEST(Tamper, TheLinesOfTheVerdictAreHeldAgainstTheGate) {
+  const auto audited = [](std::initializer_list<const char*> more) {
+    Lines lines(script_of());
+    std::erase_if(lines.all, [](const std::string& l) { return l.starts_with("# incise.verdict") || l.starts_with("# incise.reason") || l.starts_with("# incise.accepted"); });
+    for (const char* line : more) lines.all.insert(lines.all.begin() + 1, std::string("# incise.") + line);
+    return audit_program(program_from_text(sealed_again(lines.text()), "a.script"));
+  };
+  EXPECT_TRUE(audited({"verdict: ok"}).is_checked());
+  EXPECT_TRUE(audited({"verdict: caution", "reason: caution: depth: shallow", "accepted: depth"}).is_checked());
+  EXPECT_FALSE(audited({"verdict: refused", "reason: refused: open_layer: open"}).is_checked());
+  EXPECT_FALSE(audited({"verdict: refused"}).is_checked());
+  EXPECT_FALSE(audited({"verdict: ok", "reason: caution: depth: shallow", "accepted: depth"}).is_checked());
+  EXPECT_FALSE(audited({"verdict: caution", "reason: caution: depth: shallow"}).is_checked()) << "nobody accepted it";
+  EXPECT_FALSE(audited({"verdict: ok", "verdict: ok"}).is_checked());
+  EXPECT_FALSE(audited({"accepted: depth"}).is_checked());
 }
 
 constexpr const char* kPhases[]{"approach", "plunge", "cut", "overlap", "exit", "retreat"};

@@ -12,6 +12,9 @@ namespace incise {
 /// @returns whether a text may be one: 1 to 64 of letters, digits, '.', '_' and '-', not beginning with '-'.
 [[nodiscard]] bool is_specimen_id(std::string_view text);
 
+/// Whether a manifest.json is one that incise wrote: an object with `version`, `commit` and `instruction_set`. Another program's may have the same name.
+[[nodiscard]] bool is_own_manifest(const std::filesystem::path& file);
+
 /// The id that a file carries: JSON its key `specimen_id`, PLY a comment, a robot program its header; any other file, and those that
 /// carry none, that of the manifest which lists them, in their folder or beside them. A folder: that of its manifest. Empty: not stated.
 /// @throws DataError for an id that is none, or JSON that is none.

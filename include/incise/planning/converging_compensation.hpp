@@ -45,8 +45,8 @@ struct SafeRegion {
 struct ConvergenceSettings {
   SafeRegion region;
   int simulations = 4;         ///< at most, the first (as intended) and the verifying one counted, >= 2
-  int more_simulations = 0;    ///< beyond these, at most, while the nearest pass has an open layer or a verdict against it: it is moved by more_move_mm, out and in
-  double more_move_mm = 0.1;   ///< of each waypoint, > 0: enough for other tissue to hang on at the seam, far less than the electrode's radius
+  int more_simulations = 0;    ///< beyond these, at most, while the nearest pass has an open layer or a verdict against it: it is moved by more_move_mm, out and in, then by twice that
+  double more_move_mm = 0.1;   ///< of each waypoint, at first, > 0: enough for other tissue to hang on at the seam, far less than the electrode's radius
   double floor_mm = 0.0;       ///< mean |error| that the mesh leaves in tissue that does not move, >= 0
   double tolerance_mm = 0.05;  ///< converged: mean |error| within this of the floor, > 0
   double smoothing_mm = 1.5;   ///< errors are averaged along the path with a Gaussian of this standard deviation, > 0

@@ -21,11 +21,13 @@ struct RunContext {
 };
 
 /// The products of a study and the folders that hold them.
-enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Pass1, Pass2, Pass3, Pass4, Pass5, Correction, Corrected };
+enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Pass1, Pass2, Pass3, Pass4, Pass5, Pass6, Pass7, Correction, Corrected };
+inline constexpr std::size_t kProductCount = static_cast<std::size_t>(Product::Corrected) + 1;
 
 /// The product that the cut of a role is.
 [[nodiscard]] constexpr Product product_of(CutRole role) {
-  constexpr std::array kProducts{Product::AsPlanned, Product::Pass1, Product::Pass2, Product::Pass3, Product::Pass4, Product::Pass5, Product::Corrected};
+  constexpr std::array kProducts{Product::AsPlanned, Product::Pass1, Product::Pass2, Product::Pass3, Product::Pass4, Product::Pass5,
+                                 Product::Pass6,     Product::Pass7, Product::Corrected};
   return kProducts[static_cast<std::size_t>(role)];
 }
 
@@ -126,7 +128,7 @@ class FolderStore : public Store {
   std::chrono::duration<double> checkpoint_period_;
   std::chrono::steady_clock::time_point last_kept_ = std::chrono::steady_clock::now();
   std::filesystem::path last_checkpoint_;
-  std::array<std::string, 12> keys_;                     ///< empty: not computed yet
+  std::array<std::string, kProductCount> keys_;          ///< empty: not computed yet
   std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
 };
 
