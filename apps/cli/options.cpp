@@ -1,4 +1,5 @@
 #include "options.hpp"
+
 #include "option_checks.hpp"
 
 #include <incise/core/error.hpp>

@@ -37,8 +37,10 @@ void require_own_files(const std::filesystem::path& output) {
   for (const char* name : {"study.json", "report.html", "manifest.json"}) {
     if (std::filesystem::is_symlink(output / name)) refuse_foreign(output / name, "a link");
   }
-  const std::filesystem::path record = output / "study.json", report = output / "report.html", manifest = output / "manifest.json";
-  if (std::filesystem::exists(manifest) && !is_own_manifest(manifest)) refuse_foreign(manifest, "a file of another origin");
+  const std::filesystem::path record = output / "study.json", report = output / "report.html",
+                              manifest = output / "manifest.json";
+  if (std::filesystem::exists(manifest) && !is_own_manifest(manifest))
+    refuse_foreign(manifest, "a file of another origin");
   if (std::filesystem::exists(record)) {
     const nlohmann::ordered_json json = read_json(record);
     if (!json.is_object() || !json.contains("case_file")) refuse_foreign(record, "a file of another origin");

@@ -114,7 +114,8 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
       subjects[i].store = stores.back().get();
       specimen_ids.push_back(stores.back()->specimen_id());
       require_same_specimen(arguments.observed[i], specimen_ids.back(), "its case's");
-      if (!arguments.registrations.empty()) require_same_specimen(arguments.registrations[i], specimen_ids.back(), "its case's");
+      if (!arguments.registrations.empty())
+        require_same_specimen(arguments.registrations[i], specimen_ids.back(), "its case's");
     }
     RunFolder runs(output / "runs", keys);
     const Calibration calibration = calibrate(subjects, arguments.request, runs, workers, console);

@@ -147,8 +147,8 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
           [&options](const std::string& name) {
             options.method = name == "paper" ? CompensationMethod::Paper : CompensationMethod::Default;
           },
-          "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (6 where the nearest ring stays open); paper: each waypoint "
-          "moves once by the error "
+          "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 where something is "
+          "held against the nearest); paper: each waypoint moves once by the error "
           "measured there. In place of the case's compensation.method")
       ->check(CLI::IsMember({"default", "paper"}));
 }

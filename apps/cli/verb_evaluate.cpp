@@ -233,6 +233,14 @@ Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings
   return result;
 }
 
+/// @throws CaseError where the option says another specimen than the files.
+std::string specimen_of(const EvaluateArguments& arguments, const std::vector<std::filesystem::path>& inputs) {
+  std::string stated = common_specimen_id(inputs);
+  if (arguments.specimen_id.empty()) return stated;
+  if (!are_of_different_specimens(arguments.specimen_id, stated)) return arguments.specimen_id;
+  throw CaseError("command line", "--specimen-id", arguments.specimen_id, stated + ", which the files state");
+}
+
 }  // namespace
 
 void add_evaluate(Application& application) {
@@ -247,10 +255,9 @@ void add_evaluate(Application& application) {
                              refuse_input_as_output("-o", options.output, inputs);
                              refuse_input_as_output("--figure", arguments->figure, inputs);
                              const EvaluationSettings settings = settings_of(*arguments);
-                             std::string specimen_id = common_specimen_id(inputs);
-                             if (!arguments->specimen_id.empty()) specimen_id = arguments->specimen_id;
+                             const std::string specimen_id = specimen_of(*arguments, inputs);
                              Measured result = arguments->photo.empty() ? from_files(*arguments, settings)
-                                                                              : from_photo(*arguments, settings);
+                                                                        : from_photo(*arguments, settings);
                              if (!specimen_id.empty()) result.json["specimen_id"] = specimen_id;
                              if (!options.output.empty()) write_json(options.output, result.json);
                              Console console(options.level());
@@ -262,8 +269,13 @@ void add_evaluate(Application& application) {
                            });
   verb->add_option("photo", arguments->photo,
                    "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
-  verb->add_option("--specimen-id", arguments->specimen_id, "Whose cut it is, as its case says: calibrate refuses another specimen's")
-      ->check(CLI::Validator([](const std::string& text) { return is_specimen_id(text) ? std::string() : "1 to 64 letters, digits, '.', '_' and '-'"; }, "ID"));
+  verb->add_option("--specimen-id", arguments->specimen_id,
+                   "Whose cut it is, as its case says: calibrate refuses another specimen's")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            return is_specimen_id(text) ? std::string() : std::string(kSpecimenIdForm);
+          },
+          "ID"));
   verb->add_option("--incision", arguments->incision, "The incision: .csv (x_mm,y_mm,z_mm), .vtp or .mrk.json");
   verb->add_option("--tumor", arguments->tumor, "The tumour edge, same formats and frame");
   verb->add_option(

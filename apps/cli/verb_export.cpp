@@ -1,6 +1,6 @@
-#include "verdict_gate.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
+#include "verdict_gate.hpp"
 
 #include <incise/core/problem_text.hpp>
 #include <incise/core/units.hpp>
@@ -8,13 +8,13 @@
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/cutting/path_heat.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/nearest_name.hpp>
 #include <incise/io/path_io.hpp>
-#include <incise/io/input_file.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/registration_json.hpp>
 
@@ -100,9 +100,13 @@ void require_clouds_unchanged(const std::filesystem::path& file, Console& consol
   for (const RegistrationInput& cloud : read_registration(file).inputs) {
     std::error_code absent;
     if (!std::filesystem::exists(cloud.path, absent)) {
-      console.message(Severity::Warning, fmt::format("not checked: whether {}, which {} was made from, is still what it was; it is not there", cloud.path, file.string()));
+      console.message(
+          Severity::Warning,
+          fmt::format("not checked: whether {}, which {} was made from, is still what it was; it is not there",
+                      cloud.path, file.string()));
     } else if (sha256_of_input(cloud.path) != cloud.sha256) {
-      throw DataError(file, cloud.key, fmt::format("that of another {}", cloud.path), "the digest of the cloud as it is now", "It was changed since: register again");
+      throw DataError(file, cloud.key, fmt::format("that of another {}", cloud.path),
+                      "the digest of the cloud as it is now", "It was changed since: register again");
     }
   }
 }
@@ -114,19 +118,21 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   return path;
 }
 
-/// Of the simulated cut that verifies the path; a mark of the tumour's edge cuts nothing. What was refused as a cut is not written as a
-/// mark either.
+/// Of the simulated cut that verifies the path; a mark of the tumour's edge cuts nothing. What was refused as a cut is
+/// not written as a mark either.
 Verdict verdict_of(const ExportArguments& arguments) {
   Verdict verdict = read_path_verdict(arguments.path);
   const bool is_asked_as_mark = arguments.kind == "mark" && verdict.status() != VerdictStatus::Refused;
   return is_asked_as_mark ? Verdict() : verdict;
 }
 
-/// What makes a mark one: it follows the edge, hardly scratches it, and slowly. Without these it is a cut without a verdict.
+/// What makes a mark one: it follows the edge, hardly scratches it, and slowly. Without these it is a cut without a
+/// verdict.
 void require_a_mark(const std::vector<std::string>& overrides) {
   for (const std::string& name : overrides) {
     if (name != "depth" && name != "speed_max" && name != "edge_distance") continue;
-    throw CaseError("command line", "--override", fmt::format("'{}' for a mark", name), "another check: without this one it is no mark of the tumour's edge");
+    throw CaseError("command line", "--override", fmt::format("'{}' for a mark", name),
+                    "another check: without this one it is no mark of the tumour's edge");
   }
 }
 

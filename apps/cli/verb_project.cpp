@@ -4,14 +4,14 @@
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
 #include <incise/io/input_file.hpp>
+#include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
+#include <incise/io/verdict_json.hpp>
 #include <incise/planning/project_path.hpp>
 #include <incise/robot/checks.hpp>
 #include <incise/storage/registration_json.hpp>
@@ -154,9 +154,11 @@ ProjectSettings settings_of(const ProjectArguments& arguments) {
   return settings;
 }
 
-ToolPath simulated_path(const std::filesystem::path& file, const std::filesystem::path& registration, const std::filesystem::path& surface, PathKind kind) {
+ToolPath simulated_path(const std::filesystem::path& file, const std::filesystem::path& registration,
+                        const std::filesystem::path& surface, PathKind kind) {
   ToolPath path = read_tool_path(file);
-  for (const std::filesystem::path& other : {registration, surface}) require_same_specimen(other, path.specimen_id, "the path's");
+  for (const std::filesystem::path& other : {registration, surface})
+    require_same_specimen(other, path.specimen_id, "the path's");
   if (path.frame != PathFrame::SimStretched) {
     throw DataError(file, "frame", std::string(to_string(path.frame)), "sim_stretched",
                     "The camera sees the stretched tissue: only a path on it can be laid down.");

@@ -1,9 +1,9 @@
 #include "cloud_input.hpp"
 #include "option_checks.hpp"
 
-#include <incise/io/input_file.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/camera_scale.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>

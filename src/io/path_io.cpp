@@ -83,7 +83,7 @@ ToolPath read_path(const JsonValue& root) {
   if (const auto hash = root.find("source_sha256")) path.source_sha256 = read_hash(*hash);
   if (const auto id = root.find("specimen_id")) {
     path.specimen_id = id->text();
-    if (!is_specimen_id(path.specimen_id)) id->expected("1 to 64 letters, digits, '.', '_' and '-'");
+    if (!is_specimen_id(path.specimen_id)) id->expected(std::string(kSpecimenIdForm));
   }
   return path;
 }
@@ -188,7 +188,8 @@ void require_path_unchanged(const std::filesystem::path& file) {
   const std::optional<JsonValue> place = root.find(kVerdict);
   if (!place) return;
   const std::string digest = digest_of(read_path(root), verdict_from_json(document.at(kVerdict), file));
-  if (place->at(kDigest).text() != digest) throw DataError(file, "/verdict/digest_sha256", "that of another path", digest + ", that of the path in this file");
+  if (place->at(kDigest).text() != digest)
+    throw DataError(file, "/verdict/digest_sha256", "that of another path", digest + ", that of the path in this file");
 }
 
 }  // namespace incise

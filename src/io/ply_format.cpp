@@ -367,7 +367,8 @@ void write_ply(const std::filesystem::path& path, const TriMesh& surface, std::s
   write_ply_with(id_comment(specimen_id), path, surface);
 }
 
-void write_ply_at_true_size(const std::filesystem::path& path, const TriMesh& cloud, double camera_scale, std::string_view specimen_id) {
+void write_ply_at_true_size(const std::filesystem::path& path, const TriMesh& cloud, double camera_scale,
+                            std::string_view specimen_id) {
   INCISE_REQUIRE(camera_scale >= kLeastCameraScale && camera_scale <= kMostCameraScale,
                  fmt::format("expected a camera's scale from {} to {}, found {}", kLeastCameraScale, kMostCameraScale,
                              camera_scale));

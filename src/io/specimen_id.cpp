@@ -21,7 +21,7 @@ constexpr const char* kKey = "specimen_id";
 
 std::string checked(const std::string& id, const fs::path& file) {
   if (id.empty() || is_specimen_id(id)) return id;
-  throw DataError(file, kKey, fmt::format("'{}'", id.substr(0, kLongest)), "1 to 64 letters, digits, '.', '_' and '-'");
+  throw DataError(file, kKey, fmt::format("'{}'", id.substr(0, kLongest)), std::string(kSpecimenIdForm));
 }
 
 std::string id_in_json(const fs::path& file) {
@@ -47,7 +47,9 @@ std::string id_in_header(const fs::path& file, std::string_view mark) {
 nlohmann::ordered_json manifest_or_nothing(const fs::path& file) {
   try {
     nlohmann::ordered_json document = read_json(file);
-    if (document.is_object() && document.contains("version") && document.contains("commit") && document.contains("instruction_set")) return document;
+    if (document.is_object() && document.contains("version") && document.contains("commit") &&
+        document.contains("instruction_set"))
+      return document;
   } catch (const DataError&) {
   }
   return nullptr;
@@ -57,7 +59,9 @@ bool lists(const fs::path& manifest, const std::string& name) {
   const nlohmann::ordered_json document = manifest_or_nothing(manifest);
   if (document.is_null() || !document.contains("files") || !document.at("files").is_array()) return false;
   const auto& files = document.at("files");
-  return std::any_of(files.begin(), files.end(), [&name](const auto& entry) { return entry.is_string() && entry.template get<std::string>() == name; });
+  return std::any_of(files.begin(), files.end(), [&name](const auto& entry) {
+    return entry.is_string() && entry.template get<std::string>() == name;
+  });
 }
 
 std::string id_in_manifest(const fs::path& file) {
@@ -84,14 +88,17 @@ bool is_own_manifest(const fs::path& file) {
 
 bool is_specimen_id(std::string_view text) {
   const auto may_stand = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+           c == '-';
   };
-  return !text.empty() && text.size() <= kLongest && text.front() != '-' && std::all_of(text.begin(), text.end(), may_stand);
+  return !text.empty() && text.size() <= kLongest && text.front() != '-' &&
+         std::all_of(text.begin(), text.end(), may_stand);
 }
 
 std::string specimen_id_of(const fs::path& path) {
   if (path.empty() || !fs::exists(path)) return "";
-  if (fs::is_directory(path)) return !manifest_or_nothing(path / "manifest.json").is_null() ? id_in_json(path / "manifest.json") : "";
+  if (fs::is_directory(path))
+    return !manifest_or_nothing(path / "manifest.json").is_null() ? id_in_json(path / "manifest.json") : "";
   if (!fs::is_regular_file(path)) return "";
   const std::string ending = io_detail::lower_case(path.extension().string());
   std::string id;
@@ -103,7 +110,9 @@ std::string specimen_id_of(const fs::path& path) {
 
 bool are_of_different_specimens(std::string_view one, std::string_view other) {
   if (one.empty() || other.empty() || one == other) return false;
-  const auto is_scan_and_mesh = [](std::string_view a, std::string_view b) { return a.starts_with("ct-") && b.starts_with("mesh-"); };
+  const auto is_scan_and_mesh = [](std::string_view a, std::string_view b) {
+    return a.starts_with("ct-") && b.starts_with("mesh-");
+  };
   return !is_scan_and_mesh(one, other) && !is_scan_and_mesh(other, one);
 }
 

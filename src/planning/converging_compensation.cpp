@@ -55,11 +55,13 @@ class ConvergingIteration {
     return greatest;
   }
 
-  /// A ring can stay open by a bridge of a fraction of a millimetre where its end meets its start: tissue that hangs there is pushed
-  /// aside. A tenth of a millimetre farther out or in, it is cut through. So it is with a place that is a hair too shallow.
+  /// A ring can stay open by a bridge of a fraction of a millimetre where its end meets its start: tissue that hangs
+  /// there is pushed aside. A tenth of a millimetre farther out or in, it is cut through. So it is with a place that is
+  /// a hair too shallow.
   void mend_by_moving() {
     for (int k = 0; k < settings_.more_simulations && is_to_be_mended(); ++k) {
-      const double move_mm = settings_.more_move_mm * (k / 2 + 1) * (k % 2 == 0 ? 1.0 : -1.0);  // out, in, farther out, farther in
+      const double move_mm =
+          settings_.more_move_mm * (k / 2 + 1) * (k % 2 == 0 ? 1.0 : -1.0);  // out, in, farther out, farther in
       std::vector<double> offset = passes_[nearest_].offset_mm;
       for (double& o : offset) o += move_mm;
       const MovablePath::Moved moved = movable_.at(offset);
@@ -131,8 +133,9 @@ class ConvergingIteration {
   /// Nothing is held against its cut that another course may mend.
   static bool is_sound(const CompensationPass& pass) { return pass.is_success && pass.verdict == VerdictStatus::Ok; }
 
-  /// No sound pass is as near as the nearest one within the tolerance, and that one is near enough to be accepted. Where nothing better
-  /// than it is known, it has to lack little: what is open or shallow all round stays so a tenth of a millimetre away.
+  /// No sound pass is as near as the nearest one within the tolerance, and that one is near enough to be accepted.
+  /// Where nothing better than it is known, it has to lack little: what is open or shallow all round stays so a tenth
+  /// of a millimetre away.
   [[nodiscard]] bool is_to_be_mended() const {
     const CompensationPass& best = passes_[best_];
     const CompensationPass& nearest = passes_[nearest_];

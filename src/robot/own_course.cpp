@@ -235,8 +235,8 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
 
 bool is_overridden(const ProgramHeader& header, const std::string& check) {
   return can_be_overridden(check) && std::any_of(header.begin(), header.end(), [&check](const auto& entry) {
-    return entry.first == "override" && entry.second.starts_with(check + ":");
-  });
+           return entry.first == "override" && entry.second.starts_with(check + ":");
+         });
 }
 
 void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel& arm) {

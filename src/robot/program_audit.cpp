@@ -76,7 +76,8 @@ class Auditor {
     hold_verdict();
     if (!program_.path || !program_.record || !is_sane(*program_.record, *program_.path)) {
       audit_.not_recomputed.emplace_back("all: the header does not say what the program was made with");
-      if (audit_.digest != ProgramDigest::Absent) contradict("the header does not say what the program was made with: nothing could be checked again");
+      if (audit_.digest != ProgramDigest::Absent)
+        contradict("the header does not say what the program was made with: nothing could be checked again");
       return std::move(audit_);
     }
     list_moved_limits();
@@ -121,8 +122,8 @@ class Auditor {
     }
   }
 
-  /// The lines on the simulated cut against the gate: one verdict, as bad as its worst reason, none refused, each caution accepted. A
-  /// program may have none of them: what the library writes from a path alone knows of no cut.
+  /// The lines on the simulated cut against the gate: one verdict, as bad as its worst reason, none refused, each
+  /// caution accepted. A program may have none of them: what the library writes from a path alone knows of no cut.
   void hold_verdict() {
     std::vector<std::string> verdicts, accepted;
     for (const auto& [key, value] : program_.header) {
@@ -133,15 +134,20 @@ class Auditor {
     for (const auto& [key, value] : program_.header) {
       if (key != "reason") continue;
       const std::string severity = value.substr(0, value.find(": "));
-      const std::string id = severity.size() + 2 <= value.size() ? value.substr(severity.size() + 2, value.find(": ", severity.size() + 2) - severity.size() - 2) : "";
+      const std::string id =
+          severity.size() + 2 <= value.size()
+              ? value.substr(severity.size() + 2, value.find(": ", severity.size() + 2) - severity.size() - 2)
+              : "";
       if (severity == "refused" || worst == "ok") worst = severity;
       if (severity == "caution" && std::find(accepted.begin(), accepted.end(), id) == accepted.end())
         contradict(fmt::format("its caution '{}' was accepted by nobody", id));
     }
     if (verdicts.empty() && worst == "ok" && accepted.empty()) return;
     if (verdicts.size() != 1) return contradict(fmt::format("{} lines of a verdict, expected one", verdicts.size()));
-    if (verdicts.front() == "refused" || worst == "refused") return contradict("the simulated cut is refused: no program is written for it");
-    if (verdicts.front() != worst) contradict(fmt::format("its verdict is {}, that of its reasons {}", verdicts.front(), worst));
+    if (verdicts.front() == "refused" || worst == "refused")
+      return contradict("the simulated cut is refused: no program is written for it");
+    if (verdicts.front() != worst)
+      contradict(fmt::format("its verdict is {}, that of its reasons {}", verdicts.front(), worst));
   }
 
   void list_moved_limits() {

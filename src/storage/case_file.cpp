@@ -91,7 +91,8 @@ void require_consistent(const CaseFile& file, const std::string& name) {
     throw CaseError(name, group + "." + first.substr(0, colon), first.substr(colon + 8, comma - colon - 8), first.substr(comma + 11));
   };
   if (!c.specimen_id.empty() && !is_specimen_id(c.specimen_id))
-    throw CaseError(name, "specimen_id", fmt::format("'{}'", c.specimen_id), "1 to 64 letters, digits, '.', '_' and '-'");
+    throw CaseError(name, "specimen_id", fmt::format("'{}'", c.specimen_id),
+                    std::string(kSpecimenIdForm));
   refuse("ct", validate(c.segmentation), "a usable segmentation");
   refuse("specimen.material", validate(c.material), "a usable material");
   refuse("plan", validate(c.plan), "a usable plan");

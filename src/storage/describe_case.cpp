@@ -328,7 +328,9 @@ void describe_case(CaseFile& file, FieldVisitor& v) {
   std::size_t schema = 0;
   v.choice({"schema", "", "Format and version of this file."}, schema, kSchemas);
   v.text({"title", "", "Shown on the report."}, file.settings.title);
-  v.text({"specimen_id", "", "Name of the specimen, 1 to 64 letters, digits, '.', '_' and '-'; travels with every result. By default it follows from the scan or mesh."},
+  v.text({"specimen_id", "",
+          "Name of the specimen, 1 to 64 letters, digits, '.', '_' and '-'; travels with every result. By default it "
+          "follows from the scan or mesh."},
          file.settings.specimen_id);
   static constexpr std::array<const char*, 2> kOrigins{"real", "virtual"};
   std::size_t origin = file.settings.is_virtual ? 1 : 0;

@@ -37,7 +37,9 @@ struct ProductInfo {
 const ProductInfo& info(Product product) {
   static const std::array<ProductInfo, kProductCount> kInfo{{
       {"labels", {"ct."}},
-      {"mesh", {"meshing.", "specimen.", "tumor.", "plan."}, {"plan.power_w", "plan.speed_mm_s", "plan.close_margin_mm"}},
+      {"mesh",
+       {"meshing.", "specimen.", "tumor.", "plan."},
+       {"plan.power_w", "plan.speed_mm_s", "plan.close_margin_mm"}},
       {"stretched", {"specimen."}},
       {"plan", {"tumor.", "plan."}, {"plan.power_w", "plan.close_margin_mm"}},
       {"as_planned", {"plan.power_w", "tool.", "cut."}},

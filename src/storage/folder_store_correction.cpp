@@ -19,7 +19,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kPasses{Product::Pass1, Product::Pass2, Product::Pass3, Product::Pass4, Product::Pass5, Product::Pass6, Product::Pass7};
+constexpr std::array kPasses{Product::Pass1, Product::Pass2, Product::Pass3, Product::Pass4,
+                             Product::Pass5, Product::Pass6, Product::Pass7};
 
 std::optional<double> number_or_nothing(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());

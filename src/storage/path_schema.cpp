@@ -50,7 +50,9 @@ Json fields() {
   row["maxItems"] = 4;
   json["T_robot_sim"] = array_of(row, 4, "Rows of the rigid motion from the simulation's frame to the robot's, mm");
   json["T_robot_sim"]["maxItems"] = 4;
-  json["specimen_id"] = {{"type", "string"}, {"pattern", "^[A-Za-z0-9._][A-Za-z0-9._-]{0,63}$"}, {"description", "Specimen that the path was planned on"}};
+  json["specimen_id"] = {{"type", "string"},
+                         {"pattern", "^[A-Za-z0-9._][A-Za-z0-9._-]{0,63}$"},
+                         {"description", "Specimen that the path was planned on"}};
   json["source_sha256"] = {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}, {"description", "SHA-256 of what the path was made from"}};
   return json;
 }

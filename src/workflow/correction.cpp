@@ -72,10 +72,12 @@ double mean_shortfall_mm(const Case& settings, const SimulatedCut& cut) {
 
 /// The verdict on a cut, of what another course may mend. Heat is not: it follows from where the cut is meant to lie.
 VerdictStatus status_of_course(const Verdict& verdict) {
-  constexpr std::array<std::string_view, 6> kOfCourse{"outcome", "tumor_distance", "lateral_margin", "open_layer", "depth", "convergence"};
+  constexpr std::array<std::string_view, 6> kOfCourse{"outcome",    "tumor_distance", "lateral_margin",
+                                                      "open_layer", "depth",          "convergence"};
   VerdictStatus worst = VerdictStatus::Ok;
   for (const VerdictReason& reason : verdict.reasons()) {
-    if (std::find(kOfCourse.begin(), kOfCourse.end(), reason.id) != kOfCourse.end()) worst = std::max(worst, reason.severity);
+    if (std::find(kOfCourse.begin(), kOfCourse.end(), reason.id) != kOfCourse.end())
+      worst = std::max(worst, reason.severity);
   }
   return worst;
 }

@@ -113,6 +113,14 @@ class SpecimenIdTest(CommandTest):
         self.assert_other_specimen(self.incise("calibrate", case, "--observed", "cut.json", "-o", self.out), "cut.json")
         self.assert_refused(self.incise("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--specimen-id", "a b", "-o", "cut.json"), BAD_CASE, "--specimen-id")
 
+    def test_evaluate_takes_no_other_id_than_its_files_state(self):
+        for name, radius in (("cut", 8.6), ("edge", small_case.TUMOR_RADIUS_MM)):
+            small_case.write_contour(self.folder / f"{name}.csv", small_case.ring(radius=radius))
+        self.write("cut.manifest.json", {"specimen_id": OWN})
+        arguments = ("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--contour", "inner_edge", "--json", "--specimen-id")
+        self.assert_refused(self.incise(*arguments, OTHER), BAD_CASE, "--specimen-id", OTHER, OWN)
+        self.assertIn(f'"{OWN}"', self.incise(*arguments, OWN).stdout)
+
     def test_another_programs_manifest_is_none_of_ours(self):
         for name, radius in (("cut", 8.6), ("edge", small_case.TUMOR_RADIUS_MM)):
             small_case.write_contour(self.folder / f"{name}.csv", small_case.ring(radius=radius))

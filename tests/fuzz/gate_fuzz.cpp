@@ -34,8 +34,9 @@ struct Options {
 
 Options parse(int argc, char** argv) {
   Options options;
-  const std::map<std::string_view, int*> numbers{{"--runs", &options.runs},       {"--variants", &options.variants}, {"--sound", &options.sound},
-                                                 {"--tets", &options.tets},       {"--sound-tets", &options.sound_tets}, {"--threads", &options.threads}};
+  const std::map<std::string_view, int*> numbers{
+      {"--runs", &options.runs}, {"--variants", &options.variants},     {"--sound", &options.sound},
+      {"--tets", &options.tets}, {"--sound-tets", &options.sound_tets}, {"--threads", &options.threads}};
   for (int i = 1; i < argc; i += 2) {
     const std::string_view name = argv[i];
     INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a number after {}", name));
@@ -43,8 +44,12 @@ Options parse(int argc, char** argv) {
     long value = 0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     const auto found = numbers.find(name);
-    INCISE_REQUIRE(problem == std::errc() && end == text.data() + text.size() && value >= 0 && (name == "--seed" || found != numbers.end()),
-                   fmt::format("{} {}: expected --seed, --runs, --variants, --sound, --tets, --sound-tets or --threads and a whole number", name, text));
+    INCISE_REQUIRE(
+        problem == std::errc() && end == text.data() + text.size() && value >= 0 &&
+            (name == "--seed" || found != numbers.end()),
+        fmt::format(
+            "{} {}: expected --seed, --runs, --variants, --sound, --tets, --sound-tets or --threads and a whole number",
+            name, text));
     if (name == "--seed") {
       options.seed = static_cast<std::uint64_t>(value);
     } else {
@@ -382,11 +387,13 @@ void try_sound_run(std::uint64_t seed, const Options& options, int variants, Wor
   if (verdict.status() == VerdictStatus::Ok) {
     ++tally.sound_ok;
   } else {
-    for (const VerdictReason& reason : verdict.reasons()) fmt::print("{} is {}: {}: {}\n", where, to_string(verdict.status()), reason.id, reason.message);
+    for (const VerdictReason& reason : verdict.reasons())
+      fmt::print("{} is {}: {}: {}\n", where, to_string(verdict.status()), reason.id, reason.message);
     std::fflush(stdout);
   }
   const SimulatedCut& cut = *verifying_cut(done->study);
-  hold_to_oracle(where, verdict, oracle_mm(cut.incision.kerf.body.surface, done->tumor), done->settings.close_margin_mm, tally);
+  hold_to_oracle(where, verdict, oracle_mm(cut.incision.kerf.body.surface, done->tumor), done->settings.close_margin_mm,
+                 tally);
   try_variants(where, *done, variants, random, tally);
 }
 
@@ -405,7 +412,8 @@ int main(int argc, char** argv) {
       if (i % 10 == 9) fmt::print("{} broken runs, {} variants, {} failures\n", i + 1, tally.variants, tally.failures), std::fflush(stdout);
     }
     for (int i = 0; i < options.sound; ++i) {
-      try_sound_run(options.seed + static_cast<std::uint64_t>(i), options, options.variants / std::max(1, all_runs), workers, tally);
+      try_sound_run(options.seed + static_cast<std::uint64_t>(i), options, options.variants / std::max(1, all_runs),
+                    workers, tally);
       if (i % 10 == 9) fmt::print("{} sound runs, {} of {} sound cases ok\n", i + 1, tally.sound_ok, tally.sound), std::fflush(stdout);
     }
     fmt::print("{} broken runs, {} variants: {} ok, {} cautions, {} refused; {} nearer to the tumour than the close margin, each refused unless named above\n",

@@ -230,7 +230,8 @@ TEST_F(Converge, GoesOnFromANearRingThatStayedOpen) {
   EXPECT_TRUE(result.result().is_success);
 }
 
-/// The seam of a ring hangs on by a hair whatever the error says: a tenth of a millimetre farther out or in, it does not.
+/// The seam of a ring hangs on by a hair whatever the error says: a tenth of a millimetre farther out or in, it does
+/// not.
 TEST_F(Converge, MovesANearRingThatStaysOpenUntilItCloses) {
   const FakeTissue drifting{.drift_mm = [](double angle) { return -1.2 + 0.6 * std::cos(2.0 * angle); }, .gain = 0.7};
   int cuts = 0;
@@ -256,7 +257,8 @@ TEST_F(Converge, MovesANearRingThatStaysOpenUntilItCloses) {
   EXPECT_NEAR(moved_mm, 0.2, 1e-9) << "out, then in";
 }
 
-/// A pass 0.01 mm nearer whose kerf is a hair too shallow at one place loses to a sound one that is as near but for that.
+/// A pass 0.01 mm nearer whose kerf is a hair too shallow at one place loses to a sound one that is as near but for
+/// that.
 TEST_F(Converge, PrefersASoundPassToANearerOneThatTheVerdictIsAgainst) {
   const FakeTissue drifting{.drift_mm = [](double angle) { return -1.2 + 0.6 * std::cos(2.0 * angle); }, .gain = 0.7};
   for (const VerdictStatus status : {VerdictStatus::Caution, VerdictStatus::Refused}) {
@@ -266,15 +268,18 @@ TEST_F(Converge, PrefersASoundPassToANearerOneThatTheVerdictIsAgainst) {
       errors.verdict = cuts++ == 1 ? VerdictStatus::Ok : status;
       return errors;
     };
-    const ConvergedCompensation result = compensate_converging(path_, surface_, only_the_second_is_sound, {.tolerance_mm = 1e-6, .least_move_mm = 0.0});
+    const ConvergedCompensation result =
+        compensate_converging(path_, surface_, only_the_second_is_sound, {.tolerance_mm = 1e-6, .least_move_mm = 0.0});
     ASSERT_EQ(result.passes.size(), 4U);
-    EXPECT_LT(*result.passes[2].mean_abs_error_mm, *result.passes[1].mean_abs_error_mm) << "the error alone would choose another pass";
+    EXPECT_LT(*result.passes[2].mean_abs_error_mm, *result.passes[1].mean_abs_error_mm)
+        << "the error alone would choose another pass";
     EXPECT_EQ(result.best, 1U);
     EXPECT_EQ(result.passes[2].verdict, status);
   }
 }
 
-/// An error within the tolerance does not end the iteration while the verdict is against the cut: the ring is made again beside it.
+/// An error within the tolerance does not end the iteration while the verdict is against the cut: the ring is made
+/// again beside it.
 TEST_F(Converge, GoesOnWhileTheVerdictIsAgainstTheNearestPass) {
   const FakeTissue drifting{.drift_mm = [](double) { return -1.2; }};
   int cuts = 0;
@@ -293,7 +298,8 @@ TEST_F(Converge, GoesOnWhileTheVerdictIsAgainstTheNearestPass) {
   EXPECT_EQ(result.best, 2U);
 }
 
-/// Not even the planned ring closed: the nearest is mended all the same, unless it lacks so much that a tenth of a millimetre is no help.
+/// Not even the planned ring closed: the nearest is mended all the same, unless it lacks so much that a tenth of a
+/// millimetre is no help.
 TEST_F(Converge, MendsTheNearestRingWhereNoneCloses) {
   for (const int open : {1, 2}) {
     int cuts = 0;

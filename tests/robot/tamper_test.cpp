@@ -205,10 +205,12 @@ TEST(Tamper, AnOverrideOfTheMarginIsNoneToReplay) {
   EXPECT_NE(ending_of(to_urscript(program, program_header(program, close, checks))), "completed");
 }
 
-/// A header that does not say what its program was made with leaves nothing to check again: the digest alone makes no checked program.
+/// A header that does not say what its program was made with leaves nothing to check again: the digest alone makes no
+/// checked program.
 TEST(Tamper, AProgramThatCannotBeMadeAgainIsNotChecked) {
   Lines lines(script_of());
-  lines.all.erase(std::find_if(lines.all.begin(), lines.all.end(), [](const std::string& l) { return l.find("setting: dwell_s") != std::string::npos; }));
+  lines.all.erase(std::find_if(lines.all.begin(), lines.all.end(),
+                               [](const std::string& l) { return l.find("setting: dwell_s") != std::string::npos; }));
   const WrittenProgram written = program_from_text(sealed_again(lines.text()), "a.script");
   const ProgramAudit audit = audit_program(written);
   EXPECT_EQ(audit.digest, ProgramDigest::Matches);
@@ -219,7 +221,10 @@ TEST(Tamper, AProgramThatCannotBeMadeAgainIsNotChecked) {
 TEST(Tamper, TheLinesOfTheVerdictAreHeldAgainstTheGate) {
   const auto audited = [](std::initializer_list<const char*> more) {
     Lines lines(script_of());
-    std::erase_if(lines.all, [](const std::string& l) { return l.starts_with("# incise.verdict") || l.starts_with("# incise.reason") || l.starts_with("# incise.accepted"); });
+    std::erase_if(lines.all, [](const std::string& l) {
+      return l.starts_with("# incise.verdict") || l.starts_with("# incise.reason") ||
+             l.starts_with("# incise.accepted");
+    });
     for (const char* line : more) lines.all.insert(lines.all.begin() + 1, std::string("# incise.") + line);
     return audit_program(program_from_text(sealed_again(lines.text()), "a.script"));
   };

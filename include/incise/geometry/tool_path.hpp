@@ -37,7 +37,7 @@ struct ToolPath {
   Contour tumor_edge;                  ///< same frame; may be empty for an open cut
   std::optional<Mat4> T_robot_sim;     ///< once known; p_robot = T_robot_sim * p_sim, mm
   std::string source_sha256;           ///< of what it was made from; empty when unknown
-  std::string specimen_id = {};        ///< of the specimen that it was planned on (see io/specimen_id.hpp); empty: not stated
+  std::string specimen_id = {};  ///< of the specimen that it was planned on (see io/specimen_id.hpp); empty: not stated
 };
 
 /// The entry points as a contour.

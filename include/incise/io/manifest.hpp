@@ -30,7 +30,7 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   double wall_s = 0.0;
   std::string machine;  ///< see machine_description
-  std::string specimen_id = {};         ///< of the specimen that the folder's files are of (specimen_id.hpp); empty: of none, or of several
+  std::string specimen_id = {};  ///< whose the folder's files are (specimen_id.hpp); empty: nobody's, or several's
   std::optional<Verdict> verdict = {};  ///< of the run that filled the folder, where it has one
 };
 

@@ -50,7 +50,8 @@ void write_tool_path(const std::filesystem::path& file, const ToolPath& path, co
 /// verdict may be absent. @throws DataError as read_tool_path, and as verdict_from_json.
 [[nodiscard]] Verdict read_path_verdict(const std::filesystem::path& file);
 
-/// @throws DataError where the file holds a verdict and a digest that is not of this path and verdict: it was changed after it was written.
+/// @throws DataError where the file holds a verdict and a digest that is not of this path and verdict: it was changed
+/// after it was written.
 void require_path_unchanged(const std::filesystem::path& file);
 
 }  // namespace incise

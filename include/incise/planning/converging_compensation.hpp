@@ -22,7 +22,8 @@ struct PathErrors {
   /// Mean over the path of what the kerf lacks of the least depth that is accepted without a caution, mm, >= 0.
   double shortfall_mm = 0.0;
   int open_layers = 0;     ///< planned layers in which the ring stayed open, >= 0
-  /// The verdict on this cut, of what another course may mend: distance to the tumour, margin, layers, depth, a sound end of the simulation.
+  /// The verdict on this cut, of what another course may mend: distance to the tumour, margin, layers, depth, a sound
+  /// end of the simulation.
   VerdictStatus verdict = VerdictStatus::Ok;
 };
 
@@ -45,8 +46,10 @@ struct SafeRegion {
 struct ConvergenceSettings {
   SafeRegion region;
   int simulations = 4;         ///< at most, the first (as intended) and the verifying one counted, >= 2
-  int more_simulations = 0;    ///< beyond these, at most, while the nearest pass has an open layer or a verdict against it: it is moved by more_move_mm, out and in, then by twice that
-  double more_move_mm = 0.1;   ///< of each waypoint, at first, > 0: enough for other tissue to hang on at the seam, far less than the electrode's radius
+  int more_simulations = 0;    ///< beyond these, at most, while the nearest pass has an open layer or a verdict against
+                               ///< it: it is moved by more_move_mm, out and in, then by twice that
+  double more_move_mm = 0.1;   ///< of each waypoint, at first, > 0: enough for other tissue to hang on at the seam, far
+                               ///< less than the electrode's radius
   double floor_mm = 0.0;       ///< mean |error| that the mesh leaves in tissue that does not move, >= 0
   double tolerance_mm = 0.05;  ///< converged: mean |error| within this of the floor, > 0
   double smoothing_mm = 1.5;   ///< errors are averaged along the path with a Gaussian of this standard deviation, > 0
@@ -101,7 +104,8 @@ enum class CompensationOutcome {
 struct ConvergedCompensation {
   ToolPath path;                         ///< of the best pass
   std::vector<CompensationPass> passes;  ///< one per simulation, in order; the first: the intended path
-  std::size_t best = 0;  ///< of those that succeeded (if none did: that left the fewest layers open), of these of the best verdict, that of the least cost_mm
+  std::size_t best = 0;  ///< of those that succeeded (if none did: that left the fewest layers open), of these of the
+                         ///< best verdict, that of the least cost_mm
   CompensationOutcome outcome = CompensationOutcome::NoMeasure;
   /// Geometric mean, per pass, of what was left of the mean |error|, from the first to the best; absent without two.
   std::optional<double> contraction;

@@ -159,8 +159,8 @@ struct WaypointGap {
 [[nodiscard]] std::span<const char* const> check_names();
 
 /// Whether a person may take a failed check on them. Not `finite` and `frame`, whose program would be nonsense, not
-/// `reach`, without which there is no motion to write, and not `margin`: a cut that comes near the tumour is refused. Who plans a
-/// smaller margin says so by CheckLimits::close_margin_mm, which the program states.
+/// `reach`, without which there is no motion to write, and not `margin`: a cut that comes near the tumour is refused.
+/// Who plans a smaller margin says so by CheckLimits::close_margin_mm, which the program states.
 [[nodiscard]] bool can_be_overridden(const std::string& check);
 
 /// Marks failed checks of these names as overridden. @pre known names that can be overridden (InvalidArgument).

@@ -21,14 +21,29 @@ struct RunContext {
 };
 
 /// The products of a study and the folders that hold them.
-enum class Product { Labels, Mesh, Stretched, Plan, AsPlanned, Pass1, Pass2, Pass3, Pass4, Pass5, Pass6, Pass7, Correction, Corrected };
+enum class Product {
+  Labels,
+  Mesh,
+  Stretched,
+  Plan,
+  AsPlanned,
+  Pass1,
+  Pass2,
+  Pass3,
+  Pass4,
+  Pass5,
+  Pass6,
+  Pass7,
+  Correction,
+  Corrected
+};
 inline constexpr std::size_t kProductCount = static_cast<std::size_t>(Product::Corrected) + 1;
+static_assert(static_cast<int>(Product::Correction) - static_cast<int>(Product::AsPlanned) == 1 + kMostPasses);
 
 /// The product that the cut of a role is.
 [[nodiscard]] constexpr Product product_of(CutRole role) {
-  constexpr std::array kProducts{Product::AsPlanned, Product::Pass1, Product::Pass2, Product::Pass3, Product::Pass4, Product::Pass5,
-                                 Product::Pass6,     Product::Pass7, Product::Corrected};
-  return kProducts[static_cast<std::size_t>(role)];
+  if (role == CutRole::Corrected) return Product::Corrected;
+  return static_cast<Product>(static_cast<int>(Product::AsPlanned) + static_cast<int>(role));
 }
 
 /// A Store on a folder. Each product has a folder of its own, written under a temporary name and renamed when it is complete:

@@ -19,8 +19,8 @@ namespace incise {
 
 /// A cloud that a registration was made from.
 struct RegistrationInput {
-  std::string key;     ///< of its digest: source_sha256, target_sha256
-  std::string path;    ///< as `incise register` was given it
+  std::string key;   ///< of its digest: source_sha256, target_sha256
+  std::string path;  ///< as `incise register` was given it
   std::string sha256;
 };
 

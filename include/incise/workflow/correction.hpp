@@ -36,8 +36,8 @@ namespace incise {
 /// Simulates the cut of a pass (0: along the path as followed first).
 using CutOfPass = std::function<SimulatedCut(int pass, const ToolPath& path)>;
 
-/// Corrects pass by pass, with at most kUsualPasses cuts after the first, or kMostPasses where something is held against the nearest ring. @param floor_mm  see mesh_floor_mm; nothing: 0
-/// is aimed at.
+/// Corrects pass by pass, with at most kUsualPasses cuts after the first, or kMostPasses where something is held
+/// against the nearest ring. @param floor_mm  see mesh_floor_mm; nothing: 0 is aimed at.
 [[nodiscard]] Correction correct_converging(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
                                             const SurfaceQuery& surface, std::optional<double> floor_mm,
                                             const CutOfPass& cut, Monitor& monitor);

@@ -15,11 +15,13 @@ namespace incise {
 
 /// Which of the simulated cuts of a study: the first, those on the way to the correction, and the one that the correction ended with.
 enum class CutRole { AsPlanned, Pass1, Pass2, Pass3, Pass4, Pass5, Pass6, Pass7, Corrected };
-inline constexpr std::array kCutRoles{CutRole::AsPlanned, CutRole::Pass1, CutRole::Pass2, CutRole::Pass3, CutRole::Pass4, CutRole::Pass5,
-                                       CutRole::Pass6,     CutRole::Pass7, CutRole::Corrected};
+inline constexpr std::array kCutRoles{CutRole::AsPlanned, CutRole::Pass1, CutRole::Pass2,
+                                      CutRole::Pass3,     CutRole::Pass4, CutRole::Pass5,
+                                      CutRole::Pass6,     CutRole::Pass7, CutRole::Corrected};
 /// Most passes after the first cut; four more where something is held against the nearest ring.
 inline constexpr int kUsualPasses = 3;
 inline constexpr int kMostPasses = 7;
+static_assert(static_cast<int>(CutRole::Corrected) == 1 + kMostPasses);
 /// The cut of a pass: 0 is the one as planned. @pre 0 <= pass <= kMostPasses.
 [[nodiscard]] constexpr CutRole role_of_pass(int pass) { return static_cast<CutRole>(pass); }
 
