@@ -1,6 +1,7 @@
 #include "study_run.hpp"
 
 #include "compensation_figures.hpp"
+#include "own_files.hpp"
 #include "replay_files.hpp"
 #include "study_report.hpp"
 #include "verdict_gate.hpp"
@@ -27,26 +28,6 @@ namespace {
 
 constexpr int kMostFrames = 500;               // as in the case file
 constexpr double kLongestCheckpointS = 86400;  // a day
-
-[[noreturn]] void refuse_foreign(const std::filesystem::path& file, const char* found) {
-  throw DataError(file, "", found, "a free name, or what an earlier run wrote", "Move that file, or choose another place for the output");
-}
-
-/// The files that a run writes beside its folders of results: never through a link, never over what something else wrote.
-void require_own_files(const std::filesystem::path& output) {
-  for (const char* name : {"study.json", "report.html", "manifest.json"}) {
-    if (std::filesystem::is_symlink(output / name)) refuse_foreign(output / name, "a link");
-  }
-  const std::filesystem::path record = output / "study.json", report = output / "report.html",
-                              manifest = output / "manifest.json";
-  if (std::filesystem::exists(manifest) && !is_own_manifest(manifest))
-    refuse_foreign(manifest, "a file of another origin");
-  if (std::filesystem::exists(record)) {
-    const nlohmann::ordered_json json = read_json(record);
-    if (!json.is_object() || !json.contains("case_file")) refuse_foreign(record, "a file of another origin");
-  }
-  if (std::filesystem::exists(report) && read_text(report).find("name=\"generator\" content=\"incise\"") == std::string::npos) refuse_foreign(report, "a file of another origin");
-}
 
 /// Takes an output folder once the case is known to be sound, and refuses one whose own names belong to something else.
 CaseFile with_folder_locked(CaseFile file, const std::filesystem::path& output, std::optional<FolderLock>& lock) {

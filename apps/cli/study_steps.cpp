@@ -75,6 +75,15 @@ std::optional<StepRecord> kept_record(const std::filesystem::path& file, const E
   }
 }
 
+/// Files that a recorded run of the step left here, damaged since: a verb leaves alone what it does not know as
+/// incise's.
+void remove_own_products(const std::filesystem::path& record, const ExperimentStep& step) {
+  if (!std::filesystem::exists(record)) return;
+  for (const std::filesystem::path& product : step.products) {
+    if (std::filesystem::is_regular_file(std::filesystem::symlink_status(product))) std::filesystem::remove(product);
+  }
+}
+
 /// A step cannot tell a reading that it cannot use from a disk that is full; the experiment has to. A step that failed has
 /// given back what it wrote, so that there has to be room for all that it writes, wherever it writes.
 void require_room(const ExperimentStep& step, const std::filesystem::path& folder) {
@@ -126,6 +135,7 @@ StepRecord StepRunner::run(const ExperimentStep& step) {
   const StepJson identity = identity_of(step);
   StepRecord record;
   if (std::optional<StepRecord> kept = kept_record(file, step, identity)) return std::move(*kept);
+  remove_own_products(file, step);
   std::filesystem::remove(file);
   OwnProcess process{step.arguments, folder_ / "steps" / (step.name + ".out"), log_};
   for (const std::string& word : {std::string("--json"), std::string("--quiet"), std::string("--threads"), std::to_string(threads_)})

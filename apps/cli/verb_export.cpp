@@ -1,5 +1,7 @@
 #include "option_checks.hpp"
 #include "options.hpp"
+#include "own_files.hpp"
+#include "registration_trust.hpp"
 #include "verdict_gate.hpp"
 
 #include <incise/core/problem_text.hpp>
@@ -8,7 +10,6 @@
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/cutting/path_heat.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/input_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/nearest_name.hpp>
 #include <incise/io/path_io.hpp>
@@ -84,8 +85,7 @@ Mat4 tool_of(const std::vector<double>& tcp) {
 }
 
 /// The checks need more than the transform.
-RegistrationSummary registration_summary(const std::filesystem::path& file) {
-  const RegistrationRecord record = read_registration(file);
+RegistrationSummary registration_summary(const RegistrationRecord& record, const std::filesystem::path& file) {
   const auto require = [&](bool is_there, const char* key) {
     if (!is_there) throw DataError(file, key, "nothing", "what `incise register` writes");
   };
@@ -95,22 +95,6 @@ RegistrationSummary registration_summary(const std::filesystem::path& file) {
   return {record.scale * record.camera_scale, *record.rmse_mm, *record.inlier_fraction, *record.is_converged};
 }
 
-/// A registration is worth what its clouds were when it was made.
-void require_clouds_unchanged(const std::filesystem::path& file, Console& console) {
-  for (const RegistrationInput& cloud : read_registration(file).inputs) {
-    std::error_code absent;
-    if (!std::filesystem::exists(cloud.path, absent)) {
-      console.message(
-          Severity::Warning,
-          fmt::format("not checked: whether {}, which {} was made from, is still what it was; it is not there",
-                      cloud.path, file.string()));
-    } else if (sha256_of_input(cloud.path) != cloud.sha256) {
-      throw DataError(file, cloud.key, fmt::format("that of another {}", cloud.path),
-                      "the digest of the cloud as it is now", "It was changed since: register again");
-    }
-  }
-}
-
 ToolPath read_robot_path(const std::filesystem::path& file) {
   ToolPath path = read_tool_path(file);
   require_robot_frame(path, file);
@@ -118,12 +102,18 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   return path;
 }
 
-/// Of the simulated cut that verifies the path; a mark of the tumour's edge cuts nothing. What was refused as a cut is
-/// not written as a mark either.
-Verdict verdict_of(const ExportArguments& arguments) {
+/// Of the simulated cut that verifies the path, and of the registration. A mark of the tumour's edge cuts nothing: what
+/// speaks against its place remains. What was refused as a cut is not written as a mark either.
+Verdict verdict_of(const ExportArguments& arguments, const std::optional<RegistrationRecord>& registration) {
   Verdict verdict = read_path_verdict(arguments.path);
-  const bool is_asked_as_mark = arguments.kind == "mark" && verdict.status() != VerdictStatus::Refused;
-  return is_asked_as_mark ? Verdict() : verdict;
+  if (arguments.kind == "mark" && verdict.status() != VerdictStatus::Refused) {
+    Verdict of_place;
+    for (const VerdictReason& reason : verdict.reasons())
+      if (reason.id == "registration" || reason.id == "typed_transform") of_place.add(reason);
+    verdict = of_place;
+  }
+  if (registration) verdict.add(cli::verdict_of(*registration, arguments.registration));
+  return verdict;
 }
 
 /// What makes a mark one: it follows the edge, hardly scratches it, and slowly. Without these it is a cut without a
@@ -190,6 +180,8 @@ void warn_of_less(const ExportArguments& a, const CheckInputs& inputs, const Too
   looser(a.setup.table_z_mm < ArmSetup{}.table_z_mm, "--table-z-mm", a.setup.table_z_mm, ArmSetup{}.table_z_mm);
 }
 
+constexpr double kFarthestTableMm = 5000.0;  // beyond any arm's reach
+constexpr double kLeastToolMm = 0.1;         // thinner or shorter is no instrument
 constexpr double kMostPowerW = 400.0;  // no electrosurgical generator gives more (IEC 60601-2-2)
 
 /// With the constants of muscle that a case has by default: a path does not say what it is cut into.
@@ -232,12 +224,12 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   require_override_names(arguments.overrides);
   require_accepted_ids(arguments.accepted);
   require_ending(output, arguments.format);
+  require_own_program(output);
   if (arguments.format != "urscript" && arguments.motion_option->count() > 0) {
     throw CaseError("command line", "--motion", fmt::format("{} for --format {}", arguments.motion, arguments.format),
                     "no --motion: only URScript has two kinds");
   }
   ToolPath path = read_robot_path(arguments.path);
-  const Verdict verdict = verdict_of(arguments);
   if (!arguments.kind.empty()) path.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
   if (path.kind == PathKind::Mark) require_a_mark(arguments.overrides);
   if (arguments.is_open && path.is_closed) {
@@ -250,11 +242,14 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   std::optional<TriMesh> surface;
   if (!arguments.intended.empty()) inputs.intended = &intended.emplace(read_robot_path(arguments.intended));
   if (!arguments.surface.empty()) inputs.surface = &surface.emplace(read_cloud(arguments.surface));
+  std::optional<RegistrationRecord> registration;
   if (!arguments.registration.empty()) {
+    registration = read_registration(arguments.registration);
     require_same_specimen(arguments.registration, path.specimen_id, "the path's");
-    require_clouds_unchanged(arguments.registration, console);
-    inputs.registration = registration_summary(arguments.registration);
+    require_clouds_unchanged(*registration, arguments.registration, console);
+    inputs.registration = registration_summary(*registration, arguments.registration);
   }
+  const Verdict verdict = verdict_of(arguments, registration);
   if (!arguments.surface.empty()) require_same_specimen(arguments.surface, path.specimen_id, "the path's");
   if (intended) require_same_specimen(arguments.intended, path.specimen_id, "the path's");
   if (arguments.power_w > 0.0) {
@@ -340,11 +335,12 @@ void add_export(Application& application) {
   verb->add_option("--near-joints-deg", a.near_deg, "Joints that the arm stands near")
       ->expected(6)
       ->check(between("--near-joints-deg", -360.0, 360.0));
-  verb->add_option("--table-z-mm", a.setup.table_z_mm, "Height of the table's plane in the base frame");
+  verb->add_option("--table-z-mm", a.setup.table_z_mm, "Height of the table's plane in the base frame")
+      ->check(between("--table-z-mm", -kFarthestTableMm, kFarthestTableMm));
   verb->add_option("--needle-length-mm", a.checks.needle_length_mm, "Of the needle; behind it comes the shaft")
-      ->check(above_zero("--needle-length-mm"));
+      ->check(between("--needle-length-mm", kLeastToolMm, kLargestLengthMm));
   verb->add_option("--shaft-diameter-mm", a.shaft_diameter_mm, "Of the instrument's shaft")
-      ->check(above_zero("--shaft-diameter-mm"));
+      ->check(between("--shaft-diameter-mm", kLeastToolMm, kLargestLengthMm));
   verb->add_option("--depth-mm", a.checks.planned_depth_mm, "Planned depth")->check(above_zero("--depth-mm"));
   verb->add_option("--close-margin-mm", a.checks.close_margin_mm, "Least distance from the tumour edge")
       ->check(above_zero("--close-margin-mm"));

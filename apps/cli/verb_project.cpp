@@ -1,5 +1,6 @@
 #include "option_checks.hpp"
 #include "options.hpp"
+#include "registration_trust.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
@@ -54,6 +55,7 @@ RegistrationRecord trusted_registration(const std::filesystem::path& file, Conso
                     "a registration that converged",
                     "Register again: with more starts, or with the cloud cropped to the tissue.");
   }
+  require_clouds_unchanged(record, file, console);
   const double scale = record.scale * record.camera_scale;
   const CheckSettings checks;  // what export will hold it to
   if (!(scale > checks.min_scale && scale < checks.max_scale)) {
@@ -125,8 +127,8 @@ void take_true_size(Placement& placement, const ToolPath& path, const Registrati
   }
 }
 
-Placement placed(const ToolPath& path, const ProjectArguments& arguments, Console& console) {
-  const RegistrationRecord registration = trusted_registration(arguments.transform, console);
+Placement placed(const ToolPath& path, const RegistrationRecord& registration, const ProjectArguments& arguments,
+                 Console& console) {
   Placement placement{*registration.T_target_source, read_cloud(arguments.surface), {}};
   if (!arguments.camera.empty()) {
     const Mat4 T_robot_camera = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
@@ -233,16 +235,39 @@ nlohmann::ordered_json settings_json(const ProjectArguments& arguments, const Pr
           {"max_shift_mm", s.max_shift_mm}};
 }
 
-/// That of the simulated path goes with the projected one, as long as it is cut as deep and as fast as it was simulated. A mark cuts nothing.
-Verdict verdict_of(const ProjectArguments& arguments, const ProjectSettings& settings) {
-  if (settings.kind == PathKind::Mark) return {};
-  Verdict verdict = read_path_verdict(arguments.path);
-  if (settings.incise_depth_mm || settings.incise_speed_mm_s) {
+/// What was not simulated as it is laid down.
+void hold_changes(Verdict& verdict, const RegistrationRecord& registration, const ProjectArguments& arguments,
+                  const ProjectSettings& settings) {
+  constexpr double kSameSize = 1e-4;  // relative: 0.01 mm of a path of 100 mm
+  if (settings.incise_depth_mm || settings.incise_speed_mm_s)
     verdict.add("not_simulated", {}, "the path was projected with another depth or speed than its simulated cut had");
+  if (settings.axis_mode == AxisMode::SurfaceNormal) {
+    verdict.add("not_simulated", {},
+                "the tool was turned to the normals of the measured surface (--axis normal): the simulated cut held it "
+                "otherwise");
   }
-  const std::string target = read_registration(arguments.transform).target_sha256;
-  if (!target.empty() && target != sha256_of_input(arguments.surface)) {
-    verdict.add("registration", {}, fmt::format("{} was found on another cloud than {}", arguments.transform.string(), arguments.surface.string()));
+  if (arguments.metric == "camera" && std::abs(registration.scale - 1.0) > kSameSize) {
+    verdict.add("not_simulated", {},
+                fmt::format("the path took the camera's size (--metric camera): its lengths are {:.4f} times those of "
+                            "its simulated cut",
+                            registration.scale));
+  }
+}
+
+/// That of the simulated path goes with the projected one, as long as it is cut as it was simulated. A mark cuts
+/// nothing: what speaks against its place remains.
+Verdict verdict_of(const RegistrationRecord& registration, const ProjectArguments& arguments,
+                   const ProjectSettings& settings) {
+  Verdict verdict;
+  if (settings.kind == PathKind::Incise) {
+    verdict = read_path_verdict(arguments.path);
+    hold_changes(verdict, registration, arguments, settings);
+  }
+  verdict.add(cli::verdict_of(registration, arguments.transform));
+  if (!registration.target_sha256.empty() && registration.target_sha256 != sha256_of_input(arguments.surface)) {
+    verdict.add(
+        "registration", {},
+        fmt::format("{} was found on another cloud than {}", arguments.transform.string(), arguments.surface.string()));
   }
   return verdict;
 }
@@ -281,7 +306,8 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   }
   const ProjectSettings settings = settings_of(arguments);
   const ToolPath path = simulated_path(arguments.path, arguments.transform, arguments.surface, settings.kind);
-  const Placement placement = placed(path, arguments, console);
+  const RegistrationRecord registration = trusted_registration(arguments.transform, console);
+  const Placement placement = placed(path, registration, arguments, console);
   const ProjectedPath projected = laid_down(path, placement, settings, arguments);
   nlohmann::ordered_json result;
   result["path"] = nullptr;
@@ -301,7 +327,10 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   std::vector<std::filesystem::path> inputs{arguments.path, arguments.transform, arguments.surface};
   if (!arguments.camera.empty()) inputs.push_back(arguments.camera);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Verdict verdict = verdict_of(arguments, settings);
+  const Verdict verdict = verdict_of(registration, arguments, settings);
+  for (const VerdictReason& reason : verdict.reasons())
+    console.message(Severity::Warning,
+                    fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
   result["verdict"] = to_json(verdict);
   write(output, projected, verdict, placement, manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s),
         result);
@@ -358,7 +387,7 @@ void add_project(Application& application) {
   verb->add_option("--max-shift-mm", arguments->settings.max_shift_mm,
                    "Farthest that a point is moved onto the surface")
       ->check(zero_or_more("--max-shift-mm"));
-  verb->add_option("--waypoints", arguments->settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 100000));
+  verb->add_option("--waypoints", arguments->settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 2000));
 }
 
 }  // namespace incise::cli

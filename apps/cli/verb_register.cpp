@@ -169,6 +169,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   result["target_sha256"] = sha256_of_input(arguments.target);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result["wall_s"] = wall_s;
+  seal_registration(result);
   write_json(folder.path() / "registration.json", result);
   write_manifest(folder.path(),
                  manifest_of(options, settings_json(arguments).dump(), {arguments.source, arguments.target}, wall_s));

@@ -1,4 +1,5 @@
 #include "options.hpp"
+#include "own_files.hpp"
 #include "study_report.hpp"
 #include "tissue_report.hpp"
 
@@ -24,6 +25,11 @@ void add_report(Application& application) {
         if (!is_of_a_study && arguments->registration.empty() && arguments->replay.empty()) {
           throw CaseError("command line", "report", "no folder", "a study's folder, --registration or --replay");
         }
+        const std::filesystem::path output = !options.output.empty() ? options.output
+                                             : is_of_a_study         ? arguments->folder / "report.html"
+                                                                     : std::filesystem::path("report.html");
+        refuse_input_as_output("-o", output, {arguments->registration, arguments->replay});
+        require_own_page(output);
         ReportData data;
         std::optional<FolderLock> lock;  // a run that goes on in that folder would mix older and newer results
         if (is_of_a_study) {
@@ -34,10 +40,6 @@ void add_report(Application& application) {
           data.is_of_a_study = false;
         }
         add_on_tissue(arguments->registration, arguments->replay, data);
-        const std::filesystem::path output = !options.output.empty() ? options.output
-                                             : is_of_a_study         ? arguments->folder / "report.html"
-                                                                     : std::filesystem::path("report.html");
-        refuse_input_as_output("-o", output, {arguments->registration, arguments->replay});
         write_report_and_figures(data, output);
         print_result(options, {{"report", output.string()}});
         return kDone;

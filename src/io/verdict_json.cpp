@@ -87,7 +87,7 @@ ordered_json to_json(const Verdict& verdict) {
 }
 
 Verdict verdict_from_json(const ordered_json& json, const std::filesystem::path& file) {
-  const JsonValue root(json, file);
+  const JsonValue root(json, file, "/verdict");
   const VerdictStatus status = status_at(root.at("status"));
   Verdict verdict;
   const std::vector<JsonValue> places = root.at("reasons").items();

@@ -77,6 +77,16 @@ std::string comment_text(std::string_view text) {
   return plain;
 }
 
+std::size_t first_hidden(std::string_view text) {
+  for (std::size_t at = 0; at < text.size();) {
+    const Utf8Character character = first_character(text.substr(at));
+    const bool is_blank = text[at] == '\n' || text[at] == '\t' || text.substr(at, 2) == "\r\n";
+    if (!is_blank && (character.bytes == 0 || !is_plain(character.code))) return at;
+    at += character.bytes;
+  }
+  return std::string_view::npos;
+}
+
 ProgramHeader plain_header(const ProgramHeader& header) {
   ProgramHeader plain;
   for (const auto& [key, value] : header) {

@@ -12,6 +12,10 @@ namespace incise::robot_detail {
 /// or are not seen at all become a blank, each byte that is not UTF-8 a question mark.
 [[nodiscard]] std::string comment_text(std::string_view text);
 
+/// Where the first such character or byte of a text of several lines stands; LF, CR LF and tabs are allowed. npos:
+/// nowhere.
+[[nodiscard]] std::size_t first_hidden(std::string_view text);
+
 /// The header with such values; one with line ends (LF, CR LF) becomes one entry a line.
 [[nodiscard]] ProgramHeader plain_header(const ProgramHeader& header);
 

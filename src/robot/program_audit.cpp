@@ -30,6 +30,7 @@ constexpr std::string_view kNeedMore[]{"heat",
                                        "registration_converged"};
 constexpr double kSameShare = 0.01;  // of value and limit: the header holds waypoints to 1 nm and values to 4 digits
 constexpr double kSame = 1e-3;
+constexpr double kSameAngleRad = 1e-4, kSamePlaceMm = 0.01;
 
 bool needs_more(const std::string& check) {
   return std::find(std::begin(kNeedMore), std::end(kNeedMore), check) != std::end(kNeedMore);
@@ -123,7 +124,7 @@ class Auditor {
   }
 
   /// The lines on the simulated cut against the gate: one verdict, as bad as its worst reason, none refused, each
-  /// caution accepted. A program may have none of them: what the library writes from a path alone knows of no cut.
+  /// caution accepted.
   void hold_verdict() {
     std::vector<std::string> verdicts, accepted;
     for (const auto& [key, value] : program_.header) {
@@ -142,8 +143,8 @@ class Auditor {
       if (severity == "caution" && std::find(accepted.begin(), accepted.end(), id) == accepted.end())
         contradict(fmt::format("its caution '{}' was accepted by nobody", id));
     }
-    if (verdicts.empty() && worst == "ok" && accepted.empty()) return;
-    if (verdicts.size() != 1) return contradict(fmt::format("{} lines of a verdict, expected one", verdicts.size()));
+    if (verdicts.size() != 1)
+      return contradict(fmt::format("{} lines of a verdict on the cut, expected one", verdicts.size()));
     if (verdicts.front() == "refused" || worst == "refused")
       return contradict("the simulated cut is refused: no program is written for it");
     if (verdicts.front() != worst)
@@ -227,17 +228,34 @@ class Auditor {
     for (const auto& [key, value] :
          {std::pair("branch", to_string(made.motion.branch)), std::pair("robot", made.setup.arm.name)})
       if (told(key) != value) contradict(fmt::format("{} {}, made again {}", key, told(key), value));
-    if (program_.listed_tips_mm.empty()) return;
-    bool is_same_course = program_.listed_tips_mm.size() == made.poses.size();
+    if (program_.listed_poses.empty()) return;
+    bool is_same_course = program_.listed_poses.size() == made.poses.size();
     for (std::size_t i = 0; is_same_course && i < made.poses.size(); ++i)
-      is_same_course = (program_.listed_tips_mm[i] - made.poses[i].tip_mm).norm() < 0.01;
+      is_same_course = is_same_pose(program_.listed_poses[i], made.poses, i);
     if (!is_same_course) contradict("the poses are not those of the path in the header");
+  }
+
+  static bool is_same_pose(const ProgramPose& listed, const std::vector<ProgramPose>& made, std::size_t i) {
+    const auto is_same_move = [&](std::size_t k) {
+      return listed.phase == made[k].phase &&
+             is_same(listed.tip_speed_mm_s, made[k].tip_speed_mm_s, made[k].tip_speed_mm_s);
+    };
+    return (listed.tip_mm - made[i].tip_mm).norm() < kSamePlaceMm &&
+           (listed.rotation_vector - made[i].rotation_vector).norm() <= kSameAngleRad &&
+           is_same(listed.time_s, made[i].time_s, 0.0) && std::abs(listed.depth_mm - made[i].depth_mm) < kSamePlaceMm &&
+           is_at_or_beside(i, made.size(), is_same_move);
+  }
+
+  /// Where a phase or a speed changes, rounding of the header may put what stands there on the other side.
+  template <class Holds>
+  static bool is_at_or_beside(std::size_t i, std::size_t size, const Holds& holds) {
+    return holds(i) || (i > 0 && holds(i - 1)) || (i + 1 < size && holds(i + 1));
   }
 
   /// The moves or rows against those that are written for the program made again.
   void hold_motion(const RobotProgram& made) {
     if (made.motion.outcome != MotionOutcome::Found) return;
-    if (!program_.joints.empty()) return hold_rows(made.motion.samples);
+    if (!program_.joints.empty()) return hold_rows(made);
     const bool is_stream = std::any_of(program_.commands.begin(), program_.commands.end(),
                                        [](const auto& c) { return c.kind == ScriptCommand::Kind::ServoJ; });
     const std::string script =
@@ -272,20 +290,34 @@ class Auditor {
            (commands[i].q_rad - commands[i - 1].q_rad).cwiseAbs().maxCoeff() <= kStillRad;
   }
 
-  void hold_rows(const std::vector<JointSample>& samples) {
-    constexpr double kSameRad = 1e-4, kSameRad_s = 1e-2, kSameS = 1e-5;
+  void hold_rows(const RobotProgram& made) {
+    constexpr double kSameRad_s = 1e-2, kSameRad_s2 = 0.1, kSameS = 1e-5;
     const auto& rows = program_.joints;
+    const auto& samples = made.motion.samples;
     for (std::size_t i = 0; i < std::min(rows.size(), samples.size()); ++i) {
-      const bool is_same_row = (rows[i].q_rad - samples[i].q_rad).cwiseAbs().maxCoeff() <= kSameRad &&
-                               (rows[i].speed_rad_s - samples[i].speed_rad_s).cwiseAbs().maxCoeff() <= kSameRad_s &&
-                               std::abs(rows[i].time_s - samples[i].time_s) <= kSameS;
+      const TimedJoints& row = rows[i];
+      const auto is_same_phase = [&](std::size_t k) {
+        return row.phase == made.poses[std::min(samples[k].pose + 1, made.poses.size() - 1)].phase;
+      };
+      const auto is_same_acceleration = [&](std::size_t k) {
+        const Joints& a = samples[k].acceleration_rad_s2;
+        return (*row.acceleration_rad_s2 - a).cwiseAbs().maxCoeff() <=
+               kSameRad_s2 + kSameShare * a.cwiseAbs().maxCoeff();
+      };
+      const Vec3 tip =
+          (forward_kinematics(made.setup.arm, row.q_rad) * made.setup.T_flange_tool).topRightCorner<3, 1>();
+      const bool is_same_row = (row.q_rad - samples[i].q_rad).cwiseAbs().maxCoeff() <= kSameAngleRad &&
+                               (row.speed_rad_s - samples[i].speed_rad_s).cwiseAbs().maxCoeff() <= kSameRad_s &&
+                               std::abs(row.time_s - samples[i].time_s) <= kSameS &&
+                               (!row.tip_mm || (*row.tip_mm - tip).norm() <= kSamePlaceMm) &&
+                               (!row.acceleration_rad_s2 || is_at_or_beside(i, samples.size(), is_same_acceleration)) &&
+                               is_at_or_beside(i, samples.size(), is_same_phase);
       if (!is_same_row) return contradict(fmt::format("row {}: other joints than those for the path in the header", i));
     }
     if (rows.size() != samples.size())
       contradict(fmt::format("{} rows, for the path in the header {} are written", rows.size(), samples.size()));
   }
 
-  /// Where a phase or a speed changes, rounding of the header may put a command on the other side.
   static bool is_same_command(const ScriptCommand& found, const std::vector<ScriptCommand>& expected, std::size_t i) {
     const std::size_t first = i > 0 ? i - 1 : 0, last = std::min(i + 1, expected.size() - 1);
     for (std::size_t k = first; k <= last; ++k) {
@@ -299,12 +331,13 @@ class Auditor {
   }
 
   static bool is_same_command(const ScriptCommand& a, const ScriptCommand& b) {
-    constexpr double kSameRad = 1e-4, kSameMm = 0.01,
-                     kSameBlendShare = 0.3;  // blends: in [0, 0.5) of the spacing, usually 0.4
+    constexpr double kSameBlendShare = 0.3;  // blends: in [0, 0.5) of the spacing, usually 0.4
     const auto is_near = [](double x, double y) { return std::abs(x - y) <= 1e-3 * std::abs(y) + 1e-9; };
-    return a.kind == b.kind && a.phase == b.phase && (a.q_rad - b.q_rad).cwiseAbs().maxCoeff() <= kSameRad &&
-           (a.tip_mm - b.tip_mm).norm() <= kSameMm && (a.rotation_vector - b.rotation_vector).norm() <= kSameRad &&
-           is_near(a.acceleration, b.acceleration) && is_near(a.speed, b.speed) && is_near(a.seconds, b.seconds) &&
+    return a.kind == b.kind && a.phase == b.phase && (a.q_rad - b.q_rad).cwiseAbs().maxCoeff() <= kSameAngleRad &&
+           (a.tip_mm - b.tip_mm).norm() <= kSamePlaceMm &&
+           (a.rotation_vector - b.rotation_vector).norm() <= kSameAngleRad && is_near(a.gain, b.gain) &&
+           is_near(a.lookahead_s, b.lookahead_s) && is_near(a.acceleration, b.acceleration) &&
+           is_near(a.speed, b.speed) && is_near(a.seconds, b.seconds) &&
            a.blend_mm <= (1.0 + kSameBlendShare) * b.blend_mm + kSame;
   }
 

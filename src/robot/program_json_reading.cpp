@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <limits>
+#include <set>
 
 namespace incise::robot_detail {
 namespace {
@@ -78,8 +79,15 @@ ProgramJson parsed_program(std::string_view text, const std::filesystem::path& f
   constexpr const char* kExpected = "a program that `incise export --format json` wrote";
   try {
     static constexpr int kDeepest = 16;  // a program's values are less deep; whatever walks through them calls itself once a level
-    const auto watch = [&file](int depth, ProgramJson::parse_event_t, ProgramJson&) {
-      if (depth > kDeepest) throw DataError(file, "JSON", fmt::format("values nested more than {} deep", kDeepest), kExpected);
+    std::vector<std::set<std::string>> keys;  // of the objects that are open; the library would keep the last of two
+    const auto watch = [&](int depth, ProgramJson::parse_event_t event, ProgramJson& parsed) {
+      if (depth > kDeepest)
+        throw DataError(file, "JSON", fmt::format("values nested more than {} deep", kDeepest), kExpected);
+      if (event == ProgramJson::parse_event_t::object_start) keys.emplace_back();
+      if (event == ProgramJson::parse_event_t::object_end) keys.pop_back();
+      if (event == ProgramJson::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
+        throw DataError(file, "JSON", fmt::format("the key '{:.60}' twice in one object", parsed.get<std::string>()),
+                        kExpected);
       return true;
     };
     return ProgramJson::parse(text, watch);
@@ -119,12 +127,15 @@ WrittenProgram read_program_json(std::string_view text, const std::filesystem::p
     const auto pair = item.items(2);
     program.header.emplace_back(pair[0].text(), pair[1].text());
   }
-  std::vector<std::pair<double, ProgramPhase>> phases;
   for (const ProgramPlace& pose : root.at("poses").items(1)) {
     const ProgramPlace phase = pose.at("phase");
-    phases.emplace_back(pose.at("time_s").number(), phase_of(phase.text(), phase.complain()));
-    const std::vector<double> tip = pose.at("tip_mm").numbers(3);
-    program.listed_tips_mm.emplace_back(tip[0], tip[1], tip[2]);
+    const std::vector<double> tip = pose.at("tip_mm").numbers(3), turn = pose.at("rotation_vector").numbers(3);
+    ProgramPose listed{.tip_mm = Vec3(tip[0], tip[1], tip[2]), .rotation_vector = Vec3(turn[0], turn[1], turn[2])};
+    listed.time_s = pose.at("time_s").number();
+    listed.tip_speed_mm_s = pose.at("tip_speed_mm_s").number();
+    listed.depth_mm = pose.at("depth_mm").number();
+    listed.phase = phase_of(phase.text(), phase.complain());
+    program.listed_poses.push_back(listed);
   }
   if (document.contains("checks")) {
     for (const ProgramPlace& check : root.at("checks").items(0)) program.listed_checks.push_back(check_of(check));
@@ -137,8 +148,8 @@ WrittenProgram read_program_json(std::string_view text, const std::filesystem::p
       joints.q_rad[i] = row[static_cast<std::size_t>(1 + i)];
       joints.speed_rad_s[i] = row[static_cast<std::size_t>(7 + i)];
     }
-    while (next + 1 < phases.size() && phases[next].first <= joints.time_s) ++next;
-    joints.phase = phases[next].second;
+    while (next + 1 < program.listed_poses.size() && program.listed_poses[next].time_s <= joints.time_s) ++next;
+    joints.phase = program.listed_poses[next].phase;
     add_row(program, joints, place.complain());
   }
   if (program.joints.size() < 2)

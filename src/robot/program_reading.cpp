@@ -1,5 +1,6 @@
 #include "robot/program_reading.hpp"
 
+#include "robot/comment_text.hpp"
 #include "robot/program_digest.hpp"
 #include "robot/program_record.hpp"
 #include "robot/text_form.hpp"
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -239,11 +241,17 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
         if (end == cells[i].c_str() || *end != '\0' || !std::isfinite(numbers[i]))
           place.fail(fmt::format("'{}' in column {}", cells[i], i + 1), "a finite number");
       }
-      TimedJoints joints{numbers[0], Joints::Zero(), Joints::Zero(), phase_of(cells.back(), place.complain()),
-                         place.line};
+      TimedJoints joints{numbers[0],
+                         Joints::Zero(),
+                         Joints::Zero(),
+                         phase_of(cells.back(), place.complain()),
+                         place.line,
+                         Joints::Zero(),
+                         Vec3(numbers[19], numbers[20], numbers[21])};
       for (int i = 0; i < 6; ++i) {
         joints.q_rad[i] = numbers[static_cast<std::size_t>(1 + i)];
         joints.speed_rad_s[i] = numbers[static_cast<std::size_t>(7 + i)];
+        (*joints.acceleration_rad_s2)[i] = numbers[static_cast<std::size_t>(13 + i)];
       }
       add_row(program, joints, place.complain());
     }
@@ -271,6 +279,13 @@ WrittenProgram program_from_text(std::string_view text, const std::filesystem::p
   if (ending == ".yaml" || ending == ".yml" || ending == ".bag") {
     throw DataError(name, "", fmt::format("a {} program", ending), "URScript, .csv or .json",
                     "What ROS runs holds the joints of --format joint-csv: export and replay these.");
+  }
+  if (const std::size_t hidden = robot_detail::first_hidden(text); hidden != std::string_view::npos) {
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(hidden), '\n');
+    throw DataError(
+        name, fmt::format("line {}", line),
+        fmt::format("byte 0x{:02X}, of a character that is not shown", static_cast<unsigned char>(text[hidden])),
+        "what `incise export` writes", "Behind it may stand what another reader runs.");
   }
   WrittenProgram program = ending == ".csv"    ? robot_detail::read_joint_csv(text, name)
                            : ending == ".json" ? robot_detail::read_program_json(text, name)

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/sha256.hpp>
 #include <incise/core/units.hpp>
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
@@ -9,6 +10,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +18,13 @@ namespace incise {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kDigest = "digest_sha256";
+
+std::string digest_of(Json document) {
+  document.erase(kDigest);
+  return sha256_of_text(document.dump());
+}
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -99,7 +108,32 @@ Json to_json(const Registration& r) {
   return json;
 }
 
+void seal_registration(Json& document) {
+  document[kDigest] = digest_of(document);
+}
+
 namespace {
+
+/// @returns whether it carries the digest of what is in it
+bool has_its_digest(const Json& document, const std::filesystem::path& file) {
+  const auto found = document.find(kDigest);
+  if (found == document.end()) return false;
+  const std::string expected = digest_of(document);
+  if (!found->is_string() || found->get<std::string>() != expected) {
+    throw DataError(file, std::string("/") + kDigest, found->dump(), expected + ", that of what is in this file",
+                    "It was changed after it was written: register again.");
+  }
+  return true;
+}
+
+std::vector<std::string> doubts_in(const Json& document, const std::filesystem::path& file) {
+  const auto found = document.find("reasons");
+  if (found == document.end()) return {};
+  const bool is_list_of_texts = found->is_array() && std::all_of(found->begin(), found->end(),
+                                                                 [](const Json& reason) { return reason.is_string(); });
+  if (!is_list_of_texts) throw DataError(file, "/reasons", fmt::format("{:.60}", found->dump()), "a list of texts");
+  return found->get<std::vector<std::string>>();
+}
 
 /// A finite number of an object; nothing where the key is missing or null.
 std::optional<double> number_of(const Json& object, const char* key, const std::filesystem::path& file, double least,
@@ -175,7 +209,9 @@ RegistrationRecord read_registration(const std::filesystem::path& file) {
     if (!sha256->is_string()) throw DataError(file, "/" + digest, sha256->dump(), "64 hex digits");
     record.inputs.push_back({digest, path->get<std::string>(), sha256->get<std::string>()});
   }
+  record.doubts = doubts_in(document, file);
   require_no_contradiction(document, record, file);
+  record.is_sealed = has_its_digest(document, file);
   return record;
 }
 

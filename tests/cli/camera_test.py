@@ -1,12 +1,14 @@
 """Photographs and camera pictures: evaluate PHOTO, track, project."""
 
 import csv
+import hashlib
 import json
 import math
 import unittest
 
 import small_photo
 from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, files_below
+from sealed_json import sealed
 from small_photo import GREEN, RED
 
 SCALE = 0.06  # mm per pixel
@@ -311,7 +313,7 @@ class ProjectTest(CommandTest):
 
     def write_transform(self, scale=1.0, **more):
         matrix = [[0, -scale, 0, 400], [scale, 0, 0, 50], [0, 0, scale, 100], [0, 0, 0, 1]]
-        (self.folder / "registration.json").write_text(json.dumps({"T_target_source": matrix, "scale": scale, "converged": True, **more}))
+        (self.folder / "registration.json").write_text(json.dumps(sealed({"T_target_source": matrix, "scale": scale, "converged": True, **more})))
 
     def write_path(self, frame="sim_stretched"):
         def circle(radius, count):
@@ -347,6 +349,51 @@ class ProjectTest(CommandTest):
             self.assertAlmostEqual(math.hypot(x - 400, y - 50), 15.0, places=6)
             self.assertAlmostEqual(z, 100.5 + 0.1 * (x - 400), places=4)
             self.assertEqual((w["depth_mm"], w["speed_mm_s"]), (5, 7))
+
+    def held_against(self, *options):
+        """Ids of what the projected path carries against itself, but for the cut that nobody simulated."""
+        verdict = self.json_of(*self.ARGUMENTS, *options)["verdict"]
+        self.assertEqual(json.loads((self.folder / "robot.json").read_text())["verdict"]["reasons"], verdict["reasons"])
+        return [reason["id"] for reason in verdict["reasons"] if "no simulated cut along it is known" not in reason["message"]]
+
+    def test_what_speaks_against_a_registration_travels_with_the_path(self):
+        self.assertEqual(self.held_against(), [])
+        self.write_transform(reasons=["the source's mirror image fits about as well"], handedness_determined=False)
+        self.assertEqual(self.held_against(), ["registration"])
+        self.assertEqual(self.held_against("--kind", "mark"), ["registration"])
+        done = self.incise("export", "robot.json", "--kind", "mark", "-o", "mark.script")
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE)
+        self.assertIn("no program: caution: registration", done.stderr)
+
+    def test_a_transform_that_register_did_not_find_is_a_typed_one(self):
+        document = json.loads((self.folder / "registration.json").read_text())
+        del document["digest_sha256"]
+        (self.folder / "registration.json").write_text(json.dumps(document))
+        self.assertEqual(self.held_against(), ["typed_transform"])
+        self.assertEqual(self.held_against("--kind", "mark"), ["typed_transform"])
+        (self.folder / "robot.json").unlink()
+        document["T_target_source"][2][3] = 97.0
+        (self.folder / "registration.json").write_text(json.dumps({**document, "digest_sha256": "0" * 64}))
+        self.refused("registration.json", "/digest_sha256", "register again")
+
+    def test_another_axis_or_size_than_the_simulated_one_is_not_the_simulated_cut(self):
+        self.assertEqual(self.held_against("--axis", "normal"), ["not_simulated"])
+        self.assertEqual(self.held_against("--metric", "camera"), [])
+        self.write_transform(scale=1.02)
+        self.assertEqual(self.held_against(), [])
+        self.assertEqual(self.held_against("--metric", "camera"), ["not_simulated"])
+
+    def test_a_registration_is_held_to_the_cloud_that_it_moved(self):
+        (self.folder / "simulated.ply").write_text("a cloud")
+        digest = hashlib.sha256(b"a cloud").hexdigest()
+        self.write_transform(source="simulated.ply", source_sha256=digest)
+        self.json_of(*self.ARGUMENTS)
+        (self.folder / "robot.json").unlink()
+        (self.folder / "simulated.ply").write_text("another cloud")
+        self.refused("registration.json", "source_sha256", "simulated.ply", "register again")
+
+    def test_a_mark_of_a_hundred_thousand_waypoints_is_refused(self):
+        self.assert_refused(self.incise(*self.ARGUMENTS, "--kind", "mark", "--waypoints", 100000), BAD_CASE, "--waypoints")
 
     def test_what_export_would_refuse_is_told(self):
         path = json.loads((self.folder / "path.json").read_text())

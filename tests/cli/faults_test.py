@@ -127,6 +127,10 @@ class ForeignFilesTest(CommandTest):
             self.assert_untouched()
             (self.out / name).unlink()
         (self.out / "study.json").unlink(missing_ok=True)
+        (self.out / "figures").symlink_to(self.elsewhere)
+        self.assert_refused(self.incise("run", "case", "-o", "out"), BAD_DATA, "figures", "found a link")
+        self.assert_untouched()
+        (self.out / "figures").unlink()
         for name in ("study.json", "report.html", "manifest.json"):
             (self.out / name).unlink(missing_ok=True)
             (self.out / name).symlink_to(self.elsewhere / "thesis.txt")
@@ -156,6 +160,24 @@ class ForeignFilesTest(CommandTest):
         (page / "manifest.json").write_text('{"name": "web app", "files": ["manifest.json"]}')
         self.assert_refused(self.incise("plan", "case", "-o", "out"), BAD_DATA, "plan", "manifest.json of another origin")
         self.assertEqual(files_below(page), ["manifest.json"])
+
+    def test_figures_of_a_thesis_and_a_page_beside_them(self):
+        figures = self.out / "figures"
+        figures.mkdir(parents=True)
+        (figures / "contours.svg").write_text("my figure")
+        self.assert_refused(self.incise("run", "case", "-o", "out"), BAD_DATA, "figures", "another origin")
+        self.assertEqual(self.incise("plan", "case", "-o", "other").returncode, DONE)
+        for page in (self.out / "report.html", self.out / "mine.html"):
+            self.assert_refused(self.incise("report", "other", "-o", page), BAD_DATA, "figures", "another origin")
+        (self.elsewhere / "page.html").write_text("<html>my thesis</html>")
+        self.assert_refused(self.incise("report", "other", "-o", self.elsewhere / "page.html"), BAD_DATA, "page.html", "another origin")
+        self.assertEqual((self.elsewhere / "page.html").read_text(), "<html>my thesis</html>")
+        self.assertEqual((figures / "contours.svg").read_text(), "my figure")
+        self.assertEqual(files_below(self.out), ["figures", "figures/contours.svg"])
+
+    def test_the_root_of_all_files_is_no_output_folder(self):
+        self.assert_refused(self.incise("plan", "case", "-o", "/"), BAD_CASE, "-o: found /")
+        self.assert_refused(self.incise("plan", "case", "-o", "/../tmp/.."), BAD_CASE, "-o: found")
 
     def test_pipes_in_place_of_inputs(self):
         for name in ("case.yaml", "block.msh", "tumor.csv"):

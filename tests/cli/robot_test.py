@@ -9,6 +9,7 @@ import struct
 import unittest
 
 from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, HandMadePaths
+from sealed_json import sealed
 
 EXAMPLE = pathlib.Path(__file__).parents[2] / "examples" / "04_ur10e" / "path.json"
 
@@ -113,6 +114,29 @@ class ExportTest(RobotTest):
             self.assert_refused(self.incise("export", path, "--override", name, "-o", "cut.script"), BAD_CASE, "--override", f"'{name}' for a mark")
         self.assert_nothing_written(self.folder / "cut.script")
 
+    def test_a_script_of_another_origin_is_not_replaced(self):
+        arguments = ("export", self.write(ring()), "--accept", "not_simulated", "-o", "cut.script")
+        (self.folder / "cut.script").write_text("def mine():\nend\n")
+        self.assert_refused(self.incise(*arguments), BAD_DATA, "cut.script", "another origin")
+        self.assertEqual((self.folder / "cut.script").read_text(), "def mine():\nend\n")
+        (self.folder / "cut.script").unlink()
+        (self.folder / "real.script").write_text("def mine():\nend\n")
+        (self.folder / "cut.script").symlink_to("real.script")
+        self.assert_refused(self.incise(*arguments), BAD_DATA, "cut.script", "a link")
+        self.assertEqual((self.folder / "real.script").read_text(), "def mine():\nend\n")
+        (self.folder / "cut.script").unlink()
+        for name, form in (("cut.script", "urscript"), ("cut.csv", "joint-csv"), ("cut.json", "json"), ("cut.yaml", "ros-trajectory"), ("cut.bag", "ros-trajectory")):
+            for _ in range(2):  # its own are replaced
+                done = self.incise(*arguments[:-1], name, "--format", form)
+                self.assertEqual(done.returncode, DONE, done.stderr)
+
+    def test_lengths_that_no_instrument_or_table_has_are_refused(self):
+        for option in ("--table-z-mm", "--shaft-diameter-mm", "--needle-length-mm"):
+            for value in ("-1e308", "1e-300", "1e7"):
+                if (option, value) == ("--table-z-mm", "1e-300"):
+                    continue
+                self.assert_refused(self.incise("export", self.write(ring()), option, value, "-o", "cut.script"), BAD_CASE, option)
+
     def test_a_power_that_no_generator_has_is_refused(self):
         self.assert_refused(self.incise("export", self.write(ring()), "--power-w", "1e308", "-o", "cut.script"), BAD_CASE, "--power-w")
 
@@ -137,13 +161,13 @@ class ExportTest(RobotTest):
             ({"inlier_fraction": 0.1}, "inliers"),
             ({"converged": False, "outcome": "poor_fit"}, "converged"),
         ):
-            self.write({**good, **change}, "registration.json")
+            self.write(sealed({**good, **change}), "registration.json")
             self.assert_unsafe(ring(), "registration_" + check, options=["--registration", "registration.json"])
         del good["rmse_mm"]
-        self.write(good, "registration.json")
+        self.write(sealed(good), "registration.json")
         done = self.incise("export", self.write(ring()), "--registration", "registration.json", "-o", "cut.script")
         self.assert_refused(done, BAD_DATA, "registration.json", "rmse_mm")
-        self.write({**good, "rmse_mm": 0.3}, "registration.json")
+        self.write(sealed({**good, "rmse_mm": 0.3}), "registration.json")
         self.assertEqual(self.incise("export", self.write(ring()), "--registration", "registration.json", "-o", "cut.script").returncode, DONE)
 
     def test_a_registration_that_contradicts_itself_is_refused(self):
@@ -220,7 +244,7 @@ class ExportTest(RobotTest):
         path = self.write(ring())
         for options, says in (
             (("--power-w", 0), "--power-w: found 0, expected a number above 0"),
-            (("--needle-length-mm", -1), "--needle-length-mm: found -1, expected a number above 0"),
+            (("--needle-length-mm", -1), "--needle-length-mm: found -1, expected a number from 0.1 to 1000"),
             (("--near-joints-deg", 0, 0, 0, 0, 0, "1e9"), "--near-joints-deg: found 1e9, expected a number from -360 to 360"),
             (("--depth-mm", "x"), "--depth-mm: found 'x'"),
             (("--format", "joint-csv", "--motion", "servoj"), "--motion: found servoj for --format joint-csv"),

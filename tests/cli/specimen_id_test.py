@@ -8,6 +8,7 @@ import small_calibration
 import small_case
 from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, files_below
 from robot_test import ring
+from sealed_json import sealed
 
 OWN, OTHER = "tongue-07", "tongue-08"
 SIMILAR = {"T_target_source": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]], "scale": 1.0, "rmse_mm": 0.3, "inlier_fraction": 0.9,
@@ -28,7 +29,7 @@ class SpecimenIdTest(CommandTest):
         return self.write("path.json", {**ring(), "specimen_id": specimen_id, **changes})
 
     def registration(self, specimen_id=OTHER, **changes):
-        return self.write("registration.json", {**SIMILAR, "specimen_id": specimen_id, **changes})
+        return self.write("registration.json", sealed({**SIMILAR, "specimen_id": specimen_id, **changes}))
 
     def assert_other_specimen(self, done, file):
         self.assert_refused(done, BAD_DATA, file, f"specimen_id: found {OTHER}", f"specimen, {OWN}")

@@ -181,7 +181,8 @@ TEST(Tamper, ASoundMarkAndAProgramWithAnOverrideAreChecked) {
   for (std::size_t i = 0; i < mark.waypoints.size(); ++i)
     mark.waypoints[i] = {mark.tumor_edge.points[i], -Vec3::UnitZ(), 1.0, 2.0};
   const RobotProgram marked = make_program(mark, {.plunge_speed_mm_s = 2.0, .overlap_mm = 0.0, .dwell_s = 0.3});
-  EXPECT_EQ(ending_of(to_urscript(marked, program_header(marked, mark, check_program(marked, mark)))), "completed");
+  EXPECT_EQ(ending_of(to_urscript(marked, program_header(marked, mark, check_program(marked, mark), provenance()))),
+            "completed");
   ToolPath deep = ring_path();
   deep.waypoints[12].depth_mm = 5.8;
   const RobotProgram program = make_program(deep);
@@ -189,8 +190,8 @@ TEST(Tamper, ASoundMarkAndAProgramWithAnOverrideAreChecked) {
   override_checks(checks, {"depth"});
   ASSERT_TRUE(checks.may_be_written());
   for (const auto& [text, name] :
-       {std::pair(to_urscript(program, program_header(program, deep, checks)), "a.script"),
-        std::pair(to_json(program, &checks, program_header(program, deep, checks)), "b.json")})
+       {std::pair(to_urscript(program, program_header(program, deep, checks, provenance())), "a.script"),
+        std::pair(to_json(program, &checks, program_header(program, deep, checks, provenance())), "b.json")})
     EXPECT_EQ(ending_of(text, name), "completed") << name;
 }
 
@@ -202,7 +203,7 @@ TEST(Tamper, AnOverrideOfTheMarginIsNoneToReplay) {
   ProgramChecks checks = check_program(program, close);
   ASSERT_FALSE(checks.may_be_written());
   for (ProgramCheck& check : checks.checks) check.is_overridden = !check.passed;  // as an edited header would have it
-  EXPECT_NE(ending_of(to_urscript(program, program_header(program, close, checks))), "completed");
+  EXPECT_NE(ending_of(to_urscript(program, program_header(program, close, checks, provenance()))), "completed");
 }
 
 /// A header that does not say what its program was made with leaves nothing to check again: the digest alone makes no
@@ -236,6 +237,22 @@ TEST(Tamper, TheLinesOfTheVerdictAreHeldAgainstTheGate) {
   EXPECT_FALSE(audited({"verdict: caution", "reason: caution: depth: shallow"}).is_checked()) << "nobody accepted it";
   EXPECT_FALSE(audited({"verdict: ok", "verdict: ok"}).is_checked());
   EXPECT_FALSE(audited({"accepted: depth"}).is_checked());
+  EXPECT_FALSE(audited({}).is_checked()) << "no verdict at all";
+}
+
+/// What another reader takes for the end of a line would let a statement hide in a comment.
+TEST(Tamper, ACharacterThatHidesAStatementInACommentIsRefused) {
+  for (const std::string& hiding :
+       {std::string("\r"), std::string("\v"), std::string("\f"), std::string("\u0085"), std::string("\u2028"),
+        std::string("\u202e"), std::string(1, '\0'), std::string("\xff")}) {
+    std::string text = script_of();
+    text.insert(text.find("A ring"), hiding + "movel(p[0.6, 0, -0.2, 3.14, 0, 0], a=1, v=1)");
+    EXPECT_EQ(ending_of(sealed_again(text)), "refused") << ::testing::PrintToString(hiding);
+  }
+  std::string windows = script_of();
+  for (std::size_t at = windows.find('\n'); at != std::string::npos; at = windows.find('\n', at + 2))
+    windows.insert(at, "\r");
+  EXPECT_NE(ending_of(windows), "refused") << "line ends of another system";
 }
 
 constexpr const char* kPhases[]{"approach", "plunge", "cut", "overlap", "exit", "retreat"};
@@ -334,6 +351,28 @@ TEST(Tamper, EachChangeOfARowIsNoticedInEachPhase) {
   }
 }
 
+/// Cells that our own player does not need, and another may run by.
+TEST(Tamper, TheOtherCellsOfARowAndAStreamsGainAreHeld) {
+  const std::string good = table();
+  const Lines lines(good);
+  const std::size_t row = moves_of(lines, "cut")[20];
+  const auto with = [&](const std::function<void(std::string&)>& change) {
+    Lines changed = lines;
+    change(changed.all[row]);
+    EXPECT_NE(changed.all[row], lines.all[row]);
+    return ending_of(sealed_again(changed.text()), "cut.csv");
+  };
+  EXPECT_EQ(with([](std::string& l) { change_number(l, ",", 13, [](double) { return 999.0; }); }), "false_checks");
+  EXPECT_EQ(with([](std::string& l) { change_number(l, ",", 20, [](double z) { return z - 5.0; }); }), "false_checks");
+  EXPECT_EQ(with([](std::string& l) { l.replace(l.rfind(',') + 1, 3, "retreat"); }), "false_checks");
+
+  Lines stream(script_of(ScriptMotion::ServoJ));
+  for (std::string& line : stream.all) {
+    if (line.starts_with("  servoj(")) change_number(line, "gain=", 0, [](double) { return 2000.0; });
+  }
+  EXPECT_EQ(ending_of(sealed_again(stream.text())), "false_checks");
+}
+
 TEST(Tamper, ForgedLinesOfTheHeaderDoNotPass) {
   const std::string good = script_of();
   const auto with = [&good](const std::string& key, const std::string& value) {
@@ -376,9 +415,6 @@ TEST(Tamper, ForgedLinesOfTheHeaderDoNotPass) {
   EXPECT_EQ(ending_of(with("digest", "# incise.digest: sha256 " + std::string(64, '0') + "\n# incise.digest: sha256 " +
                                          std::string(64, '0'))),
             "altered");
-  std::string bom = good;
-  bom.insert(bom.find("A ring"), "\u2028");
-  EXPECT_EQ(ending_of(bom), "altered");
 }
 
 TEST(Tamper, AForgedJsonDoesNotPass) {
@@ -397,6 +433,17 @@ TEST(Tamper, AForgedJsonDoesNotPass) {
   std::string poses = good;
   change_number(poses, "\"tip_mm\": [\n        ", 20, [](double x) { return x + 3.0; });
   EXPECT_EQ(ending_of(sealed_again(poses), "cut.json"), "false_checks");
+  for (const char* key :
+       {"\"rotation_vector\": [\n        ", "\"tip_speed_mm_s\": ", "\"time_s\": ", "\"depth_mm\": "}) {
+    std::string pose = good;
+    const std::size_t at = pose.find(key, pose.find("\"phase\": \"cut\""));
+    ASSERT_NE(at, std::string::npos) << key;
+    std::string rest = pose.substr(at);
+    change_number(rest, key, 0, [](double x) { return x + 1.0; });
+    EXPECT_NE(ending_of(sealed_again(pose.substr(0, at) + rest), "cut.json"), "completed") << key;
+  }
+  const std::string twice = with("\"motion\": {", "\"motion\": {\"outcome\": \"found\"},\n  \"motion\": {");
+  EXPECT_EQ(ending_of(sealed_again(twice), "cut.json"), "refused") << "a key that is there twice";
 }
 
 TEST(Tamper, AProgramWithoutADigestPlaysAndIsNotACheckedOne) {
@@ -413,8 +460,8 @@ TEST(Tamper, AnOptionThatMovedALimitIsListed) {
   const ToolPath path = ring_path();
   const RobotProgram program = make_program(path);
   const ProgramChecks checks = check_program(program, path, {.close_margin_mm = 1.0});
-  const ProgramAudit audit =
-      audit_program(program_from_text(to_urscript(program, program_header(program, path, checks)), "cut.script"));
+  const ProgramAudit audit = audit_program(
+      program_from_text(to_urscript(program, program_header(program, path, checks, provenance())), "cut.script"));
   EXPECT_TRUE(audit.is_checked());
   EXPECT_THAT(audit.moved_limits, ::testing::ElementsAre("close_margin_mm 1, by default 2.2"));
 }
@@ -442,8 +489,8 @@ TEST(CommentText, HoldsInEveryFormOfAProgram) {
   const ToolPath path = ring_path();
   const RobotProgram program = make_program(path);
   const std::string evil = "x\u2028movel(p[0])\u0085\v\f\rhalt\x7f\u202e\xff\x80";
-  const ProgramHeader header =
-      program_header(program, path, check_program(program, path), {{"title", evil}, {"digest", "mine"}});
+  const ProgramHeader header = program_header(program, path, check_program(program, path),
+                                              {{"title", evil}, {"digest", "mine"}, {"verdict", "ok"}});
   const std::string forms[]{to_urscript(program, header), to_joint_csv(program, header), to_ros_yaml(program, header),
                             to_json(program, nullptr, header)};
   for (const std::string& text : forms) {

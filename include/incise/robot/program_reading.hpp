@@ -32,6 +32,9 @@ struct TimedJoints {
   Joints speed_rad_s = Joints::Zero();
   ProgramPhase phase = ProgramPhase::Approach;
   std::size_t line = 0;  ///< of the table; 0: none (JSON)
+  // What the player does not need, and another may run by. Of a table alone.
+  std::optional<Joints> acceleration_rad_s2 = {};
+  std::optional<Vec3> tip_mm = {};
 };
 
 /// Whether a program is, to the byte, the one that was written and checked.
@@ -60,7 +63,7 @@ struct WrittenProgram {
   std::optional<ProgramRecord> record;  ///< from its header, where that is complete
   ProgramDigest digest = ProgramDigest::Absent;
   std::vector<std::string> listed_checks;  ///< of JSON: the checks beside the header, in the header's words
-  Points listed_tips_mm;                   ///< of JSON: the poses' tips beside the motion
+  std::vector<ProgramPose> listed_poses;   ///< of JSON: beside the motion; without the tool's rotation matrix
   double overlap_mm = 0.0, clearance_mm = 0.0, approach_height_mm = 0.0;
 };
 
@@ -68,8 +71,9 @@ struct WrittenProgram {
 /// to_urscript writes is known: comments, one function with `set_tcp`, `movej`, `movel`, `movep`, `servoj`, `sleep`,
 /// `stopj`, its `end` and its call.
 /// @throws DataError naming the line, what was found and what was expected: another statement, a wrong number of
-/// arguments, a number out of range, an end that is missing, a table with other columns, lengths in the header that no
-/// program has; or the file's kind, of those that are written for others (.yaml, .bag).
+/// arguments, a number out of range, an end that is missing, a table with other columns, a key that is there twice,
+/// lengths in the header that no program has, a character that no program holds (another reader may take it for the end
+/// of a comment's line); or the file's kind, of those that are written for others (.yaml, .bag).
 [[nodiscard]] WrittenProgram program_from_text(std::string_view text, const std::filesystem::path& name);
 
 }  // namespace incise

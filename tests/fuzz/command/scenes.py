@@ -198,7 +198,7 @@ SCENES = [
     Scene("plan", ("plan", "case", "-o", "out"), ("case/case.yaml", "case/case.yaml", "case/block.msh", "case/tumor.csv", "case/tumor.stl"), 2, keeps=True),
     Scene("register", ("register", "--source", "a.ply", "--target", "b.ply", "--rotations", "8", "--max-iterations", "20", "-o", "out"), ("a.ply", "b.ply"), 1),
     Scene("export", ("export", "path.json", *EXPORT), ("path.json",)),
-    Scene("export checked", ("export", "path.json", "--surface", "plate.ply", "--registration", "registration.json", *EXPORT),
+    Scene("export checked", ("export", "path.json", "--surface", "plate.ply", "--registration", "registration.json", "--accept", "typed_transform", *EXPORT),
           ("path.json", "plate.ply", "registration.json", "registration.json")),
     *(Scene(f"replay {name}", ("replay", name, "-o", "out"), (name,), 2) for name in ("cut.script", "cut.csv", "cut_program.json")),
     Scene("project", ("project", "sim.json", "--transform", "registration.json", "--surface", "plate.ply", "-o", "out.json"), ("sim.json", "registration.json", "plate.ply")),
