@@ -19,17 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* kind_of(fs::file_type type) {
-  switch (type) {
-    case fs::file_type::directory: return "a folder";
-    case fs::file_type::fifo: return "a pipe";
-    case fs::file_type::character:
-    case fs::file_type::block: return "a device";
-    case fs::file_type::socket: return "a socket";
-    default: return "something that is no file";
-  }
-}
-
 /// The status behind links. @throws DataError where there is nothing.
 fs::file_status status_of(const fs::path& path) {
   std::error_code error;
@@ -119,9 +108,27 @@ void add_named(const fs::path& header, std::initializer_list<std::string_view> k
 
 }  // namespace
 
+std::string kind_of_file(const fs::path& path) {
+  switch (status_of(path).type()) {
+    case fs::file_type::regular:
+      return "a file";
+    case fs::file_type::directory:
+      return "a folder";
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::character:
+    case fs::file_type::block:
+      return "a device";
+    case fs::file_type::socket:
+      return "a socket";
+    default:
+      return "something that is no file";
+  }
+}
+
 void require_regular_file(const fs::path& path, std::uint64_t most_bytes) {
   const fs::file_status status = status_of(path);
-  if (!fs::is_regular_file(status)) throw DataError(path, "", kind_of(status.type()), "a file");
+  if (!fs::is_regular_file(status)) throw DataError(path, "", kind_of_file(path), "a file");
   std::error_code error;
   const std::uint64_t size = fs::file_size(path, error);
   if (error) throw DataError(path, "", error.message(), "a readable file");

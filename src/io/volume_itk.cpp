@@ -176,7 +176,11 @@ std::uint64_t total_size(const fs::path& path) {
   for (const fs::path& file : input_files(path)) {
     std::error_code error;
     if (!fs::exists(file, error)) continue;  // the reader says which one is missing
-    require_regular_file(file);
+    if (!fs::is_regular_file(file, error)) {
+      throw DataError(path, file == path ? "" : "data file",
+                      file == path ? kind_of_file(file) : fmt::format("{} ('{}')", kind_of_file(file), file.string()),
+                      "a file");
+    }
     total += fs::file_size(file, error);
   }
   return total;

@@ -123,7 +123,16 @@ TEST_F(HostileVolume, APipeHangsNobody) {
   RecordingMonitor monitor;
   EXPECT_THAT(message_of<DataError>([&] { (void)read_ct(folder / "ct.nrrd", {}, monitor); }), HasSubstr("found a pipe"));
   write_bytes(folder / "a.mhd", "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1\nElementType = MET_UCHAR\nElementDataFile = /dev/zero\n");
-  EXPECT_THAT(message_of<DataError>([&] { (void)read_ct(folder / "a.mhd", {}, monitor); }), HasSubstr("found a device"));
+  EXPECT_THAT(message_of<DataError>([&] { (void)read_ct(folder / "a.mhd", {}, monitor); }),
+              AllOf(HasSubstr("a.mhd"), HasSubstr("found a device ('/dev/zero')")));
+}
+
+TEST_F(HostileVolume, AHeaderWhoseDataAreAFolderIsTheFileThatIsNamed) {
+  const std::string said = says("ct.nhdr",
+                                "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 2 "
+                                "2\nspace directions: (2,0,0) (0,2,0) (0,0,2)\n"
+                                "encoding: raw\nendian: little\nspace origin: (0,0,0)\ndata file: .\n");
+  EXPECT_THAT(said, AllOf(HasSubstr("ct.nhdr: data file: found a folder"), HasSubstr("expected a file")));
 }
 
 }  // namespace

@@ -14,6 +14,10 @@ inline constexpr std::uint64_t kLargestJsonBytes = 256ULL << 20;
 /// Largest case file: the longest sound one has some ten kilobytes.
 inline constexpr std::uint64_t kLargestCaseBytes = 4ULL << 20;
 
+/// What lies there, in words: "a file", "a folder", "a pipe" … (links are followed). @throws DataError where there is
+/// nothing.
+[[nodiscard]] std::string kind_of_file(const std::filesystem::path& path);
+
 /// Every reader looks at a file through this before it opens it: a pipe, a device or a socket may never end or never begin.
 /// @throws DataError where there is no such file, where it is a folder or anything but a regular file (links are followed), and where it is
 ///         larger than `most_bytes`.
