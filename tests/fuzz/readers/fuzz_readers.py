@@ -44,8 +44,10 @@ def main():
                               stderr=subprocess.PIPE, check=False)
         said = done.stderr.decode("utf-8", "replace")
         cases = re.findall(r"number_of_executed_units: (\d+)", said)
-        coverage = re.findall(r"cov: (\d+)", said)
-        print(f"{name:18} {cases[-1] if cases else '?'} cases, {coverage[-1] if coverage else '?'} edges: {'no finding' if done.returncode == 0 else 'a FINDING'}", flush=True)
+        coverage = [(int(case), int(edges)) for case, edges in re.findall(r"^#(\d+)\s.*?cov: (\d+)", said, re.MULTILINE)]
+        edges = coverage[-1][1] if coverage else 0
+        last_new = next((case for case, found in coverage if found == edges), 0)
+        print(f"{name:18} {cases[-1] if cases else '?'} cases, {edges} edges, the last new one at case {last_new}: {'no finding' if done.returncode == 0 else 'a FINDING'}", flush=True)
         if done.returncode != 0:
             print(said[-6000:], flush=True)
             status = 1
