@@ -11,8 +11,6 @@
 namespace incise {
 namespace {
 
-constexpr double kLeastSigma = 1e-6;
-
 struct AffineSums {
   double count = 0.0;
   Vec3 target = Vec3::Zero();

@@ -15,11 +15,10 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kChunk = 64;
+constexpr std::size_t kPointsInAChunk = 64;
 constexpr double kSlow = 0.03;        // change of the width in a step, as a share, below which steps are accelerated
 constexpr double kLeastRatio = 0.9;   // of two steps: no fit of surfaces converges faster for long
 constexpr double kWide = 0.25;        // in radii of the target
-constexpr double kLeastSigma = 1e-6;  // of the radius: the clouds lie on each other
 
 /// Adds one target point's share.
 void add(MatchSums& sums, const Vec3& x, double weight, const GaussSum& near, double noise) {
@@ -263,8 +262,8 @@ MatchSums match(const WeightedPoints& source, const WeightedPoints& target, cons
   const double noise = background(sigma, settings.outlier_weight, settings.dimensions, source_count, target_count);
   const GaussField field(source.points, source.weights, sigma / t.scale);
   const Similarity back = inverse(t);
-  std::vector<MatchSums> parts(Workers::chunk_count(target.points.size(), kChunk));
-  workers.for_chunks(target.points.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+  std::vector<MatchSums> parts(Workers::chunk_count(target.points.size(), kPointsInAChunk));
+  workers.for_chunks(target.points.size(), kPointsInAChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const GaussSum near = field.at(back(target.points[i]));
       add(parts[chunk], target.points[i], target.weights[i], near, noise);

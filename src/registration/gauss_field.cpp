@@ -7,7 +7,7 @@ namespace incise {
 namespace {
 
 constexpr double kMostCellsPerPoint = 8.0;
-constexpr std::size_t kChunk = 64;
+constexpr std::size_t kPlacesInAChunk = 64;
 constexpr long kCellsPerReach = 2;  // finer cells follow the ball more closely than one cube around it
 
 }  // namespace
@@ -95,7 +95,7 @@ GaussSum GaussField::at(const Vec3& place) const {
 
 std::vector<GaussSum> GaussField::at(std::span<const Vec3> places, Workers& workers) const {
   std::vector<GaussSum> sums(places.size());
-  workers.for_each(places.size(), kChunk, [&](std::size_t i) { sums[i] = at(places[i]); });
+  workers.for_each(places.size(), kPlacesInAChunk, [&](std::size_t i) { sums[i] = at(places[i]); });
   return sums;
 }
 

@@ -7,6 +7,8 @@
 
 namespace incise {
 
+inline constexpr double kLeastSigma = 1e-6;  ///< of the radius: the clouds lie on each other
+
 /// What the E-step leaves for a rigid M-step: sums over all pairs, each with its probability.
 struct MatchSums {
   double count = 0.0;           ///< N_P = Σ P

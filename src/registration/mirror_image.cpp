@@ -11,7 +11,6 @@ constexpr std::size_t kFollowed = 2;  // poses of the search
 constexpr std::size_t kTried = 40;    // of the coarse stage
 constexpr std::size_t kRefined = 8;
 constexpr std::size_t kFewPoints = 2000;
-constexpr std::size_t kScorePoints = 4000;  // as for the proper pose
 
 Vec3 reflected(Vec3 v) {
   v.x() = -v.x();

@@ -5,6 +5,9 @@
 
 namespace incise {
 
+/// Points of a cloud that a pose is scored by, the proper one and the mirrored one alike.
+inline constexpr std::size_t kScorePoints = 4000;
+
 /// The best pose found for the source's mirror image: what the answer would be had one of the clouds been reflected.
 /// Starts: the proper pose with the source reflected in each of its three principal planes, which is where a shape that
 /// nearly is its own mirror image comes to lie; and, with `search`, a search over all rotations as for the source

@@ -17,7 +17,6 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 constexpr std::size_t kRows = 256;      // of the basis at a time
 constexpr double kCenterSpacing = 0.5;  // of β
-constexpr double kLeastSigma = 1e-6;
 
 /// Points spread evenly over a cloud: each next one is the farthest from those taken, until none is farther than
 /// `spacing`.

@@ -20,7 +20,7 @@ constexpr double kFirstSigmaBeside = 0.18;
 constexpr double kLastSigma = 0.07;
 constexpr int kSteps = 18;
 constexpr std::size_t kCoarsePoints = 300;
-constexpr std::size_t kScorePoints = 500;
+constexpr std::size_t kSearchPoints = 500;
 constexpr std::size_t kFollowPoints = 400;
 constexpr int kFollowSteps = 15;
 constexpr std::size_t kFinePoints = 2000;
@@ -184,7 +184,7 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
     const double middle = starts.empty() ? 1.0 : starts.front().transform.scale;
     drift.scale = {std::max(0.5 * middle, drift.scale.low), std::min(2.0 * middle, drift.scale.high)};
   }
-  const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), kScorePoints);
+  const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), kSearchPoints);
   std::vector<Pose> poses(starts.size());
   constexpr std::size_t kAtOnce = 32;
   for (std::size_t first = 0; first < starts.size(); first += kAtOnce) {

@@ -20,7 +20,6 @@ namespace {
 
 constexpr std::size_t kFewestPoints = 12;
 constexpr std::size_t kCandidates = 3;  // poses that see all points
-constexpr std::size_t kScorePoints = 4000;
 constexpr std::size_t kRivalPoints = 1000;
 constexpr int kDriftSteps = 60;
 constexpr int kFinishSteps = 100;

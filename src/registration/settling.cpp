@@ -24,12 +24,12 @@ constexpr double kCenterSpacing = 0.6;  // of the range
 constexpr double kPatch = 3.5;          // radius of a fitted patch, in spacings of the target
 constexpr std::size_t kFewestInPatch = 10;
 constexpr double kRim = 0.35;            // how far a patch's middle may lie from its place, in its radii
-constexpr double kLeastAgreement = 0.3;  // cosine between a point's normal and those of its patch
+constexpr double kLeastPatchAgreement = 0.3;  // cosine between a point's normal and those of its patch
 constexpr double kFarthest = 0.15;       // from the target, in the clouds' unit: beyond lies something else
 constexpr double kWidths = 2.5;          // robust standard deviations of Welsch's weight
 constexpr double kPairsPerIndependent = 1.2;
 constexpr double kRidge = 1e-6;
-constexpr std::size_t kChunk = 32;
+constexpr std::size_t kPatchesInAChunk = 32;
 
 /// A source point against the target's patch above or below it.
 struct Patch {
@@ -106,7 +106,8 @@ std::optional<Height> height_above(const SampledSurface& target, const Vec3& pla
     const Vec2 u(apart.dot(first), apart.dot(second));
     const double share = 1.0 - u.squaredNorm() / (radius * radius);
     const double agreement = target.cloud.normals[near.index].dot(normal);
-    if (share <= 0.0 || (target.has_oriented_normals ? agreement : std::abs(agreement)) < kLeastAgreement) continue;
+    if (share <= 0.0 || (target.has_oriented_normals ? agreement : std::abs(agreement)) < kLeastPatchAgreement)
+      continue;
     Vec6 b;
     b << 1.0, u.x(), u.y(), u.x() * u.x(), u.x() * u.y(), u.y() * u.y();
     system += share * b * b.transpose();
@@ -147,19 +148,21 @@ class Settling {
   [[nodiscard]] std::vector<Patch> patches() const {
     const Vector settled = asked_.basis * weights_;
     const double radius = kPatch * target_.spacing;
-    std::vector<std::vector<Patch>> parts(Workers::chunk_count(asked_.indices.size(), kChunk));
-    workers_.for_chunks(asked_.indices.size(), kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-      for (std::size_t row = begin; row < end; ++row) {
-        const Vec3& y = source_.cloud.points[asked_.indices[row]];
-        Patch patch{row, result_.transform(y), result_.transform.rotation * source_.cloud.normals[asked_.indices[row]]};
-        const Vec3 there = result_.transform(y + settled[static_cast<Eigen::Index>(row)] * asked_.up);
-        const std::optional<Height> height = height_above(target_, there, patch.normal, radius);
-        if (!height || height->off_center > kRim || std::abs(height->value) > kFarthest) continue;
-        patch.distance = -height->value - patch.normal.dot(there - patch.place);
-        patch.weight = std::pow(1.0 - std::pow(height->off_center / kRim, 2), 2);
-        parts[chunk].push_back(patch);
-      }
-    });
+    std::vector<std::vector<Patch>> parts(Workers::chunk_count(asked_.indices.size(), kPatchesInAChunk));
+    workers_.for_chunks(
+        asked_.indices.size(), kPatchesInAChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+          for (std::size_t row = begin; row < end; ++row) {
+            const Vec3& y = source_.cloud.points[asked_.indices[row]];
+            Patch patch{row, result_.transform(y),
+                        result_.transform.rotation * source_.cloud.normals[asked_.indices[row]]};
+            const Vec3 there = result_.transform(y + settled[static_cast<Eigen::Index>(row)] * asked_.up);
+            const std::optional<Height> height = height_above(target_, there, patch.normal, radius);
+            if (!height || height->off_center > kRim || std::abs(height->value) > kFarthest) continue;
+            patch.distance = -height->value - patch.normal.dot(there - patch.place);
+            patch.weight = std::pow(1.0 - std::pow(height->off_center / kRim, 2), 2);
+            parts[chunk].push_back(patch);
+          }
+        });
     std::vector<Patch> all;
     for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
     return all;

@@ -7,8 +7,8 @@ namespace incise {
 namespace {
 
 constexpr int kNormalNeighbours = 16;
-constexpr double kLeastAgreement = 0.5;  // cosine of 60 degrees
-constexpr std::size_t kChunk = 64;
+constexpr double kLeastNormalAgreement = 0.5;  // cosine of 60 degrees
+constexpr std::size_t kPairsInAChunk = 64;
 
 PointCloud with_some_normals(PointCloud cloud, Workers& workers) {
   if (!cloud.normals.empty()) return cloud;
@@ -49,7 +49,7 @@ std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t inde
   Vec3 source_normal = t.rotation * source.cloud.normals[index];
   const double agreement = source_normal.dot(target_normal);
   const bool has_side = source.has_oriented_normals && target.has_oriented_normals;
-  if ((has_side ? agreement : std::abs(agreement)) < kLeastAgreement) return std::nullopt;
+  if ((has_side ? agreement : std::abs(agreement)) < kLeastNormalAgreement) return std::nullopt;
   if (agreement < 0.0) source_normal = -source_normal;
   const double share = target_share(source, target);
   SurfacePair pair{index, place, (share * source_normal + (1.0 - share) * target_normal).normalized()};
@@ -63,8 +63,8 @@ std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t inde
 /// The results of find(i) that are there, for i in [0, count), in order.
 template <class Find>
 std::vector<SurfacePair> collected(std::size_t count, Workers& workers, const Find& find) {
-  std::vector<std::vector<SurfacePair>> parts(Workers::chunk_count(count, kChunk));
-  workers.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+  std::vector<std::vector<SurfacePair>> parts(Workers::chunk_count(count, kPairsInAChunk));
+  workers.for_chunks(count, kPairsInAChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (const std::optional<SurfacePair> pair = find(i)) parts[chunk].push_back(*pair);
     }

@@ -16,7 +16,7 @@
 namespace incise {
 namespace {
 
-constexpr const char* kStage = "cutting the virtual specimen";
+constexpr const char* kCuttingStage = "cutting the virtual specimen";
 constexpr int kKeptSteps = 10;     // for so many the tangent of tissue away from the tool is kept
 constexpr double kLivelyMm = 3.0;  // about the tool's way in these steps: tissue whose tangent is always new
 constexpr int kMoments = 3;        // of a step at which the steam's dose is taken
@@ -287,7 +287,7 @@ void Cut::settle(Workers& workers, Monitor& monitor) {
   for (const double step_s : {0.2, 0.8, 3.0, 10.0, 20.0}) {
     relaxation_.renew(state_, step_s, none, workers);
     for (int n = 0; n < kMostSettling; ++n) {
-      throw_if_cancelled(monitor, kStage);
+      throw_if_cancelled(monitor, kCuttingStage);
       const RelaxReport report =
           relaxation_.solve(state_, state_.positions, step_s, {}, Vec3::Zero(), kTolerance, workers);
       result_.linear_iterations += report.iterations;
@@ -332,7 +332,7 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
   const double duration = course.back().time_s;
   const int steps = std::max(1, static_cast<int>(std::ceil(duration * speed / body_.resolution.way_mm)));
   for (int n = 0; n < steps && is_finite_; ++n) {
-    throw_if_cancelled(monitor, kStage);
+    throw_if_cancelled(monitor, kCuttingStage);
     const auto at = [&](int k) { return pose_at(course, duration * std::min(k, steps) / steps); };
     if (n % kKeptSteps == 0) {
       std::vector<TipPose> way;
@@ -340,7 +340,7 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
       relaxation_.renew(state_, duration / steps, lively_tets(way), workers);
     }
     step(at(n), at(n + 1), duration / steps, workers);
-    monitor.progress(kStage, static_cast<double>(n + 1) / (steps + 10));
+    monitor.progress(kCuttingStage, static_cast<double>(n + 1) / (steps + 10));
   }
   if (is_finite_) settle(workers, monitor);
   result_.thermal_width_mm = kPeak * power_w * 1000.0 * 0.01 * body_.specimen.heat_percent /

@@ -17,7 +17,7 @@
 namespace incise {
 namespace {
 
-constexpr const char* kStage = "making the virtual specimen";
+constexpr const char* kMakingStage = "making the virtual specimen";
 constexpr double kRingMarginMm = 5.0;  // Paper II-A: where a path is to be expected
 constexpr double kDepthMm = 5.0;
 constexpr double kClampMm = 14.0;             // of the root that the clamp takes hold of
@@ -155,7 +155,7 @@ void stretch(BenchBody& body, Workers& workers, Monitor& monitor) {
   StaticSettings settings;
   settings.relative_tolerance = kStretchTolerance;
   StaticResult result = solve_static(model, settings, workers, monitor);
-  if (result.outcome == Outcome::Cancelled) throw_if_cancelled(monitor, kStage);
+  if (result.outcome == Outcome::Cancelled) throw_if_cancelled(monitor, kMakingStage);
   body.outcome = result.outcome;
   body.stretched = std::move(result.state);
   body.equilibrium_residual = result.relative_residual;

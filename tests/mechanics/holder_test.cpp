@@ -138,16 +138,16 @@ TEST(Holder, ForceIsMinusTheGradientOfTheEnergyOnFacesEdgesAndCorners) {
   Points forces(state.positions.size(), Vec3::Zero());
   add_support_response(model, state, forces, nullptr);
   std::size_t touching = 0;
-  constexpr double kStep = 1e-6;
+  constexpr double kMovedMm = 1e-6;
   for (std::size_t v = 0; v < forces.size(); ++v) {
     if (forces[v].norm() == 0.0) continue;
     ++touching;
     for (int i = 0; i < 3; ++i) {
       TissueState moved = state;
-      moved.positions[v][i] += kStep;
+      moved.positions[v][i] += kMovedMm;
       const double above = support_energy_uj(model, moved);
-      moved.positions[v][i] -= 2.0 * kStep;
-      const double slope = (above - support_energy_uj(model, moved)) / (2.0 * kStep);
+      moved.positions[v][i] -= 2.0 * kMovedMm;
+      const double slope = (above - support_energy_uj(model, moved)) / (2.0 * kMovedMm);
       ASSERT_NEAR(-slope, forces[v][i], 1e-5 * forces[v].norm()) << "vertex " << v << " axis " << i;
     }
   }

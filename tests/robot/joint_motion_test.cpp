@@ -10,21 +10,12 @@
 namespace incise {
 namespace {
 
+using incise::testing::leaning_ring;
 using incise::testing::line_path;
 using incise::testing::ring_path;
 
 Vec3 tip_of(const RobotProgram& program, const Joints& q) {
   return (forward_kinematics(program.setup.arm, q) * program.setup.T_flange_tool).topRightCorner<3, 1>();
-}
-
-/// A ring whose needle leans outwards.
-ToolPath leaning_ring() {
-  ToolPath path = ring_path();
-  for (auto& waypoint : path.waypoints) {
-    const Vec3 outwards = (waypoint.position_mm - Vec3(600.0, 0.0, 100.0)).normalized();
-    waypoint.axis = (-Vec3::UnitZ() + 0.3 * outwards).normalized();
-  }
-  return path;
 }
 
 TEST(JointMotion, KeepsTheTipSpeedWithinOnePercentAwayFromTheEnds) {

@@ -13,6 +13,7 @@
 namespace incise {
 namespace {
 
+using incise::testing::leaning_ring;
 using incise::testing::line_path;
 using incise::testing::ring_path;
 using ::testing::HasSubstr;
@@ -20,15 +21,6 @@ using ::testing::HasSubstr;
 std::string script_of(const ToolPath& path, const UrScriptSettings& settings = {}) {
   const RobotProgram program = make_program(path);
   return to_urscript(program, program_header(program, path, check_program(program, path)), settings);
-}
-
-ToolPath leaning_ring() {
-  ToolPath path = ring_path();
-  for (auto& waypoint : path.waypoints) {
-    const Vec3 outwards = (waypoint.position_mm - Vec3(600.0, 0.0, 100.0)).normalized();
-    waypoint.axis = (-Vec3::UnitZ() + 0.3 * outwards).normalized();
-  }
-  return path;
 }
 
 Replay replayed(const std::string& text, double slider = 1.0, const char* name = "cut.script") {

@@ -22,6 +22,16 @@ inline ToolPath ring_path(std::size_t waypoints = 48) {
   return path;
 }
 
+/// The same ring with the tool leaning outwards by 0.3 (17 degrees).
+inline ToolPath leaning_ring() {
+  ToolPath path = ring_path();
+  for (auto& waypoint : path.waypoints) {
+    const Vec3 outwards = (waypoint.position_mm - Vec3(600.0, 0.0, 100.0)).normalized();
+    waypoint.axis = (-Vec3::UnitZ() + 0.3 * outwards).normalized();
+  }
+  return path;
+}
+
 /// A straight open cut of 20 mm along x at 100 mm height.
 inline ToolPath line_path() {
   ToolPath path;
