@@ -19,6 +19,12 @@ Verdict verdict_of(const RegistrationRecord& registration, const std::filesystem
   return verdict;
 }
 
+void tell(const Verdict& verdict, Monitor& monitor) {
+  for (const VerdictReason& reason : verdict.reasons())
+    monitor.message(Severity::Warning,
+                    fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
+}
+
 void require_clouds_unchanged(const RegistrationRecord& registration, const std::filesystem::path& file,
                               Monitor& monitor) {
   for (const RegistrationInput& cloud : registration.inputs) {

@@ -13,6 +13,9 @@ namespace incise::cli {
 /// the digest of `incise register`, and one `registration` for each doubt that `register` itself wrote into it.
 [[nodiscard]] Verdict verdict_of(const RegistrationRecord& registration, const std::filesystem::path& file);
 
+/// Each reason as a warning on the console.
+void tell(const Verdict& verdict, Monitor& monitor);
+
 /// A registration is worth what its clouds were when it was made. One that is not there any more is told on the
 /// console.
 /// @throws DataError for a cloud that was changed since.

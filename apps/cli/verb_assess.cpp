@@ -1,5 +1,6 @@
 #include "calibrated_case.hpp"
 #include "options.hpp"
+#include "registration_trust.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/specimen_id.hpp>
@@ -22,8 +23,8 @@ struct AssessOptions {
   CalibratedOptions calibrated;
 };
 
-/// What the registration's file says of how well the specimen was found.
-void read_specimens_registration(const std::filesystem::path& file, AssessmentRequest& request) {
+/// What the registration's file says of how well the specimen was found. @returns what is held against it.
+Verdict read_specimens_registration(const std::filesystem::path& file, AssessmentRequest& request) {
   const RegistrationRecord record = read_registration(file);
   if (!record.is_converged)
     throw DataError(file, "converged", "nothing", "true or false, as `incise register` writes it");
@@ -34,6 +35,7 @@ void read_specimens_registration(const std::filesystem::path& file, AssessmentRe
   } else if (record.T_target_source) {
     throw DataError(file, "rmse_mm", "no number", "how far the surfaces lie apart, as `incise register` writes it");
   }
+  return verdict_of(record, file);
 }
 
 /// What is foreseen is a ring that is corrected pass by pass.
@@ -87,7 +89,8 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   AssessmentRequest request;
   request.scenarios = scenario_request(chosen.calibrated, options);
   request.calibrated = range_of(calibration.record);
-  read_specimens_registration(chosen.registration, request);
+  const Verdict of_registration = read_specimens_registration(chosen.registration, request);
+  tell(of_registration, console);
   const CaseFile asked = case_as_asked(chosen.case_path, chosen.cut);
   require_ring_by_default_method(asked);
   const std::string note = other_tool(asked.settings.cut, calibration.record);
@@ -110,6 +113,7 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   result["verdict"] = nullptr;  // known once the assessment is kept
   write_assessment(run.store, result, calibration.file, chosen.registration, wall.count());
   Verdict verdict = study.verdict;
+  verdict.add(of_registration);
   if (study.is_accepted) run.store.add_advice_to(verdict);
   result["verdict"] = to_json(verdict);
   if (study.corrected) {

@@ -2,6 +2,7 @@
 #include "kept_output.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
+#include "registration_trust.hpp"
 #include "study_run.hpp"
 
 #include <incise/core/error.hpp>
@@ -37,13 +38,14 @@ void require_one_each(const char* option, std::size_t found, std::size_t cases, 
 }
 
 /// @throws DataError for one that found no transform, or does not say how well it fits.
-RegistrationQuality registration_of(const std::filesystem::path& file) {
+RegistrationQuality registration_of(const std::filesystem::path& file, Monitor& monitor) {
   const RegistrationRecord record = read_registration(file);
   if (!record.T_target_source) throw DataError(file, "T_target_source", "null", "a registration that was found");
   if (!record.rmse_mm || !(*record.rmse_mm > 0.0)) {
     throw DataError(file, "rmse_mm", record.rmse_mm ? fmt::format("{}", *record.rmse_mm) : "no number",
                     "how far the surfaces lie apart, above 0, as `incise register` writes it");
   }
+  tell(verdict_of(record, file), monitor);
   return {*record.rmse_mm, record.scale};
 }
 
@@ -57,7 +59,8 @@ void make_names_differ(std::vector<CalibrationSubject>& subjects) {
 }
 
 /// Everything that can be looked at before anything is written or computed.
-std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vector<CalibrationSubject>& subjects) {
+std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vector<CalibrationSubject>& subjects,
+                                  Monitor& monitor) {
   require_one_each("--observed", arguments.observed.size(), arguments.cases.size(), "evaluation");
   if (!arguments.forces_n.empty()) {
     require_one_each("--stretch-force-n", arguments.forces_n.size(), arguments.cases.size(), "force");
@@ -72,7 +75,7 @@ std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vect
     CalibrationSubject subject;
     subject.photographed = read_photographed_cut(arguments.observed[i]);
     if (!arguments.forces_n.empty()) subject.photographed.stretch_force_n = arguments.forces_n[i];
-    if (!arguments.registrations.empty()) subject.registration = registration_of(arguments.registrations[i]);
+    if (!arguments.registrations.empty()) subject.registration = registration_of(arguments.registrations[i], monitor);
     subject.photograph_file = arguments.observed[i].string();
     subject.case_file = files.back().file.string();
     subject.settings = files.back().settings;
@@ -101,7 +104,7 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
   require_different_values("--second-drag-lengths-mm", arguments.request.second_drag_lengths_mm);
   const std::filesystem::path output = options.required_output("calibration");
   std::vector<CalibrationSubject> subjects;
-  const std::vector<CaseFile> files = read_inputs(arguments, subjects);
+  const std::vector<CaseFile> files = read_inputs(arguments, subjects, console);
   OlderOutput older(output / "calibration.json", console);
   std::vector<std::unique_ptr<FolderStore>> stores;
   std::vector<std::string> keys, specimen_ids;

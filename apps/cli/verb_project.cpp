@@ -328,9 +328,7 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   if (!arguments.camera.empty()) inputs.push_back(arguments.camera);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Verdict verdict = verdict_of(registration, arguments, settings);
-  for (const VerdictReason& reason : verdict.reasons())
-    console.message(Severity::Warning,
-                    fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
+  tell(verdict, console);
   result["verdict"] = to_json(verdict);
   write(output, projected, verdict, placement, manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s),
         result);

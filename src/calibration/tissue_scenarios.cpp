@@ -56,7 +56,9 @@ TissueScenarios tissue_scenarios(const std::vector<PosteriorSample>& samples, co
   const auto by_drag = [](const PosteriorSample& a, const PosteriorSample& b) {
     return a.drag_length_mm < b.drag_length_mm;
   };
-  const auto [least, most] = std::minmax_element(samples.begin(), samples.end(), by_drag);
+  const auto range = std::minmax_element(samples.begin(), samples.end(), by_drag);
+  const double least_mm = range.first->drag_length_mm;
+  const double most_mm = range.second->drag_length_mm;
 
   using Mat2 = Eigen::Matrix2d;
   const Mat2 simulated = moments.covariance.topLeftCorner<2, 2>() + kLeastVariance * Mat2::Identity();
@@ -64,7 +66,7 @@ TissueScenarios tissue_scenarios(const std::vector<PosteriorSample>& samples, co
   const Vec2 bias_slope = simulated.ldlt().solve(moments.covariance.topRightCorner<2, 1>());
   TissueScenarios scenarios;
   const auto add = [&](double weight, const Vec2& off) {
-    const double drag = std::clamp(moments.mean[0] + off[0], least->drag_length_mm, most->drag_length_mm);
+    const double drag = std::clamp(moments.mean[0] + off[0], least_mm, most_mm);
     scenarios.points.push_back(
         {weight, drag, std::exp(moments.mean[1] + off[1]), moments.mean[2] + bias_slope.dot(off)});
   };

@@ -6,6 +6,7 @@ import unittest
 import small_calibration
 import small_case
 from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+from sealed_json import sealed
 
 KEYS = ("advice", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
 SCALE = 1.001
@@ -20,10 +21,10 @@ class AssessTest(CommandTest):
         self.calibration = small_calibration.write(self.folder / "calibration.json")
         self.registered()
 
-    def registered(self, **changes):
+    def registered(self, by=sealed, **changes):
         record = {"T_target_source": T_TARGET_SOURCE, "converged": True, "scale": SCALE, "rmse_mm": 0.34, "inlier_fraction": 0.97}
         record.update(changes)
-        (self.folder / "registration.json").write_text(json.dumps({key: value for key, value in record.items() if value != "absent"}))
+        (self.folder / "registration.json").write_text(json.dumps(by({key: value for key, value in record.items() if value != "absent"})))
 
     def arguments(self, *options):
         return ("assess", "case", "--calibration", self.calibration, "--registration", "registration.json", "-o", self.out, *options)
@@ -62,6 +63,18 @@ class AssessTest(CommandTest):
         found = self.assessed("--stretch-force-n", PULL_N)
         self.assertEqual(found["advice"], "cut_as_planned", found)
         self.assertTrue(any("gain" in reason for reason in found["reasons"]), found["reasons"])
+
+    def test_what_is_held_against_its_registration_is_held_against_the_specimen(self):
+        found = self.assessed("--stretch-force-n", PULL_N)
+        self.assertNotIn("typed_transform", [reason["id"] for reason in found["verdict"]["reasons"]])
+        self.registered(by=dict)
+        done = self.incise(*self.arguments("--stretch-force-n", PULL_N, "--json"))
+        self.assertIn("caution: typed_transform: registration.json", done.stderr)
+        self.assertIn("typed_transform", [reason["id"] for reason in json.loads(done.stdout)["verdict"]["reasons"]])
+        self.registered(reasons=["the mirror image fits as well"])
+        found = self.assessed("--stretch-force-n", PULL_N)
+        self.assertIn({"id": "registration", "message": "the mirror image fits as well"},
+                      [{key: reason[key] for key in ("id", "message")} for reason in found["verdict"]["reasons"]])
 
     def test_outside_the_calibrated_range_or_badly_registered_is_not_to_be_used(self):
         found = self.assessed("--stretch-force-n", 5.0 * PULL_N, status=NOT_ACCEPTABLE)
