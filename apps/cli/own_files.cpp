@@ -51,6 +51,13 @@ void require_own_page(const fs::path& page) {
     refuse_foreign(figures, "a folder of another origin");
 }
 
+void require_own_manifest_beside(const fs::path& result) {
+  fs::path manifest = result;
+  manifest.replace_extension(".manifest.json");
+  require_no_link(manifest);
+  if (fs::exists(manifest) && !is_own_manifest(manifest)) refuse_foreign(manifest, "a file of another origin");
+}
+
 void require_own_program(const fs::path& program) {
   require_no_link(program);
   if (!fs::is_regular_file(program)) return;

@@ -12,6 +12,9 @@ void require_own_files(const std::filesystem::path& output);
 /// The same of a page, and of the figures that are drawn beside it. @throws DataError
 void require_own_page(const std::filesystem::path& page);
 
+/// The manifest that is written beside a result of one file. @throws DataError
+void require_own_manifest_beside(const std::filesystem::path& result);
+
 /// A robot program in the place of a new one has to be of `incise export`, and no link: what a laboratory wrote itself
 /// cannot be made again. @throws DataError
 void require_own_program(const std::filesystem::path& program);

@@ -1,8 +1,11 @@
 #include "option_checks.hpp"
 #include "options.hpp"
+#include "own_files.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/volume_io.hpp>
@@ -11,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -59,9 +63,11 @@ void add_mesh(Application& application) {
       "mesh", "Make a graded tetrahedral mesh from labels or a closed surface",
       "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu",
       [arguments](const CommonOptions& options) {
+        const auto start = std::chrono::steady_clock::now();
         Console console(options.level());
         const std::filesystem::path output = options.required_output("tongue.vtu");
         refuse_input_as_output("-o", output, {arguments->input, arguments->around});
+        require_own_manifest_beside(output);
         MeshingSettings settings;
         if (arguments->tets > 0 && arguments->tets < kFewestTets) {
           throw CaseError("command line", "--tets", fmt::format("{}", arguments->tets),
@@ -92,7 +98,14 @@ void add_mesh(Application& application) {
           return SizingField::around_cut(cut, sizes);
         };
         const MeshingResult made = meshed(arguments->input, sizing, settings, console);
+        const nlohmann::json chosen{
+            {"around", arguments->around.string()}, {"depth_mm", arguments->depth_mm}, {"tets", arguments->tets}};
+        std::vector<std::filesystem::path> inputs{arguments->input};
+        if (!arguments->around.empty()) inputs.push_back(arguments->around);
+        const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        const Manifest manifest = manifest_of(options, chosen.dump(), inputs, wall_s);
         write_vtu(output, made.mesh);
+        write_manifest_beside(output, manifest);
         if (!options.quiet) console.message(Severity::Detail, to_text(made.quality));
         nlohmann::ordered_json result = to_json(made);
         result["mesh"] = output.string();

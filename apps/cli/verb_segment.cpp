@@ -1,10 +1,14 @@
 #include "options.hpp"
+#include "own_files.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/storage/result_json.hpp>
 
 #include <array>
+#include <chrono>
 #include <memory>
 #include <optional>
 
@@ -25,10 +29,12 @@ void add_segment(Application& application) {
   CLI::App* verb = application.add_verb(
       "segment", "Find the tissue in a CT: a label volume",
       "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd", [arguments](const CommonOptions& options) {
+        const auto start = std::chrono::steady_clock::now();
         Console console(options.level());
         const std::filesystem::path output = options.required_output("labels.nrrd");
         refuse_input_as_output("-o", output, {arguments->ct});
         require_volume_name(output);
+        require_own_manifest_beside(output);
         CtReadSettings reading;
         if (!arguments->spacing.empty()) reading.spacing_mm = Vec3(arguments->spacing.data());
         if (!arguments->hu.empty()) reading.hu = GrayToHu{arguments->hu[0], arguments->hu[1]};
@@ -49,7 +55,18 @@ void add_segment(Application& application) {
         for (const VerdictReason& reason : found.verdict.reasons()) {
           console.message(Severity::Warning, fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
         }
+        const nlohmann::json chosen{{"window_hu", arguments->window},
+                                    {"roi_box_mm", arguments->roi},
+                                    {"seed_mm", arguments->seed},
+                                    {"spacing_mm", arguments->spacing},
+                                    {"hu", arguments->hu},
+                                    {"opening_mm", settings.opening_radius_mm},
+                                    {"smoothing_mm", found.smoothing_mm}};
+        const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        Manifest manifest = manifest_of(options, chosen.dump(), {arguments->ct}, wall_s);
+        if (manifest.specimen_id.empty()) manifest.specimen_id = specimen_id_of_scan(manifest.inputs.front().sha256);
         write_labels(output, found.labels);
+        write_manifest_beside(output, manifest);
         nlohmann::ordered_json result = to_json(found);
         result["labels"] = output.string();
         print_result(options, result);

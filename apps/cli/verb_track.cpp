@@ -13,6 +13,7 @@
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
 #include <incise/planning/plan_marked_path.hpp>
@@ -259,9 +260,10 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   if (arguments.has_plan && is_wanted) path = planned(found, arguments, scene.depth_name);
 
   require_replaceable(folder);
+  const std::string specimen_id = common_specimen_id(scene.inputs);
   AtomicFolder target(folder);
   write_contour_csv(target.path() / "contour.csv", found.lifted.contour);
-  write_ply(target.path() / "cloud.ply", found.cloud);
+  write_ply(target.path() / "cloud.ply", found.cloud, specimen_id);
   const std::string png = encode_png(draw_found(scene.picture, {&found.line}));
   write_atomically(target.path() / "found.png", [&](std::ostream& out) { out << png; });
   nlohmann::ordered_json result;
@@ -283,6 +285,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   result["figure"] = (folder / "found.png").string();
   result["path"] = nullptr;
   if (path) {
+    path->specimen_id = specimen_id;
     path->source_sha256 = sha256_of_file(target.path() / "contour.csv");
     write_tool_path(target.path() / "path.json", *path);
     result["path"] = (folder / "path.json").string();
@@ -302,7 +305,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
       {"waypoints", arguments.plan.waypoints},
       {"axis", arguments.axis}}.dump();
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_manifest(target.path(), manifest_of(options, settings, {scene.inputs.begin(), scene.inputs.end()}, wall_s));
+  write_manifest(target.path(), manifest_of(options, settings, scene.inputs, wall_s));
   target.commit();
   if (!is_wanted) {
     console.message(Severity::Warning, complaint_about(found.line, scene.picture, arguments));

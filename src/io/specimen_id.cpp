@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongest = 64;
+constexpr std::size_t kDigits = 12;          // of the digest, in the id of a specimen that nobody named
 constexpr std::size_t kHeaderBytes = 65536;  // of a file whose first lines may say it
 constexpr const char* kKey = "specimen_id";
 
@@ -93,6 +94,14 @@ bool is_specimen_id(std::string_view text) {
   };
   return !text.empty() && text.size() <= kLongest && text.front() != '-' &&
          std::all_of(text.begin(), text.end(), may_stand);
+}
+
+std::string specimen_id_of_scan(std::string_view sha256) {
+  return fmt::format("ct-{}", sha256.substr(0, kDigits));
+}
+
+std::string specimen_id_of_mesh(std::string_view sha256) {
+  return fmt::format("mesh-{}", sha256.substr(0, kDigits));
 }
 
 std::string specimen_id_of(const fs::path& path) {

@@ -108,11 +108,12 @@ std::string FolderStore::input_hash(const std::filesystem::path& path) {
 }
 
 std::string FolderStore::specimen_id() {
-  constexpr std::size_t kDigits = 12;
   if (!file_.settings.specimen_id.empty()) return file_.settings.specimen_id;
-  const bool is_mesh = !file_.inputs.specimen_mesh.empty();
-  const std::filesystem::path& data = is_mesh ? file_.inputs.specimen_mesh : file_.inputs.ct_volume;
-  return data.empty() ? "" : (is_mesh ? "mesh-" : "ct-") + input_hash(data).substr(0, kDigits);
+  const std::filesystem::path& mesh = file_.inputs.specimen_mesh;
+  if (mesh.empty())
+    return file_.inputs.ct_volume.empty() ? "" : specimen_id_of_scan(input_hash(file_.inputs.ct_volume));
+  const std::string stated = specimen_id_of(mesh);
+  return stated.empty() ? specimen_id_of_mesh(input_hash(mesh)) : stated;
 }
 
 ToolPath FolderStore::with_specimen(ToolPath path) {

@@ -193,6 +193,12 @@ class TrackTest(CommandTest):
             for found, expected in zip(w["axis"], (0, 0, -1)):
                 self.assertAlmostEqual(found, expected, places=9)
 
+    def test_path_and_cloud_carry_the_specimens_id(self):
+        (self.folder / "mount.json").write_text(json.dumps({"T_robot_camera": T_ROBOT_CAMERA, "specimen_id": "tongue-07"}))
+        self.json_of(*self.scene(), "--camera", "mount.json", "--plan", "--margin-mm", 5)
+        self.assertEqual(json.loads((self.out / "path.json").read_text())["specimen_id"], "tongue-07")
+        self.assertIn(b"comment incise.specimen_id tongue-07\n", (self.out / "cloud.ply").read_bytes())
+
     def test_a_mark_with_a_gap_is_no_ring(self):
         done = self.incise(*self.scene(opening_deg=25.0), "--camera", "mount.json", "--plan", "--json")
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)

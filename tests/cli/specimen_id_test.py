@@ -7,6 +7,7 @@ import unittest
 import small_calibration
 import small_case
 from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, files_below
+from keys_test import NRRD, voxels
 from robot_test import ring
 from sealed_json import sealed
 
@@ -68,6 +69,20 @@ class SpecimenIdTest(CommandTest):
         digest = hashlib.sha256((self.folder / "one" / "block.msh").read_bytes()).hexdigest()
         self.assertEqual(ids, {f"mesh-{digest[:12]}"})
         self.assert_refused(self.incise("surface", self.case("bad", specimen_id="tongue 7"), "-o", "bad.ply"), BAD_CASE, "specimen_id", "'tongue 7'")
+
+    def test_labels_and_mesh_of_a_scan_hand_it_on(self):
+        (self.folder / "ct.nrrd").write_bytes((NRRD + "\n").encode() + voxels())
+        scan = f"ct-{hashlib.sha256((self.folder / 'ct.nrrd').read_bytes()).hexdigest()[:12]}"
+        (self.folder / "case").mkdir()
+        self.json_of("segment", "ct.nrrd", "-o", "labels.nrrd")
+        done = self.incise("mesh", "labels.nrrd", "--coarse-mm", "6", "-o", "case/block.vtu")
+        self.assertIn(done.returncode, (DONE, NOT_ACCEPTABLE), done.stderr)
+        for manifest in ("labels.manifest.json", "case/block.manifest.json"):
+            self.assertEqual(json.loads((self.folder / manifest).read_text())["specimen_id"], scan, manifest)
+        small_case.write_case(self.folder / "case", {"specimen": {"mesh": "block.vtu"}})
+        self.assertEqual(self.json_of("surface", "case", "-o", "tissue.ply")["specimen_id"], scan)
+        (self.folder / "labels.manifest.json").write_text("{}")
+        self.assert_refused(self.incise("segment", "ct.nrrd", "-o", "labels.nrrd"), BAD_DATA, "labels.manifest.json", "another origin")
 
     def test_register_takes_it_from_its_clouds_and_no_two(self):
         for name, specimen_id in (("own", OWN), ("other", OTHER)):

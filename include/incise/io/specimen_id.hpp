@@ -16,6 +16,10 @@ inline constexpr std::string_view kSpecimenIdForm = "1 to 64 letters, digits, '.
 /// @returns whether a text may be one: 1 to 64 of letters, digits, '.', '_' and '-', not beginning with '-'.
 [[nodiscard]] bool is_specimen_id(std::string_view text);
 
+/// The id of a specimen that nobody named. @param sha256  of its scan or mesh, hexadecimal.
+[[nodiscard]] std::string specimen_id_of_scan(std::string_view sha256);
+[[nodiscard]] std::string specimen_id_of_mesh(std::string_view sha256);
+
 /// Whether a manifest.json is one that incise wrote: an object with `version`, `commit` and `instruction_set`. Another
 /// program's may have the same name.
 [[nodiscard]] bool is_own_manifest(const std::filesystem::path& file);
