@@ -20,7 +20,7 @@ using Vec7 = Eigen::Matrix<double, 7, 1>;
 
 constexpr std::size_t kMostPoints = 3000;
 constexpr std::size_t kMostCenters = 200;
-constexpr double kCenterSpacing = 0.6;  // of the range
+constexpr double kSettlingCenterSpacing = 0.6;  // of the range
 constexpr double kPatch = 3.5;          // radius of a fitted patch, in spacings of the target
 constexpr std::size_t kFewestInPatch = 10;
 constexpr double kRim = 0.35;            // how far a patch's middle may lie from its place, in its radii
@@ -71,7 +71,7 @@ Points spread_centers(const PointCloud& cloud, const std::vector<std::size_t>& i
 Asked asked_of(const PointCloud& source, double range) {
   Asked asked;
   asked.indices = spread_indices(source.points.size(), kMostPoints);
-  asked.centers = spread_centers(source, asked.indices, kCenterSpacing * range);
+  asked.centers = spread_centers(source, asked.indices, kSettlingCenterSpacing * range);
   for (const Vec3& n : source.normals) asked.up += n;
   asked.up.normalize();
   const auto rank = static_cast<Eigen::Index>(asked.centers.size());

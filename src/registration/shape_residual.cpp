@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNeighbourhood = 0.2;    // radius of a neighbourhood, in the target's: some 10 mm across on a tongue
 constexpr std::size_t kFewest = 8;        // target points in a neighbourhood, for noise to cancel
-constexpr double kFarthest = 0.15;        // from the source, in the target's radius: beyond lies something else
+constexpr double kFarthestFromSource = 0.15;        // from the source, in the target's radius: beyond lies something else
 constexpr double kUsualSettling = 0.035;  // in the target's radius: 1 mm on a tongue
 constexpr double kOfMedian = 1.2533;      // standard error of a median over that of a mean, of normal noise
 constexpr double kOfDeviation = 1.4826;   // standard deviation over the median absolute deviation, of normal noise
@@ -24,22 +24,22 @@ double median(std::vector<double>& values) {
 }
 
 /// Height of a target point above the source's surface, along the normal of the source's nearest point.
-struct Height {
+struct HeightThere {
   Vec3 place = Vec3::Zero();
   double value = 0.0;
 };
 
-std::vector<Height> heights(const PointCloud& source, const SampledSurface& target) {
+std::vector<HeightThere> heights(const PointCloud& source, const SampledSurface& target) {
   const NeighbourSearch search(source.points);
   std::vector<double> apart;  // of the source's points
   for (const Vec3& p : source.points) apart.push_back(std::sqrt(search.nearest(p, 2).back().squared_mm2));
   const double beside = kEdgeSpacings * median(apart);
-  std::vector<Height> found;
+  std::vector<HeightThere> found;
   for (const Vec3& p : target.cloud.points) {
     const std::size_t nearest = search.nearest(p).index;
     const Vec3 offset = p - source.points[nearest];
     const double height = offset.dot(source.normals[nearest]);
-    if (std::abs(height) > kFarthest || (offset - height * source.normals[nearest]).norm() > beside) continue;
+    if (std::abs(height) > kFarthestFromSource || (offset - height * source.normals[nearest]).norm() > beside) continue;
     found.push_back({p, height});
   }
   return found;
@@ -54,11 +54,11 @@ double beyond_noise(std::vector<double> heights) {
 }
 
 /// The common height in the neighbourhood of each of the source's points that lie above enough of the target.
-std::vector<double> common_heights(const Points& around, const std::vector<Height>& heights) {
+std::vector<double> common_heights(const Points& around, const std::vector<HeightThere>& heights) {
   std::vector<double> sizes;
   if (heights.empty()) return sizes;
   Points places;
-  for (const Height& one : heights) places.push_back(one.place);
+  for (const HeightThere& one : heights) places.push_back(one.place);
   const NeighbourSearch search(places);
   std::vector<double> near;
   for (const Vec3& center : around) {
