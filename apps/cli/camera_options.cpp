@@ -115,7 +115,7 @@ void add_scale_options(CLI::App& verb, ScaleOptions& options) {
   verb.add_option("--ruler", options.ruler, "Find the scale in the photograph: a ruler's ticks, or a solid scale bar")
       ->check(CLI::IsMember({"ticks", "bar"}));
   verb.add_option("--ruler-mm", options.ruler_mm,
-                  "From one of the ruler's finest ticks to the next; of a bar: its length")
+                  "From one of the ruler's finest ticks to the next, by default 1 mm; of a bar: its length")
       ->check(above_zero("--ruler-mm"));
   verb.add_option("--two-points", options.two_points, "Scale from two pixels and their distance: U V U V MM")
       ->expected(5);
@@ -136,6 +136,8 @@ FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture, co
     throw CaseError("command line", "scale", ways == 0 ? "no scale" : fmt::format("{} scales", ways),
                     "one of --mm-per-pixel, --ruler, --two-points, --rectangle");
   }
+  if (options.ruler == "bar" && !options.ruler_mm)
+    throw CaseError("command line", "--ruler bar", "no length", "the bar's length: --ruler-mm");
   FoundScale found;
   try {
     if (options.mm_per_pixel > 0.0) {

@@ -23,7 +23,7 @@ namespace incise::cli {
 struct ScaleOptions {
   double mm_per_pixel = 0.0;
   std::string ruler;
-  double ruler_mm = 1.0;
+  std::optional<double> ruler_mm;
   std::vector<double> two_points;
   std::vector<double> rectangle;
   std::vector<double> rectangle_mm;

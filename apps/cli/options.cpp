@@ -96,6 +96,14 @@ bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem
   return std::mismatch(b.begin(), b.end(), a.begin(), a.end()).first == b.end();
 }
 
+void refuse_same_output(const std::string& option, const std::filesystem::path& output, const std::string& other_option,
+                        const std::filesystem::path& other) {
+  if (output.empty() || other.empty()) return;
+  if (!is_same_or_within(output, other) && !is_same_or_within(other, output)) return;
+  throw CaseError("command line", other_option, other.string(),
+                  fmt::format("another file than that of {} {}: one would replace the other", option, output.string()));
+}
+
 OlderOutput::OlderOutput(std::filesystem::path output, Console& console)
     : output_(std::move(output)), console_(console) {
   std::error_code absent;

@@ -41,6 +41,10 @@ class StagesKept : public Cancelled {
 void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
                             const std::vector<std::filesystem::path>& inputs);
 
+/// Refuses two outputs of one name (status 2): the second would replace the first. Empty names: nothing to refuse.
+void refuse_same_output(const std::string& option, const std::filesystem::path& output, const std::string& other_option,
+                        const std::filesystem::path& other);
+
 /// What every verb understands.
 struct CommonOptions {
   std::filesystem::path output;

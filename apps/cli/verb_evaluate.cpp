@@ -193,7 +193,7 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   tell_red_in_tumor(found.red_in_tumor, result);
   tell_green_beside(found.green_beside, result);
   if (scale.ruler) add_ruler_doubts(*scale.ruler, result.verdict);
-  add_ring_doubts(found, result.verdict);
+  add_ring_doubts(found, photo.max_gap_mm, result.verdict);
   for (const VerdictReason& reason : result.verdict.reasons()) {
     result.warnings.push_back(fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
   }
@@ -254,6 +254,7 @@ void add_evaluate(Application& application) {
                                                                              arguments->tumor, arguments->line};
                              refuse_input_as_output("-o", options.output, inputs);
                              refuse_input_as_output("--figure", arguments->figure, inputs);
+                             refuse_same_output("-o", options.output, "--figure", arguments->figure);
                              const EvaluationSettings settings = settings_of(*arguments);
                              const std::string specimen_id = specimen_of(*arguments, inputs);
                              Measured result = arguments->photo.empty() ? from_files(*arguments, settings)
@@ -288,7 +289,8 @@ void add_evaluate(Application& application) {
                    "What the red line is: a thin line along the inner edge, or the painted kerf")
       ->check(CLI::IsMember({"annotation", "kerf"}));
   add_scale_options(*verb, arguments->scale);
-  verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A red or green ring with a longer gap is open")
+  verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A red or green ring with a gap clearly longer (0.18 mm and 2 pixels) is open; of a red one slightly longer, the "
+                   "verdict says so")
       ->check(between("--max-gap-mm", 0.0, 10.0));
   verb->add_option("--target-mm", arguments->target_mm,
                    "Distance aimed at; default: 5.0 for a mid-line, 4.5 for an inner edge")

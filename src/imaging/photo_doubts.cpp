@@ -66,8 +66,15 @@ void add_ruler_doubts(const Ruler& ruler, Verdict& verdict) {
       "photo_lens", "the lens's distortion was left in the picture", verdict);
 }
 
-void add_ring_doubts(const PhotoContours& contours, Verdict& verdict) {
-  if (!contours.red.is_closed || !contours.odd_stretch) return;
+void add_ring_doubts(const PhotoContours& contours, double max_gap_mm, Verdict& verdict) {
+  if (!contours.red.is_closed) return;
+  if (const double gap_mm = contours.red.max_gap_mm(); gap_mm > max_gap_mm) {
+    verdict.add("photo_ring", gap_mm,
+                fmt::format("the red ring is taken as closed although it is not seen for {:.2f} mm, more than {:g}: such "
+                            "a gap cannot be told from one of {:g}",
+                            gap_mm, max_gap_mm, max_gap_mm));
+  }
+  if (!contours.odd_stretch) return;
   const OddStretch& odd = *contours.odd_stretch;
   verdict.add(
       "photo_ring", odd.length_mm,

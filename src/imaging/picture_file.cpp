@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace incise::imaging_detail {
@@ -65,6 +67,13 @@ class Bytes {
                       "Is it damaged?");
     }
   }
+  /// Measures are taken along rows and columns alike. @param x, y  pixels in one length, as the file states them, or 0.
+  void require_square_pixels(double x, double y) const {
+    constexpr double kSquare = 0.01;
+    if (!(x > 0.0 && y > 0.0) || std::abs(x / y - 1.0) <= kSquare) return;
+    throw DataError(name_, "", fmt::format("pixels that are not square ({:g} in a width, {:g} in a height)", x, y),
+                    "square pixels", "Scale the picture so that its pixels are square, or take the entry out.");
+  }
   [[noreturn]] void refuse_header(const char* found) const {
     throw DataError(name_, "", found, kWhole, "Is it damaged?");
   }
@@ -87,6 +96,7 @@ constexpr double kJpegPixelsPerByte = 8.0 * 64.0;
 void check_png(const Bytes& file) {
   constexpr std::uint32_t kHeader = 0x49484452;  // "IHDR"
   constexpr std::uint32_t kEnd = 0x49454E44;     // "IEND"
+  constexpr std::uint32_t kResolution = 0x70485973;  // "pHYs"
   constexpr std::uint32_t kHeaderLength = 13;
   std::size_t place = 8;
   while (true) {
@@ -98,6 +108,8 @@ void check_png(const Bytes& file) {
       if (kind != kHeader || length != kHeaderLength) file.refuse_header("no PNG header (IHDR) at its start");
       file.require_size(file.at(16, 4, true), file.at(20, 4, true), kPngPixelsPerByte);
     }
+    if (kind == kResolution && length == 9)
+      file.require_square_pixels(file.at(place + 8, 4, true), file.at(place + 12, 4, true));
     if (kind == kEnd) return;
     place += 12 + static_cast<std::size_t>(length);
   }
@@ -105,6 +117,7 @@ void check_png(const Bytes& file) {
 
 /// Walks the segments to the frame header, which tells the number of channels, and asks for the end marker.
 void check_jpeg(const Bytes& file) {
+  constexpr std::uint32_t kJfif = 0x4A464946;  // "JFIF"
   std::size_t place = 2;
   bool has_frame = false;
   while (true) {
@@ -118,6 +131,8 @@ void check_jpeg(const Bytes& file) {
       file.require_size(file.at(place + 7, 2, true), file.at(place + 5, 2, true), kJpegPixelsPerByte);
       has_frame = true;
     }
+    const bool is_jfif = marker == 0xFFE0 && length >= 14 && file.at(place + 4, 4, true) == kJfif;
+    if (is_jfif) file.require_square_pixels(file.at(place + 12, 2, true), file.at(place + 14, 2, true));
     if (marker == 0xFFDA || marker >> 8 != 0xFF) break;
     place += 2 + length;
   }
@@ -139,7 +154,11 @@ void check_tiff(const Bytes& file) {
     std::uint32_t count = 0;
     int size = 0;
   } offsets, counts;
-  double width = 0.0, height = 0.0;
+  double width = 0.0, height = 0.0, x_resolution = 0.0, y_resolution = 0.0;
+  const auto ratio_at = [&](std::size_t entry) {
+    const std::size_t place = file.at(entry + 8, 4, big);
+    return static_cast<double>(file.at(place, 4, big)) / std::max(1.0, static_cast<double>(file.at(place + 4, 4, big)));
+  };
   for (std::uint32_t i = 0; i < entries; ++i) {
     const std::size_t entry = directory + 2 + 12 * static_cast<std::size_t>(i);
     const std::uint32_t tag = file.at(entry, 2, big);
@@ -150,10 +169,13 @@ void check_tiff(const Bytes& file) {
     if (tag == 262 && file.at(entry + 8, 2, big) == 5) file.cmyk();
     if (tag == 256 && count == 1) width = file.at(entry + 8, size, big);
     if (tag == 257 && count == 1) height = file.at(entry + 8, size, big);
+    if (tag == 282) x_resolution = ratio_at(entry);
+    if (tag == 283) y_resolution = ratio_at(entry);
     if (tag == 273 || tag == 324) offsets = numbers;
     if (tag == 279 || tag == 325) counts = numbers;
   }
   file.require_size(width, height, kTiffPixelsPerByte);
+  file.require_square_pixels(x_resolution, y_resolution);
   for (std::uint32_t i = 0; i < std::min(offsets.count, counts.count); ++i) {
     const auto number = [&](const Numbers& list) {
       return file.at(list.place + static_cast<std::size_t>(list.size) * i, list.size, big);

@@ -108,11 +108,14 @@ Ruler ruler_of_bar(const ColorPicture& picture, double length_mm, const std::fil
 
 }  // namespace
 
-Ruler find_ruler(const ColorPicture& picture, RulerKind kind, double length_mm, const std::filesystem::path& name) {
-  INCISE_REQUIRE(std::isfinite(length_mm) && length_mm > 0.0,
-                 fmt::format("expected a length above 0 mm, found {}", length_mm));
+Ruler find_ruler(const ColorPicture& picture, RulerKind kind, std::optional<double> length_mm,
+                 const std::filesystem::path& name) {
+  INCISE_REQUIRE(!length_mm || (std::isfinite(*length_mm) && *length_mm > 0.0),
+                 fmt::format("expected a length above 0 mm, found {}", *length_mm));
+  INCISE_REQUIRE(length_mm || kind == RulerKind::Ticks, "expected the bar's length, found none");
   imaging_detail::hold_opencv_threads();
-  return kind == RulerKind::Ticks ? imaging_detail::ruler_of_ticks(picture, length_mm, name) : ruler_of_bar(picture, length_mm, name);
+  return kind == RulerKind::Ticks ? imaging_detail::ruler_of_ticks(picture, length_mm, name)
+                                  : ruler_of_bar(picture, *length_mm, name);
 }
 
 }  // namespace incise

@@ -1,3 +1,4 @@
+#include "imaging/finer_ticks.hpp"
 #include "imaging/ruler_ticks.hpp"
 
 #include <incise/core/error.hpp>
@@ -179,9 +180,23 @@ void require_one_spacing(const std::vector<CountedRow>& rows, const std::filesys
   }
 }
 
+/// Ticks that are too faint or too short to be strokes would make the scale that of the coarser ones.
+void require_no_finer_ticks(const ColorPicture& picture, const Comb& comb, const std::filesystem::path& name) {
+  cv::Mat grey;
+  cv::cvtColor(pixels_of(picture), grey, cv::COLOR_RGB2GRAY);
+  const std::optional<FinerTicks> finer = finer_ticks(grey, comb);
+  if (!finer) return;
+  throw DataError(name, "",
+                  fmt::format("fainter marks between a ruler's ticks ({}), at {:.2f} of their spacing", text_of(comb),
+                              finer->share),
+                  "a ruler whose finest ticks are all seen",
+                  "Take the photograph sharper or nearer, or give the scale with two ticks of known distance: "
+                  "--two-points.");
+}
+
 }  // namespace
 
-Ruler ruler_of_ticks(const ColorPicture& picture, double length_mm, const std::filesystem::path& name) {
+Ruler ruler_of_ticks(const ColorPicture& picture, std::optional<double> length_mm, const std::filesystem::path& name) {
   std::optional<Comb> best;
   for (const int window : kWindows) {
     const std::vector<CountedRow> rows = rows_in(picture, window);
@@ -199,7 +214,15 @@ Ruler ruler_of_ticks(const ColorPicture& picture, double length_mm, const std::f
                     "a ruler with its ticks in view",
                     "Give the scale with --mm-per-pixel or two points of known distance instead.");
   }
-  Ruler ruler{length_mm / best->spacing_px, 100.0 * best->error_px / best->spacing_px, {}, shape_of(*best)};
+  require_no_finer_ticks(picture, *best, name);
+  if (!length_mm && every_second_is_longer(*best)) {
+    throw DataError(name, "", fmt::format("a ruler of which every second tick is longer ({})", text_of(*best)),
+                    "ticks of millimetres, or their distance given",
+                    "Are they half millimetres, or parts of an inch? Give the distance of its finest ticks: "
+                    "--ruler-mm 0.5.");
+  }
+  Ruler ruler{length_mm.value_or(1.0) / best->spacing_px,
+              100.0 * best->error_px / best->spacing_px, {}, shape_of(*best)};
   for (const Stroke& tick : best->ticks) ruler.marks_px.push_back(tick.center);
   return ruler;
 }

@@ -5,6 +5,7 @@
 #include <incise/imaging/photo_scale.hpp>
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace incise::imaging_detail {
@@ -22,8 +23,10 @@ struct Comb {
 /// @pre 8 ticks or more
 [[nodiscard]] RulerShape shape_of(const Comb& comb);
 
-/// @throws DataError where no ticks are found, or ticks of two spacings.
-[[nodiscard]] Ruler ruler_of_ticks(const ColorPicture& picture, double length_mm, const std::filesystem::path& name);
+/// @throws DataError where no ticks are found, ticks of two spacings, or marks between them; without a length also where
+/// every second is longer.
+[[nodiscard]] Ruler ruler_of_ticks(const ColorPicture& picture, std::optional<double> length_mm,
+                                   const std::filesystem::path& name);
 
 /// Refuses a picture with a ruler's ticks in view, for one whose scale is a bar. @throws DataError
 void require_no_ticks(const ColorPicture& picture, const std::filesystem::path& name);

@@ -138,6 +138,11 @@ class PhotoTest(CommandTest):
         self.assert_refused(self.incise("evaluate", photo), BAD_CASE, "no scale", "--mm-per-pixel")
         self.assert_refused(self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--ruler", "ticks"), BAD_CASE, "2 scales")
         self.assert_refused(self.incise("evaluate", photo, "--ruler", "ticks"), BAD_DATA, "no ruler")
+        self.assert_refused(self.incise("evaluate", photo, "--ruler", "bar"), BAD_CASE, "--ruler-mm")
+        one = self.folder / "one.png"
+        done = self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "-o", one, "--figure", one)
+        self.assert_refused(done, BAD_CASE, "--figure", "-o", "one.png")
+        self.assertFalse(one.exists())
         self.assert_refused(self.incise("evaluate"), BAD_CASE, "no input")
 
 

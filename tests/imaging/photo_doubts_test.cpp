@@ -62,7 +62,7 @@ std::string said_of(const Scene& s) {
     const PhotoContours found = found_in(s);
     if (!found.incision.is_closed) return "open";
     Verdict verdict;
-    add_ring_doubts(found, verdict);
+    add_ring_doubts(found, PhotoSettings{}.max_gap_mm, verdict);
     return verdict.reasons().empty() ? "ok" : "doubt: " + verdict.reasons().front().message;
   } catch (const DataError& error) {
     return fmt::format("refused: {}", error.what());
@@ -97,6 +97,20 @@ TEST(RandomRing, SoundOnesAreNotDoubted) {
 TEST(RandomRing, BloodOverAnOpeningIsFoundOut) {
   EXPECT_LE(counted(false, true, 3)["ok"], 0.1 * cases());
   EXPECT_LE(counted(true, true, 4)["ok"], 0.1 * cases());
+}
+
+TEST(RingDoubts, SayThatAGapIsLongerThanAllowed) {
+  PhotoContours contours;
+  contours.red.is_closed = true;
+  contours.red.gaps.push_back({.length_mm = 1.12});
+  Verdict verdict;
+  add_ring_doubts(contours, 1.0, verdict);
+  ASSERT_EQ(verdict.reasons().size(), 1U);
+  EXPECT_EQ(verdict.reasons().front().id, "photo_ring");
+  EXPECT_THAT(verdict.reasons().front().message, ::testing::HasSubstr("1.12 mm, more than 1"));
+  Verdict allowed;
+  add_ring_doubts(contours, 1.2, allowed);
+  EXPECT_TRUE(allowed.reasons().empty());
 }
 
 }  // namespace

@@ -91,6 +91,44 @@ TEST(DecodePicture, RefusesATiffThatClaimsMoreThanItHolds) {
   EXPECT_THAT(refusal(tiff), HasSubstr("0 x 14000 pixels"));
 }
 
+TEST(DecodePicture, RefusesPixelsThatAreNotSquare) {
+  std::string jpeg = encode_jpeg(small_picture(), 90);
+  const std::size_t jfif = jpeg.find("JFIF");
+  ASSERT_NE(jfif, std::string::npos);
+  put(jpeg, jfif + 8, 72U << 16 | 72U);
+  EXPECT_NO_THROW(static_cast<void>(decode_picture(jpeg, "p.jpg")));
+  put(jpeg, jfif + 8, 72U << 16 | 96U);
+  EXPECT_THAT(refusal(jpeg), HasSubstr("not square (72 in a width, 96 in a height)"));
+
+  std::string png = encode_png(small_picture());
+  std::string block(21, '\0');
+  put(block, 0, 9);
+  block.replace(4, 4, "pHYs");
+  put(block, 8, 2000);
+  put(block, 12, 1000);
+  block[16] = 1;
+  put(block, 17, 0xA91DF3B8);  // checksum, computed apart
+  png.insert(8 + 25, block);
+  EXPECT_THAT(refusal(png), HasSubstr("not square (2000 in a width, 1000 in a height)"));
+
+  std::string tiff("MM\0*\0\0\0\x08\0\x04", 10);
+  const auto add = [&](std::uint32_t tag, std::uint32_t kind, std::uint32_t value) {
+    std::string entry(12, '\0');
+    put(entry, 0, tag << 16 | kind);
+    put(entry, 4, 1);
+    put(entry, 8, value);
+    tiff += entry;
+  };
+  add(256, 4, 10);
+  add(257, 4, 10);
+  add(282, 5, 58);
+  add(283, 5, 66);
+  tiff += std::string(16, '\0');
+  for (const auto& [place, value] : std::vector<std::pair<std::size_t, std::uint32_t>>{{58, 300}, {62, 1}, {66, 300}, {70, 2}})
+    put(tiff, place, value);
+  EXPECT_THAT(refusal(tiff), HasSubstr("not square (300 in a width, 150 in a height)"));
+}
+
 TEST(DecodePicture, RefusesPicturesWithoutColor) {
   ColorPicture grey = small_picture();
   for (std::size_t i = 0; i < grey.rgb.size(); ++i) grey.rgb[i] = grey.rgb[i - i % 3];

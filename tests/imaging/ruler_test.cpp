@@ -12,6 +12,7 @@
 #include <cstdlib>
 #include <map>
 #include <numbers>
+#include <optional>
 
 namespace incise {
 namespace {
@@ -34,6 +35,9 @@ struct Scale {
   double from_mm = 1.0;
   double to_mm = 19.0;
   bool is_far_edge = false;
+  double tick_mm = 0.0;   ///< 0: the ruler's
+  double second_grey = 25.0;   ///< of every second tick
+  double second_share = 1.0;  ///< length of every second tick
 };
 
 struct DrawnRuler {
@@ -58,9 +62,17 @@ void draw(PaintedPhoto& photo, const DrawnRuler& ruler) {
     for (int i = 0; i <= count; ++i) {
       const Vec3 foot =
           corner + (scale.from_mm + i * scale.step_mm) * along + side * (0.5 * ruler.width_mm - 0.2) * across;
-      const double length = ruler.tick_mm * (i % 10 == 0 ? 1.6 : (i % 5 == 0 ? 1.3 : 1.0));
-      photo.lines.push_back(
-          {.course = {{foot, foot - side * length * across}, false}, .width_mm = ruler.line_mm, .color = {25, 25, 28}});
+      const bool is_scale_of_halves = scale.second_share < 1.0;
+      const int whole = is_scale_of_halves ? i / 2 : i;
+      const double share = is_scale_of_halves && i % 2 == 1 ? scale.second_share
+                           : whole % 10 == 0                ? 1.6
+                           : whole % 5 == 0                 ? 1.3
+                                                            : 1.0;
+      const double length = (scale.tick_mm > 0.0 ? scale.tick_mm : ruler.tick_mm) * share;
+      const double grey = i % 2 == 1 ? scale.second_grey : 25.0;
+      photo.lines.push_back({.course = {{foot, foot - side * length * across}, false},
+                             .width_mm = ruler.line_mm,
+                             .color = {grey, grey, grey + 3.0}});
     }
   }
 }
@@ -116,7 +128,8 @@ struct Said {
   std::string message;
   double mm_per_pixel = 0.0;
 };
-Said said_of(const ColorPicture& picture, RulerKind kind = RulerKind::Ticks, double length_mm = 1.0) {
+Said said_of(const ColorPicture& picture, RulerKind kind = RulerKind::Ticks,
+             std::optional<double> length_mm = 1.0) {
   try {
     const Ruler ruler = find_ruler(through_jpeg(picture), kind, length_mm, "ruler.jpg");
     Verdict verdict;
@@ -158,7 +171,7 @@ TEST(RandomRuler, SoundOnesAreMeasured) {
   Counts counts;
   for (int i = 0; i < cases(); ++i) {
     const Drawn drawn = random_drawing(random);
-    Said said = said_of(photographed(drawn));
+    Said said = said_of(photographed(drawn), RulerKind::Ticks, {});
     if (said.what == "ok" && std::abs(said.mm_per_pixel / drawn.photo.mm_per_pixel - 1.0) > 0.005) {
       said = {"wrong", fmt::format("{} for {}", said.mm_per_pixel, drawn.photo.mm_per_pixel)};
     }
@@ -248,6 +261,66 @@ TEST(RandomRuler, ABarIsNotLookedForAmongTicks) {
     counts.add(said_of(photographed(random_drawing(random)), RulerKind::Bar, 5.0));
   }
   expect_found_out("ticks taken for a bar", counts, 1.0);
+}
+
+TEST(RandomRuler, HalfMillimetresTooShortToBeStrokesAreFoundOut) {
+  Random random(8);
+  Counts counts;
+  for (int i = 0; i < cases(); ++i) {
+    Drawn drawn = random_drawing(random);
+    Scale halves = drawn.ruler.scales.front();
+    halves.from_mm += 0.5;
+    halves.tick_mm = random.uniform(0.3, 0.5);
+    drawn.ruler.scales.push_back(halves);
+    counts.add(said_of(photographed(drawn), RulerKind::Ticks, {}));
+  }
+  expect_found_out("half millimetres as short stubs", counts, 0.98);
+}
+
+TEST(RandomRuler, FaintHalfMillimetresAreFoundOut) {
+  Random random(9);
+  Counts counts;
+  for (int i = 0; i < cases(); ++i) {
+    Drawn drawn = random_drawing(random);
+    Scale& scale = drawn.ruler.scales.front();
+    scale.step_mm = 0.5;
+    scale.second_grey = random.uniform(170.0, 200.0);
+    drawn.ruler.line_mm = std::min(drawn.ruler.line_mm, 0.14);
+    counts.add(said_of(photographed(drawn), RulerKind::Ticks, 0.5));
+  }
+  expect_found_out("every second tick faint", counts, 0.98);
+}
+
+TEST(RandomRuler, HalfMillimetresOfTwoLengthsAskForTheirDistance) {
+  Random random(10);
+  Counts counts, told;
+  for (int i = 0; i < cases(); ++i) {
+    Drawn drawn = random_drawing(random);
+    drawn.ruler.scales.front().step_mm = 0.5;
+    drawn.ruler.scales.front().second_share = random.uniform(0.55, 0.75);
+    drawn.ruler.line_mm = std::min(drawn.ruler.line_mm, 0.14);
+    const ColorPicture picture = photographed(drawn);
+    counts.add(said_of(picture, RulerKind::Ticks, {}));
+    told.add(said_of(picture, RulerKind::Ticks, 0.5));
+  }
+  expect_found_out("half millimetres of two lengths", counts, 0.98);
+  EXPECT_GE(told.of("ok"), 0.98 * cases()) << told.text();
+}
+
+TEST(FindRuler, TakesASecondRulerAcrossForATest) {
+  Drawn drawn{empty_photo(), {}};
+  DrawnRuler across = drawn.ruler;
+  drawn.ruler.corner = {2.0, 4.0};
+  across.corner = {23.0, 2.0};
+  across.angle = 0.5 * std::numbers::pi;
+  draw(drawn.photo, across);
+  const ColorPicture straight = photographed(drawn);
+  EXPECT_EQ(said_of(straight).what, "ok") << said_of(straight).message;
+  // Far away and leaning along one of the two: that one's spacing shrinks by a fifth, and nothing else changes.
+  const testing::TiltedCamera camera{.tilt_rad = 35.0 * std::numbers::pi / 180.0, .azimuth_rad = 0.0, .distance_mm = 5000.0};
+  const Said said = said_of(testing::seen_obliquely(straight, camera, drawn.photo.mm_per_pixel));
+  EXPECT_EQ(said.what, "refused");
+  EXPECT_THAT(said.message, HasSubstr("ticks of two spacings"));
 }
 
 TEST(FindRuler, NamesBothSpacingsOfARulerWithTwo) {

@@ -11,7 +11,8 @@ namespace incise {
 /// A figure counts where it exceeds its limit and 4 times its standard error. docs/models/photograph.md
 void add_ruler_doubts(const Ruler& ruler, Verdict& verdict);
 
-/// Adds `photo_ring` where a closed red ring would be open without a stretch that looks unlike the rest of it.
-void add_ring_doubts(const PhotoContours& contours, Verdict& verdict);
+/// Adds `photo_ring` where a closed red ring would be open without a stretch that looks unlike the rest of it, or has a
+/// gap above the largest that is allowed, by less than can be told. @param max_gap_mm  of the photograph's settings
+void add_ring_doubts(const PhotoContours& contours, double max_gap_mm, Verdict& verdict);
 
 }  // namespace incise

@@ -57,12 +57,15 @@ struct Ruler {
   std::optional<RulerShape> shape;  ///< of ticks
 };
 
-/// Finds a ruler. @param length_mm  from tick to tick (of the finest ticks), or of the whole bar.
+/// Finds a ruler. @param length_mm  from tick to tick (of the finest ticks), or of the whole bar; without it ticks stand
+/// for millimetres.
 /// @throws DataError where none is found (fewer than 8 evenly spaced ticks; no solid bar), naming what was seen; where
 /// a second bar is at least a quarter as long as the longest, with lengths and places; where ticks of two spacings are
-/// in view, on one ruler or on two, with spacings and places; for a bar, where ticks are in view: the bar may be the
-/// ruler's body, or a tick.
-[[nodiscard]] Ruler find_ruler(const ColorPicture& picture, RulerKind kind, double length_mm,
+/// in view, on one ruler or on two, with spacings and places; where fainter or shorter marks lie between the ticks that
+/// were found; where no length is given and every second tick is longer, as on a scale of halves; for a bar, where
+/// ticks are in view: the bar may be the ruler's body, or a tick.
+/// @throws InvalidArgument for a bar without its length, or a length that is not above 0.
+[[nodiscard]] Ruler find_ruler(const ColorPicture& picture, RulerKind kind, std::optional<double> length_mm,
                                const std::filesystem::path& name);
 
 }  // namespace incise
