@@ -189,23 +189,18 @@ CheckedProgram checked_program(const Case& settings, const Study& done) {
   return made;
 }
 
-void add_failed_checks(const ProgramChecks& checks, Verdict& verdict) {
-  for (const ProgramCheck& check : checks.checks) {
-    if (!check.passed) verdict.add("program_check", check.value, check.message());
-  }
-}
-
 void write_program_files(StudyRun& study, const CheckedProgram& made, const Verdict& verdict, const VerdictGate& gate,
                          nlohmann::ordered_json& json) {
   const Case& settings = study.store.case_file().settings;
   ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())}, {"title", settings.title}};
   provenance.emplace_back("specimen_id", study.store.specimen_id());
-  if (settings.is_virtual) provenance.emplace_back("specimen", "VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.");
+  if (settings.is_virtual) provenance.emplace_back("specimen", kVirtualSpecimen);
   for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
   const ProgramHeader header = program_header(made.program, made.path, made.checks, provenance);
   AtomicFolder target(study.store.root() / "program");
   ToolPath path = made.path;
   path.specimen_id = study.store.specimen_id();
+  path.is_virtual = settings.is_virtual;
   write_tool_path(target.path() / "path.json", path, verdict);
   const std::string script = to_urscript(made.program, header);
   write_atomically(target.path() / "program.json", [&](std::ostream& out) { out << to_json(made.program, &made.checks, header); });

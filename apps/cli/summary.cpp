@@ -19,7 +19,7 @@ std::string shown(const nlohmann::ordered_json& value) {
   return value.dump();
 }
 
-/// "abs_error_mm.mean" stays one name; long lists are left to --json.
+/// "abs_error_mm.mean" stays one name; long lists of numbers are left to --json.
 void print_lines(const nlohmann::ordered_json& object, const std::string& prefix) {
   constexpr std::size_t kLongList = 6;
   for (const auto& [key, value] : object.items()) {
@@ -34,7 +34,7 @@ void print_lines(const nlohmann::ordered_json& object, const std::string& prefix
         for (const auto& [item_key, item_value] : item.items()) line += fmt::format("{} {}  ", item_key, shown(item_value));
         fmt::print("{:<34} {}\n", name, line);
       }
-    } else if (!value.is_array() || value.size() <= kLongList) {
+    } else if (!value.is_array() || value.size() <= kLongList || value.front().is_string()) {
       fmt::print("{:<34} {}\n", name, shown(value));
     }
   }

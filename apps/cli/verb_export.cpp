@@ -249,7 +249,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
     require_clouds_unchanged(*registration, arguments.registration, console);
     inputs.registration = registration_summary(*registration, arguments.registration);
   }
-  const Verdict verdict = verdict_of(arguments, registration);
+  Verdict verdict = verdict_of(arguments, registration);
   if (!arguments.surface.empty()) require_same_specimen(arguments.surface, path.specimen_id, "the path's");
   if (intended) require_same_specimen(arguments.intended, path.specimen_id, "the path's");
   if (arguments.power_w > 0.0) {
@@ -265,16 +265,16 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   nlohmann::ordered_json result = summary_of(program, checks);
   for (const ProgramCheck& check : checks.checks) {
     if (check.is_overridden) console.message(Severity::Warning, "overridden: " + check.message());
-    if (!check.passed && !check.is_overridden) console.message(Severity::Warning, "not exported: " + check.message());
   }
   const auto elapsed = [&start] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
+  add_failed_checks(checks, verdict);
   const VerdictGate gate = gate_of(verdict, arguments.accepted);
   report_gate(verdict, gate, console);
   result["verdict"] = to_json(verdict);
   result["gate"] = to_json(gate);
-  if (!checks.may_be_written() || !gate.is_open) {
+  if (!gate.is_open) {
     result["stale_output"] = older.json();
     result["wall_s"] = elapsed();
     print_result(options, result);
@@ -284,6 +284,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
                            {"made_from", arguments.path.filename().string()},
                            {"made_from_sha256", sha256_of_file(arguments.path)}};
   if (!path.specimen_id.empty()) provenance.emplace_back("specimen_id", path.specimen_id);
+  if (path.is_virtual) provenance.emplace_back("specimen", kVirtualSpecimen);
   for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
   const ProgramHeader header = program_header(program, path, checks, provenance);
   const std::string text = text_of(program, checks, header, arguments, output);
@@ -300,7 +301,8 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
 void add_export(Application& application) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* verb =
-      application.add_verb("export", "Turn a path in the robot's frame into a program, after the safety checks",
+      application.add_verb("export", "Turn a path in the robot's frame into a program, after the safety checks. A path whose cut was never simulated "
+                           "needs --accept not_simulated",
                            "incise export projected/path.json --surface projected/surface.ply --registration "
                            "registration/registration.json -o cut.script",
                            [arguments](const CommonOptions& options) { return run_export(*arguments, options); });

@@ -49,6 +49,12 @@ nlohmann::ordered_json to_json(const VerdictGate& gate) {
   return {{"open", gate.is_open}, {"accepted", gate.accepted}, {"missing", gate.missing}, {"refused", gate.refused}};
 }
 
+void add_failed_checks(const ProgramChecks& checks, Verdict& verdict) {
+  for (const ProgramCheck& check : checks.checks) {
+    if (!check.passed && !check.is_overridden) verdict.add("program_check", check.value, check.message());
+  }
+}
+
 ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate) {
   ProgramHeader header{{"verdict", std::string(to_string(verdict.status()))}};
   for (const VerdictReason& reason : verdict.reasons()) header.emplace_back("reason", fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));

@@ -3,6 +3,7 @@
 #include "options.hpp"
 
 #include <incise/core/verdict.hpp>
+#include <incise/robot/checks.hpp>
 #include <incise/robot/program_text.hpp>
 
 #include <string>
@@ -21,6 +22,12 @@ void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monit
 
 /// `{open, accepted, missing, refused}`.
 [[nodiscard]] nlohmann::ordered_json to_json(const VerdictGate& gate);
+
+/// What a program's header says of a specimen that is no patient's.
+inline constexpr const char* kVirtualSpecimen = "VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.";
+
+/// Failed checks of a program that nobody took on themselves join the verdict as `program_check`.
+void add_failed_checks(const ProgramChecks& checks, Verdict& verdict);
 
 /// What a program's header says of its verdict: the status, each reason, each accepted caution.
 [[nodiscard]] ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate);

@@ -48,7 +48,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "",
      "",
      "The specimen's place was typed (T_robot_sim of the case, or a transform that `incise register` did not write): "
-     "no registration says where it lies."},
+     "no registration says where it lies. Not of a case with `specimen_is: virtual`."},
     {"not_simulated",
      kCaution,
      {},

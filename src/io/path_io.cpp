@@ -22,6 +22,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* kSchema = "incise.path/1";
 constexpr const char* kVerdict = "verdict";
+constexpr const char* kSpecimenIs = "specimen_is";
 constexpr const char* kDigest = "digest_sha256";
 constexpr double kUnitAxisTolerance = 1e-4;  // an axis typed with four digits passes; 0.5 µm at 5 mm depth
 
@@ -64,7 +65,7 @@ std::string read_hash(const JsonValue& place) {
 
 ToolPath read_path(const JsonValue& root) {
   root.require_only({"schema", "frame", "kind", "closed", "waypoints", "tumor_edge", "tumor_edge_closed", "T_robot_sim",
-                     "source_sha256", "specimen_id", kVerdict});
+                     "source_sha256", "specimen_id", kSpecimenIs, kVerdict});
   if (const auto schema = root.find("schema"); schema && schema->text() != kSchema) {
     schema->expected(fmt::format("\"{}\"", kSchema));
   }
@@ -84,6 +85,11 @@ ToolPath read_path(const JsonValue& root) {
   if (const auto id = root.find("specimen_id")) {
     path.specimen_id = id->text();
     if (!is_specimen_id(path.specimen_id)) id->expected(std::string(kSpecimenIdForm));
+  }
+  if (const auto kind = root.find(kSpecimenIs)) {
+    const std::string word = kind->text();
+    if (word != "real" && word != "virtual") kind->expected("one of: real, virtual");
+    path.is_virtual = word == "virtual";
   }
   return path;
 }
@@ -116,6 +122,7 @@ ordered_json document_of(const ToolPath& path) {
   }
   if (!path.source_sha256.empty()) document["source_sha256"] = path.source_sha256;
   if (!path.specimen_id.empty()) document["specimen_id"] = path.specimen_id;
+  if (path.is_virtual) document[kSpecimenIs] = "virtual";
   return document;
 }
 

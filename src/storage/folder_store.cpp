@@ -118,6 +118,7 @@ std::string FolderStore::specimen_id() {
 
 ToolPath FolderStore::with_specimen(ToolPath path) {
   path.specimen_id = specimen_id();
+  path.is_virtual = file_.settings.is_virtual;
   return path;
 }
 
@@ -138,6 +139,8 @@ const std::string& FolderStore::key(Product product) {
   if ((product == Product::Mesh && !is_skipped) || product == Product::Plan) {
     text += fmt::format(" tumor={} line={}", input_hash(file_.inputs.tumor_contour), input_hash(file_.inputs.line_contour));
   }
+  if (product == Product::Plan)  // its path states them
+    text += fmt::format(" specimen={} virtual={}", specimen_id(), file_.settings.is_virtual);
   if (product == Product::Mesh) {
     // Kernels of two instruction sets round differently: a study keeps to one, from the survey of the planned cut on.
     text += fmt::format(" isa={}", to_string(active_isa()));

@@ -144,6 +144,7 @@ void write_robust(FolderStore& store, const RobustCorrection& robust, const std:
   const RobustCompensation& chosen = robust.compensation;
   ToolPath path = chosen.path;
   path.specimen_id = store.specimen_id();
+  path.is_virtual = store.case_file().settings.is_virtual;
   write_tool_path(target.path() / "path.json", path);
   write_contour_vtp(target.path() / "path.vtp", entry_contour(chosen.path));
   Json json = robust_summary_json(robust);

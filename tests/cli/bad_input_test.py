@@ -472,7 +472,7 @@ class ExportTest(HandMadePaths, CommandTest):
 
     def assert_unsafe(self, done, name):
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
-        self.assertIn(f"not exported: {name}", done.stderr)
+        self.assertIn(f"no program: refused: program_check: {name}", done.stderr)
         self.assert_nothing_written(self.folder / "out.script")
 
     def test_a_depth_other_than_planned_is_not_exported(self):

@@ -11,7 +11,7 @@ import time
 import unittest
 
 import small_case
-from command import BAD_CASE, BAD_DATA, COMMAND, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+from command import BAD_CASE, BAD_DATA, COMMAND, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
 # Some hundreds of steps: long enough to be met on its way.
 LONG_CUT = {"cut": {"advance_per_step_mm": 0.4, "frames": 4}}
@@ -68,7 +68,7 @@ class CheckpointTest(CommandTest):
                          {"study.json", "stretched", "plan", "as_planned.checkpoint"})
 
         resumed = self.incise("simulate", "case", "-o", self.out, "--resume", "--threads", "2")
-        self.assertEqual(resumed.returncode, DONE, resumed.stderr)
+        self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
         self.assertRegex(resumed.stderr, r"simulate: goes on after step \d+")
         self.assertFalse(self.checkpoint.exists(), "a cut that is finished needs none")
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
@@ -76,9 +76,9 @@ class CheckpointTest(CommandTest):
     def test_a_checkpoint_beside_its_finished_cut_goes(self):
         self.stop("simulate", self.checkpoint, signal.SIGINT)
         left = self.checkpoint.read_bytes()
-        self.assertEqual(self.incise("simulate", "case", "-o", self.out).returncode, DONE)
+        self.assertEqual(self.incise("simulate", "case", "-o", self.out).returncode, NOT_ACCEPTABLE)
         self.checkpoint.write_bytes(left)  # as a run leaves it that is killed once the cut is in place, and before its checkpoint is removed
-        self.assertEqual(self.incise("simulate", "case", "-o", self.out).returncode, DONE)
+        self.assertEqual(self.incise("simulate", "case", "-o", self.out).returncode, NOT_ACCEPTABLE)
         self.assertFalse(self.checkpoint.exists(), "a cut that is finished needs none")
 
     def test_a_killed_run_goes_on_from_its_last_checkpoint(self):
@@ -89,7 +89,7 @@ class CheckpointTest(CommandTest):
         alive = self.out / f".as_planned.checkpoint.{os.getpid()}.0.part"
         alive.write_bytes(b"of a process that runs")
         resumed = self.incise("simulate", "case", "-o", self.out)  # by itself
-        self.assertEqual(resumed.returncode, DONE, resumed.stderr)
+        self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
         self.assertIn("simulate: goes on after step", resumed.stderr)
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
         self.assertEqual([path for path in self.out.iterdir() if path.name.startswith(".")], [alive])
@@ -140,7 +140,7 @@ class CheckpointTest(CommandTest):
         self.assert_refused(done, BAD_DATA, "as_planned.checkpoint", "key", "of a cut made by incise", "of this case, its settings and inputs")
         self.assertEqual(self.checkpoint.read_bytes(), left)
         done = self.incise("simulate", "case", "-o", self.out)
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
         self.assertIn("the cut starts from the beginning", done.stderr)
 
     def test_a_damaged_checkpoint_says_what_to_remove(self):
@@ -161,7 +161,7 @@ class FramesTest(CommandTest):
         small_case.write_case(self.folder / "case")
 
     def test_as_many_frames_as_asked_for_with_the_tool_beside_them(self):
-        self.json_of("simulate", "case", "-o", self.out, "--frames", "5")
+        self.json_of("simulate", "case", "-o", self.out, "--frames", "5", status=NOT_ACCEPTABLE)
         cut = self.out / "as_planned"
         self.assertEqual((cut / "frames.pvd").read_text().count("<DataSet "), 5)
         self.assertEqual(len(list((cut / "frames").glob("frame_*.vtu"))), 5)

@@ -33,9 +33,12 @@ class RobotTest(HandMadePaths, CommandTest):
         """Exit status 4, a message that names check, waypoint and value, and no file."""
         done = self.incise("export", self.write(path), "-o", "cut.script", "--json", *options)
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
-        failed = [c["name"] for c in json.loads(done.stdout)["checks"] if not c["passed"]]
+        result = json.loads(done.stdout)
+        failed = [c["name"] for c in result["checks"] if not c["passed"]]
         self.assertIn(check, failed)
-        lines = [line for line in done.stderr.splitlines() if f"not exported: {check}: " in line]
+        self.assertEqual((result["verdict"]["status"], result["gate"]["open"]), ("refused", False))
+        self.assertIn("program_check", [reason["id"] for reason in result["verdict"]["reasons"]])
+        lines = [line for line in done.stderr.splitlines() if f"no program: refused: program_check: {check}: " in line]
         self.assertEqual(len(lines), 1, done.stderr)
         for words in says:
             self.assertIn(words, lines[0])
@@ -66,6 +69,13 @@ class ExportTest(RobotTest):
         length = struct.unpack("<I", bag[13:17])[0]
         self.assertIn(b"index_pos=", bag[17 : 17 + length])
         self.assert_refused(self.incise("export", EXAMPLE, "--format", "ros-trajectory", "-o", "cut.txt"), BAD_CASE, "cut.txt", ".bag")
+
+    def test_a_virtual_specimen_is_said_to_be_one_in_every_form(self):
+        path = self.write({**ring(), "specimen_is": "virtual"})
+        for name, form in (("cut.script", "urscript"), ("cut.csv", "joint-csv"), ("cut.json", "json"), ("cut.yaml", "ros-trajectory")):
+            self.json_of("export", path, "--format", form, "-o", name)
+            self.assertIn("VIRTUAL SPECIMEN", (self.folder / name).read_text(), name)
+        self.assert_refused(self.incise("export", self.write({**ring(), "specimen_is": "pork"}), "-o", "x.script"), BAD_DATA, "specimen_is", "pork")
 
     def test_another_frame_is_refused(self):
         path = ring()

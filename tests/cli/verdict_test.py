@@ -143,6 +143,11 @@ class VerdictTest(CommandTest):
         again = self.json_of("simulate", "case", "-o", self.out)
         self.assertEqual(again["verdict"], cut["verdict"], "read back from the folder")
 
+    def test_simulate_of_a_cut_that_is_refused_ends_with_status_4(self):
+        self.write({"plan": {"close_margin_mm": 4.9}})
+        cut = self.json_of("simulate", "case", "-o", self.out, status=NOT_ACCEPTABLE)
+        self.assertEqual((cut["outcome"], cut["verdict"]["status"]), ("success", "refused"))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -38,6 +38,7 @@ struct ToolPath {
   std::optional<Mat4> T_robot_sim;     ///< once known; p_robot = T_robot_sim * p_sim, mm
   std::string source_sha256;           ///< of what it was made from; empty when unknown
   std::string specimen_id = {};  ///< of the specimen that it was planned on (see io/specimen_id.hpp); empty: not stated
+  bool is_virtual = false;       ///< the specimen is a synthetic body, not a patient's
 };
 
 /// The entry points as a contour.
