@@ -16,27 +16,10 @@ function(incise_compile_in_groups target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${INCISE_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE ${size})
 endfunction()
 
-option(INCISE_PRECOMPILED_HEADERS "Compile once the headers that nearly every source of the library includes" ${PROJECT_IS_TOP_LEVEL})
-
 # By default g++ collects its garbage whenever its heap has doubled from 128 MB, which takes up to a quarter of the time of a source that
 # includes Eigen and fmt; most sources end before their heap has doubled from half a gigabyte. The code that comes out is the same.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND PROJECT_IS_TOP_LEVEL)
   add_compile_options(--param=ggc-min-heapsize=524288)
-endif()
-
-set(INCISE_SHARED_HEADERS <Eigen/Core> <Eigen/Geometry> <fmt/format.h> <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory>
-  <optional> <span> <string> <vector>)
-
-# The target whose precompiled headers the modules use again. A source still includes what it uses: the presets dev and coverage
-# compile it without these, as do the projects that hold incise as a subproject. With them g++ 12 no longer passes over the overflows that it
-# sees in "text" + std::string but that are not there (GCC bug 105651): where it does, fmt::format or leaving SHARED_HEADERS out helps.
-if(INCISE_PRECOMPILED_HEADERS)
-  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/shared_headers.cpp CONTENT "// Nothing of its own: precompiled headers belong to a source.\n")
-  add_library(incise_shared_headers OBJECT ${PROJECT_BINARY_DIR}/shared_headers.cpp)
-  set_target_properties(incise_shared_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  target_compile_features(incise_shared_headers PRIVATE cxx_std_20)
-  target_link_libraries(incise_shared_headers PRIVATE Eigen3::Eigen fmt::fmt Threads::Threads incise_warnings)
-  target_precompile_headers(incise_shared_headers PRIVATE ${INCISE_SHARED_HEADERS})
 endif()
 
 # Reads cmake/layers.txt and adds each module folder under src/ that exists.
@@ -51,15 +34,12 @@ function(incise_add_modules)
   endforeach()
 endfunction()
 
-# incise_module(<name> SOURCES … [USES <incise modules>] [PUBLIC <targets>] [PRIVATE <targets>] [IN_GROUPS]
-#               [SHARED_HEADERS | OWN_HEADERS] [LIGHT])
-# Makes the target incise_<name>, alias incise::<name>, with include/ public and src/ private. IN_GROUPS: see incise_compile_in_groups.
-# SHARED_HEADERS: its sources, compiled one by one, start from the precompiled headers; OWN_HEADERS: the same, precompiled for it alone,
-# because its flags differ from those of other modules. A group reads its headers once anyway. LIGHT: its own code takes none of the time that
-# a user waits for (it reads, writes, draws, or calls other modules), so that a release build spares a third of what it takes to compile;
-# without fused operations, -O1 and -O3 give the same bits.
+# incise_module(<name> SOURCES … [USES <incise modules>] [PUBLIC <targets>] [PRIVATE <targets>] [LIGHT])
+# Makes the target incise_<name>, alias incise::<name>, with include/ public and src/ private. LIGHT: its own code takes none of the time that
+# a user waits for (it reads, writes, draws, or calls other modules), so that a release build spares a quarter of what it takes to compile;
+# without fused operations -O1 and -O3 give the same bits.
 function(incise_module name)
-  cmake_parse_arguments(ARG "IN_GROUPS;SHARED_HEADERS;OWN_HEADERS;LIGHT" "" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "LIGHT" "" "SOURCES;USES;PUBLIC;PRIVATE" ${ARGN})
   set(target incise_${name})
   add_library(${target} STATIC ${ARG_SOURCES})
   add_library(incise::${name} ALIAS ${target})
@@ -70,16 +50,9 @@ function(incise_module name)
     PRIVATE ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM ARG_USES PREPEND incise_)
   target_link_libraries(${target} PUBLIC ${ARG_USES} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:incise_warnings>)
-  if(ARG_IN_GROUPS)
-    incise_compile_in_groups(${target} 8)
-  endif()
+  incise_compile_in_groups(${target} 16)
   if(ARG_LIGHT)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-  endif()
-  if(INCISE_PRECOMPILED_HEADERS AND ARG_OWN_HEADERS)
-    target_precompile_headers(${target} PRIVATE ${INCISE_SHARED_HEADERS})
-  elseif(INCISE_PRECOMPILED_HEADERS AND ARG_SHARED_HEADERS)
-    target_precompile_headers(${target} REUSE_FROM incise_shared_headers)
   endif()
   set_property(GLOBAL APPEND PROPERTY INCISE_MODULE_TARGETS ${target})
 endfunction()

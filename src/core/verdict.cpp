@@ -81,7 +81,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "mm",
-     "Stretch of a closed red ring that is unlike the rest of it: blood may close an opening."},
+     "Stretch of a closed red ring that may be an opening: unlike the rest of it, as blood is, or unseen and slightly longer than allowed."},
     {"scan", kCaution, {}, "", "", "The scan argues against the tissue that was found in it."},
 });
 

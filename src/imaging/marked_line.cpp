@@ -14,7 +14,7 @@ namespace incise {
 namespace imaging_detail {
 namespace {
 
-constexpr double kStepPx = 2.0;  // between the points of a line
+constexpr double kPointStepPx = 2.0;  // between the points of a line
 constexpr double kLeastDiscPx = 2.0;
 constexpr double kDiscOfGap = 0.65;         // of the rolling disc's radius to the gap that it must not pass
 constexpr double kWidestHiddenMm = 8.0;     // a painted band that crosses the other line hides at most this much of it
@@ -91,12 +91,12 @@ RefinedLine refined(Start& start, const InkMap& map, const cv::Mat& mask, const 
     for (std::size_t i = 0; i < start.line.size(); ++i)
       start.line[i] -= 0.5 * band * outward(tangent_at(start.line, false, i, 8));
   }
-  RefinedLine result{resampled(start.line, start.is_ring, kStepPx), {}, band};
+  RefinedLine result{resampled(start.line, start.is_ring, kPointStepPx), {}, band};
   for (int k = 0; k < kPasses; ++k) {
     pass.reach_px = settings.edge == LineEdge::Inner ? (k < 2 ? 20.0 : 14.0)
                                                      : (k < 2 ? 1.3 * band + 8.0 : 0.8 * result.width_px + 6.0);
     pass.reject_outliers = k >= 2;
-    if (k > 0) result.points = resampled(result.points, start.is_ring, kStepPx);
+    if (k > 0) result.points = resampled(result.points, start.is_ring, kPointStepPx);
     result = refine(result.points, start.is_ring, map.likelihood, glare, pass);
     smooth(result.points, start.is_ring, k + 1 < kPasses ? 4 : 2);
     if (settings.edge == LineEdge::Middle && result.width_px > 0.0) pass.width_px = result.width_px;
@@ -138,7 +138,7 @@ bool covers(const cv::Mat& mask, const Vec2& p) {
 LineGap gap_of(const Run& run, const Line& line, const cv::Mat& hidden, const cv::Mat& glare, double mm_per_pixel) {
   const std::size_t n = line.size();
   LineGap gap{.from_px = line[run.first], .to_px = line[(run.first + run.count - 1) % n]};
-  double length = kStepPx;
+  double length = kPointStepPx;
   std::size_t under = 0, burnt = 0;
   for (std::size_t k = 0; k < run.count; ++k) {
     const Vec2& p = line[(run.first + k) % n];

@@ -1,5 +1,6 @@
 #include "mechanics/law_response.hpp"
 
+#include "mechanics/chunks.hpp"
 #include "mechanics/laws.hpp"
 #include "mechanics/rotation.hpp"
 #include "mechanics/volume_averages.hpp"
@@ -10,7 +11,6 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kTetsPerChunk = 256;
-constexpr std::size_t kVerticesPerChunk = 128;
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 

@@ -2,6 +2,7 @@
 
 #include "mechanics/holder_contact.hpp"
 #include "mechanics/support.hpp"
+#include "mechanics/vector_text.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
@@ -24,12 +25,8 @@ constexpr double kMostDiagonals = 100.0;
 /// the nearest way out need not be the one that the tissue came by.
 constexpr double kDeepestStartMm = 2.0;
 /// Smallest share of the largest eigenvalue at which a rigid motion counts as stopped.
-constexpr double kLeastMotionShare = 1e-10;
+constexpr double kLeastStoppedShare = 1e-10;
 constexpr const char* kAxisNames = "xyz";
-
-std::string text_of(const Vec3& v) {
-  return fmt::format("[{:g}, {:g}, {:g}]", v[0], v[1], v[2]);
-}
 
 class ConstraintApplier {
  public:
@@ -246,7 +243,7 @@ void require_no_rigid_motion(const TissueModel& model) {
   const double largest = solver.eigenvalues()[5];
   int free_motions = 0;
   for (int i = 0; i < 6; ++i) {
-    if (!(solver.eigenvalues()[i] > kLeastMotionShare * largest)) ++free_motions;
+    if (!(solver.eigenvalues()[i] > kLeastStoppedShare * largest)) ++free_motions;
   }
   if (free_motions == 0) return;
   throw CaseError(kWhere, "specimen.constraints",

@@ -1,3 +1,5 @@
+#include "mechanics/vector_text.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/mechanics/material.hpp>
 
@@ -13,8 +15,6 @@ namespace {
 bool is_direction(const Vec3& v) { return v.allFinite() && v.norm() > 1e-12; }
 bool is_youngs_modulus(double kpa) { return kpa >= kLeastYoungsModulusKpa && kpa <= kMostYoungsModulusKpa; }
 constexpr const char* kYoungsModulusRange = "a number in [1e-6, 1e9] kPa";
-std::string text_of(const Vec3& v) { return fmt::format("[{:g}, {:g}, {:g}]", v[0], v[1], v[2]); }
-
 }  // namespace
 
 std::vector<std::string> validate(const Material& material) {

@@ -1,4 +1,5 @@
 #include "mechanics/corotational_response.hpp"
+#include "mechanics/chunks.hpp"
 #include "mechanics/held_axes.hpp"
 #include "mechanics/law_response.hpp"
 #include "mechanics/tet_batches.hpp"
@@ -12,7 +13,6 @@ namespace incise {
 namespace {
 
 constexpr double kTurnRad = 2e-2;  // below it a tet's blocks stay: docs/models/solvers.md
-constexpr std::size_t kRowsPerChunk = 512;
 constexpr std::size_t kBatchesPerChunk = 64;
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "mechanics/tet_batches.hpp"
 
 #include "mechanics/aggregates.hpp"
+#include "mechanics/chunks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,6 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kTetsPerRun = 504;  // 63 batches: work for some 50 µs, and few vertices shared with other runs
-constexpr std::size_t kRowsPerChunk = 512;
 
 /// Tets in runs of nearly kTetsPerRun that lie close together.
 Aggregates group_tets(const TissueModel& model) {

@@ -1,5 +1,6 @@
 #include "mechanics/viscous_response.hpp"
 
+#include "mechanics/chunks.hpp"
 #include "mechanics/elastic_response.hpp"
 
 #include <incise/core/error.hpp>
@@ -13,7 +14,6 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kTetsPerChunk = 256;
-constexpr std::size_t kVerticesPerChunk = 128;
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 

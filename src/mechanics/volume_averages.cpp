@@ -1,11 +1,12 @@
 #include "mechanics/volume_averages.hpp"
 
+#include "mechanics/chunks.hpp"
+
 #include <algorithm>
 
 namespace incise {
 namespace {
 
-constexpr std::size_t kVerticesPerChunk = 128;
 
 /// g_n at every vertex of the star of n, in the order of the star's columns.
 void gather_gradient(const TissueModel& model, const TissueState& state, std::span<const Mat3> gradients, std::size_t n,

@@ -18,7 +18,7 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 using Vec7 = Eigen::Matrix<double, 7, 1>;
 
-constexpr std::size_t kMostPoints = 3000;
+constexpr std::size_t kMostSettlingPoints = 3000;
 constexpr std::size_t kMostCenters = 200;
 constexpr double kSettlingCenterSpacing = 0.6;  // of the range
 constexpr double kPatch = 3.5;          // radius of a fitted patch, in spacings of the target
@@ -26,8 +26,8 @@ constexpr std::size_t kFewestInPatch = 10;
 constexpr double kRim = 0.35;            // how far a patch's middle may lie from its place, in its radii
 constexpr double kLeastPatchAgreement = 0.3;  // cosine between a point's normal and those of its patch
 constexpr double kFarthest = 0.15;       // from the target, in the clouds' unit: beyond lies something else
-constexpr double kWidths = 2.5;          // robust standard deviations of Welsch's weight
-constexpr double kPairsPerIndependent = 1.2;
+constexpr double kWeightWidths = 2.5;          // robust standard deviations of Welsch's weight
+constexpr double kSettlingPairsPerIndependent = 1.2;
 constexpr double kRidge = 1e-6;
 constexpr std::size_t kPatchesInAChunk = 32;
 
@@ -70,7 +70,7 @@ Points spread_centers(const PointCloud& cloud, const std::vector<std::size_t>& i
 
 Asked asked_of(const PointCloud& source, double range) {
   Asked asked;
-  asked.indices = spread_indices(source.points.size(), kMostPoints);
+  asked.indices = spread_indices(source.points.size(), kMostSettlingPoints);
   asked.centers = spread_centers(source, asked.indices, kSettlingCenterSpacing * range);
   for (const Vec3& n : source.normals) asked.up += n;
   asked.up.normalize();
@@ -224,11 +224,11 @@ class Settling {
     std::nth_element(sizes.begin(), middle, sizes.end());
     constexpr double kLeastNoise = 1e-6;  // identical clouds
     result_.noise = std::max(1.4826 * *middle, kLeastNoise);
-    const double width = kWidths * result_.noise;
+    const double width = kWeightWidths * result_.noise;
     Vector weight(left.size());
     for (Eigen::Index i = 0; i < left.size(); ++i)
       weight[i] = found[static_cast<std::size_t>(i)].weight * std::exp(-0.5 * std::pow(left[i] / width, 2)) /
-                  (kPairsPerIndependent * result_.noise * result_.noise);
+                  (kSettlingPairsPerIndependent * result_.noise * result_.noise);
     const double sd = 0.5 * settings_.largest;
     Matrix system = jacobian.transpose() * weight.asDiagonal() * jacobian;
     const double ridge = 1e-9 * system.topLeftCorner<kMotions, kMotions>().trace();

@@ -13,8 +13,8 @@
 namespace incise {
 namespace {
 
-constexpr double kPictureWidth = 860.0;
-constexpr double kPictureHeight = 470.0;
+constexpr double kViewWidth = 860.0;
+constexpr double kViewHeight = 470.0;
 constexpr std::size_t kMostPointsDrawn = 3000;
 constexpr std::string_view kTargetColor = "#6b6b6b";
 constexpr std::string_view kSourceColor = "#0072b2";
@@ -92,10 +92,10 @@ void draw_histogram(SvgWriter& svg, const std::vector<double>& residuals, const 
 std::string registration_figure_svg(const RegistrationFigure& figure) {
   INCISE_REQUIRE(!figure.target_mm.empty() && !figure.moved_source_mm.empty(), "expected points of both clouds");
   const ViewFrame view = view_along(figure.approach);
-  SvgWriter svg(kPictureWidth, kPictureHeight, figure.title,
+  SvgWriter svg(kViewWidth, kViewHeight, figure.title,
                 fmt::format("{} Target: {} points, source: {} points.", figure.subtitle, figure.target_mm.size(),
                             figure.moved_source_mm.size()));
-  svg.rectangle({0.0, 0.0}, {kPictureWidth, kPictureHeight}, "fill=\"#fff\"");
+  svg.rectangle({0.0, 0.0}, {kViewWidth, kViewHeight}, "fill=\"#fff\"");
   svg.text({16.0, 26.0}, figure.title, "start", "font-size=\"15\" font-weight=\"600\"");
   svg.text({16.0, 44.0}, figure.subtitle, "start", "fill=\"#555\"");
   svg.text({16.0, 66.0}, "target", "start", fmt::format("font-size=\"12\" fill=\"{}\"", kTargetColor));

@@ -20,13 +20,6 @@ constexpr const char* kRunSchema = "incise.calibration_run/2";
 constexpr std::array<double Summary::*, 4> kSummaryParts{&Summary::mean, &Summary::sd, &Summary::min, &Summary::max};
 constexpr std::array<const char*, 4> kSummaryNames{"mean", "sd", "min", "max"};
 
-Json summary_json(const std::optional<Summary>& summary) {
-  if (!summary) return nullptr;
-  Json json;
-  for (std::size_t i = 0; i < kSummaryParts.size(); ++i) json[kSummaryNames[i]] = *summary.*kSummaryParts[i];
-  return json;
-}
-
 std::optional<Summary> summary_of(const JsonPlace& file, const char* key) {
   if (file.at(key, "an object or null").is_null()) return std::nullopt;
   const JsonPlace place = file.inside(key);

@@ -30,11 +30,6 @@ Spread spread_from(const Json& json) {
   return {json.at("mean"), json.at("min"), json.at("max")};
 }
 
-Json summary_json(const std::optional<Summary>& summary) {
-  if (!summary) return nullptr;
-  return {{"mean", summary->mean}, {"sd", summary->sd}, {"min", summary->min}, {"max", summary->max}};
-}
-
 Json manifoldness_json(const Manifoldness& found) {
   return {{"triangles", found.triangles},
           {"open_edges", found.open_edges},

@@ -651,6 +651,7 @@ TEST_F(FolderStoreTest, TheSchemaOfAPathNamesEveryFieldThatIsWritten) {
   path.tumor_edge.is_closed = false;
   path.source_sha256 = sha256_of_text("");
   path.specimen_id = "tongue-07";
+  path.is_virtual = true;
   const auto written = nlohmann::json::parse(to_json(path));
   const auto keys_of = [](const nlohmann::json& object) {
     std::vector<std::string> keys;
