@@ -20,10 +20,8 @@ PointCloud read_points(const std::filesystem::path& path, std::size_t fewest) {
   return cloud;
 }
 
-void require_surface(const Points& points, const std::filesystem::path& path) {
+void require_extent(const Points& points, const std::filesystem::path& path) {
   constexpr double kFarthestMm = 1e9, kWidestMm = 1e5;
-  constexpr double kLeastShare = 1e-3;  // of the width: what is narrower is a line
-  Vec3 mean = Vec3::Zero();
   Box3 box;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].cwiseAbs().maxCoeff() > kFarthestMm) {
@@ -31,7 +29,6 @@ void require_surface(const Points& points, const std::filesystem::path& path) {
                       fmt::format("a coordinate of {:.3g}", points[i].cwiseAbs().maxCoeff()),
                       fmt::format("millimetres, at most {:.0e}", kFarthestMm));
     }
-    mean += points[i] / static_cast<double>(points.size());
     box.extend(points[i]);
   }
   if (points.empty()) return;  // told by whoever counts them
@@ -39,6 +36,14 @@ void require_surface(const Points& points, const std::filesystem::path& path) {
     throw DataError(path, "points", fmt::format("a cloud {:.4g} wide", box.sizes().maxCoeff()),
                     fmt::format("millimetres of tissue, at most {:.0f}", kWidestMm), "Is the unit mm?");
   }
+}
+
+void require_surface(const Points& points, const std::filesystem::path& path) {
+  constexpr double kLeastShare = 1e-3;  // of the width: what is narrower is a line
+  require_extent(points, path);
+  if (points.empty()) return;
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& p : points) mean += p / static_cast<double>(points.size());
   Mat3 scatter = Mat3::Zero();
   for (const Vec3& p : points) scatter += (p - mean) * (p - mean).transpose() / static_cast<double>(points.size());
   const Vec3 spread_mm =

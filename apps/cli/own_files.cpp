@@ -3,6 +3,7 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/io/specimen_id.hpp>
 
 #include <nlohmann/json.hpp>
@@ -36,6 +37,7 @@ bool is_own_page(const fs::path& file) {
 void require_own_files(const fs::path& output) {
   if (fs::weakly_canonical(output) == output.root_path())
     throw CaseError("command line", "-o", output.string(), "a folder of its own, not the root of all files");
+  require_no_link(output.has_filename() ? output : output.parent_path());  // a/ is the link a, too
   for (const char* name : {"study.json", "manifest.json"}) require_no_link(output / name);
   const fs::path record = output / "study.json", manifest = output / "manifest.json";
   if (fs::exists(manifest) && !is_own_manifest(manifest)) refuse_foreign(manifest, "a file of another origin");
@@ -52,8 +54,7 @@ void require_own_page(const fs::path& page) {
 }
 
 void require_own_manifest_beside(const fs::path& result) {
-  fs::path manifest = result;
-  manifest.replace_extension(".manifest.json");
+  const fs::path manifest = manifest_beside(result);
   require_no_link(manifest);
   if (fs::exists(manifest) && !is_own_manifest(manifest)) refuse_foreign(manifest, "a file of another origin");
 }

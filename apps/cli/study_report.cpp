@@ -15,6 +15,7 @@
 #include <incise/io/table_io.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/io/volume_io.hpp>
+#include <incise/io/written_json.hpp>
 #include <incise/meshing/quality.hpp>
 #include <incise/report/figures.hpp>
 #include <incise/report/html_report.hpp>
@@ -79,7 +80,7 @@ void add_verdict(const fs::path& root, const Json& study, ReportData& data) {
   }
   for (const char* cut : {"as_planned", "corrected"}) {
     const fs::path file = root / cut / "incision.json";
-    if (fs::exists(file)) data.verdict = verdict_from_json(read_json(file).at("verdict"), file);
+    if (fs::exists(file)) data.verdict = from_written_json(file, [&] { return verdict_from_json(read_json(file).at("verdict"), file); });
   }
 }
 
@@ -88,8 +89,10 @@ void add_stretch(const fs::path& root, ReportData& data) {
   const fs::path file = root / "stretched" / "deform.json";
   if (!fs::exists(file)) return;
   const Json json = read_json(file);
-  if (json.at("outcome") == to_string(Outcome::Success)) return;
-  data.notices.push_back({Severity::Warning, fmt::format("{}: {}", json.at("outcome").get<std::string>(), json.at("note").get<std::string>())});
+  from_written_json(file, [&] {
+    if (json.at("outcome") == to_string(Outcome::Success)) return;
+    data.notices.push_back({Severity::Warning, fmt::format("{}: {}", json.at("outcome").get<std::string>(), json.at("note").get<std::string>())});
+  });
 }
 
 void add_ct(const fs::path& root, const CaseFile& file, Monitor& monitor, ReportData& data) {
@@ -121,7 +124,8 @@ std::vector<ReportFrame> read_frames(const fs::path& folder, const TetMesh& mesh
   std::vector<ReportFrame> frames;
   if (!fs::exists(folder / "frames.pvd")) return frames;
   const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
-  const Json tools = read_json(folder / "frames" / "tool.json").at("frames");
+  const fs::path tool_file = folder / "frames" / "tool.json";
+  const Json tools = from_written_json(tool_file, [&] { return read_json(tool_file).at("frames"); });
   const std::vector<PvdFrame> series = read_pvd(folder / "frames.pvd");
   for (std::size_t i = 0; i < series.size() && i < tools.size(); ++i) {
     TetMesh live = read_deformed_tet_mesh(folder / series[i].file);
@@ -129,14 +133,13 @@ std::vector<ReportFrame> read_frames(const fs::path& folder, const TetMesh& mesh
     for (const double place : live.cell_data.at("tet").values) is_live.at(static_cast<std::size_t>(place)) = 1;
     ReportFrame frame = frame_of(mesh, uncut, std::move(live.vertices), is_live);
     frame.time_s = series[i].time_s;
-    const bool is_tool_in = tools[i].at("is_tool_in");
-    frame.phase = i == 0 ? "stretched" : is_tool_in ? "cutting" : "tool out";
-    if (is_tool_in) {
-      const Json& tip = tools[i].at("tip_mm");
-      const Json& axis = tools[i].at("axis");
-      frame.tool_tip_mm = vector_from(tip);
-      frame.tool_axis = vector_from(axis).normalized();
-    }
+    from_written_json(tool_file, [&] {
+      const bool is_tool_in = tools.at(i).at("is_tool_in");
+      frame.phase = i == 0 ? "stretched" : is_tool_in ? "cutting" : "tool out";
+      if (!is_tool_in) return;
+      frame.tool_tip_mm = vector_from(tools[i].at("tip_mm"));
+      frame.tool_axis = vector_from(tools[i].at("axis")).normalized();
+    });
     frames.push_back(std::move(frame));
     monitor.progress("reading frames", static_cast<double>(i + 1) / static_cast<double>(series.size()));
   }
@@ -278,7 +281,8 @@ void add_kerf_plots(const fs::path& root, ReportData& data) {
   if (!depth.series.empty()) {
     double way = 0.0;
     for (const LineSeries& series : depth.series) way = std::max(way, series.x.back());
-    const double planned = read_json(root / kCuts[0].folder / "incision.json").at("depth_reached_mm").at("planned");
+    const fs::path file = root / kCuts[0].folder / "incision.json";
+    const double planned = from_written_json(file, [&] { return read_json(file).at("depth_reached_mm").at("planned").get<double>(); });
     depth.series.push_back({"planned depth of the tip", {0.0, way}, {planned, planned}, true});
   }
   for (LinePlot& plot : {std::ref(depth), std::ref(lag), std::ref(drift)}) {
@@ -324,7 +328,7 @@ void add_kerf(const fs::path& root, ReportData& data) {
   for (std::size_t i = 0; i < kCuts.size(); ++i) {
     const fs::path folder = root / kCuts[i].folder;
     if (!fs::exists(folder / "incision.json")) continue;
-    add_layers(kCuts[i], read_json(folder / "incision.json"), data);
+    from_written_json(folder / "incision.json", [&] { add_layers(kCuts[i], read_json(folder / "incision.json"), data); });
     if (i < data.animations.size()) add_kerf_picture(folder, kCuts[i], data.animations[i].lines, data);
   }
 }
@@ -431,8 +435,9 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   if (!fs::exists(root / "study.json")) {
     throw DataError(root, "", "no study.json", "a folder made by `incise run`, `demo`, `simulate` or another stage");
   }
-  const Json study = read_json(root / "study.json");
-  const CaseFile file = read_case(root / study.at("case_file").get<std::string>());
+  const fs::path study_file = root / "study.json";
+  const Json study = read_json(study_file);
+  const CaseFile file = read_case(root / from_written_json(study_file, [&] { return study.at("case_file").get<std::string>(); }));
   ReportData data;
   data.title = file.settings.title;
   data.subtitle = "From CT scan to corrected robot path";
@@ -446,16 +451,19 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   if (fs::exists(mesh_file)) {
     const TetMesh mesh = read_tet_mesh(mesh_file);
     add_mesh(mesh, data);
-    for (const CutFolder& cut : kCuts) add_cut(root, cut, file, mesh, monitor, data);
+    for (const CutFolder& cut : kCuts)
+      from_written_json(root / cut.folder / "incision.json", [&] { add_cut(root, cut, file, mesh, monitor, data); });
   }
   add_evaluation(root, data);
   add_kerf(root, data);
   data.correction = compensation_table(root);
   for (CompensationFigure& figure : compensation_figures(root)) data.correction_plots.push_back(std::move(figure.plot));
-  if (study.contains("stages")) {
-    for (const Json& stage : study.at("stages")) data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
-  }
-  add_program(root, study, data);
+  from_written_json(study_file, [&] {
+    if (study.contains("stages")) {
+      for (const Json& stage : study.at("stages")) data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
+    }
+    add_program(root, study, data);
+  });
   add_provenance(root, file, data);
   return data;
 }

@@ -7,6 +7,7 @@
 #include "verdict_gate.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/problem_text.hpp>
 #include <incise/core/version.hpp>
 #include <incise/cutting/path_heat.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -109,11 +110,40 @@ void StudyRun::require_checkpoint() {
                   "Without --resume the cut starts from the beginning");
 }
 
+namespace {
+
+ArmSetup arm_setup_of(const Case& settings) {
+  ArmSetup setup;
+  if (settings.T_flange_tool) setup.T_flange_tool = *settings.T_flange_tool;
+  return setup;
+}
+
+/// What a case that asks for a program has to hold, told before anything long has run.
+void require_a_place_for_the_arm(const Case& settings) {
+  constexpr double kFarthestMm = 1e4;  // many times an arm's reach
+  if (!settings.T_robot_sim) return;
+  const Vec3 place = settings.T_robot_sim->topRightCorner<3, 1>();
+  if (place.norm() > kFarthestMm) {
+    throw CaseError("case", "robot.T_robot_sim", fmt::format("a place {:.4g} mm from the arm's base", place.norm()),
+                    fmt::format("at most {} mm", kFarthestMm), "Lengths are in mm");
+  }
+  const double length_mm = arm_setup_of(settings).T_flange_tool.topRightCorner<3, 1>().norm();
+  const double needle_mm = CheckSettings{}.needle_length_mm;
+  if (length_mm < needle_mm || length_mm > kFarthestMm) {
+    throw CaseError("case", "robot.T_flange_tool", fmt::format("a tip {:.4g} mm from the flange", length_mm),
+                    fmt::format("at least the needle's length of {} mm, at most {} mm", needle_mm, kFarthestMm), "Lengths are in mm");
+  }
+}
+
+}  // namespace
+
 Study StudyRun::run(const CommonOptions& options, Monitor& monitor) {
   Workers workers(options.threads);
   const CaseFile& file = store.case_file();
   try {
     if (until_ >= Stage::Plan || file.inputs.specimen_mesh.empty()) require_plan_inputs(file);
+    if (until_ >= Stage::Verify) require_a_place_for_the_arm(file.settings);
+    store.remove_what_is_out_of_date(monitor);
     return run_study(file.settings, store, until_, workers, monitor);
   } catch (const CaseError& error) {
     remove_if_nothing_was_made();
@@ -150,10 +180,10 @@ void StudyRun::remove_if_nothing_was_made() const {
 
 namespace {
 
-ArmSetup arm_setup_of(const Case& settings) {
-  ArmSetup setup;
-  if (settings.T_flange_tool) setup.T_flange_tool = *settings.T_flange_tool;
-  return setup;
+void warn_of_looser_limits(const Case& settings, Monitor& monitor) {
+  const double usual_mm = CheckSettings{}.close_margin_mm;
+  if (!settings.T_robot_sim || settings.close_margin_mm >= usual_mm) return;
+  monitor.message(Severity::Warning, fmt::format("a looser check: plan.close_margin_mm is {:g} mm, by default {:g} mm", settings.close_margin_mm, usual_mm));
 }
 
 /// What keeps a case from having a program at all; empty: nothing.
@@ -170,13 +200,24 @@ struct CheckedProgram {
   ProgramChecks checks;
 };
 
-CheckedProgram checked_program(const Case& settings, const Study& done) {
+/// Speeds and places of a given path come from a person.
+RobotProgram program_of(const CaseFile& file, const ToolPath& path, const ProgramSettings& motion) {
+  try {
+    return make_program(path, motion, arm_setup_of(file.settings));
+  } catch (const InvalidArgument& error) {
+    const std::filesystem::path& of = file.inputs.tool_path.empty() ? file.file : file.inputs.tool_path;
+    throw fault_of_file(of, "waypoints", error, "a path that a tool can follow");
+  }
+}
+
+CheckedProgram checked_program(const CaseFile& file, const Study& done) {
+  const Case& settings = file.settings;
   CheckedProgram made;
   made.path = in_robot_frame(done.is_accepted ? done.correction->moves.path : *done.followed, *settings.T_robot_sim);
   const ToolPath intended = in_robot_frame(*done.plan, *settings.T_robot_sim);
   ProgramSettings motion;
   motion.overlap_mm = settings.cut.overlap_mm;
-  made.program = make_program(made.path, motion, arm_setup_of(settings));
+  made.program = program_of(file, made.path, motion);
   CheckSettings limits;
   limits.must_be_ring = settings.plan.kind == PlanKind::Ring;
   limits.planned_depth_mm = settings.plan.depth_mm;
@@ -231,7 +272,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, const s
     json["reason"] = "nothing was cut";
     return json;
   }
-  const CheckedProgram made = checked_program(settings, done);
+  const CheckedProgram made = checked_program(study.store.case_file(), done);
   add_failed_checks(made.checks, verdict);
   const VerdictGate gate = gate_of(verdict, accepted);
   report_gate(verdict, gate, monitor);
@@ -260,10 +301,11 @@ int status_of(const Study& study) {
 int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vector<std::string>& accepted, Monitor& monitor,
                    nlohmann::ordered_json& result) {
   const auto start = std::chrono::steady_clock::now();
+  warn_of_looser_limits(study.store.case_file().settings, monitor);
   Study done = study.run(options, monitor);
   const std::filesystem::path root = study.store.root();
   const Case& settings = study.store.case_file().settings;
-  if (done.is_accepted) study.store.add_advice_to(done.verdict);
+  study.store.add_advice_to(done.verdict, done.is_accepted);
   result["stages"] = to_json(done.stages);
   result["verdict"] = nullptr;  // once the program's checks have joined it
   result["outcome"] = to_string(done.outcome);

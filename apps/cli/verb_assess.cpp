@@ -89,6 +89,7 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   AssessmentRequest request;
   request.scenarios = scenario_request(chosen.calibrated, options);
   request.calibrated = range_of(calibration.record);
+  request.is_calibration_virtual = calibration.record.is_virtual;
   const Verdict of_registration = read_specimens_registration(chosen.registration, request);
   tell(of_registration, console);
   const CaseFile asked = case_as_asked(chosen.case_path, chosen.cut);
@@ -107,14 +108,14 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   if (!note.empty()) assessment.notes.push_back(note);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   nlohmann::ordered_json result = to_json(assessment, request);
-  result["specimen_is"] =
-      run.store.case_file().settings.is_virtual || calibration.record.is_virtual ? "virtual" : "real";
+  result["specimen_is"] = run.store.case_file().settings.is_virtual ? "virtual" : "real";
+  result["calibration_is"] = calibration.record.is_virtual ? "virtual" : "real";
   result["specimen_id"] = run.store.specimen_id();
   result["verdict"] = nullptr;  // known once the assessment is kept
   write_assessment(run.store, result, calibration.file, chosen.registration, wall.count());
   Verdict verdict = study.verdict;
   verdict.add(of_registration);
-  if (study.is_accepted) run.store.add_advice_to(verdict);
+  run.store.add_advice_to(verdict, study.is_accepted);
   result["verdict"] = to_json(verdict);
   if (study.corrected) {
     Verdict of_corrected = study.about_inputs;

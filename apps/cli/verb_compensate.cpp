@@ -5,6 +5,7 @@
 #include <incise/core/error.hpp>
 #include <incise/io/verdict_json.hpp>
 #include <incise/storage/result_json.hpp>
+#include <incise/workflow/assess.hpp>
 
 #include <fmt/format.h>
 
@@ -92,6 +93,8 @@ nlohmann::ordered_json add_robust_path(const CompensateOptions& chosen, const Ca
   nlohmann::ordered_json json = robust_summary_json(robust);
   json["path"] = (run.store.root() / "robust" / "path.json").string();
   json["wall_s"] = wall.count();
+  if (calibration.record.is_virtual && !run.store.case_file().settings.is_virtual)
+    console.message(Severity::Warning, fmt::format("robust path: {}", kVirtualCalibration));
   const RobustCompensation& made = robust.compensation;
   if (made.outcome != RobustOutcome::Met) {
     console.message(

@@ -102,15 +102,14 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   return path;
 }
 
-/// Of the simulated cut that verifies the path, and of the registration. A mark of the tumour's edge cuts nothing: what
-/// speaks against its place remains. What was refused as a cut is not written as a mark either.
-Verdict verdict_of(const ExportArguments& arguments, const std::optional<RegistrationRecord>& registration) {
+/// Of the simulated cut that verifies the path, and of the registration. @param kind_in_file, kind  of the path as it was read, and as it is
+/// exported
+Verdict verdict_of(const ExportArguments& arguments, PathKind kind_in_file, PathKind kind, const std::optional<RegistrationRecord>& registration) {
   Verdict verdict = read_path_verdict(arguments.path);
-  if (arguments.kind == "mark" && verdict.status() != VerdictStatus::Refused) {
-    Verdict of_place;
-    for (const VerdictReason& reason : verdict.reasons())
-      if (reason.id == "registration" || reason.id == "typed_transform") of_place.add(reason);
-    verdict = of_place;
+  if (kind == PathKind::Mark) {
+    verdict = as_verdict_of_mark(verdict);
+  } else if (kind_in_file == PathKind::Mark) {
+    verdict.add("not_simulated", {}, "the path's file holds a mark: no simulated cut along it is known");
   }
   if (registration) verdict.add(cli::verdict_of(*registration, arguments.registration));
   return verdict;
@@ -230,6 +229,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
                     "no --motion: only URScript has two kinds");
   }
   ToolPath path = read_robot_path(arguments.path);
+  const PathKind kind_in_file = path.kind;
   if (!arguments.kind.empty()) path.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
   if (path.kind == PathKind::Mark) require_a_mark(arguments.overrides);
   if (arguments.is_open && path.is_closed) {
@@ -249,7 +249,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
     require_clouds_unchanged(*registration, arguments.registration, console);
     inputs.registration = registration_summary(*registration, arguments.registration);
   }
-  Verdict verdict = verdict_of(arguments, registration);
+  Verdict verdict = verdict_of(arguments, kind_in_file, path.kind, registration);
   if (!arguments.surface.empty()) require_same_specimen(arguments.surface, path.specimen_id, "the path's");
   if (intended) require_same_specimen(arguments.intended, path.specimen_id, "the path's");
   if (arguments.power_w > 0.0) {

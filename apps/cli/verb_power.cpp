@@ -137,11 +137,11 @@ void add_power(Application& application) {
       ->check(between("--power-w", 1.0, 120.0));
   verb->add_option("--speed-mm-s", arguments->speed_mm_s,
                    "Of the series; if not given that of the timed cuts, or 7 without them")
-      ->check(between("--speed-mm-s", 0.5, 50.0));
+      ->check(between("--speed-mm-s", kSlowestCutMmS, kFastestCutMmS));
   verb->add_option("--speeds-mm-s,--speeds", arguments->request.speeds_mm_s,
                    "Also cut at these speeds, with the chosen power")
       ->delimiter(',')
-      ->check(between("--speeds-mm-s", 0.5, 50.0));
+      ->check(between("--speeds-mm-s", kSlowestCutMmS, kFastestCutMmS));
   verb->add_option("--timed-cuts", arguments->timed_cuts,
                    "Timed straight cuts of a surgeon: a CSV with the columns length_mm, time_s");
   verb->add_flag("--only-speed", arguments->only_speed, "Tell the speed of the timed cuts, and cut nothing");

@@ -1,6 +1,7 @@
 #include "option_checks.hpp"
 #include "options.hpp"
 #include "registration_trust.hpp"
+#include "verdict_gate.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
@@ -258,10 +259,11 @@ void hold_changes(Verdict& verdict, const RegistrationRecord& registration, cons
 /// nothing: what speaks against its place remains.
 Verdict verdict_of(const RegistrationRecord& registration, const ProjectArguments& arguments,
                    const ProjectSettings& settings) {
-  Verdict verdict;
+  Verdict verdict = read_path_verdict(arguments.path);
   if (settings.kind == PathKind::Incise) {
-    verdict = read_path_verdict(arguments.path);
     hold_changes(verdict, registration, arguments, settings);
+  } else {
+    verdict = as_verdict_of_mark(verdict);
   }
   verdict.add(cli::verdict_of(registration, arguments.transform));
   if (!registration.target_sha256.empty() && registration.target_sha256 != sha256_of_input(arguments.surface)) {

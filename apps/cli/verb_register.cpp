@@ -130,6 +130,8 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   const std::string specimen_id = common_specimen_id(clouds);
   const PointCloud source = read_points(arguments.source, 12);
   const PointCloud target = read_points(arguments.target, 12);
+  require_extent(source.points, arguments.source);
+  require_extent(target.points, arguments.target);
   const double camera_scale = camera_scale_of(arguments.target);
   Workers workers(options.threads);
   Registration found = register_clouds(source, target, settings, workers, console);

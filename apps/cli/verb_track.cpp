@@ -107,6 +107,7 @@ Scene scene_from_ply(const TrackArguments& arguments) {
     scene.cloud.points.push_back(p);
     scene.cloud.is_measured.push_back(p.z() != 0.0 ? 1 : 0);
   }
+  require_camera_frame(scene.cloud, arguments.color);
   return scene;
 }
 

@@ -49,6 +49,14 @@ nlohmann::ordered_json to_json(const VerdictGate& gate) {
   return {{"open", gate.is_open}, {"accepted", gate.accepted}, {"missing", gate.missing}, {"refused", gate.refused}};
 }
 
+Verdict as_verdict_of_mark(const Verdict& of_cut) {
+  Verdict verdict;
+  for (const VerdictReason& reason : of_cut.reasons()) {
+    if (reason.severity == VerdictStatus::Refused || reason.id == "registration" || reason.id == "typed_transform") verdict.add(reason);
+  }
+  return verdict;
+}
+
 void add_failed_checks(const ProgramChecks& checks, Verdict& verdict) {
   for (const ProgramCheck& check : checks.checks) {
     if (!check.passed && !check.is_overridden) verdict.add("program_check", check.value, check.message());

@@ -60,7 +60,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "",
-     "The program follows a path whose correction was asked for and not accepted."},
+     "The correction that was asked for is not accepted; the path is the uncorrected one, or that correction."},
     {"eligibility", kCaution, {}, "", "", "The assessment of this specimen advises against the path."},
     {"registration", kCaution, {}, "", "", "The registration's own figures argue against trusting it."},
     // Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
@@ -82,7 +82,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "",
      "mm",
      "Stretch of a closed red ring that may be an opening: unlike the rest of it, as blood is, or unseen and slightly longer than allowed."},
-    {"scan", kCaution, {}, "", "", "The scan argues against the tissue that was found in it."},
+    {"scan", kCaution, {}, "", "", "The scan argues against the tissue that was found in it, or another body in it may be the specimen."},
 });
 
 /// Place in the table: reasons of one severity are listed in its order.

@@ -121,6 +121,32 @@ OrganizedCloud cloud_seen_in_color(const DepthPicture& depth, const DepthCamera&
   return cloud;
 }
 
+void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::path& name) {
+  constexpr const char* kHint = "Is the cloud in the camera's frame: x to the right, y down, z forward, mm?";
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (cloud.is_measured[i] == 0 || cloud.points[i].z() > 0.0) continue;
+    throw DataError(name, fmt::format("pixel ({}, {})", i % static_cast<std::size_t>(cloud.width), i / static_cast<std::size_t>(cloud.width)),
+                    fmt::format("a point behind the camera, z {:.4g} mm", cloud.points[i].z()), "points in front of the camera, z above 0", kHint);
+  }
+  // Seen from the camera a row's neighbour lies to one side of a column's, everywhere but at edges that hide something.
+  std::size_t as_seen = 0, mirrored = 0;
+  for (int v = 0; v + 1 < cloud.height; ++v) {
+    for (int u = 0; u + 1 < cloud.width; ++u) {
+      const std::size_t here = cloud.index(u, v), right = cloud.index(u + 1, v), below = cloud.index(u, v + 1);
+      if (cloud.is_measured[here] == 0 || cloud.is_measured[right] == 0 || cloud.is_measured[below] == 0) continue;
+      const Vec2 place = cloud.points[here].hnormalized();
+      const Vec2 along = cloud.points[right].hnormalized() - place, down = cloud.points[below].hnormalized() - place;
+      const double turn = along.x() * down.y() - along.y() * down.x();
+      as_seen += turn > 0.0 ? 1 : 0;
+      mirrored += turn < 0.0 ? 1 : 0;  // neither where coordinates were rounded to the same place
+    }
+  }
+  if (mirrored > as_seen) {
+    throw DataError(name, "vertices", fmt::format("columns and rows that run as in a mirror at {} of {} places", mirrored, mirrored + as_seen),
+                    "columns to the right and rows downwards, as the camera sees them", kHint);
+  }
+}
+
 std::optional<Vec3> position_at(const OrganizedCloud& cloud, const Vec2& pixel, int window_px) {
   constexpr double kLeastShare = 0.4;
   INCISE_REQUIRE(window_px >= 1, fmt::format("expected a window of 1 pixel or more, found {}", window_px));

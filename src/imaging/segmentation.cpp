@@ -16,6 +16,7 @@ namespace incise {
 namespace {
 
 constexpr const char* kStage = "segmenting";
+constexpr double kLeastRivalShare = 0.25;  // of the volume that is kept: a lesser piece is a crumb, the table or a clamp
 constexpr int kGrowth = 3;  // voxels by which the occupancy can reach beyond the body that it is made from
 
 void require_sound_volume(const CtVolume& ct) {
@@ -103,6 +104,41 @@ std::int32_t choose_piece(const Pieces& pieces, const std::vector<std::size_t>& 
   return chosen;
 }
 
+/// The largest piece but one; 0: there is one alone.
+std::int32_t second_largest(const Pieces& pieces, std::int32_t first) {
+  std::vector<std::size_t> sizes(static_cast<std::size_t>(pieces.count) + 1, 0);
+  for (const std::int32_t number : pieces.number.voxels) ++sizes[static_cast<std::size_t>(number)];
+  sizes[0] = sizes[static_cast<std::size_t>(first)] = 0;
+  const auto second = std::max_element(sizes.begin(), sizes.end());
+  return *second == 0 ? 0 : static_cast<std::int32_t>(second - sizes.begin());
+}
+
+double volume_mm3(const Mask& mask) {
+  return static_cast<double>(std::count(mask.voxels.begin(), mask.voxels.end(), 1)) * mask.grid.voxel_volume_mm3();
+}
+
+Vec3 middle_of(const Mask& mask) {
+  const IndexBox box = box_of(mask);
+  Vec3 index;
+  for (std::size_t axis = 0; axis < 3; ++axis) index[static_cast<Eigen::Index>(axis)] = 0.5 * (box.low[axis] + box.high[axis] - 1);
+  return mask.grid.world_from_index(index);
+}
+
+/// Which of two bodies is the specimen cannot be seen from their sizes where these are alike.
+void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, const SegmentationSettings& settings, Segmentation& result) {
+  const std::int32_t second = second_largest(pieces, chosen);
+  if (second == 0) return;
+  const Mask rival = grow_back(piece_of(pieces, second), settings.opening_radius_mm);
+  const double kept_mm3 = volume_mm3(body), rival_mm3 = volume_mm3(rival), share = rival_mm3 / kept_mm3;
+  if (share < kLeastRivalShare) return;
+  const Vec3 kept = middle_of(body), other = middle_of(rival);
+  result.verdict.add("scan", share,
+                     fmt::format("the scan shows two bodies that may be the specimen: {:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm, which is kept as the largest, and "
+                                 "{:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm. Name the specimen by a point inside it (seed_mm)",
+                                 kept_mm3, kept.x(), kept.y(), kept.z(), rival_mm3, other.x(), other.y(), other.z()),
+                     VerdictPlace{{}, other, "the body that is left out"}, kLeastRivalShare);
+}
+
 Mask find_body(const WorkingVolume& work, const std::vector<std::size_t>& seeds, const SegmentationSettings& settings,
                Segmentation& result) {
   const Pieces pieces = find_pieces(erode(work.in_window, settings.opening_radius_mm));
@@ -111,7 +147,10 @@ Mask find_body(const WorkingVolume& work, const std::vector<std::size_t>& seeds,
                     fmt::format("{:g}, which leaves nothing", settings.opening_radius_mm),
                     "a radius smaller than half the specimen's thickness");
   result.components = static_cast<std::size_t>(pieces.count);
-  return grow_back(piece_of(pieces, choose_piece(pieces, seeds, settings)), settings.opening_radius_mm);
+  const std::int32_t chosen = choose_piece(pieces, seeds, settings);
+  Mask body = grow_back(piece_of(pieces, chosen), settings.opening_radius_mm);
+  if (seeds.empty()) note_rival(pieces, chosen, body, settings, result);
+  return body;
 }
 
 // Background without a way to the grid's first voxel, which the margin keeps outside the body, becomes body.
@@ -147,11 +186,16 @@ Mask at_least_half(const GrayVolume& occupancy) {
   return mask;
 }
 
+[[noreturn]] void refuse_smoothing(double smoothing_mm) {
+  throw CaseError("segmentation", "smoothing_mm", fmt::format("{:g}, which leaves nothing of the body", smoothing_mm),
+                  "a length shorter than the body is thick", "About a voxel's longest side that the body spans is enough; 0: none.");
+}
+
 // Leaves one piece without cavities above 0.5: crumbs beside the body go, pinholes in it close.
-Mask make_one_piece(GrayVolume& occupancy, bool close_holes) {
+Mask make_one_piece(GrayVolume& occupancy, bool close_holes, double smoothing_mm) {
   const Mask all = at_least_half(occupancy);
   const Pieces pieces = find_pieces(all);
-  INCISE_REQUIRE(pieces.count > 0, "expected a body that outlasts the smoothing, found none; reduce smoothing_mm");
+  if (pieces.count == 0) refuse_smoothing(smoothing_mm);
   Mask body = piece_of(pieces, largest(pieces));
   for (std::size_t v = 0; v < body.voxels.size(); ++v)
     if (all.voxels[v] != body.voxels[v]) occupancy.voxels[v] = 0.0F;
@@ -164,12 +208,12 @@ Mask make_one_piece(GrayVolume& occupancy, bool close_holes) {
   return body;
 }
 
-double median_hu(const CtVolume& hu, const Mask& body, const SegmentationSettings& settings) {
+double median_hu(const CtVolume& hu, const Mask& body, const SegmentationSettings& settings, double smoothing_mm) {
   std::vector<std::int16_t> values;
   for (std::size_t v = 0; v < body.voxels.size(); ++v)
     if (body.voxels[v] != 0 && hu.voxels[v] >= settings.window_low_hu && hu.voxels[v] <= settings.window_high_hu)
       values.push_back(hu.voxels[v]);
-  INCISE_REQUIRE(!values.empty(), "expected a body with voxels in the window, found none; reduce smoothing_mm");
+  if (values.empty()) refuse_smoothing(smoothing_mm);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -297,8 +341,8 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   result.smoothing_mm = smoothing_length_mm(settings, ct.grid.spacing_mm);
   GrayVolume occupancy = smoothed(sharp, result.smoothing_mm);
   report(0.9);
-  const Mask label = make_one_piece(occupancy, settings.fill_holes);
-  result.tissue_hu = median_hu(hu, label, settings);
+  const Mask label = make_one_piece(occupancy, settings.fill_holes, result.smoothing_mm);
+  result.tissue_hu = median_hu(hu, label, settings, result.smoothing_mm);
 
   const IndexBox kept = grown(box_of(label), settings.margin_voxels);
   result.labels = crop(label, kept);

@@ -36,7 +36,7 @@ std::uint64_t whole_number(const ordered_json& document, const JsonValue& root, 
 
 namespace {
 
-void write_to(const std::filesystem::path& file, const Manifest& manifest) {
+void write_to(const std::filesystem::path& file, const Manifest& manifest, const std::string& result_sha256 = {}) {
   INCISE_REQUIRE(std::isfinite(manifest.wall_s) && manifest.wall_s >= 0.0,
                  fmt::format("expected wall_s of 0 or more, found {}", manifest.wall_s));
   ordered_json inputs = ordered_json::array();
@@ -53,6 +53,7 @@ void write_to(const std::filesystem::path& file, const Manifest& manifest) {
   document["wall_s"] = manifest.wall_s;
   document["machine"] = manifest.machine;
   if (!manifest.specimen_id.empty()) document["specimen_id"] = manifest.specimen_id;
+  if (!result_sha256.empty()) document["result_sha256"] = result_sha256;
   if (manifest.verdict) document["verdict"] = to_json(*manifest.verdict);
   write_json(file, document);
 }
@@ -63,9 +64,13 @@ void write_manifest(const std::filesystem::path& folder, const Manifest& manifes
   write_to(folder / "manifest.json", manifest);
 }
 
-void write_manifest_beside(const std::filesystem::path& file, const Manifest& manifest) {
+std::filesystem::path manifest_beside(const std::filesystem::path& file) {
   std::filesystem::path beside = file;
-  write_to(beside.replace_extension(".manifest.json"), manifest);
+  return beside += ".manifest.json";
+}
+
+void write_manifest_beside(const std::filesystem::path& file, const Manifest& manifest) {
+  write_to(manifest_beside(file), manifest, sha256_of_file(file));
 }
 
 Manifest read_manifest(const std::filesystem::path& folder) {

@@ -183,10 +183,15 @@ Verdict read_path_verdict(const std::filesystem::path& file) {
   const JsonValue root(document, file);
   const ToolPath path = read_path(root);
   const std::optional<JsonValue> place = root.find(kVerdict);
-  if (!place) return path.kind == PathKind::Mark ? Verdict() : not_simulated("the path's file holds no verdict: no simulated cut along it is known");
-  const Verdict verdict = verdict_from_json(document.at(kVerdict), file);
-  if (place->at(kDigest).text() == digest_of(path, verdict)) return verdict;
-  return not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
+  if (!place) return not_simulated("the path's file holds no verdict: no simulated cut along it is known");
+  const Verdict stated = verdict_from_json(document.at(kVerdict), file);
+  if (place->at(kDigest).text() == digest_of(path, stated)) return stated;
+  // A changed digit does not make a refused path one that can be accepted.
+  Verdict verdict = not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
+  for (const VerdictReason& reason : stated.reasons()) {
+    if (reason.severity == VerdictStatus::Refused) verdict.add(reason);
+  }
+  return verdict;
 }
 
 void require_path_unchanged(const std::filesystem::path& file) {

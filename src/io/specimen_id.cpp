@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
 #include <incise/io/specimen_id.hpp>
 
 #include <fmt/format.h>
@@ -66,9 +67,12 @@ bool lists(const fs::path& manifest, const std::string& name) {
 }
 
 std::string id_in_manifest(const fs::path& file) {
-  fs::path beside = file;
-  beside.replace_extension(".manifest.json");
-  if (fs::exists(beside)) return id_in_json(beside);
+  if (const fs::path beside = manifest_beside(file); fs::exists(beside)) {
+    const nlohmann::ordered_json document = read_json(beside);
+    // Of another file that had this name: whose this one is, nobody says.
+    if (document.is_object() && document.contains("result_sha256") && document.at("result_sha256") != sha256_of_file(file)) return "";
+    return id_in_json(beside);
+  }
   // A result's folder, or the file in a folder of its own within it (frames/…).
   fs::path name = file.filename();
   fs::path folder = file.parent_path();

@@ -112,7 +112,7 @@ std::string joined(const std::vector<std::string>& row, const char* separator, F
 
 }  // namespace
 
-TextTable read_csv_text(const std::filesystem::path& path) {
+TextTable read_csv_text(const std::filesystem::path& path, std::size_t most_cells) {
   const std::string text = read_text(path);
   std::string_view rest = text;
   if (rest.rfind("\xEF\xBB\xBF", 0) == 0) rest.remove_prefix(3);  // byte order mark
@@ -132,6 +132,10 @@ TextTable read_csv_text(const std::filesystem::path& path) {
     if (cells.size() != table.header.size()) {
       throw DataError(path, fmt::format("line {}", line), fmt::format("{} fields", cells.size()),
                       fmt::format("{}", table.header.size()));
+    }
+    if (table.rows.size() >= most_cells / table.header.size()) {
+      throw DataError(path, fmt::format("line {}", line), fmt::format("more than {} rows of {} columns", table.rows.size(), table.header.size()),
+                      fmt::format("at most {} cells", most_cells));
     }
     table.rows.push_back(std::move(cells));
     table.lines.push_back(line);

@@ -2,6 +2,7 @@
 #include "io/volume_dicom_file.hpp"
 #include "io/volume_itk.hpp"
 #include "io/volume_pictures.hpp"
+#include "io/volume_stack.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/input_file.hpp>
@@ -158,7 +159,16 @@ std::string to_string(VolumeFormat format) {
   throw InvalidArgument("to_string: expected a volume format, found another value");
 }
 
-ReadVolume read_ct(const fs::path& path, const CtReadSettings& settings, Monitor& monitor) {
+namespace {
+
+/// Smoothing and meshing go by one length for all directions, which a needle of a voxel does not have.
+void require_compact_voxels(const fs::path& path, const Vec3& spacing_mm) {
+  if (spacing_mm.maxCoeff() <= kLongestVoxel * spacing_mm.minCoeff()) return;
+  throw DataError(path, "spacing", fmt::format("voxels of {:.4g} x {:.4g} x {:.4g} mm", spacing_mm[0], spacing_mm[1], spacing_mm[2]),
+                  fmt::format("a longest side of at most {} times the shortest", kLongestVoxel), "Lengths are mm");
+}
+
+ReadVolume read_any_ct(const fs::path& path, const CtReadSettings& settings, Monitor& monitor) {
   require_exists(path);
   const VolumeFormat format = fs::is_directory(path) ? format_of_folder(path) : format_of_file(path);
   refuse_foreign_settings(path, format, settings);
@@ -167,12 +177,21 @@ ReadVolume read_ct(const fs::path& path, const CtReadSettings& settings, Monitor
   return read_ct_file(path, format, monitor);
 }
 
+}  // namespace
+
+ReadVolume read_ct(const fs::path& path, const CtReadSettings& settings, Monitor& monitor) {
+  ReadVolume result = read_any_ct(path, settings, monitor);
+  require_compact_voxels(path, result.volume.grid.spacing_mm);
+  return result;
+}
+
 LabelVolume read_labels(const fs::path& path) {
   require_exists(path);
   if (fs::is_directory(path))
     throw DataError(path, "", "a folder", "a file of labels: .nrrd, .nii, .nii.gz, .mhd or .mha");
   const RawImage image = read_itk_image(path, format_of_file(path));
   LabelVolume labels;
+  require_compact_voxels(path, image.grid.spacing_mm);
   labels.grid = image.grid;
   convert(path, image, Fractions::Refuse, labels.voxels);
   return labels;

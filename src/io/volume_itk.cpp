@@ -4,6 +4,7 @@
 #include "io/number_text.hpp"
 #include "io/volume_complete.hpp"
 #include "io/volume_itk_eigen.hpp"
+#include "io/volume_nrrd_header.hpp"
 #include "io/volume_quiet.hpp"
 #include "io/volume_stack.hpp"
 #include "io/volume_staging.hpp"
@@ -126,10 +127,8 @@ void require_stated_geometry(const fs::path& path, VolumeFormat format, std::vec
   };
   if (format == VolumeFormat::Nrrd) {
     const std::string header = text_header(path, "");
-    if (!says(header, {"space directions:", "spacings:"})) {
-      throw DataError(path, "header", "no voxel spacing", "'space directions' or 'spacings'");
-    }
-    if (!says(header, {"space:"}))
+    require_stated_nrrd_geometry(path, header);
+    if (!names_nrrd_space(header))
       notices.emplace_back("the NRRD names no anatomical space: its axes are taken as LPS, mm");
   }
   if (format == VolumeFormat::MetaImage &&

@@ -23,6 +23,7 @@ set(volume_sources
   volume_dicom_write.cpp
   volume_io.cpp
   volume_itk.cpp
+  volume_nrrd_header.cpp
   volume_pictures.cpp
   volume_png.cpp
   volume_quiet.cpp

@@ -6,6 +6,7 @@ namespace incise {
 inline constexpr double kFinestVoxelMm = 1e-4;
 inline constexpr double kCoarsestVoxelMm = 100.0;
 inline constexpr double kFarthestPlaceOfScanMm = 1e5;
+inline constexpr double kLongestVoxel = 50.0;  // longest side over shortest: a slice 10 mm thick of pixels of 0.2 mm
 }  // namespace incise
 
 #include <incise/core/monitor.hpp>

@@ -39,7 +39,9 @@ std::vector<std::string> validate(const Material& material) {
     if (std::isfinite(value) && value >= 0.0) return;
     violations.push_back(fmt::format("{}: found {}, expected a finite number of at least 0", name, value));
   };
-  check_not_negative("fibre_modulus_kpa", material.fibre_modulus_kpa);
+  if (!(material.fibre_modulus_kpa >= 0.0 && material.fibre_modulus_kpa <= kMostYoungsModulusKpa)) {
+    violations.push_back(fmt::format("fibre_modulus_kpa: found {}, expected a number in [0, 1e9] kPa", material.fibre_modulus_kpa));
+  }
   check_not_negative("kelvin_voigt_time_s", material.kelvin_voigt_time_s);
   if (!is_direction(material.fibre_direction)) {
     violations.push_back(fmt::format("fibre_direction: found {}, expected a finite direction", text_of(material.fibre_direction)));

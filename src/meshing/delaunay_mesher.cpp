@@ -9,6 +9,7 @@
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
+#include <CGAL/assertions_behaviour.h>
 #include <CGAL/exude_mesh_3.h>
 #include <CGAL/perturb_mesh_3.h>
 #include <CGAL/refine_mesh_3.h>
@@ -28,6 +29,22 @@ using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 constexpr std::size_t kCallsBetweenCancelChecks = 8192;
+
+/// CGAL prints ten lines of a check that failed, and then throws what the caller turns into one sentence.
+class QuietChecks {
+ public:
+  QuietChecks() : error_(CGAL::set_error_handler(say_nothing)), warning_(CGAL::set_warning_handler(say_nothing)) {}
+  ~QuietChecks() {
+    CGAL::set_error_handler(error_);
+    CGAL::set_warning_handler(warning_);
+  }
+  QuietChecks(const QuietChecks&) = delete;
+  QuietChecks& operator=(const QuietChecks&) = delete;
+
+ private:
+  static void say_nothing(const char*, const char*, const char*, int, const char*) {}
+  CGAL::Failure_function error_, warning_;
+};
 
 Vec3 to_vec3(const Kernel::Point_3& p) {
   return {p.x(), p.y(), p.z()};
@@ -74,14 +91,17 @@ struct DelaunayMesher::State {
   Complex complex;
 };
 
-DelaunayMesher::DelaunayMesher(DelaunayDomain domain, const DelaunayCriteria& criteria)
-    : state_(std::make_unique<State>(std::move(domain), criteria)) {}
+DelaunayMesher::DelaunayMesher(DelaunayDomain domain, const DelaunayCriteria& criteria) {
+  const QuietChecks quiet;
+  state_ = std::make_unique<State>(std::move(domain), criteria);
+}
 DelaunayMesher::~DelaunayMesher() = default;
 DelaunayMesher::DelaunayMesher(DelaunayMesher&&) noexcept = default;
 DelaunayMesher& DelaunayMesher::operator=(DelaunayMesher&&) noexcept = default;
 
 RefineEnd DelaunayMesher::refine() {
   using namespace CGAL::parameters;
+  const QuietChecks quiet;
   CGAL::get_default_random() = CGAL::Random(0);  // a second run in one process starts like the first
   State& s = *state_;
   std::atomic<bool> stop = false;
@@ -106,12 +126,14 @@ RefineEnd DelaunayMesher::refine() {
 }
 
 bool DelaunayMesher::perturb(double sliver_bound_deg) {
+  const QuietChecks quiet;
   // No time limit: the answer must not depend on how fast the machine is. The search ends by itself.
   return CGAL::perturb_mesh_3(state_->complex, state_->domain, CGAL::parameters::time_limit = 0,
                               CGAL::parameters::sliver_bound = sliver_bound_deg) == CGAL::BOUND_REACHED;
 }
 
 bool DelaunayMesher::exude(double sliver_bound_deg) {
+  const QuietChecks quiet;
   return CGAL::exude_mesh_3(state_->complex, CGAL::parameters::time_limit = 0,
                             CGAL::parameters::sliver_bound = sliver_bound_deg) == CGAL::BOUND_REACHED;
 }

@@ -3,6 +3,7 @@
 
 #include <incise/io/json_text.hpp>
 #include <incise/io/verdict_json.hpp>
+#include <incise/mechanics/material.hpp>
 #include <incise/storage/calibration_file.hpp>
 
 #include <fmt/format.h>
@@ -18,6 +19,23 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kCalibrationSchema = "incise.calibration/1";
 constexpr const char* kCalibrationHint = "Write the file with `incise calibrate`";
 constexpr double kWeightTolerance = 1e-6;
+
+// Beyond these no tissue, tool or photograph is: a number out of them was not measured or fitted.
+struct Bounds {
+  double low, high;
+};
+constexpr Bounds kLengthMm{1e-9, 1e3};    // above 0: a spread, a drag, a residual
+constexpr Bounds kErrorMm{-1e3, 1e3};     // signed
+constexpr Bounds kSpeedMmS{0.01, 100.0};  // as cut.speed_mm_s
+constexpr Bounds kDullness{1e-6, 1e3};    // as cut.dullness
+constexpr Bounds kStepS{1e-6, 1.0};       // as cut.reference_step_s
+constexpr Bounds kRatio{1e-3, 1e3};       // of two stiffnesses, or of two lengths
+constexpr Bounds kForceN{1e-6, 1e6};      // of a pull
+constexpr Bounds kModulusKpa{kLeastYoungsModulusKpa, kMostYoungsModulusKpa};
+constexpr Bounds kBiasMm{-10.0, 10.0};    // as compensation.bias_mm
+constexpr Bounds kWeight{1e-300, 1.0 + kWeightTolerance};
+constexpr Bounds kAngleDeg{1e-6, 1e5};
+constexpr Bounds kPlaces{1e-6, 1e6};
 
 Json setting_json(const RunSetting& setting, double reference_step_s) {
   return {{"speed_mm_s", setting.speed_mm_s},
@@ -128,28 +146,27 @@ Json fitted_json(const DragFit& fit) {
   return list;
 }
 
-double positive(const JsonPlace& place, const char* key) {
-  const double value = place.number(key);
-  if (!(value > 0.0)) place.refuse(key, fmt::format("{}", value), "a number above 0");
-  return value;
+double within(const JsonPlace& place, const char* key, const Bounds& bounds) {
+  return place.number_between(key, bounds.low, bounds.high);
 }
 
 /// Calibrations of before registrations were kept have no such key.
 std::optional<RegistrationQuality> registration_quality_from(const JsonPlace& specimen) {
   if (!specimen.has("registration") || specimen.at("registration", "an object or null").is_null()) return std::nullopt;
   const JsonPlace place = specimen.inside("registration");
-  return RegistrationQuality{positive(place, "rmse_mm"), positive(place, "scale")};
+  return RegistrationQuality{within(place, "rmse_mm", kLengthMm), within(place, "scale", kRatio)};
 }
 
 CalibratedSpecimenRecord specimen_from(const JsonPlace& place) {
   CalibratedSpecimenRecord record;
   record.name = place.text("name");
-  record.youngs_modulus_kpa = positive(place, "youngs_modulus_kpa");
-  record.simulated_force_n = place.number("simulated_force_n");
+  record.youngs_modulus_kpa = within(place, "youngs_modulus_kpa", kModulusKpa);
+  record.simulated_force_n = within(place, "simulated_force_n", {0.0, kForceN.high});
   if (!place.at("stretch_force_n", "a number or null").is_null())
-    record.stretch_force_n = positive(place, "stretch_force_n");
-  if (place.has("photographed_mean_signed_mm")) record.signed_error_mm = place.number("photographed_mean_signed_mm");
-  if (place.has("stretch_mm")) record.stretch_mm = place.number("stretch_mm");
+    record.stretch_force_n = within(place, "stretch_force_n", kForceN);
+  if (place.has("photographed_mean_signed_mm"))
+    record.signed_error_mm = within(place, "photographed_mean_signed_mm", kErrorMm);
+  if (place.has("stretch_mm")) record.stretch_mm = within(place, "stretch_mm", {0.0, kLengthMm.high});
   record.registration = registration_quality_from(place);
   return record;
 }
@@ -158,8 +175,8 @@ std::vector<PosteriorSample> samples_from(const JsonPlace& posterior) {
   std::vector<PosteriorSample> samples;
   double sum = 0.0;
   for (const JsonPlace& place : posterior.objects("samples")) {
-    samples.push_back({positive(place, "weight"), positive(place, "drag_length_mm"),
-                       positive(place, "stiffness_factor"), place.number("bias_mm")});
+    samples.push_back({within(place, "weight", kWeight), within(place, "drag_length_mm", kLengthMm),
+                       within(place, "stiffness_factor", kRatio), within(place, "bias_mm", kBiasMm)});
     sum += samples.back().weight;
   }
   if (samples.empty() || std::abs(sum - 1.0) > kWeightTolerance) {
@@ -263,24 +280,25 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
   }
   record.method = method == to_string(CalibrationMethod::Fit) ? CalibrationMethod::Fit : CalibrationMethod::Paper;
   record.is_virtual = file.flag("virtual");
-  record.reference_step_s = positive(file, "reference_step_s");
-  record.baseline_mm = positive(file, "baseline_mm");
+  record.reference_step_s = within(file, "reference_step_s", kStepS);
+  record.baseline_mm = within(file, "baseline_mm", kLengthMm);
   if (!file.at("chosen", "an object or null").is_null()) {
     const JsonPlace chosen = file.inside("chosen");
     record.chosen =
-        RunSetting{positive(chosen, "speed_mm_s"), positive(chosen, "dullness"), positive(chosen, "stiffness_of_case")};
+        RunSetting{within(chosen, "speed_mm_s", kSpeedMmS), within(chosen, "dullness", kDullness),
+                   within(chosen, "stiffness_of_case", kRatio)};
   }
   for (const JsonPlace& specimen : file.objects("specimens")) record.specimens.push_back(specimen_from(specimen));
   if (record.method == CalibrationMethod::Paper) return record;
   record.samples = samples_from(file.inside("posterior"));
   read_differences(file, record);
   const JsonPlace residual = file.inside("residual");
-  record.residual.sd_mm = positive(residual, "sd_mm");
-  record.residual.correlation_deg = positive(residual, "correlation_deg");
-  record.residual.reading_mm = positive(residual, "reading_mm");
-  record.residual.specimen_spread_mm = positive(residual, "specimen_spread_mm");
-  record.residual.placement_mm = positive(residual, "placement_mm");
-  record.residual.n_effective = positive(residual, "n_effective");
+  record.residual.sd_mm = within(residual, "sd_mm", kLengthMm);
+  record.residual.correlation_deg = within(residual, "correlation_deg", kAngleDeg);
+  record.residual.reading_mm = within(residual, "reading_mm", kLengthMm);
+  record.residual.specimen_spread_mm = within(residual, "specimen_spread_mm", kLengthMm);
+  record.residual.placement_mm = within(residual, "placement_mm", kLengthMm);
+  record.residual.n_effective = within(residual, "n_effective", kPlaces);
   return record;
 }
 

@@ -97,7 +97,14 @@ void require_consistent(const CaseFile& file, const std::string& name) {
   refuse("specimen.material", validate(c.material), "a usable material");
   refuse("plan", validate(c.plan), "a usable plan");
   refuse("tool", validate(c.tool), "a usable tool");
-  refuse("cut", validate(c.cut, 2.0 * radius_mm(c.tool)), "usable cut settings");
+  CutSettings cut = c.cut;
+  refuse("cut", validate(cut, 2.0 * radius_mm(c.tool)), "usable cut settings");
+  cut.power_w = c.plan.power_w;
+  refuse("plan", validate(cut, 2.0 * radius_mm(c.tool)), "a power at which tissue is cut");
+  if (c.plan.kind == PlanKind::Ring && c.plan.lateral_margin_mm <= radius_mm(c.tool)) {
+    throw CaseError(name, "plan.lateral_margin_mm", fmt::format("{} mm", c.plan.lateral_margin_mm),
+                    fmt::format("more than the electrode's radius of {} mm", radius_mm(c.tool)));
+  }
   refuse("thermal", validate(c.thermal), "usable constants of heat");
   const double coarse_mm = c.meshing.coarse_mm.value_or(SizingSettings{}.coarse_mm);  // or less, in a small body
   if (c.meshing.fine_mm && *c.meshing.fine_mm > coarse_mm) {

@@ -1,6 +1,7 @@
 #include "storage/json_place.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/geometry/contour_checks.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/verdict_json.hpp>
@@ -17,6 +18,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 3> kCoordinates{"x_mm", "y_mm", "z_mm"};
+constexpr double kFarthestPlaceMm = 1e5;   // from a scan's or a robot's origin
+constexpr double kLongestDirection = 1e6;  // and its inverse the shortest
 constexpr const char* kEvaluationHint = "Write the file with `incise evaluate … -o FILE.json`";
 
 std::optional<double> zone_border(const JsonPlace& zones, const char* name) {
@@ -45,6 +48,21 @@ void read_points(const JsonPlace& file, EvaluationFile& result) {
   for (const double hour : result.clock_h) {
     if (!(hour >= 0.0 && hour < 12.0)) points.refuse("clock_h", fmt::format("{}", hour), "hours in [0, 12)");
   }
+}
+
+/// What a photograph of a cut cannot show is no measurement of one.
+void require_size(const JsonPlace& file, const char* key, const Contour& contour, const char* what, double largest_mm) {
+  if (const auto problem = size_problem(contour, what, largest_mm)) file.refuse(key, problem->found, problem->expected);
+}
+
+Vec3 direction_of(const JsonPlace& file, const char* key) {
+  const std::vector<double> numbers = file.numbers(key);
+  if (numbers.size() != 3) file.refuse(key, fmt::format("{} numbers", numbers.size()), "3");
+  const Vec3 direction(numbers.data());
+  const double length = direction.norm();
+  if (!(length >= 1.0 / kLongestDirection && length <= kLongestDirection))
+    file.refuse(key, fmt::format("a vector of length {:.4g}", length), "a direction");
+  return direction / length;
 }
 
 /// A photograph whose scale or perspective is wrong has numbers, but none that a comparison or a calibration may use.
@@ -77,7 +95,15 @@ Contour contour_of(const JsonPlace& place) {
   if (y.size() != x.size()) place.refuse("y_mm", fmt::format("{} numbers", y.size()), fmt::format("{} as x_mm", x.size()));
   if (z.size() != x.size()) place.refuse("z_mm", fmt::format("{} numbers", z.size()), fmt::format("{} as x_mm", x.size()));
   Contour contour;
-  for (std::size_t i = 0; i < x.size(); ++i) contour.points.emplace_back(x[i], y[i], z[i]);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    contour.points.emplace_back(x[i], y[i], z[i]);
+    for (std::size_t axis = 0; axis < kCoordinates.size(); ++axis) {
+      const double coordinate = contour.points.back()[static_cast<Eigen::Index>(axis)];
+      if (std::abs(coordinate) <= kFarthestPlaceMm) continue;
+      place.refuse(fmt::format("{}[{}]", kCoordinates[axis], i), fmt::format("{:.4g}", coordinate),
+                   fmt::format("a place within {} mm of the origin", kFarthestPlaceMm));
+    }
+  }
   return contour;
 }
 
@@ -111,7 +137,7 @@ EvaluationFile read_evaluation_file(const std::filesystem::path& path) {
   if (result.contour != to_string(ContourKind::Centerline) && result.contour != to_string(ContourKind::InnerEdge)) {
     file.refuse("contour", result.contour.substr(0, 40), "centerline or inner_edge");
   }
-  result.target_mm = file.number("target_mm");
+  result.target_mm = file.number_between("target_mm", -kLargestBodyMm, kLargestBodyMm);
   result.hu_score = file.number_or_null("hu_score");
   result.hu_score_ideal = file.number_or_null("hu_score_ideal");
   result.centroid_shift_mm = file.number_or_null("centroid_shift_mm");
@@ -136,10 +162,12 @@ PhotographedCut read_photographed_cut(const std::filesystem::path& path) {
   cut.name = evaluation.specimen.name;
   cut.incision = contour_of(file.inside("points"));
   cut.tumor_edge = contour_of(file.inside("tumor_edge"));
-  const std::vector<double> approach = file.numbers("approach");
-  if (approach.size() != 3) file.refuse("approach", fmt::format("{} numbers", approach.size()), "3");
-  cut.approach = Vec3(approach.data());
-  if (!(cut.approach.norm() > 0.0)) file.refuse("approach", "a vector of length 0", "a direction");
+  require_size(file, "points", cut.incision, "an incision", kLargestIncisionMm);
+  require_size(file, "tumor_edge", cut.tumor_edge, "a tumour", kLargestTumorMm);
+  Contour both = cut.incision;
+  both.points.insert(both.points.end(), cut.tumor_edge.points.begin(), cut.tumor_edge.points.end());
+  require_size(file, "tumor_edge", both, "an incision with its tumour", kLargestIncisionMm);
+  cut.approach = direction_of(file, "approach");
   return cut;
 }
 

@@ -26,6 +26,7 @@ namespace incise {
 namespace {
 
 constexpr const char* kStageFile = "stage.json";
+constexpr const char* kRewritten = "incision_will_be";  // in stage.json: digest of a file on its way
 
 struct ProductInfo {
   const char* folder;
@@ -69,6 +70,17 @@ CaseFile without_paths(CaseFile file) {
     if (support != nullptr && support->holder) support->holder = std::make_shared<HolderSurface>();
   }
   return file;
+}
+
+/// Digest of each file of a product. The verdict in a path's file comes and goes: it is left out.
+nlohmann::ordered_json digests_in(const std::filesystem::path& folder) {
+  std::map<std::string, std::string> digests;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().lexically_relative(folder).string();
+    if (!entry.is_regular_file() || name == "manifest.json" || name == kStageFile) continue;
+    digests[name] = name == "path.json" ? sha256_of_text(to_json(read_tool_path(entry.path()))) : sha256_of_file(entry.path());
+  }
+  return digests;
 }
 
 Vec3 vector_from(const nlohmann::ordered_json& json) {
@@ -157,12 +169,12 @@ bool FolderStore::is_current(Product product) {
   const std::filesystem::path stage = folder(product) / kStageFile;
   if (!std::filesystem::exists(stage)) return false;
   const nlohmann::ordered_json json = of_earlier_run(folder(product), [&] { return read_json(stage); });
-  return json.is_object() && json.contains("key") && json.at("key").is_string() && json.at("key") == key(product);
+  return json.is_object() && json.contains("key") && json.at("key").is_string() && json.at("key") == key(product) && json.contains("files") &&
+         json.at("files").is_object();
 }
 
-void FolderStore::write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict) {
+Manifest FolderStore::manifest_now(double wall_s) {
   Manifest manifest;
-  if (verdict != nullptr) manifest.verdict = *verdict;
   manifest.specimen_id = specimen_id();
   manifest.version = version();
   manifest.commit = source_commit();
@@ -179,6 +191,12 @@ void FolderStore::write_manifest_to(const std::filesystem::path& folder, double 
   for (const std::filesystem::path& path : inputs) {
     if (!path.empty()) manifest.inputs.push_back({std::filesystem::absolute(path).lexically_proximate(file_.folder).string(), input_hash(path)});
   }
+  return manifest;
+}
+
+void FolderStore::write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict) {
+  Manifest manifest = manifest_now(wall_s);
+  if (verdict != nullptr) manifest.verdict = *verdict;
   write_manifest(folder, manifest);
 }
 
@@ -191,7 +209,7 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
   AtomicFolder target(folder(product));
   write(target.path());
   write_manifest_to(target.path(), wall_s);
-  nlohmann::ordered_json stage{{"key", key(product)}, {"wall_s", wall_s}};
+  nlohmann::ordered_json stage{{"key", key(product)}, {"wall_s", wall_s}, {"files", digests_in(target.path())}};
   if (is_cut(product)) stage["judged_by"] = judgement_key();
   write_json(target.path() / kStageFile, stage);
   // What was made from the older product is of no use any more, and a report must not mix the two. A later product has a key that tells
@@ -206,16 +224,73 @@ void FolderStore::save(Product product, double wall_s, const std::function<void(
 
 std::string FolderStore::judgement_key() const { return sha256_of_text(settings_with({"thermal.", "plan.close_margin_mm"}, {})); }
 
-void FolderStore::note_judgement(Product product) {
+void FolderStore::write_judged_anew(Product product, const nlohmann::ordered_json& incision) {
+  const std::filesystem::path name = "incision.json";
+  const std::filesystem::path stage_file = folder(product) / kStageFile;
+  // First the digest that the file will have: a run that is killed in between leaves a file that fits one of the two.
+  nlohmann::ordered_json stage = read_json(stage_file);
+  stage[kRewritten] = sha256_of_text(json_text(incision));
+  write_json(stage_file, stage);
+  write_json(folder(product) / name, incision);
   // The manifest lists the folder's files as its older self did: only the settings are others now.
   const std::filesystem::path manifest = folder(product) / "manifest.json";
   nlohmann::ordered_json json = read_json(manifest);
   json["settings"] = nlohmann::ordered_json::parse(settings_json(file_));
   write_json(manifest, json);
-  const std::filesystem::path stage = folder(product) / kStageFile;
-  json = read_json(stage);
-  json["judged_by"] = judgement_key();
-  write_json(stage, json);
+  stage["files"][name.string()] = stage[kRewritten];
+  stage.erase(kRewritten);
+  stage["judged_by"] = judgement_key();
+  write_json(stage_file, stage);
+}
+
+void FolderStore::require_unchanged(Product product) {
+  const std::filesystem::path of = folder(product);
+  const nlohmann::ordered_json stage = read_json(of / kStageFile);
+  const nlohmann::ordered_json found = digests_in(of);
+  const auto refuse = [&of](const std::string& name, const char* what) {
+    throw DataError(of / name, "", what, "the product as it was computed");
+  };
+  for (const auto& [name, digest] : stage.at("files").items()) {
+    if (!found.contains(name)) refuse(name, "no such file any more");
+    const bool is_rewritten = name == "incision.json" && stage.contains(kRewritten) && found.at(name) == stage.at(kRewritten);
+    if (found.at(name) != digest && !is_rewritten) refuse(name, "a file that was changed since it was computed");
+  }
+  // A note or a picture of the user's own does not hurt: what could be read in place of a product would.
+  for (const auto& [name, digest] : found.items()) {
+    const std::string ending = std::filesystem::path(name).extension().string();
+    const bool could_be_read = ending == ".csv" || ending == ".json" || ending == ".vtu" || ending == ".vtp" || ending == ".nrrd";
+    if (could_be_read && !stage.at("files").contains(name)) refuse(name, "a file that was added since");
+  }
+}
+
+bool FolderStore::is_made_as_now(const std::filesystem::path& result) {
+  const auto what_was_read = [](const Manifest& manifest) {
+    std::string text;
+    for (std::size_t i = 1; i < manifest.inputs.size(); ++i) text += manifest.inputs[i].sha256 + " ";  // the first is the case's own file
+    return text;
+  };
+  const Manifest now = manifest_now(0.0);
+  try {
+    const Manifest then = read_manifest(result);
+    return nlohmann::json::parse(then.settings_json) == nlohmann::json::parse(now.settings_json) && what_was_read(then) == what_was_read(now) &&
+           then.version == now.version && then.commit == now.commit && then.specimen_id == now.specimen_id;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+void FolderStore::remove_what_is_out_of_date(Monitor& monitor) {
+  const std::filesystem::path program = root_ / "program";
+  if (is_own_manifest(program / "manifest.json") && !is_made_as_now(program)) {
+    remove_replaceable(program);
+    monitor.message(Severity::Warning,
+                    fmt::format("{}: removed, it was made with other settings, inputs or version than the case's now", program.string()));
+  }
+  of_earlier_run(folder(Product::Corrected), [&] {
+    const std::filesystem::path path = folder(Product::Correction) / "path.json";
+    if (!std::filesystem::exists(folder(Product::Corrected) / kStageFile) || !std::filesystem::exists(path)) return;
+    if (is_judged_anew(Product::Corrected)) write_tool_path(path, read_tool_path(path));
+  });
 }
 
 bool FolderStore::is_judged_anew(Product product) {
@@ -269,6 +344,7 @@ std::optional<ToolPath> FolderStore::read_given_path() {
 std::optional<Segmentation> FolderStore::load_segmentation() {
   if (!is_current(Product::Labels)) return std::nullopt;
   return of_earlier_run(folder(Product::Labels), [&]() -> std::optional<Segmentation> {
+    require_unchanged(Product::Labels);
     const nlohmann::ordered_json json = read_json(folder(Product::Labels) / "segment.json");
     Segmentation segmentation;
     segmentation.labels = read_labels(folder(Product::Labels) / "labels.nrrd");
@@ -295,6 +371,7 @@ void FolderStore::save_segmentation(const Segmentation& segmentation, double wal
 std::optional<TetMesh> FolderStore::load_mesh() {
   if (!is_current(Product::Mesh)) return std::nullopt;
   return of_earlier_run(folder(Product::Mesh), [&]() -> std::optional<TetMesh> {
+    require_unchanged(Product::Mesh);
     return read_tet_mesh(folder(Product::Mesh) / "mesh.vtu");
   });
 }
@@ -310,6 +387,7 @@ void FolderStore::save_mesh(const MeshProduct& product, double wall_s) {
 std::optional<StaticResult> FolderStore::load_stretched(const TissueModel& model) {
   if (!is_current(Product::Stretched)) return std::nullopt;
   return of_earlier_run(folder(Product::Stretched), [&]() -> std::optional<StaticResult> {
+    require_unchanged(Product::Stretched);
     const std::filesystem::path file = folder(Product::Stretched) / "deformed.vtu";
     const TetMesh mesh = read_tet_mesh(file);
     const auto array = mesh.point_data.find("position_mm");
@@ -363,6 +441,7 @@ std::optional<ToolPath> FolderStore::load_plan() {
   if (!is_current(Product::Plan)) return std::nullopt;
   return of_earlier_run(folder(Product::Plan), [&]() -> std::optional<ToolPath> {
     require_path_unchanged(folder(Product::Plan) / "path.json");
+    require_unchanged(Product::Plan);
     return read_tool_path(folder(Product::Plan) / "path.json");
   });
 }

@@ -6,6 +6,7 @@
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/verdict_json.hpp>
+#include <incise/io/written_json.hpp>
 #include <incise/planning/eligibility.hpp>
 #include <incise/storage/folder_store.hpp>
 #include <incise/storage/result_json.hpp>
@@ -108,6 +109,7 @@ std::optional<Correction> FolderStore::load_correction() {
                                                                                   : CompensationMethod::Default;
     Compensation& moves = correction.moves;
     require_path_unchanged(folder(Product::Correction) / "path.json");
+    require_unchanged(Product::Correction);
     moves.path = read_tool_path(folder(Product::Correction) / "path.json");
     moves.error_mm = json.at("error_mm").get<std::vector<double>>();
     moves.move_mm = json.at("move_mm").get<std::vector<double>>();
@@ -138,7 +140,10 @@ bool FolderStore::adopt_cut(CutRole from) {
     if (!is_current(product)) return false;
     const std::filesystem::path source = folder(product);
     const double wall_s =
-        of_earlier_run(source, [&] { return read_json(source / "stage.json").at("wall_s").get<double>(); });
+        of_earlier_run(source, [&] {
+          require_unchanged(product);
+          return read_json(source / "stage.json").at("wall_s").get<double>();
+        });
     save(Product::Corrected, wall_s, [&](const std::filesystem::path& to) {
       for (const auto& entry : std::filesystem::directory_iterator(source)) {
         if (entry.path().filename() == "manifest.json" || entry.path().filename() == "stage.json") continue;
@@ -150,13 +155,15 @@ bool FolderStore::adopt_cut(CutRole from) {
   return true;
 }
 
-void FolderStore::add_advice_to(Verdict& verdict) const {
+void FolderStore::add_advice_to(Verdict& verdict, bool is_corrected) const {
   const std::filesystem::path file = root_ / "assessment" / "assess.json";
   if (!std::filesystem::exists(file)) return;
   const Json json = read_json(file);
-  const std::string advice = json.value("advice", std::string());
-  if (advice == to_string(Advice::Compensate)) return;
-  const std::string why = json.contains("reasons") && !json.at("reasons").empty() ? ": " + json.at("reasons").front().get<std::string>() : std::string();
+  const auto [advice, why] = from_written_json(file, [&json] {
+    const bool has_reason = json.contains("reasons") && !json.at("reasons").empty();
+    return std::pair(json.value("advice", std::string()), has_reason ? ": " + json.at("reasons").front().get<std::string>() : std::string());
+  });
+  if (advice == to_string(Advice::Compensate) || (!is_corrected && advice == to_string(Advice::CutAsPlanned))) return;
   verdict.add("eligibility", {}, fmt::format("assess advises {}{}", advice.empty() ? "nothing" : advice, why));
 }
 
@@ -165,7 +172,7 @@ void FolderStore::save_verdicts(const std::optional<Verdict>& of_planned, const 
     const std::filesystem::path file = folder(product) / "path.json";
     if (!verdict || !is_current(product)) return;
     Verdict whole = *verdict;
-    if (product == Product::Correction) add_advice_to(whole);
+    add_advice_to(whole, product == Product::Correction);
     if (to_json(read_path_verdict(file)) == to_json(whole)) return;
     write_tool_path(file, read_tool_path(file), whole);
   };

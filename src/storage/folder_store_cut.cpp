@@ -190,6 +190,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
   if (!is_current(product)) return std::nullopt;
   remove_what_it_was_made_from(role);  // a run that was killed once it had saved the cut has left it
   return of_earlier_run(folder(product), [&]() -> std::optional<SimulatedCut> {
+    require_unchanged(product);
     const std::filesystem::path from = folder(product);
     const nlohmann::ordered_json json = read_json(from / "incision.json");
     IncisionResult incision;
@@ -231,10 +232,7 @@ std::optional<SimulatedCut> FolderStore::load_cut(CutRole role) {
     const ToolPath heated = read_given_path().value_or(intended);
     SimulatedCut cut = judge(file_.settings, std::move(incision), heated, intended, json.at("tets").get<std::size_t>());
     keep_what_was_known_before(verdict_from_json(json.at("verdict"), from / "incision.json"), cut.verdict);
-    if (is_judged_anew(product)) {
-      write_json(from / "incision.json", incision_json(cut));
-      note_judgement(product);
-    }
+    if (is_judged_anew(product)) write_judged_anew(product, incision_json(cut));
     return cut;
   });
 }

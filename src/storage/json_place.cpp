@@ -25,6 +25,13 @@ double JsonPlace::number(const std::string& key) const {
   return value.get<double>();
 }
 
+double JsonPlace::number_between(const std::string& key, double low, double high) const {
+  const double value = number(key);
+  if (!(value >= low && value <= high))
+    refuse(key, fmt::format("{}", value), fmt::format("a number from {} to {}", low, high));
+  return value;
+}
+
 std::string JsonPlace::text(const std::string& key) const {
   const nlohmann::ordered_json& value = at(key, "text");
   if (!value.is_string()) refuse(key, shortened_dump(value), "text");

@@ -25,6 +25,7 @@ struct JsonPlace {
   [[nodiscard]] bool has(const std::string& key) const { return object.contains(key); }
   [[nodiscard]] const nlohmann::ordered_json& at(const std::string& key, const char* expected) const;
   [[nodiscard]] double number(const std::string& key) const;
+  [[nodiscard]] double number_between(const std::string& key, double low, double high) const;  ///< both included
   [[nodiscard]] std::string text(const std::string& key) const;
   [[nodiscard]] bool flag(const std::string& key) const;
   [[nodiscard]] std::optional<double> number_or_null(const std::string& key) const;
@@ -35,7 +36,8 @@ struct JsonPlace {
   [[nodiscard]] std::vector<JsonPlace> objects(const std::string& key) const;
 };
 
-/// The contour that contour_json wrote, closed. @throws DataError for fewer than 3 points or lists of different length.
+/// The contour that contour_json wrote, closed. @throws DataError for fewer than 3 points, lists of different length, or
+/// a coordinate farther from 0 than any scan or robot reaches.
 [[nodiscard]] Contour contour_of(const JsonPlace& place);
 
 }  // namespace incise

@@ -21,11 +21,11 @@ class KeptRecord {
   KeptRecord(std::filesystem::path folder, std::string schema, std::string key);
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// Writes schema, key and then the keys of `result`, all or nothing.
+  /// Writes schema, key, the keys of `result` and the digest of all these, all or nothing.
   void save(const nlohmann::ordered_json& result) const;
 
-  /// What `read` makes of the file, a JsonPlace; nothing where there is none. One that is damaged is told, with `anew`
-  /// ("The run is simulated anew"), and counts as absent.
+  /// What `read` makes of the file, a JsonPlace; nothing where there is none. One that is damaged, or was changed
+  /// after it was written, is told, with `anew` ("The run is simulated anew"), and counts as absent.
   template <class Read>
   [[nodiscard]] auto load(Monitor& monitor, const char* anew, const Read& read) const
       -> std::optional<std::invoke_result_t<Read, const JsonPlace&>> {
@@ -34,7 +34,9 @@ class KeptRecord {
       const nlohmann::ordered_json json = read_json(file_);
       const JsonPlace place{file_, json, "", ""};
       require_own(place);
-      return read(place);
+      auto result = read(place);
+      require_unchanged(place);
+      return result;
     } catch (const DataError& damaged) {
       monitor.message(Severity::Warning, fmt::format("{}. {}", damaged.what(), anew));
       return std::nullopt;
@@ -43,6 +45,7 @@ class KeptRecord {
 
  private:
   void require_own(const JsonPlace& place) const;
+  void require_unchanged(const JsonPlace& place) const;
   std::filesystem::path folder_, file_;
   std::string schema_, key_;
 };

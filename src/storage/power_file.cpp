@@ -38,6 +38,19 @@ nlohmann::ordered_json verdict_json(const PowerVerdict& verdict) {
   return json;
 }
 
+/// A unit that was mistaken would set the robot's speed.
+void require_possible(const TimedCut& cut, const std::filesystem::path& file, std::size_t line) {
+  if (!(cut.length_mm >= kShortestTimedCutMm && cut.length_mm <= kLongestTimedCutMm)) {
+    throw DataError(file, fmt::format("line {}, column length_mm", line), fmt::format("{}", cut.length_mm),
+                    fmt::format("{} to {} mm", kShortestTimedCutMm, kLongestTimedCutMm));
+  }
+  const double speed_mm_s = cut.length_mm / cut.time_s;
+  if (speed_mm_s >= kSlowestCutMmS && speed_mm_s <= kFastestCutMmS) return;
+  throw DataError(file, fmt::format("line {}, column time_s", line),
+                  fmt::format("{} mm in {} s: {:.4g} mm/s", cut.length_mm, cut.time_s, speed_mm_s),
+                  fmt::format("{} to {} mm/s", kSlowestCutMmS, kFastestCutMmS));
+}
+
 std::string number_cell(const std::optional<double>& value) {
   return value ? fmt::format("{}", *value) : std::string();
 }
@@ -99,6 +112,7 @@ std::vector<TimedCut> read_timed_cuts(const std::filesystem::path& file) {
                       "a number above 0");
     }
     cuts.push_back({columns[0][i], columns[1][i]});
+    require_possible(cuts.back(), file, lines[i]);
   }
   if (cuts.empty()) throw DataError(file, "", "no rows", "at least one timed cut");
   return cuts;

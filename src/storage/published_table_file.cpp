@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kQuantities{"mean", "sd", "max", "min", "n"};
 
+/// Some kB are kept of each row, and a published table has a few hundred cells.
+constexpr std::size_t kMostCells = 200'000;
+
 /// What a column holds: a quantity of a part ("" for the row's own).
 struct ColumnRole {
   std::string part;
@@ -122,7 +125,7 @@ std::optional<PrintedGroup> group_of(const TableRow& row, const std::string& par
 }  // namespace
 
 PublishedTable read_published_table(const std::filesystem::path& path) {
-  const TextTable table = read_csv_text(path);
+  const TextTable table = read_csv_text(path, kMostCells);
   const Columns columns = columns_of(table, path);
   if (table.rows.empty()) throw DataError(path, "", "a header without rows", "at least one row");
   PublishedTable result;

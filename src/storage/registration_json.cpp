@@ -1,5 +1,6 @@
+#include "storage/json_digest.hpp"
+
 #include <incise/core/error.hpp>
-#include <incise/core/sha256.hpp>
 #include <incise/core/units.hpp>
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
@@ -18,13 +19,6 @@ namespace incise {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kDigest = "digest_sha256";
-
-std::string digest_of(Json document) {
-  document.erase(kDigest);
-  return sha256_of_text(document.dump());
-}
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -109,18 +103,18 @@ Json to_json(const Registration& r) {
 }
 
 void seal_registration(Json& document) {
-  document[kDigest] = digest_of(document);
+  document[kDigestKey] = digest_of(document);
 }
 
 namespace {
 
 /// @returns whether it carries the digest of what is in it
 bool has_its_digest(const Json& document, const std::filesystem::path& file) {
-  const auto found = document.find(kDigest);
+  const auto found = document.find(kDigestKey);
   if (found == document.end()) return false;
   const std::string expected = digest_of(document);
   if (!found->is_string() || found->get<std::string>() != expected) {
-    throw DataError(file, std::string("/") + kDigest, found->dump(), expected + ", that of what is in this file",
+    throw DataError(file, std::string("/") + kDigestKey, found->dump(), expected + ", that of what is in this file",
                     "It was changed after it was written: register again.");
   }
   return true;

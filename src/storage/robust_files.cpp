@@ -69,6 +69,7 @@ std::string ScenarioRunFolder::key_of(const RunSetting& setting, const ToolPath&
   ToolPath followed = path;
   followed.source_sha256.clear();  // where it lies counts, not what it was read from
   followed.specimen_id.clear();    // the case's key has it
+  followed.is_virtual = false;     // likewise; a path is only marked once it is in a file
   return sha256_of_text(fmt::format("{} {} speed={} dullness={} stiffness={} path={}", kScenarioRunSchema, case_key_,
                                     setting.speed_mm_s, setting.dullness, setting.stiffness_of_case,
                                     to_json(followed)));

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace incise {
 namespace {
@@ -71,6 +72,15 @@ std::string without_correction(const Study& done) {
 }
 
 }  // namespace
+
+Eligibility by_virtual_calibration(Eligibility judged) {
+  if (judged.advice == Advice::Compensate) {
+    judged.advice = Advice::CutAsPlanned;
+    judged.reasons.clear();  // they are of the advice that is withdrawn
+  }
+  judged.reasons.emplace_back(kVirtualCalibration);
+  return judged;
+}
 
 double stretch_mm(const TissueModel& model) {
   double farthest = 0.0;
@@ -141,6 +151,8 @@ Assessment assess(const Case& settings, Store& store, const Study& done, const C
   evidence.is_stiffness_compared =
       std::ranges::any_of(evidence.distances, [](const SpecimenDistance& d) { return d.name == kModulusName; });
   assessment.eligibility = judge_eligibility(evidence, request.rules);
+  if (request.is_calibration_virtual && !settings.is_virtual)
+    assessment.eligibility = by_virtual_calibration(std::move(assessment.eligibility));
   return assessment;
 }
 

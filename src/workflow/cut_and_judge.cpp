@@ -43,6 +43,36 @@ void add_layers_down_to(const ToolPath& path, const Vec3& approach, std::vector<
   while (layer_depths_mm.back() + 1.0 <= deepest_mm) layer_depths_mm.push_back(layer_depths_mm.back() + 1.0);
 }
 
+/// Least distance of an open cut's mid-lines from the tumour's edge, seen along the approach; below 0 within the edge.
+std::optional<double> line_to_edge_mm(const IncisionResult& incision, const Contour& edge, const Vec3& approach) {
+  if (edge.points.empty()) return std::nullopt;
+  std::vector<const Contour*> lines;
+  if (incision.centerline) lines.push_back(&*incision.centerline);
+  for (const KerfLayer& layer : incision.kerf.layers) {
+    if (layer.centerline) lines.push_back(&*layer.centerline);
+  }
+  const ViewFrame view = view_along(approach);
+  const auto flat = [&view](const Contour& contour) {
+    Contour seen = contour;
+    for (Vec3& p : seen.points) {
+      const Vec3 place = view.to_view(p);
+      p = Vec3(place.x(), place.y(), 0.0);
+    }
+    return seen;
+  };
+  const Contour polygon = flat(edge);
+  constexpr double kStepMm = 0.1;
+  std::optional<double> least;
+  for (const Contour* line : lines) {
+    if (line->points.size() < 2) continue;
+    for (const Vec3& p : resample_by_step(flat(*line), kStepMm).points) {
+      const double distance = nearest_on(polygon, p).distance_mm * (contains_in_view(polygon, p, -Vec3::UnitZ()) ? -1.0 : 1.0);
+      if (!least || distance < *least) least = distance;
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
 SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended, std::size_t tets) {
@@ -62,6 +92,10 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
   cut.thermal_half_width_mm = widest_heat(settings.thermal, settings.plan.power_w, followed, settings.tool).half_width_mm;
   if (settings.plan.kind == PlanKind::Ring && cut.centerline.signed_error_mm) {
     cut.thermal_margin_mm = cut.centerline.target_mm + cut.centerline.signed_error_mm->min - cut.thermal_half_width_mm;
+  }
+  if (settings.plan.kind == PlanKind::Line) {
+    cut.line_to_edge_mm = line_to_edge_mm(cut.incision, intended.tumor_edge, settings.plan.approach);
+    if (cut.line_to_edge_mm) cut.thermal_margin_mm = *cut.line_to_edge_mm - cut.thermal_half_width_mm;
   }
   cut.outcome = cut.incision.outcome == Outcome::Success ? cut.centerline.outcome : cut.incision.outcome;
   cut.verdict = verdict_of_cut(settings, cut);

@@ -80,11 +80,14 @@ void note_layers(const Case& settings, const SimulatedCut& cut, Tissue& least) {
 }
 
 void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
-  if (settings.plan.kind != PlanKind::Ring) return;
   Tissue least;
-  note_line(cut.centerline, radius_mm(settings.tool), "mid-line", least);
-  note_line(cut.inner_edge, 0.0, "inner edge, the tool out,", least);
-  if (!cut.incision.kerf.deep_margin) note_layers(settings, cut, least);
+  if (settings.plan.kind == PlanKind::Line) {
+    if (cut.line_to_edge_mm) least = {*cut.line_to_edge_mm - radius_mm(settings.tool), "mid-line, seen along the approach,", {}};
+  } else {
+    note_line(cut.centerline, radius_mm(settings.tool), "mid-line", least);
+    note_line(cut.inner_edge, 0.0, "inner edge, the tool out,", least);
+    if (!cut.incision.kerf.deep_margin) note_layers(settings, cut, least);
+  }
   if (least.left_mm > settings.close_margin_mm) return;
   if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
   verdict.add("lateral_margin", least.left_mm,
@@ -256,7 +259,7 @@ Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const 
     verdict.add("outcome", {}, "no cut was simulated");
   }
   if (cut != nullptr && was_correction_asked && !is_corrected) {
-    verdict.add("not_corrected", {}, "the correction is not accepted: a program would follow the uncorrected path");
+    verdict.add("not_corrected", {}, kUncorrectedPath);
   }
   if (settings.T_robot_sim && !settings.is_virtual) {
     verdict.add("typed_transform", {},

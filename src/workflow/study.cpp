@@ -37,8 +37,8 @@ class Runner {
       throw_if_cancelled(monitor_, "the study");
       if (!(this->*kSteps[i])()) break;
     }
-    save_verdicts();
     const bool was_correction_asked = until_ >= Stage::Verify && settings_.plan.kind == PlanKind::Ring;
+    save_verdicts(was_correction_asked && !study_.is_accepted);
     study_.verdict = verdict_of_run(settings_, study_.about_inputs, verifying_cut(study_), was_correction_asked, study_.is_accepted);
     return std::move(study_);
   }
@@ -178,14 +178,16 @@ class Runner {
   }
 
   /// Whoever takes a path from its file finds there what its cut is worth.
-  void save_verdicts() {
-    const auto of = [this](const std::optional<SimulatedCut>& cut) -> std::optional<Verdict> {
+  void save_verdicts(bool is_correction_rejected) {
+    const auto of = [&](const std::optional<SimulatedCut>& cut, const char* rejection) -> std::optional<Verdict> {
       if (!cut) return std::nullopt;
       Verdict verdict = study_.about_inputs;
       verdict.add(cut->verdict);
+      if (is_correction_rejected) verdict.add("not_corrected", {}, rejection);
       return verdict;
     };
-    store_.save_verdicts(given_path_ ? std::nullopt : of(study_.as_planned), of(study_.corrected));
+    store_.save_verdicts(given_path_ ? std::nullopt : of(study_.as_planned, kUncorrectedPath),
+                         of(study_.corrected, "this is a correction that was not accepted"));
   }
 
   SimulatedCut cut(Stage stage, CutRole role, const ToolPath& path) {

@@ -77,15 +77,10 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
   return product;
 }
 
-ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
-                 const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line) {
-  const SurfaceQuery surface(skin_of(model.mesh, stretched));
-  if (settings.plan.kind == PlanKind::Line) {
-    INCISE_REQUIRE(line.has_value(), "expected the curve of the open cut");
-    return plan_line(surface, project_line(*line, surface, settings.plan.approach, settings.surface_tolerance_mm), settings.plan);
-  }
-  INCISE_REQUIRE(tumor_edge.has_value(), "expected a tumour edge");
-  Contour edge = *tumor_edge;
+namespace {
+
+/// The tumour's edge on the stretched skin.
+Contour edge_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched, const SurfaceQuery& surface, Contour edge) {
   if (settings.tumor_configuration == TumorConfiguration::Rest) {
     const SurfaceQuery at_rest(skin_of(model.mesh, model.mesh.vertices));
     edge = project_tumor_edge(edge, at_rest, settings.plan.approach, settings.surface_tolerance_mm);
@@ -96,7 +91,22 @@ ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const
       p = position_of(*point, model.mesh, stretched);
     }
   }
-  return plan_ring(surface, project_tumor_edge(edge, surface, settings.plan.approach, settings.surface_tolerance_mm), settings.plan);
+  return project_tumor_edge(edge, surface, settings.plan.approach, settings.surface_tolerance_mm);
+}
+
+}  // namespace
+
+ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+                 const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line) {
+  const SurfaceQuery surface(skin_of(model.mesh, stretched));
+  if (settings.plan.kind == PlanKind::Line) {
+    INCISE_REQUIRE(line.has_value(), "expected the curve of the open cut");
+    ToolPath path = plan_line(surface, project_line(*line, surface, settings.plan.approach, settings.surface_tolerance_mm), settings.plan);
+    if (tumor_edge) path.tumor_edge = edge_on(settings, model, stretched, surface, *tumor_edge);
+    return path;
+  }
+  INCISE_REQUIRE(tumor_edge.has_value(), "expected a tumour edge");
+  return plan_ring(surface, edge_on(settings, model, stretched, surface, *tumor_edge), settings.plan);
 }
 
 }  // namespace incise

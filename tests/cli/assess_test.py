@@ -100,6 +100,17 @@ class AssessTest(CommandTest):
         self.assertEqual(older["p_worse_if_unlike"], 0.5)
         self.assertTrue(any("erred in the mean" in note for note in older["notes"]), older["notes"])
 
+    def test_a_virtual_calibration_never_advises_to_correct_a_real_specimen(self):
+        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}, "specimen_is": "real"})
+        found = self.assessed("--stretch-force-n", PULL_N)
+        self.assertEqual((found["specimen_is"], found["calibration_is"]), ("real", "virtual"))
+        self.assertEqual(found["advice"], "cut_as_planned", found["reasons"])
+        self.assertTrue(any("the calibration is of virtual specimens and this one is real" in reason for reason in found["reasons"]), found["reasons"])
+        small_calibration.write(self.calibration, lambda c: c.update(virtual=False))
+        found = self.assessed("--stretch-force-n", PULL_N)
+        self.assertEqual((found["specimen_is"], found["calibration_is"]), ("real", "real"))
+        self.assertFalse(any("virtual" in reason for reason in found["reasons"]), found["reasons"])
+
     def test_a_ring_that_stays_open_cannot_be_foretold(self):
         small_case.write_case(self.folder / "case", {"cut": {"dullness": 900}})
         found = self.assessed(status=NOT_ACCEPTABLE)
@@ -121,6 +132,10 @@ class AssessTest(CommandTest):
         self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "method")
         small_calibration.write(self.calibration, lambda c: c["specimens"][0].update(registration={"rmse_mm": -1, "scale": 1}))
         self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "specimens[0].registration.rmse_mm")
+        small_calibration.write(self.calibration, lambda c: c["posterior"]["samples"][3].update(drag_length_mm=1e300))
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json: posterior.samples[3].drag_length_mm: found 1e+300")
+        small_calibration.write(self.calibration, lambda c: c["posterior"]["samples"][3].update(bias_mm=-1e9))
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json: posterior.samples[3].bias_mm: found -1000000000")
         small_calibration.write(self.calibration)
         small_case.write_case(self.folder / "case", {"compensation": {"method": "paper"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "compensation.method", "paper")

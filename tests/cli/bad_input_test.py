@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import struct
 import unittest
 
 import small_case
@@ -36,6 +37,48 @@ class CtTest(CommandTest):
     def test_text_in_place_of_nrrd_is_told(self):
         (self.folder / "ct.nrrd").write_text("This is a letter, not a volume.\n")
         self.assert_segment_refused("ct.nrrd", "ct.nrrd", "header", "expected a header")
+
+    def write_blocks(self, spacing_mm, blocks, size=(24, 24, 24), more="", name="ct.nrrd", voxel="h", air=-1000, tissue=50):
+        """An NRRD with the vectors of `spacing_mm` as directions; `blocks` are boxes of tissue, first and last index along each axis."""
+        x, y, z = size
+        numbers = [air] * (x * y * z)
+        for first, last in blocks:
+            for k in range(first[2], last[2] + 1):
+                for j in range(first[1], last[1] + 1):
+                    for i in range(first[0], last[0] + 1):
+                        numbers[i + x * (j + y * k)] = tissue
+        directions = " ".join("(" + ",".join(str(step) if row == axis else "0" for row in range(3)) + ")" for axis, step in enumerate(spacing_mm))
+        kind = {"h": "short", "B": "uchar"}[voxel]
+        header = f"NRRD0004\ntype: {kind}\ndimension: 3\nspace: left-posterior-superior\nsizes: {x} {y} {z}\nspace directions: {directions}\nkinds: domain domain domain\n"
+        header += f"endian: little\nencoding: raw\nspace origin: (0,0,0)\n{more}\n"
+        (self.folder / name).write_bytes(header.encode() + struct.pack(f"<{len(numbers)}{voxel}", *numbers))
+
+    def test_voxels_of_no_scanner_or_in_other_units_are_refused(self):
+        block = [((6, 6, 6), (17, 17, 17))]
+        self.write_blocks((1e200, 1, 1), block)
+        self.assert_segment_refused("ct.nrrd", "ct.nrrd: space directions: found voxel spacing inf along axis 0", "0.0001 to 100 mm")
+        self.write_blocks((0.001, 0.001, 0.001), block, more='space units: "m" "m" "m"\n')
+        self.assert_segment_refused("ct.nrrd", "ct.nrrd: space units: found 'm' for axis 0, expected \"mm\"")
+        self.write_blocks((0.01, 1, 100), block)
+        self.assert_segment_refused("ct.nrrd", "ct.nrrd: spacing: found voxels of 0.01 x 1 x 100 mm", "at most 50 times the shortest")
+
+    def test_two_bodies_of_a_size_are_a_caution(self):
+        self.write_blocks((1, 1, 1), [((2, 6, 6), (9, 17, 17)), ((13, 6, 6), (20, 17, 17))])
+        done = self.incise("segment", "ct.nrrd", "-o", "out.nrrd", "--json")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        result = json.loads(done.stdout)
+        self.assertEqual(result["components"], 2)
+        self.assertIn("1152 mm³ round (5.5, 11.5, 11.5) mm, which is kept", done.stderr)
+        self.assertIn("1152 mm³ round (16.5, 11.5, 11.5) mm", done.stderr)
+        self.assertIn("scan", [reason["id"] for reason in result["verdict"]["reasons"]])
+        seeded = self.incise("segment", "ct.nrrd", "-o", "out.nrrd", "--seed-mm", 16, 11, 11, "--json")
+        self.assertNotIn("two bodies", seeded.stderr)
+
+    def test_labels_that_no_mesh_can_start_in_are_told_in_one_sentence(self):
+        self.write_blocks((0.5, 0.5, 10), [((6, 6, 6), (17, 17, 17))], name="labels.nrrd", voxel="B", air=0, tissue=1)
+        done = self.incise("mesh", "labels.nrrd", "-o", "out.vtu")
+        self.assert_refused(done, BAD_DATA, "labels.nrrd: found mesh sizing: a body of 4.31e+03 mm3 is too small for edges of 4 mm")
+        self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
 
     def test_a_truncated_nrrd_is_told(self):
         (self.folder / "ct.nrrd").write_bytes(
@@ -306,6 +349,14 @@ class CaseTest(CommandTest):
     def test_a_step_longer_than_the_needle_is_thick_is_refused_before_anything_runs(self):
         self.change(cut={"advance_per_step_mm": 1.5})
         self.assert_case_refused("simulate", BAD_CASE, "case.yaml: cut.advance_per_step_mm: found 1.5, expected", "at most the tool's diameter or thickness")
+
+    def test_settings_that_do_not_fit_each_other_are_told_before_anything_runs(self):
+        for group, change, words in (("plan", {"power_w": 0.0001}, ("plan.power_w: found 0.0001", "600 s")),
+                                     ("plan", {"lateral_margin_mm": 0.5}, ("plan.lateral_margin_mm: found 0.5 mm", "more than the electrode's radius")),
+                                     ("specimen", {"mesh": "block.msh", "material": {"fibre_modulus_kpa": 1e300}}, ("fibre_modulus_kpa: found 1e+300", "1e9"))):
+            with self.subTest(change=change):
+                self.change(**{group: change})
+                self.assert_case_refused("simulate", BAD_CASE, *words)
 
     def test_an_overlap_that_goes_round_the_ring_again_is_refused(self):
         self.change(cut={"overlap_mm": 50}, plan={"lateral_margin_mm": 1})

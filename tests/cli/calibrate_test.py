@@ -69,6 +69,14 @@ class CalibrateTest(CommandTest):
         self.assertIn(damaged.name, mended.stderr)
         self.assertIn("simulated anew", mended.stderr)
 
+        # So is one that was changed afterwards, though every number in it could be one.
+        changed = json.loads(damaged.read_text())
+        changed["inner_edge"]["x_mm"] = [x + 1.5 for x in changed["inner_edge"]["x_mm"]]
+        damaged.write_text(json.dumps(changed))
+        mended = self.calibrate(*FEW)
+        self.assertEqual(mended.returncode, DONE, mended.stderr)
+        self.assertIn(f"{damaged.name}: digest_sha256", mended.stderr)
+
         def without_times(value):
             if isinstance(value, dict):
                 return {key: without_times(item) for key, item in value.items() if key != "wall_s"}
@@ -109,6 +117,19 @@ class CalibrateTest(CommandTest):
         (self.folder / "older.json").write_text(json.dumps(older))
         self.assert_refused(self.calibrate(observed=self.folder / "older.json"), BAD_DATA, "older.json", "tumor_edge", "incise evaluate")
         self.assert_refused(self.calibrate(observed=self.folder / "nowhere.json"), BAD_DATA, "nowhere.json")
+        self.assert_nothing_written()
+
+    def test_an_evaluation_that_no_photograph_shows_is_refused_before_anything_runs(self):
+        good = json.loads(self.observed.read_text())
+        far = self.folder / "far.json"
+        for group, axis, value, says in (("points", "x_mm", 1e300, "points.x_mm[3]: found 1e+300"), ("points", "z_mm", -1e9, "points.z_mm[3]: found -1e+09"),
+                                         ("tumor_edge", "y_mm", 1e300, "tumor_edge.y_mm[3]: found 1e+300"), ("points", "y_mm", 900.0, "points: found an incision")):
+            changed = json.loads(json.dumps(good))
+            changed[group][axis][3] = value
+            far.write_text(json.dumps(changed))
+            self.assert_refused(self.calibrate(observed=far), BAD_DATA, f"far.json: {says}")
+        far.write_text(json.dumps({**good, "approach": [1e300, 0, 0]}))
+        self.assert_refused(self.calibrate(observed=far), BAD_DATA, "far.json: approach: found a vector of length inf, expected a direction")
         self.assert_nothing_written()
 
     def test_a_case_without_a_ring_or_a_tumour_is_refused(self):

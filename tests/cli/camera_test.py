@@ -260,8 +260,8 @@ class TrackTest(CommandTest):
         self.assert_refused(self.incise(*arguments), BAD_DATA, "depth_scale")
         self.assert_nothing_written()
 
-    def organised(self, none=None, grid=False, holes=(), size=("num_cols 320", "num_rows 240"), name="scan.ply"):
-        """The flat plate as a cloud in metres, row by row; `holes` are rectangles u0, v0, u1, v1, `none` what stands for their z."""
+    def organised(self, none=None, grid=False, holes=(), size=("num_cols 320", "num_rows 240"), name="scan.ply", by=(1, 1, 1)):
+        """The flat plate as a cloud in metres, row by row; `holes` are rectangles u0, v0, u1, v1, `none` what stands for their z, `by` scales its axes."""
         points, places = [], []
         for v in range(240):
             for u in range(320):
@@ -269,7 +269,7 @@ class TrackTest(CommandTest):
                 is_hole = any(u0 <= u < u1 and v0 <= v < v1 for u0, v0, u1, v1 in holes)
                 places.append("0" if is_hole else f"1 {len(points)}")
                 if not (is_hole and grid):
-                    x, y, z = (u - 160) * PIXEL_MM / 1000, (v - 120) * PIXEL_MM / 1000, Z_MM / 1000
+                    x, y, z = by[0] * (u - 160) * PIXEL_MM / 1000, by[1] * (v - 120) * PIXEL_MM / 1000, by[2] * Z_MM / 1000
                     place = f"{none} {none} {none}" if is_hole else "%.4f %.4f %.4f" % (x, y, z)
                     points.append("%s %d %d %d" % (place, *color))
         lines = ["ply", "format ascii 1.0"] + [f"obj_info {words}" for words in size] + [f"element vertex {len(points)}"]
@@ -301,6 +301,13 @@ class TrackTest(CommandTest):
         self.assert_refused(self.incise(*self.track(self.organised(size=()))), BAD_DATA, "scan.ply", "no obj_info num_cols")
         self.assert_refused(self.incise(*self.track(self.organised(), "--ply-width", 240)), BAD_CASE, "--ply-width: found 240, expected 320")
         self.assert_refused(self.incise(*self.track(self.organised(none="inf", holes=[(0, 0, 2, 2)]))), BAD_DATA, "'inf'", "or nan")
+        self.assert_nothing_written()
+
+    def test_a_cloud_that_no_camera_sees_is_refused(self):
+        for by in ((-1, 1, 1), (1, -1, 1)):
+            self.assert_refused(self.incise(*self.track(self.organised(by=by))), BAD_DATA, "scan.ply: vertices: found columns and rows that run as in a mirror", "as the camera sees them")
+        for by in ((1, 1, -1), (1, -1, -1)):
+            self.assert_refused(self.incise(*self.track(self.organised(by=by))), BAD_DATA, "scan.ply: pixel (0, 0): found a point behind the camera", "z above 0")
         self.assert_nothing_written()
 
     def test_a_gap_that_may_be_too_long_is_told(self):
@@ -382,7 +389,7 @@ class ProjectTest(CommandTest):
         (self.folder / "registration.json").write_text(json.dumps(document))
         self.assertEqual(self.held_against(), ["typed_transform"])
         self.assertEqual(self.held_against("--kind", "mark"), ["typed_transform"])
-        (self.folder / "robot.json").unlink()
+        self.take_away()
         document["T_target_source"][2][3] = 97.0
         (self.folder / "registration.json").write_text(json.dumps({**document, "digest_sha256": "0" * 64}))
         self.refused("registration.json", "/digest_sha256", "register again")
@@ -399,7 +406,7 @@ class ProjectTest(CommandTest):
         digest = hashlib.sha256(b"a cloud").hexdigest()
         self.write_transform(source="simulated.ply", source_sha256=digest)
         self.json_of(*self.ARGUMENTS)
-        (self.folder / "robot.json").unlink()
+        self.take_away()
         (self.folder / "simulated.ply").write_text("another cloud")
         self.refused("registration.json", "source_sha256", "simulated.ply", "register again")
 
@@ -445,7 +452,7 @@ class ProjectTest(CommandTest):
         self.assertEqual(files_below(self.folder / "projected"), ["manifest.json", "path.json", "surface.ply"])
         self.assertEqual(result["path"], "projected/path.json")
         self.json_of(*self.ARGUMENTS)
-        for manifest in (self.folder / "projected" / "manifest.json", self.folder / "robot.manifest.json"):
+        for manifest in (self.folder / "projected" / "manifest.json", self.folder / "robot.json.manifest.json"):
             kept = json.loads(manifest.read_text())
             self.assertEqual(kept["settings"]["metric"], "ct")
             self.assertEqual([entry["path"] for entry in kept["inputs"]], ["path.json", "registration.json", "cloud.ply"])
@@ -497,10 +504,14 @@ class ProjectTest(CommandTest):
         done = self.incise(*self.ARGUMENTS, "--camera", "camera.json")
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertIn("is uncertain by 0.0030", done.stderr)
-        (self.folder / "robot.json").unlink()
+        self.take_away()
         self.write_transform(scale=1.02, certificate={"scale_sd": 0.03})
         self.assert_refused(self.incise(*self.ARGUMENTS, "--camera", "camera.json"), BAD_DATA, "registration.json: /certificate/scale_sd: found 0.0300, which is 1", "at most 2.2 mm")
         self.assert_nothing_written(self.folder / "robot.json")
+
+    def take_away(self):
+        for name in ("robot.json", "robot.json.manifest.json"):
+            (self.folder / name).unlink()
 
     def refused(self, *says, status=BAD_DATA):
         self.assert_refused(self.incise(*self.ARGUMENTS), status, *says)
@@ -509,7 +520,7 @@ class ProjectTest(CommandTest):
     def test_gaps_are_reported_and_large_ones_refused(self):
         self.write_cloud(hole_mm=1.4)
         self.assertAlmostEqual(self.json_of(*self.ARGUMENTS)["max_gap_mm"], 1.4, delta=0.3)
-        (self.folder / "robot.json").unlink()
+        self.take_away()
         self.write_cloud(hole_mm=4.0)
         self.refused("cloud.ply", "waypoint", "a gap")
 
@@ -529,7 +540,7 @@ class ProjectTest(CommandTest):
         done = self.incise(*self.ARGUMENTS)
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertIn("the scale is 1.0800", done.stderr)
-        (self.folder / "robot.json").unlink()
+        self.take_away()
         (self.folder / "registration.json").write_text(json.dumps({"T_target_source": [[1, 0], [0, 1]]}))
         self.refused("registration.json", "T_target_source", "4 rows")
 

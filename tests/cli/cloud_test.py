@@ -92,6 +92,14 @@ class RegisterTest(CommandTest):
         self.assertEqual(result["outcome"], "degenerate")
         self.assertIsNone(result["T_target_source"])
 
+    def test_a_stray_point_is_named_for_what_it_is(self):
+        write_ply(self.folder / "stray.ply", [*hill(200, 1), (1e12, 0.0, 0.0)])
+        self.assert_refused(self.incise(*self.register(source="stray.ply")), BAD_DATA, "stray.ply: point 200: found a coordinate of 1e+12")
+        self.assert_refused(self.incise(*self.register(target="stray.ply")), BAD_DATA, "stray.ply: point 200: found a coordinate of 1e+12")
+        write_ply(self.folder / "stray.ply", [*hill(200, 1), (1e8, 0.0, 0.0)])
+        self.assert_refused(self.incise(*self.register(source="stray.ply")), BAD_DATA, "stray.ply: points: found a cloud 1e+08 wide")
+        self.assert_nothing_written()
+
     def test_a_residual_above_the_limit_is_not_acceptable(self):
         result = self.json_of(*self.register("--max-rmse-mm", "0.0001"), status=NOT_ACCEPTABLE)
         self.assertFalse(result["converged"])

@@ -138,6 +138,12 @@ class ForeignFilesTest(CommandTest):
             self.assert_untouched()
             (self.out / name).unlink()
 
+    def test_an_output_folder_that_is_a_link(self):
+        self.out.symlink_to(self.elsewhere)
+        for name in ("out", "out/"):
+            self.assert_refused(self.incise("plan", "case", "-o", name), BAD_DATA, "out", "found a link")
+        self.assert_untouched()
+
     def test_a_link_to_a_result_of_another_case(self):
         self.assertEqual(self.incise("plan", "case", "-o", "other").returncode, DONE)
         kept = files_below(self.folder / "other")
@@ -146,6 +152,16 @@ class ForeignFilesTest(CommandTest):
         small_case.write_case(self.case, {"plan": {"depth_mm": 4}})  # another plan, which would take the place of that one
         self.assert_refused(self.incise("plan", "case", "-o", "out"), BAD_DATA, "plan", "found a link")
         self.assertEqual(files_below(self.folder / "other"), kept)
+
+    def test_a_study_that_was_damaged_is_named_by_the_report(self):
+        self.assertEqual(self.incise("plan", "case", "-o", "out").returncode, DONE)
+        study = self.out / "study.json"
+        good = json.loads(study.read_text())
+        for damage, says in (({"case_file": 5}, "type must be string, but is number"), ({"stages": [7]}, "cannot use at() with number")):
+            study.write_text(json.dumps({**good, **damage}))
+            done = self.incise("report", "out", "-o", "page.html")
+            self.assert_refused(done, BAD_DATA, f"study.json: found {says}", "expected the file as incise wrote it")
+            self.assertNotIn("json.exception", done.stderr)
 
     def test_files_of_the_same_names(self):
         self.out.mkdir()

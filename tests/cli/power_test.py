@@ -48,6 +48,9 @@ class BadInputTest(CommandTest):
         cuts.write_text("length_mm,time_s\n100,soon\n")
         self.refused(BAD_DATA, ("--timed-cuts", cuts), "cuts.csv", "line 2, column time_s", "'soon'")
         self.refused(BAD_CASE, ("--only-speed",), "--only-speed", "--timed-cuts")
+        for row, says in (("1e300,1e-300", "line 2, column length_mm: found 1e+300"), ("30,1e-9", "line 2, column time_s: found 30 mm in 1e-09 s")):
+            cuts.write_text(f"length_mm,time_s\n{row}\n")
+            self.refused(BAD_DATA, ("--timed-cuts", cuts, "--only-speed"), f"cuts.csv: {says}")
 
     def test_an_output_is_needed_and_is_no_file(self):
         self.assert_refused(self.incise("power", *COARSE), BAD_CASE, "-o")

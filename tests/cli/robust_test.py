@@ -55,6 +55,13 @@ class RobustTest(CommandTest):
         self.assertEqual(said.count(CUTS + "5 of them"), found["simulations"] // 5, said)
         self.assertEqual({key: again[key] for key in again if key != "wall_s"}, {key: found[key] for key in found if key != "wall_s"})
 
+    def test_a_virtual_calibration_for_a_real_specimen_is_told(self):
+        _, said = self.robust("--stretch-force-n", 27)
+        self.assertNotIn("virtual specimens", said)
+        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}, "specimen_is": "real"})
+        _, said = self.robust("--stretch-force-n", 27)
+        self.assertIn("robust path: the calibration is of virtual specimens and this one is real", said)
+
     def test_a_smaller_probability_is_bought_with_error_and_what_cannot_be_had_is_said(self):
         # Real cuts lie 2 mm farther out than simulated ones, and the case's correction takes 0.2 mm of it for granted.
         small_calibration.write(self.calibration, lambda c: c["posterior"].update(samples=small_calibration.samples(bias_mm=(1.6, 2.4))))

@@ -77,12 +77,23 @@ class SpecimenIdTest(CommandTest):
         self.json_of("segment", "ct.nrrd", "-o", "labels.nrrd")
         done = self.incise("mesh", "labels.nrrd", "--coarse-mm", "6", "-o", "case/block.vtu")
         self.assertIn(done.returncode, (DONE, NOT_ACCEPTABLE), done.stderr)
-        for manifest in ("labels.manifest.json", "case/block.manifest.json"):
+        for manifest in ("labels.nrrd.manifest.json", "case/block.vtu.manifest.json"):
             self.assertEqual(json.loads((self.folder / manifest).read_text())["specimen_id"], scan, manifest)
         small_case.write_case(self.folder / "case", {"specimen": {"mesh": "block.vtu"}})
         self.assertEqual(self.json_of("surface", "case", "-o", "tissue.ply")["specimen_id"], scan)
-        (self.folder / "labels.manifest.json").write_text("{}")
-        self.assert_refused(self.incise("segment", "ct.nrrd", "-o", "labels.nrrd"), BAD_DATA, "labels.manifest.json", "another origin")
+        (self.folder / "case" / "block.vtu").write_text((self.folder / "case" / "block.vtu").read_text() + "\n")
+        self.assertTrue(self.json_of("surface", "case", "-o", "tissue.ply")["specimen_id"].startswith("mesh-"), "the manifest is of another file")
+        (self.folder / "labels.nrrd.manifest.json").write_text("{}")
+        self.assert_refused(self.incise("segment", "ct.nrrd", "-o", "labels.nrrd"), BAD_DATA, "labels.nrrd.manifest.json", "another origin")
+
+    def test_a_case_that_is_given_another_id_plans_anew(self):
+        case = self.case("case", specimen_id=OWN)
+        self.incise("run", case, "-o", self.out)
+        self.case("case", specimen_id=OTHER)
+        self.incise("run", case, "-o", self.out)
+        for name in ("plan/path.json", "correction/path.json", "program/path.json", "manifest.json", "corrected/manifest.json"):
+            if (self.out / name).exists():
+                self.assertEqual(json.loads((self.out / name).read_text())["specimen_id"], OTHER, name)
 
     def test_register_takes_it_from_its_clouds_and_no_two(self):
         for name, specimen_id in (("own", OWN), ("other", OTHER)):
@@ -132,7 +143,7 @@ class SpecimenIdTest(CommandTest):
     def test_evaluate_takes_no_other_id_than_its_files_state(self):
         for name, radius in (("cut", 8.6), ("edge", small_case.TUMOR_RADIUS_MM)):
             small_case.write_contour(self.folder / f"{name}.csv", small_case.ring(radius=radius))
-        self.write("cut.manifest.json", {"specimen_id": OWN})
+        self.write("cut.csv.manifest.json", {"specimen_id": OWN})
         arguments = ("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--contour", "inner_edge", "--json", "--specimen-id")
         self.assert_refused(self.incise(*arguments, OTHER), BAD_CASE, "--specimen-id", OTHER, OWN)
         self.assertIn(f'"{OWN}"', self.incise(*arguments, OWN).stdout)

@@ -128,6 +128,117 @@ class VerdictTest(CommandTest):
         again = self.json_of("run", "case", "-o", "out", status=NOT_ACCEPTABLE)
         self.assertEqual({stage["state"] for stage in again["stages"]} - {"skipped"}, {"reused"})
 
+    def test_what_was_changed_in_a_stored_result_is_refused(self):
+        self.write()
+        self.run_case(*small_case.ACCEPTED, status=DONE)
+
+        def moved(text):
+            path = json.loads(text)
+            path.pop("verdict")
+            for waypoint in path["waypoints"]:
+                waypoint["position_mm"][0] += 1.0
+            return json.dumps(path)
+
+        def far(text):
+            cut = json.loads(text)
+            cut["deep_margin_mm"]["nearest"] = 9.0
+            return json.dumps(cut)
+
+        for name, change in (("plan/path.json", moved), ("correction/path.json", moved), ("as_planned/incision.json", far),
+                             ("stretched/deformed.vtu", lambda text: text + "\n"), ("corrected/inner_edge.csv", None),
+                             ("as_planned/centerline_4mm.csv", None), ("as_planned/added.csv", lambda _: "x\n")):
+            with self.subTest(name):
+                file = self.out / name
+                sound = file.read_text() if file.exists() else None
+                if change is None:
+                    file.unlink()
+                else:
+                    file.write_text(change(sound))
+                done = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED)
+                self.assert_refused(done, BAD_DATA, name, f"Remove the folder {self.out / name.split('/')[0]}")
+                if sound is None:
+                    file.unlink()
+                else:
+                    file.write_text(sound)
+        again = self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.assertEqual({stage["state"] for stage in again["stages"]} - {"skipped"}, {"reused"})
+
+    def test_a_cut_goes_on_along_no_other_path(self):
+        self.write()
+        self.json_of("simulate", "case", "-o", self.out)
+        plan = self.out / "plan" / "path.json"
+        path = json.loads(plan.read_text())
+        path.pop("verdict")  # as an interrupted run leaves it
+        path["waypoints"][2]["depth_mm"] += 0.4
+        plan.write_text(json.dumps(path))
+        self.assert_refused(self.incise("simulate", "case", "-o", self.out), BAD_DATA, "plan/path.json", "changed since")
+
+    def test_a_mark_is_no_simulated_cut(self):
+        self.write()
+        self.run_case(*small_case.ACCEPTED, status=DONE)
+        path = self.read("program/path.json")
+        path.pop("verdict")
+        path["kind"] = "mark"
+        (self.folder / "mark.json").write_text(json.dumps(path))
+        found = self.json_of("export", "mark.json", "--kind", "incise", "-o", "mark.script", status=NOT_ACCEPTABLE)
+        self.assertEqual(found["gate"]["missing"], ["not_simulated"])
+        self.assertFalse((self.folder / "mark.script").exists())
+
+    def test_a_refused_path_stays_refused_when_it_is_touched(self):
+        self.write({**small_case.SOUND, "plan": {"lateral_margin_mm": 9}})
+        self.run_case(*small_case.ACCEPTED, status=NOT_ACCEPTABLE)
+        path = self.read("plan/path.json")
+        self.assertEqual(path["verdict"]["status"], "refused")
+        path["frame"] = "robot"
+        path["waypoints"][0]["speed_mm_s"] += 1e-9
+        (self.folder / "touched.json").write_text(json.dumps(path))
+        found = self.json_of("export", "touched.json", "--accept", "not_simulated", "-o", "touched.script", status=NOT_ACCEPTABLE)
+        self.assertIn("tumor_distance", found["gate"]["refused"])
+
+    def test_a_rejected_correction_is_known_in_both_paths(self):
+        self.write()
+        found = self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.assertFalse(found["accepted"])
+        for name in ("plan", "correction"):
+            self.assertIn("not_corrected", ids(self.read(f"{name}/path.json")["verdict"]), name)
+
+    def test_a_program_of_other_settings_goes(self):
+        self.write()
+        self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.assertTrue((self.out / "program" / "program.script").is_file())
+        self.write(small_case.merged(small_case.SOUND, {"plan": {"close_margin_mm": 2.2}}))
+        done = self.incise("simulate", "case", "-o", self.out)
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        self.assertIn("program: removed, it was made with other settings", done.stderr)
+        self.assert_no_program()
+        self.assertNotIn("verdict", self.read("correction/path.json"), "judged by another margin")
+
+    def test_a_line_through_the_tumour_is_refused(self):
+        changes = {"plan": {"kind": "line", "line": "line.csv", "lateral_margin_mm": None}, "tumor": {"surface": None}}
+        case = self.write(changes)
+        small_case.write_contour(case / "line.csv", [(8.0 + 2.0 * n, 20.0, small_case.BLOCK_MM[2]) for n in range(13)])
+        found = self.run_case(*small_case.ACCEPTED, "--accept", "depth", "--accept", "heat", status=NOT_ACCEPTABLE)
+        self.assertIn("lateral_margin", found["program"]["gate"]["refused"])
+        self.assertLess(found["verdict"]["reasons"][0]["value"], 0.0)
+        self.assert_no_program()
+
+    def test_an_advice_against_the_simulation_stands_against_the_path_as_planned(self):
+        self.write()
+        self.run_case(*small_case.ACCEPTED, status=DONE)
+        (self.out / "assessment").mkdir()
+        (self.out / "assessment" / "assess.json").write_text(json.dumps({"advice": "do_not_use", "reasons": ["unlike the calibration's"]}))
+        found = self.run_case(*small_case.ACCEPTED, status=NOT_ACCEPTABLE)
+        self.assertEqual(found["program"]["gate"]["missing"], ["eligibility"])
+        self.assertIn("eligibility", ids(self.read("plan/path.json")["verdict"]))
+
+    def test_a_tool_shorter_than_its_needle_and_a_place_out_of_reach_are_told_first(self):
+        for robot, words in (({"T_flange_tool": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}, ("robot.T_flange_tool", "needle")),
+                             ({"T_robot_sim": [[0, 1, 0, 1e6], [-1, 0, 0, 20], [0, 0, 1, 200], [0, 0, 0, 1]]}, ("robot.T_robot_sim", "10000 mm"))):
+            self.write(small_case.merged(small_case.SOUND, {"robot": robot}))
+            done = self.incise("run", "case", "-o", self.out)
+            self.assert_refused(done, BAD_CASE, *words)
+            self.assertFalse(self.out.exists())
+
     def test_accept_names_a_caution(self):
         self.write()
         for verb, where in (("run", "case"), ("export", "path.json")):

@@ -75,6 +75,31 @@ TEST(CloudSeenInColor, RefusesSizesThatDoNotFit) {
                InvalidArgument);
 }
 
+std::string frame_problem_of(const OrganizedCloud& cloud) {
+  try {
+    require_camera_frame(cloud, "scan.ply");
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(RequireCameraFrame, TakesWhatACameraSeesAndRefusesAMirrorAndPointsBehind) {
+  const DepthCamera camera{d405(), d405(), 0.1, Mat4::Identity()};
+  const OrganizedCloud seen = cloud_seen_in_color(slanted(camera.depth), camera);
+  EXPECT_EQ(frame_problem_of(seen), "none");
+  const auto scaled = [&](const Vec3& by) {
+    OrganizedCloud cloud = seen;
+    for (Vec3& p : cloud.points) p = p.cwiseProduct(by);
+    return frame_problem_of(cloud);
+  };
+  EXPECT_THAT(scaled({-1, 1, 1}), ::testing::HasSubstr("scan.ply: vertices: found columns and rows that run as in a mirror"));
+  EXPECT_THAT(scaled({1, -1, 1}), ::testing::HasSubstr("as in a mirror"));
+  EXPECT_EQ(scaled({-1, -1, 1}), "none") << "a camera that was turned upside down";
+  EXPECT_THAT(scaled({1, 1, -1}), ::testing::HasSubstr("found a point behind the camera, z -"));
+  EXPECT_THAT(scaled({1, -1, -1}), ::testing::HasSubstr("behind the camera")) << "z towards the viewer, as in OpenGL";
+}
+
 /// A ring of pixels about the picture's middle.
 std::vector<Vec2> ring_px(double radius) {
   std::vector<Vec2> points;

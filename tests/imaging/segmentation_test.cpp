@@ -157,6 +157,33 @@ TEST(Segmentation, TakesTheLargestPieceWithoutASeedAndTheSeedsPieceWithOne) {
   EXPECT_NEAR(seeded.occupancy_volume_mm3 / (kBallVolume * 0.512), 1.0, 0.02);
 }
 
+TEST(Segmentation, CautionsWhereAnotherBodyMayBeTheSpecimen) {
+  const auto balls_of = [](double second_mm) {
+    return scan_of(grid_of(61, 31, 31), [second_mm](const Vec3& p) {
+      return ball(p, Vec3(15, 15, 15), 10.0) + ball(p, Vec3(45, 15, 15), second_mm) > 0 ? 50.0 : -1000.0;
+    });
+  };
+  const Segmentation alike = run(balls_of(9.9));
+  ASSERT_EQ(alike.verdict.status(), VerdictStatus::Caution);
+  const VerdictReason& reason = alike.verdict.reasons().front();
+  EXPECT_EQ(reason.id, "scan");
+  EXPECT_THAT(reason.message, ::testing::AllOf(HasSubstr("two bodies"), HasSubstr("round (15.0, 15.0, 15.0) mm, which is kept"), HasSubstr("round (45.0, 15.0, 15.0) mm"), HasSubstr("seed_mm")));
+  EXPECT_NEAR(reason.value.value(), 0.97, 0.02);
+  EXPECT_EQ(run(balls_of(6.5)).verdict.status(), VerdictStatus::Caution);
+  EXPECT_EQ(run(balls_of(6.0)).verdict.status(), VerdictStatus::Ok) << "0.22 of the other's volume";
+  SegmentationSettings seeded;
+  seeded.seeds_mm = {Vec3(45, 15, 15)};
+  EXPECT_EQ(run(balls_of(9.9), seeded).verdict.status(), VerdictStatus::Ok);
+}
+
+TEST(Segmentation, RefusesSmoothingThatLeavesNothing) {
+  SegmentationSettings settings;
+  settings.smoothing_mm = 5.0;
+  const CtVolume thin = scan_of(grid_of(31, 31, 9, Vec3(0.5, 0.5, 0.5)),
+                                [](const Vec3& p) { return ball(p, Vec3(7.5, 7.5, 2.0), 1.0) > 0 ? 50.0 : -1000.0; });
+  EXPECT_THAT(message_of(thin, settings), HasSubstr("smoothing_mm: found 5, which leaves nothing of the body"));
+}
+
 TEST(Segmentation, SeparatesPiecesThatABridgeThinnerThanTheOpeningJoins) {
   SegmentationSettings settings;
   EXPECT_EQ(run(two_balls(true), settings).components, 1U);

@@ -179,21 +179,13 @@ TEST(PathVerdict, TravelsWithThePathAndIsOfNoUseOnceEitherWasChanged) {
     double& number = changed.at(nlohmann::ordered_json::json_pointer(place)).get_ref<double&>();
     number += 1e-9;
     write_json(file, changed);
-    EXPECT_THAT(ids_in(file), ::testing::ElementsAre("not_simulated")) << place;
+    EXPECT_THAT(ids_in(file), ::testing::UnorderedElementsAre("open_layer", "not_simulated")) << place;
   }
   nlohmann::ordered_json forged = written;
   forged["verdict"]["reasons"] = nlohmann::ordered_json::array();
   forged["verdict"]["status"] = "ok";
   write_json(file, forged);
   EXPECT_THAT(ids_in(file), ::testing::ElementsAre("not_simulated")) << "a verdict written by hand";
-}
-
-TEST(PathVerdict, IsNotAskedOfAMarkWhichCutsNothing) {
-  const TemporaryFolder folder;
-  ToolPath mark = sample_path();
-  mark.kind = PathKind::Mark;
-  write_tool_path(folder / "mark.json", mark);
-  EXPECT_EQ(read_path_verdict(folder / "mark.json").status(), VerdictStatus::Ok);
 }
 
 TEST(ToolPathFile, ItsTransformIsASimilarity) {

@@ -256,6 +256,14 @@ TEST(MeshLabels, RefusesACountThatIsTooLargeAndSaysWhatItWouldBe) {
   EXPECT_THAT(message, HasSubstr("expected at most 5000000"));
 }
 
+TEST(MeshLabels, MeetsACountThatIsTheMostThatIsAllowed) {
+  for (const int most : {5000, 5500, 6000, 6500, 7000, 7500}) {  // the scale for some is found a rounding above, for others below
+    const MeshingResult result = mesh_labels(occupancy_of(ball()), SizingField::uniform(2.0), {.target_tets = most, .max_tets = static_cast<std::size_t>(most)}, silent());
+    EXPECT_TRUE(result.meets_target) << result.mesh.tets.size();
+    EXPECT_NEAR(result.predicted_tets, most, 1e-6);
+  }
+}
+
 TEST(MeshLabels, RefusesOccupancyWithoutABody) {
   GrayVolume occupancy = occupancy_of(ball(6.0));
   for (float& value : occupancy.voxels) value *= 0.4F;

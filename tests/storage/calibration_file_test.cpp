@@ -7,6 +7,7 @@
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -101,6 +102,24 @@ TEST_F(RunFolderTest, ADamagedRunIsToldAndCountsAsAbsent) {
   EXPECT_FALSE(runs_.load(0, kSetting, monitor_));
   EXPECT_THAT(monitor_.told, HasSubstr("tets"));
   runs_.save(0, closed_run());
+  EXPECT_TRUE(runs_.load(0, kSetting, monitor_));
+}
+
+TEST_F(RunFolderTest, AChangedRunIsToldAndCountsAsAbsent) {
+  runs_.save(0, closed_run());
+  const std::filesystem::path file = runs_.file_of(0, kSetting);
+  const nlohmann::ordered_json kept = read_json(file);
+  nlohmann::ordered_json shifted = kept, without_edge = kept, unsealed = kept;
+  for (auto& x : shifted["inner_edge"]["x_mm"]) x = x.get<double>() + 1.5;
+  without_edge["inner_edge"] = nullptr;
+  unsealed.erase("digest_sha256");
+  for (const nlohmann::ordered_json& changed : {shifted, without_edge, unsealed}) {
+    write_json(file, changed);
+    monitor_.told.clear();
+    EXPECT_FALSE(runs_.load(0, kSetting, monitor_));
+    EXPECT_THAT(monitor_.told, ::testing::AllOf(HasSubstr(file.filename().string()), HasSubstr("digest_sha256"), HasSubstr("simulated anew")));
+  }
+  write_json(file, kept);
   EXPECT_TRUE(runs_.load(0, kSetting, monitor_));
 }
 
@@ -254,6 +273,38 @@ TEST_F(CalibrationFileTest, RefusesWhatIsNoCalibrationByFileAndKey) {
   expect_refused(bad, "method");
 }
 
+TEST_F(CalibrationFileTest, RefusesFiguresThatNoTissueToolOrPhotographHas) {
+  Calibration calibration = fitted();
+  for (CalibratedSpecimen& specimen : calibration.specimens) {
+    specimen.youngs_modulus_kpa = 12.5;
+    specimen.stretch_force_n = 4.2;
+    specimen.registration = RegistrationQuality{0.31, 1.02};
+  }
+  const nlohmann::ordered_json good = to_json(calibration);
+  const auto expect_bounded = [&](const char* pointer, const char* place, double value) {
+    nlohmann::ordered_json bad = good;
+    bad[nlohmann::ordered_json::json_pointer(pointer)] = value;
+    expect_refused(bad, place);
+  };
+  for (const double value : {1e300, -1e9}) {
+    expect_bounded("/posterior/samples/0/drag_length_mm", "posterior.samples[0].drag_length_mm: found", value);
+    expect_bounded("/posterior/samples/1/stiffness_factor", "posterior.samples[1].stiffness_factor: found", value);
+    expect_bounded("/posterior/samples/1/bias_mm", "posterior.samples[1].bias_mm: found", value);
+    expect_bounded("/specimens/0/youngs_modulus_kpa", "specimens[0].youngs_modulus_kpa: found", value);
+    expect_bounded("/specimens/0/stretch_force_n", "specimens[0].stretch_force_n: found", value);
+    expect_bounded("/specimens/0/simulated_force_n", "specimens[0].simulated_force_n: found", value);
+    expect_bounded("/specimens/1/stretch_mm", "specimens[1].stretch_mm: found", value);
+    expect_bounded("/specimens/1/photographed_mean_signed_mm", "specimens[1].photographed_mean_signed_mm: found", value);
+    expect_bounded("/specimens/1/registration/rmse_mm", "specimens[1].registration.rmse_mm: found", value);
+    expect_bounded("/specimens/1/registration/scale", "specimens[1].registration.scale: found", value);
+    expect_bounded("/chosen/speed_mm_s", "chosen.speed_mm_s: found", value);
+    expect_bounded("/chosen/dullness", "chosen.dullness: found", value);
+    expect_bounded("/reference_step_s", "reference_step_s: found", value);
+    for (const char* key : {"sd_mm", "correlation_deg", "reading_mm", "specimen_spread_mm", "placement_mm", "n_effective"})
+      expect_bounded(fmt::format("/residual/{}", key).c_str(), fmt::format("residual.{}: found", key).c_str(), value);
+  }
+}
+
 TEST_F(CalibrationFileTest, AFailedCellIsARowOfTheTable) {
   const TextTable table = calibration_table(two_specimens());
   ASSERT_EQ(table.rows.size(), 2U);
@@ -316,6 +367,37 @@ TEST_F(PhotographedCutTest, IsRefusedOpenOrAsAMidLineOrWithoutTheEdge) {
   json = evaluation_json(testing::circle(14.0, 360));
   json["tumor_edge"]["y_mm"].erase(3);
   expect_cut_refused(json, "tumor_edge.y_mm", "119 numbers");
+}
+
+TEST_F(PhotographedCutTest, IsRefusedWhereNoPhotographCouldShowIt) {
+  const nlohmann::ordered_json good = evaluation_json(testing::circle(14.0, 360));
+  for (const double far : {1e300, -1e9}) {
+    for (const char* axis : {"x_mm", "y_mm", "z_mm"}) {
+      nlohmann::ordered_json json = good;
+      json["points"][axis][5] = far;
+      expect_cut_refused(json, fmt::format("points.{}[5]", axis).c_str(), "a place within 100000 mm of the origin");
+      json = good;
+      json["tumor_edge"][axis][7] = far;
+      expect_cut_refused(json, fmt::format("tumor_edge.{}[7]", axis).c_str(), "a place within 100000 mm of the origin");
+    }
+  }
+  nlohmann::ordered_json json = good;
+  json["points"]["x_mm"][5] = 1500.0;
+  expect_cut_refused(json, "points: found an incision", "2 to 200 mm");
+  json = good;
+  json["tumor_edge"]["y_mm"][5] = -150.0;
+  expect_cut_refused(json, "tumor_edge: found a tumour", "2 to 100 mm");
+  json = good;
+  for (auto& x : json["tumor_edge"]["x_mm"]) x = x.get<double>() + 300.0;
+  expect_cut_refused(json, "tumor_edge: found an incision with its tumour", "2 to 200 mm");
+  for (const double part : {1e300, 1e-300, 0.0}) {
+    json = good;
+    json["approach"] = {part, 0.0, 0.0};
+    expect_cut_refused(json, "approach", "a direction");
+  }
+  json["approach"] = {0.0, 0.0, -2.0};
+  write_json(path(), json);
+  EXPECT_EQ(read_photographed_cut(path()).approach, Vec3(0.0, 0.0, -1.0));
 }
 
 }  // namespace

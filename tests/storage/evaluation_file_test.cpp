@@ -83,6 +83,12 @@ TEST_F(EvaluationFileTest, HoldsDistancesOfSpecimensOnlyAndAnOutcomeByName) {
   EXPECT_THROW(static_cast<void>(read_outcome(nlohmann::ordered_json::array(), "outcome", "incision.json")), DataError);
 }
 
+TEST_F(EvaluationFileTest, HoldsATargetWithinABody) {
+  nlohmann::ordered_json json = file_json(shifted_ring());
+  json["target_mm"] = 1e300;
+  expect_refused(json, "target_mm", "1e+300");
+}
+
 TEST_F(EvaluationFileTest, ThatIsDamagedIsRefusedWithThePlace) {
   const nlohmann::ordered_json good = file_json(shifted_ring());
   nlohmann::ordered_json json = good;
@@ -161,6 +167,12 @@ TEST_F(PublishedTableTest, ThatIsDamagedIsRefusedWithThePlace) {
   expect_refused("mean_mm,sd_mm,n\n1,2,3.5\n", "whole number");
   expect_refused("mean_mm,mean_mm\n1,2\n", "more than once");
   expect_refused("mean_mm,sd_mm,note\n1,2,\"open\n", "quote");
+}
+
+TEST_F(PublishedTableTest, HoldsNoMoreRowsThanMemoryHoldsOfAnyTable) {
+  std::string text = "mean_mm,sd_mm\n";
+  for (int row = 0; row < 100'001; ++row) text += "1.2,0.3\n";
+  expect_refused(text, "line 100002: found more than 100000 rows of 2 columns, expected at most 200000 cells");
 }
 
 std::vector<PrintedRow> published(const char* name) {

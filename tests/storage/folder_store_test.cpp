@@ -565,6 +565,17 @@ TEST_F(FolderStoreTest, ACauseThatThereIsNotIsRefusedNamingItsFile) {
   std::ofstream(file) << json;
   try {
     static_cast<void>(open().load_cut(CutRole::AsPlanned));
+    FAIL() << "the file was changed";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("incision.json: found a file that was changed since it was computed"), std::string::npos) << error.what();
+  }
+  const std::filesystem::path stage = folder_ / "out" / "as_planned" / "stage.json";  // forged, too
+  nlohmann::ordered_json digests;
+  std::ifstream(stage) >> digests;
+  digests["files"]["incision.json"] = sha256_of_file(file);
+  std::ofstream(stage) << digests;
+  try {
+    static_cast<void>(open().load_cut(CutRole::AsPlanned));
     FAIL() << "there is no cause 9";
   } catch (const DataError& error) {
     EXPECT_NE(std::string(error.what()).find("incision.json: removals: found a cause 9"), std::string::npos) << error.what();

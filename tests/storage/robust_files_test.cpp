@@ -66,6 +66,9 @@ TEST_F(ScenarioRuns, OfAnotherPathTissueOrCaseAreNotThere) {
   ToolPath elsewhere = path(0.0);
   elsewhere.source_sha256 = std::string(64, 'a');
   EXPECT_TRUE(runs_.load(kTissue, elsewhere, heard_)) << "which file a path was read from does not count";
+  ToolPath from_file = path(0.0);
+  from_file.is_virtual = true;
+  EXPECT_TRUE(runs_.load(kTissue, from_file, heard_)) << "nor that its file says what the specimen is";
   EXPECT_EQ(heard_.told, "");
 }
 

@@ -49,6 +49,21 @@ TEST(SensitivityOf, IsNotToldWhereARingStayedOpen) {
   EXPECT_THROW(static_cast<void>(sensitivity_of(cross(), {})), InvalidArgument);
 }
 
+TEST(ByVirtualCalibration, ARealSpecimenIsAtBestCutAsPlanned) {
+  Eligibility judged;
+  judged.advice = Advice::Compensate;
+  judged.reasons = {"the expected gain is 1.20 ± 0.30 mm"};
+  judged.p_worse = 0.02;
+  const Eligibility found = by_virtual_calibration(judged);
+  EXPECT_EQ(found.advice, Advice::CutAsPlanned);
+  EXPECT_EQ(found.reasons, std::vector<std::string>{kVirtualCalibration});
+  EXPECT_EQ(found.p_worse, 0.02);
+  judged.advice = Advice::DoNotUse;
+  judged.reasons = {"the registration was refused"};
+  EXPECT_EQ(by_virtual_calibration(judged).advice, Advice::DoNotUse);
+  EXPECT_EQ(by_virtual_calibration(judged).reasons, (std::vector<std::string>{"the registration was refused", kVirtualCalibration}));
+}
+
 TEST(StretchMm, IsTheFarthestOfWhatPulls) {
   TissueModel model;
   EXPECT_EQ(stretch_mm(model), 0.0);

@@ -6,6 +6,10 @@
 
 namespace incise {
 
+/// What a straight cut may measure, mm, and how fast anyone cuts tissue, mm/s.
+inline constexpr double kShortestTimedCutMm = 1.0, kLongestTimedCutMm = 2000.0;
+inline constexpr double kSlowestCutMmS = 0.5, kFastestCutMmS = 50.0;
+
 /// One straight cut by a surgeon, timed.
 struct TimedCut {
   double length_mm = 0.0;  ///< > 0

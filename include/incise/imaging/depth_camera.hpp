@@ -49,6 +49,10 @@ struct OrganizedCloud {
 /// range.
 [[nodiscard]] OrganizedCloud cloud_seen_in_color(const DepthPicture& depth, const DepthCamera& camera);
 
+/// Refuses a cloud that is not in the frame of the camera whose picture it fills: x to the right, y down, z away from it.
+/// @throws DataError for a point behind the camera, or columns and rows that run as in a mirror.
+void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::path& name);
+
 struct LiftSettings {
   int window_px = 4;         ///< half the window over which positions are averaged by a fitted plane, >= 1
   double max_hole_mm = 2.0;  ///< longest stretch without depth that is interpolated, >= 0

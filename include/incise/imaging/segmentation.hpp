@@ -64,10 +64,11 @@ struct Segmentation {
 /// (air, fat, plastic or bone alike); where the region or the opening cuts through tissue it is 0 or 1. Smoothing
 /// convolves with 2 G - G * G, G a Gaussian of standard deviation `smoothing_length_mm`: it averages noise and steps as G does
 /// and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Its verdict has a
-/// caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), and those of check_scan.
+/// caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), when without a seed another piece is at least
+/// a quarter as large as the one that is kept, and those of check_scan.
 /// @throws CaseError: settings invalid (all violations listed), region or a seed outside the volume, a seed outside the
 /// window or the region
-///         or in a part that the opening removes, seeds in separate pieces, nothing in the window.
+///         or in a part that the opening removes, seeds in separate pieces, nothing in the window, smoothing that leaves nothing.
 /// @throws InvalidArgument: a volume without voxels, of the wrong length, or with a non-finite or non-positive grid.
 /// @throws Cancelled.
 /// @note O(voxels of the region); about a second for 150 x 160 x 100.

@@ -38,7 +38,10 @@ struct Manifest {
 /// @throws DataError if the file cannot be written.
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
-/// The same for a result that is one file: `FILE.manifest.json` beside it, FILE without its ending.
+/// Where the manifest of a result that is one file is: `FILE.manifest.json`, FILE with its ending.
+[[nodiscard]] std::filesystem::path manifest_beside(const std::filesystem::path& file);
+
+/// Writes it, with the digest of the file that it belongs to (`result_sha256`). @pre the file is written
 void write_manifest_beside(const std::filesystem::path& file, const Manifest& manifest);
 
 /// Reads `folder/manifest.json`; keys that this version does not know are ignored. @throws DataError naming the place.

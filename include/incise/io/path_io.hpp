@@ -21,6 +21,7 @@ namespace incise {
 ///   T_robot_sim    4 x 4, rows, last row 0 0 0 1; optional
 ///   source_sha256  64 hex digits; optional
 ///   specimen_id    of the specimen that the path was planned on (specimen_id.hpp); optional
+///   specimen_is    real | virtual; optional
 ///   verdict        of the simulated cut along the path, see read_path_verdict; optional
 ///
 /// @throws DataError with the JSON pointer of the place: unknown key (naming the nearest valid one), key given twice,
@@ -46,8 +47,8 @@ void write_tool_path(const std::filesystem::path& file, const ToolPath& path);
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path, const Verdict& verdict);
 
 /// The verdict that a path's file holds. A file without one, and one whose path or verdict was changed since (the digest differs), gives a
-/// caution `not_simulated` that says which: whatever was simulated, it was not this path. A mark of the tumour's edge cuts nothing: its
-/// verdict may be absent. @throws DataError as read_tool_path, and as verdict_from_json.
+/// caution `not_simulated` that says which: whatever was simulated, it was not this path. What a changed file's verdict refuses stays refused.
+/// @throws DataError as read_tool_path, and as verdict_from_json.
 [[nodiscard]] Verdict read_path_verdict(const std::filesystem::path& file);
 
 /// @throws DataError where the file holds a verdict and a digest that is not of this path and verdict: it was changed

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,9 +29,11 @@ struct TextTable {
 
 /// Reads every cell of a `.csv` as text, blanks round it removed; for columns whose printed digits matter. Cells in
 /// double quotes may hold commas; a quote inside is doubled; a line end is not known there.
+/// @param most_cells  that the rows may hold together; the first row beyond is refused before it is kept.
 /// @throws DataError naming the line: a row of another width, a quote that does not end, a column name given twice or
-/// empty, a control character, bytes that are not UTF-8, an empty file.
-[[nodiscard]] TextTable read_csv_text(const std::filesystem::path& path);
+/// empty, a control character, bytes that are not UTF-8, an empty file, more cells than `most_cells`.
+[[nodiscard]] TextTable read_csv_text(const std::filesystem::path& path,
+                                      std::size_t most_cells = std::numeric_limits<std::size_t>::max());
 
 /// The table as CSV (LF; cells with comma or quote are quoted). @pre rows as wide as the header, no line ends.
 [[nodiscard]] std::string csv_text(const TextTable& table);

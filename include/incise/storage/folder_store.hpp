@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/io/manifest.hpp>
 #include <incise/storage/case_file.hpp>
 #include <incise/workflow/store.hpp>
 
@@ -64,7 +65,8 @@ static_assert(static_cast<int>(Product::Correction) - static_cast<int>(Product::
 /// and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that the product depends on: a product
 /// with another key is stale and counts as absent. The key holds what the product is made with and from, and no names of files: a case
 /// folder may be moved. A cut whose judgement alone has changed (thermal, plan.close_margin_mm) is judged anew when it is loaded, in its
-/// files too.
+/// files too. `stage.json` also holds a digest of each file of the product (of a path: without its verdict): what was changed since is
+/// refused, not taken for what was computed.
 class FolderStore : public Store {
  public:
   /// @param root  is made if missing. @throws DataError if that fails.
@@ -103,8 +105,13 @@ class FolderStore : public Store {
   bool adopt_cut(CutRole from) override;
   void save_verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
 
-  /// Adds what an earlier `assess` of this folder advised, unless that was to compensate.
-  void add_advice_to(Verdict& verdict) const;
+  /// Adds what an earlier `assess` of this folder advised against the path: as planned, that the simulation is not to be used; corrected,
+  /// anything but to compensate.
+  void add_advice_to(Verdict& verdict, bool is_corrected) const;
+
+  /// Removes a program that was made with other settings or inputs than the case's, and the verdict in the file of a correction that was
+  /// judged by other limits: neither may pass for one of this case. Says so. @throws DataError where an input cannot be read.
+  void remove_what_is_out_of_date(Monitor& monitor);
 
   /// Where the checkpoint of a cut is, if there is one.
   [[nodiscard]] std::filesystem::path checkpoint(CutRole role) const;
@@ -127,8 +134,13 @@ class FolderStore : public Store {
   /// Hash of the settings that a cut is judged by once it is made.
   [[nodiscard]] std::string judgement_key() const;
   [[nodiscard]] bool is_judged_anew(Product product);
-  /// Says in the folder of a cut that it is judged by the case's settings now.
-  void note_judgement(Product product);
+  /// Writes what a cut that is judged by the case's settings now says of itself.
+  void write_judged_anew(Product product, const nlohmann::ordered_json& incision);
+  /// @throws DataError naming a file of the product that was changed, added or removed since it was written.
+  void require_unchanged(Product product);
+  [[nodiscard]] Manifest manifest_now(double wall_s);
+  /// Whether a result's manifest has the settings, inputs, version and specimen that this case has now.
+  [[nodiscard]] bool is_made_as_now(const std::filesystem::path& result);
   /// Made, and from other settings or inputs than the case's.
   [[nodiscard]] bool is_stale(Product product);
   void remove_checkpoints_of_no_use(Product saved);

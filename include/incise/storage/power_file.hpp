@@ -44,7 +44,7 @@ class PowerCutFolder : public PowerCutStore {
 /// is an empty field.
 [[nodiscard]] TextTable power_table(const PowerSeries& series);
 
-/// Reads timed straight cuts: a CSV with the columns length_mm and time_s, each above 0.
+/// Reads timed straight cuts: a CSV with the columns length_mm (1 to 2000) and time_s, at 0.5 to 50 mm/s.
 /// @throws DataError naming line and column.
 [[nodiscard]] std::vector<TimedCut> read_timed_cuts(const std::filesystem::path& file);
 

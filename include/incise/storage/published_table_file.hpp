@@ -24,7 +24,7 @@ struct PublishedTable {
 /// Every other column belongs to the row's name. A cell that is empty or reads -, n/a, failure or failed holds nothing;
 /// a set without mean is left out, one without sd is kept: its mean and n count.
 /// @throws DataError naming line and column: neither mean nor sd among the columns, a part with one of the two,
-/// a cell that is no decimal number, a count that is not whole or below 1.
+/// a cell that is no decimal number, a count that is not whole or below 1, more than 200 000 cells.
 [[nodiscard]] PublishedTable read_published_table(const std::filesystem::path& path);
 
 }  // namespace incise

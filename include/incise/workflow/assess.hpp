@@ -25,6 +25,7 @@ struct AssessmentRequest {
   CalibratedRange calibrated;
   RegistrationQuality registration;  ///< of this specimen
   bool is_registered = true;         ///< nothing spoke against its transform
+  bool is_calibration_virtual = false;  ///< a specimen of the calibration is a synthetic body
 };
 
 /// What one standard deviation of a parameter does to the corrected cut.
@@ -44,12 +45,19 @@ struct Assessment {
 };
 
 /// Should this specimen be cut along the corrected path? Gathers what is known of it, cuts both paths in the tissues
-/// that the calibration leaves possible, and judges. See docs/models/eligibility.md.
+/// that the calibration leaves possible, and judges. A calibration of virtual specimens never advises to correct a real
+/// one. See docs/models/eligibility.md.
 /// @param done  the case's study up to Stage::Verify, however it ended.
 /// @throws as correct_robustly.
 [[nodiscard]] Assessment assess(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
                                 const AssessmentRequest& request, ScenarioRunStore& runs, Workers& workers,
                                 Monitor& monitor);
+
+inline constexpr const char* kVirtualCalibration =
+    "the calibration is of virtual specimens and this one is real: how its tissue drags was never measured on tissue";
+/// What is left of a judgement of a real specimen whose calibration is of synthetic bodies: at best to cut as planned, and kVirtualCalibration
+/// among the reasons.
+[[nodiscard]] Eligibility by_virtual_calibration(Eligibility judged);
 
 /// How far the case displaces the tissue that it pulls, mm: the farthest of its displacements; 0: it does not pull.
 [[nodiscard]] double stretch_mm(const TissueModel& model);

@@ -24,7 +24,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
 import small_case  # noqa: E402
 
 MOST_KILLS_IN_A_ROW = 8  # of one folder, before it is run to its end
-OF_TIME = ("wall_s", "ms_per_step", "stages", "folder")  # keys that say how long something took
+OF_TIME = ("wall_s", "ms_per_step", "stages", "folder", "files")  # keys that say how long something took, or digests of files that do
 PRODUCTS = ("labels", "mesh", "stretched", "plan", "as_planned", "pass_1", "pass_2", "pass_3", "pass_4", "pass_5", "pass_6", "pass_7", "correction", "corrected", "program")
 FOREIGN = "notes.txt"
 CT_EVERY = 4  # of the folders, the first among them

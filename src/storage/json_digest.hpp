@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+
+namespace incise {
+
+/// The key by which a file carries the digest of what else is in it.
+inline constexpr const char* kDigestKey = "digest_sha256";
+
+/// SHA-256 of the document's compact JSON without that key.
+[[nodiscard]] std::string digest_of(nlohmann::ordered_json document);
+
+}  // namespace incise
