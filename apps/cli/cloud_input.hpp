@@ -14,7 +14,8 @@ namespace incise::cli {
 /// `fewest` points.
 [[nodiscard]] PointCloud read_points(const std::filesystem::path& path, std::size_t fewest);
 
-/// Refuses points of which one lies so far from the others, or from the origin, that they cannot be millimetres of tissue.
+/// Refuses points of which one lies so far from the others, or from the origin, that they cannot be millimetres of
+/// tissue.
 /// @throws DataError with what was found
 void require_extent(const Points& points, const std::filesystem::path& path);
 

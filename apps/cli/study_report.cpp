@@ -80,7 +80,8 @@ void add_verdict(const fs::path& root, const Json& study, ReportData& data) {
   }
   for (const char* cut : {"as_planned", "corrected"}) {
     const fs::path file = root / cut / "incision.json";
-    if (fs::exists(file)) data.verdict = from_written_json(file, [&] { return verdict_from_json(read_json(file).at("verdict"), file); });
+    if (fs::exists(file))
+      data.verdict = from_written_json(file, [&] { return verdict_from_json(read_json(file).at("verdict"), file); });
   }
 }
 
@@ -91,7 +92,8 @@ void add_stretch(const fs::path& root, ReportData& data) {
   const Json json = read_json(file);
   from_written_json(file, [&] {
     if (json.at("outcome") == to_string(Outcome::Success)) return;
-    data.notices.push_back({Severity::Warning, fmt::format("{}: {}", json.at("outcome").get<std::string>(), json.at("note").get<std::string>())});
+    data.notices.push_back({Severity::Warning, fmt::format("{}: {}", json.at("outcome").get<std::string>(),
+                                                           json.at("note").get<std::string>())});
   });
 }
 
@@ -282,7 +284,8 @@ void add_kerf_plots(const fs::path& root, ReportData& data) {
     double way = 0.0;
     for (const LineSeries& series : depth.series) way = std::max(way, series.x.back());
     const fs::path file = root / kCuts[0].folder / "incision.json";
-    const double planned = from_written_json(file, [&] { return read_json(file).at("depth_reached_mm").at("planned").get<double>(); });
+    const double planned =
+        from_written_json(file, [&] { return read_json(file).at("depth_reached_mm").at("planned").get<double>(); });
     depth.series.push_back({"planned depth of the tip", {0.0, way}, {planned, planned}, true});
   }
   for (LinePlot& plot : {std::ref(depth), std::ref(lag), std::ref(drift)}) {
@@ -328,7 +331,8 @@ void add_kerf(const fs::path& root, ReportData& data) {
   for (std::size_t i = 0; i < kCuts.size(); ++i) {
     const fs::path folder = root / kCuts[i].folder;
     if (!fs::exists(folder / "incision.json")) continue;
-    from_written_json(folder / "incision.json", [&] { add_layers(kCuts[i], read_json(folder / "incision.json"), data); });
+    from_written_json(folder / "incision.json",
+                      [&] { add_layers(kCuts[i], read_json(folder / "incision.json"), data); });
     if (i < data.animations.size()) add_kerf_picture(folder, kCuts[i], data.animations[i].lines, data);
   }
 }
@@ -437,7 +441,8 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   }
   const fs::path study_file = root / "study.json";
   const Json study = read_json(study_file);
-  const CaseFile file = read_case(root / from_written_json(study_file, [&] { return study.at("case_file").get<std::string>(); }));
+  const CaseFile file =
+      read_case(root / from_written_json(study_file, [&] { return study.at("case_file").get<std::string>(); }));
   ReportData data;
   data.title = file.settings.title;
   data.subtitle = "From CT scan to corrected robot path";
@@ -460,7 +465,8 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   for (CompensationFigure& figure : compensation_figures(root)) data.correction_plots.push_back(std::move(figure.plot));
   from_written_json(study_file, [&] {
     if (study.contains("stages")) {
-      for (const Json& stage : study.at("stages")) data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
+      for (const Json& stage : study.at("stages"))
+        data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
     }
     add_program(root, study, data);
   });

@@ -131,7 +131,8 @@ void require_a_place_for_the_arm(const Case& settings) {
   const double needle_mm = CheckSettings{}.needle_length_mm;
   if (length_mm < needle_mm || length_mm > kFarthestMm) {
     throw CaseError("case", "robot.T_flange_tool", fmt::format("a tip {:.4g} mm from the flange", length_mm),
-                    fmt::format("at least the needle's length of {} mm, at most {} mm", needle_mm, kFarthestMm), "Lengths are in mm");
+                    fmt::format("at least the needle's length of {} mm, at most {} mm", needle_mm, kFarthestMm),
+                    "Lengths are in mm");
   }
 }
 
@@ -183,7 +184,8 @@ namespace {
 void warn_of_looser_limits(const Case& settings, Monitor& monitor) {
   const double usual_mm = CheckSettings{}.close_margin_mm;
   if (!settings.T_robot_sim || settings.close_margin_mm >= usual_mm) return;
-  monitor.message(Severity::Warning, fmt::format("a looser check: plan.close_margin_mm is {:g} mm, by default {:g} mm", settings.close_margin_mm, usual_mm));
+  monitor.message(Severity::Warning, fmt::format("a looser check: plan.close_margin_mm is {:g} mm, by default {:g} mm",
+                                                 settings.close_margin_mm, usual_mm));
 }
 
 /// What keeps a case from having a program at all; empty: nothing.

@@ -289,7 +289,9 @@ void add_evaluate(Application& application) {
                    "What the red line is: a thin line along the inner edge, or the painted kerf")
       ->check(CLI::IsMember({"annotation", "kerf"}));
   add_scale_options(*verb, arguments->scale);
-  verb->add_option("--max-gap-mm", arguments->max_gap_mm, "A red or green ring with a gap clearly longer (0.18 mm and 2 pixels) is open; of a red one slightly longer, the "
+  verb->add_option("--max-gap-mm", arguments->max_gap_mm,
+                   "A red or green ring with a gap clearly longer (0.18 mm and 2 pixels) is open; of a red one "
+                   "slightly longer, the "
                    "verdict says so")
       ->check(between("--max-gap-mm", 0.0, 10.0));
   verb->add_option("--target-mm", arguments->target_mm,

@@ -102,9 +102,10 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   return path;
 }
 
-/// Of the simulated cut that verifies the path, and of the registration. @param kind_in_file, kind  of the path as it was read, and as it is
-/// exported
-Verdict verdict_of(const ExportArguments& arguments, PathKind kind_in_file, PathKind kind, const std::optional<RegistrationRecord>& registration) {
+/// Of the simulated cut that verifies the path, and of the registration. @param kind_in_file, kind  of the path as it
+/// was read, and as it is exported
+Verdict verdict_of(const ExportArguments& arguments, PathKind kind_in_file, PathKind kind,
+                   const std::optional<RegistrationRecord>& registration) {
   Verdict verdict = read_path_verdict(arguments.path);
   if (kind == PathKind::Mark) {
     verdict = as_verdict_of_mark(verdict);
@@ -300,12 +301,13 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
 
 void add_export(Application& application) {
   auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* verb =
-      application.add_verb("export", "Turn a path in the robot's frame into a program, after the safety checks. A path whose cut was never simulated "
-                           "needs --accept not_simulated",
-                           "incise export projected/path.json --surface projected/surface.ply --registration "
-                           "registration/registration.json -o cut.script",
-                           [arguments](const CommonOptions& options) { return run_export(*arguments, options); });
+  CLI::App* verb = application.add_verb(
+      "export",
+      "Turn a path in the robot's frame into a program, after the safety checks. A path whose cut was never simulated "
+      "needs --accept not_simulated",
+      "incise export projected/path.json --surface projected/surface.ply --registration "
+      "registration/registration.json -o cut.script",
+      [arguments](const CommonOptions& options) { return run_export(*arguments, options); });
   auto& a = *arguments;
   verb->add_option("path", a.path, "path.json, frame robot")->required();
   verb->add_option("--robot", a.robot, "The arm")->check(CLI::IsMember({"ur10e"}));

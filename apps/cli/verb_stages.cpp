@@ -28,8 +28,8 @@ int run_stage(Stage stage, Product product, const std::filesystem::path& case_pa
   result["folder"] = run.store.folder(product).string();
   result["stages"] = to_json(study.stages);
   print_result(options, result);
-  const bool is_refused = stage == Stage::Simulate && study.as_planned && study.as_planned->verdict.status() == VerdictStatus::Refused;
-  return is_refused ? kNotAcceptable : status_of(study.outcome);
+  return stage == Stage::Simulate ? status_of(study)
+                                  : status_of(study.outcome);  // before a cut there is nothing to judge
 }
 
 /// A verb that runs the study up to a stage that cuts nothing.

@@ -52,7 +52,8 @@ nlohmann::ordered_json to_json(const VerdictGate& gate) {
 Verdict as_verdict_of_mark(const Verdict& of_cut) {
   Verdict verdict;
   for (const VerdictReason& reason : of_cut.reasons()) {
-    if (reason.severity == VerdictStatus::Refused || reason.id == "registration" || reason.id == "typed_transform") verdict.add(reason);
+    if (reason.severity == VerdictStatus::Refused || reason.id == "registration" || reason.id == "typed_transform")
+      verdict.add(reason);
   }
   return verdict;
 }

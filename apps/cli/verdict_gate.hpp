@@ -23,8 +23,8 @@ void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monit
 /// `{open, accepted, missing, refused}`.
 [[nodiscard]] nlohmann::ordered_json to_json(const VerdictGate& gate);
 
-/// The verdict of a cut as one of a mark of the tumour's edge: a mark cuts nothing, so that of the cautions only those against its place
-/// remain; what is refused as a cut is not marked either.
+/// The verdict of a cut as one of a mark of the tumour's edge: a mark cuts nothing, so that of the cautions only those
+/// against its place remain; what is refused as a cut is not marked either.
 [[nodiscard]] Verdict as_verdict_of_mark(const Verdict& of_cut);
 
 /// What a program's header says of a specimen that is no patient's.

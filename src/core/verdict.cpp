@@ -81,8 +81,14 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "mm",
-     "Stretch of a closed red ring that may be an opening: unlike the rest of it, as blood is, or unseen and slightly longer than allowed."},
-    {"scan", kCaution, {}, "", "", "The scan argues against the tissue that was found in it, or another body in it may be the specimen."},
+     "Stretch of a closed red ring that may be an opening: unlike the rest of it, as blood is, or unseen and slightly "
+     "longer than allowed."},
+    {"scan",
+     kCaution,
+     {},
+     "",
+     "",
+     "The scan argues against the tissue that was found in it, or another body in it may be the specimen."},
 });
 
 /// Place in the table: reasons of one severity are listed in its order.

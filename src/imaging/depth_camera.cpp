@@ -125,8 +125,11 @@ void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::pa
   constexpr const char* kHint = "Is the cloud in the camera's frame: x to the right, y down, z forward, mm?";
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (cloud.is_measured[i] == 0 || cloud.points[i].z() > 0.0) continue;
-    throw DataError(name, fmt::format("pixel ({}, {})", i % static_cast<std::size_t>(cloud.width), i / static_cast<std::size_t>(cloud.width)),
-                    fmt::format("a point behind the camera, z {:.4g} mm", cloud.points[i].z()), "points in front of the camera, z above 0", kHint);
+    throw DataError(name,
+                    fmt::format("pixel ({}, {})", i % static_cast<std::size_t>(cloud.width),
+                                i / static_cast<std::size_t>(cloud.width)),
+                    fmt::format("a point behind the camera, z {:.4g} mm", cloud.points[i].z()),
+                    "points in front of the camera, z above 0", kHint);
   }
   // Seen from the camera a row's neighbour lies to one side of a column's, everywhere but at edges that hide something.
   std::size_t as_seen = 0, mirrored = 0;
@@ -142,8 +145,10 @@ void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::pa
     }
   }
   if (mirrored > as_seen) {
-    throw DataError(name, "vertices", fmt::format("columns and rows that run as in a mirror at {} of {} places", mirrored, mirrored + as_seen),
-                    "columns to the right and rows downwards, as the camera sees them", kHint);
+    throw DataError(
+        name, "vertices",
+        fmt::format("columns and rows that run as in a mirror at {} of {} places", mirrored, mirrored + as_seen),
+        "columns to the right and rows downwards, as the camera sees them", kHint);
   }
 }
 

@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t kStepsTogether = 10;  // laid over one another: a finer scale may run along a part of the row
 constexpr std::size_t kFewestSteps = 6;
 // Between the ticks of a sound ruler (8 grey levels of noise, JPEG) the median of 10 steps stays below 1 grey level.
-constexpr double kLeastContrast = 0.06;   // of the ticks'
+constexpr double kLeastContrast = 0.06;  // of the ticks'
 constexpr double kLeastGreys = 4.0;
-constexpr double kBesideTick = 0.14;      // of the spacing: nearer lies the tick's own rim
+constexpr double kBesideTick = 0.14;  // of the spacing: nearer lies the tick's own rim
 constexpr double kLeastBesidePx = 2.5;
 
 double middle_of(std::vector<double>& values) {
@@ -69,23 +69,19 @@ Feet feet_of(const Comb& comb) {
   return best;
 }
 
-double grey_at(const cv::Mat& grey, const Vec2& p) {
-  const int u = std::clamp(static_cast<int>(std::floor(p.x())), 0, grey.cols - 2);
-  const int v = std::clamp(static_cast<int>(std::floor(p.y())), 0, grey.rows - 2);
-  const double a = std::clamp(p.x() - u, 0.0, 1.0), b = std::clamp(p.y() - v, 0.0, 1.0);
-  return (1 - b) * ((1 - a) * grey.at<std::uint8_t>(v, u) + a * grey.at<std::uint8_t>(v, u + 1)) +
-         b * ((1 - a) * grey.at<std::uint8_t>(v + 1, u) + a * grey.at<std::uint8_t>(v + 1, u + 1));
-}
-
 /// Darkness against both sides, over places from tick to tick (columns) and along the ticks (rows).
 class Overlay {
  public:
   Overlay(const cv::Mat& grey, const Feet& feet, double spacing_px, double length_px, double width_px)
-      : grey_(grey), feet_(feet),
-        columns_(static_cast<std::size_t>(std::clamp(std::ceil(spacing_px / std::max(0.5, width_px / 3.0)), 12.0, 400.0))),
+      : grey_(grey),
+        feet_(feet),
+        columns_(
+            static_cast<std::size_t>(std::clamp(std::ceil(spacing_px / std::max(0.5, width_px / 3.0)), 12.0, 400.0))),
         rows_(std::max<std::size_t>(4, static_cast<std::size_t>(std::ceil(length_px)))),
-        beside_(std::min(0.25, std::max(kLeastBesidePx, width_px) / spacing_px)), spacing_px_(spacing_px),
-        window_(std::max<std::size_t>(3, static_cast<std::size_t>(0.15 * length_px))), width_px_(width_px) {}
+        beside_(std::min(0.25, std::max(kLeastBesidePx, width_px) / spacing_px)),
+        spacing_px_(spacing_px),
+        window_(std::max<std::size_t>(3, static_cast<std::size_t>(0.15 * length_px))),
+        width_px_(width_px) {}
 
   /// The median over some steps, each given by its first tick, averaged along the ticks over a short window.
   [[nodiscard]] std::optional<FinerTicks> look_at(const std::vector<std::size_t>& steps) const {
@@ -149,8 +145,8 @@ std::optional<FinerTicks> finer_ticks(const cv::Mat& grey, const Comb& comb) {
   for (std::size_t first = 0; first < steps.size(); first += kStepsTogether / 2) {
     const std::size_t end = std::min(first + kStepsTogether, steps.size());
     if (end - first < std::min(kFewestSteps, steps.size())) break;
-    const auto here = overlay.look_at({steps.begin() + static_cast<std::ptrdiff_t>(first),
-                                       steps.begin() + static_cast<std::ptrdiff_t>(end)});
+    const auto here = overlay.look_at(
+        {steps.begin() + static_cast<std::ptrdiff_t>(first), steps.begin() + static_cast<std::ptrdiff_t>(end)});
     if (here && (!found || here->contrast > found->contrast)) found = here;
   }
   return found;

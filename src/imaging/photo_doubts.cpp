@@ -69,10 +69,11 @@ void add_ruler_doubts(const Ruler& ruler, Verdict& verdict) {
 void add_ring_doubts(const PhotoContours& contours, double max_gap_mm, Verdict& verdict) {
   if (!contours.red.is_closed) return;
   if (const double gap_mm = contours.red.max_gap_mm(); gap_mm > max_gap_mm) {
-    verdict.add("photo_ring", gap_mm,
-                fmt::format("the red ring is taken as closed although it is not seen for {:.2f} mm, more than {:g}: such "
-                            "a gap cannot be told from one of {:g}",
-                            gap_mm, max_gap_mm, max_gap_mm));
+    verdict.add(
+        "photo_ring", gap_mm,
+        fmt::format("the red ring is taken as closed although it is not seen for {:.2f} mm, more than {:g}: such "
+                    "a gap cannot be told from one of {:g}",
+                    gap_mm, max_gap_mm, max_gap_mm));
   }
   if (!contours.odd_stretch) return;
   const OddStretch& odd = *contours.odd_stretch;

@@ -157,7 +157,8 @@ void check_tiff(const Bytes& file) {
   double width = 0.0, height = 0.0, x_resolution = 0.0, y_resolution = 0.0;
   const auto ratio_at = [&](std::size_t entry) {
     const std::size_t place = file.at(entry + 8, 4, big);
-    return static_cast<double>(file.at(place, 4, big)) / std::max(1.0, static_cast<double>(file.at(place + 4, 4, big)));
+    const double denominator = file.at(place + 4, 4, big);
+    return denominator > 0.0 ? file.at(place, 4, big) / denominator : 0.0;  // 0: not stated
   };
   for (std::uint32_t i = 0; i < entries; ++i) {
     const std::size_t entry = directory + 2 + 12 * static_cast<std::size_t>(i);

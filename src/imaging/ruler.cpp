@@ -16,14 +16,7 @@ using imaging_detail::pixels_of;
 
 /// Place, along a line, where grey passes half-way between inside and outside; nullopt without a step.
 std::optional<double> end_of_bar(const cv::Mat& grey, const Vec2& inside, const Vec2& direction, double expected) {
-  const auto value = [&](double s) {
-    const Vec2 p = inside + s * direction;
-    const int u = std::clamp(static_cast<int>(p.x()), 0, grey.cols - 2);
-    const int v = std::clamp(static_cast<int>(p.y()), 0, grey.rows - 2);
-    const double a = std::clamp(p.x() - u, 0.0, 1.0), b = std::clamp(p.y() - v, 0.0, 1.0);
-    return (1 - b) * ((1 - a) * grey.at<std::uint8_t>(v, u) + a * grey.at<std::uint8_t>(v, u + 1)) +
-           b * ((1 - a) * grey.at<std::uint8_t>(v + 1, u) + a * grey.at<std::uint8_t>(v + 1, u + 1));
-  };
+  const auto value = [&](double s) { return imaging_detail::grey_at(grey, inside + s * direction); };
   double in = 0.0, out = 0.0;
   for (int k = 0; k < 4; ++k) {
     in += 0.25 * value(expected - 6.0 - k);

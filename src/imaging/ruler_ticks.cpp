@@ -1,5 +1,6 @@
-#include "imaging/finer_ticks.hpp"
 #include "imaging/ruler_ticks.hpp"
+
+#include "imaging/finer_ticks.hpp"
 
 #include <incise/core/error.hpp>
 
@@ -221,8 +222,8 @@ Ruler ruler_of_ticks(const ColorPicture& picture, std::optional<double> length_m
                     "Are they half millimetres, or parts of an inch? Give the distance of its finest ticks: "
                     "--ruler-mm 0.5.");
   }
-  Ruler ruler{length_mm.value_or(1.0) / best->spacing_px,
-              100.0 * best->error_px / best->spacing_px, {}, shape_of(*best)};
+  Ruler ruler{
+      length_mm.value_or(1.0) / best->spacing_px, 100.0 * best->error_px / best->spacing_px, {}, shape_of(*best)};
   for (const Stroke& tick : best->ticks) ruler.marks_px.push_back(tick.center);
   return ruler;
 }

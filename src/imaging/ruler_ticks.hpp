@@ -23,8 +23,8 @@ struct Comb {
 /// @pre 8 ticks or more
 [[nodiscard]] RulerShape shape_of(const Comb& comb);
 
-/// @throws DataError where no ticks are found, ticks of two spacings, or marks between them; without a length also where
-/// every second is longer.
+/// @throws DataError where no ticks are found, ticks of two spacings, or marks between them; without a length also
+/// where every second is longer.
 [[nodiscard]] Ruler ruler_of_ticks(const ColorPicture& picture, std::optional<double> length_mm,
                                    const std::filesystem::path& name);
 

@@ -16,7 +16,8 @@ namespace incise {
 namespace {
 
 constexpr const char* kStage = "segmenting";
-constexpr double kLeastRivalShare = 0.25;  // of the volume that is kept: a lesser piece is a crumb, the table or a clamp
+constexpr double kLeastRivalShare =
+    0.25;                   // of the volume that is kept: a lesser piece is a crumb, the table or a clamp
 constexpr int kGrowth = 3;  // voxels by which the occupancy can reach beyond the body that it is made from
 
 void require_sound_volume(const CtVolume& ct) {
@@ -120,23 +121,27 @@ double volume_mm3(const Mask& mask) {
 Vec3 middle_of(const Mask& mask) {
   const IndexBox box = box_of(mask);
   Vec3 index;
-  for (std::size_t axis = 0; axis < 3; ++axis) index[static_cast<Eigen::Index>(axis)] = 0.5 * (box.low[axis] + box.high[axis] - 1);
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    index[static_cast<Eigen::Index>(axis)] = 0.5 * (box.low[axis] + box.high[axis] - 1);
   return mask.grid.world_from_index(index);
 }
 
 /// Which of two bodies is the specimen cannot be seen from their sizes where these are alike.
-void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, const SegmentationSettings& settings, Segmentation& result) {
+void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, const SegmentationSettings& settings,
+                Segmentation& result) {
   const std::int32_t second = second_largest(pieces, chosen);
   if (second == 0) return;
   const Mask rival = grow_back(piece_of(pieces, second), settings.opening_radius_mm);
   const double kept_mm3 = volume_mm3(body), rival_mm3 = volume_mm3(rival), share = rival_mm3 / kept_mm3;
   if (share < kLeastRivalShare) return;
   const Vec3 kept = middle_of(body), other = middle_of(rival);
-  result.verdict.add("scan", share,
-                     fmt::format("the scan shows two bodies that may be the specimen: {:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm, which is kept as the largest, and "
-                                 "{:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm. Name the specimen by a point inside it (seed_mm)",
-                                 kept_mm3, kept.x(), kept.y(), kept.z(), rival_mm3, other.x(), other.y(), other.z()),
-                     VerdictPlace{{}, other, "the body that is left out"}, kLeastRivalShare);
+  result.verdict.add(
+      "scan", share,
+      fmt::format("the scan shows two bodies that may be the specimen: {:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm, "
+                  "which is kept as the largest, and "
+                  "{:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm. Name the specimen by a point inside it (seed_mm)",
+                  kept_mm3, kept.x(), kept.y(), kept.z(), rival_mm3, other.x(), other.y(), other.z()),
+      VerdictPlace{{}, other, "the body that is left out"}, kLeastRivalShare);
 }
 
 Mask find_body(const WorkingVolume& work, const std::vector<std::size_t>& seeds, const SegmentationSettings& settings,
@@ -188,7 +193,8 @@ Mask at_least_half(const GrayVolume& occupancy) {
 
 [[noreturn]] void refuse_smoothing(double smoothing_mm) {
   throw CaseError("segmentation", "smoothing_mm", fmt::format("{:g}, which leaves nothing of the body", smoothing_mm),
-                  "a length shorter than the body is thick", "About a voxel's longest side that the body spans is enough; 0: none.");
+                  "a length shorter than the body is thick",
+                  "About a voxel's longest side that the body spans is enough; 0: none.");
 }
 
 // Leaves one piece without cavities above 0.5: crumbs beside the body go, pinholes in it close.

@@ -62,4 +62,12 @@ std::vector<Stroke> strokes_in(const cv::Mat& mask, const cv::Mat& darkness, dou
   return strokes;
 }
 
+double grey_at(const cv::Mat& grey, const Vec2& pixel) {
+  const int u = std::clamp(static_cast<int>(pixel.x()), 0, grey.cols - 2);
+  const int v = std::clamp(static_cast<int>(pixel.y()), 0, grey.rows - 2);
+  const double a = std::clamp(pixel.x() - u, 0.0, 1.0), b = std::clamp(pixel.y() - v, 0.0, 1.0);
+  return (1 - b) * ((1 - a) * grey.at<std::uint8_t>(v, u) + a * grey.at<std::uint8_t>(v, u + 1)) +
+         b * ((1 - a) * grey.at<std::uint8_t>(v + 1, u) + a * grey.at<std::uint8_t>(v + 1, u + 1));
+}
+
 }  // namespace incise::imaging_detail

@@ -29,4 +29,8 @@ struct DarkPixels {
 /// Connected pieces of a mask that are `least_aspect` times as long as wide. @param darkness  weighs their pixels.
 [[nodiscard]] std::vector<Stroke> strokes_in(const cv::Mat& mask, const cv::Mat& darkness, double least_aspect);
 
+/// Grey value between pixels, in proportion; beyond the rim the rim's own pixels go on. @pre 8 bits, 2 x 2 pixels or
+/// more
+[[nodiscard]] double grey_at(const cv::Mat& grey, const Vec2& pixel);
+
 }  // namespace incise::imaging_detail

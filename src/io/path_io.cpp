@@ -187,7 +187,8 @@ Verdict read_path_verdict(const std::filesystem::path& file) {
   const Verdict stated = verdict_from_json(document.at(kVerdict), file);
   if (place->at(kDigest).text() == digest_of(path, stated)) return stated;
   // A changed digit does not make a refused path one that can be accepted.
-  Verdict verdict = not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
+  Verdict verdict =
+      not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
   for (const VerdictReason& reason : stated.reasons()) {
     if (reason.severity == VerdictStatus::Refused) verdict.add(reason);
   }

@@ -70,7 +70,9 @@ std::string id_in_manifest(const fs::path& file) {
   if (const fs::path beside = manifest_beside(file); fs::exists(beside)) {
     const nlohmann::ordered_json document = read_json(beside);
     // Of another file that had this name: whose this one is, nobody says.
-    if (document.is_object() && document.contains("result_sha256") && document.at("result_sha256") != sha256_of_file(file)) return "";
+    if (document.is_object() && document.contains("result_sha256") &&
+        document.at("result_sha256") != sha256_of_file(file))
+      return "";
     return id_in_json(beside);
   }
   // A result's folder, or the file in a folder of its own within it (frames/…).

@@ -134,7 +134,8 @@ TextTable read_csv_text(const std::filesystem::path& path, std::size_t most_cell
                       fmt::format("{}", table.header.size()));
     }
     if (table.rows.size() >= most_cells / table.header.size()) {
-      throw DataError(path, fmt::format("line {}", line), fmt::format("more than {} rows of {} columns", table.rows.size(), table.header.size()),
+      throw DataError(path, fmt::format("line {}", line),
+                      fmt::format("more than {} rows of {} columns", table.rows.size(), table.header.size()),
                       fmt::format("at most {} cells", most_cells));
     }
     table.rows.push_back(std::move(cells));

@@ -164,7 +164,8 @@ namespace {
 /// Smoothing and meshing go by one length for all directions, which a needle of a voxel does not have.
 void require_compact_voxels(const fs::path& path, const Vec3& spacing_mm) {
   if (spacing_mm.maxCoeff() <= kLongestVoxel * spacing_mm.minCoeff()) return;
-  throw DataError(path, "spacing", fmt::format("voxels of {:.4g} x {:.4g} x {:.4g} mm", spacing_mm[0], spacing_mm[1], spacing_mm[2]),
+  throw DataError(path, "spacing",
+                  fmt::format("voxels of {:.4g} x {:.4g} x {:.4g} mm", spacing_mm[0], spacing_mm[1], spacing_mm[2]),
                   fmt::format("a longest side of at most {} times the shortest", kLongestVoxel), "Lengths are mm");
 }
 

@@ -43,7 +43,7 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
   return parts;
 }
 
-/// The length of "(x,y,z)"; not a number where it is none of a vector.
+/// The length of the vector "(x,y,z)"; NaN if the text is not a vector.
 double length_of(std::string_view vector) {
   double squares = 0.0;
   for (const std::string& part : split(vector, ", \t")) {

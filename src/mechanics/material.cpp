@@ -15,6 +15,7 @@ namespace {
 bool is_direction(const Vec3& v) { return v.allFinite() && v.norm() > 1e-12; }
 bool is_youngs_modulus(double kpa) { return kpa >= kLeastYoungsModulusKpa && kpa <= kMostYoungsModulusKpa; }
 constexpr const char* kYoungsModulusRange = "a number in [1e-6, 1e9] kPa";
+
 }  // namespace
 
 std::vector<std::string> validate(const Material& material) {
@@ -40,7 +41,8 @@ std::vector<std::string> validate(const Material& material) {
     violations.push_back(fmt::format("{}: found {}, expected a finite number of at least 0", name, value));
   };
   if (!(material.fibre_modulus_kpa >= 0.0 && material.fibre_modulus_kpa <= kMostYoungsModulusKpa)) {
-    violations.push_back(fmt::format("fibre_modulus_kpa: found {}, expected a number in [0, 1e9] kPa", material.fibre_modulus_kpa));
+    violations.push_back(
+        fmt::format("fibre_modulus_kpa: found {}, expected a number in [0, 1e9] kPa", material.fibre_modulus_kpa));
   }
   check_not_negative("kelvin_voigt_time_s", material.kelvin_voigt_time_s);
   if (!is_direction(material.fibre_direction)) {

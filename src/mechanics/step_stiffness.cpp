@@ -1,5 +1,5 @@
-#include "mechanics/corotational_response.hpp"
 #include "mechanics/chunks.hpp"
+#include "mechanics/corotational_response.hpp"
 #include "mechanics/held_axes.hpp"
 #include "mechanics/law_response.hpp"
 #include "mechanics/tet_batches.hpp"

@@ -7,7 +7,6 @@
 namespace incise {
 namespace {
 
-
 /// g_n at every vertex of the star of n, in the order of the star's columns.
 void gather_gradient(const TissueModel& model, const TissueState& state, std::span<const Mat3> gradients, std::size_t n,
                      std::span<const std::int32_t> star, std::span<Vec3> result) {

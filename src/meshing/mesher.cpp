@@ -122,7 +122,8 @@ class Meshing {
     tets_per_cube_ = kTetsPerCube * std::pow(kCellSizeOfCalibration / settings_.cell_size_factor, 3.0);
     if (settings_.target_tets) scale_ = scale_for_target();
     result_.predicted_tets = predicted_tets(field_.scaled(scale_));
-    if (std::round(result_.predicted_tets) <= static_cast<double>(settings_.max_tets)) return;  // a target lies a rounding off
+    if (std::round(result_.predicted_tets) <= static_cast<double>(settings_.max_tets))
+      return;  // a target lies a rounding off
     throw InvalidArgument(
         fmt::format("mesh sizing: fine_mm = {:.3g} and coarse_mm = {:.3g} predict {:.0f} tetrahedra, "
                     "expected at most {}. Use longer edges or a smaller target count.",

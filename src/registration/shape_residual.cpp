@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNeighbourhood = 0.2;    // radius of a neighbourhood, in the target's: some 10 mm across on a tongue
 constexpr std::size_t kFewest = 8;        // target points in a neighbourhood, for noise to cancel
-constexpr double kFarthestFromSource = 0.15;        // from the source, in the target's radius: beyond lies something else
+constexpr double kFarthestFromSource = 0.15;  // from the source, in the target's radius: beyond lies something else
 constexpr double kUsualSettling = 0.035;  // in the target's radius: 1 mm on a tongue
 constexpr double kOfMedian = 1.2533;      // standard error of a median over that of a mean, of normal noise
 constexpr double kOfDeviation = 1.4826;   // standard deviation over the median absolute deviation, of normal noise

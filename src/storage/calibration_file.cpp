@@ -32,7 +32,7 @@ constexpr Bounds kStepS{1e-6, 1.0};       // as cut.reference_step_s
 constexpr Bounds kRatio{1e-3, 1e3};       // of two stiffnesses, or of two lengths
 constexpr Bounds kForceN{1e-6, 1e6};      // of a pull
 constexpr Bounds kModulusKpa{kLeastYoungsModulusKpa, kMostYoungsModulusKpa};
-constexpr Bounds kBiasMm{-10.0, 10.0};    // as compensation.bias_mm
+constexpr Bounds kBiasMm{-10.0, 10.0};  // as compensation.bias_mm
 constexpr Bounds kWeight{1e-300, 1.0 + kWeightTolerance};
 constexpr Bounds kAngleDeg{1e-6, 1e5};
 constexpr Bounds kPlaces{1e-6, 1e6};
@@ -284,9 +284,8 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
   record.baseline_mm = within(file, "baseline_mm", kLengthMm);
   if (!file.at("chosen", "an object or null").is_null()) {
     const JsonPlace chosen = file.inside("chosen");
-    record.chosen =
-        RunSetting{within(chosen, "speed_mm_s", kSpeedMmS), within(chosen, "dullness", kDullness),
-                   within(chosen, "stiffness_of_case", kRatio)};
+    record.chosen = RunSetting{within(chosen, "speed_mm_s", kSpeedMmS), within(chosen, "dullness", kDullness),
+                               within(chosen, "stiffness_of_case", kRatio)};
   }
   for (const JsonPlace& specimen : file.objects("specimens")) record.specimens.push_back(specimen_from(specimen));
   if (record.method == CalibrationMethod::Paper) return record;

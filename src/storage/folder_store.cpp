@@ -78,7 +78,8 @@ nlohmann::ordered_json digests_in(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     const std::string name = entry.path().lexically_relative(folder).string();
     if (!entry.is_regular_file() || name == "manifest.json" || name == kStageFile) continue;
-    digests[name] = name == "path.json" ? sha256_of_text(to_json(read_tool_path(entry.path()))) : sha256_of_file(entry.path());
+    digests[name] =
+        name == "path.json" ? sha256_of_text(to_json(read_tool_path(entry.path()))) : sha256_of_file(entry.path());
   }
   return digests;
 }
@@ -169,8 +170,8 @@ bool FolderStore::is_current(Product product) {
   const std::filesystem::path stage = folder(product) / kStageFile;
   if (!std::filesystem::exists(stage)) return false;
   const nlohmann::ordered_json json = of_earlier_run(folder(product), [&] { return read_json(stage); });
-  return json.is_object() && json.contains("key") && json.at("key").is_string() && json.at("key") == key(product) && json.contains("files") &&
-         json.at("files").is_object();
+  return json.is_object() && json.contains("key") && json.at("key").is_string() && json.at("key") == key(product) &&
+         json.contains("files") && json.at("files").is_object();
 }
 
 Manifest FolderStore::manifest_now(double wall_s) {
@@ -252,13 +253,15 @@ void FolderStore::require_unchanged(Product product) {
   };
   for (const auto& [name, digest] : stage.at("files").items()) {
     if (!found.contains(name)) refuse(name, "no such file any more");
-    const bool is_rewritten = name == "incision.json" && stage.contains(kRewritten) && found.at(name) == stage.at(kRewritten);
+    const bool is_rewritten =
+        name == "incision.json" && stage.contains(kRewritten) && found.at(name) == stage.at(kRewritten);
     if (found.at(name) != digest && !is_rewritten) refuse(name, "a file that was changed since it was computed");
   }
   // A note or a picture of the user's own does not hurt: what could be read in place of a product would.
   for (const auto& [name, digest] : found.items()) {
     const std::string ending = std::filesystem::path(name).extension().string();
-    const bool could_be_read = ending == ".csv" || ending == ".json" || ending == ".vtu" || ending == ".vtp" || ending == ".nrrd";
+    const bool could_be_read =
+        ending == ".csv" || ending == ".json" || ending == ".vtu" || ending == ".vtp" || ending == ".nrrd";
     if (could_be_read && !stage.at("files").contains(name)) refuse(name, "a file that was added since");
   }
 }
@@ -266,14 +269,16 @@ void FolderStore::require_unchanged(Product product) {
 bool FolderStore::is_made_as_now(const std::filesystem::path& result) {
   const auto what_was_read = [](const Manifest& manifest) {
     std::string text;
-    for (std::size_t i = 1; i < manifest.inputs.size(); ++i) text += manifest.inputs[i].sha256 + " ";  // the first is the case's own file
+    for (std::size_t i = 1; i < manifest.inputs.size(); ++i)
+      text += manifest.inputs[i].sha256 + " ";  // the first is the case's own file
     return text;
   };
   const Manifest now = manifest_now(0.0);
   try {
     const Manifest then = read_manifest(result);
-    return nlohmann::json::parse(then.settings_json) == nlohmann::json::parse(now.settings_json) && what_was_read(then) == what_was_read(now) &&
-           then.version == now.version && then.commit == now.commit && then.specimen_id == now.specimen_id;
+    return nlohmann::json::parse(then.settings_json) == nlohmann::json::parse(now.settings_json) &&
+           what_was_read(then) == what_was_read(now) && then.version == now.version && then.commit == now.commit &&
+           then.specimen_id == now.specimen_id;
   } catch (const DataError&) {
     return false;
   }
@@ -284,7 +289,8 @@ void FolderStore::remove_what_is_out_of_date(Monitor& monitor) {
   if (is_own_manifest(program / "manifest.json") && !is_made_as_now(program)) {
     remove_replaceable(program);
     monitor.message(Severity::Warning,
-                    fmt::format("{}: removed, it was made with other settings, inputs or version than the case's now", program.string()));
+                    fmt::format("{}: removed, it was made with other settings, inputs or version than the case's now",
+                                program.string()));
   }
   of_earlier_run(folder(Product::Corrected), [&] {
     const std::filesystem::path path = folder(Product::Correction) / "path.json";

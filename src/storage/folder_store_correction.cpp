@@ -139,11 +139,10 @@ bool FolderStore::adopt_cut(CutRole from) {
   if (!is_current(Product::Corrected)) {
     if (!is_current(product)) return false;
     const std::filesystem::path source = folder(product);
-    const double wall_s =
-        of_earlier_run(source, [&] {
-          require_unchanged(product);
-          return read_json(source / "stage.json").at("wall_s").get<double>();
-        });
+    const double wall_s = of_earlier_run(source, [&] {
+      require_unchanged(product);
+      return read_json(source / "stage.json").at("wall_s").get<double>();
+    });
     save(Product::Corrected, wall_s, [&](const std::filesystem::path& to) {
       for (const auto& entry : std::filesystem::directory_iterator(source)) {
         if (entry.path().filename() == "manifest.json" || entry.path().filename() == "stage.json") continue;
@@ -161,7 +160,8 @@ void FolderStore::add_advice_to(Verdict& verdict, bool is_corrected) const {
   const Json json = read_json(file);
   const auto [advice, why] = from_written_json(file, [&json] {
     const bool has_reason = json.contains("reasons") && !json.at("reasons").empty();
-    return std::pair(json.value("advice", std::string()), has_reason ? ": " + json.at("reasons").front().get<std::string>() : std::string());
+    return std::pair(json.value("advice", std::string()),
+                     has_reason ? ": " + json.at("reasons").front().get<std::string>() : std::string());
   });
   if (advice == to_string(Advice::Compensate) || (!is_corrected && advice == to_string(Advice::CutAsPlanned))) return;
   verdict.add("eligibility", {}, fmt::format("assess advises {}{}", advice.empty() ? "nothing" : advice, why));

@@ -36,8 +36,8 @@ struct JsonPlace {
   [[nodiscard]] std::vector<JsonPlace> objects(const std::string& key) const;
 };
 
-/// The contour that contour_json wrote, closed. @throws DataError for fewer than 3 points, lists of different length, or
-/// a coordinate farther from 0 than any scan or robot reaches.
+/// The contour that contour_json wrote, closed. @throws DataError for fewer than 3 points, lists of different length,
+/// or a coordinate farther from 0 than any scan or robot reaches.
 [[nodiscard]] Contour contour_of(const JsonPlace& place);
 
 }  // namespace incise

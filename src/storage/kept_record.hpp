@@ -24,8 +24,8 @@ class KeptRecord {
   /// Writes schema, key, the keys of `result` and the digest of all these, all or nothing.
   void save(const nlohmann::ordered_json& result) const;
 
-  /// What `read` makes of the file, a JsonPlace; nothing where there is none. One that is damaged, or was changed
-  /// after it was written, is told, with `anew` ("The run is simulated anew"), and counts as absent.
+  /// What `read` makes of the file, a JsonPlace; nothing if there is no file. A damaged or changed file is reported,
+  /// followed by `anew` ("The run is simulated anew"), and treated as missing.
   template <class Read>
   [[nodiscard]] auto load(Monitor& monitor, const char* anew, const Read& read) const
       -> std::optional<std::invoke_result_t<Read, const JsonPlace&>> {

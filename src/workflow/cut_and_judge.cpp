@@ -66,7 +66,8 @@ std::optional<double> line_to_edge_mm(const IncisionResult& incision, const Cont
   for (const Contour* line : lines) {
     if (line->points.size() < 2) continue;
     for (const Vec3& p : resample_by_step(flat(*line), kStepMm).points) {
-      const double distance = nearest_on(polygon, p).distance_mm * (contains_in_view(polygon, p, -Vec3::UnitZ()) ? -1.0 : 1.0);
+      const double distance =
+          nearest_on(polygon, p).distance_mm * (contains_in_view(polygon, p, -Vec3::UnitZ()) ? -1.0 : 1.0);
       if (!least || distance < *least) least = distance;
     }
   }

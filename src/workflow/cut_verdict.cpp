@@ -82,7 +82,8 @@ void note_layers(const Case& settings, const SimulatedCut& cut, Tissue& least) {
 void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
   Tissue least;
   if (settings.plan.kind == PlanKind::Line) {
-    if (cut.line_to_edge_mm) least = {*cut.line_to_edge_mm - radius_mm(settings.tool), "mid-line, seen along the approach,", {}};
+    if (cut.line_to_edge_mm)
+      least = {*cut.line_to_edge_mm - radius_mm(settings.tool), "mid-line, seen along the approach,", {}};
   } else {
     note_line(cut.centerline, radius_mm(settings.tool), "mid-line", least);
     note_line(cut.inner_edge, 0.0, "inner edge, the tool out,", least);

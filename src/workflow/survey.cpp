@@ -80,7 +80,8 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
 namespace {
 
 /// The tumour's edge on the stretched skin.
-Contour edge_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched, const SurfaceQuery& surface, Contour edge) {
+Contour edge_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+                const SurfaceQuery& surface, Contour edge) {
   if (settings.tumor_configuration == TumorConfiguration::Rest) {
     const SurfaceQuery at_rest(skin_of(model.mesh, model.mesh.vertices));
     edge = project_tumor_edge(edge, at_rest, settings.plan.approach, settings.surface_tolerance_mm);
@@ -101,7 +102,8 @@ ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const
   const SurfaceQuery surface(skin_of(model.mesh, stretched));
   if (settings.plan.kind == PlanKind::Line) {
     INCISE_REQUIRE(line.has_value(), "expected the curve of the open cut");
-    ToolPath path = plan_line(surface, project_line(*line, surface, settings.plan.approach, settings.surface_tolerance_mm), settings.plan);
+    ToolPath path = plan_line(
+        surface, project_line(*line, surface, settings.plan.approach, settings.surface_tolerance_mm), settings.plan);
     if (tumor_edge) path.tumor_edge = edge_on(settings, model, stretched, surface, *tumor_edge);
     return path;
   }

@@ -124,7 +124,8 @@ TEST(DecodePicture, RefusesPixelsThatAreNotSquare) {
   add(282, 5, 58);
   add(283, 5, 66);
   tiff += std::string(16, '\0');
-  for (const auto& [place, value] : std::vector<std::pair<std::size_t, std::uint32_t>>{{58, 300}, {62, 1}, {66, 300}, {70, 2}})
+  for (const auto& [place, value] :
+       std::vector<std::pair<std::size_t, std::uint32_t>>{{58, 300}, {62, 1}, {66, 300}, {70, 2}})
     put(tiff, place, value);
   EXPECT_THAT(refusal(tiff), HasSubstr("not square (300 in a width, 150 in a height)"));
 }

@@ -35,8 +35,8 @@ struct Scale {
   double from_mm = 1.0;
   double to_mm = 19.0;
   bool is_far_edge = false;
-  double tick_mm = 0.0;   ///< 0: the ruler's
-  double second_grey = 25.0;   ///< of every second tick
+  double tick_mm = 0.0;       ///< 0: the ruler's
+  double second_grey = 25.0;  ///< of every second tick
   double second_share = 1.0;  ///< length of every second tick
 };
 
@@ -128,8 +128,7 @@ struct Said {
   std::string message;
   double mm_per_pixel = 0.0;
 };
-Said said_of(const ColorPicture& picture, RulerKind kind = RulerKind::Ticks,
-             std::optional<double> length_mm = 1.0) {
+Said said_of(const ColorPicture& picture, RulerKind kind = RulerKind::Ticks, std::optional<double> length_mm = 1.0) {
   try {
     const Ruler ruler = find_ruler(through_jpeg(picture), kind, length_mm, "ruler.jpg");
     Verdict verdict;
@@ -181,34 +180,39 @@ TEST(RandomRuler, SoundOnesAreMeasured) {
   EXPECT_GE(counts.of("ok"), 0.99 * cases()) << counts.text();
 }
 
-TEST(RandomRuler, AnotherUnitOnTheOtherEdgeIsFoundOut) {
-  Random random(2);
+/// What is said of many random rulers, each changed first. @param change  of (drawn, random, number of the ruler)
+template <class Change>
+Counts said_of_changed(std::uint64_t seed, const Change& change, std::optional<double> length_mm = 1.0) {
+  Random random(seed);
   Counts counts;
   for (int i = 0; i < cases(); ++i) {
     Drawn drawn = random_drawing(random);
+    change(drawn, random, i);
+    counts.add(said_of(photographed(drawn), RulerKind::Ticks, length_mm));
+  }
+  return counts;
+}
+
+TEST(RandomRuler, AnotherUnitOnTheOtherEdgeIsFoundOut) {
+  const auto change = [](Drawn& drawn, Random&, int i) {
     Scale other = drawn.ruler.scales.front();
     other.step_mm = i % 2 == 0 ? 0.5 : kInchMm / 32.0;
     other.is_far_edge = true;
     drawn.ruler.scales.push_back(other);
-    counts.add(said_of(photographed(drawn)));
-  }
-  expect_found_out("other unit on the other edge", counts, 0.98);
+  };
+  expect_found_out("other unit on the other edge", said_of_changed(2, change), 0.98);
 }
 
 TEST(RandomRuler, HalfMillimetresAlongAPartAreFoundOut) {
-  Random random(3);
-  Counts counts;
-  for (int i = 0; i < cases(); ++i) {
-    Drawn drawn = random_drawing(random);
+  const auto change = [](Drawn& drawn, Random& random, int) {
     Scale& scale = drawn.ruler.scales.front();
     Scale fine = scale;
     fine.step_mm = 0.5;
     const double share = random.uniform(0.3, 0.7);
     fine.to_mm = scale.from_mm = fine.from_mm + std::round(share * (scale.to_mm - fine.from_mm));
     drawn.ruler.scales.push_back(fine);
-    counts.add(said_of(photographed(drawn)));
-  }
-  expect_found_out("half millimetres along a part", counts, 0.98);
+  };
+  expect_found_out("half millimetres along a part", said_of_changed(3, change), 0.98);
 }
 
 TEST(RandomRuler, ASecondRulerOfAnotherUnitIsFoundOut) {
@@ -264,31 +268,23 @@ TEST(RandomRuler, ABarIsNotLookedForAmongTicks) {
 }
 
 TEST(RandomRuler, HalfMillimetresTooShortToBeStrokesAreFoundOut) {
-  Random random(8);
-  Counts counts;
-  for (int i = 0; i < cases(); ++i) {
-    Drawn drawn = random_drawing(random);
+  const auto change = [](Drawn& drawn, Random& random, int) {
     Scale halves = drawn.ruler.scales.front();
     halves.from_mm += 0.5;
     halves.tick_mm = random.uniform(0.3, 0.5);
     drawn.ruler.scales.push_back(halves);
-    counts.add(said_of(photographed(drawn), RulerKind::Ticks, {}));
-  }
-  expect_found_out("half millimetres as short stubs", counts, 0.98);
+  };
+  expect_found_out("half millimetres as short stubs", said_of_changed(8, change, {}), 0.98);
 }
 
 TEST(RandomRuler, FaintHalfMillimetresAreFoundOut) {
-  Random random(9);
-  Counts counts;
-  for (int i = 0; i < cases(); ++i) {
-    Drawn drawn = random_drawing(random);
+  const auto change = [](Drawn& drawn, Random& random, int) {
     Scale& scale = drawn.ruler.scales.front();
     scale.step_mm = 0.5;
     scale.second_grey = random.uniform(170.0, 200.0);
     drawn.ruler.line_mm = std::min(drawn.ruler.line_mm, 0.14);
-    counts.add(said_of(photographed(drawn), RulerKind::Ticks, 0.5));
-  }
-  expect_found_out("every second tick faint", counts, 0.98);
+  };
+  expect_found_out("every second tick faint", said_of_changed(9, change, 0.5), 0.98);
 }
 
 TEST(RandomRuler, HalfMillimetresOfTwoLengthsAskForTheirDistance) {
@@ -317,7 +313,8 @@ TEST(FindRuler, TakesASecondRulerAcrossForATest) {
   const ColorPicture straight = photographed(drawn);
   EXPECT_EQ(said_of(straight).what, "ok") << said_of(straight).message;
   // Far away and leaning along one of the two: that one's spacing shrinks by a fifth, and nothing else changes.
-  const testing::TiltedCamera camera{.tilt_rad = 35.0 * std::numbers::pi / 180.0, .azimuth_rad = 0.0, .distance_mm = 5000.0};
+  const testing::TiltedCamera camera{
+      .tilt_rad = 35.0 * std::numbers::pi / 180.0, .azimuth_rad = 0.0, .distance_mm = 5000.0};
   const Said said = said_of(testing::seen_obliquely(straight, camera, drawn.photo.mm_per_pixel));
   EXPECT_EQ(said.what, "refused");
   EXPECT_THAT(said.message, HasSubstr("ticks of two spacings"));

@@ -167,7 +167,9 @@ TEST(Segmentation, CautionsWhereAnotherBodyMayBeTheSpecimen) {
   ASSERT_EQ(alike.verdict.status(), VerdictStatus::Caution);
   const VerdictReason& reason = alike.verdict.reasons().front();
   EXPECT_EQ(reason.id, "scan");
-  EXPECT_THAT(reason.message, ::testing::AllOf(HasSubstr("two bodies"), HasSubstr("round (15.0, 15.0, 15.0) mm, which is kept"), HasSubstr("round (45.0, 15.0, 15.0) mm"), HasSubstr("seed_mm")));
+  EXPECT_THAT(reason.message,
+              ::testing::AllOf(HasSubstr("two bodies"), HasSubstr("round (15.0, 15.0, 15.0) mm, which is kept"),
+                               HasSubstr("round (45.0, 15.0, 15.0) mm"), HasSubstr("seed_mm")));
   EXPECT_NEAR(reason.value.value(), 0.97, 0.02);
   EXPECT_EQ(run(balls_of(6.5)).verdict.status(), VerdictStatus::Caution);
   EXPECT_EQ(run(balls_of(6.0)).verdict.status(), VerdictStatus::Ok) << "0.22 of the other's volume";

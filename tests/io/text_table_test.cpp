@@ -56,7 +56,8 @@ TEST(TextTable, RefusesTheFirstRowBeyondTheCellsThatItMayHold) {
   std::ofstream(folder / "t.csv", std::ios::binary) << "a,b\n1,2\n3,4\n5,6\n7,8\n";
   EXPECT_EQ(read_csv_text(folder / "t.csv", 8).rows.size(), 4U);
   EXPECT_THAT([&] { static_cast<void>(read_csv_text(folder / "t.csv", 7)); },
-              ThrowsMessage<DataError>(HasSubstr("t.csv: line 5: found more than 3 rows of 2 columns, expected at most 7 cells")));
+              ThrowsMessage<DataError>(
+                  HasSubstr("t.csv: line 5: found more than 3 rows of 2 columns, expected at most 7 cells")));
 }
 
 TEST(LatexText, EscapesWhatLatexWouldReadAsACommand) {

@@ -103,13 +103,20 @@ TEST_F(HostileVolume, AbsurdSpacing) {
     EXPECT_THAT(says("a.nrrd", begin + fmt::format("space directions: ({0},0,0) (0,{0},0) (0,0,{0})\n\n12345678", spacing)), HasSubstr("spacing")) << spacing;
   }
   for (const char* first : {"(1e200,0,0)", "(1e155,0,0)", "(0,1e308,1e308)", "none", "(nan,0,0)", "(x,0,0)"}) {
-    EXPECT_THAT(says("a.nrrd", begin + fmt::format("space directions: {} (0,1,0) (0,0,1)\n\n12345678", first)), HasSubstr("a.nrrd")) << first;
+    EXPECT_THAT(says("a.nrrd", begin + fmt::format("space directions: {} (0,1,0) (0,0,1)\n\n12345678", first)),
+                HasSubstr("a.nrrd"))
+        << first;
   }
-  EXPECT_THAT(says("a.nrrd", begin + "space directions: (1e200,0,0) (0,1,0) (0,0,1)\n\n12345678"), AllOf(HasSubstr("space directions: found voxel spacing inf along axis 0"), HasSubstr("0.0001 to")));
-  EXPECT_THAT(says("a.nrrd", begin + "space directions: none (0,1,0) (0,0,1)\n\n12345678"), HasSubstr("space directions: found 'none (0,1,0) (0,0,1)', expected the voxel size along three axes"));
-  EXPECT_THAT(says("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nspacings: nan 1 1\n\n12345678"), HasSubstr("spacings: found voxel spacing nan"));
+  EXPECT_THAT(says("a.nrrd", begin + "space directions: (1e200,0,0) (0,1,0) (0,0,1)\n\n12345678"),
+              AllOf(HasSubstr("space directions: found voxel spacing inf along axis 0"), HasSubstr("0.0001 to")));
+  EXPECT_THAT(says("a.nrrd", begin + "space directions: none (0,1,0) (0,0,1)\n\n12345678"),
+              HasSubstr("space directions: found 'none (0,1,0) (0,0,1)', expected the voxel size along three axes"));
+  EXPECT_THAT(
+      says("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nspacings: nan 1 1\n\n12345678"),
+      HasSubstr("spacings: found voxel spacing nan"));
   EXPECT_THAT(says("a.nrrd", begin + "space directions: (0.01,0,0) (0,1,0) (0,0,100)\n\n12345678"),
-              AllOf(HasSubstr("a.nrrd: spacing: found voxels of 0.01 x 1 x 100 mm"), HasSubstr("at most 50 times the shortest")));
+              AllOf(HasSubstr("a.nrrd: spacing: found voxels of 0.01 x 1 x 100 mm"),
+                    HasSubstr("at most 50 times the shortest")));
   for (const char* spacing : {"1e-300\\1", "1e300\\1e300", "1e-7\\1e-7"}) {
     const fs::path series = folder / "series";
     fs::create_directory(series);
@@ -128,10 +135,14 @@ TEST_F(HostileVolume, AbsurdSpacing) {
 
 TEST_F(HostileVolume, AnNrrdInOtherUnitsThanMillimetres) {
   const std::string begin = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
-  EXPECT_THAT(says("a.nrrd", begin + kGeometry + "space units: \"m\" \"m\" \"m\"\n\n12345678"), HasSubstr("space units: found 'm' for axis 0, expected \"mm\""));
-  EXPECT_THAT(says("a.nrrd", begin + kGeometry + "space units: \"mm\" \"mm\" \"um\"\n\n12345678"), HasSubstr("space units: found 'um' for axis 2"));
-  EXPECT_THAT(says("a.nrrd", begin + "spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n\n12345678"), HasSubstr("units: found 'cm' for axis 0"));
-  write_bytes(folder / "b.nrrd", begin + kGeometry + "space units: \"mm\" \"Millimeter\" \"\"\nspace units:=m\n\n12345678");
+  EXPECT_THAT(says("a.nrrd", begin + kGeometry + "space units: \"m\" \"m\" \"m\"\n\n12345678"),
+              HasSubstr("space units: found 'm' for axis 0, expected \"mm\""));
+  EXPECT_THAT(says("a.nrrd", begin + kGeometry + "space units: \"mm\" \"mm\" \"um\"\n\n12345678"),
+              HasSubstr("space units: found 'um' for axis 2"));
+  EXPECT_THAT(says("a.nrrd", begin + "spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n\n12345678"),
+              HasSubstr("units: found 'cm' for axis 0"));
+  write_bytes(folder / "b.nrrd",
+              begin + kGeometry + "space units: \"mm\" \"Millimeter\" \"\"\nspace units:=m\n\n12345678");
   RecordingMonitor monitor;
   EXPECT_EQ(read_ct(folder / "b.nrrd", {}, monitor).volume.grid.spacing_mm, Vec3(1, 1, 1));
 }

@@ -117,7 +117,8 @@ TEST_F(RunFolderTest, AChangedRunIsToldAndCountsAsAbsent) {
     write_json(file, changed);
     monitor_.told.clear();
     EXPECT_FALSE(runs_.load(0, kSetting, monitor_));
-    EXPECT_THAT(monitor_.told, ::testing::AllOf(HasSubstr(file.filename().string()), HasSubstr("digest_sha256"), HasSubstr("simulated anew")));
+    EXPECT_THAT(monitor_.told, ::testing::AllOf(HasSubstr(file.filename().string()), HasSubstr("digest_sha256"),
+                                                HasSubstr("simulated anew")));
   }
   write_json(file, kept);
   EXPECT_TRUE(runs_.load(0, kSetting, monitor_));
@@ -286,22 +287,25 @@ TEST_F(CalibrationFileTest, RefusesFiguresThatNoTissueToolOrPhotographHas) {
     bad[nlohmann::ordered_json::json_pointer(pointer)] = value;
     expect_refused(bad, place);
   };
-  for (const double value : {1e300, -1e9}) {
-    expect_bounded("/posterior/samples/0/drag_length_mm", "posterior.samples[0].drag_length_mm: found", value);
-    expect_bounded("/posterior/samples/1/stiffness_factor", "posterior.samples[1].stiffness_factor: found", value);
-    expect_bounded("/posterior/samples/1/bias_mm", "posterior.samples[1].bias_mm: found", value);
-    expect_bounded("/specimens/0/youngs_modulus_kpa", "specimens[0].youngs_modulus_kpa: found", value);
-    expect_bounded("/specimens/0/stretch_force_n", "specimens[0].stretch_force_n: found", value);
-    expect_bounded("/specimens/0/simulated_force_n", "specimens[0].simulated_force_n: found", value);
-    expect_bounded("/specimens/1/stretch_mm", "specimens[1].stretch_mm: found", value);
-    expect_bounded("/specimens/1/photographed_mean_signed_mm", "specimens[1].photographed_mean_signed_mm: found", value);
-    expect_bounded("/specimens/1/registration/rmse_mm", "specimens[1].registration.rmse_mm: found", value);
-    expect_bounded("/specimens/1/registration/scale", "specimens[1].registration.scale: found", value);
-    expect_bounded("/chosen/speed_mm_s", "chosen.speed_mm_s: found", value);
-    expect_bounded("/chosen/dullness", "chosen.dullness: found", value);
-    expect_bounded("/reference_step_s", "reference_step_s: found", value);
-    for (const char* key : {"sd_mm", "correlation_deg", "reading_mm", "specimen_spread_mm", "placement_mm", "n_effective"})
-      expect_bounded(fmt::format("/residual/{}", key).c_str(), fmt::format("residual.{}: found", key).c_str(), value);
+  std::vector<std::pair<std::string, std::string>> bounded{
+      {"/posterior/samples/0/drag_length_mm", "posterior.samples[0].drag_length_mm: found"},
+      {"/posterior/samples/1/stiffness_factor", "posterior.samples[1].stiffness_factor: found"},
+      {"/posterior/samples/1/bias_mm", "posterior.samples[1].bias_mm: found"},
+      {"/specimens/0/youngs_modulus_kpa", "specimens[0].youngs_modulus_kpa: found"},
+      {"/specimens/0/stretch_force_n", "specimens[0].stretch_force_n: found"},
+      {"/specimens/0/simulated_force_n", "specimens[0].simulated_force_n: found"},
+      {"/specimens/1/stretch_mm", "specimens[1].stretch_mm: found"},
+      {"/specimens/1/photographed_mean_signed_mm", "specimens[1].photographed_mean_signed_mm: found"},
+      {"/specimens/1/registration/rmse_mm", "specimens[1].registration.rmse_mm: found"},
+      {"/specimens/1/registration/scale", "specimens[1].registration.scale: found"},
+      {"/chosen/speed_mm_s", "chosen.speed_mm_s: found"},
+      {"/chosen/dullness", "chosen.dullness: found"},
+      {"/reference_step_s", "reference_step_s: found"}};
+  for (const char* key :
+       {"sd_mm", "correlation_deg", "reading_mm", "specimen_spread_mm", "placement_mm", "n_effective"})
+    bounded.emplace_back(fmt::format("/residual/{}", key), fmt::format("residual.{}: found", key));
+  for (const auto& [pointer, place] : bounded) {
+    for (const double value : {1e300, -1e9}) expect_bounded(pointer.c_str(), place.c_str(), value);
   }
 }
 

@@ -567,7 +567,9 @@ TEST_F(FolderStoreTest, ACauseThatThereIsNotIsRefusedNamingItsFile) {
     static_cast<void>(open().load_cut(CutRole::AsPlanned));
     FAIL() << "the file was changed";
   } catch (const DataError& error) {
-    EXPECT_NE(std::string(error.what()).find("incision.json: found a file that was changed since it was computed"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("incision.json: found a file that was changed since it was computed"),
+              std::string::npos)
+        << error.what();
   }
   const std::filesystem::path stage = folder_ / "out" / "as_planned" / "stage.json";  // forged, too
   nlohmann::ordered_json digests;

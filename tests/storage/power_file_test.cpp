@@ -148,9 +148,12 @@ TEST_F(TimedCutsTest, ABadRowIsNamedByLineAndColumn) {
 }
 
 TEST_F(TimedCutsTest, ACutThatNobodyMakesIsNamedByLineAndColumn) {
-  EXPECT_THAT(refusal_of("length_mm,time_s\n100,9\n1e300,1e-300\n"), AllOf(HasSubstr("line 3, column length_mm: found 1e+300"), HasSubstr("1 to 2000 mm")));
+  EXPECT_THAT(refusal_of("length_mm,time_s\n100,9\n1e300,1e-300\n"),
+              AllOf(HasSubstr("line 3, column length_mm: found 1e+300"), HasSubstr("1 to 2000 mm")));
   EXPECT_THAT(refusal_of("length_mm,time_s\n0.1,0.02\n"), HasSubstr("line 2, column length_mm: found 0.1"));
-  EXPECT_THAT(refusal_of("length_mm,time_s\n30,1e-9\n"), AllOf(HasSubstr("line 2, column time_s: found 30 mm in 1e-09 s: 3e+10 mm/s"), HasSubstr("0.5 to 50 mm/s")));
+  EXPECT_THAT(
+      refusal_of("length_mm,time_s\n30,1e-9\n"),
+      AllOf(HasSubstr("line 2, column time_s: found 30 mm in 1e-09 s: 3e+10 mm/s"), HasSubstr("0.5 to 50 mm/s")));
   EXPECT_THAT(refusal_of("length_mm,time_s\n30,1e300\n"), HasSubstr("line 2, column time_s"));
   EXPECT_EQ(read("length_mm,time_s\n100,2\n100,200\n").size(), 2U);
 }

@@ -61,7 +61,8 @@ TEST(ByVirtualCalibration, ARealSpecimenIsAtBestCutAsPlanned) {
   judged.advice = Advice::DoNotUse;
   judged.reasons = {"the registration was refused"};
   EXPECT_EQ(by_virtual_calibration(judged).advice, Advice::DoNotUse);
-  EXPECT_EQ(by_virtual_calibration(judged).reasons, (std::vector<std::string>{"the registration was refused", kVirtualCalibration}));
+  EXPECT_EQ(by_virtual_calibration(judged).reasons,
+            (std::vector<std::string>{"the registration was refused", kVirtualCalibration}));
 }
 
 TEST(StretchMm, IsTheFarthestOfWhatPulls) {

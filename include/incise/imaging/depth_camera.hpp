@@ -49,7 +49,8 @@ struct OrganizedCloud {
 /// range.
 [[nodiscard]] OrganizedCloud cloud_seen_in_color(const DepthPicture& depth, const DepthCamera& camera);
 
-/// Refuses a cloud that is not in the frame of the camera whose picture it fills: x to the right, y down, z away from it.
+/// Refuses a cloud that is not in the frame of the camera whose picture it fills: x to the right, y down, z away from
+/// it.
 /// @throws DataError for a point behind the camera, or columns and rows that run as in a mirror.
 void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::path& name);
 

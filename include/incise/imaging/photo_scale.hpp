@@ -57,8 +57,8 @@ struct Ruler {
   std::optional<RulerShape> shape;  ///< of ticks
 };
 
-/// Finds a ruler. @param length_mm  from tick to tick (of the finest ticks), or of the whole bar; without it ticks stand
-/// for millimetres.
+/// Finds a ruler. @param length_mm  from tick to tick (of the finest ticks), or of the whole bar; without it ticks
+/// stand for millimetres.
 /// @throws DataError where none is found (fewer than 8 evenly spaced ticks; no solid bar), naming what was seen; where
 /// a second bar is at least a quarter as long as the longest, with lengths and places; where ticks of two spacings are
 /// in view, on one ruler or on two, with spacings and places; where fainter or shorter marks lie between the ticks that

@@ -30,8 +30,9 @@ void require_picture_file(std::string_view bytes, const std::filesystem::path& n
 /// Decodes a `.png`, `.jpg` or `.tif` held in memory. 16-bit channels are rounded to 8; a transparent pixel is laid on
 /// white; the orientation that a camera wrote into a JPEG is applied.
 /// @param bytes  the whole file.  @param name  stands for the file in messages.
-/// @throws DataError for another format, a file that is cut short or damaged, pixels that it states not to be square, grey or CMYK pictures, a picture whose
-/// channels are all equal (no colour to see), more than 200 million pixels, or more than its bytes can hold.
+/// @throws DataError for another format, a file that is cut short or damaged, pixels that it states not to be square,
+/// grey or CMYK pictures, a picture whose channels are all equal (no colour to see), more than 200 million pixels, or
+/// more than its bytes can hold.
 [[nodiscard]] ColorPicture decode_picture(std::string_view bytes, const std::filesystem::path& name);
 
 /// Decodes a depth picture: one channel of 16 bits (`.png`, `.tif`). @throws DataError as decode_picture, for another

@@ -62,13 +62,14 @@ struct Segmentation {
 /// label where >= 0.5. The occupancy of a voxel within two voxels of the body's border is (HU - outside)/(inside -
 /// outside), limited to [0, 1], where inside and outside are means of the pure tissue and the pure surroundings near by
 /// (air, fat, plastic or bone alike); where the region or the opening cuts through tissue it is 0 or 1. Smoothing
-/// convolves with 2 G - G * G, G a Gaussian of standard deviation `smoothing_length_mm`: it averages noise and steps as G does
-/// and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Its verdict has a
-/// caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), when without a seed another piece is at least
-/// a quarter as large as the one that is kept, and those of check_scan.
+/// convolves with 2 G - G * G, G a Gaussian of standard deviation `smoothing_length_mm`: it averages noise and steps as
+/// G does and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Its verdict
+/// has a caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), when without a
+/// seed another piece is at least a quarter as large as the one that is kept, and those of check_scan.
 /// @throws CaseError: settings invalid (all violations listed), region or a seed outside the volume, a seed outside the
 /// window or the region
-///         or in a part that the opening removes, seeds in separate pieces, nothing in the window, smoothing that leaves nothing.
+///         or in a part that the opening removes, seeds in separate pieces, nothing in the window, smoothing that
+///         leaves nothing.
 /// @throws InvalidArgument: a volume without voxels, of the wrong length, or with a non-finite or non-positive grid.
 /// @throws Cancelled.
 /// @note O(voxels of the region); about a second for 150 x 160 x 100.

@@ -46,8 +46,9 @@ void write_tool_path(const std::filesystem::path& file, const ToolPath& path);
 /// The same with the verdict of the simulated cut along the path, and a digest over both under `verdict.digest_sha256`.
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path, const Verdict& verdict);
 
-/// The verdict that a path's file holds. A file without one, and one whose path or verdict was changed since (the digest differs), gives a
-/// caution `not_simulated` that says which: whatever was simulated, it was not this path. What a changed file's verdict refuses stays refused.
+/// The verdict that a path's file holds. A file without one, and one whose path or verdict was changed since (the
+/// digest differs), gives a caution `not_simulated` that says which: whatever was simulated, it was not this path. What
+/// a changed file's verdict refuses stays refused.
 /// @throws DataError as read_tool_path, and as verdict_from_json.
 [[nodiscard]] Verdict read_path_verdict(const std::filesystem::path& file);
 

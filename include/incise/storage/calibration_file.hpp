@@ -23,7 +23,7 @@ class RunFolder : public RunStore {
   /// @param specimen_keys  one for each specimen: the hash of its case (FolderStore::product_key).
   RunFolder(std::filesystem::path folder, std::vector<std::string> specimen_keys);
 
-  /// A file that is damaged or was changed is told and counts as absent: the run is made anew and takes its place.
+  /// A damaged or changed file is reported and treated as missing: the run is simulated again and replaces it.
   std::optional<CalibrationRun> load(std::size_t specimen, const RunSetting& setting, Monitor& monitor) override;
   void save(std::size_t specimen, const CalibrationRun& run) override;
 

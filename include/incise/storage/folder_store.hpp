@@ -47,26 +47,29 @@ static_assert(static_cast<int>(Product::Correction) - static_cast<int>(Product::
   return static_cast<Product>(static_cast<int>(Product::AsPlanned) + static_cast<int>(role));
 }
 
-/// A Store on a folder. Each product has a folder of its own, written under a temporary name and renamed when it is complete:
+/// A Store on a folder. Each product has a folder of its own, written under a temporary name and renamed when it is
+/// complete:
 ///
 ///   labels/      labels.nrrd, occupancy.nrrd, segment.json
 ///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
 ///   stretched/   deformed.vtu, deform.json
 ///   plan/        path.json, path.vtp, plan.json
 ///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, steps.csv, removed.vtu,
-///                frames.pvd, frames/, kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv, inner_edge_reference.csv
+///                frames.pvd, frames/, kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv,
+///                inner_edge_reference.csv
 ///   pass_1/ …    as as_planned/: cuts on the way to the correction, gone when it is found
 ///   correction/  path.json, path.vtp, compensate.json, history.csv, errors.csv
 ///   corrected/   as as_planned/
-///   robust/      path.json, path.vtp, robust.json: see write_robust; gone when a product that it depends on is made anew
-///   assessment/  assess.json: see write_assessment; gone likewise
+///   robust/      path.json, path.vtp, robust.json: see write_robust; gone when a product that it depends on is made
+///   anew assessment/  assess.json: see write_assessment; gone likewise
 ///
-/// and while a cut is under way or interrupted, beside them, as_planned.checkpoint, pass_1.checkpoint … (see CheckpointFile),
-/// and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that the product depends on: a product
-/// with another key is stale and counts as absent. The key holds what the product is made with and from, and no names of files: a case
-/// folder may be moved. A cut whose judgement alone has changed (thermal, plan.close_margin_mm) is judged anew when it is loaded, in its
-/// files too. `stage.json` also holds a digest of each file of the product (of a path: without its verdict): what was changed since is
-/// refused, not taken for what was computed.
+/// and while a cut is under way or interrupted, beside them, as_planned.checkpoint, pass_1.checkpoint … (see
+/// CheckpointFile), and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that
+/// the product depends on: a product with another key is stale and counts as absent. The key holds what the product is
+/// made with and from, and no names of files: a case folder may be moved. A cut whose judgement alone has changed
+/// (thermal, plan.close_margin_mm) is judged anew when it is loaded, in its files too. `stage.json` also holds a digest
+/// of each file of the product (of a path: without its verdict): what was changed since is refused, not taken for what
+/// was computed.
 class FolderStore : public Store {
  public:
   /// @param root  is made if missing. @throws DataError if that fails.
@@ -105,12 +108,13 @@ class FolderStore : public Store {
   bool adopt_cut(CutRole from) override;
   void save_verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
 
-  /// Adds what an earlier `assess` of this folder advised against the path: as planned, that the simulation is not to be used; corrected,
-  /// anything but to compensate.
+  /// Adds what an earlier `assess` of this folder advised against the path: as planned, that the simulation is not to
+  /// be used; corrected, anything but to compensate.
   void add_advice_to(Verdict& verdict, bool is_corrected) const;
 
-  /// Removes a program that was made with other settings or inputs than the case's, and the verdict in the file of a correction that was
-  /// judged by other limits: neither may pass for one of this case. Says so. @throws DataError where an input cannot be read.
+  /// Removes a program that was made with other settings or inputs than the case's, and the verdict in the file of a
+  /// correction that was judged by other limits: neither may pass for one of this case. Says so. @throws DataError
+  /// where an input cannot be read.
   void remove_what_is_out_of_date(Monitor& monitor);
 
   /// Where the checkpoint of a cut is, if there is one.

@@ -21,7 +21,7 @@ class PowerCutFolder : public PowerCutStore {
   /// @param folder  is made when the first cut is saved.
   PowerCutFolder(std::filesystem::path folder, const BenchResolution& resolution);
 
-  /// A file that is damaged is told and counts as absent: the cut is made anew and takes its place.
+  /// A damaged or changed file is reported and treated as missing: the cut is simulated again and replaces it.
   std::optional<PowerCut> load(const PowerSubject& subject, double power_w, double speed_mm_s,
                                Monitor& monitor) override;
   void save(const PowerSubject& subject, const PowerCut& cut) override;

@@ -20,7 +20,7 @@ class ScenarioRunFolder : public ScenarioRunStore {
   /// @param case_key  the hash of the case (FolderStore::product_key of the cut as planned).
   ScenarioRunFolder(std::filesystem::path folder, std::string case_key);
 
-  /// A file that is damaged is told and counts as absent: the run is made anew and takes its place.
+  /// A damaged or changed file is reported and treated as missing: the run is simulated again and replaces it.
   std::optional<ScenarioRun> load(const RunSetting& setting, const ToolPath& path, Monitor& monitor) override;
   void save(const ScenarioRun& run, const ToolPath& path) override;
 

@@ -55,8 +55,8 @@ struct Assessment {
 
 inline constexpr const char* kVirtualCalibration =
     "the calibration is of virtual specimens and this one is real: how its tissue drags was never measured on tissue";
-/// What is left of a judgement of a real specimen whose calibration is of synthetic bodies: at best to cut as planned, and kVirtualCalibration
-/// among the reasons.
+/// What is left of a judgement of a real specimen whose calibration is of synthetic bodies: at best to cut as planned,
+/// and kVirtualCalibration among the reasons.
 [[nodiscard]] Eligibility by_virtual_calibration(Eligibility judged);
 
 /// How far the case displaces the tissue that it pulls, mm: the farthest of its displacements; 0: it does not pull.

@@ -37,7 +37,8 @@ struct EdgeFit {
 [[nodiscard]] Verdict verdict_of_contour(const Contour& edge, const TriMesh& surface, const Vec3& approach);
 
 /// What `not_corrected` says of a path as planned.
-inline constexpr const char* kUncorrectedPath = "the correction is not accepted: a program would follow the uncorrected path";
+inline constexpr const char* kUncorrectedPath =
+    "the correction is not accepted: a program would follow the uncorrected path";
 
 /// The verdict of a run: that of the cut that verifies the path which a program would follow, and what is known beside it.
 /// @param about_inputs  what was found before anything was cut.

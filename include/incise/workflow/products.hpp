@@ -36,11 +36,11 @@ struct SimulatedCut {
   Outcome outcome = Outcome::NotConverged;  ///< of incision and margin together
   std::size_t tets = 0;   ///< of the mesh before the cut
   double thermal_half_width_mm = 0.0;  ///< how far beside the real electrode heat damages tissue, where the path is slowest and shallowest
-  /// Of an open cut beside a tumour whose edge is known: least distance of its mid-line from the edge, seen along the approach, at any depth,
-  /// mm; below 0: within the tumour.
+  /// Of an open cut beside a tumour whose edge is known: least distance of its mid-line from the edge, seen along the
+  /// approach, at any depth, mm; below 0: within the tumour.
   std::optional<double> line_to_edge_mm;
-  /// Tissue left unheated beside the tumour edge, mm: least distance of the mid-line from it less the half width; below 0: heat reaches the
-  /// edge. Absent without a mid-line, and for an open cut without a tumour edge.
+  /// Tissue left unheated beside the tumour edge, mm: least distance of the mid-line from it less the half width; below
+  /// 0: heat reaches the edge. Absent without a mid-line, and for an open cut without a tumour edge.
   std::optional<double> thermal_margin_mm;
   Verdict verdict;  ///< what is held against the path that was cut: verdict_of_cut, and what was known of mesh and path before it
 };
