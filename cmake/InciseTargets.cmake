@@ -61,7 +61,7 @@ endfunction()
 # hangs in the command is found by its watch (tests/cli/command.py).
 set(INCISE_TEST_STOP_S 21600)
 
-# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end] [IN_GROUPS])
+# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end|long] [IN_GROUPS])
 # One test program per folder under tests/; each TEST in it is one ctest entry.
 function(incise_test name)
   cmake_parse_arguments(ARG "IN_GROUPS" "LABEL" "SOURCES;USES;LINK" ${ARGN})
