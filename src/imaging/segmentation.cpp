@@ -16,8 +16,8 @@ namespace incise {
 namespace {
 
 constexpr const char* kStage = "segmenting";
-constexpr double kLeastRivalShare =
-    0.25;                   // of the volume that is kept: a lesser piece is a crumb, the table or a clamp
+// Of the volume that is kept: a lesser piece is a crumb, the table or a clamp.
+constexpr double kLeastRivalShare = 0.25;
 constexpr int kGrowth = 3;  // voxels by which the occupancy can reach beyond the body that it is made from
 
 void require_sound_volume(const CtVolume& ct) {

@@ -257,8 +257,8 @@ TEST(MeshLabels, RefusesACountThatIsTooLargeAndSaysWhatItWouldBe) {
 }
 
 TEST(MeshLabels, MeetsACountThatIsTheMostThatIsAllowed) {
-  for (const int most :
-       {5000, 5500, 6000, 6500, 7000, 7500}) {  // the scale for some is found a rounding above, for others below
+  // The scale for some is found a rounding above, for others below.
+  for (const int most : {5000, 5500, 6000, 6500, 7000, 7500}) {
     const MeshingResult result =
         mesh_labels(occupancy_of(ball()), SizingField::uniform(2.0),
                     {.target_tets = most, .max_tets = static_cast<std::size_t>(most)}, silent());

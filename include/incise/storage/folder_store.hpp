@@ -47,8 +47,7 @@ static_assert(static_cast<int>(Product::Correction) - static_cast<int>(Product::
   return static_cast<Product>(static_cast<int>(Product::AsPlanned) + static_cast<int>(role));
 }
 
-/// A Store on a folder. Each product has a folder of its own, written under a temporary name and renamed when it is
-/// complete:
+/// A Store on a folder. Each product has a folder of its own, written under a temporary name and renamed when complete:
 ///
 ///   labels/      labels.nrrd, occupancy.nrrd, segment.json
 ///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
@@ -60,8 +59,8 @@ static_assert(static_cast<int>(Product::Correction) - static_cast<int>(Product::
 ///   pass_1/ …    as as_planned/: cuts on the way to the correction, gone when it is found
 ///   correction/  path.json, path.vtp, compensate.json, history.csv, errors.csv
 ///   corrected/   as as_planned/
-///   robust/      path.json, path.vtp, robust.json: see write_robust; gone when a product that it depends on is made
-///   anew assessment/  assess.json: see write_assessment; gone likewise
+///   robust/      path.json, path.vtp, robust.json: see write_robust; removed when a product it depends on is remade
+///   assessment/  assess.json: see write_assessment; removed likewise
 ///
 /// and while a cut is under way or interrupted, beside them, as_planned.checkpoint, pass_1.checkpoint … (see
 /// CheckpointFile), and in each `manifest.json` and `stage.json`, whose key is the hash of the settings and inputs that
