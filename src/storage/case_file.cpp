@@ -32,7 +32,14 @@ class BoundedYaml : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { count(mark); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse(mark, "an alias (*name)", "values written out"); }
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override { count(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& value) override {
+    count(mark);
+    // The file is UTF-8, but the escapes \N and \_ become one byte each, which is none.
+    if (const auto at = first_not_utf8(value)) {
+      refuse(mark, fmt::format("a text with a byte 0x{:02X}", static_cast<unsigned char>(value[*at])),
+             "UTF-8 text: the character itself in place of its escape");
+    }
+  }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override { enter(mark); }
   void OnSequenceEnd() override { --depth_; }
   void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override { enter(mark); }

@@ -64,6 +64,15 @@ TEST_F(CaseFileTest, TheLeastCaseHasTheDefaultsOfTheStructs) {
   EXPECT_FALSE(file.settings.is_virtual);
 }
 
+TEST_F(CaseFileTest, ATextThatAnEscapeMakesOtherThanUtf8IsRefusedByLine) {
+  for (const char* escape : {"\\N", "\\_", "\\L\\N"}) {
+    SCOPED_TRACE(escape);
+    const std::string said = refusal<DataError>(std::string(kLeast) + "title: \"a" + escape + "b\"\n");
+    EXPECT_THAT(said, AllOf(HasSubstr("case.yaml: line "), HasSubstr("a text with a byte 0x")));
+  }
+  EXPECT_EQ(read(std::string(kLeast) + "title: \"a\\u00e4b\"\n").settings.title, "a\u00e4b");
+}
+
 TEST_F(CaseFileTest, InputsAreRelativeToTheCaseFile) {
   const CaseFile file = read("schema: incise.case/1\nct: {volume: scans/../ct}\ntumor: {contour: /data/tumor.csv}\n");
   EXPECT_EQ(file.inputs.ct_volume, folder_ / "ct");
