@@ -1,31 +1,16 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/geometry/types.hpp>
 #include <incise/mechanics/constraints.hpp>
 
 #include <filesystem>
-#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace incise {
-
-/// The numbers that a field may hold.
-struct Range {
-  double least = -std::numeric_limits<double>::infinity();
-  double most = std::numeric_limits<double>::infinity();
-  bool is_least_open = false;  ///< `least` itself is not allowed
-  bool is_most_open = false;
-};
-inline constexpr Range kAny{};
-inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true, false};
-inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity(), false, false};
-
-[[nodiscard]] bool contains(const Range& range, double value);
-/// "a number above 0", "a number in [0, 0.5)".
-[[nodiscard]] std::string describe(const Range& range);
 
 /// What a field is called and means; each field of the case file is described once, where describe_case visits it.
 struct FieldInfo {

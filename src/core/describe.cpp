@@ -1,4 +1,4 @@
-#include "field_visitor.hpp"
+#include <incise/core/describe.hpp>
 
 #include <fmt/format.h>
 

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <incise/core/described_bytes.hpp>
+#include <incise/core/monitor.hpp>
+#include <incise/core/sha256.hpp>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace incise {
+
+/// Where a cache keeps its entries: bytes under a name.
+class EntryStore {
+ public:
+  virtual ~EntryStore() = default;
+  /// The bytes kept under that name, whole; nothing where there are none. @throws DataError for bytes that are damaged.
+  virtual std::optional<std::string> load(const std::string& name) = 0;
+  /// All or nothing. @throws DataError where they cannot be kept.
+  virtual void save(const std::string& name, const std::string& bytes) = 0;
+  virtual void remove(const std::string& name) = 0;
+};
+
+/// What determines a result: hash of the stage, of the version of its code, and of all that was added: settings as they are described, and the
+/// contents of inputs. Names and places of files are no part of it.
+class CacheKey {
+ public:
+  /// @param stage  names the result.  @param code  counts up when the same inputs give another result.
+  CacheKey(std::string_view stage, int code);
+  template <class T>
+  CacheKey& add(const T& described) {
+    return add_text(bytes_of(described));
+  }
+  CacheKey& add_text(std::string_view text);
+  [[nodiscard]] const std::string& stage() const { return stage_; }
+  /// 64 hex digits.
+  [[nodiscard]] const std::string& digest() const;
+
+ private:
+  std::string stage_;
+  std::string parts_;
+  mutable std::string digest_;
+};
+
+/// Results by what determines them: one that is kept is not made again. What is loaded equals what was computed, in every field that its type
+/// describes. Kept in memory, or wherever an EntryStore keeps it.
+class Cache {
+ public:
+  Cache();
+  explicit Cache(std::unique_ptr<EntryStore> store) : store_(std::move(store)) {}
+
+  /// The result of that key. A damaged entry is reported as a warning and treated as absent. @param slot  the entry's name; an entry of another
+  /// key under the same name gives way.
+  template <class T>
+  [[nodiscard]] std::optional<T> find(const std::string& slot, const CacheKey& key, Monitor& monitor) {
+    const std::optional<std::string> bytes = payload(slot, key, monitor);
+    if (!bytes) return std::nullopt;
+    try {
+      return from_bytes<T>(*bytes, slot);
+    } catch (const std::exception& damaged) {
+      report_damage(damaged, monitor);
+      return std::nullopt;
+    }
+  }
+  template <class T>
+  void keep(const std::string& slot, const CacheKey& key, const T& value) {
+    keep_payload(slot, key, bytes_of(value));
+  }
+  /// Finds the result or makes and keeps it.
+  template <class T, class Make>
+  [[nodiscard]] T get_or_make(const std::string& slot, const CacheKey& key, Monitor& monitor, const Make& make) {
+    if (std::optional<T> kept = find<T>(slot, key, monitor)) return std::move(*kept);
+    T made = make();
+    keep(slot, key, made);
+    return made;
+  }
+  /// Whether an entry of that key is there; its content is not read.
+  [[nodiscard]] bool has(const std::string& slot, const CacheKey& key, Monitor& monitor);
+  void remove(const std::string& slot) { store_->remove(slot); }
+
+ private:
+  std::optional<std::string> payload(const std::string& slot, const CacheKey& key, Monitor& monitor);
+  void keep_payload(const std::string& slot, const CacheKey& key, const std::string& bytes);
+  static void report_damage(const std::exception& damaged, Monitor& monitor);
+  std::unique_ptr<EntryStore> store_;
+};
+
+}  // namespace incise

@@ -1,0 +1,258 @@
+#pragma once
+
+#include <incise/core/ids.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace incise {
+
+/// The numbers that a field may hold.
+struct Range {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool is_least_open = false;  ///< `least` itself is not allowed
+  bool is_most_open = false;
+};
+inline constexpr Range kAny{};
+inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true, false};
+inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity(), false, false};
+inline constexpr Range kFraction{0.0, 1.0};
+
+/// Whether a finite number lies in the range.
+[[nodiscard]] bool contains(const Range& range, double value);
+/// "a number above 0", "a number in [0, 0.5)".
+[[nodiscard]] std::string describe(const Range& range);
+
+/// What a value is called in files and on the command line, its unit, and what it means in one line.
+struct Field {
+  std::string_view name;
+  std::string_view meaning = {};
+  std::string_view unit = {};
+};
+
+/// Many numbers of one kind that lie side by side in memory: `columns` of them belong together.
+struct Block {
+  enum class Kind : std::uint8_t { Double, Float, Int32, Int16, UInt8 };
+  Kind kind = Kind::Double;
+  void* data = nullptr;
+  std::size_t count = 0;
+  std::size_t columns = 1;
+};
+
+class Visitor;
+
+/// The names of an enum's values, in their order, starting at 0; each enum that is described has such a function beside it.
+template <class E>
+concept Named = std::is_enum_v<E> && requires(E value) {
+  { names_of(value) } -> std::convertible_to<std::span<const std::string_view>>;
+};
+
+/// The name of a value. @pre the value is one of the enum's.
+template <Named E>
+[[nodiscard]] constexpr std::string_view name_of(E value) {
+  return std::span<const std::string_view>(names_of(value))[static_cast<std::size_t>(value)];
+}
+
+/// The value of that name; nothing for any other.
+template <Named E>
+[[nodiscard]] constexpr std::optional<E> value_of(std::string_view name) {
+  const std::span<const std::string_view> names = names_of(E{});
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<E>(i);
+  return std::nullopt;
+}
+
+/// One walk over every field of a value. A type is described once, beside its declaration:
+///
+///     inline void describe(Visitor& v, Bond& b) {
+///       v("tet", b.tet, "The tet that is held.");
+///       v("offset_mm", b.offset_mm, "Of the tet's centroid from the tool's tip when first touched.");
+///     }
+///
+/// Files, keys, comparison, schema and reports are visitors of that description, so that none of them can miss a field.
+/// A visitor that only shows leaves every value as it is: it may be given a constant (see shown_by).
+class Visitor {
+ public:
+  virtual ~Visitor() = default;
+
+  /// Whether values are set, not shown.
+  [[nodiscard]] virtual bool sets() const = 0;
+  virtual void begin(const Field& field) = 0;  ///< of a described value inside another one
+  virtual void end() = 0;
+  /// Items follow, then end_list. @param size  that is shown. @param item_bytes  least size of an item in memory. @returns how many there are
+  virtual std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) = 0;
+  virtual void end_list() = 0;
+  /// Before a value that may be absent. @returns whether it is there
+  virtual bool optional(const Field& field, bool is_there) = 0;
+  virtual void number(const Field& field, double& value, const Range& range) = 0;
+  virtual void integer(const Field& field, std::int64_t& value, const Range& range) = 0;
+  virtual void flag(const Field& field, bool& value) = 0;
+  virtual void text(const Field& field, std::string& value) = 0;
+  /// One of `names`; `value` is its place among them.
+  virtual void choice(const Field& field, std::size_t& value, std::span<const std::string_view> names) = 0;
+  virtual void block(const Field& field, const Block& block) = 0;
+  /// Refuses what was read. @throws DataError, or CaseError where a case is read, naming the place.
+  [[noreturn]] virtual void refuse(const Field& field, const std::string& found, const std::string& expected) const = 0;
+
+  template <class T>
+  void operator()(std::string_view name, T& value, std::string_view meaning = {}, const Range& range = kAny) {
+    visit(Field{name, meaning, {}}, value, range);
+  }
+  template <class T>
+  void operator()(const Field& field, T& value, const Range& range = kAny) {
+    visit(field, value, range);
+  }
+
+ private:
+  template <class T>
+  void visit(const Field& field, T& value, const Range& range);
+  template <class T>
+  void visit_list(const Field& field, std::vector<T>& values, const Range& range);
+};
+
+namespace describe_detail {
+
+template <class T>
+inline constexpr bool kIsOptional = false;
+template <class T>
+inline constexpr bool kIsOptional<std::optional<T>> = true;
+template <class T>
+inline constexpr bool kIsVector = false;
+template <class T>
+inline constexpr bool kIsVector<std::vector<T>> = true;
+template <class T>
+inline constexpr bool kIsArray = false;
+template <class T, std::size_t N>
+inline constexpr bool kIsArray<std::array<T, N>> = true;
+template <class T>
+inline constexpr bool kIsId = false;
+template <class Tag>
+inline constexpr bool kIsId<Id<Tag>> = true;
+template <class T>
+inline constexpr bool kIsMatrix = false;
+template <int R, int C>
+inline constexpr bool kIsMatrix<Eigen::Matrix<double, R, C>> = (R > 0 && C > 0);
+
+/// What a list of these is in memory: nothing, or numbers side by side.
+template <class T>
+constexpr std::optional<std::pair<Block::Kind, std::size_t>> layout_of() {
+  if constexpr (std::is_same_v<T, double>) return std::pair{Block::Kind::Double, std::size_t{1}};
+  if constexpr (std::is_same_v<T, float>) return std::pair{Block::Kind::Float, std::size_t{1}};
+  if constexpr (std::is_same_v<T, std::int32_t>) return std::pair{Block::Kind::Int32, std::size_t{1}};
+  if constexpr (std::is_same_v<T, std::int16_t>) return std::pair{Block::Kind::Int16, std::size_t{1}};
+  if constexpr (std::is_same_v<T, std::uint8_t>) return std::pair{Block::Kind::UInt8, std::size_t{1}};
+  if constexpr (kIsId<T>) return std::pair{Block::Kind::Int32, std::size_t{1}};
+  if constexpr (kIsMatrix<T>) return std::pair{Block::Kind::Double, sizeof(T) / sizeof(double)};
+  if constexpr (kIsArray<T>) {
+    constexpr auto kItem = layout_of<typename T::value_type>();
+    if constexpr (kItem.has_value()) return std::pair{kItem->first, kItem->second * std::tuple_size_v<T>};
+  }
+  return std::nullopt;
+}
+
+}  // namespace describe_detail
+
+template <class T>
+void Visitor::visit(const Field& field, T& value, const Range& range) {
+  using namespace describe_detail;
+  if constexpr (std::is_same_v<T, bool>) {
+    flag(field, value);
+  } else if constexpr (std::is_same_v<T, double>) {
+    number(field, value, range);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    text(field, value);
+  } else if constexpr (std::is_enum_v<T>) {
+    static_assert(Named<T>, "an enum that is described has a function names_of beside it");
+    auto place = static_cast<std::size_t>(value);
+    choice(field, place, names_of(value));
+    if (sets()) value = static_cast<T>(place);
+  } else if constexpr (std::is_integral_v<T>) {
+    auto wide = static_cast<std::int64_t>(value);
+    Range within = range;
+    within.least = std::max(within.least, static_cast<double>(std::numeric_limits<T>::lowest()));
+    within.most = std::min(within.most, static_cast<double>(std::numeric_limits<T>::max()));
+    integer(field, wide, within);
+    if (sets()) value = static_cast<T>(wide);
+  } else if constexpr (kIsId<T>) {
+    visit(field, value.value, range);
+  } else if constexpr (kIsOptional<T>) {
+    if (!optional(field, value.has_value())) {
+      if (sets()) value.reset();
+      return;
+    }
+    if (sets() && !value) value.emplace();
+    visit(field, *value, range);
+  } else if constexpr (kIsMatrix<T>) {
+    block(field, {Block::Kind::Double, value.data(), static_cast<std::size_t>(value.size()), static_cast<std::size_t>(value.rows())});
+  } else if constexpr (std::is_same_v<T, Eigen::AlignedBox3d>) {
+    begin(field);
+    visit(Field{"low", "Low corner."}, value.min(), kAny);
+    visit(Field{"high", "High corner."}, value.max(), kAny);
+    end();
+  } else if constexpr (kIsArray<T>) {
+    constexpr auto kLayout = layout_of<typename T::value_type>();
+    if constexpr (kLayout.has_value()) {
+      block(field, {kLayout->first, value.data(), value.size() * kLayout->second, kLayout->second});
+    } else {
+      const std::size_t size = begin_list(field, value.size(), 1);
+      if (size != value.size()) refuse(field, std::to_string(size) + " items", std::to_string(value.size()));
+      for (auto& item : value) visit(Field{}, item, range);
+      end_list();
+    }
+  } else if constexpr (kIsVector<T>) {
+    visit_list(field, value, range);
+  } else {
+    begin(field);
+    describe(*this, value);
+    end();
+  }
+}
+
+template <class T>
+void Visitor::visit_list(const Field& field, std::vector<T>& values, const Range& range) {
+  constexpr auto kLayout = describe_detail::layout_of<T>();
+  const std::size_t size = begin_list(field, values.size(), kLayout.has_value() ? sizeof(T) : 1);
+  if (sets()) values.clear();
+  if constexpr (kLayout.has_value()) {
+    if (sets()) values.resize(size);
+    block({}, {kLayout->first, values.data(), size * kLayout->second, kLayout->second});
+  } else {
+    for (std::size_t i = 0; i < size; ++i) {
+      if (sets()) values.emplace_back();
+      visit(Field{}, values[i], range);
+    }
+  }
+  end_list();
+}
+
+/// Named lists, in the order of their names.
+template <class V>
+void describe(Visitor& v, std::map<std::string, V>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  v("names", names, "Of what follows.");
+  if (v.sets()) values.clear();
+  for (const std::string& name : names) v(name, values[name]);
+}
+
+/// Walks over a value that is only shown. @pre !visitor.sets()
+template <class T>
+void shown_by(Visitor& visitor, const T& value) {
+  describe(visitor, const_cast<T&>(value));  // a visitor that shows changes nothing
+}
+
+}  // namespace incise

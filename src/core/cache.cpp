@@ -1,0 +1,75 @@
+#include <incise/core/cache.hpp>
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+namespace incise {
+namespace {
+
+constexpr std::string_view kMagic = "incise.cache/1\n";
+constexpr std::size_t kDigits = 64;
+
+class MemoryEntries : public EntryStore {
+ public:
+  std::optional<std::string> load(const std::string& name) override {
+    const auto found = entries_.find(name);
+    return found == entries_.end() ? std::nullopt : std::optional(found->second);
+  }
+  void save(const std::string& name, const std::string& bytes) override { entries_[name] = bytes; }
+  void remove(const std::string& name) override { entries_.erase(name); }
+
+ private:
+  std::map<std::string, std::string> entries_;
+};
+
+/// What an entry begins with: the magic line, the key's digest and the payload's; the payload follows.
+std::string header_of(const CacheKey& key, std::string_view payload) {
+  return fmt::format("{}{}\n{}\n", kMagic, key.digest(), sha256_of_text(payload));
+}
+
+}  // namespace
+
+CacheKey::CacheKey(std::string_view stage, int code) : stage_(stage), parts_(fmt::format("{} {}\n", stage, code)) {}
+
+CacheKey& CacheKey::add_text(std::string_view text) {
+  parts_ += fmt::format("{} {}\n", text.size(), sha256_of_text(text));  // the size and the hash: parts cannot run into each other
+  digest_.clear();
+  return *this;
+}
+
+const std::string& CacheKey::digest() const {
+  if (digest_.empty()) digest_ = sha256_of_text(parts_);
+  return digest_;
+}
+
+Cache::Cache() : store_(std::make_unique<MemoryEntries>()) {}
+
+void Cache::keep_payload(const std::string& slot, const CacheKey& key, const std::string& bytes) {
+  store_->save(slot, header_of(key, bytes) + bytes);
+}
+
+std::optional<std::string> Cache::payload(const std::string& slot, const CacheKey& key, Monitor& monitor) {
+  try {
+    std::optional<std::string> entry = store_->load(slot);
+    if (!entry) return std::nullopt;
+    const std::string_view all = *entry;
+    const std::size_t start = kMagic.size() + 2 * (kDigits + 1);
+    if (all.size() < start || !all.starts_with(kMagic)) throw DataError(slot, "byte 0", "something else", "an entry of a cache");
+    if (all.substr(kMagic.size(), kDigits) != key.digest()) return std::nullopt;
+    const std::string_view payload = all.substr(start);
+    if (all.substr(0, start) != header_of(key, payload))
+      throw DataError(slot, fmt::format("byte {}", start), "bytes that were changed", "those that were kept");
+    return std::string(payload);
+  } catch (const DataError& damaged) {
+    report_damage(damaged, monitor);
+    return std::nullopt;
+  }
+}
+
+bool Cache::has(const std::string& slot, const CacheKey& key, Monitor& monitor) { return payload(slot, key, monitor).has_value(); }
+
+void Cache::report_damage(const std::exception& damaged, Monitor& monitor) {
+  monitor.message(Severity::Warning, fmt::format("{}. It is computed again", damaged.what()));
+}
+
+}  // namespace incise

@@ -1,0 +1,82 @@
+#include <incise/core/cache.hpp>
+#include <incise/core/error.hpp>
+
+#include <gtest/gtest.h>
+
+namespace incise {
+namespace {
+
+struct Answer {
+  double value_mm = 0.0;
+};
+void describe(Visitor& v, Answer& a) { v("value_mm", a.value_mm, "A length."); }
+
+class Messages : public Monitor {
+ public:
+  void message(Severity, std::string_view text) override { all += text; }
+  std::string all;
+};
+
+/// Keeps entries where a test can damage them.
+class OpenEntries : public EntryStore {
+ public:
+  explicit OpenEntries(std::map<std::string, std::string>& entries) : entries_(entries) {}
+  std::optional<std::string> load(const std::string& name) override {
+    const auto found = entries_.find(name);
+    return found == entries_.end() ? std::nullopt : std::optional(found->second);
+  }
+  void save(const std::string& name, const std::string& bytes) override { entries_[name] = bytes; }
+  void remove(const std::string& name) override { entries_.erase(name); }
+
+ private:
+  std::map<std::string, std::string>& entries_;
+};
+
+TEST(Cache, MakesAResultOnce) {
+  Cache cache;
+  Monitor quiet;
+  int made = 0;
+  const auto make = [&] { return Answer{static_cast<double>(++made)}; };
+  const CacheKey key = CacheKey("answer", 1).add(Answer{0.5});
+  EXPECT_EQ(cache.get_or_make<Answer>("a", key, quiet, make).value_mm, 1.0);
+  EXPECT_EQ(cache.get_or_make<Answer>("a", CacheKey("answer", 1).add(Answer{0.5}), quiet, make).value_mm, 1.0);
+  EXPECT_TRUE(cache.has("a", key, quiet));
+  EXPECT_EQ(made, 1);
+}
+
+TEST(Cache, MakesItAgainForOtherSettingsOtherCodeAndAnotherStage) {
+  Cache cache;
+  Monitor quiet;
+  cache.keep("a", CacheKey("answer", 1).add(Answer{0.5}), Answer{7.0});
+  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("answer", 1).add(Answer{0.25}), quiet));
+  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("answer", 2).add(Answer{0.5}), quiet));
+  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("question", 1).add(Answer{0.5}), quiet));
+  EXPECT_TRUE(cache.find<Answer>("a", CacheKey("answer", 1).add(Answer{0.5}), quiet));
+}
+
+TEST(CacheKey, TellsPartsApart) {
+  EXPECT_NE(CacheKey("s", 1).add_text("ab").add_text("c").digest(), CacheKey("s", 1).add_text("a").add_text("bc").digest());
+}
+
+TEST(Cache, ReportsADamagedEntryAndMakesItAgain) {
+  std::map<std::string, std::string> entries;
+  Cache cache(std::make_unique<OpenEntries>(entries));
+  Messages told;
+  const CacheKey key = CacheKey("answer", 1).add_text("x");
+  cache.keep("a", key, Answer{7.0});
+  const std::string sound = entries.at("a");
+  for (std::size_t i = 0; i < sound.size(); ++i) {
+    entries["a"] = sound;
+    entries["a"][i] = static_cast<char>(entries["a"][i] ^ 1);
+    const auto found = cache.find<Answer>("a", key, told);
+    EXPECT_FALSE(found) << i;
+  }
+  EXPECT_NE(told.all.find("It is computed again"), std::string::npos);
+  for (std::size_t size = 0; size < sound.size(); ++size) {
+    entries["a"] = sound.substr(0, size);
+    EXPECT_FALSE(cache.find<Answer>("a", key, told)) << size;
+  }
+}
+
+}  // namespace
+}  // namespace incise
