@@ -1,6 +1,7 @@
 #include "options.hpp"
 #include "parse_error.hpp"
 #include "standard_streams.hpp"
+#include "verb_list.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/utf8.hpp>
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <system_error>
 #include <vector>
@@ -33,9 +35,10 @@ std::string joined(int argc, char** argv) {
 /// CLI11 only says that a verb is required.
 void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
   std::vector<std::string> verbs;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (verb->check_name(word)) return;
     verbs.push_back(verb->get_name());
-  if (std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
+  }
   throw CaseError("command line", "verb", fmt::format("'{}'", word), fmt::format("one of {}", fmt::join(verbs, ", ")),
                   fmt::format("Did you mean '{}'?", nearest_name(word, verbs)));
 }
@@ -77,12 +80,12 @@ void refuse_names_that_are_not_utf8(int argc, char** argv) {
   if (first_not_utf8(here)) throw CaseError("command line", "working folder", fmt::format("'{}'", printable(here)), kExpected, kHint);
 }
 
-/// `incise help VERB` is `incise VERB --help`.
+/// `incise help VERB` is `incise VERB --help`, and so is `incise` alone.
 std::vector<char*> without_help_verb(int argc, char** argv) {
   static char help[] = "--help";
   std::vector<char*> words(argv, argv + argc);
-  if (argc < 2 || std::string(argv[1]) != "help") return words;
-  words.erase(words.begin() + 1);
+  if (argc > 1 && std::string(argv[1]) != "help") return words;
+  if (argc > 1) words.erase(words.begin() + 1);
   words.push_back(help);
   return words;
 }
@@ -91,6 +94,7 @@ int run(int argc, char** argv) {
   CLI::App app("Plans robotic soft-tissue incisions by simulating them first.", "incise");
   app.set_version_flag("--version", fmt::format("incise {} ({})", version(), source_commit()));
   app.require_subcommand(1);
+  app.formatter(std::make_shared<VerbList>());
   app.option_defaults()->always_capture_default();
   app.footer("\n`incise help VERB` and `incise VERB --help` explain a verb and end with an example.\n");
   Application application(app, joined(argc, argv));
@@ -118,7 +122,7 @@ int run(int argc, char** argv) {
   add_report(application);
   add_verify(application);
   add_schema(application);
-  add_study(application);
+  add_experiment(application);
   if (argc > 1 && argv[1][0] != '-') refuse_unknown_verb(app, argv[1]);
   refuse_numbers_that_are_not_finite(argc, argv);
   try {
@@ -140,7 +144,7 @@ int main(int argc, char** argv) {
     std::vector<char*> words = without_help_verb(argc, argv);
     const int status = run(static_cast<int>(words.size()), words.data());
     finish_standard_output();
-    return status;
+    return argc < 2 ? kBadCase : status;  // nothing was asked for
   } catch (const CaseError& error) {
     say(fmt::format("incise: {}\n", error.what()));
     return kBadCase;

@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include "option_checks.hpp"
+#include "verb_list.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
@@ -131,7 +132,7 @@ std::filesystem::path CommonOptions::required_output(const char* example) const 
 
 CLI::App* Application::add_verb(const std::string& name, const std::string& what, const std::string& example,
                                 std::function<int(const CommonOptions&)> run) {
-  return add_verb_to(app_, name, what, example, std::move(run));
+  return add_verb_to(app_, name, what.empty() ? line_of(name) : what, example, std::move(run));
 }
 
 CLI::App* Application::add_group(const std::string& group, const std::string& what, const std::string& example) {

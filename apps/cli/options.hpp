@@ -92,6 +92,7 @@ class Application {
  public:
   Application(CLI::App& app, std::string command_line) : app_(app), command_line_(std::move(command_line)) {}
 
+  /// @param what  in --help, where the line in the list of verbs (verb_list.cpp) does not say all; else "".
   /// @param example  shown at the end of --help.
   CLI::App* add_verb(const std::string& name, const std::string& what, const std::string& example,
                      std::function<int(const CommonOptions&)> run);
@@ -139,6 +140,6 @@ void add_audit(Application& application);
 void add_report(Application& application);
 void add_verify(Application& application);
 void add_schema(Application& application);
-void add_study(Application& application);
+void add_experiment(Application& application);
 
 }  // namespace incise::cli

@@ -238,7 +238,7 @@ void add_bench(Application& application) {
   auto made = std::make_shared<MakeArguments>();
   CLI::App* verb = application.add_verb_to(
       *bench, "make",
-      "Seed or specimen file -> what a laboratory would have: CT, camera cloud, RGB-D frame, pull force",
+      "Make what a laboratory would have of a specimen: CT, cloud, RGB-D frame, pull force",
       "incise bench make --seed 7 -o specimen7 --truth hidden7",
       [made](const CommonOptions& options) { return make(options, *made); });
   verb->add_option("specimen", made->specimen, "Specimen file (incise schema bench); without it the seed draws one");
@@ -247,7 +247,7 @@ void add_bench(Application& application) {
   verb->add_flag("--elasticity", made->elasticity, "Also a noisy elasticity map");
 
   auto run = std::make_shared<CutArguments>();
-  verb = application.add_verb_to(*bench, "cut", "Specimen file and robot program -> the photograph of the cut specimen",
+  verb = application.add_verb_to(*bench, "cut", "Cut a specimen by a robot program and photograph it",
                                  "incise bench cut hidden7/specimen.json cut.script -o cut7",
                                  [run](const CommonOptions& options) { return cut(options, *run); });
   verb->add_option("specimen", run->specimen, "The hidden specimen.json")->required();
@@ -258,10 +258,10 @@ void add_bench(Application& application) {
   verb->add_option("--truth", run->truth, "Folder for what really happened, for tests");
 
   auto floor = std::make_shared<FloorArguments>();
-  verb = application.add_verb_to(*bench, "floor",
-                                 "Specimen file -> the error that is left to a planner that knows the bench's physics, and not the arm's errors",
-                                 "incise bench floor hidden7/specimen.json -o floor7.json",
-                                 [floor](const CommonOptions& options) { return floor_of(options, *floor); });
+  verb = application.add_verb_to(
+      *bench, "floor", "Find the error left to a planner that knows the bench's physics, but not the arm's errors",
+      "incise bench floor hidden7/specimen.json -o floor7.json",
+      [floor](const CommonOptions& options) { return floor_of(options, *floor); });
   verb->add_option("specimen", floor->specimen, "The hidden specimen.json")->required();
   verb->add_option("--power-w", floor->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
   verb->add_option("--simulations", floor->simulations, "Cuts of the bench that the path is corrected by")->check(CLI::Range(2, 8));

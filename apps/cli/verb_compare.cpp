@@ -118,10 +118,9 @@ int run(CompareArguments arguments, const CommonOptions& options) {
 
 void add_compare(Application& application) {
   auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* verb =
-      application.add_verb("compare", "Test whether incisions after a change miss by less than those before it",
-                           "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison",
-                           [arguments](const CommonOptions& options) { return run(*arguments, options); });
+  CLI::App* verb = application.add_verb(
+      "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison",
+      [arguments](const CommonOptions& options) { return run(*arguments, options); });
   verb->add_option("--before", arguments->before, "Files of `incise evaluate -o`, one for each specimen")->required();
   verb->add_option("--after", arguments->after, "The same, after the change")->required();
   verb->add_option("--measure", arguments->measure, "Which error")->check(CLI::IsMember({"absolute", "signed"}));

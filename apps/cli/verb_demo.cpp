@@ -31,7 +31,7 @@ std::filesystem::path specimen_for(const std::filesystem::path& folder, std::uin
 void add_demo(Application& application) {
   auto cut = std::make_shared<CutOptions>();
   CLI::App* verb = application.add_verb(
-      "demo", "A complete virtual case: make a specimen, then everything that `run` does", "incise demo -o demo",
+      "demo", "", "incise demo -o demo",
       [cut](const CommonOptions& options) {
         Console console(options.level());
         require_accepted_ids(cut->accepted);

@@ -246,7 +246,7 @@ std::string specimen_of(const EvaluateArguments& arguments, const std::vector<st
 void add_evaluate(Application& application) {
   auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* verb =
-      application.add_verb("evaluate", "Measure an incision against the tumour edge, in a photograph or as contours",
+      application.add_verb("evaluate", "",
                            "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json",
                            [arguments](const CommonOptions& options) {
                              require_one_source(*arguments);

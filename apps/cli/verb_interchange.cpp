@@ -65,8 +65,8 @@ void add_interchange(Application& application) {
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
-      "interchange", "Write the held specimen for another solver: a SOFA scene or FEBio input, in a folder",
-      "incise interchange specimen --format sofa -o for_sofa", [arguments](const CommonOptions& options) {
+      "interchange", "", "incise interchange specimen --format sofa -o for_sofa",
+      [arguments](const CommonOptions& options) {
         return export_case(arguments->case_path, arguments->format, options);
       });
   verb->add_option("case", arguments->case_path, "Case file, or a folder with case.yaml")->required();

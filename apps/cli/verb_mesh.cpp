@@ -60,8 +60,7 @@ void add_mesh(Application& application) {
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
-      "mesh", "Make a graded tetrahedral mesh from labels or a closed surface",
-      "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu",
+      "mesh", "", "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu",
       [arguments](const CommonOptions& options) {
         const auto start = std::chrono::steady_clock::now();
         Console console(options.level());

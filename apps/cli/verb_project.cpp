@@ -345,7 +345,7 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
 void add_project(Application& application) {
   auto arguments = std::make_shared<ProjectArguments>();
   CLI::App* verb = application.add_verb(
-      "project", "Lay a simulated path and tumour edge onto the measured tissue, in the robot's frame",
+      "project", "",
       "incise project scene/path.json --transform registration/registration.json --surface tissue.ply --camera "
       "scene/camera.json -o projected",
       [arguments](const CommonOptions& options) { return run(*arguments, options); });

@@ -17,8 +17,7 @@ void add_report(Application& application) {
   };
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* verb = application.add_verb(
-      "report", "Draw the report of a study's folder anew, or of a program on measured tissue",
-      "incise report demo --registration registration --replay replay -o report.html",
+      "report", "", "incise report demo --registration registration --replay replay -o report.html",
       [arguments](const CommonOptions& options) {
         Console console(options.level());
         const bool is_of_a_study = !arguments->folder.empty();

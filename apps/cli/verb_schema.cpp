@@ -28,7 +28,7 @@ void add_schema(Application& application) {
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
-      "schema", "Print the JSON Schema of an input file, or every default", "incise schema case --defaults > case.yaml",
+      "schema", "", "incise schema case --defaults > case.yaml",
       [arguments](const CommonOptions& options) {
         if (arguments->what == "path" && arguments->defaults) {
           throw CaseError("command line", "--defaults", "path", "case: a path has no defaults");

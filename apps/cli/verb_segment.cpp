@@ -27,8 +27,8 @@ void add_segment(Application& application) {
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* verb = application.add_verb(
-      "segment", "Find the tissue in a CT: a label volume",
-      "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd", [arguments](const CommonOptions& options) {
+      "segment", "", "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd",
+      [arguments](const CommonOptions& options) {
         const auto start = std::chrono::steady_clock::now();
         Console console(options.level());
         const std::filesystem::path output = options.required_output("labels.nrrd");

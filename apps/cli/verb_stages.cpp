@@ -60,8 +60,7 @@ void add_stages(Application& application) {
             "Clamp and stretch the tissue: static equilibrium under the case's constraints. Interrupted, it keeps nothing of the stretch: "
             "run again, it starts over and ends in the same bits",
             "incise deform specimen -o out", Stage::Stretch, Product::Stretched);
-  add_stage(application, "plan", "Lay the intended incision on the stretched tissue", "incise plan specimen -o out", Stage::Plan,
-            Product::Plan);
+  add_stage(application, "plan", "", "incise plan specimen -o out", Stage::Plan, Product::Plan);
   add_cutting_stage(application, "simulate",
                     "Cut along the planned path (or the case's own) and measure what comes out. Interrupted, it leaves a checkpoint, from "
                     "which it goes on and ends in the same bits",

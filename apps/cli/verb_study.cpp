@@ -69,7 +69,7 @@ bool is_same_folder(const std::filesystem::path& a, const std::filesystem::path&
 int study(const ExperimentSettings& settings, const CommonOptions& options) {
   if (settings.specimens % 2 != 0)
     throw CaseError("command line", "--specimens", fmt::format("{}", settings.specimens), "an even number: half to calibrate on, half to test");
-  const std::filesystem::path root = options.required_output("study");
+  const std::filesystem::path root = options.required_output("experiment");
   if (!settings.truth.empty() && is_same_folder(settings.truth, root))
     throw CaseError("command line", "--truth", settings.truth.string() + ", the output", "a folder of its own");
   std::filesystem::create_directories(root);
@@ -89,13 +89,15 @@ int study(const ExperimentSettings& settings, const CommonOptions& options) {
 
 }  // namespace
 
-void add_study(Application& application) {
+void add_experiment(Application& application) {
   auto settings = std::make_shared<ExperimentSettings>();
   CLI::App* verb = application.add_verb(
-      "study",
+      "experiment",
       "The paper's whole experiment on the virtual bench: specimens are cut as planned, the simulation is calibrated to their photographs, further "
       "specimens are cut as planned and corrected, and all is measured. Everything that it yields is virtual. Run again, it goes on where it was",
-      "incise study --quick -o study", [settings](const CommonOptions& options) { return study(*settings, options); });
+      "incise experiment --quick -o experiment",
+      [settings](const CommonOptions& options) { return study(*settings, options); });
+  verb->alias("study");
   verb->add_option("--specimens", settings->specimens, "2 to 200, even: half to calibrate on, half to test; 4: the paper's, and one outside the calibrated range. Their seeds count up from --seed: "
                    "of several runs each has to start beyond the last one's")
       ->check(whole_between("--specimens", 2, 200));

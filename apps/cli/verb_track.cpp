@@ -325,7 +325,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
 void add_track(Application& application) {
   auto arguments = std::make_shared<TrackArguments>();
   CLI::App* verb =
-      application.add_verb("track", "Find a marked line with a colour and depth camera, and plan an incision on it",
+      application.add_verb("track", "",
                            "incise track color.png depth.png --intrinsics d405.json --mark green --camera "
                            "robot_camera.json --plan -o tracked",
                            [arguments](const CommonOptions& options) { return run(*arguments, options); });

@@ -113,8 +113,7 @@ int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
 void add_verify(Application& application) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* verb =
-      application.add_verb("verify", "Put questions with known answers to the solver on this machine",
-                           "incise verify --only cantilever --figures figures",
+      application.add_verb("verify", "", "incise verify --only cantilever --figures figures",
                            [arguments](const CommonOptions& options) { return run_verify(*arguments, options); });
   verb->add_option("--only", arguments->settings.only, "Run the checks whose name starts so");
   verb->add_option("--figures", arguments->figures, "Folder for one SVG plot per check");

@@ -42,7 +42,7 @@ def runs(command, folder):
         yield "head_ct", [command, "run", case, "-o", folder / "head_ct"], (0, 4)
     else:
         print("SKIPPED: head_ct: INCISE_DATA_DIR does not name the folder of shared data", flush=True)
-    yield "experiment", [command, "study", "--quick", "--seed", "511", "-o", folder / "experiment"], (0, 4)
+    yield "experiment", [command, "experiment", "--quick", "--seed", "511", "-o", folder / "experiment"], (0, 4)
 
 
 def make(folder, command):

@@ -665,7 +665,9 @@ class CommandLineTest(CommandTest):
         self.assert_misuse("plan", "case", "--frobnicate", says="--frobnicate")
 
     def test_no_verb_at_all_is_told(self):
-        self.assert_misuse(says="incise: command line: verb: found nothing, expected one of bench, demo, run,")
+        done = self.incise()
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (BAD_CASE, self.incise("--help").stdout, ""))
+        self.assert_misuse("nonsense", says="incise: command line: verb: found 'nonsense', expected one of bench, demo, run,")
         self.assert_misuse("bench", says="incise: command line: incise bench: found nothing, expected one of make, cut")
 
     def test_whatever_is_wrong_is_told_in_the_words_of_all_errors(self):
@@ -690,7 +692,7 @@ class CommandLineTest(CommandTest):
     def test_a_seed_is_a_whole_number_and_never_cut_down(self):
         for seed in ("-1", "2.5", "1000000000000001", "99999999999999999999999"):
             with self.subTest(seed=seed):
-                done = self.incise("study", "--seed", seed)
+                done = self.incise("experiment", "--seed", seed)
                 self.assert_refused(done, BAD_CASE, f"incise: command line: --seed: found {seed}, expected a whole number from 0 to 1000000000000000")
 
     def test_a_verb_that_writes_a_file_asks_where(self):

@@ -93,7 +93,7 @@ class WritersTest(CommandTest):
         fcntl.flock(self.held, fcntl.LOCK_EX)
 
     def test_a_second_one_is_refused_in_one_sentence(self):
-        for words in (("run", "case"), ("plan", "case"), ("deform", "case"), ("simulate", "case"), ("compensate", "case"), ("study", "--quick"),
+        for words in (("run", "case"), ("plan", "case"), ("deform", "case"), ("simulate", "case"), ("compensate", "case"), ("experiment", "--quick"),
                       ("power", "--speed-mm-s", "7"), ("report", "out")):
             done = self.incise(*words, "-o", "out" if words[0] != "report" else "page.html")
             self.assert_refused(done, BAD_DATA, "out: found a folder that process", str(os.getpid()), "no other run writes into")

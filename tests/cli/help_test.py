@@ -6,19 +6,32 @@ import unittest
 
 from command import BAD_CASE, DONE, CommandTest
 
-VERBS = ["assess", "bench", "demo", "run", "phantom", "segment", "mesh", "deform", "plan", "simulate", "compensate", "calibrate", "evaluate", "export", "register", "report", "schema", "surface", "verify", "replay", "track", "project", "power", "compare", "audit"]
+GROUPS = ["Start here:", "Plan and cut:", "Robot:", "Measure:", "Study:", "Tools:"]
 
 
 class HelpTest(CommandTest):
-    def test_every_verb_is_listed(self):
+    def verbs(self):
+        """All that it knows, as it names them to whoever asks for another."""
+        return re.search(r"expected one of (.*)\. Did", self.incise("nonsense").stderr)[1].split(", ")
+
+    def test_every_verb_is_listed_in_a_group_in_one_line_that_fits_100_columns(self):
         done = self.incise("--help")
         self.assertEqual(done.returncode, DONE)
-        listed = done.stdout[done.stdout.index("Subcommands:"):]
-        for verb in VERBS:
-            self.assertRegex(listed, rf"(?m)^  {verb} ")
+        lines = done.stdout[done.stdout.index("Start here:") : done.stdout.index("`incise help")].splitlines()
+        self.assertEqual([line for line in lines if line.endswith(":")], GROUPS)
+        listed = [line for line in lines if line.startswith("  ")]
+        self.assertEqual(sorted(line.split()[0] for line in listed), sorted(self.verbs()))
+        for line in listed:
+            self.assertRegex(line, r"^  [a-z]+ +[A-Z].*[^.]$")
+            self.assertLessEqual(len(line), 100, line)
+
+    def test_the_experiment_has_its_old_name_too(self):
+        done = self.incise("study", "--help")
+        self.assertEqual((done.returncode, done.stdout), (DONE, self.incise("experiment", "--help").stdout))
+        self.assertIn("also: study", self.incise("--help").stdout)
 
     def test_the_help_of_every_verb_ends_with_an_example_of_it(self):
-        for verb in VERBS:
+        for verb in self.verbs():
             with self.subTest(verb=verb):
                 done = self.incise(verb, "--help")
                 self.assertEqual(done.returncode, DONE)

@@ -9,12 +9,12 @@ import unittest
 
 from command import BAD_CASE, BAD_DATA, INTERRUPTED, CommandTest
 
-SMALL = ("study", "--specimens", "2", "--outside", "1", "--quick", "--paper-pass", "--withheld-force", "--tets", "10000", "--threads", "2", "-o", "study")
+SMALL = ("experiment", "--specimens", "2", "--outside", "1", "--quick", "--paper-pass", "--withheld-force", "--tets", "10000", "--threads", "2", "-o", "study")
 
 
 class StudyTest(CommandTest):
     def test_specimens_that_cannot_be_halved_are_refused(self):
-        done = self.incise("study", "--specimens", "3", "-o", "study")
+        done = self.incise("experiment", "--specimens", "3", "-o", "study")
         self.assertEqual(done.returncode, BAD_CASE, done.stderr)
         for words in ("--specimens", "found 3", "even"):
             self.assertIn(words, done.stderr)
@@ -24,11 +24,11 @@ class StudyTest(CommandTest):
         notes = self.folder / "study" / "advice" / "notes.txt"
         notes.parent.mkdir(parents=True)
         notes.write_text("mine")
-        done = self.incise("study", "--quick", "-o", "study")
+        done = self.incise("experiment", "--quick", "-o", "study")
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
         self.assertIn("another origin", done.stderr)
         (self.folder / "study" / "experiment.json").write_text('{"schema": "incise.experiment/1", "seed": 1}')
-        done = self.incise("study", "--quick", "--seed", "1", "-o", "study")
+        done = self.incise("experiment", "--quick", "--seed", "1", "-o", "study")
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
         self.assertIn("advice", done.stderr)
         self.assertEqual(notes.read_text(), "mine")
@@ -39,7 +39,7 @@ class StudyTest(CommandTest):
         kept.write_text('{"schema": "incise.experiment/1", "seed": 521}')
         report = self.folder / "study" / "report.html"
         report.write_text("an older one")
-        done = self.incise("study", "--quick", "--seed", "999", "-o", "study")
+        done = self.incise("experiment", "--quick", "--seed", "999", "-o", "study")
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
         for words in ("experiment.json", "seed", "521", "999"):
             self.assertIn(words, done.stderr)
@@ -47,7 +47,7 @@ class StudyTest(CommandTest):
 
     def test_the_truth_needs_a_folder_of_its_own(self):
         for truth in ("study", "./study", "study/", "study/.", "other/../study", str(self.folder / "study")):
-            done = self.incise("study", "--quick", "--truth", truth, "-o", "study")
+            done = self.incise("experiment", "--quick", "--truth", truth, "-o", "study")
             self.assertEqual(done.returncode, BAD_CASE, truth + done.stderr)
             self.assertIn("--truth", done.stderr)
             self.assertFalse((self.folder / "study").exists())

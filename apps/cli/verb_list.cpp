@@ -1,0 +1,87 @@
+#include "verb_list.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace incise::cli {
+namespace {
+
+struct Group {
+  struct Verb {
+    const char* name;
+    const char* line;  ///< at most 85 characters: the list fits 100 columns
+  };
+  const char* name;
+  std::vector<Verb> verbs;
+};
+
+const std::vector<Group>& groups() {
+  static const std::vector<Group> all{
+      {"Start here",
+       {{"demo", "Make a virtual specimen and do everything with it that `run` does"},
+        {"run", "Plan, cut, correct and cut again on your case; write the robot program and a report"},
+        {"report", "Draw the report of a study's folder anew, or of a program on measured tissue"}}},
+      {"Plan and cut",
+       {{"segment", "Find the tissue in a CT and write it as a label volume"},
+        {"mesh", "Make a graded tetrahedral mesh from labels or a closed surface"},
+        {"deform", "Clamp and stretch the tissue"},
+        {"plan", "Lay the intended incision on the stretched tissue"},
+        {"simulate", "Cut along the planned path and measure what comes out"},
+        {"compensate", "Correct the path by the simulated error and verify it by cutting again"},
+        {"assess", "Advise to cut this specimen along the corrected path, as planned, or not at all"}}},
+      {"Robot",
+       {{"surface", "Sample the surface that an observer sees, or clean a camera's cloud"},
+        {"register", "Find the similarity that lays one cloud on another, and tell how far to rely on it"},
+        {"project", "Lay a simulated path and tumour edge onto the measured tissue, in the robot's frame"},
+        {"track", "Find a marked line with a colour and depth camera, and plan an incision on it"},
+        {"export", "Check a path in the robot's frame for safety and write it as a program"},
+        {"replay", "Play a program and show what the tip of the tool would do"}}},
+      {"Measure",
+       {{"evaluate", "Measure an incision against the tumour edge, in a photograph or as contours"},
+        {"calibrate", "Find the simulated speed and dullness that reproduce photographed cuts"},
+        {"compare", "Test whether incisions after a change miss by less than those before it"},
+        {"audit", "Tell which rows of a published table cannot be right"}}},
+      {"Study",
+       {{"experiment", "Carry out the paper's whole experiment on virtual specimens (also: study)"},
+        {"bench", "Make the readings of a virtual specimen, and cut it by a robot program"},
+        {"phantom", "Make a virtual specimen: its CT, tumour edge and case file"},
+        {"power", "Find the lowest power that cuts virtual specimens without bulging or thermal damage"}}},
+      {"Tools",
+       {{"schema", "Print the JSON Schema of an input file, or every default"},
+        {"verify", "Check the solver on this machine against known answers"},
+        {"interchange", "Write the held specimen for another solver: a SOFA scene or FEBio input, in a folder"}}}};
+  return all;
+}
+
+std::string listed(const std::string& name, const std::string& line) {
+  return fmt::format("  {:<11}  {}\n", name, line);
+}
+
+}  // namespace
+
+std::string line_of(const std::string& verb) {
+  for (const Group& group : groups()) {
+    for (const Group::Verb& one : group.verbs) {
+      if (verb == one.name) return one.line;
+    }
+  }
+  throw InvalidArgument(fmt::format("line_of: no line for the verb {}", verb));
+}
+
+std::string VerbList::make_subcommands(const CLI::App* app, CLI::AppFormatMode /*mode*/) const {
+  std::string text;
+  if (app->get_parent() == nullptr) {
+    for (const Group& group : groups()) {
+      text += fmt::format("\n{}:\n", group.name);
+      for (const Group::Verb& verb : group.verbs) text += listed(verb.name, verb.line);
+    }
+    return text;
+  }
+  for (const CLI::App* verb : app->get_subcommands({})) text += listed(verb->get_name(), verb->get_description());
+  return text.empty() ? text : "\nVerbs:\n" + text;
+}
+
+}  // namespace incise::cli
