@@ -62,6 +62,7 @@ Manifest manifest_of(const CommonOptions& options, std::string settings_json,
   manifest.threads = options.context().threads;
   manifest.instruction_set = to_string(active_isa());
   for (const std::filesystem::path& path : inputs) {
+    if (path.empty()) continue;
     manifest.inputs.push_back(
         {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path)});
   }

@@ -9,10 +9,13 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace incise::cli {
@@ -36,8 +39,8 @@ class StagesKept : public Cancelled {
 /// Whether a path is a folder, or lies anywhere in it. Links are followed; neither has to exist.
 [[nodiscard]] bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer);
 
-/// Refuses an output that is an input, that is a folder with an input in it (it would be replaced with all that it holds),
-/// or that lies in a folder that is an input (status 2). Empty names: nothing to refuse.
+/// Refuses an output that is an input, that is a folder with an input in it (it would be replaced with all that it
+/// holds), or that lies in a folder that is an input (status 2). Empty names: nothing to refuse.
 void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
                             const std::vector<std::filesystem::path>& inputs);
 
@@ -55,7 +58,11 @@ struct CommonOptions {
   std::uint64_t seed = 1;
   std::string isa;
   std::string command_line;
+  std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 
+  [[nodiscard]] double wall_s() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
   [[nodiscard]] Console::Level level() const {
     return quiet ? Console::Level::Quiet : verbose ? Console::Level::Verbose : Console::Level::Normal;
   }
@@ -83,7 +90,7 @@ class OlderOutput {
   bool is_there_ = false;
 };
 
-/// The manifest of a folder that a verb without a case fills.
+/// The manifest of a folder that a verb without a case fills. Empty names among the inputs: not given.
 [[nodiscard]] Manifest manifest_of(const CommonOptions& options, std::string settings_json,
                                    const std::vector<std::filesystem::path>& inputs, double wall_s);
 
@@ -96,6 +103,16 @@ class Application {
   /// @param example  shown at the end of --help.
   CLI::App* add_verb(const std::string& name, const std::string& what, const std::string& example,
                      std::function<int(const CommonOptions&)> run);
+  /// The same with options of its own, which `run` takes before the common ones.
+  template <typename Arguments>
+  std::pair<CLI::App*, Arguments&> add_verb(const std::string& name, const std::string& what,
+                                            const std::string& example,
+                                            int (*run)(const Arguments&, const CommonOptions&)) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* verb =
+        add_verb(name, what, example, [=](const CommonOptions& options) { return run(*arguments, options); });
+    return {verb, *arguments};
+  }
   /// A verb of several words: `group` holds the verbs that follow it, one of which has to be given.
   CLI::App* add_group(const std::string& group, const std::string& what, const std::string& example);
   CLI::App* add_verb_to(CLI::App& group, const std::string& name, const std::string& what, const std::string& example,

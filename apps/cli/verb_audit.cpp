@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include <map>
-#include <memory>
 #include <set>
 
 namespace incise::cli {
@@ -89,7 +88,8 @@ void print_audit(const Audit& audit, const PublishedTable& table) {
   }
 }
 
-int run(AuditArguments arguments, const CommonOptions& options) {
+int run(const AuditArguments& given, const CommonOptions& options) {
+  AuditArguments arguments = given;
   if (arguments.grain > 0.0) arguments.settings.grain = arguments.grain;
   require_valid(validate(arguments.settings));
   refuse_input_as_output("-o", options.output, {arguments.table});
@@ -97,31 +97,25 @@ int run(AuditArguments arguments, const CommonOptions& options) {
   const Audit result = audit(table.rows, arguments.settings);
   const Json json = audit_json(result, table);
   if (!options.output.empty()) write_json(options.output, json);
-  if (options.json) {
-    print_result(options, json);
-  } else {
-    print_audit(result, table);
-  }
+  options.json ? print_result(options, json) : print_audit(result, table);
   return result.impossible_rows == 0 ? kDone : kNotAcceptable;
 }
 
 }  // namespace
 
 void add_audit(Application& application) {
-  auto arguments = std::make_shared<AuditArguments>();
-  CLI::App* verb =
-      application.add_verb("audit", "Tell which rows of a published table cannot be; exit status 4 if there are any",
-                           "incise audit data/published_tables/table_1.csv",
-                           [arguments](const CommonOptions& options) { return run(*arguments, options); });
-  verb->add_option("table", arguments->table,
+  auto [verb, a] = application.add_verb<AuditArguments>(
+      "audit", "Tell which rows of a published table cannot be; exit status 4 if there are any",
+      "incise audit data/published_tables/table_1.csv", run);
+  verb->add_option("table", a.table,
                    "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
                    "PART_mean_mm, PART_sd_mm, PART_n of what a row was pooled from")
       ->required();
-  verb->add_option("--least", arguments->settings.least, "No value can be smaller: 0 for absolute errors")
+  verb->add_option("--least", a.settings.least, "No value can be smaller: 0 for absolute errors")
       ->check(finite("--least"));
-  verb->add_option("--n-at-least", arguments->settings.n_at_least, "Values behind a mean where the table does not say")
+  verb->add_option("--n-at-least", a.settings.n_at_least, "Values behind a mean where the table does not say")
       ->check(whole_between("--n-at-least", 2, 1000000000));
-  verb->add_option("--grain", arguments->grain, "Values are whole multiples of this (1 for counts); 0: any number")
+  verb->add_option("--grain", a.grain, "Values are whole multiples of this (1 for counts); 0: any number")
       ->check(zero_or_more("--grain"));
 }
 

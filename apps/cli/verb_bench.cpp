@@ -1,8 +1,6 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/isa.hpp>
-#include <incise/core/version.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
@@ -13,14 +11,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 namespace incise::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 struct MakeArguments {
   std::filesystem::path specimen;
@@ -44,20 +39,16 @@ struct FloorArguments {
 
 /// The seed stays out of the laboratory's folder: who knows it can draw the specimen.
 void write_run(const std::filesystem::path& folder, const CommonOptions& options, const std::string& command,
-               const std::vector<std::filesystem::path>& inputs, Clock::time_point start) {
-  Manifest manifest;
-  manifest.version = version();
-  manifest.commit = source_commit();
+               const std::vector<std::filesystem::path>& inputs) {
+  Manifest manifest = manifest_of(options, "{}", inputs, options.wall_s());
   manifest.command = command;
-  manifest.threads = options.context().threads;
-  manifest.instruction_set = to_string(active_isa());
-  manifest.machine = machine_description();
-  manifest.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-  for (const auto& input : inputs) manifest.inputs.push_back({input.string(), sha256_of_file(input)});
+  manifest.seed = 0;
+  manifest.specimen_id.clear();
   write_manifest(folder, manifest);
 }
 
 void make_parent(const std::filesystem::path& folder) {
+  if (folder.empty()) return;
   const auto parent = std::filesystem::absolute(folder).parent_path();
   std::error_code error;
   std::filesystem::create_directories(parent, error);
@@ -83,7 +74,6 @@ bool is_held(const BenchBody& body, Console& console) {
 }
 
 int make(const CommonOptions& options, const MakeArguments& arguments) {
-  const auto start = Clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("specimen7");
   refuse_input_as_output("-o", output, {arguments.specimen});
@@ -91,8 +81,7 @@ int make(const CommonOptions& options, const MakeArguments& arguments) {
   require_apart(arguments.truth, output);
   const Specimen specimen =
       arguments.specimen.empty() ? draw_specimen(options.seed) : read_specimen(arguments.specimen);
-  make_parent(output);
-  if (!arguments.truth.empty()) make_parent(arguments.truth);
+  for (const auto& folder : {output, arguments.truth}) make_parent(folder);
   Workers workers(options.context().threads);
   const BenchBody body = make_body(specimen, {}, workers, console);
   if (!is_held(body, console)) return kNotAcceptable;
@@ -100,11 +89,11 @@ int make(const CommonOptions& options, const MakeArguments& arguments) {
   const std::string name = "VIRTUAL-" + sha256_of_text(to_json(specimen).dump()).substr(0, 8);
   AtomicFolder folder(output);
   write_readings(folder.path(), readings, name);
-  write_run(folder.path(), options, "incise bench make", {}, start);
+  write_run(folder.path(), options, "incise bench make", {});
   if (!arguments.truth.empty()) {
     AtomicFolder truth(arguments.truth);
     write_truth(truth.path(), body);
-    write_run(truth.path(), options, options.command_line, {}, start);
+    write_run(truth.path(), options, options.command_line, {});
     truth.commit();
   }
   folder.commit();
@@ -117,7 +106,7 @@ int make(const CommonOptions& options, const MakeArguments& arguments) {
   result["stretch_force_n"] = readings.stretch_force_n;
   if (!arguments.truth.empty()) result["truth"] = arguments.truth.string();
   result["virtual"] = true;
-  result["wall_s"] = std::chrono::duration<double>(Clock::now() - start).count();
+  result["wall_s"] = options.wall_s();
   print_result(options, result);
   return kDone;
 }
@@ -141,7 +130,6 @@ nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut) {
 }
 
 int cut(const CommonOptions& options, const CutArguments& arguments) {
-  const auto start = Clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("cut7");
   refuse_input_as_output("-o", output, {arguments.specimen, arguments.program});
@@ -156,8 +144,7 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
                     "a program that the arm can run to its end, and that ends outside the tissue",
                     "`incise replay` shows how far it gets.");
   }
-  make_parent(output);
-  if (!arguments.truth.empty()) make_parent(arguments.truth);
+  for (const auto& folder : {output, arguments.truth}) make_parent(folder);
   Workers workers(options.context().threads);
   const BenchBody body = make_body(specimen, {}, workers, console);
   if (!is_held(body, console)) return kNotAcceptable;
@@ -180,11 +167,11 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
                                             {"mm_per_pixel", settings.mm_per_pixel},
                                             {"ruler_tick_mm", 1.0},
                                             {"red", "annotation"}});
-  write_run(folder.path(), options, "incise bench cut", {arguments.program}, start);
+  write_run(folder.path(), options, "incise bench cut", {arguments.program});
   if (!arguments.truth.empty()) {
     AtomicFolder truth(arguments.truth);
     write_json(truth.path() / "cut_truth.json", truth_of(body, done));
-    write_run(truth.path(), options, options.command_line, {arguments.specimen, arguments.program}, start);
+    write_run(truth.path(), options, options.command_line, {arguments.specimen, arguments.program});
     truth.commit();
   }
   folder.commit();
@@ -192,14 +179,13 @@ int cut(const CommonOptions& options, const CutArguments& arguments) {
   result["photo"] = (output / "photo.png").string();
   result["mm_per_pixel"] = settings.mm_per_pixel;
   result["virtual"] = true;
-  result["wall_s"] = std::chrono::duration<double>(Clock::now() - start).count();
+  result["wall_s"] = options.wall_s();
   print_result(options, result);
   return kDone;
 }
 
 /// What no planner can beat: what is left where the bench's physics are known, and only the arm's errors are not.
 int floor_of(const CommonOptions& options, const FloorArguments& arguments) {
-  const auto start = Clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("floor7.json");
   refuse_input_as_output("-o", output, {arguments.specimen});
@@ -222,8 +208,9 @@ int floor_of(const CommonOptions& options, const FloorArguments& arguments) {
   result["mean_abs_error_mm"] = is_good ? truth_of(body, done.cut).at("mean_abs_error_mm") : nlohmann::ordered_json();
   result["passes_mm"] = nlohmann::ordered_json::array();
   for (const CompensationPass& pass : done.correction.passes)
-    result["passes_mm"].push_back(pass.mean_abs_error_mm ? nlohmann::ordered_json(*pass.mean_abs_error_mm) : nlohmann::ordered_json());
-  result["wall_s"] = std::chrono::duration<double>(Clock::now() - start).count();
+    result["passes_mm"].push_back(pass.mean_abs_error_mm ? nlohmann::ordered_json(*pass.mean_abs_error_mm)
+                                                         : nlohmann::ordered_json());
+  result["wall_s"] = options.wall_s();
   write_json(output, result);
   print_result(options, result);
   return is_good ? kDone : kNotAcceptable;
@@ -237,8 +224,7 @@ void add_bench(Application& application) {
                             "incise bench make --seed 7 -o specimen7 --truth hidden7");
   auto made = std::make_shared<MakeArguments>();
   CLI::App* verb = application.add_verb_to(
-      *bench, "make",
-      "Make what a laboratory would have of a specimen: CT, cloud, RGB-D frame, pull force",
+      *bench, "make", "Make what a laboratory would have of a specimen: CT, cloud, RGB-D frame, pull force",
       "incise bench make --seed 7 -o specimen7 --truth hidden7",
       [made](const CommonOptions& options) { return make(options, *made); });
   verb->add_option("specimen", made->specimen, "Specimen file (incise schema bench); without it the seed draws one");
@@ -264,7 +250,8 @@ void add_bench(Application& application) {
       [floor](const CommonOptions& options) { return floor_of(options, *floor); });
   verb->add_option("specimen", floor->specimen, "The hidden specimen.json")->required();
   verb->add_option("--power-w", floor->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
-  verb->add_option("--simulations", floor->simulations, "Cuts of the bench that the path is corrected by")->check(CLI::Range(2, 8));
+  verb->add_option("--simulations", floor->simulations, "Cuts of the bench that the path is corrected by")
+      ->check(CLI::Range(2, 8));
 }
 
 }  // namespace incise::cli

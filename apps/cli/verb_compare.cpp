@@ -9,8 +9,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <memory>
 #include <set>
 
 namespace incise::cli {
@@ -83,8 +81,8 @@ void print_tests(const nlohmann::ordered_json& json) {
   fmt::print("every figure: --json, or compare.json in the folder that -o names\n");
 }
 
-int run(CompareArguments arguments, const CommonOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+int run(const CompareArguments& given, const CommonOptions& options) {
+  CompareArguments arguments = given;
   arguments.settings.measure = arguments.measure == "signed" ? ErrorMeasure::Signed : ErrorMeasure::Absolute;
   arguments.settings.bootstrap.seed = options.seed;
   require_valid(validate(arguments.settings));
@@ -94,22 +92,14 @@ int run(CompareArguments arguments, const CommonOptions& options) {
                     "as many before as after, in the same order");
   }
   require_different(arguments);
-  refuse_input_as_output("-o", options.output, arguments.before);
-  refuse_input_as_output("-o", options.output, arguments.after);
+  std::vector<std::filesystem::path> inputs = arguments.before;
+  inputs.insert(inputs.end(), arguments.after.begin(), arguments.after.end());
+  refuse_input_as_output("-o", options.output, inputs);
   ComparedFiles files{read_all(arguments.before), read_all(arguments.after)};
   require_alike(arguments, files);
   ComparisonOutput output = compared(std::move(files), arguments.settings);
-  if (!options.output.empty()) {
-    std::vector<std::filesystem::path> inputs = arguments.before;
-    inputs.insert(inputs.end(), arguments.after.begin(), arguments.after.end());
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-    write_comparison(options.output, output, inputs, options.context(), wall.count());
-  }
-  if (options.json) {
-    print_result(options, output.json);
-  } else {
-    print_tests(output.json);
-  }
+  if (!options.output.empty()) write_comparison(options.output, output, inputs, options.context(), options.wall_s());
+  options.json ? print_result(options, output.json) : print_tests(output.json);
   // Where a whole side holds no incision nothing was compared.
   return output.json["points"].is_null() ? kNotAcceptable : kDone;
 }
@@ -117,19 +107,16 @@ int run(CompareArguments arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_compare(Application& application) {
-  auto arguments = std::make_shared<CompareArguments>();
-  CLI::App* verb = application.add_verb(
-      "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison",
-      [arguments](const CommonOptions& options) { return run(*arguments, options); });
-  verb->add_option("--before", arguments->before, "Files of `incise evaluate -o`, one for each specimen")->required();
-  verb->add_option("--after", arguments->after, "The same, after the change")->required();
-  verb->add_option("--measure", arguments->measure, "Which error")->check(CLI::IsMember({"absolute", "signed"}));
-  verb->add_flag("--paired", arguments->settings.is_paired,
+  auto [verb, a] = application.add_verb<CompareArguments>(
+      "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison", run);
+  verb->add_option("--before", a.before, "Files of `incise evaluate -o`, one for each specimen")->required();
+  verb->add_option("--after", a.after, "The same, after the change")->required();
+  verb->add_option("--measure", a.measure, "Which error")->check(CLI::IsMember({"absolute", "signed"}));
+  verb->add_flag("--paired", a.settings.is_paired,
                  "The n-th file before and the n-th file after are the same specimen");
-  verb->add_option("--alpha", arguments->settings.alpha, "Level of the tests; intervals are at 1 - alpha");
-  verb->add_option("--power", arguments->settings.power,
-                   "Chance to see the effect that is wanted of the next experiment");
-  verb->add_option("--replicates", arguments->settings.bootstrap.replicates, "Of the block bootstrap")
+  verb->add_option("--alpha", a.settings.alpha, "Level of the tests; intervals are at 1 - alpha");
+  verb->add_option("--power", a.settings.power, "Chance to see the effect that is wanted of the next experiment");
+  verb->add_option("--replicates", a.settings.bootstrap.replicates, "Of the block bootstrap")
       ->check(CLI::Range(99, 1000000));
 }
 

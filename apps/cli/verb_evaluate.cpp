@@ -21,7 +21,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <ostream>
 
 namespace incise::cli {
@@ -116,8 +115,10 @@ nlohmann::ordered_json line_json(const MarkedLine& line) {
   return json;
 }
 
-/// What was measured, point by point and with the edge that it was measured against, for those who compare it place by place.
-void add_contours(nlohmann::ordered_json& json, const Evaluation& evaluation, const Contour& tumor_edge, const Vec3& approach) {
+/// What was measured, point by point and with the edge that it was measured against, for those who compare it place by
+/// place.
+void add_contours(nlohmann::ordered_json& json, const Evaluation& evaluation, const Contour& tumor_edge,
+                  const Vec3& approach) {
   json["points"] = points_json(evaluation);
   const double step_mm = EvaluationSettings{}.step_mm;
   json["tumor_edge"] = contour_json(resample_by_step(tumor_edge, step_mm));
@@ -152,26 +153,16 @@ nlohmann::ordered_json marks_json(const std::vector<PhotoMark>& marks) {
   return json;
 }
 
-/// Red in the tumour that is no line may be blood, or a cut that went astray: no number shows it, so a warning does.
-void tell_red_in_tumor(const std::vector<PhotoMark>& marks, Measured& result) {
-  result.json["red_in_tumor"] = marks_json(marks);
+/// Red in the tumour may be blood or a cut that went astray, green beside its edge a part of it: no number shows such
+/// marks, so a warning does.
+void tell(const std::vector<PhotoMark>& marks, const char* mark, const char* place, const char* question,
+          std::vector<std::string>& warnings) {
   if (marks.empty()) return;
-  result.warnings.push_back(fmt::format(
-      "{} red {} inside the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: blood, or a cut? {} part of "
-      "no measure",
-      marks.size(), marks.size() == 1 ? "spot" : "spots", marks.front().longest_mm, marks.front().at_px.x(),
-      marks.front().at_px.y(), marks.size() == 1 ? "It is" : "They are"));
-}
-
-/// Green beside the tumour's edge that is smaller than any tumour: told, because it may be part of one.
-void tell_green_beside(const std::vector<PhotoMark>& marks, Measured& result) {
-  result.json["green_beside"] = marks_json(marks);
-  if (marks.empty()) return;
-  result.warnings.push_back(
-      fmt::format("{} green {} beside the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: a second "
-                  "tumour? {} part of no measure",
-                  marks.size(), marks.size() == 1 ? "mark" : "marks", marks.front().longest_mm, marks.front().at_px.x(),
-                  marks.front().at_px.y(), marks.size() == 1 ? "It is" : "They are"));
+  const bool is_one = marks.size() == 1;
+  warnings.push_back(fmt::format(
+      "{} {}{} {} the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: {} {} part of no measure",
+      marks.size(), mark, is_one ? "" : "s", place, marks.front().longest_mm, marks.front().at_px.x(),
+      marks.front().at_px.y(), question, is_one ? "It is" : "They are"));
 }
 
 Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings& settings) {
@@ -190,8 +181,10 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   result.json["red"] = arguments.red;
   result.json["red_line"] = line_json(found.red);
   result.json["green_line"] = line_json(found.green);
-  tell_red_in_tumor(found.red_in_tumor, result);
-  tell_green_beside(found.green_beside, result);
+  result.json["red_in_tumor"] = marks_json(found.red_in_tumor);
+  result.json["green_beside"] = marks_json(found.green_beside);
+  tell(found.red_in_tumor, "red spot", "inside", "blood, or a cut?", result.warnings);
+  tell(found.green_beside, "green mark", "beside", "a second tumour?", result.warnings);
   if (scale.ruler) add_ruler_doubts(*scale.ruler, result.verdict);
   add_ring_doubts(found, photo.max_gap_mm, result.verdict);
   for (const VerdictReason& reason : result.verdict.reasons()) {
@@ -241,74 +234,63 @@ std::string specimen_of(const EvaluateArguments& arguments, const std::vector<st
   throw CaseError("command line", "--specimen-id", arguments.specimen_id, stated + ", which the files state");
 }
 
+int run(const EvaluateArguments& arguments, const CommonOptions& options) {
+  require_one_source(arguments);
+  const std::vector<std::filesystem::path> inputs{arguments.photo, arguments.incision, arguments.tumor, arguments.line};
+  refuse_input_as_output("-o", options.output, inputs);
+  refuse_input_as_output("--figure", arguments.figure, inputs);
+  refuse_same_output("-o", options.output, "--figure", arguments.figure);
+  const EvaluationSettings settings = settings_of(arguments);
+  const std::string specimen_id = specimen_of(arguments, inputs);
+  Measured result = arguments.photo.empty() ? from_files(arguments, settings) : from_photo(arguments, settings);
+  if (!specimen_id.empty()) result.json["specimen_id"] = specimen_id;
+  if (!options.output.empty()) write_json(options.output, result.json);
+  Console console(options.level());
+  for (const std::string& warning : result.warnings) console.message(Severity::Warning, warning);
+  print_result(options, result.json);
+  if (result.verdict.status() == VerdictStatus::Refused) return kNotAcceptable;
+  return status_of(result.evaluation.outcome);
+}
+
 }  // namespace
 
 void add_evaluate(Application& application) {
-  auto arguments = std::make_shared<EvaluateArguments>();
-  CLI::App* verb =
-      application.add_verb("evaluate", "",
-                           "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json",
-                           [arguments](const CommonOptions& options) {
-                             require_one_source(*arguments);
-                             const std::vector<std::filesystem::path> inputs{arguments->photo, arguments->incision,
-                                                                             arguments->tumor, arguments->line};
-                             refuse_input_as_output("-o", options.output, inputs);
-                             refuse_input_as_output("--figure", arguments->figure, inputs);
-                             refuse_same_output("-o", options.output, "--figure", arguments->figure);
-                             const EvaluationSettings settings = settings_of(*arguments);
-                             const std::string specimen_id = specimen_of(*arguments, inputs);
-                             Measured result = arguments->photo.empty() ? from_files(*arguments, settings)
-                                                                        : from_photo(*arguments, settings);
-                             if (!specimen_id.empty()) result.json["specimen_id"] = specimen_id;
-                             if (!options.output.empty()) write_json(options.output, result.json);
-                             Console console(options.level());
-                             for (const std::string& warning : result.warnings)
-                               console.message(Severity::Warning, warning);
-                             print_result(options, result.json);
-                             if (result.verdict.status() == VerdictStatus::Refused) return kNotAcceptable;
-                             return status_of(result.evaluation.outcome);
-                           });
-  verb->add_option("photo", arguments->photo,
-                   "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
-  verb->add_option("--specimen-id", arguments->specimen_id,
+  auto [verb, a] = application.add_verb<EvaluateArguments>(
+      "evaluate", "", "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json", run);
+  verb->add_option("photo", a.photo, "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
+  verb->add_option("--specimen-id", a.specimen_id,
                    "Whose cut it is, as its case says: calibrate refuses another specimen's")
       ->check(CLI::Validator(
-          [](const std::string& text) {
-            return is_specimen_id(text) ? std::string() : std::string(kSpecimenIdForm);
-          },
+          [](const std::string& text) { return is_specimen_id(text) ? std::string() : std::string(kSpecimenIdForm); },
           "ID"));
-  verb->add_option("--incision", arguments->incision, "The incision: .csv (x_mm,y_mm,z_mm), .vtp or .mrk.json");
-  verb->add_option("--tumor", arguments->tumor, "The tumour edge, same formats and frame");
+  verb->add_option("--incision", a.incision, "The incision: .csv (x_mm,y_mm,z_mm), .vtp or .mrk.json");
+  verb->add_option("--tumor", a.tumor, "The tumour edge, same formats and frame");
   verb->add_option(
-      "--line", arguments->line,
+      "--line", a.line,
       "Instead of --tumor, for an open cut: the line that --incision was to follow, same formats and frame");
-  verb->add_option("--contour", arguments->contour,
+  verb->add_option("--contour", a.contour,
                    "What was measured; default: inner_edge in a photograph, centerline in files")
       ->check(CLI::IsMember({"centerline", "inner_edge"}));
-  verb->add_option("--red", arguments->red,
-                   "What the red line is: a thin line along the inner edge, or the painted kerf")
+  verb->add_option("--red", a.red, "What the red line is: a thin line along the inner edge, or the painted kerf")
       ->check(CLI::IsMember({"annotation", "kerf"}));
-  add_scale_options(*verb, arguments->scale);
-  verb->add_option("--max-gap-mm", arguments->max_gap_mm,
+  add_scale_options(*verb, a.scale);
+  verb->add_option("--max-gap-mm", a.max_gap_mm,
                    "A red or green ring with a gap clearly longer (0.18 mm and 2 pixels) is open; of a red one "
                    "slightly longer, the "
                    "verdict says so")
       ->check(between("--max-gap-mm", 0.0, 10.0));
-  verb->add_option("--target-mm", arguments->target_mm,
-                   "Distance aimed at; default: 5.0 for a mid-line, 4.5 for an inner edge")
+  verb->add_option("--target-mm", a.target_mm, "Distance aimed at; default: 5.0 for a mid-line, 4.5 for an inner edge")
       ->check(above_zero("--target-mm"));
-  verb->add_option("--close-margin-mm", arguments->settings.close_margin_mm, "Clinical cut-off");
-  verb->add_option("--approach", arguments->approach, "Direction in which the camera looks")->expected(3);
-  verb->add_option("--twelve-o-clock", arguments->twelve,
-                   "Direction of 12 o'clock in by_clock; default: up in the picture")
+  verb->add_option("--close-margin-mm", a.settings.close_margin_mm, "Clinical cut-off");
+  verb->add_option("--approach", a.approach, "Direction in which the camera looks")->expected(3);
+  verb->add_option("--twelve-o-clock", a.twelve, "Direction of 12 o'clock in by_clock; default: up in the picture")
       ->expected(3);
   verb->add_option(
-      "--figure", arguments->figure,
+      "--figure", a.figure,
       "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
-  verb->add_option("--colors", arguments->colors,
-                   "Of the figure: told apart with any colour vision, or as in the paper")
+  verb->add_option("--colors", a.colors, "Of the figure: told apart with any colour vision, or as in the paper")
       ->check(CLI::IsMember({"safe", "jet"}));
-  verb->add_flag("--open", arguments->is_open, "The incision round the tumour is an open curve");
+  verb->add_flag("--open", a.is_open, "The incision round the tumour is an open curve");
 }
 
 }  // namespace incise::cli

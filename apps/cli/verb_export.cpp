@@ -22,9 +22,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <chrono>
 #include <cmath>
-#include <memory>
 #include <ostream>
 
 namespace incise::cli {
@@ -46,14 +44,11 @@ struct ExportArguments {
 };
 
 void require_override_names(const std::vector<std::string>& names) {
-  std::vector<std::string> all, possible;
-  for (const char* name : check_names()) {
-    all.emplace_back(name);
-    if (can_be_overridden(name)) possible.emplace_back(name);
-  }
+  std::vector<std::string> possible;
+  std::ranges::copy_if(check_names(), std::back_inserter(possible), can_be_overridden);
   for (const std::string& name : names) {
     if (can_be_overridden(name)) continue;
-    const bool is_check = std::find(all.begin(), all.end(), name) != all.end();
+    const bool is_check = std::ranges::find(check_names(), name) != check_names().end();
     throw CaseError("command line", "--override", fmt::format("'{}'", name),
                     is_check ? std::string("a check that can be overridden; this one cannot")
                              : fmt::format("one of {}", fmt::join(possible, ", ")),
@@ -73,15 +68,6 @@ void require_ending(const std::filesystem::path& output, const std::string& form
   if (format == "urscript" &&
       (ending.empty() || ending == ".csv" || ending == ".json" || ending == ".yaml" || ending == ".bag"))
     refuse(".script");
-}
-
-/// As on the pendant: place in mm and rotation vector in rad of the tool centre point in the flange.
-Mat4 tool_of(const std::vector<double>& tcp) {
-  Mat4 T = Mat4::Identity();
-  const Vec3 turn(tcp[3], tcp[4], tcp[5]);
-  if (turn.norm() > 0.0) T.topLeftCorner<3, 3>() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-  T.topRightCorner<3, 1>() = Vec3(tcp[0], tcp[1], tcp[2]);
-  return T;
 }
 
 /// The checks need more than the transform.
@@ -133,7 +119,7 @@ void complete(ExportArguments& a, const ToolPath& path) {
   if (is_mark) a.settings.plunge_speed_mm_s = a.checks.mark_speed_mm_s;
   a.checks.must_be_ring = !a.is_open;
   a.checks.shaft_radius_mm = 0.5 * a.shaft_diameter_mm;
-  if (!a.tcp.empty()) a.setup.T_flange_tool = tool_of(a.tcp);
+  if (!a.tcp.empty()) a.setup.T_flange_tool = tool_pose(Vec3(a.tcp.data()), Vec3(a.tcp.data() + 3));
   const double length_mm = a.setup.T_flange_tool.topRightCorner<3, 1>().norm();
   if (length_mm < a.checks.needle_length_mm) {
     throw CaseError("command line", "--tcp", fmt::format("a tip {:.4g} mm from the flange", length_mm),
@@ -182,7 +168,7 @@ void warn_of_less(const ExportArguments& a, const CheckInputs& inputs, const Too
 
 constexpr double kFarthestTableMm = 5000.0;  // beyond any arm's reach
 constexpr double kLeastToolMm = 0.1;         // thinner or shorter is no instrument
-constexpr double kMostPowerW = 400.0;  // no electrosurgical generator gives more (IEC 60601-2-2)
+constexpr double kMostPowerW = 400.0;        // no electrosurgical generator gives more (IEC 60601-2-2)
 
 /// With the constants of muscle that a case has by default: a path does not say what it is cut into.
 double half_width_of_heat_mm(const ToolPath& path, const ExportArguments& arguments) {
@@ -207,16 +193,16 @@ nlohmann::ordered_json summary_of(const RobotProgram& program, const ProgramChec
   double fastest = 0.0;
   for (const ProgramPose& pose : program.poses) fastest = std::max(fastest, pose.tip_speed_mm_s);
   result["max_tip_speed_mm_s"] = fastest;
-  const bool has_motion = program.motion.outcome == MotionOutcome::Found;
-  result["min_singular_value"] =
-      has_motion ? nlohmann::ordered_json(program.motion.min_singular_value) : nlohmann::ordered_json(nullptr);
-  result["joint_travel_deg"] =
-      has_motion ? nlohmann::ordered_json(program.motion.travel_deg) : nlohmann::ordered_json(nullptr);
+  result["min_singular_value"] = nullptr;
+  result["joint_travel_deg"] = nullptr;
+  if (program.motion.outcome != MotionOutcome::Found) return result;
+  result["min_singular_value"] = program.motion.min_singular_value;
+  result["joint_travel_deg"] = program.motion.travel_deg;
   return result;
 }
 
-int run_export(ExportArguments arguments, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+int run_export(const ExportArguments& given, const CommonOptions& options) {
+  ExportArguments arguments = given;
   Console console(options.level());
   const std::filesystem::path output = options.required_output("cut.script");
   refuse_input_as_output("-o", output, {arguments.path, arguments.intended, arguments.surface, arguments.registration});
@@ -267,9 +253,6 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   for (const ProgramCheck& check : checks.checks) {
     if (check.is_overridden) console.message(Severity::Warning, "overridden: " + check.message());
   }
-  const auto elapsed = [&start] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
   add_failed_checks(checks, verdict);
   const VerdictGate gate = gate_of(verdict, arguments.accepted);
   report_gate(verdict, gate, console);
@@ -277,7 +260,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   result["gate"] = to_json(gate);
   if (!gate.is_open) {
     result["stale_output"] = older.json();
-    result["wall_s"] = elapsed();
+    result["wall_s"] = options.wall_s();
     print_result(options, result);
     return kNotAcceptable;
   }
@@ -292,7 +275,7 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
   write_atomically(output, [&text](std::ostream& out) { out << text; });
   older.replaced();
   result["program"] = output.string();
-  result["wall_s"] = elapsed();
+  result["wall_s"] = options.wall_s();
   print_result(options, result);
   return kDone;
 }
@@ -300,15 +283,13 @@ int run_export(ExportArguments arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_export(Application& application) {
-  auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<ExportArguments>(
       "export",
       "Turn a path in the robot's frame into a program, after the safety checks. A path whose cut was never simulated "
       "needs --accept not_simulated",
       "incise export projected/path.json --surface projected/surface.ply --registration "
       "registration/registration.json -o cut.script",
-      [arguments](const CommonOptions& options) { return run_export(*arguments, options); });
-  auto& a = *arguments;
+      run_export);
   verb->add_option("path", a.path, "path.json, frame robot")->required();
   verb->add_option("--robot", a.robot, "The arm")->check(CLI::IsMember({"ur10e"}));
   verb->add_option("--format", a.format, "Of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1")

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <memory>
 
 namespace incise::cli {
@@ -26,7 +25,6 @@ std::shared_ptr<const TissueModel> specimen_of(const CaseFile& file, const std::
 }
 
 int export_case(const std::filesystem::path& case_path, const std::string& format, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("for_sofa");
   require_replaceable(output);
@@ -45,7 +43,7 @@ int export_case(const std::filesystem::path& case_path, const std::string& forma
   } catch (const CaseError& error) {
     throw error.in_file(file.file.string());
   }
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double wall_s = options.wall_s();
   FolderStore(file, target.path(), options.context()).write_manifest_to(target.path(), wall_s);
   target.commit();
   print_result(options, {{"format", format},
@@ -63,14 +61,13 @@ void add_interchange(Application& application) {
     std::filesystem::path case_path;
     std::string format;
   };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = application.add_verb(
-      "interchange", "", "incise interchange specimen --format sofa -o for_sofa",
-      [arguments](const CommonOptions& options) {
-        return export_case(arguments->case_path, arguments->format, options);
-      });
-  verb->add_option("case", arguments->case_path, "Case file, or a folder with case.yaml")->required();
-  verb->add_option("--format", arguments->format, "sofa: case.scn; febio: case.feb")
+  auto [verb, a] =
+      application.add_verb<Arguments>("interchange", "", "incise interchange specimen --format sofa -o for_sofa",
+                                      [](const Arguments& arguments, const CommonOptions& options) {
+                                        return export_case(arguments.case_path, arguments.format, options);
+                                      });
+  verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
+  verb->add_option("--format", a.format, "sofa: case.scn; febio: case.feb")
       ->check(CLI::IsMember({"sofa", "febio"}))
       ->required();
 }

@@ -9,7 +9,7 @@
 namespace incise::cli {
 namespace {
 
-struct Group {
+struct VerbGroup {
   struct Verb {
     const char* name;
     const char* line;  ///< at most 85 characters: the list fits 100 columns
@@ -18,8 +18,8 @@ struct Group {
   std::vector<Verb> verbs;
 };
 
-const std::vector<Group>& groups() {
-  static const std::vector<Group> all{
+const std::vector<VerbGroup>& groups() {
+  static const std::vector<VerbGroup> all{
       {"Start here",
        {{"demo", "Make a virtual specimen and do everything with it that `run` does"},
         {"run", "Plan, cut, correct and cut again on your case; write the robot program and a report"},
@@ -63,8 +63,8 @@ std::string listed(const std::string& name, const std::string& line) {
 }  // namespace
 
 std::string line_of(const std::string& verb) {
-  for (const Group& group : groups()) {
-    for (const Group::Verb& one : group.verbs) {
+  for (const VerbGroup& group : groups()) {
+    for (const VerbGroup::Verb& one : group.verbs) {
       if (verb == one.name) return one.line;
     }
   }
@@ -74,9 +74,9 @@ std::string line_of(const std::string& verb) {
 std::string VerbList::make_subcommands(const CLI::App* app, CLI::AppFormatMode /*mode*/) const {
   std::string text;
   if (app->get_parent() == nullptr) {
-    for (const Group& group : groups()) {
+    for (const VerbGroup& group : groups()) {
       text += fmt::format("\n{}:\n", group.name);
-      for (const Group::Verb& verb : group.verbs) text += listed(verb.name, verb.line);
+      for (const VerbGroup::Verb& verb : group.verbs) text += listed(verb.name, verb.line);
     }
     return text;
   }

@@ -14,13 +14,20 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <functional>
-#include <memory>
 #include <optional>
 
 namespace incise::cli {
 namespace {
+
+struct MeshArguments {
+  std::filesystem::path input;
+  std::filesystem::path around;
+  std::optional<double> fine_mm;
+  std::optional<double> coarse_mm;
+  double depth_mm = 5.0;
+  int tets = 0;
+};
 
 bool is_surface(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
@@ -31,7 +38,8 @@ bool is_surface(const std::filesystem::path& path) {
 using SizingFor = std::function<SizingField(double)>;
 
 /// Whatever the mesher requires of its input, it came from the file and the lengths.
-MeshingResult meshed(const std::filesystem::path& input, const SizingFor& sizing, const MeshingSettings& settings, Monitor& monitor) {
+MeshingResult meshed(const std::filesystem::path& input, const SizingFor& sizing, const MeshingSettings& settings,
+                     Monitor& monitor) {
   try {
     if (!is_surface(input)) {
       const LabelVolume labels = read_labels(input);
@@ -47,80 +55,70 @@ MeshingResult meshed(const std::filesystem::path& input, const SizingFor& sizing
   }
 }
 
+int run(const MeshArguments& arguments, const CommonOptions& options) {
+  Console console(options.level());
+  const std::filesystem::path output = options.required_output("tongue.vtu");
+  refuse_input_as_output("-o", output, {arguments.input, arguments.around});
+  require_own_manifest_beside(output);
+  MeshingSettings settings;
+  if (arguments.tets > 0 && arguments.tets < kFewestTets) {
+    throw CaseError("command line", "--tets", fmt::format("{}", arguments.tets),
+                    fmt::format("0, or {} and more", kFewestTets));
+  }
+  if (arguments.around.empty() && arguments.fine_mm) {
+    throw CaseError("command line", "--fine-mm", "no --around", "a planned cut to be fine around",
+                    "Edges are at most --coarse-mm without it");
+  }
+  if (output.extension() != ".vtu") {
+    throw CaseError("command line", "-o", output.string(), "a file that ends in .vtu");
+  }
+  if (arguments.tets > 0) settings.target_tets = arguments.tets;
+  const auto require_order = [](double fine_mm, double coarse_mm) {
+    if (fine_mm <= coarse_mm) return;
+    throw CaseError("command line", "--fine-mm", fmt::format("{:.3g} mm", fine_mm),
+                    fmt::format("at most --coarse-mm = {:.3g} mm", coarse_mm));
+  };
+  if (arguments.fine_mm && arguments.coarse_mm) require_order(*arguments.fine_mm, *arguments.coarse_mm);
+  PlannedCut cut;
+  if (!arguments.around.empty()) cut.path = read_contour(arguments.around, true);
+  cut.depth_mm = arguments.depth_mm;
+  const auto sizing = [&](double longest_mm) {
+    SizingSettings sizes = default_lengths(longest_mm);
+    sizes.fine_mm = arguments.fine_mm.value_or(sizes.fine_mm);
+    sizes.coarse_mm = arguments.coarse_mm.value_or(sizes.coarse_mm);
+    if (arguments.around.empty()) return SizingField::uniform(sizes.coarse_mm);
+    require_order(sizes.fine_mm, sizes.coarse_mm);
+    return SizingField::around_cut(cut, sizes);
+  };
+  const MeshingResult made = meshed(arguments.input, sizing, settings, console);
+  const nlohmann::json chosen{
+      {"around", arguments.around.string()}, {"depth_mm", arguments.depth_mm}, {"tets", arguments.tets}};
+  const Manifest manifest = manifest_of(options, chosen.dump(), {arguments.input, arguments.around}, options.wall_s());
+  write_vtu(output, made.mesh);
+  write_manifest_beside(output, manifest);
+  if (!options.quiet) console.message(Severity::Detail, to_text(made.quality));
+  nlohmann::ordered_json result = to_json(made);
+  result["mesh"] = output.string();
+  print_result(options, result);
+  return made.meets_quality && made.meets_volume ? kDone : kNotAcceptable;
+}
+
 }  // namespace
 
 void add_mesh(Application& application) {
-  struct Arguments {
-    std::filesystem::path input;
-    std::filesystem::path around;
-    std::optional<double> fine_mm;
-    std::optional<double> coarse_mm;
-    double depth_mm = 5.0;
-    int tets = 0;
-  };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = application.add_verb(
-      "mesh", "", "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu",
-      [arguments](const CommonOptions& options) {
-        const auto start = std::chrono::steady_clock::now();
-        Console console(options.level());
-        const std::filesystem::path output = options.required_output("tongue.vtu");
-        refuse_input_as_output("-o", output, {arguments->input, arguments->around});
-        require_own_manifest_beside(output);
-        MeshingSettings settings;
-        if (arguments->tets > 0 && arguments->tets < kFewestTets) {
-          throw CaseError("command line", "--tets", fmt::format("{}", arguments->tets),
-                          fmt::format("0, or {} and more", kFewestTets));
-        }
-        if (arguments->around.empty() && arguments->fine_mm) {
-          throw CaseError("command line", "--fine-mm", "no --around", "a planned cut to be fine around",
-                          "Edges are at most --coarse-mm without it");
-        }
-        if (output.extension() != ".vtu") {
-          throw CaseError("command line", "-o", output.string(), "a file that ends in .vtu");
-        }
-        if (arguments->tets > 0) settings.target_tets = arguments->tets;
-        const auto require_order = [](double fine_mm, double coarse_mm) {
-          if (fine_mm <= coarse_mm) return;
-          throw CaseError("command line", "--fine-mm", fmt::format("{:.3g} mm", fine_mm), fmt::format("at most --coarse-mm = {:.3g} mm", coarse_mm));
-        };
-        if (arguments->fine_mm && arguments->coarse_mm) require_order(*arguments->fine_mm, *arguments->coarse_mm);
-        PlannedCut cut;
-        if (!arguments->around.empty()) cut.path = read_contour(arguments->around, true);
-        cut.depth_mm = arguments->depth_mm;
-        const auto sizing = [&](double longest_mm) {
-          SizingSettings sizes = default_lengths(longest_mm);
-          sizes.fine_mm = arguments->fine_mm.value_or(sizes.fine_mm);
-          sizes.coarse_mm = arguments->coarse_mm.value_or(sizes.coarse_mm);
-          if (arguments->around.empty()) return SizingField::uniform(sizes.coarse_mm);
-          require_order(sizes.fine_mm, sizes.coarse_mm);
-          return SizingField::around_cut(cut, sizes);
-        };
-        const MeshingResult made = meshed(arguments->input, sizing, settings, console);
-        const nlohmann::json chosen{
-            {"around", arguments->around.string()}, {"depth_mm", arguments->depth_mm}, {"tets", arguments->tets}};
-        std::vector<std::filesystem::path> inputs{arguments->input};
-        if (!arguments->around.empty()) inputs.push_back(arguments->around);
-        const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        const Manifest manifest = manifest_of(options, chosen.dump(), inputs, wall_s);
-        write_vtu(output, made.mesh);
-        write_manifest_beside(output, manifest);
-        if (!options.quiet) console.message(Severity::Detail, to_text(made.quality));
-        nlohmann::ordered_json result = to_json(made);
-        result["mesh"] = output.string();
-        print_result(options, result);
-        return made.meets_quality && made.meets_volume ? kDone : kNotAcceptable;
-      });
-  verb->add_option("input", arguments->input,
-                   "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
+  auto [verb, a] = application.add_verb<MeshArguments>(
+      "mesh", "", "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu", run);
+  verb->add_option("input", a.input, "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
       ->required();
-  verb->add_option("--around", arguments->around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
-  verb->add_option("--fine-mm", arguments->fine_mm, "Edge length around the cut; by default 0.8, in proportion for a body shorter than 40 mm")
+  verb->add_option("--around", a.around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
+  verb->add_option("--fine-mm", a.fine_mm,
+                   "Edge length around the cut; by default 0.8, in proportion for a body shorter than 40 mm")
       ->check(CLI::Range(0.05, 50.0));
-  verb->add_option("--coarse-mm", arguments->coarse_mm, "Longest edge length; by default 4, in proportion for a body shorter than 40 mm")->check(CLI::Range(0.05, 100.0));
-  verb->add_option("--depth-mm", arguments->depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
-  verb->add_option("--tets", arguments->tets, "Count to aim for; 0: as the lengths give")
-      ->check(CLI::Range(0, 5000000));
+  verb->add_option("--coarse-mm", a.coarse_mm,
+                   "Longest edge length; by default 4, in proportion for a body shorter than 40 mm")
+      ->check(CLI::Range(0.05, 100.0));
+  verb->add_option("--depth-mm", a.depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
+  verb->add_option("--tets", a.tets, "Count to aim for; 0: as the lengths give")->check(CLI::Range(0, 5000000));
 }
 
 }  // namespace incise::cli

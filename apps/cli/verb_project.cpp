@@ -21,9 +21,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
-#include <chrono>
+#include <algorithm>
 #include <cmath>
-#include <memory>
+#include <optional>
 
 namespace incise::cli {
 namespace {
@@ -87,23 +87,17 @@ Vec3 middle_of(const ToolPath& path, const Mat4& T) {
 /// Takes the fitted scale out of the camera's lengths. What stands still is told by the user, or the camera's origin,
 /// or, where no one knows it, the middle of the path.
 void take_true_size(Placement& placement, const ToolPath& path, const RegistrationRecord& registration,
-                    const ProjectArguments& arguments, Console& console) {
+                    const ProjectArguments& arguments, const std::optional<Vec3>& camera_mm, Console& console) {
   const Vec3 middle = middle_of(path, placement.T_robot_sim);
   const bool is_given = !arguments.scale_center.empty();
-  const bool has_camera = !arguments.camera.empty();
-  Vec3 center = is_given ? Vec3(arguments.scale_center.data()) : middle;
-  if (has_camera && !is_given) {
-    const Mat4 T = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
-    center = T.topRightCorner<3, 1>();
-  }
+  const Vec3 center = is_given ? Vec3(arguments.scale_center.data()) : camera_mm.value_or(middle);
   const Mat4 shrink = at_true_size(registration.scale, center);
   placement.T_robot_sim = shrink * placement.T_robot_sim;
   move(placement.measured, shrink);
   const double arm_mm = (middle - center).norm();
-  const Vec3 moved = (shrink * middle.homogeneous()).head<3>();
-  const double shift_mm = (moved - middle).norm();
+  const double shift_mm = ((shrink * middle.homogeneous()).head<3>() - middle).norm();
   placement.summary["scale_center_mm"] = {center.x(), center.y(), center.z()};
-  placement.summary["scale_center"] = is_given ? "given" : has_camera ? "camera" : "path";
+  placement.summary["scale_center"] = is_given ? "given" : camera_mm ? "camera" : "path";
   placement.summary["scale_shift_mm"] = shift_mm;
   placement.summary["scale_shift_sd_mm"] = nullptr;
   if (!registration.scale_sd) return;
@@ -131,15 +125,17 @@ void take_true_size(Placement& placement, const ToolPath& path, const Registrati
 Placement placed(const ToolPath& path, const RegistrationRecord& registration, const ProjectArguments& arguments,
                  Console& console) {
   Placement placement{*registration.T_target_source, read_cloud(arguments.surface), {}};
+  std::optional<Vec3> camera_mm;
   if (!arguments.camera.empty()) {
     const Mat4 T_robot_camera = rigid_transform_in(read_json(arguments.camera), "T_robot_camera", arguments.camera);
     placement.T_robot_sim = T_robot_camera * placement.T_robot_sim;
     move(placement.measured, T_robot_camera);
+    camera_mm = T_robot_camera.topRightCorner<3, 1>();
   }
   placement.summary["metric"] = arguments.metric;
   placement.summary["scale"] = registration.scale;
   placement.summary["camera_scale"] = registration.camera_scale;
-  if (arguments.metric == "ct") take_true_size(placement, path, registration, arguments, console);
+  if (arguments.metric == "ct") take_true_size(placement, path, registration, arguments, camera_mm, console);
   return placement;
 }
 
@@ -200,20 +196,16 @@ void warn_of_unsafe(const ToolPath& path, nlohmann::ordered_json& result, Consol
                                   gap.longest_mm, gap.after, gap.limit_mm));
     }
   }
-  double steepest_deg = 0.0;
-  std::size_t steepest = 0;
-  for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
-    if (tilt_deg(path.waypoints[i].axis) <= steepest_deg) continue;
-    steepest_deg = tilt_deg(path.waypoints[i].axis);
-    steepest = i;
-  }
+  const auto steepest =
+      std::ranges::max_element(path.waypoints, {}, [](const Waypoint& w) { return tilt_deg(w.axis); });
+  const double steepest_deg = tilt_deg(steepest->axis);
   result["max_tilt_deg"] = steepest_deg;
   if (steepest_deg > limits.max_tilt_deg) {
     console.message(Severity::Warning,
                     fmt::format("the tool leans {:.0f} degrees from straight down at waypoint {}, at most {:.0f} are "
                                 "expected: are the axes, the transform and the camera's pose right? export will refuse "
                                 "it (tilt)",
-                                steepest_deg, steepest, limits.max_tilt_deg));
+                                steepest_deg, steepest - path.waypoints.begin(), limits.max_tilt_deg));
   }
 }
 
@@ -260,11 +252,8 @@ void hold_changes(Verdict& verdict, const RegistrationRecord& registration, cons
 Verdict verdict_of(const RegistrationRecord& registration, const ProjectArguments& arguments,
                    const ProjectSettings& settings) {
   Verdict verdict = read_path_verdict(arguments.path);
-  if (settings.kind == PathKind::Incise) {
-    hold_changes(verdict, registration, arguments, settings);
-  } else {
-    verdict = as_verdict_of_mark(verdict);
-  }
+  if (settings.kind == PathKind::Incise) hold_changes(verdict, registration, arguments, settings);
+  if (settings.kind == PathKind::Mark) verdict = as_verdict_of_mark(verdict);
   verdict.add(cli::verdict_of(registration, arguments.transform));
   if (!registration.target_sha256.empty() && registration.target_sha256 != sha256_of_input(arguments.surface)) {
     verdict.add(
@@ -293,16 +282,11 @@ void write(const std::filesystem::path& output, const ProjectedPath& projected, 
 }
 
 int run(const ProjectArguments& arguments, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path output = options.required_output("projected");
   refuse_input_as_output("-o", output, {arguments.path, arguments.transform, arguments.surface, arguments.camera});
   OlderOutput older(output, console);
-  if (output.extension() == ".json") {
-    require_writable(output);
-  } else {
-    require_replaceable(output);
-  }
+  output.extension() == ".json" ? require_writable(output) : require_replaceable(output);
   if (arguments.metric == "camera" && !arguments.scale_center.empty()) {
     throw CaseError("command line", "--scale-center", "--metric camera", "--metric ct: else nothing is scaled");
   }
@@ -326,14 +310,14 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   result["shift_noise_mm"] = projected.shift_noise_mm;
   result.update(placement.summary);
   warn_of_unsafe(projected.path, result, console);
-  std::vector<std::filesystem::path> inputs{arguments.path, arguments.transform, arguments.surface};
-  if (!arguments.camera.empty()) inputs.push_back(arguments.camera);
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::vector<std::filesystem::path> inputs{arguments.path, arguments.transform, arguments.surface,
+                                                  arguments.camera};
+  const double wall_s = options.wall_s();
   const Verdict verdict = verdict_of(registration, arguments, settings);
   tell(verdict, console);
   result["verdict"] = to_json(verdict);
-  write(output, projected, verdict, placement, manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s),
-        result);
+  write(output, projected, verdict, placement,
+        manifest_of(options, settings_json(arguments, settings).dump(), inputs, wall_s), result);
   older.replaced();
   result["wall_s"] = wall_s;
   print_result(options, result);
@@ -343,51 +327,46 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_project(Application& application) {
-  auto arguments = std::make_shared<ProjectArguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<ProjectArguments>(
       "project", "",
       "incise project scene/path.json --transform registration/registration.json --surface tissue.ply --camera "
       "scene/camera.json -o projected",
-      [arguments](const CommonOptions& options) { return run(*arguments, options); });
-  verb->add_option("path", arguments->path, "path.json, frame sim_stretched")->required();
-  verb->add_option("--transform", arguments->transform,
+      run);
+  verb->add_option("path", a.path, "path.json, frame sim_stretched")->required();
+  verb->add_option("--transform", a.transform,
                    "What `incise register` wrote: T_target_source, from the simulation to the surface's frame")
       ->required();
-  verb->add_option("--surface", arguments->surface, "The measured tissue: cloud or mesh (.ply, .vtp, .stl, .obj), mm")
+  verb->add_option("--surface", a.surface, "The measured tissue: cloud or mesh (.ply, .vtp, .stl, .obj), mm")
       ->required();
   verb->add_option(
-      "--camera", arguments->camera,
+      "--camera", a.camera,
       "JSON with T_robot_camera, where the surface is given in a camera's frame; without it: in the robot's");
-  verb->add_option("--metric", arguments->metric,
+  verb->add_option("--metric", a.metric,
                    "Whose lengths are true. ct: the scale that register fitted is taken out of the cloud, so that the "
                    "simulation keeps its size; camera: the simulation takes the cloud's size")
       ->check(CLI::IsMember({"ct", "camera"}));
   verb->add_option(
-          "--scale-center", arguments->scale_center,
+          "--scale-center", a.scale_center,
           "ct: a place (mm, robot's frame) where the cloud is right; else the camera's origin (--camera), else "
           "the middle of the path")
       ->expected(3);
-  verb->add_option("--kind", arguments->kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s")
+  verb->add_option("--kind", a.kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s")
       ->check(CLI::IsMember({"incise", "mark"}));
-  verb->add_option("--axis", arguments->axis,
+  verb->add_option("--axis", a.axis,
                    "Tool axis: as the path has it, or against the measured surface's normal (a mark's: the mean axis)")
       ->check(CLI::IsMember({"path", "normal"}));
-  verb->add_option("--depth-mm", arguments->depth_mm,
-                   "Below the surface; 0: 1 mm for a mark, as the path says for an incision")
+  verb->add_option("--depth-mm", a.depth_mm, "Below the surface; 0: 1 mm for a mark, as the path says for an incision")
       ->check(zero_or_more("--depth-mm"));
-  verb->add_option("--speed-mm-s", arguments->speed_mm_s,
-                   "Of the tip; 0: 2 mm/s for a mark, as the path says for an incision")
+  verb->add_option("--speed-mm-s", a.speed_mm_s, "Of the tip; 0: 2 mm/s for a mark, as the path says for an incision")
       ->check(zero_or_more("--speed-mm-s"));
-  verb->add_option("--max-gap-mm", arguments->settings.max_gap_mm,
-                   "Farthest from a waypoint to the nearest measured point")
+  verb->add_option("--max-gap-mm", a.settings.max_gap_mm, "Farthest from a waypoint to the nearest measured point")
       ->check(zero_or_more("--max-gap-mm"));
-  verb->add_option("--smoothing-mm", arguments->settings.smoothing_mm,
+  verb->add_option("--smoothing-mm", a.settings.smoothing_mm,
                    "Radius over which the shift onto the surface is averaged; 0: every point by itself")
       ->check(CLI::Range(0.0, 100.0));
-  verb->add_option("--max-shift-mm", arguments->settings.max_shift_mm,
-                   "Farthest that a point is moved onto the surface")
+  verb->add_option("--max-shift-mm", a.settings.max_shift_mm, "Farthest that a point is moved onto the surface")
       ->check(zero_or_more("--max-shift-mm"));
-  verb->add_option("--waypoints", arguments->settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 2000));
+  verb->add_option("--waypoints", a.settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 2000));
 }
 
 }  // namespace incise::cli

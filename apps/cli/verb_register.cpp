@@ -15,8 +15,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <memory>
 #include <ostream>
 #include <sstream>
 
@@ -113,8 +111,8 @@ Laid laid_source(const PointCloud& source, const PointCloud& target, const Regis
   return laid;
 }
 
-int run_register(RegisterArguments arguments, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+int run_register(const RegisterArguments& given, const CommonOptions& options) {
+  RegisterArguments arguments = given;
   Console console(options.level());
   const std::filesystem::path output = options.required_output("registration");
   refuse_input_as_output("-o", output, {arguments.source, arguments.target});
@@ -169,7 +167,7 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
   if (!specimen_id.empty()) result["specimen_id"] = specimen_id;
   result["source_sha256"] = sha256_of_input(arguments.source);
   result["target_sha256"] = sha256_of_input(arguments.target);
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double wall_s = options.wall_s();
   result["wall_s"] = wall_s;
   seal_registration(result);
   write_json(folder.path() / "registration.json", result);
@@ -184,41 +182,38 @@ int run_register(RegisterArguments arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_register(Application& application) {
-  auto arguments = std::make_shared<RegisterArguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<RegisterArguments>(
       "register",
       "Find the similarity that lays one cloud on another, and how far it can be relied upon. Exit status 4 when it "
       "cannot",
       "incise register --source simulated.ply --target tissue.ply --scale fixed --settling-mm 1 -o registration",
-      [arguments](const CommonOptions& options) { return run_register(*arguments, options); });
-  RegistrationSettings& settings = arguments->settings;
-  verb->add_option("--source", arguments->source, "Cloud or surface to be moved (.ply, .vtp, .stl, .obj)")->required();
-  verb->add_option("--target", arguments->target, "Cloud or surface that stays")->required();
-  verb->add_option("--scale", arguments->scale, "free, fixed, or LO,HI");
-  verb->add_option("--method", arguments->method, "nonrigid: also bend the source to the target (moved_source.ply)")
+      run_register);
+  verb->add_option("--source", a.source, "Cloud or surface to be moved (.ply, .vtp, .stl, .obj)")->required();
+  verb->add_option("--target", a.target, "Cloud or surface that stays")->required();
+  verb->add_option("--scale", a.scale, "free, fixed, or LO,HI");
+  verb->add_option("--method", a.method, "nonrigid: also bend the source to the target (moved_source.ply)")
       ->check(CLI::IsMember({"rigid", "nonrigid"}));
-  verb->add_option("--outlier-weight", settings.outlier_weight,
+  verb->add_option("--outlier-weight", a.settings.outlier_weight,
                    "Share of the target that belongs to nothing in the source")
       ->check(CLI::Range(0.001, 0.95));
-  verb->add_option("--rotations", settings.rotations, "Starts of the search")->check(CLI::Range(8, 2000));
-  verb->add_flag("--from-identity", arguments->from_identity, "No search: the clouds lie nearly right");
-  verb->add_flag("--no-icp", arguments->no_icp, "Coherent point drift alone");
-  verb->add_option("--max-iterations", settings.max_iterations, "Of the drift and of the finish")
+  verb->add_option("--rotations", a.settings.rotations, "Starts of the search")->check(CLI::Range(8, 2000));
+  verb->add_flag("--from-identity", a.from_identity, "No search: the clouds lie nearly right");
+  verb->add_flag("--no-icp", a.no_icp, "Coherent point drift alone");
+  verb->add_option("--max-iterations", a.settings.max_iterations, "Of the drift and of the finish")
       ->check(CLI::Range(1, 100000));
-  verb->add_option("--max-rmse-mm", arguments->max_rmse_mm,
-                   "A larger residual is not acceptable; 0: 3 % of the target's radius")
+  verb->add_option("--max-rmse-mm", a.max_rmse_mm, "A larger residual is not acceptable; 0: 3 % of the target's radius")
       ->check(between("--max-rmse-mm", 0.0, 1000.0));
   verb->add_option(
-          "--settling-mm", arguments->settling_mm,
+          "--settling-mm", a.settling_mm,
           "How far the tissue may have settled, up or down, since it was simulated: pose and settling are then "
           "found together; 0: the pose alone")
       ->check(CLI::Range(0.0, 20.0));
-  verb->add_option("--smoothness", arguments->nonrigid.smoothness,
+  verb->add_option("--smoothness", a.nonrigid.smoothness,
                    "nonrigid: range of the bending, share of the source's radius")
       ->check(between("--smoothness", 0.01, 10.0));
-  verb->add_option("--stiffness", arguments->nonrigid.stiffness, "nonrigid: cost of bending against misfit")
+  verb->add_option("--stiffness", a.nonrigid.stiffness, "nonrigid: cost of bending against misfit")
       ->check(between("--stiffness", 1e-6, 1e6));
-  verb->add_option("--approach", arguments->approach, "Line of sight of the picture")->expected(3);
+  verb->add_option("--approach", a.approach, "Line of sight of the picture")->expected(3);
 }
 
 }  // namespace incise::cli

@@ -13,9 +13,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <memory>
-
 namespace incise::cli {
 namespace {
 
@@ -31,13 +28,10 @@ void write_folder(const ReplayArguments& arguments, const CommonOptions& options
   AtomicFolder target(options.output);
   write_replay(target.path(), replay);
   write_json(target.path() / "replay.json", result);
-  std::vector<std::filesystem::path> inputs{arguments.program};
-  if (!arguments.path.empty()) inputs.push_back(arguments.path);
-  write_manifest(target.path(), manifest_of(options,
-                                            nlohmann::ordered_json{{"speed_slider_percent", arguments.slider_percent},
-                                                                   {"max_deviation_mm", arguments.max_deviation_mm}}
-                                                .dump(),
-                                            inputs, result.at("wall_s").get<double>()));
+  const nlohmann::ordered_json settings{{"speed_slider_percent", arguments.slider_percent},
+                                        {"max_deviation_mm", arguments.max_deviation_mm}};
+  write_manifest(target.path(), manifest_of(options, settings.dump(), {arguments.program, arguments.path},
+                                            result.at("wall_s").get<double>()));
   target.commit();
 }
 
@@ -62,7 +56,6 @@ std::string warning_of(const Replay& replay, const std::filesystem::path& progra
 }
 
 int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   refuse_input_as_output("-o", options.output, {arguments.program, arguments.path});
   if (!options.output.empty()) require_replaceable(options.output);
@@ -87,7 +80,7 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
   nlohmann::ordered_json result = to_json(replay, settings);
   result["program_audit"] = to_json(audit, program.header);
   result["model"] = "incise's own kinematics and interpolation; not the maker's controller";
-  result["wall_s"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result["wall_s"] = options.wall_s();
   if (!options.output.empty()) write_folder(arguments, options, replay, result);
   if (replay.outcome != ReplayOutcome::Completed) {
     console.message(Severity::Warning, warning_of(replay, arguments.program));
@@ -99,20 +92,17 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_replay(Application& application) {
-  auto arguments = std::make_shared<ReplayArguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<ReplayArguments>(
       "replay",
       "Play a program: what the tip of the tool would do. Exit status 4 when it cannot be run, or leaves its path",
-      "incise replay cut.script --speed-slider 50 -o replay",
-      [arguments](const CommonOptions& options) { return run_replay(*arguments, options); });
-  verb->add_option("program", arguments->program, "A program that `incise export` wrote: URScript, .csv or .json")
-      ->required();
-  verb->add_option("--speed-slider", arguments->slider_percent, "Where the controller's speed slider stands, percent")
+      "incise replay cut.script --speed-slider 50 -o replay", run_replay);
+  verb->add_option("program", a.program, "A program that `incise export` wrote: URScript, .csv or .json")->required();
+  verb->add_option("--speed-slider", a.slider_percent, "Where the controller's speed slider stands, percent")
       ->check(CLI::Range(1.0, 100.0));
-  verb->add_option("--max-deviation-mm", arguments->max_deviation_mm,
+  verb->add_option("--max-deviation-mm", a.max_deviation_mm,
                    "Most that the tip may leave the path by in the cut; beyond it the exit status is 4")
       ->check(above_zero("--max-deviation-mm"));
-  verb->add_option("--path", arguments->path,
+  verb->add_option("--path", a.path,
                    "path.json, frame robot, to hold the tip against; by default the one in the program");
 }
 

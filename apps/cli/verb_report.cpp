@@ -6,7 +6,6 @@
 #include <incise/core/error.hpp>
 #include <incise/io/folder_lock.hpp>
 
-#include <memory>
 #include <optional>
 
 namespace incise::cli {
@@ -15,38 +14,37 @@ void add_report(Application& application) {
   struct ReportArguments {
     std::filesystem::path folder, registration, replay;
   };
-  auto arguments = std::make_shared<ReportArguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<ReportArguments>(
       "report", "", "incise report demo --registration registration --replay replay -o report.html",
-      [arguments](const CommonOptions& options) {
+      [](const ReportArguments& arguments, const CommonOptions& options) {
         Console console(options.level());
-        const bool is_of_a_study = !arguments->folder.empty();
-        if (!is_of_a_study && arguments->registration.empty() && arguments->replay.empty()) {
+        const bool is_of_a_study = !arguments.folder.empty();
+        if (!is_of_a_study && arguments.registration.empty() && arguments.replay.empty()) {
           throw CaseError("command line", "report", "no folder", "a study's folder, --registration or --replay");
         }
         const std::filesystem::path output = !options.output.empty() ? options.output
-                                             : is_of_a_study         ? arguments->folder / "report.html"
+                                             : is_of_a_study         ? arguments.folder / "report.html"
                                                                      : std::filesystem::path("report.html");
-        refuse_input_as_output("-o", output, {arguments->registration, arguments->replay});
+        refuse_input_as_output("-o", output, {arguments.registration, arguments.replay});
         require_own_page(output);
         ReportData data;
         std::optional<FolderLock> lock;  // a run that goes on in that folder would mix older and newer results
         if (is_of_a_study) {
-          if (std::filesystem::is_directory(arguments->folder)) lock.emplace(arguments->folder);
-          data = study_report(arguments->folder, console);
+          if (std::filesystem::is_directory(arguments.folder)) lock.emplace(arguments.folder);
+          data = study_report(arguments.folder, console);
         } else {
           data.title = "Program on measured tissue";
           data.is_of_a_study = false;
         }
-        add_on_tissue(arguments->registration, arguments->replay, data);
+        add_on_tissue(arguments.registration, arguments.replay, data);
         write_report_and_figures(data, output);
         print_result(options, {{"report", output.string()}});
         return kDone;
       });
-  verb->add_option("folder", arguments->folder, "A folder made by run, demo, simulate, …");
-  verb->add_option("--registration", arguments->registration,
+  verb->add_option("folder", a.folder, "A folder made by run, demo, simulate, …");
+  verb->add_option("--registration", a.registration,
                    "A folder made by register: its figure and numbers go into the report");
-  verb->add_option("--replay", arguments->replay, "A folder made by replay: its figure and numbers go into the report");
+  verb->add_option("--replay", a.replay, "A folder made by replay: its figure and numbers go into the report");
 }
 
 }  // namespace incise::cli

@@ -7,7 +7,6 @@
 #include <incise/storage/path_schema.hpp>
 
 #include <cstdio>
-#include <memory>
 #include <ostream>
 
 namespace incise::cli {
@@ -26,14 +25,13 @@ void add_schema(Application& application) {
     std::string what = "case";
     bool defaults = false;
   };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<Arguments>(
       "schema", "", "incise schema case --defaults > case.yaml",
-      [arguments](const CommonOptions& options) {
-        if (arguments->what == "path" && arguments->defaults) {
+      [](const Arguments& arguments, const CommonOptions& options) {
+        if (arguments.what == "path" && arguments.defaults) {
           throw CaseError("command line", "--defaults", "path", "case: a path has no defaults");
         }
-        const std::string text = text_of(arguments->what, arguments->defaults);
+        const std::string text = text_of(arguments.what, arguments.defaults);
         if (options.output.empty()) {
           std::fwrite(text.data(), 1, text.size(), stdout);
         } else {
@@ -41,8 +39,8 @@ void add_schema(Application& application) {
         }
         return kDone;
       });
-  verb->add_option("what", arguments->what, "Which file")->check(CLI::IsMember({"bench", "case", "path"}))->required();
-  verb->add_flag("--defaults", arguments->defaults, "A file with every default instead of the schema");
+  verb->add_option("what", a.what, "Which file")->check(CLI::IsMember({"bench", "case", "path"}))->required();
+  verb->add_flag("--defaults", a.defaults, "A file with every default instead of the schema");
 }
 
 }  // namespace incise::cli

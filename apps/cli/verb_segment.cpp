@@ -1,5 +1,6 @@
 #include "options.hpp"
 #include "own_files.hpp"
+#include "registration_trust.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/manifest.hpp>
@@ -8,8 +9,6 @@
 #include <incise/storage/result_json.hpp>
 
 #include <array>
-#include <chrono>
-#include <memory>
 #include <optional>
 
 namespace incise::cli {
@@ -25,45 +24,40 @@ void add_segment(Application& application) {
     double opening_mm = 0.0;
     std::optional<double> smoothing_mm;
   };
-  auto arguments = std::make_shared<Arguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<Arguments>(
       "segment", "", "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd",
-      [arguments](const CommonOptions& options) {
-        const auto start = std::chrono::steady_clock::now();
+      [](const Arguments& arguments, const CommonOptions& options) {
         Console console(options.level());
         const std::filesystem::path output = options.required_output("labels.nrrd");
-        refuse_input_as_output("-o", output, {arguments->ct});
+        refuse_input_as_output("-o", output, {arguments.ct});
         require_volume_name(output);
         require_own_manifest_beside(output);
         CtReadSettings reading;
-        if (!arguments->spacing.empty()) reading.spacing_mm = Vec3(arguments->spacing.data());
-        if (!arguments->hu.empty()) reading.hu = GrayToHu{arguments->hu[0], arguments->hu[1]};
+        if (!arguments.spacing.empty()) reading.spacing_mm = Vec3(arguments.spacing.data());
+        if (!arguments.hu.empty()) reading.hu = GrayToHu{arguments.hu[0], arguments.hu[1]};
         SegmentationSettings settings;
-        settings.window_low_hu = arguments->window[0];
-        settings.window_high_hu = arguments->window[1];
-        settings.opening_radius_mm = arguments->opening_mm;
-        settings.smoothing_mm = arguments->smoothing_mm;
-        if (!arguments->roi.empty()) {
-          settings.roi_box_mm = Box3(Vec3(arguments->roi.data()), Vec3(arguments->roi.data() + 3));
+        settings.window_low_hu = arguments.window[0];
+        settings.window_high_hu = arguments.window[1];
+        settings.opening_radius_mm = arguments.opening_mm;
+        settings.smoothing_mm = arguments.smoothing_mm;
+        if (!arguments.roi.empty()) {
+          settings.roi_box_mm = Box3(Vec3(arguments.roi.data()), Vec3(arguments.roi.data() + 3));
           if (settings.roi_box_mm->isEmpty()) {
             throw CaseError("command line", "--roi-box-mm", "a low corner above the high corner",
                             "low x y z, high x y z");
           }
         }
-        if (!arguments->seed.empty()) settings.seeds_mm.emplace_back(arguments->seed.data());
-        const Segmentation found = segment(read_ct(arguments->ct, reading, console).volume, settings, console);
-        for (const VerdictReason& reason : found.verdict.reasons()) {
-          console.message(Severity::Warning, fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
-        }
-        const nlohmann::json chosen{{"window_hu", arguments->window},
-                                    {"roi_box_mm", arguments->roi},
-                                    {"seed_mm", arguments->seed},
-                                    {"spacing_mm", arguments->spacing},
-                                    {"hu", arguments->hu},
+        if (!arguments.seed.empty()) settings.seeds_mm.emplace_back(arguments.seed.data());
+        const Segmentation found = segment(read_ct(arguments.ct, reading, console).volume, settings, console);
+        tell(found.verdict, console);
+        const nlohmann::json chosen{{"window_hu", arguments.window},
+                                    {"roi_box_mm", arguments.roi},
+                                    {"seed_mm", arguments.seed},
+                                    {"spacing_mm", arguments.spacing},
+                                    {"hu", arguments.hu},
                                     {"opening_mm", settings.opening_radius_mm},
                                     {"smoothing_mm", found.smoothing_mm}};
-        const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        Manifest manifest = manifest_of(options, chosen.dump(), {arguments->ct}, wall_s);
+        Manifest manifest = manifest_of(options, chosen.dump(), {arguments.ct}, options.wall_s());
         if (manifest.specimen_id.empty()) manifest.specimen_id = specimen_id_of_scan(manifest.inputs.front().sha256);
         write_labels(output, found.labels);
         write_manifest_beside(output, manifest);
@@ -72,15 +66,17 @@ void add_segment(Application& application) {
         print_result(options, result);
         return kDone;
       });
-  verb->add_option("ct", arguments->ct, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
-  verb->add_option("--window-hu", arguments->window, "Least and greatest HU of tissue")->expected(2);
-  verb->add_option("--roi-box-mm", arguments->roi, "Low x y z and high x y z of the box to look in, LPS")->expected(6);
-  verb->add_option("--seed-mm", arguments->seed, "A point inside the specimen, LPS")->expected(3);
-  verb->add_option("--opening-mm", arguments->opening_mm, "Cut bridges thinner than twice this");
-  verb->add_option("--smoothing-mm", arguments->smoothing_mm, "Length that the tissue's surface is smoothed over; by default 0.6, or 1.2 voxels where that is less")
+  verb->add_option("ct", a.ct, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
+  verb->add_option("--window-hu", a.window, "Least and greatest HU of tissue")->expected(2);
+  verb->add_option("--roi-box-mm", a.roi, "Low x y z and high x y z of the box to look in, LPS")->expected(6);
+  verb->add_option("--seed-mm", a.seed, "A point inside the specimen, LPS")->expected(3);
+  verb->add_option("--opening-mm", a.opening_mm, "Cut bridges thinner than twice this");
+  verb->add_option(
+          "--smoothing-mm", a.smoothing_mm,
+          "Length that the tissue's surface is smoothed over; by default 0.6, or 1.2 voxels where that is less")
       ->check(CLI::Range(0.0, 5.0));
-  verb->add_option("--spacing-mm", arguments->spacing, "PNG slices: column, row and slice spacing")->expected(3);
-  verb->add_option("--hu", arguments->hu, "PNG slices: slope and intercept")->expected(2);
+  verb->add_option("--spacing-mm", a.spacing, "PNG slices: column, row and slice spacing")->expected(3);
+  verb->add_option("--hu", a.hu, "PNG slices: slope and intercept")->expected(2);
 }
 
 }  // namespace incise::cli

@@ -80,10 +80,7 @@ int study(const ExperimentSettings& settings, const CommonOptions& options) {
   } catch (const Cancelled& error) {
     throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
   }
-  if (options.json)
-    print_result(options, result);
-  else
-    print_summary(result);
+  options.json ? print_result(options, result) : print_summary(result);
   return result.at("pairs").get<std::size_t>() > 0 ? kDone : kNotAcceptable;
 }
 

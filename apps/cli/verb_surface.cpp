@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <memory>
 #include <optional>
 
 namespace incise::cli {
@@ -82,7 +81,8 @@ void require_sampleable(const TriMesh& skin, double spacing_mm, const std::files
     area_mm2 += 0.5 * (vertex(skin.vertices, triangle[1]) - p).cross(vertex(skin.vertices, triangle[2]) - p).norm();
   }
   if (area_mm2 <= kMostPoints * spacing_mm * spacing_mm) return;
-  throw DataError(input, "surface", fmt::format("{:.3g} mm2, which are {:.2g} points", area_mm2, area_mm2 / (spacing_mm * spacing_mm)),
+  throw DataError(input, "surface",
+                  fmt::format("{:.3g} mm2, which are {:.2g} points", area_mm2, area_mm2 / (spacing_mm * spacing_mm)),
                   fmt::format("at most {:.0e} points", kMostPoints), "A larger --spacing-mm makes fewer");
 }
 
@@ -222,43 +222,38 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
 }  // namespace
 
 void add_surface(Application& application) {
-  auto arguments = std::make_shared<SurfaceArguments>();
-  CLI::App* verb =
-      application.add_verb("surface",
-                           "The surface that an observer sees, as an evenly sampled cloud with normals; of a camera's "
-                           "cloud, the cleaned part",
-                           "incise surface scene/scan.ply --planes 1 --approach 0 0 1 --camera scene/camera.json "
-                           "--plane-z-mm 74 -o tissue.ply",
-                           [arguments](const CommonOptions& options) { return make_surface(*arguments, options); });
-  verb->add_option("input", arguments->input,
+  auto [verb, a] = application.add_verb<SurfaceArguments>(
+      "surface",
+      "The surface that an observer sees, as an evenly sampled cloud with normals; of a camera's "
+      "cloud, the cleaned part",
+      "incise surface scene/scan.ply --planes 1 --approach 0 0 1 --camera scene/camera.json "
+      "--plane-z-mm 74 -o tissue.ply",
+      make_surface);
+  verb->add_option("input", a.input,
                    "Case (its stretched specimen), tet mesh (.vtu, .vtk, .msh, .node), surface with triangles, or "
                    "cloud (.ply, .vtp, .stl, .obj)")
       ->required();
-  verb->add_option("--approach", arguments->approach, "Direction of sight; default: the case's, or 0 0 -1")
-      ->expected(3);
-  verb->add_option("--spacing-mm", arguments->view.spacing_mm, "Mesh: least distance between two points")
+  verb->add_option("--approach", a.approach, "Direction of sight; default: the case's, or 0 0 -1")->expected(3);
+  verb->add_option("--spacing-mm", a.view.spacing_mm, "Mesh: least distance between two points")
       ->check(CLI::Range(0.01, 100.0));
-  verb->add_option("--max-tilt-deg", arguments->view.largest_tilt_deg, "Mesh: steeper faces are left out")
+  verb->add_option("--max-tilt-deg", a.view.largest_tilt_deg, "Mesh: steeper faces are left out")
       ->check(CLI::Range(1.0, 90.0));
-  verb->add_option("--box", arguments->box, "Cloud: keep what lies between two corners, x y z x y z")->expected(6);
-  verb->add_option("--planes", arguments->cleaning.planes,
-                   "Cloud: planes (table, holder) to take away with what lies beneath")
+  verb->add_option("--box", a.box, "Cloud: keep what lies between two corners, x y z x y z")->expected(6);
+  verb->add_option("--planes", a.cleaning.planes, "Cloud: planes (table, holder) to take away with what lies beneath")
       ->check(CLI::Range(0, 20));
-  verb->add_option("--plane-tolerance-mm", arguments->cleaning.plane_tolerance_mm,
-                   "Cloud: thickness of a plane to either side")
+  verb->add_option("--plane-tolerance-mm", a.cleaning.plane_tolerance_mm, "Cloud: thickness of a plane to either side")
       ->check(above_zero("--plane-tolerance-mm"));
-  verb->add_option("--camera", arguments->camera,
-                   "Cloud in a camera's frame: JSON with T_robot_camera; with --plane-z-mm");
+  verb->add_option("--camera", a.camera, "Cloud in a camera's frame: JSON with T_robot_camera; with --plane-z-mm");
   verb->add_option(
-      "--plane-z-mm", arguments->plane_z_mm,
+      "--plane-z-mm", a.plane_z_mm,
       "Height of the largest plane in the robot's frame: the camera's scale follows from it and is taken out "
       "of the cloud; with --camera and --planes");
-  verb->add_option("--outlier-neighbours", arguments->cleaning.outlier_neighbours, "Cloud: 0 keeps outliers")
+  verb->add_option("--outlier-neighbours", a.cleaning.outlier_neighbours, "Cloud: 0 keeps outliers")
       ->check(CLI::Range(0, 200));
-  verb->add_option("--outlier-deviations", arguments->cleaning.outlier_deviations,
+  verb->add_option("--outlier-deviations", a.cleaning.outlier_deviations,
                    "Cloud: above the mean distance, beyond which a point goes")
       ->check(CLI::Range(0.0, 100.0));
-  verb->add_option("--voxel-mm", arguments->cleaning.voxel_mm, "Cloud: one point per cube of this size; 0: all")
+  verb->add_option("--voxel-mm", a.cleaning.voxel_mm, "Cloud: one point per cube of this size; 0: all")
       ->check(CLI::Range(0.0, 100.0));
 }
 

@@ -21,9 +21,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <memory>
 #include <ostream>
 
 namespace incise::cli {
@@ -238,7 +236,6 @@ std::optional<std::string> doubt_about(const MarkedLine& line, const TrackArgume
 }
 
 int run(const TrackArguments& arguments, const CommonOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
   const std::filesystem::path folder = options.required_output("tracked");
   refuse_input_as_output("-o", folder, {arguments.color, arguments.depth, arguments.intrinsics, arguments.camera});
@@ -305,8 +302,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
       {"speed_mm_s", arguments.plan.speed_mm_s},
       {"waypoints", arguments.plan.waypoints},
       {"axis", arguments.axis}}.dump();
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  write_manifest(target.path(), manifest_of(options, settings, scene.inputs, wall_s));
+  write_manifest(target.path(), manifest_of(options, settings, scene.inputs, options.wall_s()));
   target.commit();
   if (!is_wanted) {
     console.message(Severity::Warning, complaint_about(found.line, scene.picture, arguments));
@@ -323,42 +319,40 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_track(Application& application) {
-  auto arguments = std::make_shared<TrackArguments>();
-  CLI::App* verb =
-      application.add_verb("track", "",
-                           "incise track color.png depth.png --intrinsics d405.json --mark green --camera "
-                           "robot_camera.json --plan -o tracked",
-                           [arguments](const CommonOptions& options) { return run(*arguments, options); });
-  verb->add_option("rgb", arguments->color, "Colour picture (.png, .jpg, .tif), or an organised coloured cloud (.ply)")
+  auto [verb, a] = application.add_verb<TrackArguments>(
+      "track", "",
+      "incise track color.png depth.png --intrinsics d405.json --mark green --camera "
+      "robot_camera.json --plan -o tracked",
+      run);
+  verb->add_option("rgb", a.color, "Colour picture (.png, .jpg, .tif), or an organised coloured cloud (.ply)")
       ->required();
-  verb->add_option("depth", arguments->depth, "Depth picture, 16 bits (.png, .tif); none with a cloud");
-  verb->add_option("--intrinsics", arguments->intrinsics,
+  verb->add_option("depth", a.depth, "Depth picture, 16 bits (.png, .tif); none with a cloud");
+  verb->add_option("--intrinsics", a.intrinsics,
                    "JSON: width, height, fx, fy, cx, cy, depth_scale (m), distortion, depth {...}, T_color_depth");
-  verb->add_option("--camera", arguments->camera,
+  verb->add_option("--camera", a.camera,
                    "JSON with T_robot_camera: results in the robot's frame; without it: in the colour camera's");
-  verb->add_option("--mark", arguments->mark, "Colour of the mark")->check(CLI::IsMember({"red", "green"}));
-  verb->add_option("--edge", arguments->edge, "Contour of the mark: its middle, or its inner border")
+  verb->add_option("--mark", a.mark, "Colour of the mark")->check(CLI::IsMember({"red", "green"}));
+  verb->add_option("--edge", a.edge, "Contour of the mark: its middle, or its inner border")
       ->check(CLI::IsMember({"middle", "inner"}));
   verb->add_option(
-          "--max-gap-mm", arguments->max_gap_mm,
+          "--max-gap-mm", a.max_gap_mm,
           "A ring with a longer gap is open. A gap is known to 0.18 mm and 2 pixels: a ring is taken as closed up "
           "to that much more, and a warning says so")
       ->check(zero_or_more("--max-gap-mm"));
-  verb->add_option("--max-hole-mm", arguments->lift.max_hole_mm, "Longest stretch without depth that is bridged")
+  verb->add_option("--max-hole-mm", a.lift.max_hole_mm, "Longest stretch without depth that is bridged")
       ->check(zero_or_more("--max-hole-mm"));
-  verb->add_flag("--open", arguments->is_open, "The mark is an open line");
-  verb->add_flag("--plan", arguments->has_plan, "Plan an incision: path.json in the robot's frame");
-  verb->add_option("--margin-mm", arguments->margin_mm, "From the mark to the incision; 0: along the mark")
+  verb->add_flag("--open", a.is_open, "The mark is an open line");
+  verb->add_flag("--plan", a.has_plan, "Plan an incision: path.json in the robot's frame");
+  verb->add_option("--margin-mm", a.margin_mm, "From the mark to the incision; 0: along the mark")
       ->check(between("--margin-mm", 0.0, kLargestMarginMm));
-  verb->add_option("--depth-mm", arguments->plan.depth_mm, "Of the incision")->check(above_zero("--depth-mm"));
-  verb->add_option("--speed-mm-s", arguments->plan.speed_mm_s, "Of the tip")->check(above_zero("--speed-mm-s"));
-  verb->add_option("--waypoints", arguments->plan.waypoints, "Of the path")->check(CLI::Range(8, 100000));
-  verb->add_option("--axis", arguments->axis, "Tool axis: along the camera's view, or against the surface's normal")
+  verb->add_option("--depth-mm", a.plan.depth_mm, "Of the incision")->check(above_zero("--depth-mm"));
+  verb->add_option("--speed-mm-s", a.plan.speed_mm_s, "Of the tip")->check(above_zero("--speed-mm-s"));
+  verb->add_option("--waypoints", a.plan.waypoints, "Of the path")->check(CLI::Range(8, 100000));
+  verb->add_option("--axis", a.axis, "Tool axis: along the camera's view, or against the surface's normal")
       ->check(CLI::IsMember({"approach", "normal"}));
-  verb->add_option("--ply-width", arguments->ply_width, "Columns of an organised cloud whose header does not tell")
+  verb->add_option("--ply-width", a.ply_width, "Columns of an organised cloud whose header does not tell")
       ->check(above_zero("--ply-width"));
-  verb->add_option("--ply-unit-mm", arguments->ply_unit_mm, "Its unit: 1000 for metres")
-      ->check(above_zero("--ply-unit-mm"));
+  verb->add_option("--ply-unit-mm", a.ply_unit_mm, "Its unit: 1000 for metres")->check(above_zero("--ply-unit-mm"));
 }
 
 }  // namespace incise::cli

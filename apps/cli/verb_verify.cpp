@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <ostream>
 
 namespace incise::cli {
@@ -85,39 +84,30 @@ int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
   if (!arguments.figures.empty()) {
     for (const VerificationCheck& check : checks) write_figure(arguments.figures, check);
   }
-  nlohmann::ordered_json result;
-  result["passed"] =
-      std::all_of(checks.begin(), checks.end(), [](const VerificationCheck& check) { return check.passed; });
-  result["wall_s"] = 0.0;
-  for (const VerificationCheck& check : checks) {
-    result["wall_s"] = result["wall_s"].get<double>() + check.wall_s;
-    result["checks"].push_back(json_of(check));
-  }
-  if (!options.output.empty()) {
-    write_json(options.output, result);
-  }
+  const auto passed = std::ranges::count(checks, true, &VerificationCheck::passed);
+  const bool is_passed = static_cast<std::size_t>(passed) == checks.size();
+  double wall_s = 0.0;
+  for (const VerificationCheck& check : checks) wall_s += check.wall_s;
+  nlohmann::ordered_json result{{"passed", is_passed}, {"wall_s", wall_s}};
+  for (const VerificationCheck& check : checks) result["checks"].push_back(json_of(check));
+  if (!options.output.empty()) write_json(options.output, result);
   if (options.json) {
     print_result(options, result);
   } else {
     print_table(checks);
-    const auto failed =
-        std::count_if(checks.begin(), checks.end(), [](const VerificationCheck& check) { return !check.passed; });
-    fmt::print("\n{} of {} checks passed in {:.0f} s\n", checks.size() - static_cast<std::size_t>(failed),
-               checks.size(), result["wall_s"].get<double>());
+    fmt::print("\n{} of {} checks passed in {:.0f} s\n", passed, checks.size(), wall_s);
   }
-  return result["passed"].get<bool>() ? kDone : kNotAcceptable;
+  return is_passed ? kDone : kNotAcceptable;
 }
 
 }  // namespace
 
 void add_verify(Application& application) {
-  auto arguments = std::make_shared<VerifyArguments>();
-  CLI::App* verb =
-      application.add_verb("verify", "", "incise verify --only cantilever --figures figures",
-                           [arguments](const CommonOptions& options) { return run_verify(*arguments, options); });
-  verb->add_option("--only", arguments->settings.only, "Run the checks whose name starts so");
-  verb->add_option("--figures", arguments->figures, "Folder for one SVG plot per check");
-  verb->add_option("--tolerance-scale", arguments->settings.tolerance_scale,
+  auto [verb, a] = application.add_verb<VerifyArguments>(
+      "verify", "", "incise verify --only cantilever --figures figures", run_verify);
+  verb->add_option("--only", a.settings.only, "Run the checks whose name starts so");
+  verb->add_option("--figures", a.figures, "Folder for one SVG plot per check");
+  verb->add_option("--tolerance-scale", a.settings.tolerance_scale,
                    "Multiplies every tolerance; 0 shows the true residuals")
       ->check(zero_or_more("--tolerance-scale"));
 }

@@ -193,6 +193,14 @@ std::vector<std::string> validate(const ProgramSettings& s) {
   return broken;
 }
 
+Mat4 tool_pose(const Vec3& tip_mm, const Vec3& rotation_vector) {
+  Mat4 T = Mat4::Identity();
+  const double angle = rotation_vector.norm();
+  if (angle > 0.0) T.topLeftCorner<3, 3>() = Eigen::AngleAxisd(angle, rotation_vector.normalized()).toRotationMatrix();
+  T.topRightCorner<3, 1>() = tip_mm;
+  return T;
+}
+
 void require_robot_frame(const ToolPath& path, const std::filesystem::path& file) {
   if (path.frame == PathFrame::Robot) return;
   throw DataError(file, "frame", std::string(to_string(path.frame)), "robot",

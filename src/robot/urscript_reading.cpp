@@ -71,15 +71,6 @@ class Scanner {
   std::size_t at_ = 0;
 };
 
-Mat4 tool_of(const Joints& pose) {
-  Mat4 T = Mat4::Identity();
-  const Vec3 turn = pose.tail<3>();
-  T.topLeftCorner<3, 3>() =
-      turn.norm() > 0.0 ? Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() : Mat3::Identity();
-  T.topRightCorner<3, 1>() = units::kMmPerM * pose.head<3>();
-  return T;
-}
-
 ScriptCommand read_move(const std::string& word, Scanner& scan, const LinePlace& place) {
   using Kind = ScriptCommand::Kind;
   ScriptCommand command;
@@ -202,7 +193,7 @@ class ScriptReader {
       scan.six("p[", pose);
       scan.expect(")");
       scan.finish();
-      program_.T_flange_tool = tool_of(pose);
+      program_.T_flange_tool = tool_pose(units::kMmPerM * pose.head<3>(), pose.tail<3>());
     } else if (word == "movej" || word == "movel" || word == "movep" || word == "servoj") {
       add(read_move(word, scan, place_));
     } else if (word == "sleep" || word == "stopj") {

@@ -81,6 +81,9 @@ struct RobotProgram {
   [[nodiscard]] double duration_s() const { return poses.empty() ? 0.0 : poses.back().time_s; }
 };
 
+/// A tool in the flange as the pendant has it: the place of its tip, and its rotation as axis times angle, rad.
+[[nodiscard]] Mat4 tool_pose(const Vec3& tip_mm, const Vec3& rotation_vector);
+
 /// Refuses a path that is not given in the robot's base frame. @param file  names the path in the message.
 /// @throws DataError "<file>: frame: found sim_rest, expected robot. …"
 void require_robot_frame(const ToolPath& path, const std::filesystem::path& file);
