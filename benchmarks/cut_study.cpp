@@ -3,7 +3,7 @@
 //   incise_cut_study mesh  ...                                          edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move
 //   incise_cut_study table ...                                          the paper's Table I: 25 pairs of speed and dullness on two virtual specimens
 #include "cost_table.hpp"
-#include "support/phantom_store.hpp"
+#include "support/phantom_inputs.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/procedure/incision.hpp>
@@ -60,13 +60,14 @@ struct Body {
 };
 
 Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& meshing, Workers& workers) {
-  Body body{std::move(name), meshing.fine_mm, {}, {}};
+  Body body{std::move(name), meshing.fine_mm.value(), {}, {}};
   body.settings.is_virtual = true;
   body.settings.meshing = meshing;
   body.settings.frames = 0;
-  testing::PhantomStore store(phantom);
+  testing::PhantomInputs inputs(phantom);
+  Cache cache;
   Monitor silent;
-  body.study = run_study(body.settings, store, Stage::Plan, workers, silent);
+  body.study = run_study(body.settings, inputs, cache, {.until = Stage::Plan}, workers, silent);
   fmt::print(stderr, "{}: {} tets\n", body.name, body.study.model->mesh.tets.size());
   return body;
 }

@@ -4,7 +4,7 @@
 // ascending order, are drawn against each other with --figure.
 #include "cost_table.hpp"
 #include "process_cost.hpp"
-#include "support/phantom_store.hpp"
+#include "support/phantom_inputs.hpp"
 
 #include <incise/core/isa.hpp>
 #include <incise/evaluation/contour_errors.hpp>
@@ -122,8 +122,9 @@ Size run_size(const Options& options, const Phantom& phantom, int tets, std::str
   Case settings;
   settings.is_virtual = true;
   settings.meshing.tets = tets;
-  testing::PhantomStore store(phantom);
-  const Study study = run_study(settings, store, Stage::Plan, workers, silent);
+  testing::PhantomInputs inputs(phantom);
+  Cache cache;
+  const Study study = run_study(settings, inputs, cache, {.until = Stage::Plan}, workers, silent);
   Size size;
   size.tets = static_cast<double>(study.model->mesh.tets.size());
   fmt::print("{} tets, {} vertices; mesh and stretch ready, {:.0f} MB held at most so far; instruction set {}; path {:.1f} mm\n",

@@ -86,7 +86,7 @@ class InciseTest(unittest.TestCase):
         finally:
             other.join()
         self.assertGreater(len(ticks), 1, "the other thread was held up")
-        self.assertEqual(sorted(entry.name for entry in (self.folder / "out").iterdir()), ["as_planned.checkpoint", "plan", "stretched"])
+        self.assertEqual(sorted(entry.name for entry in (self.folder / "out").iterdir()), ["cache", "plan", "stretched"])
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
-#include <incise/storage/folder_store.hpp>
 #include <incise/storage/result_json.hpp>
+#include <incise/storage/run_folder.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <pybind11/numpy.h>
@@ -94,8 +94,8 @@ py::dict simulate(const CaseFile& file, const std::filesystem::path& output, int
     require_plan_inputs(file);
     require_input_files(file);
     Workers workers(threads);
-    FolderStore store(file, output, {"incise.simulate (Python)", 1, workers.thread_count()});
-    study = run_study(file.settings, store, Stage::Simulate, workers, monitor);
+    RunFolder folder(file, output, {"incise.simulate (Python)", 1, workers.thread_count()});
+    study = run_study(file.settings, folder, folder.cache(), {.until = Stage::Simulate}, workers, monitor, folder);
   } catch (const Cancelled&) {
     monitor.rethrow();
     throw;

@@ -5,6 +5,8 @@
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/robust_files.hpp>
 
+#include <fmt/format.h>
+
 #include <optional>
 
 namespace incise::cli {
@@ -29,14 +31,13 @@ struct CalibrationInput {
 
 /// Runs what needs the tissues of a calibration; what is kept of it when it is interrupted is said.
 template <class Work>
-auto with_tissues(StudyRun& run, Work work) -> decltype(work(std::declval<ScenarioRunStore&>())) {
-  ScenarioRunFolder runs(run.store.root() / "scenario_runs", run.store.product_key(Product::AsPlanned));
+auto with_tissues(StudyRun& run, Work work) -> decltype(work()) {
   try {
-    return work(runs);
+    return work();
   } catch (const CaseError& error) {
-    throw error.in_file(run.store.case_file().file.string());
+    throw error.in_file(run.folder.case_file().file.string());
   } catch (const Cancelled& error) {
-    throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", run.store.root().string()));
+    throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", run.folder.root().string()));
   }
 }
 

@@ -8,16 +8,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ostream>
 
 namespace incise::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_atomically(path, [&text](std::ostream& out) { out << text; });
-}
 
 /// The settings of every case in full.
 std::string settings_of_all(const std::vector<CaseFile>& cases) {
@@ -98,12 +93,12 @@ void write_calibration(const std::filesystem::path& folder, const Calibration& c
                        const std::vector<CaseFile>& cases, const std::vector<std::string>& specimen_ids,
                        const std::vector<std::filesystem::path>& inputs, const CommonOptions& options, double wall_s) {
   const char* table = calibration.method == CalibrationMethod::Paper ? "table_1" : "simulations";
-  write_text(folder / fmt::format("{}.csv", table), csv_text(calibration_table(calibration)));
-  write_text(folder / fmt::format("{}.tex", table), latex_text(calibration_table_rounded(calibration)));
+  write_atomically(folder / fmt::format("{}.csv", table), csv_text(calibration_table(calibration)));
+  write_atomically(folder / fmt::format("{}.tex", table), latex_text(calibration_table_rounded(calibration)));
   if (calibration.method == CalibrationMethod::Paper) {
-    write_text(folder / "table_1.svg", score_heat_map_svg(grid_of(calibration)));
+    write_atomically(folder / "table_1.svg", score_heat_map_svg(grid_of(calibration)));
   }
-  if (calibration.fit) write_text(folder / "fit.svg", fit_figure(calibration));
+  if (calibration.fit) write_atomically(folder / "fit.svg", fit_figure(calibration));
   write_manifest(folder, manifest_of(options, settings_of_all(cases), inputs, wall_s));
   Json json = to_json(calibration);
   json["specimen_ids"] = specimen_ids;

@@ -113,7 +113,7 @@ void add_scale_options(CLI::App& verb, ScaleOptions& options) {
   verb.add_option("--mm-per-pixel", options.mm_per_pixel, "Scale of the photograph")
       ->check(above_zero("--mm-per-pixel"));
   verb.add_option("--ruler", options.ruler, "Find the scale in the photograph: a ruler's ticks, or a solid scale bar")
-      ->check(CLI::IsMember({"ticks", "bar"}));
+      ->check(name_of_any<RulerKind>());
   verb.add_option("--ruler-mm", options.ruler_mm,
                   "From one of the ruler's finest ticks to the next, by default 1 mm; of a bar: its length")
       ->check(above_zero("--ruler-mm"));
@@ -136,7 +136,7 @@ FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture, co
     throw CaseError("command line", "scale", ways == 0 ? "no scale" : fmt::format("{} scales", ways),
                     "one of --mm-per-pixel, --ruler, --two-points, --rectangle");
   }
-  if (options.ruler == "bar" && !options.ruler_mm)
+  if (options.ruler == to_string(RulerKind::Bar) && !options.ruler_mm)
     throw CaseError("command line", "--ruler bar", "no length", "the bar's length: --ruler-mm");
   FoundScale found;
   try {
@@ -161,8 +161,7 @@ FoundScale scale_of(const ScaleOptions& options, const ColorPicture& picture, co
     throw CaseError("command line", "scale", "points or lengths that give none", "ones that do", as_sentence(error));
   }
   if (options.ruler.empty()) return found;
-  const Ruler ruler =
-      find_ruler(picture, options.ruler == "bar" ? RulerKind::Bar : RulerKind::Ticks, options.ruler_mm, name);
+  const Ruler ruler = find_ruler(picture, value_named<RulerKind>(options.ruler), options.ruler_mm, name);
   found.scale = scale_from_mm_per_pixel(ruler.mm_per_pixel, picture.height);
   found.marks_px = ruler.marks_px;
   found.summary = {{"source", "ruler"}, {"marks", ruler.marks_px.size()}, {"error_percent", ruler.error_percent}};

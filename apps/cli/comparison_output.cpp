@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ostream>
 
 namespace incise::cli {
 namespace {
@@ -140,13 +139,9 @@ ZoneBorders borders_of(const ComparedFiles& files) {
   return {};
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  write_atomically(path, [&](std::ostream& out) { out << text; });
-}
-
 void write_both(const std::filesystem::path& folder, const std::string& name, const std::string& svg) {
-  write_text(folder / (name + ".svg"), svg);
-  write_text(folder / (name + ".png"), png_of_svg(svg));
+  write_atomically(folder / (name + ".svg"), svg);
+  write_atomically(folder / (name + ".png"), png_of_svg(svg));
 }
 
 void write_figures(const std::filesystem::path& folder, const ComparedFiles& files) {
@@ -177,12 +172,12 @@ ComparisonOutput compared(ComparedFiles files, const ComparisonSettings& setting
   if (!before.empty() && !after.empty()) comparison = compare(before, after, settings);
 
   Json& json = output.json;
-  json["measure"] = settings.measure == ErrorMeasure::Absolute ? "absolute" : "signed";
+  json["measure"] = to_string(settings.measure);
   json["contour"] = output.files.before.front().contour;
   json["target_mm"] = output.files.before.front().target_mm;
   json["mean_before_mm"] = comparison ? Json(comparison->points.before.mean) : Json(nullptr);
   json["mean_after_mm"] = comparison ? Json(comparison->points.after.mean) : Json(nullptr);
-  json["verdict"] = comparison ? "tested" : "too_few";
+  json["verdict"] = to_string(comparison ? TestVerdict::Tested : TestVerdict::TooFew);
   json["points"] = comparison ? points_json_of(comparison->points, settings) : Json(nullptr);
   json["specimens"] = comparison ? specimens_json(comparison->specimens) : Json(nullptr);
   json["alpha"] = settings.alpha;
@@ -206,11 +201,11 @@ void write_comparison(const std::filesystem::path& folder, const ComparisonOutpu
   AtomicFolder target(folder);
   write_json(target.path() / "compare.json", output.json);
   const TextTable results = result_table(output.json);
-  write_text(target.path() / "table.csv", csv_text(results));
-  write_text(target.path() / "table.tex", latex_text(results));
+  write_atomically(target.path() / "table.csv", csv_text(results));
+  write_atomically(target.path() / "table.tex", latex_text(results));
   const TextTable tests = test_table(output.json);
-  write_text(target.path() / "tests.csv", csv_text(tests));
-  write_text(target.path() / "tests.tex", latex_text(tests));
+  write_atomically(target.path() / "tests.csv", csv_text(tests));
+  write_atomically(target.path() / "tests.tex", latex_text(tests));
   write_figures(target.path(), output.files);
   Manifest manifest;
   manifest.version = version();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <incise/storage/evaluation_file.hpp>
-#include <incise/storage/folder_store.hpp>
+#include <incise/storage/run_folder.hpp>
 
 #include <nlohmann/json.hpp>
 

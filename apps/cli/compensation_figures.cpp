@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <ostream>
 
 namespace incise::cli {
 namespace {
@@ -139,7 +138,7 @@ std::vector<std::filesystem::path> write_compensation_figures(const std::filesys
     std::filesystem::create_directories(folder);
     const std::string svg = line_plot_svg(figure.plot);
     written.push_back(folder / figure.file);
-    write_atomically(written.back(), [&svg](std::ostream& out) { out << svg; });
+    write_atomically(written.back(), svg);
   }
   return written;
 }

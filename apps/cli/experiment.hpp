@@ -10,7 +10,7 @@
 
 namespace incise::cli {
 
-/// What `incise study` is asked for.
+/// What `incise experiment` is asked for.
 struct ExperimentSettings {
   std::uint64_t specimens = 4;           ///< half to calibrate on, half to test; even
   std::optional<std::uint64_t> outside;  ///< further ones, unlike the others; absent: one with four specimens, else none

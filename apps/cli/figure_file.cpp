@@ -6,8 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <ostream>
-
 namespace incise::cli {
 
 void require_figure_file(const std::filesystem::path& path, const char* option) {
@@ -20,7 +18,7 @@ void require_figure_file(const std::filesystem::path& path, const char* option) 
 
 void write_figure(const std::filesystem::path& path, const std::string& svg) {
   const std::string bytes = path.extension() == ".png" ? png_of_svg(svg) : svg;
-  write_atomically(path, [&](std::ostream& out) { out << bytes; });
+  write_atomically(path, bytes);
 }
 
 }  // namespace incise::cli

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/names.hpp>
+
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
@@ -20,6 +22,18 @@ namespace incise::cli {
 [[nodiscard]] CLI::Validator finite(const std::string& option);
 /// Digits alone: neither 2.5 nor 1e3 nor 010. From low to high, both allowed.
 [[nodiscard]] CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::uint64_t high);
+
+/// One of an enum's names.
+template <Named E>
+[[nodiscard]] CLI::Validator name_of_any() {
+  const Names names = names_of(E{});
+  return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
+}
+/// The value that such a name stands for. @pre the name has been checked
+template <Named E>
+[[nodiscard]] E value_named(const std::string& name) {
+  return value_of<E>(name).value();
+}
 
 /// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), as one about the option of that
 /// name (--close-margin-mm); nothing for none.

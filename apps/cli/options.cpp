@@ -22,11 +22,12 @@ namespace {
 constexpr std::uint64_t kGreatestSeed = 1'000'000'000'000'000;  // a study counts on from it; exact in JSON
 
 void choose_isa(const std::string& name) {
-  if (!is_supported(parse_isa(name))) {
+  const Isa isa = value_named<Isa>(name);
+  if (!is_supported(isa)) {
     throw CaseError("command line", "--isa", name,
                     fmt::format("an instruction set that this machine has: at best {}", to_string(best_isa())));
   }
-  set_isa(parse_isa(name));
+  set_isa(isa);
 }
 
 }  // namespace
@@ -157,7 +158,7 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   verb->add_option("--seed", options->seed, "Seed of everything random")->check(whole_between("--seed", 0, kGreatestSeed));
   verb->add_option("--isa", options->isa,
                    "Instruction set of the vectorised kernels; by default the best that this machine has")
-      ->check(CLI::IsMember({"portable", "avx2", "avx512"}));
+      ->check(name_of_any<Isa>());
   verb->callback([this, options, given, run = std::move(run)] {
     if (!options->isa.empty()) choose_isa(options->isa);
     if (given->count() > 0 && options->output.empty())

@@ -4,7 +4,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/manifest.hpp>
-#include <incise/storage/folder_store.hpp>
+#include <incise/storage/run_folder.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

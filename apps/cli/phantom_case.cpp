@@ -13,8 +13,6 @@
 
 #include <fmt/format.h>
 
-#include <ostream>
-
 namespace incise::cli {
 namespace {
 
@@ -96,7 +94,7 @@ nlohmann::ordered_json write_phantom_case(const std::filesystem::path& folder, s
   write_contour_csv(target.path() / "tumor.csv", phantom.tumor_edge);
   write_ply(target.path() / "tumor.ply", phantom.tumor);
   write_json(target.path() / "truth.json", truth_json(phantom, seed));
-  write_atomically(target.path() / "case.yaml", [&](std::ostream& out) { out << case_text(phantom, format, seed); });
+  write_atomically(target.path() / "case.yaml", case_text(phantom, format, seed));
   Manifest manifest;
   manifest.version = version();
   manifest.commit = source_commit();

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <map>
-#include <ostream>
 
 namespace incise::cli {
 namespace {
@@ -118,7 +117,7 @@ PowerJson json_of(const PowerResult& result) {
 void write_power(const std::filesystem::path& folder, const PowerResult& result,
                  const std::vector<std::filesystem::path>& inputs, const CommonOptions& options) {
   const std::string table = csv_text(power_table(result.series));
-  write_atomically(folder / "power.csv", [&table](std::ostream& out) { out << table; });
+  write_atomically(folder / "power.csv", table);
   write_figures(folder, result);
   write_manifest(folder, manifest_of(options, settings_of_power(result), inputs, result.wall_s));
   write_json(folder / "power.json", json_of(result));

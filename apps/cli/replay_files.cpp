@@ -6,7 +6,6 @@
 #include <incise/report/replay_figure.hpp>
 
 #include <algorithm>
-#include <ostream>
 
 namespace incise::cli {
 namespace {
@@ -86,7 +85,7 @@ void write_replay(const std::filesystem::path& folder, const Replay& replay) {
   if (replay.intended_mm.size() > 2)
     picture.intended_mm.assign(replay.intended_mm.begin() + 1, replay.intended_mm.end() - 1);
   const std::string svg = replay_figure_svg(picture);
-  write_atomically(folder / "replay.svg", [&svg](std::ostream& out) { out << svg; });
+  write_atomically(folder / "replay.svg", svg);
 }
 
 }  // namespace incise::cli

@@ -69,45 +69,17 @@ CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions&
 StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until,
                    const CommonOptions& options, const CutOptions& cut)
     : is_new_folder(!std::filesystem::exists(output)),
-      store(with_folder_locked(case_as_asked(case_path, cut), output, lock_), output, options.context(), cut.checkpoint_s),
-      until_(until) {
-  if (cut.must_resume) require_checkpoint();
+      folder(with_folder_locked(case_as_asked(case_path, cut), output, lock_), output, options.context()),
+      options_{until, cut.must_resume, cut.checkpoint_s} {
   // Kept apart from the products: which case they are of, for `incise report`.
-  const auto relative = std::filesystem::absolute(store.case_file().file).lexically_proximate(std::filesystem::absolute(output));
+  const auto relative =
+      std::filesystem::absolute(folder.case_file().file).lexically_proximate(std::filesystem::absolute(output));
   const std::filesystem::path record = output / "study.json";
   if (std::filesystem::exists(record)) {
     const nlohmann::ordered_json older = read_json(record);
     if (older.is_object() && older.contains("case_file") && older.at("case_file") == relative.string()) return;
   }
   write_json(record, {{"case_file", relative.string()}});
-}
-
-CutRole StudyRun::next_cut() {
-  if (!store.is_current(Product::AsPlanned) || until_ < Stage::Verify) return CutRole::AsPlanned;
-  const bool is_paper = store.case_file().settings.compensation.method == CompensationMethod::Paper;
-  if (is_paper || store.is_current(Product::Correction)) return CutRole::Corrected;
-  int pass = 1;
-  while (pass < kMostPasses && store.is_current(product_of(role_of_pass(pass)))) ++pass;
-  return role_of_pass(pass);
-}
-
-void StudyRun::require_checkpoint() {
-  // The one cut that comes next: a checkpoint of another would leave this one to start from the beginning.
-  const bool is_first_made = store.is_current(Product::AsPlanned);
-  const CutRole next = next_cut();
-  if (std::filesystem::exists(store.checkpoint(next))) {
-    store.require_fitting_checkpoint(next);
-    return;
-  }
-  remove_if_nothing_was_made();
-  const std::string name = store.checkpoint(next).filename().string();
-  if (is_first_made && next == CutRole::AsPlanned) {
-    throw CaseError("command line", "--resume", fmt::format("the cut as planned finished in {}", store.root().string()),
-                    fmt::format("{}, which an interrupted cut leaves", name), "Without --resume it is read from there");
-  }
-  throw CaseError("command line", "--resume", fmt::format("no checkpoint {} in {}", name, store.root().string()),
-                  fmt::format("what the cut {} leaves when it is interrupted", store.folder(product_of(next)).filename().string()),
-                  "Without --resume the cut starts from the beginning");
 }
 
 namespace {
@@ -140,21 +112,21 @@ void require_a_place_for_the_arm(const Case& settings) {
 
 Study StudyRun::run(const CommonOptions& options, Monitor& monitor) {
   Workers workers(options.threads);
-  const CaseFile& file = store.case_file();
+  const CaseFile& file = folder.case_file();
   try {
-    if (until_ >= Stage::Plan || file.inputs.specimen_mesh.empty()) require_plan_inputs(file);
-    if (until_ >= Stage::Verify) require_a_place_for_the_arm(file.settings);
-    store.remove_what_is_out_of_date(monitor);
-    return run_study(file.settings, store, until_, workers, monitor);
+    if (options_.until >= Stage::Plan || file.inputs.specimen_mesh.empty()) require_plan_inputs(file);
+    if (options_.until >= Stage::Verify) require_a_place_for_the_arm(file.settings);
+    folder.remove_what_is_out_of_date(monitor);
+    return run_study(file.settings, folder, folder.cache(), options_, workers, monitor, folder);
   } catch (const CaseError& error) {
     remove_if_nothing_was_made();
     throw error.in_file(file.file.string());
+  } catch (const CutInterrupted& error) {
+    throw StagesKept(error.what(),
+                     fmt::format("its checkpoint {} is kept", folder.cache().place_of(error.slot()).string()));
   } catch (const Cancelled& error) {
     remove_if_nothing_was_made();
-    if (!store.last_checkpoint().empty()) {
-      throw StagesKept(error.what(), fmt::format("its checkpoint {} is kept", store.last_checkpoint().string()));
-    }
-    if (has_products()) throw StagesKept(error.what());
+    if (folder.has_products()) throw StagesKept(error.what());
     throw;
   } catch (...) {
     remove_if_nothing_was_made();
@@ -162,21 +134,14 @@ Study StudyRun::run(const CommonOptions& options, Monitor& monitor) {
   }
 }
 
-bool StudyRun::has_products() const {
-  for (int product = 0; product <= static_cast<int>(Product::Corrected); ++product) {
-    if (std::filesystem::exists(store.folder(static_cast<Product>(product)))) return true;
-  }
-  return false;
-}
-
 void StudyRun::remove_if_nothing_was_made() const {
   std::error_code ignored;
   if (!is_new_folder) return;
-  for (const auto& entry : std::filesystem::directory_iterator(store.root(), ignored)) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder.root(), ignored)) {
     if (entry.path().filename() != "study.json") return;
   }
-  std::filesystem::remove(store.root() / "study.json", ignored);
-  std::filesystem::remove(store.root(), ignored);
+  std::filesystem::remove(folder.root() / "study.json", ignored);
+  std::filesystem::remove(folder.root(), ignored);
 }
 
 namespace {
@@ -234,15 +199,15 @@ CheckedProgram checked_program(const CaseFile& file, const Study& done) {
 
 void write_program_files(StudyRun& study, const CheckedProgram& made, const Verdict& verdict, const VerdictGate& gate,
                          nlohmann::ordered_json& json) {
-  const Case& settings = study.store.case_file().settings;
+  const Case& settings = study.folder.case_file().settings;
   ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())}, {"title", settings.title}};
-  provenance.emplace_back("specimen_id", study.store.specimen_id());
+  provenance.emplace_back("specimen_id", study.folder.specimen_id());
   if (settings.is_virtual) provenance.emplace_back("specimen", kVirtualSpecimen);
   for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
   const ProgramHeader header = program_header(made.program, made.path, made.checks, provenance);
-  AtomicFolder target(study.store.root() / "program");
+  AtomicFolder target(study.folder.root() / "program");
   ToolPath path = made.path;
-  path.specimen_id = study.store.specimen_id();
+  path.specimen_id = study.folder.specimen_id();
   path.is_virtual = settings.is_virtual;
   write_tool_path(target.path() / "path.json", path, verdict);
   const std::string script = to_urscript(made.program, header);
@@ -252,15 +217,15 @@ void write_program_files(StudyRun& study, const CheckedProgram& made, const Verd
   const Replay replay = incise::play(program_from_text(script, "program.script"), made.program.setup.arm, player);
   write_replay(target.path(), replay);
   json["replay"] = to_json(replay, player);
-  study.store.write_manifest_to(target.path(), 0.0, &verdict);
+  study.folder.write_manifest_to(target.path(), 0.0, &verdict);
   target.commit();
 }
 
 /// The program for the path whose cut the verdict is about, if the checks and the verdict let it pass. Failed checks join the verdict.
 nlohmann::ordered_json write_program(StudyRun& study, const Study& done, const std::vector<std::string>& accepted, Verdict& verdict,
                                      Monitor& monitor) {
-  const Case& settings = study.store.case_file().settings;
-  const std::filesystem::path folder = study.store.root() / "program";
+  const Case& settings = study.folder.case_file().settings;
+  const std::filesystem::path folder = study.folder.root() / "program";
   remove_replaceable(folder);
   nlohmann::ordered_json json;
   if (const std::string reason = without_program(settings); !reason.empty()) {
@@ -274,7 +239,7 @@ nlohmann::ordered_json write_program(StudyRun& study, const Study& done, const s
     json["reason"] = "nothing was cut";
     return json;
   }
-  const CheckedProgram made = checked_program(study.store.case_file(), done);
+  const CheckedProgram made = checked_program(study.folder.case_file(), done);
   add_failed_checks(made.checks, verdict);
   const VerdictGate gate = gate_of(verdict, accepted);
   report_gate(verdict, gate, monitor);
@@ -303,11 +268,11 @@ int status_of(const Study& study) {
 int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vector<std::string>& accepted, Monitor& monitor,
                    nlohmann::ordered_json& result) {
   const auto start = std::chrono::steady_clock::now();
-  warn_of_looser_limits(study.store.case_file().settings, monitor);
+  warn_of_looser_limits(study.folder.case_file().settings, monitor);
   Study done = study.run(options, monitor);
-  const std::filesystem::path root = study.store.root();
-  const Case& settings = study.store.case_file().settings;
-  study.store.add_advice_to(done.verdict, done.is_accepted);
+  const std::filesystem::path root = study.folder.root();
+  const Case& settings = study.folder.case_file().settings;
+  study.folder.add_advice_to(done.verdict, done.is_accepted);
   result["stages"] = to_json(done.stages);
   result["verdict"] = nullptr;  // once the program's checks have joined it
   result["outcome"] = to_string(done.outcome);
@@ -316,7 +281,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vec
   result["accepted"] = done.is_accepted;
   result["correction"] = done.correction ? correction_summary_json(*done.correction) : nlohmann::ordered_json(nullptr);
   result["specimen_is"] = settings.is_virtual ? "virtual" : "real";
-  result["specimen_id"] = study.store.specimen_id();
+  result["specimen_id"] = study.folder.specimen_id();
   bool has_program = true;
   if (done.plan) {
     result["program"] = write_program(study, done, accepted, done.verdict, monitor);
@@ -328,7 +293,7 @@ int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vec
   nlohmann::ordered_json record = result;
   record["case_file"] = read_json(root / "study.json").at("case_file");
   write_json(root / "study.json", record);
-  study.store.write_manifest_to(root, elapsed(), &done.verdict);
+  study.folder.write_manifest_to(root, elapsed(), &done.verdict);
   monitor.message(Severity::Notice, "report: drawing");
   try {
     write_report_and_figures(study_report(root, monitor), root / "report.html");

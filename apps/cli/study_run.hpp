@@ -27,7 +27,6 @@ void add_compensation_method(CLI::App& verb, CutOptions& options);
 /// One way through a study on a folder: the stages up to `until`, and a study.json in the folder that says which case it is of.
 struct StudyRun {
   /// @param until  the last stage that will be asked for.
-  /// @throws CaseError or DataError when it has to resume and the first cut that is to be made has no checkpoint, or one that does not fit.
   StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until, const CommonOptions& options,
            const CutOptions& cut = {});
 
@@ -36,19 +35,15 @@ struct StudyRun {
   const bool is_new_folder;  ///< the output did not exist before
 
  private:
-  std::optional<FolderLock> lock_;  ///< on the output, before the store looks at it
+  std::optional<FolderLock> lock_;  ///< on the output, before the folder is looked at
 
  public:
-  FolderStore store;
+  RunFolder folder;
 
  private:
-  const Stage until_;
-  void require_checkpoint();
-  /// The cut that comes next.
-  [[nodiscard]] CutRole next_cut();
+  const RunOptions options_;
   /// A study that failed before its first product leaves no folder behind.
   void remove_if_nothing_was_made() const;
-  [[nodiscard]] bool has_products() const;
 };
 
 /// The case, and the files that it names looked for, before anything is written. @throws CaseError, DataError

@@ -64,15 +64,6 @@ std::string cell(const TableJson& value) {
   return value.dump();
 }
 
-const char* to_string(TrialRole role) {
-  switch (role) {
-    case TrialRole::Calibrate: return "calibrate";
-    case TrialRole::Test: return "test";
-    case TrialRole::Outside: return "outside";
-  }
-  return "unknown";
-}
-
 std::vector<std::string> refusals_of(const Trial& trial) {
   std::vector<std::string> list;
   for (const std::string* reason : {&trial.ended_at, &trial.planned.ended_at, &trial.corrected.ended_at, &trial.paper_pass.ended_at, &trial.withheld.ended_at})

@@ -2,6 +2,8 @@
 
 #include "study_specimen.hpp"
 
+#include <incise/core/names.hpp>
+
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -12,7 +14,10 @@
 namespace incise::cli {
 
 enum class TrialRole { Calibrate, Test, Outside };
-[[nodiscard]] const char* to_string(TrialRole role);  ///< calibrate, test, outside
+inline constexpr std::array<std::string_view, 3> kTrialRoleNames{"calibrate", "test", "outside"};
+[[nodiscard]] constexpr Names names_of(TrialRole) {
+  return kTrialRoleNames;
+}
 
 /// One specimen of an experiment, and what came of it.
 struct Trial {

@@ -4,6 +4,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
+#include <incise/robot/player.hpp>
 
 #include <fmt/format.h>
 
@@ -61,7 +62,9 @@ std::string tip_against_path(const Json& replay) {
     return replay.contains(key) && replay.at(key).is_number() ? replay.at(key).get<double>() : -1.0;
   };
   const double most_mm = number("max_cut_deviation_mm"), mean_mm = number("mean_deviation_mm");
-  std::string text = replay.value("outcome", "") == "completed" ? "" : "The program does not run to a good end. ";
+  std::string text = replay.value("outcome", "") == to_string(ReplayOutcome::Completed)
+                         ? ""
+                         : "The program does not run to a good end. ";
   if (most_mm >= 0.0 && mean_mm >= 0.0)
     text += fmt::format("Tip against path, in the cut: at most {:.2f} mm, mean {:.2f} mm. ", most_mm, mean_mm);
   return text + "As the player ran it, with incise's own kinematics and a model of the controller; not on an arm.";

@@ -98,31 +98,31 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   if (!note.empty()) console.message(Severity::Warning, note);
   const std::filesystem::path output = output_of(chosen.case_path, options);
   StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
-  require_same_specimen(chosen.registration, run.store.specimen_id(), "the case's");
+  require_same_specimen(chosen.registration, run.folder.specimen_id(), "the case's");
   const Study study = run.run(options, console);
   Workers workers(options.threads);
-  Assessment assessment = with_tissues(run, [&](ScenarioRunStore& runs) {
-    return assess(run.store.case_file().settings, run.store, study, calibration.belief, request, runs, workers,
-                  console);
+  Assessment assessment = with_tissues(run, [&] {
+    return assess(run.folder.case_file().settings, run.folder, run.folder.cache(), study, calibration.belief, request,
+                  workers, console);
   });
   if (!note.empty()) assessment.notes.push_back(note);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   nlohmann::ordered_json result = to_json(assessment, request);
-  result["specimen_is"] = run.store.case_file().settings.is_virtual ? "virtual" : "real";
+  result["specimen_is"] = run.folder.case_file().settings.is_virtual ? "virtual" : "real";
   result["calibration_is"] = calibration.record.is_virtual ? "virtual" : "real";
-  result["specimen_id"] = run.store.specimen_id();
+  result["specimen_id"] = run.folder.specimen_id();
   result["verdict"] = nullptr;  // known once the assessment is kept
-  write_assessment(run.store, result, calibration.file, chosen.registration, wall.count());
+  write_assessment(run.folder, result, calibration.file, chosen.registration, wall.count());
   Verdict verdict = study.verdict;
   verdict.add(of_registration);
-  run.store.add_advice_to(verdict, study.is_accepted);
+  run.folder.add_advice_to(verdict, study.is_accepted);
   result["verdict"] = to_json(verdict);
   if (study.corrected) {
     Verdict of_corrected = study.about_inputs;
     of_corrected.add(study.corrected->verdict);
-    run.store.save_verdicts({}, of_corrected);
+    run.folder.verdicts({}, of_corrected);
   }
-  result["folder"] = run.store.root().string();
+  result["folder"] = run.folder.root().string();
   result["wall_s"] = wall.count();
   if (options.json)
     print_result(options, result);

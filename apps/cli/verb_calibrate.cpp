@@ -6,6 +6,7 @@
 #include "study_run.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/entry_folder.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
@@ -96,7 +97,7 @@ void require_different_values(const char* option, std::vector<double> values) {
 int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   Console console(options.level());
-  arguments.request.method = arguments.method == "paper" ? CalibrationMethod::Paper : CalibrationMethod::Fit;
+  arguments.request.method = value_named<CalibrationMethod>(arguments.method);
   require_valid(validate(arguments.request));
   require_different_values("--speeds-mm-s", arguments.request.speeds_mm_s);
   require_different_values("--dullnesses", arguments.request.dullnesses);
@@ -106,21 +107,22 @@ int calibrate_cases(CalibrateArguments arguments, const CommonOptions& options) 
   std::vector<CalibrationSubject> subjects;
   const std::vector<CaseFile> files = read_inputs(arguments, subjects, console);
   OlderOutput older(output / "calibration.json", console);
-  std::vector<std::unique_ptr<FolderStore>> stores;
-  std::vector<std::string> keys, specimen_ids;
+  std::vector<std::unique_ptr<RunFolder>> folders;
+  std::vector<std::string> specimen_ids;
   Workers workers(options.threads);
   return with_parts_kept(output, [&] {
     for (std::size_t i = 0; i < files.size(); ++i) {
       const std::filesystem::path folder = output / "specimens" / std::to_string(i + 1);
-      stores.push_back(std::make_unique<FolderStore>(files[i], folder, options.context()));
-      keys.push_back(stores.back()->product_key(Product::AsPlanned));
-      subjects[i].store = stores.back().get();
-      specimen_ids.push_back(stores.back()->specimen_id());
+      folders.push_back(std::make_unique<RunFolder>(files[i], folder, options.context()));
+      subjects[i].inputs = folders.back().get();
+      subjects[i].cache = &folders.back()->cache();
+      subjects[i].sink = folders.back().get();
+      specimen_ids.push_back(folders.back()->specimen_id());
       require_same_specimen(arguments.observed[i], specimen_ids.back(), "its case's");
       if (!arguments.registrations.empty())
         require_same_specimen(arguments.registrations[i], specimen_ids.back(), "its case's");
     }
-    RunFolder runs(output / "runs", keys);
+    Cache runs(std::make_unique<EntryFolder>(output / "cache"));
     const Calibration calibration = calibrate(subjects, arguments.request, runs, workers, console);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     std::vector<std::filesystem::path> inputs = arguments.observed;

@@ -83,7 +83,7 @@ void print_tests(const nlohmann::ordered_json& json) {
 
 int run(const CompareArguments& given, const CommonOptions& options) {
   CompareArguments arguments = given;
-  arguments.settings.measure = arguments.measure == "signed" ? ErrorMeasure::Signed : ErrorMeasure::Absolute;
+  arguments.settings.measure = value_named<ErrorMeasure>(arguments.measure);
   arguments.settings.bootstrap.seed = options.seed;
   require_valid(validate(arguments.settings));
   if (arguments.settings.is_paired && arguments.before.size() != arguments.after.size()) {
@@ -111,7 +111,7 @@ void add_compare(Application& application) {
       "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison", run);
   verb->add_option("--before", a.before, "Files of `incise evaluate -o`, one for each specimen")->required();
   verb->add_option("--after", a.after, "The same, after the change")->required();
-  verb->add_option("--measure", a.measure, "Which error")->check(CLI::IsMember({"absolute", "signed"}));
+  verb->add_option("--measure", a.measure, "Which error")->check(name_of_any<ErrorMeasure>());
   verb->add_flag("--paired", a.settings.is_paired,
                  "The n-th file before and the n-th file after are the same specimen");
   verb->add_option("--alpha", a.settings.alpha, "Level of the tests; intervals are at 1 - alpha");

@@ -84,16 +84,16 @@ nlohmann::ordered_json add_robust_path(const CompensateOptions& chosen, const Ca
   Workers workers(options.threads);
   ScenarioRequest request = scenario_request(chosen.calibrated, options);
   request.max_probability = chosen.max_probability;
-  const RobustCorrection robust = with_tissues(run, [&](ScenarioRunStore& runs) {
-    return correct_robustly(run.store.case_file().settings, run.store, study, calibration.belief, request, runs,
-                            workers, console);
+  const RobustCorrection robust = with_tissues(run, [&] {
+    return correct_robustly(run.folder.case_file().settings, run.folder, run.folder.cache(), study, calibration.belief,
+                            request, workers, console);
   });
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  write_robust(run.store, robust, calibration.file, wall.count());
+  write_robust(run.folder, robust, calibration.file, wall.count());
   nlohmann::ordered_json json = robust_summary_json(robust);
-  json["path"] = (run.store.root() / "robust" / "path.json").string();
+  json["path"] = (run.folder.root() / "robust" / "path.json").string();
   json["wall_s"] = wall.count();
-  if (calibration.record.is_virtual && !run.store.case_file().settings.is_virtual)
+  if (calibration.record.is_virtual && !run.folder.case_file().settings.is_virtual)
     console.message(Severity::Warning, fmt::format("robust path: {}", kVirtualCalibration));
   const RobustCompensation& made = robust.compensation;
   if (made.outcome != RobustOutcome::Met) {
@@ -127,8 +127,8 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
       is_robust_enough = result["robust"]["outcome"] == to_string(RobustOutcome::Met);
     }
   }
-  result["folder"] = run.store.folder(Product::Correction).string();
-  if (study.correction) result["path"] = (run.store.folder(Product::Correction) / "path.json").string();
+  result["folder"] = run.folder.folder("correction").string();
+  if (study.correction) result["path"] = (run.folder.folder("correction") / "path.json").string();
   result["figures"] = nlohmann::ordered_json::array();
   for (const auto& figure : write_compensation_figures(output, output / "figures"))
     result["figures"].push_back(figure.string());
@@ -146,14 +146,11 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
 
 void add_compensation_method(CLI::App& verb, CutOptions& options) {
   verb.add_option_function<std::string>(
-          "--method",
-          [&options](const std::string& name) {
-            options.method = name == "paper" ? CompensationMethod::Paper : CompensationMethod::Default;
-          },
+          "--method", [&options](const std::string& name) { options.method = value_named<CompensationMethod>(name); },
           "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 where something is "
           "held against the nearest); paper: each waypoint moves once by the error "
           "measured there. In place of the case's compensation.method")
-      ->check(CLI::IsMember({"default", "paper"}));
+      ->check(name_of_any<CompensationMethod>());
 }
 
 void add_compensate(Application& application) {

@@ -30,25 +30,23 @@ std::filesystem::path specimen_for(const std::filesystem::path& folder, std::uin
 
 void add_demo(Application& application) {
   auto cut = std::make_shared<CutOptions>();
-  CLI::App* verb = application.add_verb(
-      "demo", "", "incise demo -o demo",
-      [cut](const CommonOptions& options) {
-        Console console(options.level());
-        require_accepted_ids(cut->accepted);
-        const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
-        const std::filesystem::path specimen = specimen_for(root / "specimen", options.seed, console);
-        try {
-          StudyRun study(specimen, root, Stage::Verify, options, *cut);
-          nlohmann::ordered_json result;
-          const int status = run_whole_loop(study, options, cut->accepted, console, result);
-          print_study(options, result);
-          return status;
-        } catch (const StagesKept&) {
-          throw;
-        } catch (const Cancelled& error) {
-          throw StagesKept(error.what(), fmt::format("the specimen in {} is kept", specimen.string()));
-        }
-      });
+  CLI::App* verb = application.add_verb("demo", "", "incise demo -o demo", [cut](const CommonOptions& options) {
+    Console console(options.level());
+    require_accepted_ids(cut->accepted);
+    const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
+    const std::filesystem::path specimen = specimen_for(root / "specimen", options.seed, console);
+    try {
+      StudyRun study(specimen, root, Stage::Verify, options, *cut);
+      nlohmann::ordered_json result;
+      const int status = run_whole_loop(study, options, cut->accepted, console, result);
+      print_study(options, result);
+      return status;
+    } catch (const StagesKept&) {
+      throw;
+    } catch (const Cancelled& error) {
+      throw StagesKept(error.what(), fmt::format("the specimen in {} is kept", specimen.string()));
+    }
+  });
   add_cut_options(*verb, *cut);
   add_compensation_method(*verb, *cut);
   add_accept(*verb, cut->accepted);

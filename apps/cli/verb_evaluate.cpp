@@ -62,10 +62,9 @@ void require_usable(const Contour& contour, const std::string& what, double larg
 /// A photograph shows the inner edge unless told otherwise, contour files hold the mid-line.
 EvaluationSettings settings_of(const EvaluateArguments& arguments) {
   EvaluationSettings settings = arguments.settings;
-  const std::string fallback = arguments.photo.empty() ? "centerline" : "inner_edge";
-  settings.contour = (arguments.contour.empty() ? fallback : arguments.contour) == "centerline"
-                         ? ContourKind::Centerline
-                         : ContourKind::InnerEdge;
+  settings.contour = !arguments.contour.empty() ? value_named<ContourKind>(arguments.contour)
+                     : arguments.photo.empty()  ? ContourKind::Centerline
+                                                : ContourKind::InnerEdge;
   if (arguments.target_mm > 0.0) settings.target_mm = arguments.target_mm;
   if (!arguments.approach.empty()) settings.approach = Vec3(arguments.approach.data());
   if (!arguments.twelve.empty()) settings.twelve_o_clock = Vec3(arguments.twelve.data());
@@ -169,7 +168,7 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   const ColorPicture picture = decode_picture(read_text(arguments.photo), arguments.photo);
   const FoundScale scale = scale_of(arguments.scale, picture, arguments.photo);
   // The mid-line of a painted band is the middle of a line.
-  const bool wants_border = arguments.red == "kerf" && settings.contour == ContourKind::InnerEdge;
+  const bool wants_border = arguments.red == to_string(RedLine::Kerf) && settings.contour == ContourKind::InnerEdge;
   const PhotoSettings photo{.red = wants_border ? RedLine::Kerf : RedLine::Annotation,
                             .max_gap_mm = arguments.max_gap_mm};
   const PhotoContours found = find_photo_contours(picture, scale.scale, photo, arguments.photo);
@@ -194,7 +193,7 @@ Measured from_photo(const EvaluateArguments& arguments, const EvaluationSettings
   result.json["verdict"] = to_json(result.verdict);
   if (!arguments.figure.empty()) {
     const std::string png = encode_png(draw_found(picture, {&found.green, &found.red}, scale.marks_px));
-    write_atomically(arguments.figure, [&](std::ostream& out) { out << png; });
+    write_atomically(arguments.figure, png);
     result.json["figure"] = arguments.figure.string();
   }
   return result;
@@ -218,7 +217,7 @@ Measured from_files(const EvaluateArguments& arguments, const EvaluationSettings
   Measured result = measured(arguments.tumor, [&] { return evaluate(incision, tumor_edge, settings); });
   add_contours(result.json, result.evaluation, tumor_edge, settings.approach);
   if (!arguments.figure.empty()) {
-    const ErrorColors colors = arguments.colors == "jet" ? ErrorColors::Jet : ErrorColors::Safe;
+    const auto colors = value_named<ErrorColors>(arguments.colors);
     const std::string name = arguments.incision.stem().string();
     write_figure(arguments.figure, evaluation_figure_svg(result.evaluation, tumor_edge, settings, name, colors));
     result.json["figure"] = arguments.figure.string();
@@ -270,9 +269,9 @@ void add_evaluate(Application& application) {
       "Instead of --tumor, for an open cut: the line that --incision was to follow, same formats and frame");
   verb->add_option("--contour", a.contour,
                    "What was measured; default: inner_edge in a photograph, centerline in files")
-      ->check(CLI::IsMember({"centerline", "inner_edge"}));
+      ->check(name_of_any<ContourKind>());
   verb->add_option("--red", a.red, "What the red line is: a thin line along the inner edge, or the painted kerf")
-      ->check(CLI::IsMember({"annotation", "kerf"}));
+      ->check(name_of_any<RedLine>());
   add_scale_options(*verb, a.scale);
   verb->add_option("--max-gap-mm", a.max_gap_mm,
                    "A red or green ring with a gap clearly longer (0.18 mm and 2 pixels) is open; of a red one "
@@ -289,7 +288,7 @@ void add_evaluate(Application& application) {
       "--figure", a.figure,
       "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
   verb->add_option("--colors", a.colors, "Of the figure: told apart with any colour vision, or as in the paper")
-      ->check(CLI::IsMember({"safe", "jet"}));
+      ->check(name_of_any<ErrorColors>());
   verb->add_flag("--open", a.is_open, "The incision round the tumour is an open curve");
 }
 

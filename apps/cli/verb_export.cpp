@@ -182,8 +182,7 @@ std::string text_of(const RobotProgram& program, const ProgramChecks& checks, co
   if (arguments.format == "json") return to_json(program, &checks, header);
   if (arguments.format == "ros-trajectory")
     return output.extension() == ".bag" ? to_rosbag(program, header) : to_ros_yaml(program, header);
-  return to_urscript(program, header,
-                     {.motion = arguments.motion == "servoj" ? ScriptMotion::ServoJ : ScriptMotion::MoveP});
+  return to_urscript(program, header, {.motion = value_named<ScriptMotion>(arguments.motion)});
 }
 
 nlohmann::ordered_json summary_of(const RobotProgram& program, const ProgramChecks& checks) {
@@ -217,7 +216,7 @@ int run_export(const ExportArguments& given, const CommonOptions& options) {
   }
   ToolPath path = read_robot_path(arguments.path);
   const PathKind kind_in_file = path.kind;
-  if (!arguments.kind.empty()) path.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
+  if (!arguments.kind.empty()) path.kind = value_named<PathKind>(arguments.kind);
   if (path.kind == PathKind::Mark) require_a_mark(arguments.overrides);
   if (arguments.is_open && path.is_closed) {
     throw CaseError("command line", "--open", fmt::format("{}, a closed path", arguments.path.string()), "an open path",
@@ -272,7 +271,7 @@ int run_export(const ExportArguments& given, const CommonOptions& options) {
   for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);
   const ProgramHeader header = program_header(program, path, checks, provenance);
   const std::string text = text_of(program, checks, header, arguments, output);
-  write_atomically(output, [&text](std::ostream& out) { out << text; });
+  write_atomically(output, text);
   older.replaced();
   result["program"] = output.string();
   result["wall_s"] = options.wall_s();
@@ -296,7 +295,7 @@ void add_export(Application& application) {
       ->check(CLI::IsMember({"urscript", "joint-csv", "ros-trajectory", "json"}));
   a.motion_option =
       verb->add_option("--motion", a.motion, "Of URScript: movep (blends, constant speed) or servoj (timed joints)")
-          ->check(CLI::IsMember({"movep", "servoj"}));
+          ->check(name_of_any<ScriptMotion>());
   verb->add_option("--kind", a.kind, "Which checks hold, in place of the path's own kind")
       ->check(CLI::IsMember({"mark", "incise"}));
   verb->add_option("--override", a.overrides,

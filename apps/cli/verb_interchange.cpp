@@ -44,7 +44,7 @@ int export_case(const std::filesystem::path& case_path, const std::string& forma
     throw error.in_file(file.file.string());
   }
   const double wall_s = options.wall_s();
-  FolderStore(file, target.path(), options.context()).write_manifest_to(target.path(), wall_s);
+  RunFolder(file, target.path(), options.context()).write_manifest_to(target.path(), wall_s);
   target.commit();
   print_result(options, {{"format", format},
                          {"files", {(output / name).string()}},

@@ -5,6 +5,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/entry_folder.hpp>
 #include <incise/storage/bench_files.hpp>
 #include <incise/storage/power_file.hpp>
 
@@ -69,7 +70,7 @@ void make_output(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw DataError(folder, "", error.message(), "a folder that can be made");
-  require_own_or_empty(folder, {"power.json", "cuts"}, "a series");
+  require_own_or_empty(folder, {"power.json", "cache"}, "a series");
   require_writable(folder / "power.json");
 }
 
@@ -94,7 +95,7 @@ int find_power(PowerArguments arguments, const CommonOptions& options) {
   Workers workers(options.threads);
   return with_parts_kept(output, [&] {
     make_output(output);
-    PowerCutFolder cuts(output / "cuts", result.request.resolution);
+    Cache cuts(std::make_unique<EntryFolder>(output / "cache"));
     result.series = run_power_series(result.subjects, result.request, cuts, workers, console);
     result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     write_power(output, result, inputs, options);

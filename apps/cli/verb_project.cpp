@@ -141,7 +141,7 @@ Placement placed(const ToolPath& path, const RegistrationRecord& registration, c
 
 ProjectSettings settings_of(const ProjectArguments& arguments) {
   ProjectSettings settings = arguments.settings;
-  settings.kind = arguments.kind == "mark" ? PathKind::Mark : PathKind::Incise;
+  settings.kind = value_named<PathKind>(arguments.kind);
   settings.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
   if (settings.kind == PathKind::Mark) {
     if (arguments.depth_mm > 0.0) settings.mark_depth_mm = arguments.depth_mm;
@@ -351,7 +351,7 @@ void add_project(Application& application) {
           "the middle of the path")
       ->expected(3);
   verb->add_option("--kind", a.kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s")
-      ->check(CLI::IsMember({"incise", "mark"}));
+      ->check(name_of_any<PathKind>());
   verb->add_option("--axis", a.axis,
                    "Tool axis: as the path has it, or against the measured surface's normal (a mark's: the mean axis)")
       ->check(CLI::IsMember({"path", "normal"}));

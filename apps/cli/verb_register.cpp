@@ -158,8 +158,7 @@ int run_register(const RegisterArguments& given, const CommonOptions& options) {
         laid.source.points,
         found.residuals_mm,
         approach};
-    write_atomically(folder.path() / "registration.svg",
-                     [&figure](std::ostream& out) { out << registration_figure_svg(figure); });
+    write_atomically(folder.path() / "registration.svg", registration_figure_svg(figure));
   }
   result["camera_scale"] = camera_scale;
   result["source"] = arguments.source.string();

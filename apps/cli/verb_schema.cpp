@@ -35,7 +35,7 @@ void add_schema(Application& application) {
         if (options.output.empty()) {
           std::fwrite(text.data(), 1, text.size(), stdout);
         } else {
-          write_atomically(options.output, [&text](std::ostream& out) { out << text; });
+          write_atomically(options.output, text);
         }
         return kDone;
       });

@@ -88,12 +88,13 @@ int study(const ExperimentSettings& settings, const CommonOptions& options) {
 
 void add_experiment(Application& application) {
   auto settings = std::make_shared<ExperimentSettings>();
-  CLI::App* verb = application.add_verb(
-      "experiment",
-      "The paper's whole experiment on the virtual bench: specimens are cut as planned, the simulation is calibrated to their photographs, further "
-      "specimens are cut as planned and corrected, and all is measured. Everything that it yields is virtual. Run again, it goes on where it was",
-      "incise experiment --quick -o experiment",
-      [settings](const CommonOptions& options) { return study(*settings, options); });
+  CLI::App* verb = application.add_verb("experiment",
+                                        "The paper's whole experiment on the virtual bench: specimens are cut as "
+                                        "planned, the simulation is calibrated to their photographs, further "
+                                        "specimens are cut as planned and corrected, and all is measured. Everything "
+                                        "that it yields is virtual. Run again, it goes on where it was",
+                                        "incise experiment --quick -o experiment",
+                                        [settings](const CommonOptions& options) { return study(*settings, options); });
   verb->alias("study");
   verb->add_option("--specimens", settings->specimens, "2 to 200, even: half to calibrate on, half to test; 4: the paper's, and one outside the calibrated range. Their seeds count up from --seed: "
                    "of several runs each has to start beyond the last one's")

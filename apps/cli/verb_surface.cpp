@@ -64,8 +64,8 @@ TriMesh stretched_skin(const std::filesystem::path& case_path, const CommonOptio
     throw DataError(case_path, "stretch", study.stretched ? explain_stretch(*study.stretched) : "none",
                     "a specimen that comes to rest");
   }
-  approach = run.store.case_file().settings.plan.approach;
-  specimen_id = run.store.specimen_id();
+  approach = run.folder.case_file().settings.plan.approach;
+  specimen_id = run.folder.specimen_id();
   TriMesh skin = boundary_surface(study.model->mesh);
   skin.vertices = study.stretched->state.positions;
   return skin;

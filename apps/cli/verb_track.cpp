@@ -4,6 +4,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
+#include <incise/core/median.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/core/version.hpp>
 #include <incise/imaging/photo_contours.hpp>
@@ -144,14 +145,13 @@ double mm_per_pixel(const OrganizedCloud& cloud, const std::filesystem::path& na
   if (steps.size() < 100)
     throw DataError(name, "", fmt::format("{} pixels with depth", cloud.measured()),
                     "depth over most of the picture's middle");
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  const double middle = median(steps);
   constexpr double kFinestMm = 0.005, kCoarsestMm = 1.5;
-  if (*middle < kFinestMm || *middle > kCoarsestMm) {
-    throw DataError(name, "", fmt::format("pixels {:.4g} mm wide on the tissue", *middle),
+  if (middle < kFinestMm || middle > kCoarsestMm) {
+    throw DataError(name, "", fmt::format("pixels {:.4g} mm wide on the tissue", middle),
                     fmt::format("{} to {} mm", kFinestMm, kCoarsestMm), "Is depth_scale (metres for one count) right?");
   }
-  return *middle;
+  return middle;
 }
 
 struct Tracked {
@@ -164,11 +164,10 @@ struct Tracked {
 
 Tracked tracked(const Scene& scene, const TrackArguments& arguments) {
   Tracked result;
-  const LineSettings line{.edge = arguments.edge == "inner" ? LineEdge::Inner : LineEdge::Middle,
+  const LineSettings line{.edge = value_named<LineEdge>(arguments.edge),
                           .mm_per_pixel = mm_per_pixel(scene.cloud, scene.depth_name),
                           .max_gap_mm = arguments.max_gap_mm};
-  result.line =
-      find_marked_line(scene.picture, arguments.mark == "red" ? InkColor::Red : InkColor::Green, line, arguments.color);
+  result.line = find_marked_line(scene.picture, value_named<InkColor>(arguments.mark), line, arguments.color);
   result.lifted =
       lift_to_space(result.line.points_px, result.line.is_closed, scene.cloud, arguments.lift, scene.depth_name);
   DataArray red{1, {}}, green{1, {}}, blue{1, {}};
@@ -263,7 +262,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   write_contour_csv(target.path() / "contour.csv", found.lifted.contour);
   write_ply(target.path() / "cloud.ply", found.cloud, specimen_id);
   const std::string png = encode_png(draw_found(scene.picture, {&found.line}));
-  write_atomically(target.path() / "found.png", [&](std::ostream& out) { out << png; });
+  write_atomically(target.path() / "found.png", png);
   nlohmann::ordered_json result;
   result["outcome"] = to_string(is_wanted ? Outcome::Success : Outcome::OpenLoop);
   result["points"] = found.lifted.contour.points.size();
@@ -331,9 +330,9 @@ void add_track(Application& application) {
                    "JSON: width, height, fx, fy, cx, cy, depth_scale (m), distortion, depth {...}, T_color_depth");
   verb->add_option("--camera", a.camera,
                    "JSON with T_robot_camera: results in the robot's frame; without it: in the colour camera's");
-  verb->add_option("--mark", a.mark, "Colour of the mark")->check(CLI::IsMember({"red", "green"}));
+  verb->add_option("--mark", a.mark, "Colour of the mark")->check(name_of_any<InkColor>());
   verb->add_option("--edge", a.edge, "Contour of the mark: its middle, or its inner border")
-      ->check(CLI::IsMember({"middle", "inner"}));
+      ->check(name_of_any<LineEdge>());
   verb->add_option(
           "--max-gap-mm", a.max_gap_mm,
           "A ring with a longer gap is open. A gap is known to 0.18 mm and 2 pixels: a ring is taken as closed up "

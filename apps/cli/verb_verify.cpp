@@ -31,10 +31,6 @@ void require_a_check(const std::string& only) {
                   fmt::format("Did you mean '{}'?", nearest_name(only, names)));
 }
 
-const char* text_of(Criterion criterion) {
-  return criterion == Criterion::Within ? "within" : "at_least";
-}
-
 nlohmann::ordered_json json_of(const VerificationCheck& check) {
   nlohmann::ordered_json json;
   json["name"] = check.name;
@@ -42,7 +38,7 @@ nlohmann::ordered_json json_of(const VerificationCheck& check) {
   json["expected"] = check.expected;
   json["found"] = std::isfinite(check.found) ? nlohmann::ordered_json(check.found) : nlohmann::ordered_json(nullptr);
   json["tolerance"] = check.tolerance;
-  json["criterion"] = text_of(check.criterion);
+  json["criterion"] = to_string(check.criterion);
   json["unit"] = check.unit;
   json["what"] = check.what;
   json["source"] = check.source;
@@ -71,7 +67,7 @@ void write_figure(const std::filesystem::path& folder, const VerificationCheck& 
   for (const CheckCurve& curve : check.plot.curves)
     plot.series.push_back({curve.name, curve.x, curve.y, curve.is_reference});
   const std::string svg = line_plot_svg(plot);
-  write_atomically(folder / (check.name + ".svg"), [&svg](std::ostream& out) { out << svg; });
+  write_atomically(folder / (check.name + ".svg"), svg);
 }
 
 int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {

@@ -4,10 +4,6 @@
 
 namespace incise {
 
-std::string_view to_string(CalibrationMethod method) {
-  return method == CalibrationMethod::Paper ? "paper" : "fit";
-}
-
 bool is_usable(const Calibration& calibration) {
   if (!calibration.fit) return calibration.score_percent.value_or(0.0) > 0.0;
   const std::vector<SpecimenFit>& specimens = calibration.fit->specimens;

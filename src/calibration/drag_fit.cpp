@@ -3,6 +3,7 @@
 
 #include <incise/calibration/drag_fit.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,12 +12,6 @@
 
 namespace incise {
 namespace {
-
-void expect_above_zero(std::vector<std::string>& violations, const char* field, double value) {
-  if (!(value > 0.0 && std::isfinite(value))) {
-    violations.push_back(fmt::format("{}: found {}, expected a number above 0", field, value));
-  }
-}
 
 void require_specimens(const std::vector<FitSpecimen>& specimens) {
   INCISE_REQUIRE(!specimens.empty(), "expected at least one specimen");
@@ -49,13 +44,12 @@ SpecimenFit fitted(const FitSpecimen& specimen, const DragFit& fit) {
 
 std::vector<std::string> validate(const DragFitSettings& s) {
   std::vector<std::string> violations;
-  expect_above_zero(violations, "stiffness_sd", s.stiffness_sd);
-  expect_above_zero(violations, "bias_sd_mm", s.bias_sd_mm);
-  expect_above_zero(violations, "reading_sd_mm", s.reading_sd_mm);
-  if (!(s.credible > 0.0 && s.credible < 1.0)) {
-    violations.push_back(fmt::format("credible: found {}, expected a share between 0 and 1", s.credible));
-  }
-  if (s.samples < 1) violations.push_back(fmt::format("samples: found {}, expected at least 1", s.samples));
+  const Expect expect(violations);
+  expect(s.stiffness_sd > 0.0, "stiffness_sd", s.stiffness_sd, "a number above 0");
+  expect(s.bias_sd_mm > 0.0, "bias_sd_mm", s.bias_sd_mm, "a number above 0");
+  expect(s.reading_sd_mm > 0.0, "reading_sd_mm", s.reading_sd_mm, "a number above 0");
+  expect(s.credible > 0.0 && s.credible < 1.0, "credible", s.credible, "a share between 0 and 1");
+  expect(s.samples >= 1, "samples", s.samples, "at least 1");
   return violations;
 }
 

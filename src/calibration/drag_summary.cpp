@@ -1,8 +1,9 @@
 #include "calibration/drag_posterior.hpp"
 
+#include <incise/evaluation/statistics.hpp>
+
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace incise {
 namespace {
@@ -10,21 +11,13 @@ namespace {
 constexpr std::size_t kBiasSteps = 81;
 constexpr double kBiasReach = 4.0;  // standard deviations about the mean
 
-double normal_below(double z) {
-  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
-}
-
-double normal_density(double z) {
-  return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
-}
-
 /// The place below which a standard normal number lies with that probability; by bisection, which needs no table.
 double normal_place(double probability) {
   double low = -10.0;
   double high = 10.0;
   for (int i = 0; i < 80; ++i) {
     const double middle = 0.5 * (low + high);
-    (normal_below(middle) < probability ? low : high) = middle;
+    (normal_share_below(middle) < probability ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
@@ -68,7 +61,7 @@ double bias_below(const DragPosterior& posterior, double value) {
   double sum = 0.0;
   for (const PosteriorCell& cell : posterior.cells) {
     if (cell.mass > 0.0)
-      sum += cell.mass * normal_below((value - cell.bias_mean_mm) / std::sqrt(cell.bias_variance_mm2));
+      sum += cell.mass * normal_share_below((value - cell.bias_mean_mm) / std::sqrt(cell.bias_variance_mm2));
   }
   return sum;
 }

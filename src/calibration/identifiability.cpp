@@ -47,18 +47,6 @@ std::string sentence_of(const ParameterVerdict& verdict, std::size_t parameter) 
 
 }  // namespace
 
-std::string_view to_string(Told told) {
-  switch (told) {
-    case Told::Apart:
-      return "apart";
-    case Told::Partly:
-      return "partly";
-    case Told::Not:
-      return "not";
-  }
-  return "unknown";
-}
-
 Identifiability identifiability(const DragFit& fit) {
   Identifiability result;
   const std::array<const ParameterEstimate*, 3> estimates{&fit.drag_length_mm, &fit.ln_stiffness, &fit.bias_mm};

@@ -1,5 +1,6 @@
 #include <incise/calibration/power_choice.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
 
@@ -95,13 +96,9 @@ PowerVerdict judge(double power_w, const CutsOfOnePower& cuts, const PowerLimits
 
 std::vector<std::string> validate(const PowerLimits& limits) {
   std::vector<std::string> violations;
-  const auto check = [&violations](const char* name, double value) {
-    if (!std::isfinite(value) || value <= 0.0) {
-      violations.push_back(fmt::format("{}: found {}, expected a number above 0", name, value));
-    }
-  };
-  check("bulge_limit_mm", limits.bulge_limit_mm);
-  check("damage_limit_mm", limits.damage_limit_mm);
+  const Expect expect(violations);
+  expect(limits.bulge_limit_mm > 0.0, "bulge_limit_mm", limits.bulge_limit_mm, "a number above 0");
+  expect(limits.damage_limit_mm > 0.0, "damage_limit_mm", limits.damage_limit_mm, "a number above 0");
   return violations;
 }
 

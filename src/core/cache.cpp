@@ -6,7 +6,6 @@
 namespace incise {
 namespace {
 
-constexpr std::string_view kMagic = "incise.cache/1\n";
 constexpr std::size_t kDigits = 64;
 
 class MemoryEntries : public EntryStore {
@@ -17,6 +16,7 @@ class MemoryEntries : public EntryStore {
   }
   void save(const std::string& name, const std::string& bytes) override { entries_[name] = bytes; }
   void remove(const std::string& name) override { entries_.erase(name); }
+  bool holds(const std::string& name) override { return entries_.contains(name); }
 
  private:
   std::map<std::string, std::string> entries_;
@@ -24,7 +24,7 @@ class MemoryEntries : public EntryStore {
 
 /// What an entry begins with: the magic line, the key's digest and the payload's; the payload follows.
 std::string header_of(const CacheKey& key, std::string_view payload) {
-  return fmt::format("{}{}\n{}\n", kMagic, key.digest(), sha256_of_text(payload));
+  return fmt::format("{}{}\n{}\n", kCacheMagic, key.digest(), sha256_of_text(payload));
 }
 
 }  // namespace
@@ -32,7 +32,8 @@ std::string header_of(const CacheKey& key, std::string_view payload) {
 CacheKey::CacheKey(std::string_view stage, int code) : stage_(stage), parts_(fmt::format("{} {}\n", stage, code)) {}
 
 CacheKey& CacheKey::add_text(std::string_view text) {
-  parts_ += fmt::format("{} {}\n", text.size(), sha256_of_text(text));  // the size and the hash: parts cannot run into each other
+  parts_ += fmt::format("{} {}\n", text.size(),
+                        sha256_of_text(text));  // the size and the hash: parts cannot run into each other
   digest_.clear();
   return *this;
 }
@@ -40,6 +41,10 @@ CacheKey& CacheKey::add_text(std::string_view text) {
 const std::string& CacheKey::digest() const {
   if (digest_.empty()) digest_ = sha256_of_text(parts_);
   return digest_;
+}
+
+std::string slot_of(const CacheKey& key) {
+  return fmt::format("{}/{}", key.stage(), key.digest().substr(0, 16));
 }
 
 Cache::Cache() : store_(std::make_unique<MemoryEntries>()) {}
@@ -53,20 +58,20 @@ std::optional<std::string> Cache::payload(const std::string& slot, const CacheKe
     std::optional<std::string> entry = store_->load(slot);
     if (!entry) return std::nullopt;
     const std::string_view all = *entry;
-    const std::size_t start = kMagic.size() + 2 * (kDigits + 1);
-    if (all.size() < start || !all.starts_with(kMagic)) throw DataError(slot, "byte 0", "something else", "an entry of a cache");
-    if (all.substr(kMagic.size(), kDigits) != key.digest()) return std::nullopt;
+    const std::size_t start = kCacheMagic.size() + 2 * (kDigits + 1);
+    if (all.size() < start || !all.starts_with(kCacheMagic))
+      throw DataError(store_->place_of(slot), "byte 0", "something else", "an entry of a cache");
+    if (all.substr(kCacheMagic.size(), kDigits) != key.digest()) return std::nullopt;
     const std::string_view payload = all.substr(start);
     if (all.substr(0, start) != header_of(key, payload))
-      throw DataError(slot, fmt::format("byte {}", start), "bytes that were changed", "those that were kept");
+      throw DataError(store_->place_of(slot), fmt::format("byte {}", start), "bytes that were changed",
+                      "those that were kept");
     return std::string(payload);
   } catch (const DataError& damaged) {
     report_damage(damaged, monitor);
     return std::nullopt;
   }
 }
-
-bool Cache::has(const std::string& slot, const CacheKey& key, Monitor& monitor) { return payload(slot, key, monitor).has_value(); }
 
 void Cache::report_damage(const std::exception& damaged, Monitor& monitor) {
   monitor.message(Severity::Warning, fmt::format("{}. It is computed again", damaged.what()));

@@ -18,10 +18,12 @@ std::string describe(const Range& range) {
   const bool has_most = std::isfinite(range.most);
   if (!has_least && !has_most) return "a number";
   if (!has_most) {
-    return range.is_least_open ? fmt::format("a number above {}", range.least) : fmt::format("a number of {} or more", range.least);
+    return range.is_least_open ? fmt::format("a number above {}", range.least)
+                               : fmt::format("a number of {} or more", range.least);
   }
   if (!has_least) {
-    return range.is_most_open ? fmt::format("a number below {}", range.most) : fmt::format("a number of {} or less", range.most);
+    return range.is_most_open ? fmt::format("a number below {}", range.most)
+                              : fmt::format("a number of {} or less", range.most);
   }
   return fmt::format("a number in {}{}, {}{}", range.is_least_open ? '(' : '[', range.least, range.most,
                      range.is_most_open ? ')' : ']');

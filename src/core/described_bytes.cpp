@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 namespace incise {
@@ -13,11 +14,15 @@ static_assert(std::endian::native == std::endian::little, "blocks lie in files a
 
 std::size_t size_of(Block::Kind kind) {
   switch (kind) {
-    case Block::Kind::Double: return 8;
+    case Block::Kind::Double:
+      return 8;
     case Block::Kind::Float:
-    case Block::Kind::Int32: return 4;
-    case Block::Kind::Int16: return 2;
-    case Block::Kind::UInt8: return 1;
+    case Block::Kind::Int32:
+      return 4;
+    case Block::Kind::Int16:
+      return 2;
+    case Block::Kind::UInt8:
+      return 1;
   }
   return 1;
 }
@@ -48,9 +53,15 @@ bool ByteWriter::optional(const Field&, bool is_there) {
   return is_there;
 }
 
-void ByteWriter::number(const Field&, double& value, const Range&) { append(bytes_, value); }
-void ByteWriter::integer(const Field&, std::int64_t& value, const Range&) { append(bytes_, value); }
-void ByteWriter::flag(const Field&, bool& value) { append(bytes_, std::uint8_t{value}); }
+void ByteWriter::number(const Field&, double& value, const Range&) {
+  append(bytes_, value);
+}
+void ByteWriter::integer(const Field&, std::int64_t& value, const Range&) {
+  append(bytes_, value);
+}
+void ByteWriter::flag(const Field&, bool& value) {
+  append(bytes_, std::uint8_t{value});
+}
 
 void ByteWriter::text(const Field&, std::string& value) {
   append(bytes_, std::uint64_t{value.size()});
@@ -66,7 +77,8 @@ void ByteWriter::block(const Field&, const Block& block) {
 }
 
 void ByteWriter::refuse(const Field& field, const std::string& found, const std::string& expected) const {
-  core_detail::throw_invalid_argument("bytes_of", fmt::format("{}: found {}, expected {}", field.name, found, expected));
+  core_detail::throw_invalid_argument("bytes_of",
+                                      fmt::format("{}: found {}, expected {}", field.name, found, expected));
 }
 
 std::string_view ByteReader::take(const Field& field, std::size_t count) {
@@ -91,7 +103,8 @@ bool ByteReader::optional(const Field& field, bool) {
 
 void ByteReader::number(const Field& field, double& value, const Range& range) {
   value = number_in<double>(take(field, sizeof value));
-  if (!(value >= range.least && value <= range.most) && value == value) refuse(field, fmt::format("{}", value), describe(range));
+  const bool is_bounded = std::isfinite(range.least) || std::isfinite(range.most);  // else NaN may stand for "none"
+  if (is_bounded && !contains(range, value)) refuse(field, fmt::format("{}", value), describe(range));
 }
 
 void ByteReader::integer(const Field& field, std::int64_t& value, const Range& range) {
@@ -121,11 +134,15 @@ void ByteReader::block(const Field& field, const Block& block) {
 }
 
 void ByteReader::refuse(const Field& field, const std::string& found, const std::string& expected) const {
-  throw DataError(name_, field.name.empty() ? fmt::format("byte {}", last_) : fmt::format("byte {}: {}", last_, field.name), found, expected);
+  throw DataError(name_,
+                  field.name.empty() ? fmt::format("byte {}", last_) : fmt::format("byte {}: {}", last_, field.name),
+                  found, expected);
 }
 
 void ByteReader::finish() const {
-  if (at_ != bytes_.size()) throw DataError(name_, fmt::format("byte {}", at_), fmt::format("{} bytes too many", bytes_.size() - at_), "the end");
+  if (at_ != bytes_.size())
+    throw DataError(name_, fmt::format("byte {}", at_), fmt::format("{} bytes too many", bytes_.size() - at_),
+                    "the end");
 }
 
 }  // namespace incise

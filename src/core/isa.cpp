@@ -3,13 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <atomic>
 
 namespace incise {
 namespace {
-
-constexpr std::array kAll{Isa::Portable, Isa::Avx2, Isa::Avx512};
 
 std::atomic<Isa>& chosen() {
   static std::atomic<Isa> isa{best_isa()};
@@ -17,14 +14,6 @@ std::atomic<Isa>& chosen() {
 }
 
 }  // namespace
-
-Isa parse_isa(std::string_view name) {
-  for (const Isa isa : kAll) {
-    if (name == to_string(isa)) return isa;
-  }
-  INCISE_REQUIRE(false, fmt::format("expected portable, avx2 or avx512, found \"{}\"", name));
-  return Isa::Portable;
-}
 
 bool is_supported(Isa isa) {
 #if defined(__x86_64__)
@@ -40,7 +29,7 @@ bool is_supported(Isa isa) {
 
 Isa best_isa() {
   Isa best = Isa::Portable;
-  for (const Isa isa : kAll) {
+  for (const Isa isa : values_of<Isa>()) {
     if (is_supported(isa)) best = isa;
   }
   return best;

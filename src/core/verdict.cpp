@@ -104,22 +104,6 @@ bool is_worse(const VerdictReason& a, const VerdictReason& b) {
 
 }  // namespace
 
-std::string_view to_string(VerdictStatus status) {
-  switch (status) {
-    case VerdictStatus::Ok: return "ok";
-    case VerdictStatus::Caution: return "caution";
-    case VerdictStatus::Refused: return "refused";
-  }
-  return "unknown";
-}
-
-std::optional<VerdictStatus> parse_verdict_status(std::string_view name) {
-  for (const VerdictStatus status : {VerdictStatus::Ok, VerdictStatus::Caution, VerdictStatus::Refused}) {
-    if (name == to_string(status)) return status;
-  }
-  return std::nullopt;
-}
-
 std::span<const VerdictRule> verdict_rules() { return kRules; }
 
 const VerdictRule& verdict_rule(std::string_view id) {

@@ -75,18 +75,6 @@ bool is_renewal_step(const CutState& state) {
   return state.step % kRenewalSteps == 0;
 }
 
-std::string_view to_string(RemovalCause cause) {
-  switch (cause) {
-    case RemovalCause::Dwell:
-      return "dwell";
-    case RemovalCause::LooseFragment:
-      return "loose_fragment";
-    case RemovalCause::Tear:
-      return "tear";
-  }
-  return "unknown";
-}
-
 namespace {
 
 /// The contact criterion: a tet is touched while its distance from the tool's core is at most this, mm.

@@ -1,6 +1,5 @@
-#include "violations.hpp"
-
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/cutting/thermal.hpp>
 
 #include <fmt/ranges.h>
@@ -82,21 +81,24 @@ std::optional<double> radius_of(double level) {
 
 std::vector<std::string> validate(const ThermalSettings& s) {
   std::vector<std::string> violations;
-  expect(s.conductivity_w_m_k > 0.0, violations, "conductivity_w_m_k", s.conductivity_w_m_k, "a conductivity above 0 W/(m K)");
-  expect(s.heat_capacity_mj_m3_k > 0.0, violations, "heat_capacity_mj_m3_k", s.heat_capacity_mj_m3_k, "a heat capacity above 0 MJ/(m³ K)");
-  expect(s.body_c > kAbsoluteZeroC, violations, "body_c", s.body_c, "a temperature above -273.15 °C");
-  expect(s.damage_c >= kLeastDamageC && s.damage_c >= s.body_c + kLeastRiseK, violations, "damage_c", s.damage_c,
+  const Expect expect(violations);
+  expect(s.conductivity_w_m_k > 0.0, "conductivity_w_m_k", s.conductivity_w_m_k, "a conductivity above 0 W/(m K)");
+  expect(s.heat_capacity_mj_m3_k > 0.0, "heat_capacity_mj_m3_k", s.heat_capacity_mj_m3_k,
+         "a heat capacity above 0 MJ/(m³ K)");
+  expect(s.body_c > kAbsoluteZeroC, "body_c", s.body_c, "a temperature above -273.15 °C");
+  expect(s.damage_c >= kLeastDamageC && s.damage_c >= s.body_c + kLeastRiseK, "damage_c", s.damage_c,
          "a temperature of 45 °C or more, and at least 5 K above body_c");
-  expect(s.absorbed_fraction > 0.0 && s.absorbed_fraction <= 1.0, violations, "absorbed_fraction", s.absorbed_fraction,
+  expect(s.absorbed_fraction > 0.0 && s.absorbed_fraction <= 1.0, "absorbed_fraction", s.absorbed_fraction,
          "a share above 0 and at most 1");
   return violations;
 }
 
 double thermal_half_width_mm(const ThermalSettings& settings, double power_w, double speed_mm_s, double depth_mm) {
   std::vector<std::string> violations = validate(settings);
-  expect(power_w > 0.0, violations, "power_w", power_w, "a power above 0 W");
-  expect(speed_mm_s > 0.0, violations, "speed_mm_s", speed_mm_s, "a speed above 0 mm/s");
-  expect(depth_mm > 0.0, violations, "depth_mm", depth_mm, "a depth above 0 mm");
+  const Expect expect(violations);
+  expect(power_w > 0.0, "power_w", power_w, "a power above 0 W");
+  expect(speed_mm_s > 0.0, "speed_mm_s", speed_mm_s, "a speed above 0 mm/s");
+  expect(depth_mm > 0.0, "depth_mm", depth_mm, "a depth above 0 mm");
   INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
   constexpr double kWPerMm = 1e-3;  // of W/m
   const double line_w_mm = power_w * settings.absorbed_fraction / depth_mm;

@@ -1,5 +1,4 @@
-#include "violations.hpp"
-
+#include <incise/core/expect.hpp>
 #include <incise/cutting/tool.hpp>
 
 namespace incise {
@@ -11,19 +10,19 @@ double radius(const Needle& needle) { return needle.radius_mm(); }
 double radius(const Blade& blade) { return 0.5 * blade.thickness_mm; }
 double radius(const Ball& ball) { return 0.5 * ball.diameter_mm; }
 
-void list_violations(const Needle& needle, std::vector<std::string>& violations) {
-  expect(needle.diameter_mm > 0.0, violations, "diameter_mm", needle.diameter_mm, "a diameter above 0 mm");
-  expect(needle.length_mm > 0.0, violations, "length_mm", needle.length_mm, "a length above 0 mm");
+void list_violations(const Needle& needle, const Expect& expect) {
+  expect(needle.diameter_mm > 0.0, "diameter_mm", needle.diameter_mm, "a diameter above 0 mm");
+  expect(needle.length_mm > 0.0, "length_mm", needle.length_mm, "a length above 0 mm");
 }
 
-void list_violations(const Blade& blade, std::vector<std::string>& violations) {
-  expect(blade.thickness_mm > 0.0, violations, "thickness_mm", blade.thickness_mm, "a thickness above 0 mm");
-  expect(blade.width_mm > 0.0, violations, "width_mm", blade.width_mm, "a width above 0 mm");
-  expect(blade.length_mm > 0.0, violations, "length_mm", blade.length_mm, "a length above 0 mm");
+void list_violations(const Blade& blade, const Expect& expect) {
+  expect(blade.thickness_mm > 0.0, "thickness_mm", blade.thickness_mm, "a thickness above 0 mm");
+  expect(blade.width_mm > 0.0, "width_mm", blade.width_mm, "a width above 0 mm");
+  expect(blade.length_mm > 0.0, "length_mm", blade.length_mm, "a length above 0 mm");
 }
 
-void list_violations(const Ball& ball, std::vector<std::string>& violations) {
-  expect(ball.diameter_mm > 0.0, violations, "diameter_mm", ball.diameter_mm, "a diameter above 0 mm");
+void list_violations(const Ball& ball, const Expect& expect) {
+  expect(ball.diameter_mm > 0.0, "diameter_mm", ball.diameter_mm, "a diameter above 0 mm");
 }
 
 }  // namespace
@@ -54,7 +53,8 @@ double half_width_mm(const Tool& tool) {
 
 std::vector<std::string> validate(const Tool& tool) {
   std::vector<std::string> violations;
-  std::visit([&violations](const auto& t) { list_violations(t, violations); }, tool);
+  const Expect expect(violations);
+  std::visit([&expect](const auto& t) { list_violations(t, expect); }, tool);
   return violations;
 }
 

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/evaluation/comparison.hpp>
 
 #include <fmt/format.h>
@@ -76,15 +77,11 @@ SpecimenTests specimen_tests(const ComparedSide& before, const ComparedSide& aft
 
 std::vector<std::string> validate(const ComparisonSettings& settings) {
   std::vector<std::string> violations;
-  if (!(settings.alpha > 0.0 && settings.alpha < 1.0)) {
-    violations.push_back(fmt::format("alpha: found {}, expected a level in (0, 1)", settings.alpha));
-  }
-  if (!(settings.power > settings.alpha && settings.power < 1.0)) {
-    violations.push_back(fmt::format("power: found {}, expected more than alpha and less than 1", settings.power));
-  }
-  if (settings.bootstrap.replicates < 99) {
-    violations.push_back(fmt::format("replicates: found {}, expected at least 99", settings.bootstrap.replicates));
-  }
+  const Expect expect(violations);
+  const double alpha = settings.alpha;
+  expect(alpha > 0.0 && alpha < 1.0, "alpha", alpha, "a level in (0, 1)");
+  expect(settings.power > alpha && settings.power < 1.0, "power", settings.power, "more than alpha and less than 1");
+  expect(settings.bootstrap.replicates >= 99, "replicates", settings.bootstrap.replicates, "at least 99");
   return violations;
 }
 

@@ -1,6 +1,7 @@
 #include "evaluation/coverage.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/evaluation/hu.hpp>
 #include <incise/evaluation/level_loop.hpp>
@@ -12,13 +13,6 @@
 
 namespace incise {
 namespace {
-
-void expect(bool is_valid, std::vector<std::string>& violations, const char* field, double found,
-            const char* expected) {
-  if (!is_valid || !std::isfinite(found)) {
-    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
-  }
-}
 
 std::vector<double> magnitudes(const std::vector<double>& values, double reference = 0.0) {
   std::vector<double> result;
@@ -105,10 +99,6 @@ void measure_shape(const Contour& incision, const Contour& edge, const Evaluatio
 
 }  // namespace
 
-std::string_view to_string(ContourKind kind) {
-  return kind == ContourKind::Centerline ? "centerline" : "inner_edge";
-}
-
 double target_mm(const EvaluationSettings& settings) {
   if (settings.target_mm) return *settings.target_mm;
   const double allowance = settings.contour == ContourKind::InnerEdge ? settings.electrode_radius_mm : 0.0;
@@ -117,19 +107,20 @@ double target_mm(const EvaluationSettings& settings) {
 
 std::vector<std::string> validate(const EvaluationSettings& s) {
   std::vector<std::string> violations;
-  expect(s.electrode_radius_mm >= 0.0, violations, "electrode_radius_mm", s.electrode_radius_mm, "0 mm or more");
-  expect(s.lateral_margin_mm > s.electrode_radius_mm, violations, "lateral_margin_mm", s.lateral_margin_mm,
+  const Expect expect(violations);
+  expect(s.electrode_radius_mm >= 0.0, "electrode_radius_mm", s.electrode_radius_mm, "0 mm or more");
+  expect(s.lateral_margin_mm > s.electrode_radius_mm, "lateral_margin_mm", s.lateral_margin_mm,
          "more than the electrode's radius");
-  if (s.target_mm) expect(*s.target_mm > 0.0, violations, "target_mm", *s.target_mm, "a distance above 0 mm");
-  expect(s.close_margin_mm > 0.0, violations, "close_margin_mm", s.close_margin_mm, "a distance above 0 mm");
-  expect(s.approach.norm() > 0.0, violations, "approach", s.approach.norm(), "a vector of length above 0");
+  if (s.target_mm) expect(*s.target_mm > 0.0, "target_mm", *s.target_mm, "a distance above 0 mm");
+  expect(s.close_margin_mm > 0.0, "close_margin_mm", s.close_margin_mm, "a distance above 0 mm");
+  expect(s.approach.norm() > 0.0, "approach", s.approach.norm(), "a vector of length above 0");
   if (s.twelve_o_clock) {
     const double across = s.twelve_o_clock->cross(s.approach).norm();
-    expect(across > 1e-6 * s.approach.norm() * s.twelve_o_clock->norm(), violations, "twelve_o_clock", across,
+    expect(across > 1e-6 * s.approach.norm() * s.twelve_o_clock->norm(), "twelve_o_clock", across,
            "a direction across the approach");
   }
-  expect(s.step_mm > 0.0, violations, "step_mm", s.step_mm, "a distance above 0 mm");
-  expect(s.end_tolerance_mm >= 0.0, violations, "end_tolerance_mm", s.end_tolerance_mm, "0 mm or more");
+  expect(s.step_mm > 0.0, "step_mm", s.step_mm, "a distance above 0 mm");
+  expect(s.end_tolerance_mm >= 0.0, "end_tolerance_mm", s.end_tolerance_mm, "0 mm or more");
   return violations;
 }
 

@@ -68,14 +68,6 @@ std::vector<std::string> validate(const AuditSettings& settings) {
   return violations;
 }
 
-std::string_view to_string(AuditRule rule) {
-  static constexpr std::array<std::string_view, 14> kNames{
-      "mean_below_least", "negative_sd",         "max_below_mean",      "min_above_mean",      "sd_too_large",
-      "sd_too_small",     "mean_too_small",      "mean_not_on_grain",   "pooled_mean_outside", "pooled_mean_off",
-      "pooled_n_off",     "pooled_sd_too_large", "pooled_sd_too_small", "score_off_baseline"};
-  return kNames.at(static_cast<std::size_t>(rule));
-}
-
 std::string to_text(const Finding& finding) {
   const std::string whose = finding.group.empty() ? "" : finding.group + ": ";
   const auto say = [&](const char* pattern) {

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace incise {
@@ -36,17 +35,6 @@ BaselineRange baseline_range(const PrintedScore& row) {
   };
   return {100.0 * score(-1.0) / (row.percent.value + row.percent.half_unit),
           100.0 * score(1.0) / (row.percent.value - row.percent.half_unit)};
-}
-
-BaselineRange common_baseline(std::span<const PrintedScore> rows) {
-  INCISE_REQUIRE(!rows.empty(), "expected at least one row");
-  BaselineRange common = baseline_range(rows[0]);
-  for (const PrintedScore& row : rows.subspan(1)) {
-    const BaselineRange range = baseline_range(row);
-    common.low_mm = std::max(common.low_mm, range.low_mm);
-    common.high_mm = std::min(common.high_mm, range.high_mm);
-  }
-  return common;
 }
 
 }  // namespace incise

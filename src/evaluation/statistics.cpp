@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace incise {
 
@@ -25,6 +26,14 @@ Summary summarize(std::span<const double> values) {
   for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);
   if (values.size() > 1) summary.sd = std::sqrt(squares / (count - 1.0));
   return summary;
+}
+
+double normal_density(double z) {
+  return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
+}
+
+double normal_share_below(double z) {
+  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
 }
 
 }  // namespace incise

@@ -41,18 +41,6 @@ TTest tested(double difference, double standard_error, double df, double level) 
 
 }  // namespace
 
-std::string_view to_string(TestVerdict verdict) {
-  switch (verdict) {
-    case TestVerdict::Tested:
-      return "tested";
-    case TestVerdict::NoSpread:
-      return "no_spread";
-    case TestVerdict::TooFew:
-      break;
-  }
-  return "too_few";
-}
-
 SampleMoments moments_of(std::span<const double> values) {
   const Summary summary = summarize(values);
   // Values that are all the same may leave rounding in their mean, which is no spread.

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/geometry/gaussian.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/geometry/morphology.hpp>
 #include <incise/geometry/tracing.hpp>

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace incise {
 namespace {
@@ -21,10 +23,10 @@ namespace {
 // through one where it rises, so that higher values stay on its left.
 constexpr std::array<std::array<int, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
-/// Follows the level through the grid of cells, which reaches one pixel beyond the picture.
+/// Follows the level through the grid of cells, which reaches one pixel beyond the picture if there is a value outside.
 class Tracer {
  public:
-  Tracer(const ScalarRaster& raster, double level, double outside)
+  Tracer(const ScalarRaster& raster, double level, std::optional<double> outside)
       : raster_(raster),
         level_(level),
         outside_(outside),
@@ -32,20 +34,14 @@ class Tracer {
         next_(2 * static_cast<std::size_t>(columns_) * static_cast<std::size_t>(raster.height + 2), kNone) {}
 
   std::vector<Contour> run() {
-    for (int j = -1; j < raster_.height; ++j) {
-      for (int i = -1; i < raster_.width; ++i) join_sides(i, j);
+    const int beyond = outside_ ? 1 : 0;
+    for (int j = -beyond; j + 1 < raster_.height + beyond; ++j) {
+      for (int i = -beyond; i + 1 < raster_.width + beyond; ++i) join_sides(i, j);
     }
     std::vector<Contour> lines;
+    for (const std::size_t first : open_starts()) lines.push_back(follow(first));
     for (std::size_t first = 0; first < next_.size(); ++first) {
-      if (next_[first] == kNone) continue;
-      Contour line;
-      for (std::size_t edge = first; next_[edge] != kNone;) {
-        line.points.push_back(crossing(edge));
-        const std::size_t following = next_[edge];
-        next_[edge] = kNone;
-        edge = following;
-      }
-      lines.push_back(std::move(line));
+      if (next_[first] != kNone) lines.push_back(follow(first));
     }
     return lines;
   }
@@ -53,7 +49,33 @@ class Tracer {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  [[nodiscard]] double value(int i, int j) const { return raster_.at_or(i, j, outside_); }
+  [[nodiscard]] double value(int i, int j) const { return raster_.at_or(i, j, outside_.value_or(0.0)); }
+
+  [[nodiscard]] std::vector<std::size_t> open_starts() const {
+    if (outside_) return {};  // all lines are closed
+    std::vector<std::uint8_t> is_reached(next_.size(), 0);
+    for (const std::size_t edge : next_) {
+      if (edge != kNone) is_reached[edge] = 1;
+    }
+    std::vector<std::size_t> starts;
+    for (std::size_t edge = 0; edge < next_.size(); ++edge) {
+      if (next_[edge] != kNone && is_reached[edge] == 0) starts.push_back(edge);
+    }
+    return starts;
+  }
+
+  /// The line from an edge on, which is taken out of `next_`.
+  [[nodiscard]] Contour follow(std::size_t first) {
+    Contour line;
+    std::size_t edge = first;
+    while (next_[edge] != kNone) {
+      line.points.push_back(crossing(edge));
+      edge = std::exchange(next_[edge], kNone);
+    }
+    line.is_closed = edge == first;
+    if (!line.is_closed) line.points.push_back(crossing(edge));
+    return line;
+  }
 
   /// Number of the grid edge from pixel (i, j) to its right (0) or upper (1) neighbour.
   [[nodiscard]] std::size_t edge(int i, int j, std::size_t direction) const {
@@ -83,7 +105,8 @@ class Tracer {
       is_high[k] = corner >= level_;
       sum += corner;
     }
-    const bool joins_high = 0.25 * sum >= level_;  // in a saddle the middle decides which pair of corners is joined
+    // In a saddle the middle decides which pair of corners is joined; without a value outside the high ones never are.
+    const bool joins_high = outside_ && 0.25 * sum >= level_;
     for (std::size_t k = 0; k < 4; ++k) {
       if (!(is_high[k] && !is_high[(k + 1) % 4])) continue;
       // Of the two ways out of a saddle, the next side cuts off the low corner ahead, the side before the high corner
@@ -115,20 +138,30 @@ class Tracer {
 
   const ScalarRaster& raster_;
   double level_;
-  double outside_;
+  std::optional<double> outside_;
   int columns_;
   std::vector<std::size_t> next_;  // per edge that a line crosses: the edge that it crosses next
 };
+
+void require_finite(const ScalarRaster& raster) {
+  for (std::size_t p = 0; p < raster.pixels.size(); ++p) {
+    INCISE_REQUIRE(std::isfinite(raster.pixels[p]), fmt::format("pixel {} is not finite", p));
+  }
+}
 
 }  // namespace
 
 std::vector<Contour> level_lines(const ScalarRaster& raster, double level, double outside) {
   INCISE_REQUIRE(std::isfinite(level) && std::isfinite(outside) && outside < level,
                  fmt::format("expected a value outside below the level, found {} and {}", outside, level));
-  for (std::size_t p = 0; p < raster.pixels.size(); ++p) {
-    INCISE_REQUIRE(std::isfinite(raster.pixels[p]), fmt::format("pixel {} is not finite", p));
-  }
+  require_finite(raster);
   return Tracer(raster, level, outside).run();
+}
+
+std::vector<Contour> level_lines_inside(const ScalarRaster& raster, double level) {
+  INCISE_REQUIRE(std::isfinite(level), fmt::format("expected a finite level, found {}", level));
+  require_finite(raster);
+  return Tracer(raster, level, std::nullopt).run();
 }
 
 }  // namespace incise

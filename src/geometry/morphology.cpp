@@ -174,40 +174,4 @@ Raster holes_filled(const Raster& raster, double max_area_mm2) {
   return result;
 }
 
-ScalarRaster blurred(const Raster& raster, double sigma_mm) {
-  INCISE_REQUIRE(std::isfinite(sigma_mm) && sigma_mm >= 0.0,
-                 fmt::format("expected a sigma of 0 mm or more, found {}", sigma_mm));
-  ScalarRaster result(raster, 0.0);
-  std::copy(raster.pixels.begin(), raster.pixels.end(), result.pixels.begin());
-  if (sigma_mm == 0.0) return result;
-  const double sigma = sigma_mm / raster.pixel_mm;
-  const int reach = static_cast<int>(std::ceil(4.0 * sigma));
-  std::vector<double> kernel;
-  double sum = 0.0;
-  for (int k = -reach; k <= reach; ++k) {
-    kernel.push_back(std::exp(-0.5 * k * k / (sigma * sigma)));
-    sum += kernel.back();
-  }
-  for (double& weight : kernel) weight /= sum;
-
-  ScalarRaster half(raster, 0.0);  // blurred along x only
-  for (int j = 0; j < raster.height; ++j) {
-    for (int i = 0; i < raster.width; ++i) {
-      const double value = result.at(i, j);
-      if (value == 0.0) continue;
-      for (int k = std::max(-reach, -i); k <= std::min(reach, raster.width - 1 - i); ++k) {
-        half.at(i + k, j) += value * kernel[static_cast<std::size_t>(k + reach)];
-      }
-    }
-  }
-  std::fill(result.pixels.begin(), result.pixels.end(), 0.0);
-  for (int j = 0; j < raster.height; ++j) {
-    for (int k = std::max(-reach, -j); k <= std::min(reach, raster.height - 1 - j); ++k) {
-      const double weight = kernel[static_cast<std::size_t>(k + reach)];
-      for (int i = 0; i < raster.width; ++i) result.at(i, j) += weight * half.at(i, j + k);
-    }
-  }
-  return result;
-}
-
 }  // namespace incise

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/median.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/neighbours.hpp>
 #include <incise/geometry/point_cloud.hpp>
@@ -38,12 +39,6 @@ LocalPlane plane_through(std::size_t count, const PointOf& point_of) {
   plane.variances = solver.eigenvalues();
   plane.normal = solver.eigenvectors().col(0);
   return plane;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Every so many points, so that about kMostAsked are asked.
@@ -142,7 +137,7 @@ double spacing_mm(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); i += stride_of(points.size())) {
     distances.push_back(std::sqrt(search.nearest(points[i], 2).back().squared_mm2));
   }
-  return median(std::move(distances));
+  return median(distances);
 }
 
 double sampled_area_mm2(std::span<const Vec3> points) {
@@ -185,7 +180,7 @@ double roughness_mm(std::span<const Vec3> points, int neighbours) {
     const auto n = static_cast<double>(near.size());
     deviations.push_back(std::sqrt(std::max(0.0, plane.variances[0]) * n / (n - 3.0)));
   }
-  return median(std::move(deviations));
+  return median(deviations);
 }
 
 PointCloud without_outliers(const PointCloud& cloud, int neighbours, double deviations, Workers& workers) {

@@ -71,24 +71,6 @@ RasterGrid grid_around(const Vec2& low, const Vec2& high, double pixel_mm, doubl
   return {low - Vec2::Constant(border_mm), pixel_mm, static_cast<int>(counts.x()), static_cast<int>(counts.y())};
 }
 
-void stamp_disc(Raster& raster, const Vec2& centre, double radius_mm) {
-  INCISE_REQUIRE(centre.allFinite() && std::isfinite(radius_mm), "expected a finite disc");
-  const Vec2 c = raster.index_of(centre);
-  const double radius = radius_mm / raster.pixel_mm;
-  const PixelRange rows = pixels_between(c.y() - radius, c.y() + radius, raster.height);
-  for (int j = rows.first; j <= rows.last; ++j) {
-    const double half = std::sqrt(std::max(0.0, radius * radius - (j - c.y()) * (j - c.y())));
-    const PixelRange columns = pixels_between(c.x() - half, c.x() + half, raster.width);
-    for (int i = columns.first; i <= columns.last; ++i) raster.at(i, j) = 1;
-  }
-}
-
-void stamp_triangle(Raster& raster, const Vec2& a, const Vec2& b, const Vec2& c) {
-  INCISE_REQUIRE(a.allFinite() && b.allFinite() && c.allFinite(), "expected a finite triangle");
-  for_each_pixel_in(raster, {raster.index_of(a), raster.index_of(b), raster.index_of(c)},
-                    [&](int i, int j, const Vec3&) { raster.at(i, j) = 1; });
-}
-
 double area_mm2(const Raster& raster) {
   const auto count =
       std::count_if(raster.pixels.begin(), raster.pixels.end(), [](std::uint8_t value) { return value != 0; });

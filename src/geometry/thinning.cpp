@@ -104,9 +104,4 @@ Raster thinned(Raster raster) {
   return raster;
 }
 
-Raster pruned(Raster raster) {
-  remove_while(raster, [](const Neighbours& n) { return count(n) == 0 || is_simple(n); });
-  return raster;
-}
-
 }  // namespace incise

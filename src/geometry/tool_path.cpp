@@ -7,28 +7,6 @@
 
 namespace incise {
 
-std::string_view to_string(PathFrame frame) {
-  switch (frame) {
-    case PathFrame::SimRest:
-      return "sim_rest";
-    case PathFrame::SimStretched:
-      return "sim_stretched";
-    case PathFrame::Robot:
-      return "robot";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(PathKind kind) {
-  switch (kind) {
-    case PathKind::Incise:
-      return "incise";
-    case PathKind::Mark:
-      return "mark";
-  }
-  return "unknown";
-}
-
 Contour entry_contour(const ToolPath& path) {
   Contour contour{.points = {}, .is_closed = path.is_closed};
   contour.points.reserve(path.waypoints.size());
@@ -51,6 +29,13 @@ double duration_s(const ToolPath& path) {
     duration += (tip((i + 1) % n) - tip(i)).norm() / speed;
   }
   return duration;
+}
+
+ToolPath unmarked(ToolPath path) {
+  path.source_sha256.clear();
+  path.specimen_id.clear();
+  path.is_virtual = false;
+  return path;
 }
 
 }  // namespace incise

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/geometry/gaussian.hpp>
 #include <incise/geometry/morphology.hpp>
 #include <incise/geometry/tracing.hpp>
 
@@ -24,40 +25,6 @@ Vec3 centre_of(const RasterGrid& grid, const Pixel& pixel) {
 Pixel pixel_at(const RasterGrid& grid, std::size_t offset) {
   const auto width = static_cast<std::size_t>(grid.width);
   return {static_cast<int>(offset % width), static_cast<int>(offset / width)};
-}
-
-/// The pixels around a hole in order: walks along its border with the hole on the left.
-Contour border_of_hole(const Raster& raster, const Components& holes, std::int32_t hole, const Pixel& first) {
-  constexpr std::array<Pixel, 4> kHeadings{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
-  const auto is_inside = [&](const Pixel& p) {
-    return raster.contains(p[0], p[1]) && holes.labels[raster.offset(p[0], p[1])] == hole;
-  };
-  const auto ahead = [&](const Pixel& p, std::size_t heading) -> Pixel {
-    return {p[0] + kHeadings[heading % 4][0], p[1] + kHeadings[heading % 4][1]};
-  };
-  //   | p | a |     p: where we are, in the hole. a: ahead. d: ahead and to the right.
-  //   |[w]| d |     w: the border pixel to our right, which is recorded.
-  std::vector<Pixel> border;
-  Pixel at = first;  // the hole's lowest pixel: below it there is none of the hole
-  std::size_t heading = 0;
-  do {
-    const Pixel wall = ahead(at, heading + 3);
-    if (border.empty() || border.back() != wall) border.push_back(wall);
-    const Pixel straight = ahead(at, heading);
-    const Pixel diagonal = ahead(straight, heading + 3);
-    if (!is_inside(straight)) {
-      heading = (heading + 1) % 4;
-    } else if (!is_inside(diagonal)) {
-      at = straight;
-    } else {
-      at = diagonal;
-      heading = (heading + 3) % 4;
-    }
-  } while (at != first || heading != 0);
-  if (border.size() > 1 && border.front() == border.back()) border.pop_back();
-  Contour loop;
-  for (const Pixel& pixel : border) loop.points.push_back(centre_of(raster, pixel));
-  return loop;
 }
 
 /// Path lengths from one pixel along a skeleton, and the pixel before each.
@@ -100,7 +67,8 @@ Reach reach_from(const Raster& skeleton, std::size_t start) {
 /// `curve` filtered by a Gaussian over its points, `sigma` in points.
 Points filtered(const Points& points, bool is_closed, double sigma) {
   const int n = static_cast<int>(points.size());
-  const int reach = static_cast<int>(std::ceil(4.0 * sigma));
+  const std::vector<double> kernel = gaussian_weights(sigma);
+  const int reach = gaussian_reach(sigma);
   const auto point = [&](int i) -> Vec3 {
     if (is_closed) return points[static_cast<std::size_t>(((i % n) + n) % n)];
     // Beyond an end the curve is continued by its own image through that end, which therefore stays where it is.
@@ -114,7 +82,7 @@ Points filtered(const Points& points, bool is_closed, double sigma) {
     Vec3 sum = Vec3::Zero();
     double weights = 0.0;
     for (int k = -reach; k <= reach; ++k) {
-      const double weight = std::exp(-0.5 * k * k / (sigma * sigma));
+      const double weight = kernel[static_cast<std::size_t>(std::abs(k))];
       sum += weight * point(i + k);
       weights += weight;
     }
@@ -124,21 +92,6 @@ Points filtered(const Points& points, bool is_closed, double sigma) {
 }
 
 }  // namespace
-
-std::optional<Contour> longest_loop(const Raster& skeleton) {
-  const Components holes = find_components(skeleton, 0, Connectivity::Four);
-  std::vector<std::uint8_t> is_traced(holes.parts.size(), 0);
-  std::optional<Contour> longest;
-  for (std::size_t offset = 0; offset < skeleton.pixels.size(); ++offset) {
-    const std::int32_t label = holes.labels[offset];
-    if (label < 0 || holes.parts[static_cast<std::size_t>(label)].touches_border) continue;
-    if (is_traced[static_cast<std::size_t>(label)] != 0) continue;
-    is_traced[static_cast<std::size_t>(label)] = 1;
-    Contour loop = border_of_hole(skeleton, holes, label, pixel_at(skeleton, offset));
-    if (!longest || length_mm(loop) > length_mm(*longest)) longest = std::move(loop);
-  }
-  return longest;
-}
 
 std::optional<Contour> longest_path(const Raster& skeleton) {
   const Components parts = find_components(skeleton, 1, Connectivity::Eight);

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/median.hpp>
 #include <incise/imaging/depth_camera.hpp>
 
 #include <fmt/format.h>
@@ -28,12 +29,6 @@ void require_sound(const CameraIntrinsics& camera, const char* which) {
                              which, camera.width, camera.height, camera.fx, camera.fy));
 }
 
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 struct Near {
   Vec2 offset;
   Vec3 point;
@@ -56,9 +51,9 @@ void drop_outliers(std::vector<Near>& near) {
   constexpr double kLeastToleranceMm = 0.2;
   std::vector<double> depths;
   for (const Near& n : near) depths.push_back(n.point.z());
-  const double middle = median_of(depths);
+  const double middle = median(depths);
   for (double& z : depths) z = std::abs(z - middle);
-  const double spread = 1.4826 * median_of(depths);
+  const double spread = 1.4826 * median(depths);
   std::erase_if(near, [&](const Near& n) { return std::abs(n.point.z() - middle) > 3.0 * spread + kLeastToleranceMm; });
 }
 

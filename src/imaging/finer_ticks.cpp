@@ -1,5 +1,7 @@
 #include "imaging/finer_ticks.hpp"
 
+#include <incise/core/median.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,12 +19,6 @@ constexpr double kLeastContrast = 0.06;  // of the ticks'
 constexpr double kLeastGreys = 4.0;
 constexpr double kBesideTick = 0.14;  // of the spacing: nearer lies the tick's own rim
 constexpr double kLeastBesidePx = 2.5;
-
-double middle_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The ends at which the ticks stand in line, one for each tick, and the direction from there along the ticks.
 struct Feet {
@@ -118,7 +114,7 @@ class Overlay {
       };
       values.push_back(std::min(value(u - beside_), value(u + beside_)) - value(u));
     }
-    return middle_of(values);
+    return median(values);
   }
 
   const cv::Mat& grey_;
@@ -140,7 +136,7 @@ std::optional<FinerTicks> finer_ticks(const cv::Mat& grey, const Comb& comb) {
     widths.push_back(comb.ticks[i].width);
     if (i > 0 && comb.numbers[i] - comb.numbers[i - 1] == 1.0) steps.push_back(i - 1);
   }
-  const Overlay overlay(grey, feet, comb.spacing_px, middle_of(lengths), middle_of(widths));
+  const Overlay overlay(grey, feet, comb.spacing_px, median(lengths), median(widths));
   std::optional<FinerTicks> found;
   for (std::size_t first = 0; first < steps.size(); first += kStepsTogether / 2) {
     const std::size_t end = std::min(first + kStepsTogether, steps.size());
@@ -159,7 +155,7 @@ bool every_second_is_longer(const Comb& comb) {
   for (std::size_t i = 0; i < comb.ticks.size(); ++i)
     lengths[static_cast<std::size_t>(std::llround(comb.numbers[i])) % 2].push_back(comb.ticks[i].length);
   if (std::min(lengths[0].size(), lengths[1].size()) < 3) return false;
-  double low = middle_of(lengths[0]), high = middle_of(lengths[1]);
+  double low = median(lengths[0]), high = median(lengths[1]);
   const std::size_t longer = low > high ? 0 : 1;
   if (low > high) std::swap(low, high);
   if (high < kLonger * low) return false;

@@ -1,5 +1,7 @@
 #include "imaging/ink.hpp"
 
+#include <incise/core/median.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -116,9 +118,7 @@ std::optional<Tissue> tissue_beside_band(const cv::Mat& strength, const Tissue& 
     }
   }
   if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  cv::Mat ink = small > *middle + kInk * contrast;
+  cv::Mat ink = small > median(values) + kInk * contrast;
   const int window = window_of_median(small);
   ink.convertTo(share, CV_32F, 1.0 / 255.0);
   cv::boxFilter(share, share, -1, {window, window}, {-1, -1}, true, cv::BORDER_REPLICATE);
@@ -161,9 +161,7 @@ double spread_of(const cv::Mat& difference, const Tissue& tissue) {
         values.push_back(std::abs(row[u]));
     }
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return 1.4826 * *middle;
+  return 1.4826 * median(values);
 }
 
 /// The value that `count` pixels exceed.

@@ -1,5 +1,7 @@
 #include "imaging/line_tracing.hpp"
 
+#include <incise/core/median.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -100,13 +102,6 @@ std::optional<Found> inner_edge_of(const Profile& profile, double width_px) {
   return Found{*edge, *edge - kEdgeMarginPx, *edge + 2.0 * kEdgeMarginPx};
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Points whose neighbours say something quite different see something else than the line.
 void reject_outliers(const std::vector<double>& offsets, std::vector<bool>& is_seen, bool is_closed,
                      double tolerance_px) {
@@ -120,7 +115,7 @@ void reject_outliers(const std::vector<double>& offsets, std::vector<bool>& is_s
       const std::size_t j = (i + n + k - kMedianReach) % n;
       if (seen[j]) around.push_back(offsets[j]);
     }
-    if (std::abs(offsets[i] - median_of(around)) > tolerance_px) is_seen[i] = false;
+    if (std::abs(offsets[i] - median(around)) > tolerance_px) is_seen[i] = false;
   }
 }
 
@@ -203,7 +198,7 @@ RefinedLine refine(const Line& line, bool is_closed, const cv::Mat& likelihood, 
     result.is_seen[i] = true;
   }
   if (settings.edge == LineEdge::Middle) {
-    result.width_px = median_of(seen_widths);
+    result.width_px = seen_widths.empty() ? 0.0 : median(seen_widths);
     for (std::size_t i = 0; i < n; ++i) {
       const bool is_odd = widths[i] < kWidthRange * result.width_px || widths[i] > result.width_px / kWidthRange;
       if (settings.reject_outliers && is_odd) result.is_seen[i] = false;

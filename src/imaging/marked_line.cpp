@@ -226,10 +226,6 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
 
 }  // namespace imaging_detail
 
-std::string_view to_string(InkColor color) {
-  return color == InkColor::Red ? "red" : "green";
-}
-
 std::optional<Vec2> end_at_rim_px(const MarkedLine& line, int width_px, int height_px) {
   if (line.is_closed || line.points_px.empty()) return std::nullopt;
   const double near = 6.0 + line.width_px;

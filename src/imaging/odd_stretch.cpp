@@ -1,5 +1,7 @@
 #include "imaging/odd_stretch.hpp"
 
+#include <incise/core/median.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -89,10 +91,7 @@ std::vector<double> averaged(const std::vector<double>& values, std::size_t reac
 
 double median_of(std::vector<double> values) {
   values.erase(std::remove_if(values.begin(), values.end(), [](double v) { return std::isnan(v); }), values.end());
-  if (values.empty()) return kUnknown;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? kUnknown : median(values);
 }
 
 /// How many times its allowance a feature lies off, at its worst place. @returns 0 where it lies off nowhere

@@ -74,10 +74,6 @@ Vec2 middle_of(const std::vector<Vec2>& points) {
 
 }  // namespace
 
-std::string_view to_string(RedLine red) {
-  return red == RedLine::Annotation ? "annotation" : "kerf";
-}
-
 PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale& scale, const PhotoSettings& settings,
                                   const std::filesystem::path& name) {
   imaging_detail::hold_opencv_threads();

@@ -82,10 +82,6 @@ cv::Mat bgr_of(const ColorPicture& picture) {
 
 }  // namespace
 
-void require_picture_file(std::string_view bytes, const std::filesystem::path& name) {
-  imaging_detail::require_whole_picture(bytes, name);
-}
-
 ColorPicture decode_picture(std::string_view bytes, const std::filesystem::path& name) {
   // A JPEG has no alpha, but may say which way up the camera was; other formats the other way round.
   const bool is_jpeg = bytes.starts_with("\xFF\xD8\xFF");

@@ -3,6 +3,7 @@
 #include "imaging/finer_ticks.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/median.hpp>
 
 #include <fmt/format.h>
 
@@ -51,8 +52,7 @@ std::vector<Place> row_about(const Stroke& seed, const std::vector<Stroke>& stro
 double median_step(const std::vector<Place>& places) {
   std::vector<double> steps;
   for (std::size_t i = 0; i + 1 < places.size(); ++i) steps.push_back(places[i + 1].at - places[i].at);
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2), steps.end());
-  return steps[steps.size() / 2];
+  return median(steps);
 }
 
 /// A row of ticks, and what in it argues against one spacing.

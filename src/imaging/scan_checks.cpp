@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/median.hpp>
 #include <incise/imaging/scan_checks.hpp>
 
 #include <fmt/format.h>
@@ -35,12 +36,6 @@ AirCount count_air(const CtVolume& ct, bool with_padding) {
   const auto fullest = static_cast<int>(std::max_element(bins.begin(), bins.end()) - bins.begin());
   air.peak_hu = kLowestAir + (fullest + 0.5) * kBinHu;
   return air;
-}
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Median over pixels of a slice less another; 0 where hardly a pixel can be compared.

@@ -3,6 +3,8 @@
 #include "imaging/volume_filters.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
+#include <incise/core/median.hpp>
 #include <incise/imaging/scan_checks.hpp>
 #include <incise/imaging/segmentation.hpp>
 
@@ -220,9 +222,7 @@ double median_hu(const CtVolume& hu, const Mask& body, const SegmentationSetting
     if (body.voxels[v] != 0 && hu.voxels[v] >= settings.window_low_hu && hu.voxels[v] <= settings.window_high_hu)
       values.push_back(hu.voxels[v]);
   if (values.empty()) refuse_smoothing(smoothing_mm);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median(values);
 }
 
 IndexBox grown(IndexBox box, int voxels) {
@@ -260,10 +260,7 @@ void note_lost_volume(double sharp_mm3, Segmentation& result) {
 
 std::vector<std::string> validate(const SegmentationSettings& settings) {
   std::vector<std::string> problems;
-  const auto check = [&](const char* name, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      problems.push_back(fmt::format("{}: found {}, expected a number in [{}, {}]", name, value, low, high));
-  };
+  const Expect expect(problems);
   if (!std::isfinite(settings.window_low_hu) || !std::isfinite(settings.window_high_hu) ||
       settings.window_low_hu >= settings.window_high_hu)
     problems.push_back(fmt::format("window_hu: found [{}, {}], expected two finite numbers, the first below the second",
@@ -280,9 +277,9 @@ std::vector<std::string> validate(const SegmentationSettings& settings) {
     if (!settings.seeds_mm[s].allFinite())
       problems.push_back(fmt::format("seed_mm[{}]: found [{}, {}, {}], expected finite numbers", s,
                                      settings.seeds_mm[s].x(), settings.seeds_mm[s].y(), settings.seeds_mm[s].z()));
-  check("opening_radius_mm", settings.opening_radius_mm, 0.0, 20.0);
-  check("smoothing_mm", settings.smoothing_mm.value_or(0.0), 0.0, 5.0);
-  check("margin_voxels", settings.margin_voxels, 3, 50);
+  expect.in_range("opening_radius_mm", settings.opening_radius_mm, 0.0, 20.0);
+  expect.in_range("smoothing_mm", settings.smoothing_mm.value_or(0.0), 0.0, 5.0);
+  expect.in_range("margin_voxels", settings.margin_voxels, 3, 50);
   return problems;
 }
 
@@ -290,24 +287,6 @@ double smoothing_length_mm(const SegmentationSettings& settings, const Vec3& spa
   constexpr double kUsualMm = 0.6;
   constexpr double kVoxels = 1.2;
   return settings.smoothing_mm.value_or(std::min(kUsualMm, kVoxels * spacing_mm.maxCoeff()));
-}
-
-std::string_view to_string(RegionFace face) {
-  switch (face) {
-    case RegionFace::Right:
-      return "right";
-    case RegionFace::Left:
-      return "left";
-    case RegionFace::Anterior:
-      return "anterior";
-    case RegionFace::Posterior:
-      return "posterior";
-    case RegionFace::Inferior:
-      return "inferior";
-    case RegionFace::Superior:
-      return "superior";
-  }
-  return "unknown";
 }
 
 int Segmentation::cut_faces() const {

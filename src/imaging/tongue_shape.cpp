@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 #include <incise/imaging/tongue_shape.hpp>
 
@@ -83,17 +84,14 @@ TissueSpan span_in(const TongueShape& shape, const Station& station, double u, d
 
 std::vector<std::string> validate(const TongueShapeSettings& settings) {
   std::vector<std::string> problems;
-  const auto check = [&](const char* name, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-      problems.push_back(fmt::format("{}: found {}, expected a number in [{}, {}]", name, value, low, high));
-  };
-  check("length_mm", settings.length_mm, 80.0, 160.0);
-  check("width_mm", settings.width_mm, 46.0, 80.0);
-  check("height_mm", settings.height_mm, 30.0, 50.0);
-  check("variation", settings.variation, 0.0, 0.08);
-  check("bend_mm", settings.bend_mm, 0.0, 5.0);
-  check("asymmetry", settings.asymmetry, 0.0, 0.1);
-  check("bump_mm", settings.bump_mm, 0.0, 2.0);
+  const Expect expect(problems);
+  expect.in_range("length_mm", settings.length_mm, 80.0, 160.0);
+  expect.in_range("width_mm", settings.width_mm, 46.0, 80.0);
+  expect.in_range("height_mm", settings.height_mm, 30.0, 50.0);
+  expect.in_range("variation", settings.variation, 0.0, 0.08);
+  expect.in_range("bend_mm", settings.bend_mm, 0.0, 5.0);
+  expect.in_range("asymmetry", settings.asymmetry, 0.0, 0.1);
+  expect.in_range("bump_mm", settings.bump_mm, 0.0, 2.0);
   return problems;
 }
 

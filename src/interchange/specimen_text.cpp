@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <map>
-#include <ostream>
 #include <sstream>
 
 namespace incise {
@@ -94,12 +93,12 @@ std::string xml_text(const pugi::xml_document& document) {
 
 void write_sofa_scene(const std::filesystem::path& path, const InterchangeCase& specimen) {
   const std::string text = sofa_scene_xml(specimen);
-  write_atomically(path, [&text](std::ostream& out) { out << text; });
+  write_atomically(path, text);
 }
 
 void write_febio_input(const std::filesystem::path& path, const InterchangeCase& specimen) {
   const std::string text = febio_input_xml(specimen);
-  write_atomically(path, [&text](std::ostream& out) { out << text; });
+  write_atomically(path, text);
 }
 
 }  // namespace incise

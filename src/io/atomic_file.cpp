@@ -218,6 +218,10 @@ void write_atomically(const fs::path& name, const std::function<void(std::ostrea
   if (!is_part_of_folder) require_done(synced(folder_of(path)));
 }
 
+void write_atomically(const fs::path& name, std::string_view content) {
+  write_atomically(name, [&](std::ostream& stream) { stream << content; });
+}
+
 std::string read_text(const fs::path& path) {
   require_regular_file(path);
   std::ifstream stream(path, std::ios::binary);

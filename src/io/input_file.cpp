@@ -45,7 +45,7 @@ std::vector<std::string> header_lines(const fs::path& path) {
 }
 
 /// The value of "key: value" or "key = value"; nothing for another line. Case does not count.
-std::optional<std::string> value_of(const std::string& line, std::string_view key, char mark) {
+std::optional<std::string> value_after(const std::string& line, std::string_view key, char mark) {
   const std::size_t at = line.find(mark);
   if (at == std::string::npos || io_detail::lower_case(io_detail::trimmed(std::string_view(line).substr(0, at))) != key) return std::nullopt;
   return std::string(io_detail::trimmed(std::string_view(line).substr(at + 1)));
@@ -98,7 +98,7 @@ void add_named(const fs::path& header, std::initializer_list<std::string_view> k
   const std::vector<std::string> lines = header_lines(header);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     for (const std::string_view key : keys) {
-      const std::optional<std::string> value = value_of(lines[i], key, mark);
+      const std::optional<std::string> value = value_after(lines[i], key, mark);
       if (!value || value->empty()) continue;
       for (const std::string& name : named_data(lines, i, *value)) files.push_back(header.parent_path() / name);
       return;

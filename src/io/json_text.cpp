@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ostream>
 #include <set>
 
 namespace incise {
@@ -66,7 +65,7 @@ std::string json_text(const ordered_json& value) {
 
 void write_json(const std::filesystem::path& path, const ordered_json& value) {
   const std::string text = json_text(value);
-  write_atomically(path, [&](std::ostream& stream) { stream << text; });
+  write_atomically(path, text);
 }
 
 ordered_json parse_json(std::string_view text, const std::filesystem::path& name) {

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ostream>
 
 namespace incise {
 namespace io_detail {
@@ -171,7 +170,7 @@ void write_vtu(const std::filesystem::path& path, const TetMesh& mesh) {
   text.add("types", std::vector<std::uint8_t>(mesh.tets.size(), io_detail::kVtkTet));
   text.close("Cells");
   const std::string content = text.finish();
-  write_atomically(path, [&](std::ostream& stream) { stream << content; });
+  write_atomically(path, content);
 }
 
 void require_body_size(const Box3& box, const std::filesystem::path& path) {

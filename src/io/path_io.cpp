@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <ostream>
 
 namespace incise {
 namespace {
@@ -26,16 +25,11 @@ constexpr const char* kSpecimenIs = "specimen_is";
 constexpr const char* kDigest = "digest_sha256";
 constexpr double kUnitAxisTolerance = 1e-4;  // an axis typed with four digits passes; 0.5 µm at 5 mm depth
 
-/// The enumerator that `place` spells, among those given. @throws DataError
-template <class Enum>
-Enum enumerator(const JsonValue& place, std::initializer_list<Enum> all) {
-  std::vector<std::string> names;
-  const std::string word = place.text();
-  for (const Enum item : all) {
-    if (word == to_string(item)) return item;
-    names.emplace_back(to_string(item));
-  }
-  place.expected(fmt::format("one of: {}", fmt::join(names, ", ")));
+/// The enumerator that `place` spells. @throws DataError
+template <Named E>
+E enumerator(const JsonValue& place) {
+  if (const auto value = value_of<E>(place.text())) return *value;
+  place.expected(fmt::format("one of: {}", fmt::join(names_of(E{}), ", ")));
 }
 
 Waypoint read_waypoint(const JsonValue& place) {
@@ -70,8 +64,8 @@ ToolPath read_path(const JsonValue& root) {
     schema->expected(fmt::format("\"{}\"", kSchema));
   }
   ToolPath path;
-  path.frame = enumerator(root.at("frame"), {PathFrame::SimRest, PathFrame::SimStretched, PathFrame::Robot});
-  path.kind = enumerator(root.at("kind"), {PathKind::Incise, PathKind::Mark});
+  path.frame = enumerator<PathFrame>(root.at("frame"));
+  path.kind = enumerator<PathKind>(root.at("kind"));
   path.is_closed = root.at("closed").boolean();
   for (const JsonValue& item : root.at("waypoints").items(path.is_closed ? 3 : 2)) {
     path.waypoints.push_back(read_waypoint(item));
@@ -168,7 +162,7 @@ std::string to_json(const ToolPath& path) {
 
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path) {
   const std::string text = to_json(path);
-  write_atomically(file, [&](std::ostream& stream) { stream << text; });
+  write_atomically(file, text);
 }
 
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path, const Verdict& verdict) {

@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongest = 64;
+constexpr std::size_t kLongestId = 64;
 constexpr std::size_t kDigits = 12;          // of the digest, in the id of a specimen that nobody named
 constexpr std::size_t kHeaderBytes = 65536;  // of a file whose first lines may say it
 constexpr const char* kKey = "specimen_id";
 
 std::string checked(const std::string& id, const fs::path& file) {
   if (id.empty() || is_specimen_id(id)) return id;
-  throw DataError(file, kKey, fmt::format("'{}'", id.substr(0, kLongest)), std::string(kSpecimenIdForm));
+  throw DataError(file, kKey, fmt::format("'{}'", id.substr(0, kLongestId)), std::string(kSpecimenIdForm));
 }
 
 std::string id_in_json(const fs::path& file) {
@@ -98,7 +98,7 @@ bool is_specimen_id(std::string_view text) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
            c == '-';
   };
-  return !text.empty() && text.size() <= kLongest && text.front() != '-' &&
+  return !text.empty() && text.size() <= kLongestId && text.front() != '-' &&
          std::all_of(text.begin(), text.end(), may_stand);
 }
 

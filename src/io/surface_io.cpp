@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <numeric>
-#include <ostream>
 
 namespace incise {
 namespace io_detail {
@@ -88,7 +87,7 @@ void add_cells(io_detail::VtkXmlText& text, const char* section, const std::vect
 
 void write_whole(const std::filesystem::path& path, io_detail::VtkXmlText& text) {
   const std::string content = text.finish();
-  write_atomically(path, [&](std::ostream& stream) { stream << content; });
+  write_atomically(path, content);
 }
 
 }  // namespace

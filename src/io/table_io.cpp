@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ostream>
 #include <string_view>
 
 namespace incise {
@@ -107,7 +106,7 @@ void write_csv_columns(const std::filesystem::path& path, const std::vector<Name
     }
   }
   text += "\n";
-  write_atomically(path, [&](std::ostream& stream) { stream << text; });
+  write_atomically(path, text);
 }
 
 }  // namespace incise

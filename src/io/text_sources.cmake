@@ -6,6 +6,7 @@ set(text_sources
   child_process.cpp
   contour_io.cpp
   durable.cpp
+  entry_folder.cpp
   folder_lock.cpp
   gmsh_reader.cpp
   input_file.cpp
@@ -26,6 +27,7 @@ set(text_sources
   table_io.cpp
   tetgen_reader.cpp
   text_cursor.cpp
+  text_encoding.cpp
   text_table.cpp
   transform_json.cpp
   verdict_json.cpp

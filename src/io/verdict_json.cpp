@@ -40,8 +40,8 @@ std::optional<double> number_or_nothing(const JsonValue& place, const ordered_js
 }
 
 VerdictStatus status_at(const JsonValue& place) {
-  const std::optional<VerdictStatus> status = parse_verdict_status(place.text());
-  if (!status) place.expected("ok, caution or refused");
+  const std::optional<VerdictStatus> status = value_of<VerdictStatus>(place.text());
+  if (!status) place.expected(choices(names_of(VerdictStatus{})));
   return *status;
 }
 

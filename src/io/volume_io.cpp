@@ -141,26 +141,6 @@ void refuse_foreign_settings(const fs::path& path, VolumeFormat format, const Ct
   }
 }
 
-}  // namespace
-
-std::string to_string(VolumeFormat format) {
-  switch (format) {
-    case VolumeFormat::DicomSeries:
-      return "DICOM series";
-    case VolumeFormat::Nrrd:
-      return "NRRD";
-    case VolumeFormat::Nifti:
-      return "NIfTI";
-    case VolumeFormat::MetaImage:
-      return "MetaImage";
-    case VolumeFormat::PictureStack:
-      return "PNG pictures";
-  }
-  throw InvalidArgument("to_string: expected a volume format, found another value");
-}
-
-namespace {
-
 /// Smoothing and meshing go by one length for all directions, which a needle of a voxel does not have.
 void require_compact_voxels(const fs::path& path, const Vec3& spacing_mm) {
   if (spacing_mm.maxCoeff() <= kLongestVoxel * spacing_mm.minCoeff()) return;

@@ -378,7 +378,8 @@ RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
   const std::uint64_t size = total_size(path);
   limits.memory_bytes = kLibraryMemory + 3 * std::min(kLargestGain * size, kLargestInputBytes);
   limits.processor_s = static_cast<unsigned>(60 + size / (4 << 20));
-  return unpacked(io_detail::in_child_process(path, to_string(format), limits, [&] { return packed(read_here(path, format)); }));
+  return unpacked(io_detail::in_child_process(path, std::string(to_string(format)), limits,
+                                              [&] { return packed(read_here(path, format)); }));
 }
 
 VolumeFormat format_to_write(const fs::path& path) {

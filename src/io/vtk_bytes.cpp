@@ -1,6 +1,7 @@
 #include "io/vtk_bytes.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/text_encoding.hpp>
 
 #include <zlib.h>
 
@@ -14,13 +15,14 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "written for little endian machines");
 
-constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 constexpr int kCompressionLevel = 3;  // fast; level 6 saves a further few percent on meshes
 
 constexpr std::array<int, 256> digit_values() {
   std::array<int, 256> values{};
   values.fill(-1);
-  for (std::size_t i = 0; i < kDigits.size(); ++i) values[static_cast<unsigned char>(kDigits[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < kBase64Digits.size(); ++i) {
+    values[static_cast<unsigned char>(kBase64Digits[i])] = static_cast<int>(i);
+  }
   return values;
 }
 
@@ -68,22 +70,6 @@ std::optional<std::string> ByteSource::take(std::size_t size) {
   std::string result = pending_.substr(0, size);
   pending_.erase(0, size);
   return result;
-}
-
-std::string base64(std::string_view bytes) {
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      const bool is_padding = i + k > bytes.size();
-      text += is_padding ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
-    }
-  }
-  return text;
 }
 
 std::size_t size_of_vtk_type(std::string_view type) {

@@ -27,8 +27,6 @@ class ByteSource {
   std::string pending_;
 };
 
-[[nodiscard]] std::string base64(std::string_view bytes);
-
 /// Number of bytes of a VTK type name ("Float64", "Int32", …), 0 for anything else.
 [[nodiscard]] std::size_t size_of_vtk_type(std::string_view type);
 /// Bytes as numbers of a VTK type. @pre the size divides.

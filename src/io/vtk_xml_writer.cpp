@@ -3,6 +3,7 @@
 #include "io/vtk_bytes.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/text_encoding.hpp>
 
 #include <fmt/format.h>
 
@@ -14,29 +15,6 @@ namespace incise::io_detail {
 namespace {
 
 constexpr std::size_t kBlockSize = 1 << 20;  // bytes that are compressed together
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 template <class Number>
 std::string_view bytes_of(const std::vector<Number>& values) {

@@ -1,6 +1,7 @@
 #include "mechanics/vector_text.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/mechanics/material.hpp>
 
 #include <fmt/format.h>
@@ -20,37 +21,24 @@ constexpr const char* kYoungsModulusRange = "a number in [1e-6, 1e9] kPa";
 
 std::vector<std::string> validate(const Material& material) {
   std::vector<std::string> violations;
-  const auto check_positive = [&](const char* name, double value) {
-    if (std::isfinite(value) && value > 0.0) return;
-    violations.push_back(fmt::format("{}: found {}, expected a finite number above 0", name, value));
-  };
-  if (!is_youngs_modulus(material.youngs_modulus_kpa)) {
-    violations.push_back(
-        fmt::format("youngs_modulus_kpa: found {}, expected {}", material.youngs_modulus_kpa, kYoungsModulusRange));
-  }
+  const Expect expect(violations);
+  expect(is_youngs_modulus(material.youngs_modulus_kpa), "youngs_modulus_kpa", material.youngs_modulus_kpa,
+         kYoungsModulusRange);
   const double nu = material.poissons_ratio;
-  if (!(nu >= 0.0 && nu < 0.5)) {
-    violations.push_back(fmt::format("poissons_ratio: found {}, expected a number in [0, 0.5)", nu));
-  }
-  if (!(material.density_kg_m3 > 0.0 && material.density_kg_m3 <= kMostDensityKgM3)) {
-    violations.push_back(
-        fmt::format("density_kg_m3: found {}, expected a number in (0, 1e9] kg/m3", material.density_kg_m3));
-  }
-  const auto check_not_negative = [&](const char* name, double value) {
-    if (std::isfinite(value) && value >= 0.0) return;
-    violations.push_back(fmt::format("{}: found {}, expected a finite number of at least 0", name, value));
-  };
-  if (!(material.fibre_modulus_kpa >= 0.0 && material.fibre_modulus_kpa <= kMostYoungsModulusKpa)) {
-    violations.push_back(
-        fmt::format("fibre_modulus_kpa: found {}, expected a number in [0, 1e9] kPa", material.fibre_modulus_kpa));
-  }
-  check_not_negative("kelvin_voigt_time_s", material.kelvin_voigt_time_s);
+  expect(nu >= 0.0 && nu < 0.5, "poissons_ratio", nu, "a number in [0, 0.5)");
+  expect(material.density_kg_m3 > 0.0 && material.density_kg_m3 <= kMostDensityKgM3, "density_kg_m3",
+         material.density_kg_m3, "a number in (0, 1e9] kg/m3");
+  expect(material.fibre_modulus_kpa >= 0.0 && material.fibre_modulus_kpa <= kMostYoungsModulusKpa, "fibre_modulus_kpa",
+         material.fibre_modulus_kpa, "a number in [0, 1e9] kPa");
+  expect(material.kelvin_voigt_time_s >= 0.0, "kelvin_voigt_time_s", material.kelvin_voigt_time_s,
+         "a finite number of at least 0");
   if (!is_direction(material.fibre_direction)) {
     violations.push_back(fmt::format("fibre_direction: found {}, expected a finite direction", text_of(material.fibre_direction)));
   }
   for (std::size_t i = 0; i < material.prony.size(); ++i) {
-    check_positive(fmt::format("prony[{}].shear_share", i).c_str(), material.prony[i].shear_share);
-    check_positive(fmt::format("prony[{}].time_s", i).c_str(), material.prony[i].time_s);
+    const auto& [share, time_s] = material.prony[i];
+    expect(share > 0.0, fmt::format("prony[{}].shear_share", i), share, "a finite number above 0");
+    expect(time_s > 0.0, fmt::format("prony[{}].time_s", i), time_s, "a finite number above 0");
   }
   return violations;
 }

@@ -67,13 +67,6 @@ Motion motion_at_rest(const TissueModel& model, const TissueState& state) {
   return {state, Points(model.mesh.vertices.size(), Vec3::Zero()), 0.0};
 }
 
-double kinetic_energy_uj(const TissueModel& model, const Motion& motion) {
-  double twice = 0.0;
-  for (std::size_t v = 0; v < motion.velocities_mm_s.size(); ++v)
-    twice += model.vertex_mass_kg[v] * motion.velocities_mm_s[v].squaredNorm();
-  return 0.5 * twice;
-}
-
 namespace {
 
 /// One step. `tissue` is the trial state; the motion itself changes only at the end.

@@ -1,7 +1,7 @@
-#include "meshing/gaussian_blur.hpp"
 #include "meshing/grid_checks.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/geometry/gaussian.hpp>
 #include <incise/meshing/occupancy.hpp>
 
 #include <fmt/format.h>
@@ -48,7 +48,7 @@ GrayVolume occupancy_of(const LabelVolume& labels, double sigma_voxels) {
   const IndexBox box = box_of_labelled(labels);
   INCISE_REQUIRE(box.high[0] >= 0, "labels: found no voxel other than 0, expected a labelled body");
 
-  const int margin = meshing_detail::blur_reach(sigma_voxels) + 1;
+  const int margin = gaussian_reach(sigma_voxels) + 1;
   GrayVolume result;
   result.grid = labels.grid;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -63,7 +63,7 @@ GrayVolume occupancy_of(const LabelVolume& labels, double sigma_voxels) {
       result.at(at[0], at[1], at[2]) = 1.0F;
     }
   });
-  meshing_detail::blur(result, sigma_voxels);
+  blur(result, sigma_voxels);
   return result;
 }
 

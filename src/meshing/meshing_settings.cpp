@@ -8,12 +8,12 @@
 namespace incise {
 namespace {
 
-constexpr double kAny = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 /// Accepts low < value <= high, low excluded.
 void require_above(std::vector<std::string>& violations, const char* name, double value, double low, double high) {
   if (value > low && value <= high && std::isfinite(value)) return;
-  const std::string limit = high < kAny ? fmt::format(" and <= {}", high) : std::string();
+  const std::string limit = high < kNoLimit ? fmt::format(" and <= {}", high) : std::string();
   violations.push_back(fmt::format("{}: found {}, expected > {}{}", name, value, low, limit));
 }
 
@@ -33,13 +33,13 @@ std::vector<std::string> validate(const MeshingSettings& s) {
   }
   require_above(violations, "target_tolerance", s.target_tolerance, 0.0, kLargestTolerance);
   require_above(violations, "facet_angle_deg", s.facet_angle_deg, 0.0, kSteepestAngleDeg);
-  require_above(violations, "facet_size_factor", s.facet_size_factor, 0.0, kAny);
-  require_above(violations, "facet_distance_factor", s.facet_distance_factor, 0.0, kAny);
-  require_above(violations, "facet_distance_floor_mm", s.facet_distance_floor_mm, 0.0, kAny);
+  require_above(violations, "facet_size_factor", s.facet_size_factor, 0.0, kNoLimit);
+  require_above(violations, "facet_distance_factor", s.facet_distance_factor, 0.0, kNoLimit);
+  require_above(violations, "facet_distance_floor_mm", s.facet_distance_floor_mm, 0.0, kNoLimit);
   if (!(s.radius_edge_ratio >= 2.0) || !std::isfinite(s.radius_edge_ratio)) {
     violations.push_back(fmt::format("radius_edge_ratio: found {}, expected >= 2", s.radius_edge_ratio));
   }
-  require_above(violations, "cell_size_factor", s.cell_size_factor, 0.0, kAny);
+  require_above(violations, "cell_size_factor", s.cell_size_factor, 0.0, kNoLimit);
   require_above(violations, "sliver_bound_deg", s.sliver_bound_deg, 0.0, kSteepestAngleDeg);
   if (!(s.min_dihedral_deg >= 0.0 && s.min_dihedral_deg <= s.sliver_bound_deg)) {
     violations.push_back(fmt::format("min_dihedral_deg: found {}, expected 0 to sliver_bound_deg = {}",

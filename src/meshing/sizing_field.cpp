@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/meshing/sizing_field.hpp>
 
 #include <fmt/format.h>
@@ -12,18 +13,6 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kMaxPathPoints = 256;
-
-void require_positive(std::vector<std::string>& violations, const char* name, double value) {
-  if (!(value > 0.0) || !std::isfinite(value)) {
-    violations.push_back(fmt::format("{}: found {}, expected a finite number > 0", name, value));
-  }
-}
-
-void require_not_negative(std::vector<std::string>& violations, const char* name, double value) {
-  if (!(value >= 0.0) || !std::isfinite(value)) {
-    violations.push_back(fmt::format("{}: found {}, expected a finite number >= 0", name, value));
-  }
-}
 
 void append_violations(std::vector<std::string>& violations, const PlannedCut& cut) {
   const std::size_t needed = cut.path.is_closed ? 3 : 2;
@@ -40,7 +29,8 @@ void append_violations(std::vector<std::string>& violations, const PlannedCut& c
   if (!cut.approach.allFinite() || !(cut.approach.norm() > 0.0)) {
     violations.push_back("approach: found a zero or infinite vector, expected a direction");
   }
-  require_positive(violations, "depth_mm", cut.depth_mm);
+  const Expect expect(violations);
+  expect(cut.depth_mm > 0.0, "depth_mm", cut.depth_mm, "a finite number > 0");
 }
 
 void throw_if_any(const std::vector<std::string>& violations) {
@@ -96,12 +86,13 @@ SizingSettings default_lengths(double longest_side_mm) {
 
 std::vector<std::string> validate(const SizingSettings& settings) {
   std::vector<std::string> violations;
-  require_positive(violations, "fine_mm", settings.fine_mm);
-  require_positive(violations, "coarse_mm", settings.coarse_mm);
-  require_positive(violations, "growth", settings.growth);
-  require_not_negative(violations, "band_inside_mm", settings.band_inside_mm);
-  require_not_negative(violations, "band_outside_mm", settings.band_outside_mm);
-  require_not_negative(violations, "band_below_mm", settings.band_below_mm);
+  const Expect expect(violations);
+  expect(settings.fine_mm > 0.0, "fine_mm", settings.fine_mm, "a finite number > 0");
+  expect(settings.coarse_mm > 0.0, "coarse_mm", settings.coarse_mm, "a finite number > 0");
+  expect(settings.growth > 0.0, "growth", settings.growth, "a finite number > 0");
+  expect(settings.band_inside_mm >= 0.0, "band_inside_mm", settings.band_inside_mm, "a finite number >= 0");
+  expect(settings.band_outside_mm >= 0.0, "band_outside_mm", settings.band_outside_mm, "a finite number >= 0");
+  expect(settings.band_below_mm >= 0.0, "band_below_mm", settings.band_below_mm, "a finite number >= 0");
   if (settings.fine_mm > settings.coarse_mm) {
     violations.push_back(
         fmt::format("fine_mm: found {}, expected at most coarse_mm = {}", settings.fine_mm, settings.coarse_mm));

@@ -1,6 +1,5 @@
-#include "meshing/gaussian_blur.hpp"
-
 #include <incise/core/error.hpp>
+#include <incise/geometry/gaussian.hpp>
 #include <incise/meshing/occupancy.hpp>
 
 #include <fmt/format.h>
@@ -211,7 +210,7 @@ GrayVolume occupancy_of(const TriMesh& closed_surface, double voxel_mm, double s
   const Box3 box = box_around(closed_surface.vertices, closed_surface.triangles);
 
   GrayVolume result;
-  result.grid = grid_around(box, voxel_mm, meshing_detail::blur_reach(sigma_voxels) + 1);
+  result.grid = grid_around(box, voxel_mm, gaussian_reach(sigma_voxels) + 1);
   const int voxels_along_x = result.grid.size[0];
   const int rays = rays_per_voxel(result.grid);
   const double step = voxel_mm / rays;
@@ -229,7 +228,7 @@ GrayVolume occupancy_of(const TriMesh& closed_surface, double voxel_mm, double s
     });
     if (!is_consistent) continue;
     for (float& value : result.voxels) value = std::clamp(value, 0.0F, 1.0F);  // sums end a rounding error off 0 and 1
-    meshing_detail::blur(result, sigma_voxels);
+    blur(result, sigma_voxels);
     return result;
   }
   throw InvalidArgument(

@@ -2,6 +2,7 @@
 #include "planning/surface_walk.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/evaluation/hu.hpp>
 #include <incise/planning/compensation.hpp>
@@ -135,10 +136,7 @@ void move_waypoints(const SurfaceView& view, const Vec2& center, const Compensat
 
 std::vector<std::string> validate(const CompensationSettings& s) {
   std::vector<std::string> violations;
-  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
-    if (is_valid && std::isfinite(found)) return;
-    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
-  };
+  const Expect expect(violations);
   expect(s.target_mm > 0.0, "target_mm", s.target_mm, "a distance above 0 mm");
   expect(s.relaxation > 0.0 && s.relaxation <= 1.0, "relaxation", s.relaxation, "a share in (0, 1]");
   expect(s.smoothing_passes >= 0, "smoothing_passes", s.smoothing_passes, "0 or more");

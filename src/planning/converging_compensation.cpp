@@ -1,9 +1,10 @@
-#include "planning/anderson.hpp"
 #include "planning/path_course.hpp"
 #include "planning/safe_moves.hpp"
 #include "planning/tissue_response.hpp"
 
+#include <incise/core/anderson.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/planning/converging_compensation.hpp>
 
 #include <fmt/format.h>
@@ -200,35 +201,9 @@ class ConvergingIteration {
 
 }  // namespace
 
-std::string_view to_string(CompensationOutcome outcome) {
-  switch (outcome) {
-    case CompensationOutcome::Converged:
-      return "converged";
-    case CompensationOutcome::BudgetSpent:
-      return "budget_spent";
-    case CompensationOutcome::BestKept:
-      return "best_kept";
-    case CompensationOutcome::AtRest:
-      return "at_rest";
-    case CompensationOutcome::NoMeasure:
-      return "no_measure";
-  }
-  return "unknown";
-}
-
-std::optional<CompensationOutcome> parse_compensation_outcome(std::string_view name) {
-  for (int value = 0; value <= static_cast<int>(CompensationOutcome::NoMeasure); ++value) {
-    if (name == to_string(static_cast<CompensationOutcome>(value))) return static_cast<CompensationOutcome>(value);
-  }
-  return std::nullopt;
-}
-
 std::vector<std::string> validate(const SafeRegion& r) {
   std::vector<std::string> violations;
-  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
-    if (is_valid && std::isfinite(found)) return;
-    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
-  };
+  const Expect expect(violations);
   expect(r.close_margin_mm > 0.0, "region.close_margin_mm", r.close_margin_mm, "a distance above 0 mm");
   expect(r.electrode_radius_mm >= 0.0, "region.electrode_radius_mm", r.electrode_radius_mm, "0 mm or more");
   expect(r.max_offset_mm > 0.0, "region.max_offset_mm", r.max_offset_mm, "a distance above 0 mm");
@@ -239,10 +214,7 @@ std::vector<std::string> validate(const SafeRegion& r) {
 
 std::vector<std::string> validate(const ConvergenceSettings& s) {
   std::vector<std::string> violations = validate(s.region);
-  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
-    if (is_valid && std::isfinite(found)) return;
-    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
-  };
+  const Expect expect(violations);
   expect(s.simulations >= 2, "simulations", s.simulations, "2 or more");
   expect(s.more_simulations >= 0, "more_simulations", s.more_simulations, "0 or more");
   expect(s.more_move_mm > 0.0, "more_move_mm", s.more_move_mm, "a distance above 0 mm");

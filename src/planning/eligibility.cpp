@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/planning/eligibility.hpp>
 
 #include <fmt/format.h>
@@ -90,18 +91,6 @@ std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, co
 
 }  // namespace
 
-std::string_view to_string(Advice advice) {
-  switch (advice) {
-    case Advice::Compensate:
-      return "compensate";
-    case Advice::CutAsPlanned:
-      return "cut_as_planned";
-    case Advice::DoNotUse:
-      return "do_not_use";
-  }
-  return "unknown";
-}
-
 SpecimenDistance distance_from(std::string name, double value, std::span<const double> calibrated,
                                const UsualSpread& usual) {
   INCISE_REQUIRE(!calibrated.empty(), fmt::format("{}: expected at least one specimen to compare with", name));
@@ -127,10 +116,7 @@ SpecimenDistance distance_from(std::string name, double value, std::span<const d
 
 std::vector<std::string> validate(const EligibilityRules& r) {
   std::vector<std::string> violations;
-  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
-    if (is_valid && std::isfinite(found)) return;
-    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
-  };
+  const Expect expect(violations);
   expect(r.least_gain_sds >= 0.0, "least_gain_sds", r.least_gain_sds, "0 or more");
   expect(r.most_p_worse >= 0.0 && r.most_p_worse <= 1.0, "most_p_worse", r.most_p_worse, "a probability in [0, 1]");
   expect(r.most_distance_sds > 0.0, "most_distance_sds", r.most_distance_sds, "a number above 0");

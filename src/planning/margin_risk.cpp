@@ -1,6 +1,7 @@
 #include "planning/margin_risk.hpp"
 
 #include <incise/core/random.hpp>
+#include <incise/evaluation/statistics.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -11,13 +12,6 @@ namespace incise {
 namespace {
 
 constexpr double kJitter = 1e-9;  // keeps the covariance of waypoints that nearly coincide positive definite
-
-double normal_density(double z) {
-  return std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::numbers::pi);
-}
-double normal_share_below(double z) {
-  return 0.5 * std::erfc(-z / std::numbers::sqrt2);
-}
 
 }  // namespace
 

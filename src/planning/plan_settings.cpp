@@ -1,18 +1,10 @@
+#include <incise/core/expect.hpp>
 #include <incise/planning/plan_path.hpp>
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 namespace incise {
 namespace {
-
-void expect(bool is_valid, std::vector<std::string>& violations, const char* field, double found,
-            const char* expected) {
-  if (!is_valid || !std::isfinite(found)) {
-    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
-  }
-}
 
 bool is_direction(const Vec3& v) {
   return v.allFinite() && v.norm() > 0.0;
@@ -20,20 +12,14 @@ bool is_direction(const Vec3& v) {
 
 }  // namespace
 
-std::string_view to_string(PlanKind kind) {
-  return kind == PlanKind::Ring ? "ring" : "line";
-}
-std::string_view to_string(AxisMode mode) {
-  return mode == AxisMode::Approach ? "approach" : "surface_normal";
-}
-
 std::vector<std::string> validate(const PlanSettings& s) {
   std::vector<std::string> violations;
-  expect(s.lateral_margin_mm > 0.0, violations, "lateral_margin_mm", s.lateral_margin_mm, "a distance above 0 mm");
-  expect(s.depth_mm > 0.0, violations, "depth_mm", s.depth_mm, "a depth above 0 mm");
-  expect(s.speed_mm_s > 0.0, violations, "speed_mm_s", s.speed_mm_s, "a speed above 0 mm/s");
-  expect(s.power_w > 0.0, violations, "power_w", s.power_w, "a power above 0 W");
-  expect(s.rim_clearance_mm >= 0.0, violations, "rim_clearance_mm", s.rim_clearance_mm, "0 mm or more");
+  const Expect expect(violations);
+  expect(s.lateral_margin_mm > 0.0, "lateral_margin_mm", s.lateral_margin_mm, "a distance above 0 mm");
+  expect(s.depth_mm > 0.0, "depth_mm", s.depth_mm, "a depth above 0 mm");
+  expect(s.speed_mm_s > 0.0, "speed_mm_s", s.speed_mm_s, "a speed above 0 mm/s");
+  expect(s.power_w > 0.0, "power_w", s.power_w, "a power above 0 W");
+  expect(s.rim_clearance_mm >= 0.0, "rim_clearance_mm", s.rim_clearance_mm, "0 mm or more");
   const int least = s.kind == PlanKind::Ring ? 8 : 2;
   if (s.waypoints < least) {
     violations.push_back(

@@ -1,6 +1,6 @@
 #include "planning/scenario_cuts.hpp"
 
-#include <fmt/format.h>
+#include <incise/core/expect.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -195,24 +195,9 @@ class RobustChoice {
 
 }  // namespace
 
-std::string_view to_string(RobustOutcome outcome) {
-  switch (outcome) {
-    case RobustOutcome::Met:
-      return "met";
-    case RobustOutcome::NotMet:
-      return "not_met";
-    case RobustOutcome::NoMeasure:
-      return "no_measure";
-  }
-  return "unknown";
-}
-
 std::vector<std::string> validate(const RobustSettings& s) {
   std::vector<std::string> violations = validate(s.region);
-  const auto expect = [&](bool is_valid, const char* field, double found, const char* expected) {
-    if (is_valid && std::isfinite(found)) return;
-    violations.push_back(fmt::format("{}: found {}, expected {}", field, found, expected));
-  };
+  const Expect expect(violations);
   expect(s.target_mm > 0.0, "target_mm", s.target_mm, "a distance above 0 mm");
   expect(s.kerf_allowance_mm >= 0.0, "kerf_allowance_mm", s.kerf_allowance_mm, "0 mm or more");
   expect(s.max_probability > 0.0 && s.max_probability < 1.0, "max_probability", s.max_probability,

@@ -1,7 +1,7 @@
-#include "registration/anderson.hpp"
 #include "registration/gauss_field.hpp"
 #include "registration/matching.hpp"
 
+#include <incise/core/anderson.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 
@@ -98,6 +98,8 @@ double rms_step(const Similarity& a, const Similarity& b, const Mat3& scatter) {
                    (a.translation_mm - b.translation_mm).squaredNorm());
 }
 
+using Acceleration = Anderson<8>;  // of scale, rotation, translation and width
+
 /// EM in normalised coordinates: the source centred, both over the target's radius.
 class Expectation {
  public:
@@ -120,7 +122,7 @@ class Expectation {
                        : std::sqrt(all_pairs_variance(source_.front(), target_.front(), t, settings_.dimensions));
     const WeightedPoints* last_source = nullptr;
     bool sees_all = false;  // the last steps see every point, whatever the width
-    Anderson acceleration;
+    Acceleration acceleration;
     Mat3 origin = t.rotation;  // that the acceleration's rotation vectors start from
     double plain_step = 0.0;
     double ratio = 0.0;  // of two plain steps
@@ -158,7 +160,7 @@ class Expectation {
         continue;
       }
       plain_step = 0.0;
-      const Anderson::Vector ahead =
+      const Acceleration::Vector ahead =
           acceleration.next(vector_of(t, sigma, origin), vector_of(next.transform, new_sigma, origin));
       sigma = std::max(ahead[7], 0.5 * new_sigma);
       t = {std::clamp(std::exp(ahead[0]), settings_.scale.low, settings_.scale.high),
@@ -176,8 +178,8 @@ class Expectation {
     return settings;
   }
   /// The unknowns: logarithm of the scale, rotation vector from `origin`, translation, width.
-  static Anderson::Vector vector_of(const Similarity& t, double sigma, const Mat3& origin) {
-    Anderson::Vector v;
+  static Acceleration::Vector vector_of(const Similarity& t, double sigma, const Mat3& origin) {
+    Acceleration::Vector v;
     v << std::log(t.scale), rotation_vector(t.rotation * origin.transpose()), t.translation_mm, sigma;
     return v;
   }
@@ -231,20 +233,6 @@ std::vector<std::string> validate(const DriftSettings& s) {
   return problems;
 }
 
-std::string_view to_string(DriftOutcome outcome) {
-  switch (outcome) {
-    case DriftOutcome::Converged:
-      return "converged";
-    case DriftOutcome::IterationLimit:
-      return "iteration_limit";
-    case DriftOutcome::Degenerate:
-      return "degenerate";
-    case DriftOutcome::Cancelled:
-      return "cancelled";
-  }
-  return "unknown";
-}
-
 double background(double sigma, double outlier_weight, int dimensions, double source_count, double target_count) {
   const double volume = std::pow(2.0 * units::kPi * sigma * sigma, 0.5 * dimensions);
   return volume * outlier_weight / (1.0 - outlier_weight) * source_count / target_count;
@@ -294,18 +282,6 @@ MatchedTransform best_transform(const MatchSums& sums, const DriftSettings& sett
   const double misfit = x_spread - 2.0 * t.scale * turn.gain + t.scale * t.scale * y_spread;
   best.variance = std::max(0.0, misfit) / (n * settings.dimensions);
   return best;
-}
-
-DriftStep drift_step(std::span<const Vec3> source, std::span<const Vec3> target, double variance_mm2,
-                     const DriftSettings& settings, Workers& workers) {
-  require_usable(source, "source");
-  require_usable(target, "target");
-  INCISE_REQUIRE(std::isfinite(variance_mm2) && variance_mm2 > 0.0,
-                 fmt::format("expected a variance above 0, found {}", variance_mm2));
-  const WeightedPoints y{Points(source.begin(), source.end()), std::vector<double>(source.size(), 1.0), 0.0};
-  const WeightedPoints x{Points(target.begin(), target.end()), std::vector<double>(target.size(), 1.0), 0.0};
-  const MatchedTransform next = best_transform(match(y, x, {}, std::sqrt(variance_mm2), settings, workers), settings);
-  return {next.transform, next.variance};
 }
 
 Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start,

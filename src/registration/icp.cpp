@@ -1,5 +1,7 @@
 #include "registration/icp.hpp"
 
+#include <incise/core/median.hpp>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -36,9 +38,7 @@ double robust_sd(const std::vector<SurfacePair>& pairs, double width) {
     if (std::abs(pair.distance) < 3.0 * width) sizes.push_back(std::abs(pair.distance));
   }
   if (sizes.empty()) return width;
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return 1.4826 * *middle;
+  return 1.4826 * median(sizes);
 }
 
 Vec7 solve(Mat7 system, Vec7 right, double length, bool with_scale) {

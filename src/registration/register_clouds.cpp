@@ -408,32 +408,6 @@ std::vector<std::string> validate(const RegistrationSettings& s) {
   return problems;
 }
 
-std::string_view to_string(RegistrationOutcome outcome) {
-  switch (outcome) {
-    case RegistrationOutcome::Converged:
-      return "converged";
-    case RegistrationOutcome::IterationLimit:
-      return "iteration_limit";
-    case RegistrationOutcome::IllDetermined:
-      return "ill_determined";
-    case RegistrationOutcome::Ambiguous:
-      return "ambiguous";
-    case RegistrationOutcome::Mirrored:
-      return "mirrored";
-    case RegistrationOutcome::PoorFit:
-      return "poor_fit";
-    case RegistrationOutcome::OtherShape:
-      return "other_shape";
-    case RegistrationOutcome::ScaleAtLimit:
-      return "scale_at_limit";
-    case RegistrationOutcome::Degenerate:
-      return "degenerate";
-    case RegistrationOutcome::Cancelled:
-      return "cancelled";
-  }
-  return "unknown";
-}
-
 Registration register_clouds(const PointCloud& source, const PointCloud& target, const RegistrationSettings& settings,
                              Workers& workers, Monitor& monitor) {
   require_usable(source, "source");

@@ -2,6 +2,8 @@
 
 #include "registration/icp.hpp"
 
+#include <incise/core/median.hpp>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -220,10 +222,8 @@ class Settling {
     const Vector left = distance + jacobian.rightCols(rank) * weights_;
     std::vector<double> sizes(static_cast<std::size_t>(left.size()));
     for (Eigen::Index i = 0; i < left.size(); ++i) sizes[static_cast<std::size_t>(i)] = std::abs(left[i]);
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
     constexpr double kLeastNoise = 1e-6;  // identical clouds
-    result_.noise = std::max(1.4826 * *middle, kLeastNoise);
+    result_.noise = std::max(1.4826 * median(sizes), kLeastNoise);
     const double width = kWeightWidths * result_.noise;
     Vector weight(left.size());
     for (Eigen::Index i = 0; i < left.size(); ++i)

@@ -1,5 +1,7 @@
 #include "registration/shape_residual.hpp"
 
+#include <incise/core/median.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -16,12 +18,6 @@ constexpr double kOfMedian = 1.2533;      // standard error of a median over tha
 constexpr double kOfDeviation = 1.4826;   // standard deviation over the median absolute deviation, of normal noise
 constexpr double kNineTenths = 1.645;     // standard deviations that nine tenths of normal noise keep within
 constexpr double kShare = 0.9;            // of the neighbourhoods: the rest may be a rim, a hole or a hair
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Height of a target point above the source's surface, along the normal of the source's nearest point.
 struct HeightThere {

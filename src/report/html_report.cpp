@@ -1,17 +1,16 @@
 #include "report/page_files.hpp"
 #include "report/scene.hpp"
 #include "report/sections.hpp"
-#include "report/svg.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/text_encoding.hpp>
 #include <incise/report/html_report.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
-#include <ostream>
 
 namespace incise {
 namespace {
@@ -103,7 +102,7 @@ std::string html_report(const ReportData& data) {
 
 void write_report(const ReportData& data, const std::filesystem::path& path) {
   const std::string page = html_report(data);
-  write_atomically(path, [&page](std::ostream& out) { out << page; });
+  write_atomically(path, page);
 }
 
 }  // namespace incise

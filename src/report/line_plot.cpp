@@ -21,15 +21,15 @@ constexpr double kTitleCharacter = 7.4;  // about as wide as one is
 constexpr double kNameCharacter = 6.4;
 constexpr double kTitleRow = 18.0;
 
-struct Range {
+struct AxisRange {
   double low = 0.0;
   double high = 0.0;
 };
 
 /// The range of one axis' values (their logarithms on a log axis), with some air; never empty.
-Range range_of(const LinePlot& plot, bool is_x) {
+AxisRange range_of(const LinePlot& plot, bool is_x) {
   const bool is_log = is_x ? plot.is_log_x : plot.is_log_y;
-  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  AxisRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto widen = [&](const std::string& name, const std::vector<double>& values) {
     for (const double value : values) {
       const double place = is_log ? std::log10(value) : value;
@@ -65,7 +65,7 @@ std::vector<double> mark_ticks(const LinePlot& plot) {
 }
 
 /// Ticks at 1, 2, 5 times powers of ten, or at the powers alone where those would crowd.
-std::vector<double> log_ticks(const Range& range) {
+std::vector<double> log_ticks(const AxisRange& range) {
   std::vector<double> ticks;
   const bool is_wide = range.high - range.low > 2.0;
   const int stride = std::max(1, static_cast<int>(std::ceil((range.high - range.low) / 8.0)));
@@ -79,7 +79,7 @@ std::vector<double> log_ticks(const Range& range) {
   return ticks;
 }
 
-void draw_axis(SvgWriter& svg, const PlotArea& area, const Range& range, const std::vector<double>& preferred,
+void draw_axis(SvgWriter& svg, const PlotArea& area, const AxisRange& range, const std::vector<double>& preferred,
                bool is_log, bool is_x, std::string_view name) {
   std::vector<double> ticks = preferred;
   if (ticks.empty()) ticks = is_log ? log_ticks(range) : round_ticks(range.low, range.high, 6);
@@ -163,8 +163,8 @@ std::string line_plot_svg(const LinePlot& plot) {
                     "ends",
                     series.name, series.x.size(), series.low.size(), series.high.size()));
   }
-  const Range x = range_of(plot, true);
-  const Range y = range_of(plot, false);
+  const AxisRange x = range_of(plot, true);
+  const AxisRange y = range_of(plot, false);
   const std::vector<std::string> title = title_rows(plot.title);
   std::vector<double> widths;
   for (const LineSeries& series : plot.series)

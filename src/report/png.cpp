@@ -1,6 +1,7 @@
 #include "report/png.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/text_encoding.hpp>
 
 #include <png.h>
 
@@ -26,23 +27,6 @@ std::string encoded_png(std::span<const std::uint8_t> pixels, int width, int hei
   }
   file.resize(size);
   return file;
-}
-
-std::string base64(std::string_view bytes) {
-  static constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) {
-      return i + k < bytes.size() ? static_cast<unsigned>(static_cast<unsigned char>(bytes[i + k])) : 0U;
-    };
-    const unsigned group = byte(0) << 16 | byte(1) << 8 | byte(2);
-    text += kAlphabet[group >> 18 & 63];
-    text += kAlphabet[group >> 12 & 63];
-    text += i + 1 < bytes.size() ? kAlphabet[group >> 6 & 63] : '=';
-    text += i + 2 < bytes.size() ? kAlphabet[group & 63] : '=';
-  }
-  return text;
 }
 
 std::string png_data_uri(std::string_view png) {

@@ -11,9 +11,6 @@ namespace incise {
 /// @pre pixels.size() == width * height * channels.
 [[nodiscard]] std::string encoded_png(std::span<const std::uint8_t> pixels, int width, int height, int channels);
 
-/// Base64 (RFC 4648, section 4, with padding).
-[[nodiscard]] std::string base64(std::string_view bytes);
-
 [[nodiscard]] std::string png_data_uri(std::string_view png);
 
 }  // namespace incise

@@ -1,9 +1,9 @@
 #include "report/scene.hpp"
 
 #include "report/line_kinds.hpp"
-#include "report/png.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/text_encoding.hpp>
 
 #include <algorithm>
 #include <cmath>

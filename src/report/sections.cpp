@@ -5,6 +5,7 @@
 #include "report/svg.hpp"
 #include "report/tables.hpp"
 
+#include <incise/io/text_encoding.hpp>
 #include <incise/report/figures.hpp>
 #include <incise/report/html_report.hpp>
 

@@ -1,6 +1,7 @@
 #include "report/svg.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/text_encoding.hpp>
 
 #include <fmt/format.h>
 
@@ -22,33 +23,6 @@ std::string coordinate(double value) {
 }
 
 }  // namespace
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  result.reserve(text.size());
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 std::string number_text(double value) {
   INCISE_REQUIRE(std::isfinite(value), "expected a finite number");

@@ -8,9 +8,6 @@
 
 namespace incise {
 
-/// Text made safe for HTML and SVG, in content and in double-quoted attributes.
-[[nodiscard]] std::string escaped(std::string_view text);
-
 /// A number as a person writes it: four significant digits, whole numbers in full, a true minus sign.
 [[nodiscard]] std::string number_text(double value);
 

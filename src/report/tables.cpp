@@ -2,6 +2,8 @@
 
 #include "report/svg.hpp"
 
+#include <incise/io/text_encoding.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -121,18 +121,4 @@ std::string to_string(const ArmBranch& branch) {
                      branch.is_elbow_negative ? "negative" : "positive", branch.is_wrist_flipped ? "flipped" : "plain");
 }
 
-std::string_view to_string(InverseOutcome outcome) {
-  switch (outcome) {
-    case InverseOutcome::Solved:
-      return "solved";
-    case InverseOutcome::TooFar:
-      return "too_far";
-    case InverseOutcome::InsideShoulder:
-      return "inside_shoulder";
-    case InverseOutcome::WristSingular:
-      return "wrist_singular";
-  }
-  return "unknown";
-}
-
 }  // namespace incise

@@ -1,6 +1,7 @@
 #include "robot/check_list.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/median.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/robot/checks.hpp>
@@ -424,9 +425,7 @@ WaypointGap widest_gap(const ToolPath& path, const CheckSettings& settings) {
   }
   const auto longest = std::max_element(ways_mm.begin(), ways_mm.end());
   WaypointGap gap{*longest, 0.0, static_cast<std::size_t>(longest - ways_mm.begin())};
-  const auto middle = ways_mm.begin() + static_cast<std::ptrdiff_t>(ways_mm.size() / 2);
-  std::nth_element(ways_mm.begin(), middle, ways_mm.end());
-  gap.limit_mm = std::max(settings.max_gap_mm, settings.max_gap_ratio * *middle);
+  gap.limit_mm = std::max(settings.max_gap_mm, settings.max_gap_ratio * median(ways_mm));
   return gap;
 }
 
@@ -441,15 +440,6 @@ std::string ProgramCheck::message() const {
   const std::string with_unit = unit.empty() ? "" : " " + unit;
   return fmt::format("{}: {:.4g}{}{}, has to be {} {:.4g}{}: {}", name, value, with_unit, where, relation, limit,
                      with_unit, text);
-}
-
-bool ProgramChecks::all_passed() const {
-  return std::all_of(checks.begin(), checks.end(), [](const ProgramCheck& check) { return check.passed; });
-}
-
-bool ProgramChecks::may_be_written() const {
-  return std::all_of(checks.begin(), checks.end(),
-                     [](const ProgramCheck& check) { return check.passed || check.is_overridden; });
 }
 
 std::span<const char* const> check_names() {

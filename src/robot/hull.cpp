@@ -8,9 +8,6 @@
 namespace incise::robot_detail {
 namespace {
 
-constexpr std::array<std::string_view, kHullCount> kNames{"base",    "shoulder", "upper arm", "elbow", "forearm",
-                                                          "wrist 1", "wrist 2",  "wrist 3",   "shaft", "needle"};
-
 // The upper arm swings beside the base and the forearm beside wrist 2, by the build of the arm.
 constexpr HullPair kBasePairs[]{
     {Hull::Base, Hull::Elbow},      {Hull::Base, Hull::Forearm},     {Hull::Base, Hull::Wrist1},
@@ -53,10 +50,6 @@ double segments_squared_mm2(const Capsule& a, const Capsule& b) {
 }
 
 }  // namespace
-
-std::string_view to_string(Hull hull) {
-  return kNames[static_cast<std::size_t>(hull)];
-}
 
 bool Instrument::is_needle_alone() const {
   constexpr double kBesideMm = 1e-6;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/robot/checks.hpp>
 
@@ -26,8 +27,12 @@ struct Capsule {
 ///    ===shoulder   ||--wrist_1--wrist_2--wrist_3--shaft--needle
 ///     base
 enum class Hull { Base, Shoulder, UpperArm, Elbow, Forearm, Wrist1, Wrist2, Wrist3, Shaft, Needle };
-inline constexpr std::size_t kHullCount = 10;
-[[nodiscard]] std::string_view to_string(Hull hull);  ///< base, shoulder, upper arm …
+inline constexpr std::array<std::string_view, 10> kHullNames{"base",    "shoulder", "upper arm", "elbow", "forearm",
+                                                             "wrist 1", "wrist 2",  "wrist 3",   "shaft", "needle"};
+[[nodiscard]] constexpr Names names_of(Hull) {
+  return kHullNames;
+}
+inline constexpr std::size_t kHullCount = kHullNames.size();
 
 /// The instrument behind the tip: a straight needle, then a straight shaft to the flange.
 struct Instrument {

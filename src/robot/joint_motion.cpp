@@ -111,18 +111,6 @@ JointMotion follow_branch(const Course& course, const ToolFrame& frame, const Br
 
 }  // namespace robot_detail
 
-std::string_view to_string(MotionOutcome outcome) {
-  switch (outcome) {
-    case MotionOutcome::Found:
-      return "found";
-    case MotionOutcome::Unreachable:
-      return "unreachable";
-    case MotionOutcome::Jump:
-      return "jump";
-  }
-  return "unknown";
-}
-
 std::vector<std::string> validate(const ArmSetup& setup) {
   std::vector<std::string> broken;
   const Mat3 R = setup.T_flange_tool.topLeftCorner<3, 3>();

@@ -254,46 +254,6 @@ std::vector<std::string> validate(const PlayerSettings& s) {
   return broken;
 }
 
-std::string_view to_string(ReplayOutcome outcome) {
-  switch (outcome) {
-    case ReplayOutcome::Completed:
-      return "completed";
-    case ReplayOutcome::Unreachable:
-      return "unreachable";
-    case ReplayOutcome::Jump:
-      return "jump";
-    case ReplayOutcome::BlendsOverlap:
-      return "blends_overlap";
-    case ReplayOutcome::JointLimits:
-      return "joint_limits";
-    case ReplayOutcome::StartsInTissue:
-      return "starts_in_tissue";
-    case ReplayOutcome::EndsInTissue:
-      return "ends_in_tissue";
-    case ReplayOutcome::TooLong:
-      return "too_long";
-    case ReplayOutcome::JointSpeed:
-      return "joint_speed";
-    case ReplayOutcome::OffCourse:
-      return "off_course";
-    case ReplayOutcome::WrongAxis:
-      return "wrong_axis";
-    case ReplayOutcome::WrongOrder:
-      return "wrong_order";
-    case ReplayOutcome::WrongSpeed:
-      return "wrong_speed";
-    case ReplayOutcome::RestsInTissue:
-      return "rests_in_tissue";
-    case ReplayOutcome::BreaksLimit:
-      return "breaks_limit";
-    case ReplayOutcome::Altered:
-      return "altered";
-    case ReplayOutcome::FalseChecks:
-      return "false_checks";
-  }
-  return "unknown";
-}
-
 Replay play(const WrittenProgram& program, const ArmModel& arm, const PlayerSettings& settings,
             const ToolPath* intended) {
   const auto broken = validate(settings);

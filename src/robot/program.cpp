@@ -1,6 +1,7 @@
 #include "robot/joint_motion.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 #include <incise/robot/program.hpp>
 
@@ -140,36 +141,10 @@ void require_valid(const ToolPath& path, const ProgramSettings& settings) {
 
 }  // namespace
 
-std::string_view to_string(ProgramPhase phase) {
-  switch (phase) {
-    case ProgramPhase::Approach:
-      return "approach";
-    case ProgramPhase::Plunge:
-      return "plunge";
-    case ProgramPhase::Cut:
-      return "cut";
-    case ProgramPhase::Overlap:
-      return "overlap";
-    case ProgramPhase::Dwell:
-      return "dwell";
-    case ProgramPhase::Exit:
-      return "exit";
-    case ProgramPhase::Retreat:
-      return "retreat";
-  }
-  return "unknown";
-}
-
 std::vector<std::string> validate(const ProgramSettings& s) {
   std::vector<std::string> broken;
-  const auto positive = [&](double value, const char* name) {
-    if (!(value > 0.0) || !std::isfinite(value))
-      broken.push_back(fmt::format("{}: found {}, expected a number above 0", name, value));
-  };
-  const auto not_negative = [&](double value, const char* name) {
-    if (!(value >= 0.0) || !std::isfinite(value))
-      broken.push_back(fmt::format("{}: found {}, expected 0 or more", name, value));
-  };
+  const Expect expect(broken);
+  const auto positive = [&](double value, const char* name) { expect(value > 0.0, name, value, "a number above 0"); };
   positive(s.clearance_mm, "clearance_mm");
   positive(s.approach_speed_mm_s, "approach_speed_mm_s");
   positive(s.plunge_speed_mm_s, "plunge_speed_mm_s");
@@ -177,12 +152,9 @@ std::vector<std::string> validate(const ProgramSettings& s) {
   positive(s.max_spacing_mm, "max_spacing_mm");
   positive(s.acceleration_mm_s2, "acceleration_mm_s2");
   positive(s.jerk_mm_s3, "jerk_mm_s3");
-  not_negative(s.overlap_mm, "overlap_mm");
-  not_negative(s.dwell_s, "dwell_s");
-  if (!(s.approach_height_mm > s.clearance_mm) || !std::isfinite(s.approach_height_mm)) {
-    broken.push_back(
-        fmt::format("approach_height_mm: found {}, expected more than clearance_mm", s.approach_height_mm));
-  }
+  expect(s.overlap_mm >= 0.0, "overlap_mm", s.overlap_mm, "0 or more");
+  expect(s.dwell_s >= 0.0, "dwell_s", s.dwell_s, "0 or more");
+  expect(s.approach_height_mm > s.clearance_mm, "approach_height_mm", s.approach_height_mm, "more than clearance_mm");
   for (const auto& [length_mm, name] :
        {std::pair(s.overlap_mm, "overlap_mm"), std::pair(s.approach_height_mm, "approach_height_mm")}) {
     if (length_mm > kLargestLengthMm)

@@ -3,6 +3,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
+#include <incise/core/verdict.hpp>
 #include <incise/robot/program_audit.hpp>
 
 #include <fmt/format.h>
@@ -131,7 +132,8 @@ class Auditor {
       if (key == "verdict") verdicts.push_back(value);
       if (key == "accepted") accepted.push_back(value);
     }
-    std::string worst = "ok";
+    constexpr std::string_view kRefused = to_string(VerdictStatus::Refused), kOk = to_string(VerdictStatus::Ok);
+    std::string worst(kOk);
     for (const auto& [key, value] : program_.header) {
       if (key != "reason") continue;
       const std::string severity = value.substr(0, value.find(": "));
@@ -139,13 +141,14 @@ class Auditor {
           severity.size() + 2 <= value.size()
               ? value.substr(severity.size() + 2, value.find(": ", severity.size() + 2) - severity.size() - 2)
               : "";
-      if (severity == "refused" || worst == "ok") worst = severity;
-      if (severity == "caution" && std::find(accepted.begin(), accepted.end(), id) == accepted.end())
+      if (severity == kRefused || worst == kOk) worst = severity;
+      if (severity == to_string(VerdictStatus::Caution) &&
+          std::find(accepted.begin(), accepted.end(), id) == accepted.end())
         contradict(fmt::format("its caution '{}' was accepted by nobody", id));
     }
     if (verdicts.size() != 1)
       return contradict(fmt::format("{} lines of a verdict on the cut, expected one", verdicts.size()));
-    if (verdicts.front() == "refused" || worst == "refused")
+    if (verdicts.front() == kRefused || worst == kRefused)
       return contradict("the simulated cut is refused: no program is written for it");
     if (verdicts.front() != worst)
       contradict(fmt::format("its verdict is {}, that of its reasons {}", verdicts.front(), worst));

@@ -104,12 +104,8 @@ void read_comment(const std::string& line, WrittenProgram& program) {
 }
 
 ProgramPhase phase_of(const std::string& name, const Complain& fail) {
-  constexpr std::array kAll{ProgramPhase::Approach, ProgramPhase::Plunge, ProgramPhase::Cut,    ProgramPhase::Overlap,
-                            ProgramPhase::Dwell,    ProgramPhase::Exit,   ProgramPhase::Retreat};
-  for (const ProgramPhase phase : kAll) {
-    if (name == to_string(phase)) return phase;
-  }
-  fail(fmt::format("phase '{:.40}'", name), "approach, plunge, cut, overlap, dwell, exit or retreat");
+  if (const auto phase = value_of<ProgramPhase>(name)) return *phase;
+  fail(fmt::format("phase '{:.40}'", name), choices(names_of(ProgramPhase{})));
   return ProgramPhase::Approach;  // not reached: `fail` throws
 }
 
@@ -160,8 +156,9 @@ void read_header(WrittenProgram& program, const std::filesystem::path& file) {
   std::optional<double> spin_deg;
   for (const auto& [key, value] : program.header) {
     if (key == "kind") {
-      if (value != "incise" && value != "mark") throw DataError(file, "header kind", value, "incise or mark");
-      path.kind = value == "mark" ? PathKind::Mark : PathKind::Incise;
+      const auto kind = value_of<PathKind>(value);
+      if (!kind) throw DataError(file, "header kind", value, choices(names_of(PathKind{})));
+      path.kind = *kind;
     } else if (key == "closed") {
       path.is_closed = truth_of(value, file, key);
     } else if (key == "overlap_mm") {
@@ -261,18 +258,6 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
 }
 
 }  // namespace robot_detail
-
-std::string_view to_string(ProgramDigest digest) {
-  switch (digest) {
-    case ProgramDigest::Absent:
-      return "absent";
-    case ProgramDigest::Matches:
-      return "matches";
-    case ProgramDigest::Differs:
-      return "differs";
-  }
-  return "unknown";
-}
 
 WrittenProgram program_from_text(std::string_view text, const std::filesystem::path& name) {
   const std::string ending = name.extension().string();

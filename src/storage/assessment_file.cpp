@@ -68,16 +68,16 @@ Json to_json(const Assessment& assessment, const AssessmentRequest& request) {
   return json;
 }
 
-void write_assessment(FolderStore& store, const Json& assessment, const std::filesystem::path& calibration,
+void write_assessment(RunFolder& run, const Json& assessment, const std::filesystem::path& calibration,
                       const std::filesystem::path& registration, double wall_s) {
-  const std::filesystem::path folder = store.root() / "assessment";
+  const std::filesystem::path folder = run.root() / "assessment";
   require_replaceable(folder);
   AtomicFolder target(folder);
   Json json = assessment;
   json["calibration_sha256"] = sha256_of_file(calibration);
   json["registration_sha256"] = sha256_of_file(registration);
   write_json(target.path() / "assess.json", json);
-  store.write_manifest_to(target.path(), wall_s);
+  run.write_manifest_to(target.path(), wall_s);
   target.commit();
 }
 

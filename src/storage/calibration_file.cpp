@@ -274,11 +274,10 @@ CalibrationRecord read_calibration(const std::filesystem::path& path) {
   if (file.text("schema") != kCalibrationSchema)
     file.refuse("schema", file.text("schema").substr(0, 40), kCalibrationSchema);
   CalibrationRecord record;
-  const std::string method = file.text("method");
-  if (method != to_string(CalibrationMethod::Paper) && method != to_string(CalibrationMethod::Fit)) {
-    file.refuse("method", method.substr(0, 40), "paper or fit");
-  }
-  record.method = method == to_string(CalibrationMethod::Fit) ? CalibrationMethod::Fit : CalibrationMethod::Paper;
+  const std::string name = file.text("method");
+  const auto method = value_of<CalibrationMethod>(name);
+  if (!method) file.refuse("method", name.substr(0, 40), choices(names_of(CalibrationMethod{})));
+  record.method = *method;
   record.is_virtual = file.flag("virtual");
   record.reference_step_s = within(file, "reference_step_s", kStepS);
   record.baseline_mm = within(file, "baseline_mm", kLengthMm);

@@ -23,11 +23,11 @@ void optional_numbers(FieldVisitor& v, const FieldInfo& info, std::optional<Valu
   if (is_given) value = store(numbers);
 }
 
-template <class Enum>
-void choice(FieldVisitor& v, const FieldInfo& info, Enum& value, std::span<const char* const> names) {
+template <Named E>
+void choice(FieldVisitor& v, const FieldInfo& info, E& value) {
   auto position = static_cast<std::size_t>(value);
-  v.choice(info, position, names);
-  value = static_cast<Enum>(position);
+  v.choice(info, position, names_of(value));
+  value = static_cast<E>(position);
 }
 
 void vector(FieldVisitor& v, const FieldInfo& info, Vec3& value, const Range& range = kAny) {
@@ -71,10 +71,8 @@ void describe_ct(CaseFile& file, FieldVisitor& v) {
   v.optional_number({"smoothing_mm", "mm", "Standard deviation of the Gaussian that smooths the tissue's surface; absent: 0.6, or 1.2 voxels where that is less."},
                     s.smoothing_mm, {0.0, 5.0});
   v.text({"series_uid", "", "DICOM: which series to read, where a folder holds several."}, file.ct_reading.series_uid);
-  static constexpr std::array<const char*, 2> kIrregular{"resample", "refuse"};
-  choice(v, {"irregular_slices", "", "What to do with a tilted or unevenly spaced series."}, file.ct_reading.irregular, kIrregular);
-  static constexpr std::array<const char*, 2> kMissing{"refuse", "interpolate"};
-  choice(v, {"missing_slices", "", "What to do with holes in a series."}, file.ct_reading.missing, kMissing);
+  choice(v, {"irregular_slices", "", "What to do with a tilted or unevenly spaced series."}, file.ct_reading.irregular);
+  choice(v, {"missing_slices", "", "What to do with holes in a series."}, file.ct_reading.missing);
   optional_vector(v, {"spacing_mm", "mm", "PNG slices only: column, row and slice spacing."}, file.ct_reading.spacing_mm, kPositive);
   // The group `hu` belongs to pictures only, so it is absent unless both numbers are given.
   std::optional<GrayToHu>& hu = file.ct_reading.hu;
@@ -131,12 +129,15 @@ void describe_specimen(CaseFile& file, FieldVisitor& v) {
   v.begin_group({"specimen", "", "What the tissue is and how it is held."});
   v.path({"mesh", "", "A tetrahedral mesh (mm, LPS) to use in place of a CT."}, file.inputs.specimen_mesh);
   v.begin_group({"material", "", "The tissue's law."});
-  static constexpr std::array<const char*, 2> kModels{"corotational", "stable_neo_hookean"};
-  choice(v, {"model", "", "Linear elasticity in a frame that turns with each tet, as in the paper; or a hyperelastic law."},
-         c.material.model, kModels);
-  static constexpr std::array<const char*, 2> kVolumes{"per_tet", "averaged"};
-  choice(v, {"volume", "", "How volume change is resisted: tet by tet (locks as Poisson's ratio nears 0.5), or as a mean about each vertex."},
-         c.material.volume, kVolumes);
+  choice(
+      v,
+      {"model", "", "Linear elasticity in a frame that turns with each tet, as in the paper; or a hyperelastic law."},
+      c.material.model);
+  choice(v,
+         {"volume", "",
+          "How volume change is resisted: tet by tet (locks as Poisson's ratio nears 0.5), or as a mean about each "
+          "vertex."},
+         c.material.volume);
   v.number({"youngs_modulus_kpa", "kPa", "Young's modulus; the paper's 70 is about ten times published tongue stiffness."},
            c.material.youngs_modulus_kpa, kYoungsModulus);
   v.number({"poissons_ratio", "", "Poisson's ratio."}, c.material.poissons_ratio, {0.0, 0.5, false, true});
@@ -158,11 +159,11 @@ void describe_specimen(CaseFile& file, FieldVisitor& v) {
 void describe_tumor(CaseFile& file, FieldVisitor& v) {
   v.begin_group({"tumor", "", "The edge that a ring keeps clear of."});
   v.path({"contour", "", ".csv (x_mm,y_mm,z_mm), .vtp or Slicer .mrk.json closed curve."}, file.inputs.tumor_contour);
-  v.path({"surface", "", "The tumour's closed surface (.stl, .ply, .vtp, .obj), for the deep margin; absent: only the edge is known."},
+  v.path({"surface", "",
+          "The tumour's closed surface (.stl, .ply, .vtp, .obj), for the deep margin; absent: only the edge is known."},
          file.inputs.tumor_surface);
-  static constexpr std::array<const char*, 2> kConfigurations{"stretched", "rest"};
   choice(v, {"configuration", "", "Whether the edge was marked on the stretched tissue or on the tissue as scanned."},
-         file.settings.tumor_configuration, kConfigurations);
+         file.settings.tumor_configuration);
   v.number({"surface_tolerance_mm", "mm", "Farthest that the edge may lie off the surface along the approach."},
            file.settings.surface_tolerance_mm, kPositive);
   v.end_group();
@@ -171,8 +172,7 @@ void describe_tumor(CaseFile& file, FieldVisitor& v) {
 void describe_plan(CaseFile& file, FieldVisitor& v) {
   PlanSettings& p = file.settings.plan;
   v.begin_group({"plan", "", "The intended incision."});
-  static constexpr std::array<const char*, 2> kKinds{"ring", "line"};
-  choice(v, {"kind", "", "A ring around the tumour edge, or an open cut along a drawn curve."}, p.kind, kKinds);
+  choice(v, {"kind", "", "A ring around the tumour edge, or an open cut along a drawn curve."}, p.kind);
   v.path({"line", "", "The curve of an open cut, on the stretched tissue: .csv, .vtp or Slicer .mrk.json."}, file.inputs.line_contour);
   v.number({"lateral_margin_mm", "mm", "From the tumour edge to the kerf's mid-line."}, p.lateral_margin_mm, {0.5, 50.0});
   v.number({"depth_mm", "mm", "Of the tool's tip below the surface."}, p.depth_mm, {0.5, 50.0});
@@ -182,8 +182,7 @@ void describe_plan(CaseFile& file, FieldVisitor& v) {
   v.direction({"start_direction", "", "A ring starts at its waypoint farthest along this; the start decides where the error falls."},
               p.start_direction);
   v.integer({"waypoints", "", "Evenly spaced along the path."}, p.waypoints, {2.0, 2000.0});
-  static constexpr std::array<const char*, 2> kAxes{"approach", "surface_normal"};
-  choice(v, {"tool_axis", "", "How the tool is held at a waypoint."}, p.axis_mode, kAxes);
+  choice(v, {"tool_axis", "", "How the tool is held at a waypoint."}, p.axis_mode);
   v.number({"close_margin_mm", "mm", "Clinical cut-off below which a negative margin is too close."}, file.settings.close_margin_mm,
            {0.0, 20.0, true, false});
   v.end_group();
@@ -211,7 +210,8 @@ Tool tool_with(const Tool& kind, const ToolDimensions& d) {
 }
 
 void describe_tool(CaseFile& file, FieldVisitor& v) {
-  static constexpr std::array<const char*, 3> kTools{"needle", "blade", "ball"};  // in the order of the alternatives of Tool
+  // In the order of the alternatives of Tool.
+  static constexpr std::array<std::string_view, 3> kTools{"needle", "blade", "ball"};
   Tool& tool = file.settings.tool;
   v.begin_group({"tool", "", "The instrument."});
   std::size_t kind = tool.index();
@@ -291,10 +291,10 @@ void describe_thermal(ThermalSettings& t, FieldVisitor& v) {
 
 void describe_compensation(CompensationChoice& c, FieldVisitor& v) {
   v.begin_group({"compensation", "", "How the path is corrected by the simulated error."});
-  static constexpr std::array<const char*, 2> kMethods{"default", "paper"};
-  choice(v, {"method", "", "Pass by pass until the cut lies where it was intended, or the paper's one pass."}, c.method, kMethods);
-  static constexpr std::array<const char*, 2> kObservables{"centerline", "inner_edge"};
-  choice(v, {"observable", "", "Which line of the cut is brought to its target; the paper's method: the mid-line."}, c.observable, kObservables);
+  choice(v, {"method", "", "Pass by pass until the cut lies where it was intended, or the paper's one pass."},
+         c.method);
+  choice(v, {"observable", "", "Which line of the cut is brought to its target; the paper's method: the mid-line."},
+         c.observable);
   v.number({"bias_mm", "mm", "Expected error of the real cut less that of the simulated one, positive: farther out; default method only."},
            c.bias_mm, {-10.0, 10.0});
   v.end_group();
@@ -303,7 +303,7 @@ void describe_compensation(CompensationChoice& c, FieldVisitor& v) {
 void describe_robot(CaseFile& file, FieldVisitor& v) {
   v.path({"path", "", "A path.json (frame sim_stretched) to follow in place of the planned one."}, file.inputs.tool_path);
   v.begin_group({"robot", "", "The arm, its tool, and where the specimen lies under it."});
-  static constexpr std::array<const char*, 1> kModels{"ur10e"};
+  static constexpr std::array<std::string_view, 1> kModels{"ur10e"};
   std::size_t model = 0;
   v.choice({"model", "", "The arm."}, model, kModels);
   const auto transform = [&v](const FieldInfo& info, std::optional<Mat4>& value) {
@@ -324,7 +324,7 @@ void describe_robot(CaseFile& file, FieldVisitor& v) {
 }  // namespace
 
 void describe_case(CaseFile& file, FieldVisitor& v) {
-  static constexpr std::array<const char*, 1> kSchemas{kCaseSchemaName};
+  static constexpr std::array<std::string_view, 1> kSchemas{kCaseSchemaName};
   std::size_t schema = 0;
   v.choice({"schema", "", "Format and version of this file."}, schema, kSchemas);
   v.text({"title", "", "Shown on the report."}, file.settings.title);
@@ -332,7 +332,7 @@ void describe_case(CaseFile& file, FieldVisitor& v) {
           "Name of the specimen, 1 to 64 letters, digits, '.', '_' and '-'; travels with every result. By default it "
           "follows from the scan or mesh."},
          file.settings.specimen_id);
-  static constexpr std::array<const char*, 2> kOrigins{"real", "virtual"};
+  static constexpr std::array<std::string_view, 2> kOrigins{"real", "virtual"};
   std::size_t origin = file.settings.is_virtual ? 1 : 0;
   v.choice({"specimen_is", "", "Whether the scan is of real tissue; a virtual one is said to be virtual wherever it appears."}, origin,
            kOrigins);

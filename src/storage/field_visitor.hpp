@@ -44,7 +44,7 @@ class FieldVisitor {
   /// A file or folder, relative to the case file's folder; empty when absent.
   virtual void path(const FieldInfo& info, std::filesystem::path& value) = 0;
   /// One of `names`; `value` is its position.
-  virtual void choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) = 0;
+  virtual void choice(const FieldInfo& info, std::size_t& value, Names names) = 0;
   /// A fixed count of numbers; `is_given` tells whether an optional one is there.
   virtual void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) = 0;
   /// A direction: a vector, or one of anterior, posterior, left, right, superior, inferior (LPS).

@@ -112,7 +112,7 @@ void SchemaWriter::text(const FieldInfo& info, std::string& value) { add(info, {
 
 void SchemaWriter::path(const FieldInfo& info, std::filesystem::path&) { add(info, {{"type", "string"}}); }
 
-void SchemaWriter::choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) {
+void SchemaWriter::choice(const FieldInfo& info, std::size_t& value, Names names) {
   add(info, {{"enum", std::vector<std::string>(names.begin(), names.end())}, {"default", names[value]}});
 }
 
@@ -193,8 +193,8 @@ void SettingLister::text(const FieldInfo& info, std::string& value) { add(info, 
 
 void SettingLister::path(const FieldInfo& info, std::filesystem::path& value) { add(info, value.generic_string()); }
 
-void SettingLister::choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) {
-  add(info, names[value]);
+void SettingLister::choice(const FieldInfo& info, std::size_t& value, Names names) {
+  add(info, std::string(names[value]));
 }
 
 void SettingLister::numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range&) {

@@ -16,18 +16,8 @@ using Json = nlohmann::ordered_json;
 const std::vector<std::string> kDepthColumns{"x_mm", "y_mm", "z_mm", "arclength_mm", "depth_mm", "planned_mm"};
 const std::vector<std::string> kLagColumns{"time_s", "arclength_mm", "lag_mm", "drift_mm"};
 
-template <class Value>
-std::optional<Value> optional_at(const Json& json, const char* key) {
-  if (json.at(key).is_null()) return std::nullopt;
-  return json.at(key).get<Value>();
-}
-
 Json spread_json(const Spread& spread) {
   return {{"mean", spread.mean}, {"min", spread.min}, {"max", spread.max}};
-}
-
-Spread spread_from(const Json& json) {
-  return {json.at("mean"), json.at("min"), json.at("max")};
 }
 
 Json manifoldness_json(const Manifoldness& found) {
@@ -35,10 +25,6 @@ Json manifoldness_json(const Manifoldness& found) {
           {"open_edges", found.open_edges},
           {"nonmanifold_edges", found.nonmanifold_edges},
           {"pinched_vertices", found.pinched_vertices}};
-}
-
-Manifoldness manifoldness_from(const Json& json) {
-  return {json.at("triangles"), json.at("open_edges"), json.at("nonmanifold_edges"), json.at("pinched_vertices")};
 }
 
 Json layer_json(const KerfLayer& layer, const LayerErrors& errors) {
@@ -62,43 +48,12 @@ Json deep_margin_json(const DeepMargin& margin) {
   return json;
 }
 
-DeepMargin deep_margin_from(const Json& json) {
-  return {json.at("nearest"), optional_at<double>(json, "beside"), optional_at<double>(json, "beneath"),
-          spread_from(json.at("floor_below"))};
-}
-
 std::string layer_file(double depth_mm) {
   return fmt::format("centerline_{}mm.csv", depth_mm);
 }
 
 void write_if_there(const std::filesystem::path& file, const std::optional<Contour>& contour) {
   if (contour) write_contour_csv(file, *contour);
-}
-
-std::optional<Contour> read_if_there(const std::filesystem::path& file, bool is_closed) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
-  return read_contour(file, is_closed);
-}
-
-DepthReached depth_from(const std::filesystem::path& folder, const Json& json, bool is_ring) {
-  DepthReached depth;
-  depth.planned_mm = json.at("planned");
-  depth.depth_mm = spread_from(json);
-  std::vector<std::vector<double>> columns = read_csv_columns(folder / "depth.csv", kDepthColumns);
-  depth.profile.course.is_closed = is_ring;
-  for (std::size_t i = 0; i < columns[0].size(); ++i) {
-    depth.profile.course.points.emplace_back(columns[0][i], columns[1][i], columns[2][i]);
-  }
-  depth.profile.arclength_mm = std::move(columns[3]);
-  depth.profile.depth_mm = std::move(columns[4]);
-  depth.planned_at_mm = std::move(columns[5]);
-  return depth;
-}
-
-TissueDrag drag_from(const std::filesystem::path& folder, const Json& json) {
-  std::vector<std::vector<double>> columns = read_csv_columns(folder / "lag.csv", kLagColumns);
-  return {std::move(columns[0]), std::move(columns[1]),          std::move(columns[2]),
-          std::move(columns[3]), spread_from(json.at("lag_mm")), spread_from(json.at("drift_mm"))};
 }
 
 }  // namespace
@@ -138,29 +93,6 @@ void write_kerf_files(const std::filesystem::path& folder, const KerfMeasures& k
   }
   write_if_there(folder / "centerline_final.csv", kerf.final_centerline);
   write_if_there(folder / "inner_edge_reference.csv", kerf.inner_edge_reference);
-}
-
-KerfMeasures read_kerf_files(const std::filesystem::path& folder, const Json& json, bool is_ring) {
-  KerfMeasures kerf;
-  kerf.body.boundary = manifoldness_from(json.at("kerf"));
-  kerf.body.volume_mm3 = json.at("kerf").at("volume_mm3");
-  kerf.body.live_skin = manifoldness_from(json.at("live_skin"));
-  if (kerf.body.boundary.triangles > 0) kerf.body.surface = read_surface(folder / "kerf.vtp");
-  for (const Json& found : json.at("layers")) {
-    KerfLayer& layer = kerf.layers.emplace_back();
-    layer.depth_mm = found.at("depth_mm");
-    layer.is_within_plan = found.at("within_plan");
-    layer.is_closed = optional_at<bool>(found, "closed_loop");
-    layer.gap_mm = optional_at<double>(found, "gap_mm");
-    layer.width_mm = found.at("kerf_width_mm");
-    layer.centerline = read_if_there(folder / layer_file(layer.depth_mm), is_ring);
-  }
-  kerf.depth = depth_from(folder, json.at("depth_reached_mm"), is_ring);
-  if (!json.at("lag_mm").is_null()) kerf.drag = drag_from(folder, json);
-  if (!json.at("deep_margin_mm").is_null()) kerf.deep_margin = deep_margin_from(json.at("deep_margin_mm"));
-  kerf.final_centerline = read_if_there(folder / "centerline_final.csv", is_ring);
-  kerf.inner_edge_reference = read_if_there(folder / "inner_edge_reference.csv", true);
-  return kerf;
 }
 
 }  // namespace incise

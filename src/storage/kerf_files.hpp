@@ -17,9 +17,4 @@ void add_kerf_json(nlohmann::ordered_json& json, const SimulatedCut& cut);
 /// inner_edge_reference.csv.
 void write_kerf_files(const std::filesystem::path& folder, const KerfMeasures& kerf);
 
-/// The measures from both. @param is_ring  whether the mid-lines are closed.  @throws DataError, or of the JSON
-/// library, for what is missing or damaged.
-[[nodiscard]] KerfMeasures read_kerf_files(const std::filesystem::path& folder, const nlohmann::ordered_json& json,
-                                           bool is_ring);
-
 }  // namespace incise

@@ -32,16 +32,15 @@ Json waypoint() {
   return object_of(std::move(fields), {"position_mm", "axis", "depth_mm", "speed_mm_s"});
 }
 
-Json choice(std::vector<std::string> names, const char* meaning) {
-  return {{"enum", std::move(names)}, {"description", meaning}};
+Json choice(Names names, const char* meaning) {
+  return {{"enum", std::vector<std::string_view>(names.begin(), names.end())}, {"description", meaning}};
 }
 
 Json fields() {
-  const auto name = [](auto value) { return std::string(to_string(value)); };
   Json json;
   json["schema"] = {{"const", "incise.path/1"}};
-  json["frame"] = choice({name(PathFrame::SimRest), name(PathFrame::SimStretched), name(PathFrame::Robot)}, "What positions and axes refer to");
-  json["kind"] = choice({name(PathKind::Incise), name(PathKind::Mark)}, "Cut, or only mark");
+  json["frame"] = choice(names_of(PathFrame{}), "What positions and axes refer to");
+  json["kind"] = choice(names_of(PathKind{}), "Cut, or only mark");
   json["closed"] = {{"type", "boolean"}, {"description", "Whether the last waypoint leads back to the first; then there are at least 3"}};
   json["waypoints"] = array_of(waypoint(), 2, "In the order of travel");
   json["tumor_edge"] = array_of(point("mm"), 0, "The tumour edge in the same frame");
@@ -53,8 +52,8 @@ Json fields() {
   json["specimen_id"] = {{"type", "string"},
                          {"pattern", "^[A-Za-z0-9._][A-Za-z0-9._-]{0,63}$"},
                          {"description", "Specimen that the path was planned on"}};
-  json["specimen_is"] =
-      choice({"real", "virtual"}, "Virtual: a synthetic body, said in every program made from the path");
+  json["specimen_is"] = choice(std::array<std::string_view, 2>{"real", "virtual"},
+                               "Virtual: a synthetic body, said in every program made from the path");
   json["source_sha256"] = {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}, {"description", "SHA-256 of what the path was made from"}};
   return json;
 }

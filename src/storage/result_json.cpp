@@ -241,7 +241,7 @@ Outcome read_outcome(const nlohmann::ordered_json& json, const char* key, const 
   const auto found = json.find(key);  // the end where this is no object
   if (found == json.end() || !found->is_string()) throw DataError(file, key, "no text", "the name of an outcome");
   const auto name = found->get<std::string>();
-  const std::optional<Outcome> outcome = parse_outcome(name);
+  const std::optional<Outcome> outcome = value_of<Outcome>(name);
   if (!outcome) throw DataError(file, key, fmt::format("'{}'", name), "the name of an outcome");
   return *outcome;
 }

@@ -157,11 +157,11 @@ void YamlReader::path(const FieldInfo& info, std::filesystem::path& value) {
   value = name;
 }
 
-void YamlReader::choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) {
+void YamlReader::choice(const FieldInfo& info, std::size_t& value, Names names) {
   const YAML::Node node = take(info.name);
   if (!node.IsDefined()) return;
   const auto found = std::find_if(names.begin(), names.end(),
-                                  [&](const char* name) { return node.IsScalar() && node.Scalar() == name; });
+                                  [&](std::string_view name) { return node.IsScalar() && node.Scalar() == name; });
   if (found == names.end()) {
     const std::vector<std::string> valid(names.begin(), names.end());
     const std::string hint =

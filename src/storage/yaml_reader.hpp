@@ -25,7 +25,7 @@ class YamlReader : public FieldVisitor {
   void flag(const FieldInfo& info, bool& value) override;
   void text(const FieldInfo& info, std::string& value) override;
   void path(const FieldInfo& info, std::filesystem::path& value) override;
-  void choice(const FieldInfo& info, std::size_t& value, std::span<const char* const> names) override;
+  void choice(const FieldInfo& info, std::size_t& value, Names names) override;
   void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) override;
   void direction(const FieldInfo& info, Vec3& value) override;
   void table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) override;

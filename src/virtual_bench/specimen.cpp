@@ -1,8 +1,7 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/random.hpp>
 #include <incise/virtual_bench/specimen.hpp>
-
-#include <fmt/format.h>
 
 #include <array>
 #include <cmath>
@@ -151,18 +150,6 @@ double drawn(const ParameterSpec& spec, Random& random) {
 
 }  // namespace
 
-std::string_view to_string(DrawnAs drawn_as) {
-  switch (drawn_as) {
-    case DrawnAs::Uniform:
-      return "uniform";
-    case DrawnAs::Normal:
-      return "normal";
-    case DrawnAs::LogNormal:
-      return "lognormal";
-  }
-  return "unknown";
-}
-
 std::span<const ParameterSpec> parameter_specs() {
   return kSpecs;
 }
@@ -177,15 +164,16 @@ Specimen draw_specimen(std::uint64_t seed) {
   return specimen;
 }
 
+void describe(Visitor& v, Specimen& specimen) {
+  v("seed", specimen.seed, "Of the shape, of the fields inside and of all noise.");
+  for (const ParameterSpec& spec : parameter_specs())
+    v(spec.name, specimen.*spec.member, spec.meaning, Range{spec.low, spec.high});
+}
+
 std::vector<std::string> validate(const Specimen& specimen) {
   std::vector<std::string> problems;
-  for (const ParameterSpec& spec : kSpecs) {
-    const double value = specimen.*spec.member;
-    if (!(value >= spec.low && value <= spec.high)) {
-      problems.push_back(
-          fmt::format("{}: found {}, expected a number in [{}, {}]", spec.name, value, spec.low, spec.high));
-    }
-  }
+  const Expect expect(problems);
+  for (const ParameterSpec& spec : kSpecs) expect.in_range(spec.name, specimen.*spec.member, spec.low, spec.high);
   return problems;
 }
 

@@ -122,8 +122,8 @@ std::vector<ParameterSensitivity> sensitivity_of(const TissueScenarios& tissues,
           {"bias_mm", tissues.bias_sd_mm, tissues.bias_sd_mm, tissues.bias_sd_mm}};
 }
 
-Assessment assess(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
-                  const AssessmentRequest& request, ScenarioRunStore& runs, Workers& workers, Monitor& monitor) {
+Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Study& done, const CalibratedBelief& belief,
+                  const AssessmentRequest& request, Workers& workers, Monitor& monitor) {
   Assessment assessment;
   EligibilityEvidence& evidence = assessment.evidence;
   evidence.is_registered = request.is_registered;
@@ -138,7 +138,7 @@ Assessment assess(const Case& settings, Store& store, const Study& done, const C
   evidence.no_gain_because = without_correction(done);
   if (evidence.no_gain_because.empty()) {
     evidence.is_accepted = done.is_accepted;
-    assessment.outlook = foresee_correction(settings, store, done, belief, request.scenarios, runs, workers, monitor);
+    assessment.outlook = foresee_correction(settings, inputs, cache, done, belief, request.scenarios, workers, monitor);
     const PathOutlook& paths = assessment.outlook->paths;
     evidence.intended = paths.intended;
     evidence.corrected = paths.corrected;

@@ -22,10 +22,10 @@ constexpr double kNearMm = 0.15;
 /// The runs of one calibration: what is asked for is taken from the store or simulated.
 class CalibrationRunner {
  public:
-  CalibrationRunner(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, RunStore& store,
+  CalibrationRunner(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, Cache& runs,
                     Workers& workers, Monitor& monitor)
-      : request_(request), store_(store), workers_(workers), monitor_(monitor) {
-    for (std::size_t i = 0; i < subjects.size(); ++i) subjects_.push_back({&subjects[i], i});
+      : request_(request), runs_(runs), workers_(workers), monitor_(monitor) {
+    for (const CalibrationSubject& subject : subjects) subjects_.push_back({&subject});
   }
 
   Calibration run() {
@@ -47,7 +47,6 @@ class CalibrationRunner {
 
   struct Subject {
     const CalibrationSubject* of = nullptr;
-    std::size_t place = 0;  ///< in the list that was given, by which the store knows it
   };
 
   void prepare(const CalibrationSubject& subject) {
@@ -62,6 +61,7 @@ class CalibrationRunner {
     specimen.simulated_force_n = bodies_.back()->simulated_force_n();
     specimen.stretch_mm = bodies_.back()->stretched_by_mm();
     specimen.registration = subject.registration;
+    specimen.held = bodies_.back()->digest();
     specimen.youngs_modulus_kpa = subject.settings.material.youngs_modulus_kpa * bodies_.back()->reference_stiffness();
     measure_photograph(subject, specimen);
     // A mirrored picture shows now, not after minutes of simulation.
@@ -125,7 +125,8 @@ class CalibrationRunner {
         const RunSetting setting{knot.speed_mm_s, knot.dullness,
                                  knot.stiffness_factor * bodies_[s]->reference_stiffness()};
         std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
-        std::optional<CalibrationRun> kept = store_.load(subjects_[s].place, setting, monitor_);
+        const CacheKey key = calibration_run_key(bodies_[s]->digest(), setting);
+        std::optional<CalibrationRun> kept = runs_.find<CalibrationRun>(slot_of(key), key, monitor_);
         if (!kept) missing.push_back({s, runs.size()});
         runs.push_back(kept ? std::move(*kept) : CalibrationRun{.setting = setting});
         factors_.resize(std::max(factors_.size(), runs.size()));
@@ -143,7 +144,7 @@ class CalibrationRunner {
       CalibrationRun& run = calibration_.specimens[one.specimen].runs[one.place];
       const HeldBody* body = body_or_problem(one.specimen, run);
       if (body == nullptr) {
-        store_.save(subjects_[one.specimen].place, run);
+        keep(one.specimen, run);
         continue;
       }
       simulated.push_back(one);
@@ -161,13 +162,18 @@ class CalibrationRunner {
       CalibrationRun& run = calibration_.specimens[one.specimen].runs[one.place];
       run = run_of(with_setting(subjects_[one.specimen].of->settings, run.setting), run.setting, std::move(result),
                    *held[i]);
-      store_.save(subjects_[one.specimen].place, run);
+      keep(one.specimen, run);
       ++done;
     });
     if (done < tasks.size()) {
       throw Cancelled(
           fmt::format("the calibration was interrupted with {} of {} simulations to go", tasks.size() - done, asked));
     }
+  }
+
+  void keep(std::size_t specimen, const CalibrationRun& run) {
+    const CacheKey key = calibration_run_key(bodies_[specimen]->digest(), run.setting);
+    runs_.keep(slot_of(key), key, run);
   }
 
   /// The body that a run cuts. Null, and the run says why, where the specimen cannot be held at that stiffness: one of
@@ -455,7 +461,7 @@ class CalibrationRunner {
 
   std::vector<Subject> subjects_;
   const CalibrationRequest& request_;
-  RunStore& store_;
+  Cache& runs_;
   Workers& workers_;
   Monitor& monitor_;
   std::vector<std::unique_ptr<CalibrationBody>> bodies_;
@@ -466,8 +472,12 @@ class CalibrationRunner {
 
 }  // namespace
 
-Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request,
-                      RunStore& runs, Workers& workers, Monitor& monitor) {
+CacheKey calibration_run_key(const std::string& held, const RunSetting& setting) {
+  return CacheKey("calibration_run", 1).add_text(held).add(setting);
+}
+
+Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, Cache& runs,
+                      Workers& workers, Monitor& monitor) {
   const std::vector<std::string> violations = validate(request);
   INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
   INCISE_REQUIRE(!subjects.empty(), "expected at least one specimen");

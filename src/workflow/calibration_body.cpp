@@ -1,6 +1,8 @@
 #include "workflow/calibration_body.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
 #include <incise/workflow/assess.hpp>
 #include <incise/workflow/cut_doubts.hpp>
 
@@ -50,16 +52,40 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
     throw CaseError("case", "plan.kind", std::string(to_string(subject.settings.plan.kind)),
                     "ring: a calibration compares rings round a tumour");
   }
-  study_ = run_study(subject.settings, *subject.store, Stage::Plan, workers, monitor);
+  ProductSink none;
+  study_ = run_study(subject.settings, *subject.inputs, *subject.cache, {.until = Stage::Plan}, workers, monitor,
+                     subject.sink ? *subject.sink : none);
   require_no_locking(*study_.model);
   require_stretched(*study_.stretched, 1.0);
-  drawn_edge_ = subject.store->read_tumor_edge();
-  given_path_ = subject.store->read_given_path();
+  drawn_edge_ = subject.inputs->read_tumor_edge();
+  given_path_ = subject.inputs->read_given_path();
+  digest_ = digest_of_all();
   simulated_force_n_ = pull_n(*study_.model, *study_.stretched);
   if (subject.photographed.stretch_force_n && !(simulated_force_n_ > 0.0)) {
     throw CaseError("case", "specimen.constraints", "none that pulls", "one of kind displaced",
                     "A measured force is that of the stretch");
   }
+}
+
+std::string CalibrationBody::digest_of_all() const {
+  const Case& settings = subject_.settings;
+  const RunSetting none{.speed_mm_s = 1.0, .dullness = 1.0, .stiffness_of_case = 1.0};
+  CacheKey key("held", 1);
+  key.add_text(version()).add_text(source_commit()).add_text(to_string(active_isa()));
+  key.add(study_.model->mesh)
+      .add(settings.material)
+      .add(settings.variation)
+      .add(settings.toughness)
+      .add(settings.constraints);
+  key.add(settings.gravity_mm_s2)
+      .add(study_.stretched->state)
+      .add(unmarked(*study_.plan))
+      .add(settings.plan)
+      .add(settings.tumor_configuration);
+  key.add(settings.surface_tolerance_mm).add(settings.close_margin_mm).add(drawn_edge_);
+  key.add(given_path_ ? std::optional(unmarked(*given_path_)) : std::nullopt)
+      .add(incision_settings(with_setting(settings, none)));
+  return key.digest();
 }
 
 double CalibrationBody::stretched_by_mm() const {

@@ -36,13 +36,18 @@ class CalibrationBody {
   [[nodiscard]] double simulated_force_n() const { return simulated_force_n_; }
   /// How far the case displaces what it pulls, mm.
   [[nodiscard]] double stretched_by_mm() const;
+  /// Of all that its cuts depend on beside their setting.
+  [[nodiscard]] const std::string& digest() const { return digest_; }
 
  private:
   [[nodiscard]] HeldBody make(double stiffness_of_case, Workers& workers, Monitor& monitor);
   void require_stretched(const StaticResult& stretched, double stiffness_of_case) const;
 
   const CalibrationSubject& subject_;
+  [[nodiscard]] std::string digest_of_all() const;
+
   Study study_;
+  std::string digest_;
   std::optional<Contour> drawn_edge_;
   std::optional<ToolPath> given_path_;
   double simulated_force_n_ = 0.0;

@@ -2,7 +2,7 @@
 #include <incise/geometry/surface_query.hpp>
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/cut_verdict.hpp>
-#include <incise/workflow/store.hpp>
+#include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
 
@@ -11,16 +11,6 @@
 #include <cmath>
 
 namespace incise {
-
-std::string_view to_string(CompensationMethod method) {
-  switch (method) {
-    case CompensationMethod::Default:
-      return "default";
-    case CompensationMethod::Paper:
-      return "paper";
-  }
-  return "unknown";
-}
 
 namespace {
 

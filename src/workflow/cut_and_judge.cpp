@@ -113,17 +113,20 @@ IncisionSettings incision_settings(const Case& settings) {
   return incision;
 }
 
-SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched, const ToolPath& path,
-                           const ToolPath& intended, Workers& workers, Monitor& monitor, const TriMesh& tumor_surface,
-                           std::optional<IncisionProgress> from, const ProgressKeeper& keep) {
+IncisionSettings incision_settings_for(const Case& settings, const ToolPath& path, const TriMesh& tumor_surface) {
   IncisionSettings incision = incision_settings(settings);
   incision.tumor_surface = tumor_surface;
   add_layers_down_to(path, incision.approach, incision.layer_depths_mm);
+  return incision;
+}
+
+SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,
+                           const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor) {
   ToolPath with_edge = path;
   with_edge.tumor_edge = intended.tumor_edge;
-  if (!from) from = begin_incision(model, stretched, with_edge, incision);
-  return judge(settings, continue_incision(model, stretched, with_edge, incision, std::move(*from), workers, monitor, keep), path, intended,
-               model.mesh.tets.size());
+  IncisionResult incision =
+      simulate_incision(model, stretched, with_edge, incision_settings_for(settings, path, {}), workers, monitor);
+  return judge(settings, std::move(incision), path, intended, model.mesh.tets.size());
 }
 
 }  // namespace incise

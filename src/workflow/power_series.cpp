@@ -1,5 +1,7 @@
 #include <incise/core/batch_monitor.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
 #include <incise/workflow/planned_bench_cut.hpp>
 #include <incise/workflow/power_series.hpp>
 
@@ -43,9 +45,9 @@ struct MissingCut {
 
 class PowerSeriesRunner {
  public:
-  PowerSeriesRunner(const std::vector<PowerSubject>& subjects, const PowerRequest& request, PowerCutStore& store,
+  PowerSeriesRunner(const std::vector<PowerSubject>& subjects, const PowerRequest& request, Cache& kept,
                     Workers& workers, Monitor& monitor)
-      : subjects_(subjects), request_(request), store_(store), workers_(workers), monitor_(monitor) {}
+      : subjects_(subjects), request_(request), kept_(kept), workers_(workers), monitor_(monitor) {}
 
   PowerSeries run() {
     PowerSeries series;
@@ -67,6 +69,10 @@ class PowerSeriesRunner {
   }
 
  private:
+  [[nodiscard]] CacheKey key_of(const PowerSubject& subject, const PowerCut& cut) const {
+    return power_cut_key(subject.specimen, request_.resolution, cut.power_w, cut.speed_mm_s);
+  }
+
   static PowerCut asked(const PowerSubject& subject, double power_w, double speed_mm_s) {
     PowerCut cut;
     cut.specimen = subject.name;
@@ -82,8 +88,10 @@ class PowerSeriesRunner {
     std::vector<SharedBody> bodies(subjects_.size());
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       const std::size_t s = i / each;
-      if (auto kept = store_.load(subjects_[s], cuts[i].power_w, cuts[i].speed_mm_s, monitor_)) {
+      const CacheKey key = key_of(subjects_[s], cuts[i]);
+      if (auto kept = kept_.find<PowerCut>(slot_of(key), key, monitor_)) {
         cuts[i] = std::move(*kept);
+        cuts[i].specimen = subjects_[s].name;  // a specimen's name is no part of its key
         continue;
       }
       missing.push_back({s, i});
@@ -110,7 +118,8 @@ class PowerSeriesRunner {
       }
       progress.note(i, 1.0);
       const std::lock_guard one_at_a_time(saving);
-      store_.save(subjects_[missing[i].subject], cut);
+      const CacheKey key = key_of(subjects_[missing[i].subject], cut);
+      kept_.keep(slot_of(key), key, cut);
       ++done;
     });
     made_ += done;
@@ -154,7 +163,7 @@ class PowerSeriesRunner {
 
   const std::vector<PowerSubject>& subjects_;
   const PowerRequest& request_;
-  PowerCutStore& store_;
+  Cache& kept_;
   Workers& workers_;
   Monitor& monitor_;
   std::size_t made_ = 0;
@@ -172,6 +181,15 @@ void check_list(std::vector<std::string>& violations, const char* name, const st
 
 }  // namespace
 
+CacheKey power_cut_key(const Specimen& specimen, const BenchResolution& resolution, double power_w, double speed_mm_s) {
+  return CacheKey("power_cut", 1)
+      .add_text(fmt::format("{} {} {}", version(), source_commit(), to_string(active_isa())))
+      .add(specimen)
+      .add(resolution)
+      .add(power_w)
+      .add(speed_mm_s);
+}
+
 std::vector<std::string> validate(const PowerRequest& request) {
   std::vector<std::string> violations = validate(request.limits);
   if (request.powers_w.empty()) violations.push_back("power_w: found none, expected at least one power");
@@ -188,8 +206,8 @@ std::vector<std::string> validate(const PowerRequest& request) {
   return violations;
 }
 
-PowerSeries run_power_series(const std::vector<PowerSubject>& subjects, const PowerRequest& request,
-                             PowerCutStore& store, Workers& workers, Monitor& monitor) {
+PowerSeries run_power_series(const std::vector<PowerSubject>& subjects, const PowerRequest& request, Cache& kept,
+                             Workers& workers, Monitor& monitor) {
   const std::vector<std::string> violations = validate(request);
   INCISE_REQUIRE(violations.empty(), violations.front());
   INCISE_REQUIRE(!subjects.empty(), "expected at least one specimen, found none");
@@ -198,7 +216,7 @@ PowerSeries run_power_series(const std::vector<PowerSubject>& subjects, const Po
     INCISE_REQUIRE(names.insert(subject.name).second,
                    fmt::format("expected every specimen once, found {} twice", subject.name));
   }
-  return PowerSeriesRunner(subjects, request, store, workers, monitor).run();
+  return PowerSeriesRunner(subjects, request, kept, workers, monitor).run();
 }
 
 }  // namespace incise

@@ -21,10 +21,11 @@ Case by_inner_edge(const Case& settings) {
   return changed;
 }
 
-CalibrationSubject subject_of(const Case& settings, Store& store, const ScenarioRequest& request) {
+CalibrationSubject subject_of(const Case& settings, Inputs& inputs, Cache& cache, const ScenarioRequest& request) {
   CalibrationSubject subject;
   subject.settings = settings;
-  subject.store = &store;
+  subject.inputs = &inputs;
+  subject.cache = &cache;
   subject.photographed.stretch_force_n = request.stretch_force_n;
   return subject;
 }
@@ -32,13 +33,13 @@ CalibrationSubject subject_of(const Case& settings, Store& store, const Scenario
 /// A specimen in the tissues that a calibration leaves possible.
 class TissueCuts {
  public:
-  TissueCuts(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
-             const ScenarioRequest& request, ScenarioRunStore& runs, Workers& workers, Monitor& monitor)
+  TissueCuts(const Case& settings, Inputs& inputs, Cache& cache, const Study& done, const CalibratedBelief& belief,
+             const ScenarioRequest& request, Workers& workers, Monitor& monitor)
       : settings_(by_inner_edge(settings)),
-        subject_(subject_of(settings, store, request)),
+        subject_(subject_of(settings, inputs, cache, request)),
         belief_(belief),
         request_(request),
-        runs_(runs),
+        cache_(cache),
         workers_(workers),
         monitor_(monitor),
         body_(subject_, workers, monitor),
@@ -133,7 +134,8 @@ class TissueCuts {
     std::vector<ScenarioRun> made;
     std::vector<std::size_t> missing;
     for (const RunSetting& setting : scenarios_.settings) {
-      std::optional<ScenarioRun> kept = runs_.load(setting, path, monitor_);
+      const CacheKey key = scenario_run_key(body_.digest(), setting, path);
+      std::optional<ScenarioRun> kept = cache_.find<ScenarioRun>(slot_of(key), key, monitor_);
       if (!kept) missing.push_back(made.size());
       made.push_back(kept ? std::move(*kept) : ScenarioRun{.setting = setting});
     }
@@ -169,7 +171,8 @@ class TissueCuts {
       ScenarioRun& run = made[simulated[i]];
       run.problem = result.problem;
       if (run.problem.empty()) run.errors = errors_of(std::move(result.incision), path, run.setting, *held[i]);
-      runs_.save(run, path);
+      const CacheKey key = scenario_run_key(body_.digest(), run.setting, path);
+      cache_.keep(slot_of(key), key, run);
       ++done;
     });
     if (done < tasks.size())
@@ -201,7 +204,7 @@ class TissueCuts {
   const CalibrationSubject subject_;
   const CalibratedBelief& belief_;
   const ScenarioRequest& request_;
-  ScenarioRunStore& runs_;
+  Cache& cache_;
   Workers& workers_;
   Monitor& monitor_;
   CalibrationBody body_;
@@ -213,16 +216,20 @@ class TissueCuts {
 
 }  // namespace
 
-RobustCorrection correct_robustly(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
-                                  const ScenarioRequest& request, ScenarioRunStore& runs, Workers& workers,
-                                  Monitor& monitor) {
-  return TissueCuts(settings, store, done, belief, request, runs, workers, monitor).choose();
+CacheKey scenario_run_key(const std::string& held, const RunSetting& setting, const ToolPath& path) {
+  return CacheKey("scenario_run", 1).add_text(held).add(setting).add(unmarked(path));
 }
 
-CorrectionOutlook foresee_correction(const Case& settings, Store& store, const Study& done,
-                                     const CalibratedBelief& belief, const ScenarioRequest& request,
-                                     ScenarioRunStore& runs, Workers& workers, Monitor& monitor) {
-  return TissueCuts(settings, store, done, belief, request, runs, workers, monitor).foresee();
+RobustCorrection correct_robustly(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
+                                  const CalibratedBelief& belief, const ScenarioRequest& request, Workers& workers,
+                                  Monitor& monitor) {
+  return TissueCuts(settings, inputs, cache, done, belief, request, workers, monitor).choose();
+}
+
+CorrectionOutlook foresee_correction(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
+                                     const CalibratedBelief& belief, const ScenarioRequest& request, Workers& workers,
+                                     Monitor& monitor) {
+  return TissueCuts(settings, inputs, cache, done, belief, request, workers, monitor).foresee();
 }
 
 }  // namespace incise

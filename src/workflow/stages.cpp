@@ -4,38 +4,6 @@
 
 namespace incise {
 
-std::string_view to_string(Stage stage) {
-  switch (stage) {
-    case Stage::Segment:
-      return "segment";
-    case Stage::Mesh:
-      return "mesh";
-    case Stage::Stretch:
-      return "stretch";
-    case Stage::Plan:
-      return "plan";
-    case Stage::Simulate:
-      return "simulate";
-    case Stage::Compensate:
-      return "compensate";
-    case Stage::Verify:
-      return "verify";
-  }
-  return "unknown";
-}
-
-std::string_view to_string(StageState state) {
-  switch (state) {
-    case StageState::Computed:
-      return "computed";
-    case StageState::Reused:
-      return "reused";
-    case StageState::Skipped:
-      return "skipped";
-  }
-  return "unknown";
-}
-
 std::string explain_stretch(const StaticResult& stretched) {
   if (stretched.outcome == Outcome::Success) return "";
   if (stretched.outcome == Outcome::Cancelled) return "stopped: the stretch was interrupted";

@@ -1,6 +1,8 @@
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
 #include <incise/core/memory.hpp>
 #include <incise/core/problem_text.hpp>
+#include <incise/core/version.hpp>
 #include <incise/cutting/tool_program.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/geometry/surface_query.hpp>
@@ -12,8 +14,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
-#include <map>
+#include <set>
 
 namespace incise {
 
@@ -21,24 +25,95 @@ namespace {
 
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-/// One study on its way through the stages.
+/// What a cache keeps of a stage.
+template <class T>
+struct Timed {
+  T value;
+  double wall_s = 0.0;
+};
+template <class T>
+void describe(Visitor& v, Timed<T>& t) {
+  v("value", t.value, "The result.");
+  v("wall_s", t.wall_s, "Time that it took.");
+}
+
+// An entry that is whole may still have been written by someone else: nothing in it may point outside the mesh.
+
+bool fits(const TissueModel& model, const TissueState& state) {
+  const ViscousMemory memory = rest_state(model).memory;
+  return state.positions.size() == model.mesh.vertices.size() && state.rotations.size() == model.mesh.tets.size() &&
+         state.is_live.size() == model.mesh.tets.size() && state.memory.strains.size() == memory.strains.size() &&
+         state.memory.branches.size() == memory.branches.size() &&
+         std::ranges::all_of(state.positions, [](const Vec3& p) { return p.allFinite(); });
+}
+
+bool fits(const TissueModel& model, const CutState& state) {
+  const auto is_of_mesh = [&model](const auto& item) {
+    return item.tet.is_valid() && item.tet.index() < model.mesh.tets.size();
+  };
+  return fits(model, state.tissue) && state.dose.size() == model.mesh.tets.size() &&
+         state.tear_dose.size() == model.mesh.tets.size() && std::ranges::all_of(state.bonds, is_of_mesh) &&
+         std::ranges::all_of(state.record.removals, is_of_mesh);
+}
+
+bool fits(const TissueModel& model, const std::vector<CutFrame>& frames) {
+  return std::ranges::all_of(frames, [&model](const CutFrame& frame) {
+    return frame.positions.size() == model.mesh.vertices.size() && frame.is_live.size() == model.mesh.tets.size();
+  });
+}
+
+bool fits(const TissueModel& model, const IncisionResult& result) {
+  const auto is_of_mesh = [&model](const Removal& item) {
+    return item.tet.is_valid() && item.tet.index() < model.mesh.tets.size();
+  };
+  const TriMesh& body = result.kerf.body.surface;
+  const DepthReached& depth = result.kerf.depth;
+  const std::size_t places = depth.profile.course.points.size();
+  return fits(model, result.final_state) && fits(model, result.frames) &&
+         std::ranges::all_of(result.record.removals, is_of_mesh) &&
+         std::ranges::all_of(body.triangles,
+                             [&body](const Triangle& corners) {
+                               return std::ranges::all_of(corners, [&body](VertexId v) {
+                                 return v.is_valid() && v.index() < body.vertices.size();
+                               });
+                             }) &&
+         depth.profile.arclength_mm.size() == places && depth.profile.depth_mm.size() == places &&
+         depth.planned_at_mm.size() == places;
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// One run on its way through the stages.
 class Runner {
  public:
-  Runner(const Case& settings, Store& store, Workers& workers, Monitor& monitor)
-      : settings_(settings), store_(store), workers_(workers), monitor_(monitor) {}
+  Runner(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options, Workers& workers,
+         Monitor& monitor, ProductSink& sink)
+      : settings_(settings),
+        inputs_(inputs),
+        cache_(cache),
+        options_(options),
+        workers_(workers),
+        monitor_(monitor),
+        sink_(sink),
+        must_resume_(options.must_resume) {}
 
-  Study run(Stage until) {
+  Study run() {
     using Step = bool (Runner::*)();
-    static constexpr std::array<Step, 7> kSteps{&Runner::segment,  &Runner::mesh,       &Runner::stretch_tissue, &Runner::plan,
-                                                &Runner::simulate, &Runner::compensate, &Runner::verify};
-    until_ = until;
+    static constexpr std::array<Step, 7> kSteps{&Runner::segment, &Runner::mesh,     &Runner::stretch_tissue,
+                                                &Runner::plan,    &Runner::simulate, &Runner::compensate,
+                                                &Runner::verify};
     read_inputs();
-    for (std::size_t i = 0; i <= static_cast<std::size_t>(until); ++i) {
+    for (std::size_t i = 0; i <= static_cast<std::size_t>(options_.until); ++i) {
       throw_if_cancelled(monitor_, "the study");
       if (!(this->*kSteps[i])()) break;
     }
-    const bool was_correction_asked = until_ >= Stage::Verify && settings_.plan.kind == PlanKind::Ring;
-    save_verdicts(was_correction_asked && !study_.is_accepted);
+    if (must_resume_) refuse_to_resume("cuts that are all finished");
+    if (options_.until >= Stage::Compensate && !study_.correction) sink_.absent("correction");
+    if (options_.until >= Stage::Verify && !study_.corrected) sink_.absent("corrected");
+    const bool was_correction_asked = options_.until >= Stage::Verify && settings_.plan.kind == PlanKind::Ring;
+    hand_over_verdicts(was_correction_asked && !study_.is_accepted);
     study_.verdict = verdict_of_run(settings_, study_.about_inputs, verifying_cut(study_), was_correction_asked, study_.is_accepted);
     return std::move(study_);
   }
@@ -46,10 +121,10 @@ class Runner {
  private:
   /// What is quickly read is read first: a damaged contour shows before anything long has run.
   void read_inputs() {
-    tumor_edge_ = store_.read_tumor_edge();
-    tumor_surface_ = store_.read_tumor_surface();
-    line_ = store_.read_line();
-    given_path_ = store_.read_given_path();
+    tumor_edge_ = inputs_.read_tumor_edge();
+    tumor_surface_ = inputs_.read_tumor_surface();
+    line_ = inputs_.read_line();
+    given_path_ = inputs_.read_given_path();
     const bool is_ring = settings_.plan.kind == PlanKind::Ring;
     if (given_path_ && given_path_->is_closed != is_ring) {
       throw CaseError("case", "path", given_path_->is_closed ? "a closed path" : "an open path",
@@ -68,34 +143,86 @@ class Runner {
     if (problem) throw CaseError("case", "tumor.surface", problem->found, problem->expected, "Lengths are mm");
   }
 
-  /// Takes a product from the store, or makes and saves it; notes which, and how long it took.
-  template <class Load, class Make, class Save>
-  auto load_or_make(Stage stage, Load load, Make make, Save save) {
+  [[noreturn]] static void refuse_to_resume(const std::string& found) {
+    throw CaseError("command line", "--resume", found, "an interrupted cut of this case, with its settings and inputs",
+                    "Without --resume what is missing is computed from the beginning");
+  }
+
+  /// A key of this version of the code, and of the instruction set: kernels of two of them round differently.
+  static CacheKey key_for(std::string_view name) {
+    CacheKey key(name, 1);
+    key.add_text(version()).add_text(source_commit()).add_text(to_string(active_isa()));
+    return key;
+  }
+
+  /// How the specimen is held and what it is made of.
+  void add_specimen(CacheKey& key) const {
+    key.add(settings_.material).add(settings_.variation).add(settings_.gravity_mm_s2).add(settings_.constraints);
+  }
+
+  /// Where the path is laid, beside the tissue. Its power does not matter.
+  void add_plan(CacheKey& key) const {
+    PlanSettings plan = settings_.plan;
+    plan.power_w = PlanSettings{}.power_w;
+    key.add(plan).add(settings_.tumor_configuration).add(settings_.surface_tolerance_mm).add(tumor_edge_).add(line_);
+  }
+
+  /// Takes a product from the cache, or makes and keeps it; reports which, and how long it took.
+  template <class T, class Make>
+  T product(Stage stage, ProductNote& note, const CacheKey& key, const Make& make, bool may_resume_in_it = false) {
     const auto start = std::chrono::steady_clock::now();
-    const auto elapsed = [&start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-    auto product = load();
-    if (product) {
-      study_.stages.push_back({stage, StageState::Reused, elapsed()});
-      return std::move(*product);
+    note.key = key.digest();
+    auto kept = cache_.find<Timed<T>>(note.name, key, monitor_);
+    if (kept && is_usable(note.name, fits_mesh(kept->value))) {
+      study_.stages.push_back({stage, StageState::Reused, seconds_since(start)});
+      note.wall_s = kept->wall_s;
+      return std::move(kept->value);
     }
-    auto made = make();
-    const double wall_s = elapsed();
-    save(made, wall_s);
+    if (must_resume_ && !may_resume_in_it) refuse_to_resume(fmt::format("no finished {} of it", to_string(stage)));
+    Timed<T> made{make(), 0.0};
+    made.wall_s = note.wall_s = seconds_since(start);
+    cache_.keep(note.name, key, made);
+    report_done(stage, made.wall_s);
+    return std::move(made.value);
+  }
+
+  /// Whether a product holds together, and with the mesh where it is of one.
+  template <class T>
+  bool fits_mesh(const T& value) const {
+    if constexpr (std::is_same_v<T, StaticResult>) return fits(*study_.model, value.state);
+    if constexpr (std::is_same_v<T, MeshProduct>) {
+      const TetMesh& mesh = value.meshing.mesh;
+      return std::ranges::all_of(mesh.tets, [&mesh](const Tet& tet) {
+        return std::ranges::all_of(tet, [&mesh](VertexId v) { return v.is_valid() && v.index() < mesh.vertices.size(); });
+      });
+    }
+    if constexpr (std::is_same_v<T, Segmentation>) {
+      return value.labels.voxels.size() == value.labels.grid.voxel_count() &&
+             value.occupancy.voxels.size() == value.occupancy.grid.voxel_count();
+    }
+    if constexpr (std::is_same_v<T, Correction>)
+      return !value.iteration || value.iteration->best < value.iteration->passes.size();
+    return true;
+  }
+
+  void report_done(Stage stage, double wall_s) {
     study_.stages.push_back({stage, StageState::Computed, wall_s});
     monitor_.message(Severity::Notice, fmt::format("{}: done in {:.1f} s", to_string(stage), wall_s));
-    return made;
   }
 
   bool segment() {
-    given_mesh_ = store_.read_specimen_mesh(monitor_);
+    given_mesh_ = inputs_.read_specimen_mesh(monitor_);
     if (given_mesh_) {
       study_.stages.push_back({Stage::Segment, StageState::Skipped, 0.0});
       return true;
     }
-    study_.segmentation = load_or_make(
-        Stage::Segment, [&] { return store_.load_segmentation(); },
-        [&] { return incise::segment(store_.read_ct(monitor_), settings_.segmentation, monitor_); },
-        [&](const Segmentation& s, double wall_s) { store_.save_segmentation(s, wall_s); });
+    CacheKey key("labels", 1);
+    key.add_text(version()).add_text(source_commit()).add(settings_.segmentation).add_text(inputs_.ct_digest(monitor_));
+    ProductNote note{"labels", {}, 0.0};
+    study_.segmentation = product<Segmentation>(Stage::Segment, note, key, [&] {
+      return incise::segment(inputs_.read_ct(monitor_), settings_.segmentation, monitor_);
+    });
+    sink_.labels(note, *study_.segmentation);
     report("the scan", study_.segmentation->verdict);
     study_.about_inputs.add(study_.segmentation->verdict);
     return true;
@@ -107,16 +234,17 @@ class Runner {
       mesh = std::move(*given_mesh_);
       study_.stages.push_back({Stage::Mesh, StageState::Skipped, 0.0});
     } else {
-      const auto make = [&]() -> TetMesh {
-        MeshProduct product = make_mesh();
-        store_.save_mesh(product, product.meshing.wall_s);
-        return std::move(product.meshing.mesh);
-      };
-      mesh = load_or_make(Stage::Mesh, [&] { return store_.load_mesh(); }, make, [](const TetMesh&, double) {});
+      CacheKey key = key_for("mesh").add(study_.segmentation->occupancy).add(settings_.meshing);
+      add_specimen(key);
+      add_plan(key);
+      ProductNote note{"mesh", {}, 0.0};
+      MeshProduct made = product<MeshProduct>(Stage::Mesh, note, key, [&] { return make_mesh(); });
+      sink_.mesh(note, made);
+      mesh = std::move(made.meshing.mesh);
     }
     require_memory(mesh);
     study_.model = std::make_shared<TissueModel>(tissue_of(settings_, std::move(mesh)));
-    if (until_ >= Stage::Simulate) require_no_locking(*study_.model);
+    if (options_.until >= Stage::Simulate) require_no_locking(*study_.model);
     return true;
   }
 
@@ -138,7 +266,7 @@ class Runner {
   /// The mesher tells what it cannot do with the lengths or the count as a broken precondition; here they came from the case.
   MeshProduct make_mesh() {
     try {
-      return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, store_, workers_, monitor_);
+      return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, tumor_edge_, line_, workers_, monitor_);
     } catch (const InvalidArgument& error) {
       throw CaseError("case", "meshing", without_function_name(error), "edge lengths and a count that the tissue can be meshed with");
     }
@@ -146,27 +274,39 @@ class Runner {
 
   bool stretch_tissue() {
     const TissueModel& model = *study_.model;
-    study_.stretched = load_or_make(
-        Stage::Stretch, [&] { return store_.load_stretched(model); },
-        [&] {
-          StaticResult made = stretch(model, workers_, monitor_);
-          if (made.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted and will start over");
-          return made;
-        },
-        [&](const StaticResult& result, double wall_s) { store_.save_stretched(model, result, wall_s); });
+    CacheKey key = key_for("stretched").add(model.mesh);
+    add_specimen(key);
+    ProductNote note{"stretched", {}, 0.0};
+    study_.stretched = product<StaticResult>(Stage::Stretch, note, key, [&] {
+      StaticResult made = stretch(model, workers_, monitor_);
+      if (made.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted and will start over");
+      return made;
+    });
+    sink_.stretched(note, model, *study_.stretched);
     study_.outcome = study_.stretched->outcome;
     if (study_.outcome != Outcome::Success) monitor_.message(Severity::Warning, explain_stretch(*study_.stretched));
     return study_.outcome == Outcome::Success;
   }
 
   bool plan() {
-    study_.plan = load_or_make(
-        Stage::Plan, [&] { return store_.load_plan(); },
-        [&] {
-          return plan_on(settings_, *study_.model, study_.stretched->state.positions, tumor_edge_, line_);
-        },
-        [&](const ToolPath& path, double wall_s) { store_.save_plan(path, wall_s); });
+    CacheKey key = key_for("plan").add(study_.model->mesh).add(study_.stretched->state.positions);
+    add_plan(key);
+    ProductNote note{"plan", {}, 0.0};
+    study_.plan = product<ToolPath>(Stage::Plan, note, key, [&] {
+      return plan_on(settings_, *study_.model, study_.stretched->state.positions, tumor_edge_, line_);
+    });
+    sink_.plan(note, *study_.plan);
+    CacheKey held = key_for("held").add(study_.model->mesh).add(study_.stretched->state).add(settings_.toughness);
+    add_specimen(held);
+    held_ = held.digest();
     return true;
+  }
+
+  /// Of a cut along a path into the held tissue.
+  CacheKey key_of_cut(const ToolPath& path) const {
+    ToolPath course = unmarked(path);
+    course.tumor_edge = study_.plan->tumor_edge;
+    return key_for("cut").add_text(held_).add(course).add(incision_settings_for(settings_, path, placed_tumor()));
   }
 
   /// The tool runs on beyond the start of a ring, but not round it again.
@@ -178,7 +318,7 @@ class Runner {
   }
 
   /// Whoever takes a path from its file finds there what its cut is worth.
-  void save_verdicts(bool is_correction_rejected) {
+  void hand_over_verdicts(bool is_correction_rejected) {
     const auto of = [&](const std::optional<SimulatedCut>& cut, const char* rejection) -> std::optional<Verdict> {
       if (!cut) return std::nullopt;
       Verdict verdict = study_.about_inputs;
@@ -186,38 +326,115 @@ class Runner {
       if (is_correction_rejected) verdict.add("not_corrected", {}, rejection);
       return verdict;
     };
-    store_.save_verdicts(given_path_ ? std::nullopt : of(study_.as_planned, kUncorrectedPath),
-                         of(study_.corrected, "this is a correction that was not accepted"));
+    sink_.verdicts(given_path_ ? std::nullopt : of(study_.as_planned, kUncorrectedPath),
+                   of(study_.corrected, "this is a correction that was not accepted"));
   }
 
-  SimulatedCut cut(Stage stage, CutRole role, const ToolPath& path) {
-    require_overlap_on(path);
-    return load_or_make(
-        stage, [&] { return store_.load_cut(role); }, [&] { return simulated(to_string(stage), role, path); },
-        [&](const SimulatedCut& made, double wall_s) {
-          store_.save_cut(role, *study_.model, *study_.stretched, made, wall_s);
-        });
+  /// A cut with what is held against it.
+  SimulatedCut judged(IncisionResult incision, const ToolPath& path) const {
+    SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size());
+    cut.verdict.add(verdict_before_cut(settings_, *study_.model, study_.stretched->state.positions, path));
+    return cut;
   }
 
-  /// Simulates a cut from where an interrupted one left it, or from the beginning. @param name  of what is under way, for messages.
-  SimulatedCut simulated(std::string_view name, CutRole role, const ToolPath& path) {
-    std::optional<IncisionProgress> from = store_.load_progress(role, *study_.model, monitor_);
-    if (from) monitor_.message(Severity::Notice, fmt::format("{}: goes on after step {}", name, from->state.step));
+  struct KeptCut {
+    SimulatedCut cut;
+    double wall_s = 0.0;
+  };
+
+  std::optional<KeptCut> find_cut(const std::string& name, const CacheKey& key, const ToolPath& path) {
+    auto kept = cache_.find<Timed<IncisionResult>>(name, key, monitor_);
+    if (!kept || !is_usable(name, fits(*study_.model, kept->value))) return std::nullopt;
+    cache_.remove(checkpoint_slot(name));  // a run that was killed once it had kept the cut has left it
+    return KeptCut{judged(std::move(kept->value), path), kept->wall_s};
+  }
+
+  /// Reports an entry that points outside the mesh.
+  bool is_usable(const std::string& slot, bool fits_the_mesh) {
+    if (!fits_the_mesh) {
+      monitor_.message(Severity::Warning, fmt::format("{}: found what does not fit the mesh, expected what was kept. It is "
+                                                      "computed again",
+                                                      cache_.place_of(slot).string()));
+    }
+    return fits_the_mesh;
+  }
+
+  void keep_cut(const std::string& name, const CacheKey& key, KeptCut& made) {
+    Timed<IncisionResult> timed{std::move(made.cut.incision), made.wall_s};  // it is large: lent, not copied
+    cache_.keep(name, key, timed);
+    made.cut.incision = std::move(timed.value);
+    cache_.remove(checkpoint_slot(name));
+  }
+
+  /// Simulates a cut from where an interrupted one left it, or from the beginning, and keeps it. @param what  is under
+  /// way, for messages.
+  KeptCut make_cut(std::string_view what, const std::string& name, const CacheKey& key, const ToolPath& path) {
+    const auto start = std::chrono::steady_clock::now();
+    const std::string slot = checkpoint_slot(name);
+    std::optional<IncisionProgress> from = cache_.find<IncisionProgress>(slot, key, monitor_);
+    if (from && !is_usable(slot, fits(*study_.model, from->state) && fits(*study_.model, from->frames))) from.reset();
+    if (must_resume_ && !from) refuse_to_resume(fmt::format("no checkpoint of the cut {} that fits", name));
+    must_resume_ = false;
+    if (from) {
+      monitor_.message(Severity::Notice, fmt::format("{}: goes on after step {}", what, from->state.step));
+    } else if (cache_.holds(slot)) {
+      monitor_.message(
+          Severity::Notice,
+          fmt::format("{}: its checkpoint is of other settings or inputs, of another build, or damaged; the cut "
+                      "starts from the beginning",
+                      what));
+    }
+    auto last_kept = start;
     const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
+      if (!is_interrupted && seconds_since(last_kept) < options_.checkpoint_s) return;
       try {
-        store_.keep_progress(role, progress, is_interrupted);
+        cache_.keep(slot, key, progress);
+        last_kept = std::chrono::steady_clock::now();
       } catch (const DataError& error) {
         if (is_interrupted) throw;  // nothing of the cut would be left
         monitor_.message(Severity::Warning, fmt::format("{}. The cut goes on without a checkpoint", error.what()));
       }
     };
-    SimulatedCut made = cut_and_judge(settings_, *study_.model, study_.stretched->state, path, *study_.plan, workers_, monitor_,
-                                      placed_tumor(), std::move(from), keep);
+    const IncisionSettings incision = incision_settings_for(settings_, path, placed_tumor());
+    const TissueState& stretched = study_.stretched->state;
+    ToolPath with_edge = path;
+    with_edge.tumor_edge = study_.plan->tumor_edge;
+    if (!from) from = begin_incision(*study_.model, stretched, with_edge, incision);
+    IncisionResult made =
+        continue_incision(*study_.model, stretched, with_edge, incision, std::move(*from), workers_, monitor_, keep);
     if (made.outcome == Outcome::Cancelled) {
-      throw Cancelled(fmt::format("the cut was interrupted after step {}", made.incision.final_state.step));
+      throw CutInterrupted(fmt::format("the cut was interrupted after step {}", made.final_state.step), slot);
     }
-    made.verdict.add(verdict_before_cut(settings_, *study_.model, study_.stretched->state.positions, path));
-    return made;
+    KeptCut whole{judged(std::move(made), path), seconds_since(start)};
+    keep_cut(name, key, whole);
+    made_.insert(key.digest());
+    return whole;
+  }
+
+  /// The cut of a stage, found or made. @param also  another slot that may hold it.
+  SimulatedCut cut(Stage stage, const std::string& name, const ToolPath& path, const std::string& also = {}) {
+    require_overlap_on(path);
+    const auto start = std::chrono::steady_clock::now();
+    const CacheKey key = key_of_cut(path);
+    std::optional<KeptCut> there = find_cut(name, key, path);
+    if (!there && !also.empty()) {
+      there = find_cut(also, key, path);
+      if (there) keep_cut(name, key, *there);
+    }
+    if (there) {
+      const bool is_of_this_run = made_.contains(key.digest());
+      study_.stages.push_back({stage, is_of_this_run ? StageState::Computed : StageState::Reused,
+                               is_of_this_run ? 0.0 : seconds_since(start)});
+    } else {
+      there = make_cut(to_string(stage), name, key, path);
+      report_done(stage, there->wall_s);
+    }
+    hand_over_cut(name, key, *there);
+    return std::move(there->cut);
+  }
+
+  void hand_over_cut(const std::string& name, const CacheKey& key, const KeptCut& made) {
+    sink_.cut({name, key.digest(), made.wall_s}, *study_.model, *study_.stretched, made.cut);
   }
 
   /// The tumour's surface in the stretched tissue; without triangles: not known.
@@ -244,7 +461,7 @@ class Runner {
       check_path(*given_path_, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
     }
     study_.followed = given_path_ ? *given_path_ : *study_.plan;
-    study_.as_planned = cut(Stage::Simulate, CutRole::AsPlanned, *study_.followed);
+    study_.as_planned = cut(Stage::Simulate, name_of_pass(0), *study_.followed);
     report("the cut as planned", study_.as_planned->verdict);
     study_.outcome = study_.as_planned->outcome;
     return true;
@@ -254,14 +471,22 @@ class Runner {
     const bool is_paper = settings_.compensation.method == CompensationMethod::Paper;
     const bool is_ring = settings_.plan.kind == PlanKind::Ring;
     if (!is_ring || (is_paper && !study_.as_planned->incision.centerline)) return skip_correction("it needs a ring whose mid-line could be measured");
-    study_.correction = load_or_make(
-        Stage::Compensate, [&] { return store_.load_correction(); },
-        [&] {
-          const SurfaceQuery surface(skin_of(study_.model->mesh, study_.stretched->state.positions));
-          return is_paper ? correct_as_paper(settings_, *study_.followed, *study_.as_planned, study_.plan->tumor_edge, surface)
-                          : correct_pass_by_pass(surface);
-        },
-        [&](const Correction& correction, double wall_s) { store_.save_correction(correction, wall_s); });
+    const CacheKey key = key_for("correction")
+                             .add_text(key_of_cut(*study_.followed).digest())
+                             .add(settings_.compensation)
+                             .add(settings_.close_margin_mm)
+                             .add(settings_.plan)
+                             .add(unmarked(*study_.plan))
+                             .add(unmarked(*study_.followed));
+    ProductNote note{"correction", {}, 0.0};
+    const auto make = [&] {
+      const SurfaceQuery surface(skin_of(study_.model->mesh, study_.stretched->state.positions));
+      return is_paper
+                 ? correct_as_paper(settings_, *study_.followed, *study_.as_planned, study_.plan->tumor_edge, surface)
+                 : correct_pass_by_pass(surface);
+    };
+    study_.correction = product<Correction>(Stage::Compensate, note, key, make, true);
+    sink_.correction(note, *study_.correction);
     const auto& iteration = study_.correction->iteration;
     if (iteration && iteration->outcome == CompensationOutcome::NoMeasure) {
       monitor_.message(Severity::Warning, "no correction: the first cut left nothing to measure");
@@ -287,36 +512,30 @@ class Runner {
     if (!floor) monitor_.message(Severity::Warning, "compensate: the mesh is too coarse for a floor: a cut into tissue that cannot move leaves nothing to measure");
     if (floor) monitor_.message(Severity::Notice, fmt::format("compensate: floor of the mesh {:.3f} mm", *floor));
     const auto cut_of_pass = [&](int pass, const ToolPath& path) {
-      SimulatedCut made = pass == 0 ? *study_.as_planned : pass_cut(pass, path);
-      cut_of_pass_[pass] = made;
-      return made;
+      return pass == 0 ? *study_.as_planned : pass_cut(pass, path);
     };
     return correct_converging(settings_, *study_.followed, study_.plan->tumor_edge, surface, floor, cut_of_pass, monitor_);
   }
 
   SimulatedCut pass_cut(int pass, const ToolPath& path) {
     require_overlap_on(path);
-    const CutRole role = role_of_pass(pass);
-    if (std::optional<SimulatedCut> kept = store_.load_cut(role)) return std::move(*kept);
-    const auto start = std::chrono::steady_clock::now();
-    SimulatedCut made = simulated(fmt::format("pass {}", pass), role, path);
-    store_.save_cut(role, *study_.model, *study_.stretched, made, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    return made;
+    const std::string name = name_of_pass(pass);
+    const CacheKey key = key_of_cut(path);
+    std::optional<KeptCut> there = find_cut(name, key, path);
+    if (!there) there = make_cut(fmt::format("pass {}", pass), name, key, path);
+    return std::move(there->cut);
   }
 
-  /// The cut that the correction ended with was made on the way: it is not made again.
+  /// The cut that the correction ended with was made on the way: it is not made again. The others are of no use any
+  /// more.
   bool verify() {
     const Correction& correction = *study_.correction;
-    if (correction.iteration) {
-      const int best = static_cast<int>(correction.iteration->best);
-      store_.adopt_cut(role_of_pass(best));
-      if (const auto made = cut_of_pass_.find(best); made != cut_of_pass_.end()) study_.corrected = std::move(made->second);
-      cut_of_pass_.clear();
-    }
-    if (study_.corrected) {
-      study_.stages.push_back({Stage::Verify, StageState::Computed, 0.0});
-    } else {
-      study_.corrected = cut(Stage::Verify, CutRole::Corrected, correction.moves.path);
+    const std::string pass =
+        correction.iteration ? name_of_pass(static_cast<int>(correction.iteration->best)) : std::string();
+    study_.corrected = cut(Stage::Verify, "corrected", correction.moves.path, pass);
+    for (int k = 1; k <= kMostPasses; ++k) {
+      cache_.remove(name_of_pass(k));
+      cache_.remove(checkpoint_slot(name_of_pass(k)));
     }
     report("the corrected cut", study_.corrected->verdict);
     study_.outcome = study_.corrected->outcome;
@@ -325,16 +544,20 @@ class Runner {
   }
 
   const Case& settings_;
-  Store& store_;
+  Inputs& inputs_;
+  Cache& cache_;
+  const RunOptions& options_;
   Workers& workers_;
   Monitor& monitor_;
-  Stage until_ = Stage::Verify;
+  ProductSink& sink_;
+  bool must_resume_;  ///< nothing was gone on with yet, and something has to be
   std::optional<TetMesh> given_mesh_;
   std::optional<Contour> tumor_edge_;
   std::optional<TriMesh> tumor_surface_;
   std::optional<Contour> line_;
   std::optional<ToolPath> given_path_;
-  std::map<int, SimulatedCut> cut_of_pass_;  ///< of this run's correction
+  std::set<std::string> made_;  ///< digests of the cuts that this run has made
+  std::string held_;            ///< digest of the held tissue before the cut
   Study study_;
 };
 
@@ -345,8 +568,23 @@ const SimulatedCut* verifying_cut(const Study& study) {
   return study.as_planned ? &*study.as_planned : nullptr;
 }
 
-Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor) {
-  return Runner(settings, store, workers, monitor).run(until);
+std::string name_of_pass(int pass) {
+  return pass == 0 ? std::string("as_planned") : fmt::format("pass_{}", pass);
+}
+
+std::string checkpoint_slot(const std::string& cut) {
+  return cut + ".checkpoint";
+}
+
+Study run_study(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options, Workers& workers,
+                Monitor& monitor, ProductSink& sink) {
+  return Runner(settings, inputs, cache, options, workers, monitor, sink).run();
+}
+
+Study run_study(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options, Workers& workers,
+                Monitor& monitor) {
+  ProductSink none;
+  return run_study(settings, inputs, cache, options, workers, monitor, none);
 }
 
 }  // namespace incise

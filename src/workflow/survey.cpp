@@ -48,8 +48,9 @@ StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monito
   return result;
 }
 
-MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy, Store& store, Workers& workers,
-                                    Monitor& monitor) {
+MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
+                                    const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,
+                                    Workers& workers, Monitor& monitor) {
   // The cut is planned on the stretched tissue, but the mesh is made of the unstretched body: a coarse mesh is stretched first to
   // find where the planned cut lies at rest.
   SizingSettings sizing = default_lengths(longest_side_mm(occupancy));
@@ -64,7 +65,7 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
   const TissueModel coarse = tissue_of(settings, std::move(survey.mesh));
   const StaticResult stretched = stretch(coarse, workers, monitor);
   require_equilibrium(stretched, "coarse survey mesh");
-  const ToolPath plan = plan_on(settings, coarse, stretched.state.positions, store.read_tumor_edge(), store.read_line());
+  const ToolPath plan = plan_on(settings, coarse, stretched.state.positions, tumor_edge, line);
 
   MeshProduct product;
   product.planned_cut_rest =

@@ -27,7 +27,7 @@ KINDS = {
     "pictures": ("*.svg", "*.png"),
 }
 # A digest covers the version; inputs, commands and folders name places.
-VOLATILE = re.compile(r"(^|_)(wall_s|ms_per_step|commit|made_by|version|machine|command|folder|file|path|report|case_file|digest\w*|key|keys|files|inputs|sha256|\w+_sha256|started|seconds|judged_by)$")
+VOLATILE = re.compile(r"(^|_)(build|wall_s|ms_per_step|commit|made_by|version|machine|command|folder|file|path|report|case_file|digest\w*|key|keys|files|inputs|sha256|\w+_sha256|started|seconds|judged_by)$")
 
 
 def runs(command, folder):
@@ -60,11 +60,13 @@ def settled(value):
     """A JSON value without what differs from run to run."""
     if isinstance(value, dict):
         return {key: settled(item) for key, item in value.items() if not VOLATILE.search(key)}
-    return [settled(item) for item in value] if isinstance(value, list) else value
+    if isinstance(value, list):  # a program's header is a list of [key, value]
+        return [settled(item) for item in value if not (isinstance(item, list) and item and isinstance(item[0], str) and VOLATILE.search(item[0]))]
+    return value
 
 
-def content(file):
-    data = file.read_bytes()
+def content(file, root):
+    data = file.read_bytes().replace(str(root.resolve()).encode(), b"")  # where the outputs lie does not count
     if file.suffix == ".json":
         return json.dumps(settled(json.loads(data))).encode()
     if file.suffix == ".script":
@@ -84,10 +86,11 @@ def files_of(folder):
     found = {}
     for file in sorted(folder.rglob("*")):
         kind = kind_of(file) if file.is_file() and not file.is_symlink() else None
-        if not kind or "head_ct_case" in file.parts:
+        # The records of an experiment's steps hold digests of files that say how long something took.
+        if not kind or "head_ct_case" in file.parts or "steps" in file.parts:
             continue
         name = file.relative_to(folder)
-        found.setdefault((name.parts[0], kind), {})[str(name)] = hashlib.sha256(content(file)).hexdigest()
+        found.setdefault((name.parts[0], kind), {})[str(name)] = hashlib.sha256(content(file, folder)).hexdigest()
     return found
 
 

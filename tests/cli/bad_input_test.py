@@ -187,7 +187,7 @@ class CaseTest(CommandTest):
             self.assert_nothing_written()
             return
         made = {name.split("/")[0] for name in files_below(self.out)}
-        self.assertEqual(made, {"study.json", *stages})
+        self.assertEqual(made, {"study.json", "cache", *stages})
         for stage in stages:
             self.assertTrue((self.out / stage / "stage.json").is_file(), f"{stage} is not complete")
 
@@ -459,6 +459,18 @@ class CaseTest(CommandTest):
                 done = self.incise("deform", "case", "-o", self.out, "--quiet")
                 self.assert_refused(done, BAD_DATA, name, f"Remove the folder {self.out / 'stretched'}")
                 path.write_text(whole)
+
+    def test_a_damaged_entry_of_the_cache_is_computed_again(self):
+        self.assertEqual(self.incise("deform", "case", "-o", self.out, "--quiet").returncode, DONE)
+        entry = self.out / "cache" / "stretched.bin"
+        data, whole = entry.read_bytes(), (self.out / "stretched" / "deformed.vtu").read_bytes()
+        for damaged in (data[:-1], data[:500] + bytes([data[500] ^ 1]) + data[501:], b""):
+            entry.write_bytes(damaged)
+            done = self.incise("deform", "case", "-o", self.out)
+            self.assertEqual(done.returncode, DONE, done.stderr)
+            self.assertIn("stretched.bin: byte", done.stderr)
+            self.assertIn("It is computed again", done.stderr)
+            self.assertEqual((self.out / "stretched" / "deformed.vtu").read_bytes(), whole)
 
     def test_a_mesh_that_is_turned_over_as_a_whole_is_told(self):
         vertices, tets = small_case.block()

@@ -40,9 +40,12 @@ class CheckpointTest(CommandTest):
         """The same case, already stretched and planned."""
         super().setUp()
         self.case = small_case.write_case(self.folder / "case", LONG_CUT)
-        self.checkpoint = self.out / "as_planned.checkpoint"
+        self.cache = self.out / "cache"
+        self.checkpoint = self.cache / "as_planned.checkpoint.bin"
+        self.cache.mkdir(parents=True)
         for product in ("stretched", "plan"):
             shutil.copytree(self.straight / product, self.out / product)
+            shutil.copy(self.straight / "cache" / f"{product}.bin", self.cache)
 
     def stop(self, verb, checkpoint, stop_signal, *options):
         """The command with a checkpoint at every occasion, stopped by a signal once there is one."""
@@ -63,9 +66,9 @@ class CheckpointTest(CommandTest):
         done = self.stop("simulate", self.checkpoint, signal.SIGINT)
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         self.assertEqual(done.stdout, "")
-        self.assertRegex(done.stderr, r"incise: the cut was interrupted after step \d+; its checkpoint \S+as_planned\.checkpoint is kept, run the same command to go on\n")
+        self.assertRegex(done.stderr, r"incise: the cut was interrupted after step \d+; its checkpoint \S+as_planned\.checkpoint\.bin is kept, run the same command to go on\n")
         self.assertEqual({name.split("/")[0] for name in files_below(self.out)},
-                         {"study.json", "stretched", "plan", "as_planned.checkpoint"})
+                         {"study.json", "stretched", "plan", "cache"})
 
         resumed = self.incise("simulate", "case", "-o", self.out, "--resume", "--threads", "2")
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
@@ -84,18 +87,18 @@ class CheckpointTest(CommandTest):
     def test_a_killed_run_goes_on_from_its_last_checkpoint(self):
         killed = self.stop("simulate", self.checkpoint, signal.SIGKILL)
         # Where the signal met it while it was writing, this is what it left.
-        (self.out / f".as_planned.checkpoint.{killed.pid}.9.part").write_bytes(b"half a checkpoint")
+        (self.cache / f".as_planned.checkpoint.bin.{killed.pid}.9.part").write_bytes(b"half a checkpoint")
         (self.out / f".as_planned.{killed.pid}.10.part").mkdir()
-        alive = self.out / f".as_planned.checkpoint.{os.getpid()}.0.part"
+        alive = self.cache / f".as_planned.checkpoint.bin.{os.getpid()}.0.part"
         alive.write_bytes(b"of a process that runs")
         resumed = self.incise("simulate", "case", "-o", self.out)  # by itself
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
         self.assertIn("simulate: goes on after step", resumed.stderr)
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
-        self.assertEqual([path for path in self.out.iterdir() if path.name.startswith(".")], [alive])
+        self.assertEqual([path for folder in (self.out, self.cache) for path in folder.iterdir() if path.name.startswith(".")], [alive])
 
     def test_run_goes_on_in_its_second_cut(self):
-        done = self.stop("run", self.out / "pass_1.checkpoint", signal.SIGTERM)
+        done = self.stop("run", self.cache / "pass_1.checkpoint.bin", signal.SIGTERM)
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         resumed = self.incise("run", "case", "-o", self.out)
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
@@ -104,12 +107,12 @@ class CheckpointTest(CommandTest):
             self.assert_same_cut(self.out / product, self.straight / product)
         for name in ("path.json", "history.csv", "errors.csv"):
             self.assertEqual((self.out / "correction" / name).read_bytes(), (self.straight / "correction" / name).read_bytes(), name)
-        self.assertEqual([name for name in files_below(self.out) if name.startswith("pass_")], [])
+        self.assertEqual([name for name in files_below(self.cache) if "pass_" in name or "checkpoint" in name], [])
 
-    def test_a_run_stopped_in_its_third_cut_takes_the_pass_before_it_from_the_folder(self):
-        done = self.stop("run", self.out / "pass_2.checkpoint", signal.SIGINT)
+    def test_a_run_stopped_in_its_third_cut_takes_the_pass_before_it_from_the_cache(self):
+        done = self.stop("run", self.cache / "pass_2.checkpoint.bin", signal.SIGINT)
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
-        self.assertTrue((self.out / "pass_1" / "incision.json").is_file())
+        self.assertTrue((self.cache / "pass_1.bin").is_file())
         self.assertFalse((self.out / "correction").exists())
         resumed = self.incise("run", "case", "-o", self.out, "--resume")
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
@@ -120,39 +123,48 @@ class CheckpointTest(CommandTest):
     def test_resume_without_a_checkpoint_is_refused(self):
         new = self.folder / "new"
         done = self.incise("simulate", "case", "-o", new, "--resume")
-        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint as_planned.checkpoint in", str(new), "Without --resume")
+        self.assert_refused(done, BAD_CASE, "--resume", "no finished stretch", "an interrupted cut of this case", "Without --resume")
         self.assert_nothing_written(new)
 
     def test_resume_goes_on_with_the_cut_that_comes_next_and_no_other(self):
-        self.stop("run", self.out / "pass_1.checkpoint", signal.SIGTERM)
+        self.stop("run", self.cache / "pass_1.checkpoint.bin", signal.SIGTERM)
         done = self.incise("simulate", "case", "-o", self.out, "--resume")
-        self.assert_refused(done, BAD_CASE, "--resume", "the cut as planned finished", "expected as_planned.checkpoint", "Without --resume")
-        shutil.rmtree(self.out / "as_planned")
+        self.assert_refused(done, BAD_CASE, "--resume", "cuts that are all finished", "Without --resume")
+        (self.cache / "as_planned.bin").unlink()
         done = self.incise("run", "case", "-o", self.out, "--resume")
-        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint as_planned.checkpoint in")
-        self.assertTrue((self.out / "pass_1.checkpoint").exists(), "it is left where it is")
+        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint of the cut as_planned")
+        self.assertTrue((self.cache / "pass_1.checkpoint.bin").exists(), "it is left where it is")
 
     def test_a_checkpoint_of_other_settings_is_refused_by_resume_and_passed_over_without_it(self):
         self.stop("simulate", self.checkpoint, signal.SIGINT)
         left = self.checkpoint.read_bytes()
         small_case.write_case(self.case, {"cut": {"advance_per_step_mm": 0.8, "frames": 2, "dullness": 4}})
         done = self.incise("simulate", "case", "-o", self.out, "--resume")
-        self.assert_refused(done, BAD_DATA, "as_planned.checkpoint", "key", "of a cut made by incise", "of this case, its settings and inputs")
+        self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint of the cut as_planned that fits")
         self.assertEqual(self.checkpoint.read_bytes(), left)
         done = self.incise("simulate", "case", "-o", self.out)
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
         self.assertIn("the cut starts from the beginning", done.stderr)
 
-    def test_a_damaged_checkpoint_says_what_to_remove(self):
+    def test_a_damaged_checkpoint_is_refused_by_resume_and_passed_over_without_it(self):
         self.stop("simulate", self.checkpoint, signal.SIGINT)
         whole = self.checkpoint.read_bytes()
         for name, damaged in (("cut short", whole[: len(whole) // 2]), ("one bit", whole[:5000] + bytes([whole[5000] ^ 1]) + whole[5001:]),
                               ("foreign", b"not a checkpoint at all"), ("empty", b"")):
-            for option in ([], ["--resume"]):
-                with self.subTest(damage=name, option=option):
-                    self.checkpoint.write_bytes(damaged)
-                    done = self.incise("simulate", "case", "-o", self.out, *option)
-                    self.assert_refused(done, BAD_DATA, "as_planned.checkpoint", "byte ", "Remove the file")
+            with self.subTest(damage=name):
+                self.checkpoint.write_bytes(damaged)
+                done = self.incise("simulate", "case", "-o", self.out, "--resume")
+                if name == "foreign":
+                    self.assert_refused(done, BAD_DATA, "as_planned.checkpoint.bin", "a file of another origin")
+                else:
+                    self.assert_refused(done, BAD_CASE, "no checkpoint of the cut as_planned that fits")
+                self.assertEqual(self.checkpoint.read_bytes(), damaged)
+        self.checkpoint.write_bytes(whole[: len(whole) // 2])
+        done = self.incise("simulate", "case", "-o", self.out)
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        self.assertIn("as_planned.checkpoint.bin: byte", done.stderr)
+        self.assertIn("the cut starts from the beginning", done.stderr)
+        self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
 
 
 class FramesTest(CommandTest):

@@ -56,7 +56,7 @@ class CompensateTest(CommandTest):
         for figure in result["figures"]:
             self.assertIn("</svg>", (self.folder / figure).read_text())
         self.assertEqual({name.split("/")[0] for name in files_below(self.out)},
-                         {"study.json", "stretched", "plan", "as_planned", "correction", "corrected", "figures"})
+                         {"study.json", "cache", "stretched", "plan", "as_planned", "correction", "corrected", "figures"})
         manifest = json.loads((self.out / "correction" / "manifest.json").read_text())
         self.assertEqual(manifest["settings"]["compensation.method"], "default")
 

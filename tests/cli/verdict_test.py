@@ -123,7 +123,7 @@ class VerdictTest(CommandTest):
         for waypoint in path["waypoints"]:
             waypoint["depth_mm"] = 5.4
         file.write_text(json.dumps(path))
-        self.assert_refused(self.incise("run", "case", "-o", "out"), BAD_DATA, "plan/path.json", "that of another path")
+        self.assert_refused(self.incise("run", "case", "-o", "out"), BAD_DATA, "plan/path.json", "changed since")
         file.write_text(sound)
         again = self.json_of("run", "case", "-o", "out", status=NOT_ACCEPTABLE)
         self.assertEqual({stage["state"] for stage in again["stages"]} - {"skipped"}, {"reused"})
@@ -134,7 +134,7 @@ class VerdictTest(CommandTest):
 
         def moved(text):
             path = json.loads(text)
-            path.pop("verdict")
+            path.pop("verdict", None)  # a run that was refused has taken it away
             for waypoint in path["waypoints"]:
                 waypoint["position_mm"][0] += 1.0
             return json.dumps(path)
@@ -211,7 +211,19 @@ class VerdictTest(CommandTest):
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
         self.assertIn("program: removed, it was made with other settings", done.stderr)
         self.assert_no_program()
-        self.assertNotIn("verdict", self.read("correction/path.json"), "judged by another margin")
+        self.assertFalse((self.out / "correction").exists(), "it was judged by another margin")
+
+    def test_a_verdict_of_other_limits_does_not_stay_beside_a_path(self):
+        strict = small_case.merged(small_case.SOUND, {"plan": {"lateral_margin_mm": 9, "close_margin_mm": 2.2}})
+        for changes in (strict, small_case.SOUND):
+            self.write(changes)
+            self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED)
+        self.write(strict)
+        self.assertEqual(self.incise("plan", "case", "-o", self.out).returncode, DONE)
+        self.assertNotIn("verdict", self.read("plan/path.json"))
+        self.assertNotIn("verdict", self.read("study.json"), "that of another run")
+        self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED)
+        self.assertEqual(self.read("plan/path.json")["verdict"]["status"], "refused")
 
     def test_a_line_through_the_tumour_is_refused(self):
         changes = {"plan": {"kind": "line", "line": "line.csv", "lateral_margin_mm": None}, "tumor": {"surface": None}}

@@ -1,3 +1,5 @@
+#include "support/counted_entries.hpp"
+
 #include <incise/core/cache.hpp>
 #include <incise/core/error.hpp>
 
@@ -9,27 +11,14 @@ namespace {
 struct Answer {
   double value_mm = 0.0;
 };
-void describe(Visitor& v, Answer& a) { v("value_mm", a.value_mm, "A length."); }
+void describe(Visitor& v, Answer& a) {
+  v("value_mm", a.value_mm, "A length.");
+}
 
 class Messages : public Monitor {
  public:
   void message(Severity, std::string_view text) override { all += text; }
   std::string all;
-};
-
-/// Keeps entries where a test can damage them.
-class OpenEntries : public EntryStore {
- public:
-  explicit OpenEntries(std::map<std::string, std::string>& entries) : entries_(entries) {}
-  std::optional<std::string> load(const std::string& name) override {
-    const auto found = entries_.find(name);
-    return found == entries_.end() ? std::nullopt : std::optional(found->second);
-  }
-  void save(const std::string& name, const std::string& bytes) override { entries_[name] = bytes; }
-  void remove(const std::string& name) override { entries_.erase(name); }
-
- private:
-  std::map<std::string, std::string>& entries_;
 };
 
 TEST(Cache, MakesAResultOnce) {
@@ -40,7 +29,8 @@ TEST(Cache, MakesAResultOnce) {
   const CacheKey key = CacheKey("answer", 1).add(Answer{0.5});
   EXPECT_EQ(cache.get_or_make<Answer>("a", key, quiet, make).value_mm, 1.0);
   EXPECT_EQ(cache.get_or_make<Answer>("a", CacheKey("answer", 1).add(Answer{0.5}), quiet, make).value_mm, 1.0);
-  EXPECT_TRUE(cache.has("a", key, quiet));
+  EXPECT_TRUE(cache.holds("a"));
+  EXPECT_FALSE(cache.holds("b"));
   EXPECT_EQ(made, 1);
 }
 
@@ -55,25 +45,26 @@ TEST(Cache, MakesItAgainForOtherSettingsOtherCodeAndAnotherStage) {
 }
 
 TEST(CacheKey, TellsPartsApart) {
-  EXPECT_NE(CacheKey("s", 1).add_text("ab").add_text("c").digest(), CacheKey("s", 1).add_text("a").add_text("bc").digest());
+  EXPECT_NE(CacheKey("s", 1).add_text("ab").add_text("c").digest(),
+            CacheKey("s", 1).add_text("a").add_text("bc").digest());
 }
 
 TEST(Cache, ReportsADamagedEntryAndMakesItAgain) {
-  std::map<std::string, std::string> entries;
-  Cache cache(std::make_unique<OpenEntries>(entries));
+  testing::Entries entries;
+  Cache cache(std::make_unique<testing::CountedEntries>(entries));
   Messages told;
   const CacheKey key = CacheKey("answer", 1).add_text("x");
   cache.keep("a", key, Answer{7.0});
-  const std::string sound = entries.at("a");
+  const std::string sound = entries.bytes.at("a");
   for (std::size_t i = 0; i < sound.size(); ++i) {
-    entries["a"] = sound;
-    entries["a"][i] = static_cast<char>(entries["a"][i] ^ 1);
+    entries.bytes["a"] = sound;
+    entries.bytes["a"][i] = static_cast<char>(entries.bytes["a"][i] ^ 1);
     const auto found = cache.find<Answer>("a", key, told);
     EXPECT_FALSE(found) << i;
   }
   EXPECT_NE(told.all.find("It is computed again"), std::string::npos);
   for (std::size_t size = 0; size < sound.size(); ++size) {
-    entries["a"] = sound.substr(0, size);
+    entries.bytes["a"] = sound.substr(0, size);
     EXPECT_FALSE(cache.find<Answer>("a", key, told)) << size;
   }
 }

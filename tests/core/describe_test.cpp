@@ -9,9 +9,9 @@ namespace incise {
 namespace {
 
 enum class Shape { Round, Square };
-std::span<const std::string_view> names_of(Shape) {
-  static constexpr std::array<std::string_view, 2> kNames{"round", "square"};
-  return kNames;
+constexpr std::array<std::string_view, 2> kShapeNames{"round", "square"};
+constexpr Names names_of(Shape) {
+  return kShapeNames;
 }
 
 struct Inner {
@@ -63,7 +63,8 @@ Outer an_outer() {
   o.counts = {5, 6};
   o.turn(0, 1) = -0.25;
   o.marks = {1, 0, 1};
-  o.edges.emplace_back(std::array<Id<struct TestTag>, 2>{Id<struct TestTag>(std::size_t{3}), Id<struct TestTag>(std::size_t{4})});
+  o.edges.emplace_back(
+      std::array<Id<struct TestTag>, 2>{Id<struct TestTag>(std::size_t{3}), Id<struct TestTag>(std::size_t{4})});
   o.by_name["x"] = Inner{4, {}};
   return o;
 }
@@ -97,7 +98,8 @@ TEST(DescribedBytes, DifferWhereAnyFieldDiffers) {
 
 TEST(DescribedBytes, OfAnyOtherLengthAreRefused) {
   const std::string bytes = bytes_of(an_outer());
-  for (std::size_t size = 0; size < bytes.size(); ++size) EXPECT_THROW(static_cast<void>(from_bytes<Outer>(bytes.substr(0, size), "test")), DataError) << size;
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_THROW(static_cast<void>(from_bytes<Outer>(bytes.substr(0, size), "test")), DataError) << size;
   EXPECT_THROW(static_cast<void>(from_bytes<Outer>(bytes + "x", "test")), DataError);
 }
 
@@ -108,7 +110,8 @@ TEST(DescribedBytes, AreRefusedWithPlaceAndField) {
     static_cast<void>(from_bytes<Outer>(bytes_of(o), "entry"));
     FAIL() << "expected DataError";
   } catch (const DataError& error) {
-    EXPECT_NE(std::string(error.what()).find("count: found 11, expected a number in [0, 10]"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("count: found 11, expected a number in [0, 10]"), std::string::npos)
+        << error.what();
   }
 }
 
@@ -119,15 +122,23 @@ TEST(DescribedBytes, TakeNoMoreMemoryThanTheBytesAllow) {
 }
 
 TEST(NamesOf, GoBothWays) {
-  EXPECT_EQ(name_of(Shape::Square), "square");
+  EXPECT_EQ(to_string(Shape::Square), "square");
+  EXPECT_EQ(to_string(static_cast<Shape>(2)), "unknown");
   EXPECT_EQ(value_of<Shape>("round"), Shape::Round);
   EXPECT_EQ(value_of<Shape>("oval"), std::nullopt);
+  EXPECT_EQ(values_of<Shape>(), (std::array{Shape::Round, Shape::Square}));
+}
+
+TEST(Choices, AreListedAsInASentence) {
+  EXPECT_EQ(choices(names_of(Shape{})), "round or square");
+  EXPECT_EQ(choices(std::array<std::string_view, 3>{"a", "b", "c"}), "a, b or c");
+  EXPECT_EQ(choices(std::array<std::string_view, 1>{"a"}), "a");
 }
 
 TEST(RangeText, SaysTheLimits) {
   EXPECT_EQ(describe(kPositive), "a number above 0");
   EXPECT_EQ(describe(Range{0.0, 0.5, false, true}), "a number in [0, 0.5)");
-  EXPECT_TRUE(contains(kFraction, 1.0));
+  EXPECT_TRUE(contains(Range{0.0, 1.0}, 1.0));
   EXPECT_FALSE(contains(kAny, std::nan("")));
 }
 

@@ -15,12 +15,9 @@ TEST(Outcome, HasTheNamesThatFilesUse) {
 }
 
 TEST(Outcome, IsReadBackFromItsNameAndFromNoOther) {
-  for (const Outcome outcome : {Outcome::Success, Outcome::PositiveMargin, Outcome::OpenLoop, Outcome::NotConverged,
-                                Outcome::ElementInverted, Outcome::Cancelled}) {
-    EXPECT_EQ(parse_outcome(to_string(outcome)), outcome);
-  }
-  EXPECT_EQ(parse_outcome("Success"), std::nullopt);
-  EXPECT_EQ(parse_outcome(""), std::nullopt);
+  for (const Outcome outcome : values_of<Outcome>()) EXPECT_EQ(value_of<Outcome>(to_string(outcome)), outcome);
+  EXPECT_EQ(value_of<Outcome>("Success"), std::nullopt);
+  EXPECT_EQ(value_of<Outcome>(""), std::nullopt);
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 namespace incise {
 namespace {
 
@@ -25,13 +23,6 @@ TEST(BaselineRange, HoldsTheBaselineThatARowWasMadeWith) {
   const BaselineRange range = baseline_range(row);
   EXPECT_NEAR(range.low_mm, 1.905, 1e-3);
   EXPECT_NEAR(range.high_mm, 2.004, 1e-3);
-}
-
-TEST(CommonBaseline, IsEmptyWhereRowsContradictEachOther) {
-  const std::vector<PrintedScore> rows{{{1.0, 0.01}, {2.0, 0.01}, {50.0, 0.1}},
-                                       {{1.0, 0.01}, {2.0, 0.01}, {60.0, 0.1}}};
-  EXPECT_TRUE(common_baseline(rows).is_empty());
-  EXPECT_FALSE(common_baseline(std::vector<PrintedScore>{rows[0]}).is_empty());
 }
 
 }  // namespace

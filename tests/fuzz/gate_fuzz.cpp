@@ -59,43 +59,17 @@ Options parse(int argc, char** argv) {
   return options;
 }
 
-/// A virtual specimen with inputs that may be broken, and products in memory.
-class SpecimenStore : public Store {
+/// A virtual specimen with inputs that may be broken.
+class SpecimenInputs : public Inputs {
  public:
-  explicit SpecimenStore(const Phantom& phantom) : ct(phantom.ct), edge(phantom.tumor_edge), surface(phantom.tumor) {}
+  explicit SpecimenInputs(const Phantom& phantom) : ct(phantom.ct), edge(phantom.tumor_edge), surface(phantom.tumor) {}
   CtVolume read_ct(Monitor&) override { return ct; }
-  std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return std::nullopt; }
   std::optional<Contour> read_tumor_edge() override { return edge; }
   std::optional<TriMesh> read_tumor_surface() override { return surface; }
-  std::optional<Contour> read_line() override { return std::nullopt; }
-  std::optional<ToolPath> read_given_path() override { return std::nullopt; }
-  std::optional<Segmentation> load_segmentation() override { return std::nullopt; }
-  void save_segmentation(const Segmentation&, double) override {}
-  std::optional<TetMesh> load_mesh() override { return std::nullopt; }
-  void save_mesh(const MeshProduct&, double) override {}
-  std::optional<StaticResult> load_stretched(const TissueModel&) override { return std::nullopt; }
-  void save_stretched(const TissueModel&, const StaticResult&, double) override {}
-  std::optional<ToolPath> load_plan() override { return std::nullopt; }
-  void save_plan(const ToolPath&, double) override {}
-  std::optional<SimulatedCut> load_cut(CutRole role) override {
-    const auto found = cuts.find(role);
-    return found == cuts.end() ? std::nullopt : std::optional(found->second);
-  }
-  void save_cut(CutRole role, const TissueModel&, const StaticResult&, const SimulatedCut& cut, double) override { cuts[role] = cut; }
-  std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
-  void keep_progress(CutRole, const IncisionProgress&, bool) override {}
-  std::optional<Correction> load_correction() override { return std::nullopt; }
-  void save_correction(const Correction&, double) override {}
-  bool adopt_cut(CutRole from) override {
-    if (!cuts.contains(from)) return false;
-    cuts[CutRole::Corrected] = cuts[from];
-    return true;
-  }
 
   CtVolume ct;
   Contour edge;
   TriMesh surface;
-  std::map<CutRole, SimulatedCut> cuts;
 };
 
 // --- The oracle: plain distances, triangle by triangle, that share nothing with SurfaceQuery.
@@ -201,27 +175,27 @@ Case sound_case(int tets) {
   return settings;
 }
 
-BrokenCase broken_case(int tets, SpecimenStore& store, Random& random) {
+BrokenCase broken_case(int tets, SpecimenInputs& inputs, Random& random) {
   BrokenCase broken{sound_case(tets)};
   Case& c = broken.settings;
   switch (random.below(9)) {
     case 0: {
       const double by = random.uniform(0.5, 20.0);
-      move(store.edge.points, by * random_direction(random, true));
+      move(inputs.edge.points, by * random_direction(random, true));
       broken.how = fmt::format("contour shifted by {:.1f} mm", by);
       break;
     }
     case 1:
-      for (Vec3& p : store.edge.points) p = Vec3(-p.x(), -p.y(), p.z());
+      for (Vec3& p : inputs.edge.points) p = Vec3(-p.x(), -p.y(), p.z());
       broken.how = "contour in RAS";
       break;
     case 2:
-      for (Vec3& p : store.surface.vertices) p *= 1e-3;
+      for (Vec3& p : inputs.surface.vertices) p *= 1e-3;
       broken.how = "surface in metres";
       break;
     case 3: {
       const double by = random.uniform(0.5, 12.0);
-      move(store.surface.vertices, by * random_direction(random, true));
+      move(inputs.surface.vertices, by * random_direction(random, true));
       broken.how = fmt::format("surface shifted by {:.1f} mm", by);
       break;
     }
@@ -267,12 +241,14 @@ struct Finished {
 };
 
 /// @returns nothing where the case was refused before anything was cut, which is a way to be safe.
-std::optional<Finished> run_case(const Case& settings, SpecimenStore& store, Workers& workers) {
+std::optional<Finished> run_case(const Case& settings, SpecimenInputs& inputs, Workers& workers) {
   Monitor silent;
+  Cache cache;
   try {
-    Finished done{settings, run_study(settings, store, Stage::Verify, workers, silent), {}, store.edge, store.surface};
+    Finished done{settings, run_study(settings, inputs, cache, {}, workers, silent), {}, inputs.edge, inputs.surface};
     if (!verifying_cut(done.study)) return std::nullopt;
-    done.tumor = tumor_in_stretched(settings, *done.study.model, done.study.stretched->state.positions, store.surface, store.edge);
+    done.tumor = tumor_in_stretched(settings, *done.study.model, done.study.stretched->state.positions, inputs.surface,
+                                    inputs.edge);
     return done;
   } catch (const CaseError&) {
     return std::nullopt;
@@ -347,11 +323,11 @@ void try_variants(const std::string& where, const Finished& done, int count, Ran
 void try_broken_run(std::uint64_t seed, const Options& options, int variants, Workers& workers, Tally& tally) {
   Random random(seed);
   const Phantom phantom = specimen(1 + random.below(1000000));
-  SpecimenStore store(phantom);
-  const BrokenCase broken = broken_case(options.tets, store, random);
+  SpecimenInputs inputs(phantom);
+  const BrokenCase broken = broken_case(options.tets, inputs, random);
   const std::string where = fmt::format("run of seed {} ({})", seed, broken.how);
   ++tally.runs;
-  const std::optional<Finished> done = run_case(broken.settings, store, workers);
+  const std::optional<Finished> done = run_case(broken.settings, inputs, workers);
   if (!done) {
     ++tally.refused;
     return;
@@ -378,8 +354,8 @@ void try_sound_run(std::uint64_t seed, const Options& options, int variants, Wor
   Random random(seed + 7777777);
   const std::uint64_t phantom_seed = 1 + random.below(1000000);
   const Phantom phantom = specimen(phantom_seed);
-  SpecimenStore store(phantom);
-  const std::optional<Finished> done = run_case(sound_case(options.sound_tets), store, workers);
+  SpecimenInputs inputs(phantom);
+  const std::optional<Finished> done = run_case(sound_case(options.sound_tets), inputs, workers);
   const std::string where = fmt::format("sound run of seed {} (incise phantom --seed {})", seed, phantom_seed);
   ++tally.sound;
   if (!done) return fail(tally, where, "a sound case was refused before it was cut");

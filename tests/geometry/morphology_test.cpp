@@ -1,6 +1,7 @@
 #include "geometry/pictures.hpp"
 
 #include <incise/core/random.hpp>
+#include <incise/geometry/gaussian.hpp>
 #include <incise/geometry/morphology.hpp>
 
 #include <gtest/gtest.h>

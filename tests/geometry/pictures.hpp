@@ -29,6 +29,15 @@ inline std::vector<std::string> as_text(const Raster& raster) {
   return rows;
 }
 
+/// Sets every pixel whose centre lies within `radius_mm` of `centre`.
+inline void stamp_disc(Raster& raster, const Vec2& centre, double radius_mm) {
+  for (int j = 0; j < raster.height; ++j) {
+    for (int i = 0; i < raster.width; ++i) {
+      if ((raster.centre(i, j) - centre).norm() <= radius_mm) raster.at(i, j) = 1;
+    }
+  }
+}
+
 /// A ring round (0, 0), with border.
 inline Raster ring(double inner_mm, double outer_mm, double pixel_mm) {
   const Vec2 reach = Vec2::Constant(outer_mm);

@@ -1,18 +1,13 @@
-#include "geometry/pictures.hpp"
-
+#include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
 #include <incise/geometry/raster.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 namespace incise {
 namespace {
-
-using testing::as_text;
-using Rows = std::vector<std::string>;
 
 VertexId v(std::size_t i) {
   return VertexId{i};
@@ -31,41 +26,6 @@ TEST(GridAround, RefusesNonsense) {
   EXPECT_THROW((void)grid_around({0, 0}, {1, 1}, 0.0, 1.0), InvalidArgument);
   EXPECT_THROW((void)grid_around({0, 0}, {1, NAN}, 0.5, 1.0), InvalidArgument);
   EXPECT_THROW((void)grid_around({0, 0}, {1e6, 1e6}, 0.1, 1.0), InvalidArgument);
-}
-
-TEST(StampDisc, SetsTheCentresWithinTheRadius) {
-  Raster raster(RasterGrid{Vec2::Zero(), 1.0, 5, 5}, 0);
-  stamp_disc(raster, {2, 2}, 1.5);
-  EXPECT_EQ(as_text(raster), (Rows{".....", ".###.", ".###.", ".###.", "....."}));
-  stamp_disc(raster, {-1, 0}, 1.0);  // reaches over the picture's edge
-  EXPECT_EQ(raster.at(0, 0), 1);
-  EXPECT_EQ(raster.at(0, 1), 0);
-}
-
-TEST(StampDisc, HasTheAreaOfADisc) {
-  Raster raster(grid_around({-10, -10}, {10, 10}, 0.05, 0.0), 0);
-  stamp_disc(raster, {0.3, -0.2}, 8.0);
-  EXPECT_NEAR(area_mm2(raster), std::numbers::pi * 64.0, 0.3);
-}
-
-TEST(StampTriangle, SetsCentresWithinAndOnTheBorderWhicheverWayItTurns) {
-  Raster raster(RasterGrid{Vec2::Zero(), 1.0, 4, 4}, 0);
-  stamp_triangle(raster, {0, 0}, {3, 0}, {0, 3});
-  EXPECT_EQ(as_text(raster), (Rows{"####", "###.", "##..", "#..."}));
-  Raster turned(RasterGrid{Vec2::Zero(), 1.0, 4, 4}, 0);
-  stamp_triangle(turned, {0, 0}, {0, 3}, {3, 0});
-  EXPECT_EQ(turned.pixels, raster.pixels);
-}
-
-TEST(StampTriangle, LeavesNoCrackBetweenNeighbours) {
-  Random random(6);
-  for (int trial = 0; trial < 50; ++trial) {
-    Raster raster(grid_around({-2, -2}, {2, 2}, 0.1, 0.0), 0);
-    const Vec2 middle(random.uniform(-1, 1), random.uniform(-1, 1));
-    const std::vector<Vec2> square{{-2, -2}, {2, -2}, {2, 2}, {-2, 2}};
-    for (std::size_t i = 0; i < 4; ++i) stamp_triangle(raster, middle, square[i], square[(i + 1) % 4]);
-    for (const std::uint8_t pixel : raster.pixels) ASSERT_EQ(pixel, 1);
-  }
 }
 
 TEST(Sample, InterpolatesBetweenPixelCentres) {
@@ -88,6 +48,28 @@ TEST(DepthBuffer, ShowsTheNearerOfTwoSurfacesAndItsHeight) {
   EXPECT_NEAR(buffer.heights_mm[buffer.offset(3, 3)], 0.0, 1e-12);
   EXPECT_EQ(buffer.triangles[buffer.offset(5, 0)], -1);
   EXPECT_TRUE(std::isnan(buffer.heights_mm[buffer.offset(5, 0)]));
+}
+
+TEST(DepthBuffer, SeesCentresWithinATriangleAndOnItsBorderWhicheverWayItTurns) {
+  const Points corners{{0, 0, 0}, {3, 0, 0}, {0, 3, 0}};
+  for (const Triangle& triangle : {Triangle{v(0), v(1), v(2)}, Triangle{v(0), v(2), v(1)}}) {
+    const DepthBuffer buffer = depth_buffer(RasterGrid{Vec2::Zero(), 1.0, 4, 4}, corners, std::vector{triangle});
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 4; ++i) EXPECT_EQ(buffer.triangles[buffer.offset(i, j)], i + j <= 3 ? 0 : -1);
+    }
+  }
+}
+
+TEST(DepthBuffer, HasNoCrackBetweenNeighbours) {
+  Random random(6);
+  const std::vector<Triangle> fan{{v(0), v(1), v(2)}, {v(0), v(2), v(3)}, {v(0), v(3), v(4)}, {v(0), v(4), v(1)}};
+  for (int trial = 0; trial < 50; ++trial) {
+    const Vec3 middle(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    const Points points{middle, {-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
+    for (const std::int32_t seen : depth_buffer(grid_around({-2, -2}, {2, 2}, 0.1, 0.0), points, fan).triangles) {
+      ASSERT_GE(seen, 0);
+    }
+  }
 }
 
 TEST(DepthBuffer, RefusesWhatItCannotDraw) {

@@ -6,19 +6,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace incise {
 namespace {
 
 using testing::as_text;
 using testing::drawn;
 using Rows = std::vector<std::string>;
-
-std::size_t count(const Raster& raster) {
-  return static_cast<std::size_t>(std::count(raster.pixels.begin(), raster.pixels.end(), 1));
-}
 
 TEST(Thinned, LeavesTheMiddleRowOfABar) {
   const Raster skeleton = thinned(drawn({".........", ".#######.", ".#######.", ".#######.", "........."}));
@@ -44,7 +37,7 @@ TEST(Thinned, KeepsThePartsAndHolesOfRandomBlobs) {
   for (int trial = 0; trial < 20; ++trial) {
     Raster raster(RasterGrid{Vec2::Zero(), 1.0, 60, 60}, 0);
     for (int disc = 0; disc < 25; ++disc) {
-      stamp_disc(raster, {random.uniform(6, 54), random.uniform(6, 54)}, random.uniform(1.5, 4.5));
+      testing::stamp_disc(raster, {random.uniform(6, 54), random.uniform(6, 54)}, random.uniform(1.5, 4.5));
     }
     const Raster skeleton = thinned(raster);
     EXPECT_EQ(find_components(skeleton, 1, Connectivity::Eight).parts.size(),
@@ -64,29 +57,6 @@ TEST(Thinned, RunsAlongTheMiddleOfARing) {
       }
     }
   }
-}
-
-TEST(Pruned, LeavesNothingOfWhatHasNoLoop) {
-  EXPECT_EQ(count(pruned(drawn({".......", ".#####.", "....#..", "....#..", "......."}))), 0U);
-  EXPECT_EQ(count(pruned(drawn({"...", ".#.", "..."}))), 0U);
-}
-
-TEST(Pruned, TakesTheSpursOffALoop) {
-  EXPECT_EQ(as_text(pruned(
-                drawn({".........", "...##....", "..#..#...", "..#..###.", "...##....", "....#....", "........."}))),
-            (Rows{".........", "...##....", "..#..#...", "..#..#...", "...##....", ".........", "........."}));
-}
-
-TEST(Pruned, LeavesARingAndEmptiesARingWithAGap) {
-  Raster raster = testing::ring(8.0, 10.0, 0.2);
-  EXPECT_GT(count(pruned(thinned(raster))), 200U);
-  for (int j = 0; j < raster.height; ++j) {
-    for (int i = 0; i < raster.width; ++i) {
-      const Vec2 p = raster.centre(i, j);
-      if (p.x() > 0.0 && std::abs(p.y()) < 0.5) raster.at(i, j) = 0;
-    }
-  }
-  EXPECT_EQ(count(pruned(thinned(raster))), 0U);
 }
 
 }  // namespace

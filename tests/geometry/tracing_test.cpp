@@ -1,8 +1,7 @@
 #include "geometry/pictures.hpp"
 
 #include <incise/core/random.hpp>
-#include <incise/geometry/morphology.hpp>
-#include <incise/geometry/thinning.hpp>
+#include <incise/geometry/gaussian.hpp>
 #include <incise/geometry/tracing.hpp>
 
 #include <gtest/gtest.h>
@@ -23,31 +22,6 @@ Contour circle(double radius, std::size_t count) {
     contour.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
   }
   return contour;
-}
-
-TEST(LongestLoop, GoesRoundADiamondCounterClockwise) {
-  const std::optional<Contour> loop = longest_loop(drawn({".....", "..#..", ".#.#.", "..#..", "....."}));
-  ASSERT_TRUE(loop);
-  EXPECT_EQ(loop->points, (Points{{2, 1, 0}, {3, 2, 0}, {2, 3, 0}, {1, 2, 0}}));
-  EXPECT_TRUE(loop->is_closed);
-}
-
-TEST(LongestLoop, TakesTheLongerOfTwo) {
-  const std::optional<Contour> loop = longest_loop(drawn({"........", "..#.###.", ".#.#...#", "..#.###.", "........"}));
-  ASSERT_TRUE(loop);
-  EXPECT_DOUBLE_EQ(signed_area_mm2(*loop, kDown), 6.0);
-}
-
-TEST(LongestLoop, IsAbsentWithoutAHole) {
-  EXPECT_FALSE(longest_loop(drawn({".....", ".###.", "....."})));
-  EXPECT_FALSE(longest_loop(drawn({"....."})));
-}
-
-TEST(LongestLoop, OfAThinnedRingIsASimpleCircle) {
-  const std::optional<Contour> loop = longest_loop(pruned(thinned(testing::ring(8.0, 10.0, 0.1))));
-  ASSERT_TRUE(loop);
-  EXPECT_NEAR(signed_area_mm2(*loop, kDown), std::numbers::pi * 81.0, 4.0);
-  EXPECT_FALSE(crosses_itself_in_view(*loop, kDown));
 }
 
 TEST(LongestPath, RunsThroughAForkByItsLongestBranches) {
@@ -85,9 +59,18 @@ TEST(LevelLines, DecideASaddleByItsMiddle) {
   EXPECT_EQ(level_lines(raster, 0.6).size(), 2U);
 }
 
+TEST(LevelLines, EndAtTheBorderWhereNothingIsKnownBeyondIt) {
+  ScalarRaster raster(RasterGrid{Vec2::Zero(), 1.0, 2, 2}, 0.0);
+  raster.pixels = {1.0, 0.0, 1.0, 0.0};
+  const std::vector<Contour> lines = level_lines_inside(raster, 0.25);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_FALSE(lines[0].is_closed);
+  EXPECT_EQ(lines[0].points, (Points{Vec3(0.75, 0, 0), Vec3(0.75, 1, 0)}));
+}
+
 TEST(LevelLines, MeasureABlurredDiscToAHundredthOfAPixel) {
   Raster raster(grid_around({-6, -6}, {6, 6}, 0.1, 1.0), 0);
-  stamp_disc(raster, {0.02, 0.03}, 5.0);
+  testing::stamp_disc(raster, {0.02, 0.03}, 5.0);
   const std::vector<Contour> lines = level_lines(blurred(raster, 0.2), 0.5);
   ASSERT_EQ(lines.size(), 1U);
   // The half level of a blurred disc lies sigma²/(2R) = 0.004 mm further in.

@@ -27,6 +27,14 @@ StepReport step(const TissueModel& model, Motion& motion, const MotionSettings& 
   return report;
 }
 
+/// ½ Σ m v², µJ.
+double kinetic_energy_uj(const TissueModel& model, const Motion& motion) {
+  double twice = 0.0;
+  for (std::size_t v = 0; v < motion.velocities_mm_s.size(); ++v)
+    twice += model.vertex_mass_kg[v] * motion.velocities_mm_s[v].squaredNorm();
+  return 0.5 * twice;
+}
+
 /// A clamped block that hangs in gravity.
 TissueModel heavy_block() {
   Material material;

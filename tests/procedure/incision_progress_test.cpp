@@ -1,6 +1,7 @@
 #include "procedure/ring_in_a_block.hpp"
 #include "procedure/same_incision.hpp"
 
+#include <incise/core/described_bytes.hpp>
 #include <incise/core/error.hpp>
 
 #include <fmt/format.h>
@@ -74,6 +75,19 @@ TEST_F(InterruptedIncision, GoesOnWithTheBitsOfAnUninterruptedOneAtAnyThreadCoun
     EXPECT_LT(left->state.step, steps + 20) << "it may take twenty steps to stop";
     testing::expect_same(expected, go_on(*left, threads, silent_), fmt::format("stopped after {} steps on {} threads", steps, threads));
   }
+}
+
+TEST_F(InterruptedIncision, GoesOnFromBytesWithTheBitsOfAnUninterruptedOne) {
+  const auto left = interrupted_after(33, begin(), 1);
+  ASSERT_TRUE(left.has_value());
+  ASSERT_FALSE(left->state.record.removals.empty() || left->state.bonds.empty() || left->frames.empty());
+  const auto back = from_bytes<IncisionProgress>(bytes_of(*left), "bytes");
+  const IncisionResult expected = straight(), resumed = go_on(back, 1, silent_);
+  testing::expect_same(expected, resumed, "from bytes");
+  IncisionResult alike = resumed;
+  alike.wall_s = expected.wall_s;
+  EXPECT_EQ(bytes_of(alike), bytes_of(expected)) << "in every field but the time that it took";
+  EXPECT_EQ(bytes_of(from_bytes<IncisionResult>(bytes_of(expected), "bytes")), bytes_of(expected));
 }
 
 TEST_F(InterruptedIncision, CanBeInterruptedAgainAndAgain) {

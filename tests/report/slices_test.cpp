@@ -1,7 +1,6 @@
 #include "report/slices.hpp"
 
 #include "report/markup.hpp"
-#include "report/png.hpp"
 
 #include <gmock/gmock.h>
 #include <png.h>
@@ -92,13 +91,6 @@ TEST(SliceSvg, IsWholeAndHasAScale) {
   EXPECT_EQ(testing::nesting_problem(svg), "");
   EXPECT_THAT(svg, ::testing::HasSubstr("1 mm</text>"));
   EXPECT_THAT(svg, ::testing::HasSubstr("aria-label=\"axial CT slice\""));
-}
-
-TEST(Base64, FollowsTheExamplesOfItsStandard) {
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
 }
 
 }  // namespace

@@ -2,10 +2,22 @@
 
 #include <incise/core/units.hpp>
 #include <incise/geometry/tool_path.hpp>
+#include <incise/robot/checks.hpp>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 namespace incise::testing {
+
+/// Names of the checks that failed.
+inline std::vector<std::string> failures(const ProgramChecks& checks) {
+  std::vector<std::string> names;
+  for (const auto& check : checks.checks) {
+    if (!check.passed) names.push_back(check.name);
+  }
+  return names;
+}
 
 /// A ring of 15 mm radius, 600 mm in front of the robot, around a circular tumour edge of 10 mm radius: 5 mm deep,
 /// straight down, 7 mm/s.

@@ -27,62 +27,6 @@ PowerCut kept_cut() {
   return cut;
 }
 
-class PowerMessages : public Monitor {
- public:
-  void message(Severity, std::string_view text) override { told += std::string(text); }
-  std::string told;
-};
-
-class PowerCutFolderTest : public ::testing::Test {
- protected:
-  testing::TemporaryFolder folder_;
-  PowerCutFolder cuts_{folder_ / "cuts", {}};
-  PowerSubject subject_{"seed 1", draw_specimen(1)};
-  PowerMessages monitor_;
-};
-
-TEST_F(PowerCutFolderTest, KeepsACutToTheLastBitUnderAnyName) {
-  cuts_.save(subject_, kept_cut());
-  const PowerSubject renamed{"a file of it", subject_.specimen};
-  const PowerCut read = cuts_.load(renamed, 35.0, 7.0, monitor_).value();
-  EXPECT_EQ(read.bulge_mm, 1.0 / 3.0);
-  EXPECT_EQ(read.outcome, Outcome::Success);
-  EXPECT_EQ(read.specimen, "a file of it");
-  EXPECT_EQ(read.power_w, 35.0);
-  EXPECT_EQ(monitor_.told, "");
-}
-
-TEST_F(PowerCutFolderTest, ACutOfAnotherSpecimenSettingOrMeshIsNotThere) {
-  cuts_.save(subject_, kept_cut());
-  PowerSubject softer = subject_;
-  softer.specimen.youngs_modulus_kpa += 0.1;
-  EXPECT_FALSE(cuts_.load(softer, 35.0, 7.0, monitor_));
-  EXPECT_FALSE(cuts_.load(subject_, 30.0, 7.0, monitor_));
-  EXPECT_FALSE(cuts_.load(subject_, 35.0, 5.0, monitor_));
-  PowerCutFolder coarser(folder_ / "cuts", {.fine_mm = 2.0});
-  EXPECT_FALSE(coarser.load(subject_, 35.0, 7.0, monitor_));
-}
-
-TEST_F(PowerCutFolderTest, ADamagedCutIsToldAndCountsAsAbsent) {
-  cuts_.save(subject_, kept_cut());
-  const std::filesystem::path file = cuts_.file_of(subject_, 35.0, 7.0);
-  nlohmann::ordered_json json = read_json(file);
-  for (const nlohmann::ordered_json& bad :
-       {nlohmann::ordered_json(-1.0), nlohmann::ordered_json(nullptr), nlohmann::ordered_json("high")}) {
-    json["bulge_mm"] = bad;
-    write_json(file, json);
-    monitor_.told.clear();
-    EXPECT_FALSE(cuts_.load(subject_, 35.0, 7.0, monitor_));
-    EXPECT_THAT(monitor_.told,
-                AllOf(HasSubstr(file.filename().string()), HasSubstr("bulge_mm"), HasSubstr("made anew")));
-  }
-  cuts_.save(subject_, kept_cut());
-  std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
-  EXPECT_FALSE(cuts_.load(subject_, 35.0, 7.0, monitor_));
-  cuts_.save(subject_, kept_cut());
-  EXPECT_TRUE(cuts_.load(subject_, 35.0, 7.0, monitor_));
-}
-
 TEST(PowerTable, SaysWhatASeriesFoundAndLeavesOutWhatWasNotMeasured) {
   PowerSeries series;
   series.cuts = {kept_cut()};

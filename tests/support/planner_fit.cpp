@@ -1,6 +1,6 @@
 #include "support/planner_fit.hpp"
 
-#include "support/phantom_store.hpp"
+#include "support/phantom_inputs.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
@@ -95,7 +95,8 @@ std::optional<PlannerFit> fit_planner_to_bench(std::uint64_t seed, int tets) {
   const auto seen = cut_on_bench(specimen, workers);
   if (!seen) return std::nullopt;
   const Phantom phantom = make_phantom(phantom_settings(specimen), silent);
-  PhantomStore store(phantom);
+  PhantomInputs inputs(phantom);
+  Cache cache;
   Fit best;
   int open = 0;
   for (const double modulus_kpa : kModulusKpa) {
@@ -105,7 +106,7 @@ std::optional<PlannerFit> fit_planner_to_bench(std::uint64_t seed, int tets) {
     settings.frames = 0;
     settings.tumor_configuration = TumorConfiguration::Rest;
     settings.material.youngs_modulus_kpa = modulus_kpa;
-    const Study study = run_study(settings, store, Stage::Plan, workers, silent);
+    const Study study = run_study(settings, inputs, cache, {.until = Stage::Plan}, workers, silent);
     std::optional<Profile> last;
     double last_dullness = 0.0;
     for (const double dullness : kDullness) {

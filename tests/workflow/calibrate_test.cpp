@@ -1,3 +1,5 @@
+#include "support/counted_entries.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/workflow/calibrate.hpp>
 
@@ -7,9 +9,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <numeric>
-#include <tuple>
 
 namespace incise {
 namespace {
@@ -18,8 +18,8 @@ using ::testing::HasSubstr;
 
 constexpr double kTumorRadiusMm = 4.0;
 
-/// A soft block that is held at its underside, with a tumour edge that is no circle on top of it. Nothing is kept.
-class SoftBlock : public Store {
+/// A soft block that is held at its underside, with a tumour edge that is no circle on top of it.
+class SoftBlock : public Inputs {
  public:
   explicit SoftBlock(double phase) : phase_(phase) {}
   CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
@@ -33,45 +33,9 @@ class SoftBlock : public Store {
     }
     return edge;
   }
-  std::optional<Contour> read_line() override { return std::nullopt; }
-  std::optional<ToolPath> read_given_path() override { return std::nullopt; }
-  std::optional<Segmentation> load_segmentation() override { return std::nullopt; }
-  void save_segmentation(const Segmentation&, double) override {}
-  std::optional<TetMesh> load_mesh() override { return std::nullopt; }
-  void save_mesh(const MeshProduct&, double) override {}
-  std::optional<StaticResult> load_stretched(const TissueModel&) override { return std::nullopt; }
-  void save_stretched(const TissueModel&, const StaticResult&, double) override {}
-  std::optional<ToolPath> load_plan() override { return std::nullopt; }
-  void save_plan(const ToolPath&, double) override {}
-  std::optional<SimulatedCut> load_cut(CutRole) override { return std::nullopt; }
-  void save_cut(CutRole, const TissueModel&, const StaticResult&, const SimulatedCut&, double) override {}
-  std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
-  void keep_progress(CutRole, const IncisionProgress&, bool) override {}
-  std::optional<Correction> load_correction() override { return std::nullopt; }
-  void save_correction(const Correction&, double) override {}
-  bool adopt_cut(CutRole) override { return false; }
 
  private:
   double phase_;
-};
-
-/// Runs in memory.
-class RunsInMemory : public RunStore {
- public:
-  std::optional<CalibrationRun> load(std::size_t specimen, const RunSetting& setting, Monitor&) override {
-    const auto found = runs.find(key(specimen, setting));
-    return found == runs.end() ? std::nullopt : std::optional(found->second);
-  }
-  void save(std::size_t specimen, const CalibrationRun& run) override {
-    runs[key(specimen, run.setting)] = run;
-    ++saved;
-  }
-  using Key = std::tuple<std::size_t, double, double, double>;
-  static Key key(std::size_t specimen, const RunSetting& s) {
-    return {specimen, s.speed_mm_s, s.dullness, s.stiffness_of_case};
-  }
-  std::map<Key, CalibrationRun> runs;
-  int saved = 0;
 };
 
 Case block_case() {
@@ -116,13 +80,14 @@ PhotographedCut plain_photograph(const Contour& edge) {
 class CalibrateBlocks : public ::testing::Test {
  protected:
   CalibrateBlocks() {
-    for (SoftBlock* store : {&first_, &second_}) {
+    for (SoftBlock* block : {&first_, &second_}) {
       CalibrationSubject subject;
-      subject.photographed = plain_photograph(*store->read_tumor_edge());
+      subject.photographed = plain_photograph(*block->read_tumor_edge());
       subject.photograph_file = "cut.json";
       subject.case_file = "case.yaml";
       subject.settings = block_case();
-      subject.store = store;
+      subject.inputs = block;
+      subject.cache = block == &first_ ? &first_cache_ : &second_cache_;
       subjects_.push_back(std::move(subject));
     }
   }
@@ -140,10 +105,23 @@ class CalibrateBlocks : public ::testing::Test {
     return request;
   }
 
+  /// Keeps the specimen's runs of that drag length as `change` leaves them.
+  template <class Change>
+  void change_kept(const Calibration& made, std::size_t specimen, double drag_mm, const Change& change) {
+    for (CalibrationRun run : made.specimens[specimen].runs) {
+      if (std::abs(run.drag_length_mm() - drag_mm) > 1e-9) continue;
+      change(run);
+      const CacheKey key = calibration_run_key(made.specimens[specimen].held, run.setting);
+      runs_.keep(slot_of(key), key, run);
+    }
+  }
+
   SoftBlock first_{0.0};
+  Cache first_cache_, second_cache_;
   SoftBlock second_{1.3};
   std::vector<CalibrationSubject> subjects_;
-  RunsInMemory runs_;
+  testing::Entries kept_;
+  Cache runs_{std::make_unique<testing::CountedEntries>(kept_)};
   Monitor silent_;
 };
 
@@ -186,7 +164,7 @@ TEST_F(CalibrateBlocks, TableOneHasThePapersPattern) {
 TEST_F(CalibrateBlocks, AnInterruptedCalibrationGoesOnToTheSameNumbersAndMakesNoRunTwice) {
   const CalibrationRequest request = grid({13.0}, {1.0, 7.0});
   const Calibration straight = run(request);
-  ASSERT_EQ(runs_.saved, 4);
+  ASSERT_EQ(kept_.saved, 4);
 
   /// Asks to stop once a good third is done.
   class StopAtAThird : public Monitor {
@@ -199,14 +177,14 @@ TEST_F(CalibrateBlocks, AnInterruptedCalibrationGoesOnToTheSameNumbersAndMakesNo
    private:
     std::atomic<bool> is_stopped_ = false;
   } stop;
-  runs_ = RunsInMemory();
+  kept_ = {};
   Workers alone(1);
   EXPECT_THAT([&] { static_cast<void>(calibrate(subjects_, request, runs_, alone, stop)); },
               ::testing::ThrowsMessage<Cancelled>(HasSubstr("of 4 simulations to go")));
-  EXPECT_GT(runs_.saved, 0);
-  EXPECT_LT(runs_.saved, 4);
+  EXPECT_GT(kept_.saved, 0);
+  EXPECT_LT(kept_.saved, 4);
   const Calibration resumed = run(request);
-  EXPECT_EQ(runs_.saved, 4);
+  EXPECT_EQ(kept_.saved, 4);
   for (std::size_t s = 0; s < 2; ++s) {
     for (std::size_t i = 0; i < 2; ++i) {
       const CalibrationRun& one = straight.specimens[s].runs[i];
@@ -259,7 +237,7 @@ TEST_F(CalibrateBlocks, TheFitFindsTheDragLengthAndTheStiffnessIsThatOfTheForce)
     p += (0.2 + 0.1 * std::sin(5.0 * turn) + 0.07 * std::cos(7.0 * turn)) * out;
   }
   photograph.stretch_force_n = made.specimens[0].simulated_force_n;
-  runs_ = RunsInMemory();
+  kept_ = {};
 
   const Calibration fit = run({});
   EXPECT_LE(fit.simulations, 9U);
@@ -305,16 +283,18 @@ TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
   EXPECT_TRUE(both.left_out.empty());
   ASSERT_EQ(both.fit->specimens.size(), 2U);
 
-  const auto open_beyond = [this](std::size_t specimen, double drag_mm) {
-    for (auto& [key, run] : runs_.runs) {
-      if (std::get<0>(key) != specimen || run.drag_length_mm() < drag_mm) continue;
-      run.inner_edge.reset();
-      run.closed_loop = false;
-      run.outcome = Outcome::OpenLoop;
+  const auto open_beyond = [&](std::size_t specimen, double drag_mm) {
+    for (const CalibrationRun& run : both.specimens[specimen].runs) {
+      if (run.drag_length_mm() < drag_mm) continue;
+      change_kept(both, specimen, run.drag_length_mm(), [](CalibrationRun& kept) {
+        kept.inner_edge.reset();
+        kept.closed_loop = false;
+        kept.outcome = Outcome::OpenLoop;
+      });
     }
   };
   open_beyond(0, 0.6);
-  runs_.saved = 0;
+  kept_.saved = 0;
   const Calibration one = run(request);
   ASSERT_EQ(one.left_out.size(), 1U);
   EXPECT_EQ(one.left_out[0].name, "opens");
@@ -323,9 +303,9 @@ TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
   EXPECT_EQ(one.specimens[0].name, "closes");
   ASSERT_EQ(one.fit->specimens.size(), 1U);
   EXPECT_EQ(one.fit->specimens[0].name, "closes");
-  EXPECT_LE(runs_.saved, 2);  // those near its own answer: what was kept of it is still known by its place in the list
+  EXPECT_LE(kept_.saved, 2);  // those near its own answer
   for (const CalibrationRun& kept : one.specimens[0].runs)
-    EXPECT_TRUE(runs_.runs.contains(RunsInMemory::key(1, kept.setting)));
+    EXPECT_TRUE(kept_.bytes.contains(slot_of(calibration_run_key(one.specimens[0].held, kept.setting))));
 
   open_beyond(1, 0.6);
   EXPECT_THAT([&] { static_cast<void>(run(request)); },
@@ -342,18 +322,17 @@ TEST_F(CalibrateBlocks, ASpecimenThatOpensBetweenTheTwoFitsIsLeftOutThen) {
     subjects_[s].photographed.tumor_edge = made.specimens[s].runs[0].final_tumor_edge;
     subjects_[s].photographed.incision = *made.specimens[s].runs[0].inner_edge;
   }
-  runs_ = RunsInMemory();
+  kept_ = {};
   const Calibration whole = run(request);
   ASSERT_EQ(whole.fit->specimens.size(), 2U);
   const double near_mm = whole.specimens[0].runs[2].drag_length_mm();  // made after the first fit
   ASSERT_GT(near_mm, 0.65);
   ASSERT_LT(near_mm, 1.85);
-  for (auto& [key, kept] : runs_.runs) {
-    if (std::get<0>(key) != 0 || std::abs(kept.drag_length_mm() - near_mm) > 1e-9) continue;
+  change_kept(whole, 0, near_mm, [](CalibrationRun& kept) {
     kept.inner_edge.reset();
     kept.closed_loop = false;
     kept.outcome = Outcome::OpenLoop;
-  }
+  });
   const Calibration one = run(request);
   ASSERT_EQ(one.left_out.size(), 1U);
   EXPECT_EQ(one.left_out[0].name, "s0");
@@ -399,13 +378,12 @@ TEST_F(CalibrateBlocks, ARingThatClosedBeneathTheSkinIsReadByItsMidline) {
   subjects_[0].photographed.tumor_edge = made.specimens[0].runs[0].final_tumor_edge;
   subjects_[0].photographed.incision = *made.specimens[0].runs[0].inner_edge;
   const Calibration whole = run(request);
-  for (auto& [key, kept] : runs_.runs) {
-    if (std::abs(kept.drag_length_mm() - 1.25) > 1e-9) continue;
+  change_kept(whole, 0, 1.25, [](CalibrationRun& kept) {
     ASSERT_TRUE(kept.closed_loop && kept.ring);
     kept.inner_edge.reset();
     kept.inner_signed_error_mm.reset();
     kept.inner_abs_error_mm.reset();
-  }
+  });
   const Calibration read = run(request);
   EXPECT_TRUE(read.left_out.empty());
   EXPECT_DOUBLE_EQ(read.fit->drag_length_mm.grid.back(), whole.fit->drag_length_mm.grid.back());
@@ -433,7 +411,7 @@ class LopsidedBlock : public SoftBlock {
 TEST_F(CalibrateBlocks, RefusesAPhotographOfAnotherTumourLyingTheOtherWayBeforeAnyCut) {
   LopsidedBlock block;
   subjects_.pop_back();
-  subjects_[0].store = &block;
+  subjects_[0].inputs = &block;
   subjects_[0].photographed = plain_photograph(*block.read_tumor_edge());
   // Turned half round, the picture's errors would be taken for those of the other side.
   for (Contour* contour : {&subjects_[0].photographed.tumor_edge, &subjects_[0].photographed.incision}) {
@@ -441,7 +419,7 @@ TEST_F(CalibrateBlocks, RefusesAPhotographOfAnotherTumourLyingTheOtherWayBeforeA
   }
   EXPECT_THAT([&] { static_cast<void>(run({})); },
               ::testing::ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("cut.json"), HasSubstr("turned by"))));
-  EXPECT_EQ(runs_.saved, 0);
+  EXPECT_EQ(kept_.saved, 0);
 }
 
 TEST_F(CalibrateBlocks, RefusesALineAndAForceWithoutAPull) {
@@ -454,7 +432,7 @@ TEST_F(CalibrateBlocks, RefusesALineAndAForceWithoutAPull) {
   subjects_[0].photographed.stretch_force_n = 3.0;
   EXPECT_THAT([&] { static_cast<void>(run({})); },
               ::testing::ThrowsMessage<CaseError>(HasSubstr("specimen.constraints")));
-  EXPECT_EQ(runs_.saved, 0);
+  EXPECT_EQ(kept_.saved, 0);
 }
 
 TEST(CalibrationRequest, ListsEveryViolation) {

@@ -1,29 +1,16 @@
+#include "support/counted_entries.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/workflow/power_series.hpp>
 
 #include <gmock/gmock.h>
 
 #include <atomic>
-#include <map>
-#include <tuple>
 
 namespace incise {
 namespace {
 
 using ::testing::ElementsAre;
-
-/// Kept cuts in memory.
-class CutsInMemory : public PowerCutStore {
- public:
-  std::optional<PowerCut> load(const PowerSubject& subject, double power_w, double speed_mm_s, Monitor&) override {
-    const auto found = cuts.find({subject.name, power_w, speed_mm_s});
-    return found == cuts.end() ? std::nullopt : std::optional(found->second);
-  }
-  void save(const PowerSubject& subject, const PowerCut& cut) override {
-    cuts[{subject.name, cut.power_w, cut.speed_mm_s}] = cut;
-  }
-  std::map<std::tuple<std::string, double, double>, PowerCut> cuts;
-};
 
 /// Asks to stop once progress has been told this often.
 class Impatient : public Monitor {
@@ -52,7 +39,7 @@ PowerSubject drawn(std::uint64_t seed) {
 TEST(RunPowerSeries, MorePowerBulgesLessAndBurnsFartherAndFinishedCutsAreNotMadeAgain) {
   Monitor silent;
   Workers two(2);
-  CutsInMemory store;
+  Cache store;
   PowerRequest request = coarse();
   const PowerSeries series = run_power_series({drawn(2)}, request, store, two, silent);
   ASSERT_EQ(series.cuts.size(), 2U);
@@ -76,7 +63,7 @@ TEST(RunPowerSeries, MorePowerBulgesLessAndBurnsFartherAndFinishedCutsAreNotMade
   EXPECT_LT(again.speed_cuts[1].bulge_mm.value(), again.speed_cuts[0].bulge_mm.value());
 
   // One thread gives the bits of two.
-  CutsInMemory empty;
+  Cache empty;
   request.speeds_mm_s.clear();
   request.powers_w = {35.0};
   EXPECT_EQ(run_power_series({drawn(2)}, request, empty, one, silent).cuts[0].bulge_mm, series.cuts[0].bulge_mm);
@@ -85,15 +72,31 @@ TEST(RunPowerSeries, MorePowerBulgesLessAndBurnsFartherAndFinishedCutsAreNotMade
 TEST(RunPowerSeries, StoppedOnRequestItHasKeptWhatWasFinished) {
   Impatient impatient(150);  // a cut of these has more than 80 steps, two of them more than 160
   Workers one(1);
-  CutsInMemory store;
+  testing::Entries kept;
+  Cache store(std::make_unique<testing::CountedEntries>(kept));
   EXPECT_THROW((void)run_power_series({drawn(2)}, coarse(), store, one, impatient), Cancelled);
-  EXPECT_EQ(store.cuts.size(), 1U);
+  EXPECT_EQ(kept.bytes.size(), 1U);
+}
+
+TEST(PowerCutKey, IsThatOfTheSpecimenPowerSpeedAndMeshNotOfItsName) {
+  const auto key = [](const Specimen& specimen, double power_w, double speed_mm_s, const BenchResolution& resolution) {
+    return power_cut_key(specimen, resolution, power_w, speed_mm_s).digest();
+  };
+  const Specimen specimen = draw_specimen(2);
+  Specimen softer = specimen;
+  softer.youngs_modulus_kpa += 0.1;
+  const std::string own = key(specimen, 35.0, 7.0, {});
+  EXPECT_EQ(own, key(draw_specimen(2), 35.0, 7.0, {}));
+  EXPECT_NE(own, key(softer, 35.0, 7.0, {}));
+  EXPECT_NE(own, key(specimen, 30.0, 7.0, {}));
+  EXPECT_NE(own, key(specimen, 35.0, 5.0, {}));
+  EXPECT_NE(own, key(specimen, 35.0, 7.0, {.fine_mm = 2.0}));
 }
 
 TEST(RunPowerSeries, ARingThatStaysOpenIsARowAndNoPowerFits) {
   Monitor silent;
   Workers one(1);
-  CutsInMemory store;
+  Cache store;
   PowerSubject tough = drawn(2);
   tough.specimen.toughness_j_m2 = 3000.0;
   PowerRequest request = coarse();
@@ -109,11 +112,12 @@ TEST(RunPowerSeries, ARingThatStaysOpenIsARowAndNoPowerFits) {
 TEST(RunPowerSeries, ASpecimenThatIsNoneIsRefused) {
   Monitor silent;
   Workers one(1);
-  CutsInMemory store;
+  testing::Entries kept;
+  Cache store(std::make_unique<testing::CountedEntries>(kept));
   PowerSubject subject = drawn(2);
   subject.specimen.tumor_position = 0.9;
   EXPECT_THROW((void)run_power_series({subject}, coarse(), store, one, silent), CaseError);
-  EXPECT_TRUE(store.cuts.empty());
+  EXPECT_TRUE(kept.bytes.empty());
 }
 
 TEST(ValidatePowerRequest, NamesEveryField) {
@@ -135,7 +139,7 @@ TEST(ValidatePowerRequest, NamesEveryField) {
 TEST(RunPowerSeries, RefusesWhatIsNotValidAndSpecimensOfOneName) {
   Monitor silent;
   Workers one(1);
-  CutsInMemory store;
+  Cache store;
   EXPECT_THROW((void)run_power_series({}, coarse(), store, one, silent), InvalidArgument);
   EXPECT_THROW((void)run_power_series({drawn(1), drawn(1)}, coarse(), store, one, silent), InvalidArgument);
   PowerRequest none = coarse();

@@ -1,22 +1,25 @@
+#include "support/counted_entries.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
 #include <incise/core/units.hpp>
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/study.hpp>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/resource.h>
 
 #include <cmath>
 #include <fstream>
-#include <map>
+#include <functional>
+#include <memory>
 #include <string>
 
 namespace incise {
 namespace {
 
-/// A store in memory: a block of tissue, a round tumour edge on it, and whatever a study saves.
-class MemoryStore : public Store {
+/// A block of tissue, a round tumour edge on it, and what a run keeps of it.
+class Block : public Inputs {
  public:
   CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
   std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return make_block({44, 50, 10}, {30, 34, 7}); }
@@ -28,39 +31,9 @@ class MemoryStore : public Store {
     }
     return edge;
   }
-  std::optional<Contour> read_line() override { return std::nullopt; }
-  std::optional<ToolPath> read_given_path() override { return std::nullopt; }
 
-  std::optional<Segmentation> load_segmentation() override { return std::nullopt; }
-  void save_segmentation(const Segmentation&, double) override { ++saved["segmentation"]; }
-  std::optional<TetMesh> load_mesh() override { return std::nullopt; }
-  void save_mesh(const MeshProduct&, double) override { ++saved["mesh"]; }
-  std::optional<StaticResult> load_stretched(const TissueModel&) override { return stretched; }
-  void save_stretched(const TissueModel&, const StaticResult& result, double) override { stretched = result; }
-  std::optional<ToolPath> load_plan() override { return plan; }
-  void save_plan(const ToolPath& path, double) override { plan = path; }
-  std::optional<SimulatedCut> load_cut(CutRole role) override {
-    const auto found = cuts.find(role);
-    return found == cuts.end() ? std::nullopt : std::optional(found->second);
-  }
-  void save_cut(CutRole role, const TissueModel&, const StaticResult&, const SimulatedCut& cut, double) override {
-    cuts[role] = cut;
-  }
-  std::optional<IncisionProgress> load_progress(CutRole, const TissueModel&, Monitor&) override { return std::nullopt; }
-  void keep_progress(CutRole, const IncisionProgress&, bool) override {}
-  std::optional<Correction> load_correction() override { return correction; }
-  void save_correction(const Correction& made, double) override { correction = made; }
-  bool adopt_cut(CutRole from) override {
-    if (!cuts.contains(from)) return false;
-    cuts[CutRole::Corrected] = cuts[from];
-    return true;
-  }
-
-  std::map<std::string, int> saved;
-  std::optional<StaticResult> stretched;
-  std::optional<ToolPath> plan;
-  std::map<CutRole, SimulatedCut> cuts;
-  std::optional<Correction> correction;
+  testing::Entries kept;
+  Cache cache{std::make_unique<testing::CountedEntries>(kept)};
 };
 
 /// The paper's loop on a coarse block: a thick needle, so that a quarter of a minute is enough.
@@ -90,14 +63,14 @@ class Warnings : public Monitor {
 };
 
 TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
-  MemoryStore store;
+  Block block;
   Workers workers(2);
   Warnings warnings;
   Case settings = coarse_case();
   settings.plan.power_w = 90.0;
   settings.cut.power_exponent = 0.0;  // power does nothing but heat
   settings.compensation.method = CompensationMethod::Paper;
-  const Study study = run_study(settings, store, Stage::Verify, workers, warnings);
+  const Study study = run_study(settings, block, block.cache, {}, workers, warnings);
   EXPECT_NE(warnings.all.find("the mesh is coarse for a tool of 1.6 mm"), std::string::npos) << warnings.all;
   for (const char* cut : {"the cut as planned: caution: heat: heat reaches", "the corrected cut: caution: heat: heat reaches"}) {
     EXPECT_NE(warnings.all.find(cut), std::string::npos) << warnings.all;
@@ -112,27 +85,32 @@ TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
 }
 
 TEST(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
-  MemoryStore store;
+  Block block;
   Workers workers(2);
   Monitor silent;
-  const Study study = run_study(coarse_case(), store, Stage::Verify, workers, silent);
+  const Study study = run_study(coarse_case(), block, block.cache, {}, workers, silent);
   ASSERT_TRUE(study.corrected && study.correction && study.correction->iteration);
   const ConvergedCompensation& done = *study.correction->iteration;
   EXPECT_LE(done.passes.size(), 4U);
-  EXPECT_FALSE(store.cuts.contains(CutRole::Corrected) && done.passes.size() + 1 < store.cuts.size())
-      << "one more cut than passes";
-  const auto& best = store.cuts.at(role_of_pass(static_cast<int>(done.best)));
-  EXPECT_EQ(study.corrected->centerline.abs_error_mm->mean, best.centerline.abs_error_mm->mean);
+  // The cuts on the way are let go; the one that the correction ended with is kept.
+  EXPECT_TRUE(block.kept.bytes.contains("as_planned") && block.kept.bytes.contains("corrected"));
+  EXPECT_FALSE(block.kept.bytes.contains("pass_1") || block.kept.bytes.contains("pass_2"));
   EXPECT_NEAR(*done.result().mean_abs_error_mm, study.corrected->centerline.abs_error_mm->mean, 1e-12);
   EXPECT_LT(study.corrected->centerline.abs_error_mm->mean, 0.5 * study.as_planned->centerline.abs_error_mm->mean);
   ASSERT_TRUE(study.correction->floor_mm);
   EXPECT_LT(*study.correction->floor_mm, study.corrected->centerline.abs_error_mm->mean + 0.05);
 
   // A second run makes none of it again.
-  const std::size_t cuts = store.cuts.size();
-  const Study again = run_study(coarse_case(), store, Stage::Verify, workers, silent);
+  const int saved = block.kept.saved;
+  const Study again = run_study(coarse_case(), block, block.cache, {}, workers, silent);
   EXPECT_EQ(again.stages.back().state, StageState::Reused);
-  EXPECT_EQ(store.cuts.size(), cuts);
+  EXPECT_EQ(block.kept.saved, saved);
+  EXPECT_EQ(bytes_of(again.corrected->incision), bytes_of(study.corrected->incision))
+      << "what is loaded equals what was computed";
+  EXPECT_EQ(bytes_of(*again.correction), bytes_of(*study.correction));
+  EXPECT_EQ(bytes_of(*again.stretched), bytes_of(*study.stretched));
+  EXPECT_EQ(bytes_of(*again.plan), bytes_of(*study.plan));
+  EXPECT_EQ(bytes_of(again.verdict), bytes_of(study.verdict));
   EXPECT_EQ(again.is_accepted, study.is_accepted);
 }
 
@@ -201,12 +179,12 @@ TEST(IsAccepted, ByThePapersRule) {
   EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.0), open));
 }
 
-TEST(RunStudy, ASecondRunTakesEveryProductFromTheStore) {
-  MemoryStore store;
+TEST(RunStudy, ASecondRunTakesEveryProductFromTheCache) {
+  Block block;
   Workers workers(2);
   Monitor silent;
-  static_cast<void>(run_study(coarse_case(), store, Stage::Plan, workers, silent));
-  const Study again = run_study(coarse_case(), store, Stage::Plan, workers, silent);
+  static_cast<void>(run_study(coarse_case(), block, block.cache, {.until = Stage::Plan}, workers, silent));
+  const Study again = run_study(coarse_case(), block, block.cache, {.until = Stage::Plan}, workers, silent);
   ASSERT_EQ(again.stages.size(), 4U);
   EXPECT_EQ(again.stages[0].state, StageState::Skipped);
   EXPECT_EQ(again.stages[1].state, StageState::Skipped);
@@ -214,11 +192,53 @@ TEST(RunStudy, ASecondRunTakesEveryProductFromTheStore) {
   EXPECT_EQ(again.stages[3].state, StageState::Reused);
 }
 
-TEST(RunStudy, StopsAfterTheStageThatWasAskedFor) {
-  MemoryStore store;
+/// Which stages of a run of the changed case are computed again.
+std::string computed_again(Block& block, Stage until, const std::function<void(Case&)>& change) {
+  Case settings = coarse_case();
+  change(settings);
   Workers workers(2);
   Monitor silent;
-  const Study study = run_study(coarse_case(), store, Stage::Stretch, workers, silent);
+  std::string again;
+  for (const StageReport& stage : run_study(settings, block, block.cache, {.until = until}, workers, silent).stages) {
+    if (stage.state == StageState::Computed) again += std::string(to_string(stage.stage)) + " ";
+  }
+  return again;
+}
+
+TEST(RunStudy, AStageIsComputedAgainForWhatItReadsAndForNothingElse) {
+  Block block;
+  EXPECT_EQ(computed_again(block, Stage::Simulate, [](Case&) {}), "stretch plan simulate ");
+  EXPECT_EQ(computed_again(block, Stage::Simulate,
+                           [](Case& c) {
+                             c.title = "Another name";
+                             c.thermal.absorbed_fraction = 0.5;  // a cut is judged anew, not made anew
+                             c.close_margin_mm = 1.5;
+                             c.compensation.method = CompensationMethod::Paper;
+                             c.meshing.fine_mm = 0.5;  // the mesh is given
+                           }),
+            "");
+  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.plan.power_w = 30.0; }), "");
+  EXPECT_EQ(computed_again(block, Stage::Simulate, [](Case& c) { c.plan.power_w = 30.0; }), "simulate ");
+  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.plan.depth_mm = 4.0; }), "plan ");
+  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.cut.dullness = 4.0; }), "plan ")
+      << "the plan of 4 mm took its place";
+  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.material.youngs_modulus_kpa = 60.0; }), "stretch plan ");
+}
+
+TEST(RunStudy, ThatHasToGoOnRefusesWhereNothingWasInterrupted) {
+  Block block;
+  Workers workers(2);
+  Monitor silent;
+  EXPECT_THROW(static_cast<void>(run_study(coarse_case(), block, block.cache, {.must_resume = true}, workers, silent)),
+               CaseError);
+  EXPECT_TRUE(block.kept.bytes.empty()) << "nothing was computed";
+}
+
+TEST(RunStudy, StopsAfterTheStageThatWasAskedFor) {
+  Block block;
+  Workers workers(2);
+  Monitor silent;
+  const Study study = run_study(coarse_case(), block, block.cache, {.until = Stage::Stretch}, workers, silent);
   EXPECT_TRUE(study.stretched.has_value());
   EXPECT_FALSE(study.plan.has_value());
   EXPECT_NEAR(study.stretched->max_displacement_mm, 5.0, 0.5);
@@ -239,7 +259,7 @@ TEST(RunStudy, AMeshThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItIsStretched) 
   ASSERT_TRUE(available_memory_bytes().has_value());
   Case settings = coarse_case();
   settings.frames = 500;  // 125 MB of them, beside some 45 MB
-  MemoryStore store;
+  Block block;
   Workers workers(1);
   Monitor silent;
   rlimit tight = old;
@@ -247,14 +267,14 @@ TEST(RunStudy, AMeshThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItIsStretched) 
   ASSERT_EQ(setrlimit(RLIMIT_DATA, &tight), 0);
   std::string said;
   try {
-    static_cast<void>(run_study(settings, store, Stage::Stretch, workers, silent));
+    static_cast<void>(run_study(settings, block, block.cache, {.until = Stage::Stretch}, workers, silent));
   } catch (const DataError& error) {
     said = error.what();
   }
   ASSERT_EQ(setrlimit(RLIMIT_DATA, &old), 0);
   EXPECT_NE(said.find("this machine: memory: found "), std::string::npos) << said;
   EXPECT_NE(said.find("MB for 42840 tets"), std::string::npos) << said;
-  EXPECT_FALSE(store.stretched.has_value());
+  EXPECT_TRUE(block.kept.bytes.empty());
 }
 
 TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {
@@ -268,7 +288,8 @@ TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {
 TEST(DefaultConstraints, AreRefusedForABodyThatTheirLengthsWereNotMadeFor) {
   const TetMesh small = make_block({6, 9, 5}, {3, 4, 2});
   EXPECT_THAT([&] { static_cast<void>(default_constraints(small)); },
-              testing::ThrowsMessage<CaseError>(testing::AllOf(testing::HasSubstr("specimen.constraints"), testing::HasSubstr("9 mm long"))));
+              ::testing::ThrowsMessage<CaseError>(
+                  ::testing::AllOf(::testing::HasSubstr("specimen.constraints"), ::testing::HasSubstr("9 mm long"))));
 }
 
 }  // namespace

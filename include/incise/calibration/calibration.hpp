@@ -4,8 +4,9 @@
 #include <incise/calibration/drag_fit.hpp>
 #include <incise/calibration/identifiability.hpp>
 #include <incise/calibration/picture_match.hpp>
-#include <incise/core/verdict.hpp>
 #include <incise/calibration/score_table.hpp>
+#include <incise/core/names.hpp>
+#include <incise/core/verdict.hpp>
 
 #include <optional>
 #include <string>
@@ -18,7 +19,10 @@ enum class CalibrationMethod {
   Paper,  ///< a grid of speeds and dullness values, scored (paper II-C.4, III-A.2)
   Fit,    ///< the signed error round the ring, few simulations, a posterior
 };
-[[nodiscard]] std::string_view to_string(CalibrationMethod method);  ///< paper, fit
+inline constexpr std::array<std::string_view, 2> kCalibrationMethodNames{"paper", "fit"};
+[[nodiscard]] constexpr Names names_of(CalibrationMethod) {
+  return kCalibrationMethodNames;
+}
 
 /// A cut that was carried out and photographed, as an evaluation has it.
 struct PhotographedCut {
@@ -46,6 +50,7 @@ struct CalibratedSpecimen {
   std::optional<double> stretch_force_n;            ///< measured
   std::optional<RegistrationQuality> registration;  ///< where it was given
   PictureMatch picture;
+  std::string held;  ///< digest of the held specimen, see calibration_run_key
   std::vector<CalibrationRun> runs;
   std::size_t read_by_midline = 0;  ///< of a fit: runs whose ring closed, but not at the skin
 };

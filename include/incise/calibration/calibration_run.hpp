@@ -18,6 +18,11 @@ struct RunSetting {
   double stiffness_of_case = 1.0;  ///< Young's modulus over that of the case, > 0
   bool operator==(const RunSetting&) const = default;
 };
+inline void describe(Visitor& v, RunSetting& s) {
+  v("speed_mm_s", s.speed_mm_s, "Of the simulated tool.", kPositive);
+  v("dullness", s.dullness, "Contact needed before a tet is removed, in reference steps.", kPositive);
+  v("stiffness_of_case", s.stiffness_of_case, "Young's modulus over that of the case.", kPositive);
+}
 
 /// What is kept of one simulated cut.
 struct CalibrationRun {
@@ -42,5 +47,22 @@ struct CalibrationRun {
   /// In the paper's sense: a closed ring with a negative margin, no point off by more than margin − radius.
   [[nodiscard]] bool is_failure() const { return outcome != Outcome::Success || !paper_success; }
 };
+inline void describe(Visitor& v, CalibrationRun& r) {
+  v("setting", r.setting, "What it was made with, beside its case.");
+  v("reference_step_s", r.reference_step_s, "The time that one unit of dullness stands for.", kPositive);
+  v("outcome", r.outcome, "How the cut ended.");
+  v("problem", r.problem, "Why it could not be carried out; empty: it was.");
+  v("closed_loop", r.closed_loop, "Whether the ring closed.");
+  v("paper_success", r.paper_success, "Success in the paper's sense.");
+  v("signed_error_mm", r.signed_error_mm, "Of the mid-line against the lateral margin.");
+  v("paper_abs_error_mm", r.paper_abs_error_mm, "As the paper scores.");
+  v("inner_signed_error_mm", r.inner_signed_error_mm, "Of the inner edge against margin less radius, tool out.");
+  v("inner_abs_error_mm", r.inner_abs_error_mm, "Its absolute value.");
+  v("inner_edge", r.inner_edge, "Tool out, tissue still stretched.");
+  v("final_tumor_edge", r.final_tumor_edge, "The tumour's edge, tool out, tissue still stretched.");
+  v("ring", r.ring, "The shallowest ring that closed.");
+  v("tets", r.tets, "Of the mesh before the cut.");
+  v("wall_s", r.wall_s, "Time that the simulation took.");
+}
 
 }  // namespace incise

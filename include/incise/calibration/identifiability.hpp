@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/calibration/drag_fit.hpp>
+#include <incise/core/names.hpp>
 
 #include <array>
 #include <string>
@@ -15,7 +16,10 @@ enum class Told {
   Partly,  ///< at most nine tenths
   Not,     ///< more: what one has is the prior
 };
-[[nodiscard]] std::string_view to_string(Told told);  ///< apart, partly, not
+inline constexpr std::array<std::string_view, 3> kToldNames{"apart", "partly", "not"};
+[[nodiscard]] constexpr Names names_of(Told) {
+  return kToldNames;
+}
 
 struct ParameterVerdict {
   std::string name;  ///< drag_length, stiffness, bias

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/outcome.hpp>
 
 #include <optional>
@@ -20,6 +21,16 @@ struct PowerCut {
   std::optional<double> thermal_width_mm;   ///< how far beside the tool's axis heat damaged tissue, >= 0
   std::optional<double> mean_abs_error_mm;  ///< of the inner edge; absent: the ring is open
 };
+inline void describe(Visitor& v, PowerCut& c) {
+  v("specimen", c.specimen, "Its name.");
+  v("power_w", c.power_w, "Of the generator.", kPositive);
+  v("speed_mm_s", c.speed_mm_s, "Of the tool.", kPositive);
+  v("outcome", c.outcome, "success: the ring is closed.");
+  v("problem", c.problem, "Why there is no cut at all; empty: there is one.");
+  v("bulge_mm", c.bulge_mm, "How high skin ahead of the tool stands above the uncut surface.", kNotNegative);
+  v("thermal_width_mm", c.thermal_width_mm, "How far beside the tool's axis heat damaged tissue.", kNotNegative);
+  v("mean_abs_error_mm", c.mean_abs_error_mm, "Of the inner edge; absent: the ring is open.", kNotNegative);
+}
 
 /// What is taken for too much. The paper judged both by eye.
 struct PowerLimits {

@@ -13,6 +13,9 @@
 
 namespace incise {
 
+/// The line that an entry begins with.
+inline constexpr std::string_view kCacheMagic = "incise.cache/1\n";
+
 /// Where a cache keeps its entries: bytes under a name.
 class EntryStore {
  public:
@@ -22,10 +25,13 @@ class EntryStore {
   /// All or nothing. @throws DataError where they cannot be kept.
   virtual void save(const std::string& name, const std::string& bytes) = 0;
   virtual void remove(const std::string& name) = 0;
+  [[nodiscard]] virtual bool holds(const std::string& name) = 0;
+  /// What messages call the entry.
+  [[nodiscard]] virtual std::filesystem::path place_of(const std::string& name) const { return name; }
 };
 
-/// What determines a result: hash of the stage, of the version of its code, and of all that was added: settings as they are described, and the
-/// contents of inputs. Names and places of files are no part of it.
+/// What determines a result: hash of the stage, of the version of its code, and of all that was added: settings as they
+/// are described, and the contents of inputs. Names and places of files are no part of it.
 class CacheKey {
  public:
   /// @param stage  names the result.  @param code  counts up when the same inputs give another result.
@@ -45,21 +51,24 @@ class CacheKey {
   mutable std::string digest_;
 };
 
-/// Results by what determines them: one that is kept is not made again. What is loaded equals what was computed, in every field that its type
-/// describes. Kept in memory, or wherever an EntryStore keeps it.
+/// A slot of its own for each key, for results of which many are kept side by side.
+[[nodiscard]] std::string slot_of(const CacheKey& key);
+
+/// Results by what determines them: one that is kept is not made again. What is loaded equals what was computed, in
+/// every field that its type describes. Kept in memory, or wherever an EntryStore keeps it.
 class Cache {
  public:
   Cache();
   explicit Cache(std::unique_ptr<EntryStore> store) : store_(std::move(store)) {}
 
-  /// The result of that key. A damaged entry is reported as a warning and treated as absent. @param slot  the entry's name; an entry of another
-  /// key under the same name gives way.
+  /// The result of that key. A damaged entry is reported as a warning and treated as absent. @param slot  the entry's
+  /// name; an entry of another key under the same name gives way.
   template <class T>
   [[nodiscard]] std::optional<T> find(const std::string& slot, const CacheKey& key, Monitor& monitor) {
     const std::optional<std::string> bytes = payload(slot, key, monitor);
     if (!bytes) return std::nullopt;
     try {
-      return from_bytes<T>(*bytes, slot);
+      return from_bytes<T>(*bytes, store_->place_of(slot));
     } catch (const std::exception& damaged) {
       report_damage(damaged, monitor);
       return std::nullopt;
@@ -77,9 +86,11 @@ class Cache {
     keep(slot, key, made);
     return made;
   }
-  /// Whether an entry of that key is there; its content is not read.
-  [[nodiscard]] bool has(const std::string& slot, const CacheKey& key, Monitor& monitor);
+  /// Whether the slot holds anything, of whatever key.
+  [[nodiscard]] bool holds(const std::string& slot) { return store_->holds(slot); }
   void remove(const std::string& slot) { store_->remove(slot); }
+  /// What messages call the slot.
+  [[nodiscard]] std::filesystem::path place_of(const std::string& slot) const { return store_->place_of(slot); }
 
  private:
   std::optional<std::string> payload(const std::string& slot, const CacheKey& key, Monitor& monitor);

@@ -1,21 +1,23 @@
 #pragma once
 
 #include <incise/core/ids.hpp>
+#include <incise/core/names.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace incise {
@@ -30,7 +32,6 @@ struct Range {
 inline constexpr Range kAny{};
 inline constexpr Range kPositive{0.0, std::numeric_limits<double>::infinity(), true, false};
 inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity(), false, false};
-inline constexpr Range kFraction{0.0, 1.0};
 
 /// Whether a finite number lies in the range.
 [[nodiscard]] bool contains(const Range& range, double value);
@@ -55,27 +56,6 @@ struct Block {
 
 class Visitor;
 
-/// The names of an enum's values, in their order, starting at 0; each enum that is described has such a function beside it.
-template <class E>
-concept Named = std::is_enum_v<E> && requires(E value) {
-  { names_of(value) } -> std::convertible_to<std::span<const std::string_view>>;
-};
-
-/// The name of a value. @pre the value is one of the enum's.
-template <Named E>
-[[nodiscard]] constexpr std::string_view name_of(E value) {
-  return std::span<const std::string_view>(names_of(value))[static_cast<std::size_t>(value)];
-}
-
-/// The value of that name; nothing for any other.
-template <Named E>
-[[nodiscard]] constexpr std::optional<E> value_of(std::string_view name) {
-  const std::span<const std::string_view> names = names_of(E{});
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<E>(i);
-  return std::nullopt;
-}
-
 /// One walk over every field of a value. A type is described once, beside its declaration:
 ///
 ///     inline void describe(Visitor& v, Bond& b) {
@@ -84,7 +64,7 @@ template <Named E>
 ///     }
 ///
 /// Files, keys, comparison, schema and reports are visitors of that description, so that none of them can miss a field.
-/// A visitor that only shows leaves every value as it is: it may be given a constant (see shown_by).
+/// A visitor that only shows leaves every value as it is: it may be given a constant.
 class Visitor {
  public:
   virtual ~Visitor() = default;
@@ -93,7 +73,8 @@ class Visitor {
   [[nodiscard]] virtual bool sets() const = 0;
   virtual void begin(const Field& field) = 0;  ///< of a described value inside another one
   virtual void end() = 0;
-  /// Items follow, then end_list. @param size  that is shown. @param item_bytes  least size of an item in memory. @returns how many there are
+  /// Items follow, then end_list. @param size  that is shown. @param item_bytes  least size of an item in memory.
+  /// @returns how many there are
   virtual std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) = 0;
   virtual void end_list() = 0;
   /// Before a value that may be absent. @returns whether it is there
@@ -103,7 +84,7 @@ class Visitor {
   virtual void flag(const Field& field, bool& value) = 0;
   virtual void text(const Field& field, std::string& value) = 0;
   /// One of `names`; `value` is its place among them.
-  virtual void choice(const Field& field, std::size_t& value, std::span<const std::string_view> names) = 0;
+  virtual void choice(const Field& field, std::size_t& value, Names names) = 0;
   virtual void block(const Field& field, const Block& block) = 0;
   /// Refuses what was read. @throws DataError, or CaseError where a case is read, naming the place.
   [[noreturn]] virtual void refuse(const Field& field, const std::string& found, const std::string& expected) const = 0;
@@ -120,6 +101,11 @@ class Visitor {
  private:
   template <class T>
   void visit(const Field& field, T& value, const Range& range);
+  template <class... T>
+  static void emplace_kind(std::variant<T...>& value, std::size_t kind) {
+    std::size_t i = 0;
+    ((i++ == kind ? static_cast<void>(value = T{}) : static_cast<void>(0)), ...);
+  }
   template <class T>
   void visit_list(const Field& field, std::vector<T>& values, const Range& range);
 };
@@ -146,6 +132,15 @@ template <class T>
 inline constexpr bool kIsMatrix = false;
 template <int R, int C>
 inline constexpr bool kIsMatrix<Eigen::Matrix<double, R, C>> = (R > 0 && C > 0);
+
+template <class T>
+inline constexpr bool kIsVariant = false;
+template <class... T>
+inline constexpr bool kIsVariant<std::variant<T...>> = true;
+template <class T>
+inline constexpr bool kIsShared = false;
+template <class T>
+inline constexpr bool kIsShared<std::shared_ptr<const T>> = true;
 
 /// What a list of these is in memory: nothing, or numbers side by side.
 template <class T>
@@ -196,8 +191,22 @@ void Visitor::visit(const Field& field, T& value, const Range& range) {
     }
     if (sets() && !value) value.emplace();
     visit(field, *value, range);
+  } else if constexpr (kIsVariant<T>) {
+    begin(field);
+    std::size_t kind = value.index();
+    choice(Field{"kind", "Which it is."}, kind, names_of(value));
+    if (sets()) emplace_kind(value, kind);
+    std::visit([this](auto& own) { describe(*this, own); }, value);
+    end();
+  } else if constexpr (kIsShared<T>) {
+    const bool is_there = optional(field, value != nullptr);
+    std::remove_const_t<typename T::element_type> own;
+    if (is_there && !sets()) own = *value;
+    if (is_there) visit(field, own, range);
+    if (sets()) value = is_there ? std::make_shared<const typename T::element_type>(std::move(own)) : nullptr;
   } else if constexpr (kIsMatrix<T>) {
-    block(field, {Block::Kind::Double, value.data(), static_cast<std::size_t>(value.size()), static_cast<std::size_t>(value.rows())});
+    block(field, {Block::Kind::Double, value.data(), static_cast<std::size_t>(value.size()),
+                  static_cast<std::size_t>(value.rows())});
   } else if constexpr (std::is_same_v<T, Eigen::AlignedBox3d>) {
     begin(field);
     visit(Field{"low", "Low corner."}, value.min(), kAny);
@@ -247,12 +256,6 @@ void describe(Visitor& v, std::map<std::string, V>& values) {
   v("names", names, "Of what follows.");
   if (v.sets()) values.clear();
   for (const std::string& name : names) v(name, values[name]);
-}
-
-/// Walks over a value that is only shown. @pre !visitor.sets()
-template <class T>
-void shown_by(Visitor& visitor, const T& value) {
-  describe(visitor, const_cast<T&>(value));  // a visitor that shows changes nothing
 }
 
 }  // namespace incise

@@ -8,8 +8,9 @@
 
 namespace incise {
 
-/// Every field of a described value as bytes, little-endian, in the order of the description: numbers and counts as 8 bytes, flags and choices
-/// as 1 and 4, texts and lists behind their count, blocks as they lie in memory. The same value gives the same bytes; a number keeps all its bits.
+/// Every field of a described value as bytes, little-endian, in the order of the description: numbers and counts as 8
+/// bytes, flags and choices as 1 and 4, texts and lists behind their count, blocks as they lie in memory. The same
+/// value gives the same bytes; a number keeps all its bits.
 template <class T>
 [[nodiscard]] std::string bytes_of(const T& value);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string_view>
+#include <incise/core/names.hpp>
 
 namespace incise {
 
@@ -11,21 +11,11 @@ enum class Isa {
   Avx2,      ///< x86-64: AVX2 and FMA, four doubles at once
   Avx512,    ///< x86-64: AVX-512 F, DQ, VL and BW, eight doubles at once
 };
-
-/// The name used on the command line and in files: portable, avx2, avx512.
-[[nodiscard]] constexpr std::string_view to_string(Isa isa) {
-  switch (isa) {
-    case Isa::Portable:
-      return "portable";
-    case Isa::Avx2:
-      return "avx2";
-    case Isa::Avx512:
-      return "avx512";
-  }
-  return "unknown";
+/// Used on the command line and in files.
+inline constexpr std::array<std::string_view, 3> kIsaNames{"portable", "avx2", "avx512"};
+[[nodiscard]] constexpr Names names_of(Isa) {
+  return kIsaNames;
 }
-/// The instruction set of that name. Throws InvalidArgument for any other name.
-[[nodiscard]] Isa parse_isa(std::string_view name);
 
 /// Whether this machine and this build can run it.
 [[nodiscard]] bool is_supported(Isa isa);

@@ -1,7 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <incise/core/describe.hpp>
 
+#include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,8 +18,10 @@ enum class VerdictStatus {
   Caution,  ///< something is; a robot program is written only if a person accepts each reason by its name
   Refused,  ///< it must not be carried out; no robot program is written
 };
-[[nodiscard]] std::string_view to_string(VerdictStatus status);  ///< ok, caution, refused
-[[nodiscard]] std::optional<VerdictStatus> parse_verdict_status(std::string_view name);
+inline constexpr std::array<std::string_view, 3> kVerdictStatusNames{"ok", "caution", "refused"};
+[[nodiscard]] constexpr Names names_of(VerdictStatus) {
+  return kVerdictStatusNames;
+}
 
 /// One row of the table of limits: a reason that may be held against a cut, and the limit beyond which it is.
 struct VerdictRule {
@@ -42,6 +46,11 @@ struct VerdictPlace {
   std::optional<Eigen::Vector3d> position_mm;   ///< in the frame of the result that holds the verdict
   std::string text;                             ///< for a person: "waypoint 12", "layer 4 mm deep"; may be empty
 };
+inline void describe(Visitor& v, VerdictPlace& p) {
+  v("arclength_mm", p.arclength_mm, "Along the path from its start.", kNotNegative);
+  v("position_mm", p.position_mm, "In the frame of the result that holds the verdict.");
+  v("text", p.text, "For a person.");
+}
 
 /// One thing that is held against a cut.
 struct VerdictReason {
@@ -53,6 +62,15 @@ struct VerdictReason {
   std::optional<VerdictPlace> at;
   std::string message;                             ///< one sentence for a person, with the numbers in it
 };
+inline void describe(Visitor& v, VerdictReason& r) {
+  v("id", r.id, "Of its rule in the table of limits.");
+  v("severity", r.severity, "That of its rule.");
+  v("value", r.value, "What was found.");
+  v("limit", r.limit, "What it was held against.");
+  v("unit", r.unit, "Of both.");
+  v("at", r.at, "Where.");
+  v("message", r.message, "One sentence for a person.");
+}
 
 /// The verdict and its reasons, worst first. Every face (terminal, JSON, report, manifest, gate of the robot program) shows this object.
 class Verdict {
@@ -70,6 +88,7 @@ class Verdict {
   [[nodiscard]] VerdictStatus status() const;  ///< that of the worst reason; Ok without one
   [[nodiscard]] const std::vector<VerdictReason>& reasons() const { return reasons_; }
   [[nodiscard]] bool has(std::string_view id) const;
+  friend void describe(Visitor& v, Verdict& verdict) { v("reasons", verdict.reasons_, "Worst first."); }
 
  private:
   std::vector<VerdictReason> reasons_;

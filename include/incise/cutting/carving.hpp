@@ -21,6 +21,11 @@ struct Bond {
   TetId tet;
   Vec3 offset_mm = Vec3::Zero();  ///< of the tet's centroid from the tool's tip when first touched, less what it has slipped since
 };
+inline void describe(Visitor& v, Bond& b) {
+  v("tet", b.tet, "The tet that is held.");
+  v("offset_mm", b.offset_mm,
+    "Of its centroid from the tool's tip when first touched, less what it has slipped since.");
+}
 
 /// A simulation of cutting as a value: tissue, doses, bonds and what was removed so far.
 struct CutState {
@@ -33,6 +38,16 @@ struct CutState {
   int step = 0;
   CutRecord record;
 };
+inline void describe(Visitor& v, CutState& s) {
+  v("tissue", s.tissue, "The tissue.");
+  v("dose", s.dose, "Of each tet: removed at 1.");
+  v("tear_dose", s.tear_dose, "The part of it that is the tool's work.");
+  v("bonds", s.bonds, "Ascending tet.");
+  v("tool", s.tool, "Where it is.");
+  v("time_s", s.time_s, "Since the tool began to plunge.");
+  v("step", s.step, "Done so far.", kNotNegative);
+  v("record", s.record, "Every tet that was removed.");
+}
 [[nodiscard]] CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPose& tool);
 
 /// Whether the next step from here makes everything anew that a workspace carries from step to step (every 20th step does). From such a

@@ -1,24 +1,24 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/ids.hpp>
+#include <incise/core/names.hpp>
 #include <incise/geometry/types.hpp>
 
-#include <array>
-#include <string_view>
 #include <vector>
 
 namespace incise {
 
-/// Why a tet was removed.
+/// Why a tet was removed. Each stands in files by its number.
 enum class RemovalCause {
   Dwell,          ///< its dose was full, at least half of it from contact
   LooseFragment,  ///< no longer joined to the body by a face
   Tear,           ///< its dose was full, more than half of it from the work that the tool did on it
 };
-[[nodiscard]] std::string_view to_string(RemovalCause cause);  ///< dwell, loose_fragment, tear
-
-/// Each stands in files by its number.
-inline constexpr std::array<RemovalCause, 3> kRemovalCauses{RemovalCause::Dwell, RemovalCause::LooseFragment, RemovalCause::Tear};
+inline constexpr std::array<std::string_view, 3> kRemovalCauseNames{"dwell", "loose_fragment", "tear"};
+[[nodiscard]] constexpr Names names_of(RemovalCause) {
+  return kRemovalCauseNames;
+}
 
 struct Removal {
   TetId tet;
@@ -28,6 +28,14 @@ struct Removal {
   Vec3 centroid_mm = Vec3::Zero(); ///< where it was when it went, current configuration
   double rest_volume_mm3 = 0.0;
 };
+inline void describe(Visitor& v, Removal& r) {
+  v("tet", r.tet, "Which.");
+  v("step", r.step, "In which it was removed.");
+  v("time_s", r.time_s, "Since the tool began to plunge.");
+  v("cause", r.cause, "Why.");
+  v("centroid_mm", r.centroid_mm, "Where it was then.");
+  v("rest_volume_mm3", r.rest_volume_mm3, "Of the tet at rest.");
+}
 
 /// Every tet that went, in order: the whole memory of a cut. Within a step: what was touched long enough, then loose fragments, each by
 /// ascending tet.
@@ -39,5 +47,8 @@ struct CutRecord {
     return sum;
   }
 };
+inline void describe(Visitor& v, CutRecord& r) {
+  v("removals", r.removals, "In order.");
+}
 
 }  // namespace incise

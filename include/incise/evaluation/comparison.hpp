@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/evaluation/block_bootstrap.hpp>
 #include <incise/evaluation/effect_size.hpp>
 #include <incise/evaluation/statistics.hpp>
@@ -18,6 +19,10 @@ struct MeasuredSpecimen {
 
 /// Which error is compared.
 enum class ErrorMeasure { Absolute, Signed };
+inline constexpr std::array<std::string_view, 2> kErrorMeasureNames{"absolute", "signed"};
+[[nodiscard]] constexpr Names names_of(ErrorMeasure) {
+  return kErrorMeasureNames;
+}
 
 struct ComparisonSettings {
   ErrorMeasure measure = ErrorMeasure::Absolute;

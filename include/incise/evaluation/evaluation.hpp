@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/core/outcome.hpp>
 #include <incise/evaluation/clock.hpp>
 #include <incise/evaluation/contour_errors.hpp>
@@ -18,8 +19,10 @@ enum class ContourKind {
   Centerline,  ///< mid-line of the kerf, as a simulation gives it; one lateral margin outside the tumour edge
   InnerEdge,   ///< border of the kerf next to the tumour, as a photograph shows it; closer by the electrode's radius
 };
-
-[[nodiscard]] std::string_view to_string(ContourKind kind);  ///< centerline, inner_edge
+inline constexpr std::array<std::string_view, 2> kContourKindNames{"centerline", "inner_edge"};
+[[nodiscard]] constexpr Names names_of(ContourKind) {
+  return kContourKindNames;
+}
 
 struct EvaluationSettings {
   ContourKind contour = ContourKind::Centerline;

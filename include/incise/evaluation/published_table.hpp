@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/evaluation/registration_score.hpp>
 
 #include <cstddef>
@@ -60,8 +61,13 @@ enum class AuditRule {
   PooledSdTooSmall,  ///< (N−1) sd² < the same
   ScoreOffBaseline,  ///< the per cent does not follow from mean, max and the baseline that most rows agree on
 };
-
-[[nodiscard]] std::string_view to_string(AuditRule rule);  ///< mean_below_least, negative_sd, …
+inline constexpr std::array<std::string_view, 14> kAuditRuleNames{
+    "mean_below_least", "negative_sd",         "max_below_mean",      "min_above_mean",      "sd_too_large",
+    "sd_too_small",     "mean_too_small",      "mean_not_on_grain",   "pooled_mean_outside", "pooled_mean_off",
+    "pooled_n_off",     "pooled_sd_too_large", "pooled_sd_too_small", "score_off_baseline"};
+[[nodiscard]] constexpr Names names_of(AuditRule) {
+  return kAuditRuleNames;
+}
 
 struct Finding {
   AuditRule rule = AuditRule::SdTooLarge;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 
 namespace incise {
 
@@ -31,12 +30,9 @@ struct PrintedScore {
 struct BaselineRange {
   double low_mm = 0.0;
   double high_mm = 0.0;
-  [[nodiscard]] bool is_empty() const { return low_mm > high_mm; }
 };
 
 /// @pre percent above its half unit.
 [[nodiscard]] BaselineRange baseline_range(const PrintedScore& row);
-/// Those that explain every row at once; empty where none does. @pre at least one row.
-[[nodiscard]] BaselineRange common_baseline(std::span<const PrintedScore> rows);
 
 }  // namespace incise

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/names.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -28,8 +30,10 @@ enum class TestVerdict {
   TooFew,    ///< not enough values to know their spread: one specimen has none
   NoSpread,  ///< no value differs from the others of its sample, so that t has no denominator
 };
-
-[[nodiscard]] std::string_view to_string(TestVerdict verdict);  ///< tested, too_few, no_spread
+inline constexpr std::array<std::string_view, 3> kTestVerdictNames{"tested", "too_few", "no_spread"};
+[[nodiscard]] constexpr Names names_of(TestVerdict) {
+  return kTestVerdictNames;
+}
 
 /// A two-tailed test of "the two means are equal". All differences are after minus before: negative = smaller after.
 struct TTest {

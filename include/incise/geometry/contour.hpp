@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <span>
@@ -11,6 +12,10 @@ struct Contour {
   Points points;
   bool is_closed = true;
 };
+inline void describe(Visitor& v, Contour& c) {
+  v("points_mm", c.points, "In order; of a closed one the last joins the first.");
+  v("is_closed", c.is_closed, "Whether the last point joins the first.");
+}
 
 [[nodiscard]] double length_mm(const Contour& contour);
 

@@ -20,6 +20,11 @@ struct DepthProfile {
   std::vector<double> arclength_mm;  ///< N: from the course's first point
   std::vector<double> depth_mm;      ///< N, >= 0: below the skin, along the approach; 0 where nothing is cut
 };
+inline void describe(Visitor& v, DepthProfile& p) {
+  v("course", p.course, "On the surface, evenly spaced.");
+  v("arclength_mm", p.arclength_mm, "From the course's first point.");
+  v("depth_mm", p.depth_mm, "Of the kerf below the skin, along the approach; 0: nothing is cut there.");
+}
 
 /// The depth that a kerf reaches below the skin along a course over it. In each line of sight the depth is that of the
 /// lowest removed point below the skin. At a point of the course the answer is the greatest mean of these over one

@@ -14,9 +14,14 @@ struct Manifoldness {
   std::size_t open_edges = 0;         ///< with one triangle
   std::size_t nonmanifold_edges = 0;  ///< with more than two: sheets touch along them
   std::size_t pinched_vertices = 0;   ///< where sheets touch in this point alone: more than one fan, and no such edge
-  [[nodiscard]] bool is_closed_manifold() const { return open_edges + nonmanifold_edges + pinched_vertices == 0; }
   [[nodiscard]] bool operator==(const Manifoldness&) const = default;
 };
+inline void describe(Visitor& v, Manifoldness& m) {
+  v("triangles", m.triangles, "How many.");
+  v("open_edges", m.open_edges, "Edges of one triangle.");
+  v("nonmanifold_edges", m.nonmanifold_edges, "Edges of more than two triangles: sheets touch along them.");
+  v("pinched_vertices", m.pinched_vertices, "Vertices where sheets touch in this point alone.");
+}
 
 /// Counts them. @pre indices in range, no triangle with a corner twice.  O(n log n).
 [[nodiscard]] Manifoldness manifoldness_of(std::span<const Triangle> triangles);

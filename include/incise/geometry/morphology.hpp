@@ -46,7 +46,4 @@ struct Components {
 /// `max_area_mm2`.
 [[nodiscard]] Raster holes_filled(const Raster& raster, double max_area_mm2);
 
-/// Gaussian blur of the set as a function that is 1 in it and 0 outside, also beyond the picture. sigma = 0: unchanged.
-[[nodiscard]] ScalarRaster blurred(const Raster& raster, double sigma_mm);
-
 }  // namespace incise

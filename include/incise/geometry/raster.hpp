@@ -51,12 +51,6 @@ using ScalarRaster = RasterOf<double>;
 /// @pre finite, low <= high, pixel > 0, border >= 0.  @throws InvalidArgument also for more than 10^8 pixels.
 [[nodiscard]] RasterGrid grid_around(const Vec2& low, const Vec2& high, double pixel_mm, double border_mm);
 
-/// Sets every pixel whose centre lies within `radius_mm` of `centre`. Parts beyond the picture are left out.
-void stamp_disc(Raster& raster, const Vec2& centre, double radius_mm);
-
-/// Sets every pixel whose centre lies in the triangle or on its border, whichever way it turns.
-void stamp_triangle(Raster& raster, const Vec2& a, const Vec2& b, const Vec2& c);
-
 /// Area of the set, mm².
 [[nodiscard]] double area_mm2(const Raster& raster);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/ids.hpp>
 #include <incise/geometry/types.hpp>
 
@@ -16,6 +17,10 @@ struct DataArray {
   int components = 1;
   std::vector<double> values;
 };
+inline void describe(Visitor& v, DataArray& a) {
+  v("components", a.components, "Numbers for each item.", Range{1.0, 1e6});
+  v("values", a.values, "Item by item.");
+}
 
 using Tet = std::array<VertexId, 4>;
 using Triangle = std::array<VertexId, 3>;
@@ -27,6 +32,12 @@ struct TetMesh {
   std::map<std::string, DataArray> point_data;  ///< N items each
   std::map<std::string, DataArray> cell_data;   ///< M items each
 };
+inline void describe(Visitor& v, TetMesh& m) {
+  v("vertices", m.vertices, "Positions.");
+  v("tets", m.tets, "Four vertices each.");
+  v("point_data", m.point_data, "Numbers for each vertex.");
+  v("cell_data", m.cell_data, "Numbers for each tet.");
+}
 
 /// Triangle mesh, mm, LPS. Closed surfaces are oriented outwards.
 struct TriMesh {
@@ -34,6 +45,11 @@ struct TriMesh {
   std::vector<Triangle> triangles;  ///< M x 3, counter-clockwise seen from outside
   std::map<std::string, DataArray> point_data;
 };
+inline void describe(Visitor& v, TriMesh& m) {
+  v("vertices", m.vertices, "Positions.");
+  v("triangles", m.triangles, "Three vertices each, counter-clockwise seen from outside.");
+  v("point_data", m.point_data, "Numbers for each vertex.");
+}
 
 [[nodiscard]] inline const Vec3& vertex(std::span<const Vec3> vertices, VertexId id) { return vertices[id.index()]; }
 

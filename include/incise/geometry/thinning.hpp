@@ -11,8 +11,4 @@ namespace incise {
 /// Communications of the ACM 27(3), 1984.
 [[nodiscard]] Raster thinned(Raster raster);
 
-/// Takes end points away until nothing changes: what survives is exactly the closed loops (and lines that join two of
-/// them); an empty result says that there was no closed loop. @pre a thinned raster.
-[[nodiscard]] Raster pruned(Raster raster);
-
 }  // namespace incise

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/types.hpp>
 
@@ -16,10 +17,16 @@ enum class PathFrame {
   SimStretched,  ///< the clamped and stretched tissue before the cut, mm, LPS
   Robot,         ///< the robot's base, mm
 };
-enum class PathKind { Incise, Mark };
+inline constexpr std::array<std::string_view, 3> kPathFrameNames{"sim_rest", "sim_stretched", "robot"};
+[[nodiscard]] constexpr Names names_of(PathFrame) {
+  return kPathFrameNames;
+}
 
-[[nodiscard]] std::string_view to_string(PathFrame frame);  ///< sim_rest, sim_stretched, robot
-[[nodiscard]] std::string_view to_string(PathKind kind);    ///< incise, mark
+enum class PathKind { Incise, Mark };
+inline constexpr std::array<std::string_view, 2> kPathKindNames{"incise", "mark"};
+[[nodiscard]] constexpr Names names_of(PathKind) {
+  return kPathKindNames;
+}
 
 struct Waypoint {
   Vec3 position_mm = Vec3::Zero();  ///< on the tissue's surface, in the path's frame
@@ -27,6 +34,12 @@ struct Waypoint {
   double depth_mm = 5.0;            ///< of the tool's tip below `position_mm`, along `axis`
   double speed_mm_s = 7.0;          ///< of the tip from this waypoint to the next
 };
+inline void describe(Visitor& v, Waypoint& w) {
+  v("position_mm", w.position_mm, "On the tissue's surface, in the path's frame.");
+  v("axis", w.axis, "Unit; the direction in which the tool points into the tissue.");
+  v("depth_mm", w.depth_mm, "Of the tool's tip below position_mm, along axis.");
+  v("speed_mm_s", w.speed_mm_s, "Of the tip from this waypoint to the next.");
+}
 
 /// The course of a tool's entry points over the surface, with depth and axis at each: what `path.json` holds.
 struct ToolPath {
@@ -40,11 +53,25 @@ struct ToolPath {
   std::string specimen_id = {};  ///< of the specimen that it was planned on (see io/specimen_id.hpp); empty: not stated
   bool is_virtual = false;       ///< the specimen is a synthetic body, not a patient's
 };
+inline void describe(Visitor& v, ToolPath& p) {
+  v("frame", p.frame, "Whose coordinates the path has.");
+  v("kind", p.kind, "What the tool does along it.");
+  v("is_closed", p.is_closed, "Whether the last waypoint joins the first.");
+  v("waypoints", p.waypoints, "In order.");
+  v("tumor_edge", p.tumor_edge, "Same frame; may be empty for an open cut.");
+  v("T_robot_sim", p.T_robot_sim, "p_robot = T_robot_sim * p_sim, mm, once known.");
+  v("source_sha256", p.source_sha256, "Of what it was made from; empty: unknown.");
+  v("specimen_id", p.specimen_id, "Of the specimen that it was planned on; empty: not stated.");
+  v("is_virtual", p.is_virtual, "Whether the specimen is a synthetic body.");
+}
 
 /// The entry points as a contour.
 [[nodiscard]] Contour entry_contour(const ToolPath& path);
 
 /// Time to run the path once at its waypoints' speeds, s, without entry, overlap and exit.
 [[nodiscard]] double duration_s(const ToolPath& path);
+
+/// The path without what its file says of where it comes from: two such are equal where the tool does the same.
+[[nodiscard]] ToolPath unmarked(ToolPath path);
 
 }  // namespace incise

@@ -10,10 +10,6 @@ namespace incise {
 
 // Curves in the picture plane are contours in view coordinates with z = 0.
 
-/// The longest closed loop of a pruned skeleton, through its pixels' centres, counter-clockwise; nullopt if it encloses
-/// nothing. A loop is the border of a hole of the skeleton; of a figure of eight the longer half is taken.
-[[nodiscard]] std::optional<Contour> longest_loop(const Raster& skeleton);
-
 /// The longest open path along the skeleton's largest part, through pixel centres, from the end with the lower pixel
 /// offset; nullopt for fewer than 2 pixels. Exact for a skeleton without loops; shortest way round where there is one.
 [[nodiscard]] std::optional<Contour> longest_path(const Raster& skeleton);
@@ -22,6 +18,10 @@ namespace incise {
 /// their left, so the outline of a blob runs counter-clockwise and that of a hole clockwise. In order of their first
 /// point in the picture. Values beyond the picture count as `outside`. @pre outside < level; all values finite.
 [[nodiscard]] std::vector<Contour> level_lines(const ScalarRaster& raster, double level, double outside = 0.0);
+
+/// The same where nothing is known beyond the picture: lines that meet its border end there, are open and come first;
+/// at a saddle the two high corners stay apart. @pre all values finite.
+[[nodiscard]] std::vector<Contour> level_lines_inside(const ScalarRaster& raster, double level);
 
 /// Gaussian smoothing along an evenly spaced curve, twice with opposite error (2G - G²), so that a circle of radius R
 /// shrinks by sigma⁴/(4R³) only instead of sigma²/(2R). Both ends of an open curve stay. sigma = 0: unchanged. Works on

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <cstddef>
@@ -38,6 +39,12 @@ struct VolumeGrid {
     return (direction.transpose() * (world - origin_mm)).cwiseQuotient(spacing_mm);
   }
 };
+inline void describe(Visitor& v, VolumeGrid& g) {
+  v("size", g.size, "Voxels along i, j, k.");
+  v("spacing_mm", g.spacing_mm, "Along i, j, k.");
+  v("origin_mm", g.origin_mm, "Centre of voxel (0, 0, 0).");
+  v("direction", g.direction, "Columns: the unit i, j, k axes in world coordinates.");
+}
 
 /// A grid with one value per voxel.
 template <class Value>
@@ -48,6 +55,11 @@ struct Volume {
   [[nodiscard]] Value at(int i, int j, int k) const { return voxels[grid.offset(i, j, k)]; }
   [[nodiscard]] Value& at(int i, int j, int k) { return voxels[grid.offset(i, j, k)]; }
 };
+template <class Value>
+void describe(Visitor& v, Volume<Value>& volume) {
+  v("grid", volume.grid, "Where the voxels lie.");
+  v("voxels", volume.voxels, "Values, i fastest.");
+}
 
 /// CT in Hounsfield units. Voxels outside the scanner's field of view (padding) are air, -1024 HU.
 using CtVolume = Volume<std::int16_t>;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/types.hpp>
 #include <incise/imaging/picture.hpp>
 
@@ -12,13 +13,20 @@
 namespace incise {
 
 enum class InkColor { Red, Green };
-[[nodiscard]] std::string_view to_string(InkColor color);  ///< red, green
+inline constexpr std::array<std::string_view, 2> kInkColorNames{"red", "green"};
+[[nodiscard]] constexpr Names names_of(InkColor) {
+  return kInkColorNames;
+}
 
 /// Which part of a painted line is its contour.
 enum class LineEdge {
   Middle,  ///< the centre line of a thin line
   Inner,   ///< the border towards the middle of the ring: of a painted band
 };
+inline constexpr std::array<std::string_view, 2> kLineEdgeNames{"middle", "inner"};
+[[nodiscard]] constexpr Names names_of(LineEdge) {
+  return kLineEdgeNames;
+}
 
 struct LineSettings {
   LineEdge edge = LineEdge::Middle;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/imaging/marked_line.hpp>
 #include <incise/imaging/photo_scale.hpp>
@@ -14,7 +15,10 @@ enum class RedLine {
   Annotation,  ///< a thin line whose centre line is the kerf's inner edge
   Kerf,        ///< a painted band whose inner border is the inner edge
 };
-[[nodiscard]] std::string_view to_string(RedLine red);  ///< annotation, kerf
+inline constexpr std::array<std::string_view, 2> kRedLineNames{"annotation", "kerf"};
+[[nodiscard]] constexpr Names names_of(RedLine) {
+  return kRedLineNames;
+}
 
 struct PhotoSettings {
   RedLine red = RedLine::Annotation;

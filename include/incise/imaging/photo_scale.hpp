@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/types.hpp>
 #include <incise/imaging/picture.hpp>
 
@@ -34,6 +35,10 @@ enum class RulerKind {
   Ticks,  ///< a comb of parallel dark lines on something light and colourless, evenly spaced
   Bar,    ///< a solid straight bar without colour
 };
+inline constexpr std::array<std::string_view, 2> kRulerKindNames{"ticks", "bar"};
+[[nodiscard]] constexpr Names names_of(RulerKind) {
+  return kRulerKindNames;
+}
 /// A figure and its standard error.
 struct RulerFigure {
   double value = 0.0;

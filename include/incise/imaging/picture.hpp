@@ -22,11 +22,6 @@ struct DepthPicture {
   std::vector<std::uint16_t> counts;  ///< width * height
 };
 
-/// Looks through a picture file's structure before any decoder sees it: format, claimed size against the file's length,
-/// ends and checksums, every coefficient of a JPEG. decode_picture and decode_depth begin with it.
-/// @throws DataError as decode_picture, but for what only the pixels show.
-void require_picture_file(std::string_view bytes, const std::filesystem::path& name);
-
 /// Decodes a `.png`, `.jpg` or `.tif` held in memory. 16-bit channels are rounded to 8; a transparent pixel is laid on
 /// white; the orientation that a camera wrote into a JPEG is applied.
 /// @param bytes  the whole file.  @param name  stands for the file in messages.

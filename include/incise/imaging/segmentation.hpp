@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
+#include <incise/core/names.hpp>
 #include <incise/core/verdict.hpp>
 #include <incise/geometry/volume.hpp>
 
@@ -24,6 +26,17 @@ struct SegmentationSettings {
   std::optional<double> smoothing_mm;  ///< length over which the occupancy is smoothed; 0: none; [0, 5]; absent: see smoothing_length_mm
   int margin_voxels = 4;      ///< of air around the body, also where the region of interest cuts through it; [3, 50]
 };
+inline void describe(Visitor& v, SegmentationSettings& s) {
+  v("window_low_hu", s.window_low_hu, "Least value of tissue.");
+  v("window_high_hu", s.window_high_hu, "Greatest value of tissue.");
+  v("roi_box_mm", s.roi_box_mm, "Box that holds the specimen; absent: the whole volume.");
+  v("seeds_mm", s.seeds_mm, "Points inside the specimen, all in one piece; none: the largest piece is taken.");
+  v("opening_radius_mm", s.opening_radius_mm, "Pieces joined only by bridges thinner than twice this are separated.");
+  v("fill_holes", s.fill_holes, "Whether cavities without a way out become tissue.");
+  v("smoothing_mm", s.smoothing_mm,
+    "Length over which the tissue's surface is smoothed; absent: it follows from the voxels.");
+  v("margin_voxels", s.margin_voxels, "Of air around the body.");
+}
 
 /// Every violation, one sentence each; empty: valid.
 [[nodiscard]] std::vector<std::string> validate(const SegmentationSettings& settings);
@@ -34,7 +47,11 @@ struct SegmentationSettings {
 
 /// The sides of the region of interest (or of the volume) that the body runs into, in this order.
 enum class RegionFace { Right, Left, Anterior, Posterior, Inferior, Superior };
-[[nodiscard]] std::string_view to_string(RegionFace face);
+inline constexpr std::array<std::string_view, 6> kRegionFaceNames{"right",     "left",     "anterior",
+                                                                  "posterior", "inferior", "superior"};
+[[nodiscard]] constexpr Names names_of(RegionFace) {
+  return kRegionFaceNames;
+}
 
 /// The specimen found in a CT. Both volumes share one grid: the body's box and a margin of air. It may reach beyond the
 /// CT's own grid.
@@ -55,6 +72,20 @@ struct Segmentation {
   Verdict verdict;                      ///< what argues against this tissue: check_scan, and a body that the region cuts off
   [[nodiscard]] int cut_faces() const;  ///< how many of the six are touched
 };
+inline void describe(Visitor& v, Segmentation& s) {
+  v("labels", s.labels, "1: tissue.");
+  v("occupancy", s.occupancy, "Share of each voxel that is tissue, smooth.");
+  v("voxels", s.voxels, "That are tissue.");
+  v("volume_mm3", s.volume_mm3, "Of these voxels.");
+  v("occupancy_volume_mm3", s.occupancy_volume_mm3, "Inside the 0.5 iso-surface of the occupancy.");
+  v("tissue_hu", s.tissue_hu, "Median over the voxels that are tissue and lie in the window.");
+  v("components", s.components, "Separate pieces in the window, before one was chosen.");
+  v("holes_filled", s.holes_filled, "Cavities.");
+  v("hole_voxels", s.hole_voxels, "Voxels of the cavities.");
+  v("cut_voxels", s.cut_voxels, "Voxels of the body at each face of the region.");
+  v("smoothing_mm", s.smoothing_mm, "Length that was taken.");
+  v("verdict", s.verdict, "On this tissue.");
+}
 
 /// CT -> one clean tissue label and its sub-voxel occupancy.
 /// Steps: window and region -> pieces (face-connected; separated by erosion with a ball, grown back within the window)

@@ -5,6 +5,7 @@
 #include <iosfwd>
 #include <memory>
 #include <string>
+#include <string_view>
 
 namespace incise {
 
@@ -17,6 +18,8 @@ class HeldTemporary;
 /// @throws DataError if the folder is missing, or the file cannot be written completely; an older file then stays as it
 /// was.
 void write_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+/// As above, of a content that is there already.
+void write_atomically(const std::filesystem::path& path, std::string_view content);
 
 /// Looks before a long computation whether write_atomically may write a file of this name. @throws DataError as it would.
 void require_writable(const std::filesystem::path& path);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/monitor.hpp>
+#include <incise/core/names.hpp>
 #include <incise/geometry/volume.hpp>
 
 #include <cstddef>
@@ -16,17 +17,28 @@ enum class IrregularSlices {
   Resample,  ///< linear interpolation onto an orthogonal grid, told as a notice
   Refuse,    ///< DataError
 };
+inline constexpr std::array<std::string_view, 2> kIrregularSlicesNames{"resample", "refuse"};
+[[nodiscard]] constexpr Names names_of(IrregularSlices) {
+  return kIrregularSlicesNames;
+}
 
 /// What to do with a hole in a series that is regular otherwise: what lay there is not known.
 enum class MissingSlices {
   Refuse,       ///< DataError naming the hole
   Interpolate,  ///< treated like uneven spacing, with a notice that names the hole
 };
+inline constexpr std::array<std::string_view, 2> kMissingSlicesNames{"refuse", "interpolate"};
+[[nodiscard]] constexpr Names names_of(MissingSlices) {
+  return kMissingSlicesNames;
+}
 
 enum class VolumeFormat { DicomSeries, Nrrd, Nifti, MetaImage, PictureStack };
-
-/// The name of a format as it is said to people: "DICOM series", "NRRD", "NIfTI", "MetaImage", "PNG pictures".
-[[nodiscard]] std::string to_string(VolumeFormat format);
+/// As they are said to people.
+inline constexpr std::array<std::string_view, 5> kVolumeFormatNames{"DICOM series", "NRRD", "NIfTI", "MetaImage",
+                                                                    "PNG pictures"};
+[[nodiscard]] constexpr Names names_of(VolumeFormat) {
+  return kVolumeFormatNames;
+}
 
 /// Gray level to Hounsfield units: HU = slope * gray + intercept.
 struct GrayToHu {
@@ -43,6 +55,19 @@ struct CtReadSettings {
   std::optional<GrayToHu> hu{};
   bool first_picture_is_head = false;  ///< pictures numbered from head to foot instead of from foot to head
 };
+
+inline void describe(Visitor& v, GrayToHu& h) {
+  v("slope", h.slope, "HU = slope * gray + intercept.");
+  v("intercept", h.intercept, "HU = slope * gray + intercept.");
+}
+inline void describe(Visitor& v, CtReadSettings& s) {
+  v("series_uid", s.series_uid, "DICOM: which series to read.");
+  v("irregular_slices", s.irregular, "What to do with a tilted or unevenly spaced series.");
+  v("missing_slices", s.missing, "What to do with holes in a series.");
+  v("spacing_mm", s.spacing_mm, "Pictures only: column, row and slice spacing.");
+  v("hu", s.hu, "Pictures only: gray level to HU.");
+  v("first_picture_is_head", s.first_picture_is_head, "Whether pictures are numbered from head to foot.");
+}
 
 /// What was found on the way; `notices` are the same sentences that the monitor received.
 struct CtReadDiagnostics {

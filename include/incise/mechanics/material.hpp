@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/types.hpp>
 
@@ -12,18 +13,30 @@ enum class MaterialModel {
   Corotational,      ///< linear elasticity in a frame that turns with each tet (polar rotation), as in the paper
   StableNeoHookean,  ///< Smith, de Goes and Kim (2018): hyperelastic, defined for inverted tets too
 };
+inline constexpr std::array<std::string_view, 2> kMaterialModelNames{"corotational", "stable_neo_hookean"};
+[[nodiscard]] constexpr Names names_of(MaterialModel) {
+  return kMaterialModelNames;
+}
 
 /// How the change of volume enters the energy.
 enum class VolumeTreatment {
   PerTet,    ///< each tet resists its own: the standard linear tet, which locks as Poisson's ratio nears 0.5
   Averaged,  ///< each vertex resists the mean over its tets (Bonet and Burton 1998): free of volumetric locking
 };
+inline constexpr std::array<std::string_view, 2> kVolumeTreatmentNames{"per_tet", "averaged"};
+[[nodiscard]] constexpr Names names_of(VolumeTreatment) {
+  return kVolumeTreatmentNames;
+}
 
 /// One Maxwell branch beside the elastic law: a shear spring that lets go with time.
 struct PronyTerm {
   double shear_share = 0.0;  ///< its shear modulus over the long-time one, > 0
   double time_s = 1.0;       ///< relaxation time, > 0
 };
+inline void describe(Visitor& v, PronyTerm& t) {
+  v("shear_share", t.shear_share, "Shear modulus of the branch over the long-time one.", kPositive);
+  v("time_s", t.time_s, "Relaxation time.", kPositive);
+}
 
 /// Young's modulus and density must lie in [least, most] and (0, most]. Far beyond any tissue, and wide enough for bodies in
 /// units of their own, but products with lengths and volumes stay far from the ends of double precision.
@@ -44,6 +57,19 @@ struct Material {
   std::vector<PronyTerm> prony;           ///< viscosity acts only in steps of time: statics are its long-time limit
   double kelvin_voigt_time_s = 0.0;       ///< >= 0; shear viscosity over long-time shear modulus, 0: none
 };
+inline void describe(Visitor& v, Material& m) {
+  v("model", m.model, "The law.");
+  v("volume", m.volume, "How volume change is resisted.");
+  v("youngs_modulus_kpa", m.youngs_modulus_kpa, "Young's modulus.",
+    Range{kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
+  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio.", Range{0.0, 0.5, false, true});
+  v("density_kg_m3", m.density_kg_m3, "Density.", Range{0.0, kMostDensityKgM3, true});
+  v("fibre_modulus_kpa", m.fibre_modulus_kpa, "Stiffness added along the fibres; 0: none.", kNotNegative);
+  v("fibre_direction", m.fibre_direction, "Of the fibres at rest, where the mesh gives none.");
+  v("prony", m.prony, "Branches that relax with time.");
+  v("kelvin_voigt_time_s", m.kelvin_voigt_time_s, "Shear viscosity over long-time shear modulus; 0: none.",
+    kNotNegative);
+}
 
 /// What differs from tet to tet, one item per tet each; an empty list takes the material's own value everywhere.
 struct MaterialField {

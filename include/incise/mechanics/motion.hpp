@@ -63,7 +63,4 @@ class MotionWorkspace {
                                         MotionWorkspace& workspace, Workers& workers,
                                         std::span<const Vec3> applied_mn = {});
 
-/// ½ Σ m v², µJ.
-[[nodiscard]] double kinetic_energy_uj(const TissueModel& model, const Motion& motion);
-
 }  // namespace incise

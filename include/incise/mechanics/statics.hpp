@@ -35,6 +35,21 @@ struct StaticResult {
   double wall_s = 0.0;
   std::string solver;  ///< what was chosen and why, for a person
 };
+inline void describe(Visitor& v, StaticResult& r) {
+  v("outcome", r.outcome, "How the search for equilibrium ended.");
+  v("state", r.state, "The tissue then.");
+  v("iterations", r.iterations, "Newton steps.");
+  v("load_steps", r.load_steps, "Steps in which the load was applied.");
+  v("linear_iterations", r.linear_iterations, "Of conjugate gradients.");
+  v("relative_residual", r.relative_residual, "Last one measured; not a number: none was.");
+  v("residual_history", r.residual_history, "One for each Newton step.");
+  v("reactions_mn", r.reactions_mn, "Force of each constraint on the tissue.");
+  v("max_displacement_mm", r.max_displacement_mm, "Farthest that a vertex moved.");
+  v("penetration_mm", r.penetration_mm, "Deepest vertex behind a support.");
+  v("inverted_tets", r.inverted_tets, "How many.");
+  v("wall_s", r.wall_s, "Time that it took.");
+  v("solver", r.solver, "What was chosen and why.");
+}
 
 /// Newton with line search on the energy/residual, from `start` (default: rest): the prescribed displacements are
 /// spread over load steps that adapt by themselves. Every failure is an outcome. Cost: one linear system per iteration,

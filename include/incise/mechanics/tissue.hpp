@@ -71,6 +71,10 @@ struct ViscousMemory {
   std::vector<Mat3> branches;  ///< per tet and Prony term (tet * terms + term): strain of the branch's spring
   [[nodiscard]] bool operator==(const ViscousMemory&) const = default;
 };
+inline void describe(Visitor& v, ViscousMemory& m) {
+  v("strains", m.strains, "Of each tet at the end of the last step.");
+  v("branches", m.branches, "Strain of each branch's spring, tet by tet.");
+}
 
 /// What a simulation changes: a value that can be saved, compared and restored.
 struct TissueState {
@@ -79,6 +83,12 @@ struct TissueState {
   std::vector<std::uint8_t> is_live;  ///< per tet: 1 until it is carved
   ViscousMemory memory;               ///< of viscous tissue; changed by end_viscous_step alone
 };
+inline void describe(Visitor& v, TissueState& s) {
+  v("positions", s.positions, "Of the vertices.");
+  v("rotations", s.rotations, "Of the tets: where the polar decomposition starts.");
+  v("is_live", s.is_live, "Of each tet: 1 until it is carved.");
+  v("memory", s.memory, "Of viscous tissue.");
+}
 [[nodiscard]] TissueState rest_state(const TissueModel& model);
 
 /// Which derivative of the forces is wanted.

@@ -39,6 +39,10 @@ struct MeshingPhase {
   std::string name;  ///< body, sizing, refine, perturb, exude, finish
   double wall_s = 0.0;
 };
+inline void describe(Visitor& v, MeshingPhase& p) {
+  v("name", p.name, "Of the phase.");
+  v("wall_s", p.wall_s, "Time that it took.");
+}
 
 /// A mesh and what is needed to believe it.
 struct [[nodiscard]] MeshingResult {
@@ -64,6 +68,26 @@ struct [[nodiscard]] MeshingResult {
   std::vector<MeshingPhase> phases;  ///< time by phase, repeated phases added up
   double wall_s = 0.0;
 };
+inline void describe(Visitor& v, MeshingResult& m) {
+  v("mesh", m.mesh, "One component, positively oriented.");
+  v("quality", m.quality, "Of the mesh.");
+  v("meets_quality", m.meets_quality, "Whether the smallest dihedral angle is large enough.");
+  v("meets_volume", m.meets_volume, "Whether the volume is near the label's.");
+  v("meets_target", m.meets_target, "Whether the count is near the one aimed for.");
+  v("label_volume_mm3", m.label_volume_mm3, "Of the body that was meshed.");
+  v("relative_volume_error", m.relative_volume_error, "Mesh less label, over label.");
+  v("iso", m.iso, "Occupancy on the mesh's surface.");
+  v("fine_mm", m.fine_mm, "Edge length asked for near the cut.");
+  v("coarse_mm", m.coarse_mm, "Edge length asked for far from it.");
+  v("predicted_tets", m.predicted_tets, "Before the first refinement.");
+  v("refinements", m.refinements, "Tried to meet count and volume.");
+  v("improvements", m.improvements, "Tried to meet the angle.");
+  v("dropped_bodies", m.dropped_bodies, "Smaller components of the occupancy, left out.");
+  v("dropped_volume_mm3", m.dropped_volume_mm3, "Their volume.");
+  v("dropped_tets", m.dropped_tets, "Tets without a face in common with the rest, left out.");
+  v("phases", m.phases, "Time by phase.");
+  v("wall_s", m.wall_s, "Time that meshing took.");
+}
 
 /// Longest side, along the grid's axes, of the box round all tissue (occupancy of at least 0.5, any label but 0), mm; 0 without tissue.
 [[nodiscard]] double longest_side_mm(const GrayVolume& occupancy);

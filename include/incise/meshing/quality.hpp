@@ -16,6 +16,12 @@ struct EdgeStatistics {
   double mean_mm = 0.0;
   double max_mm = 0.0;
 };
+inline void describe(Visitor& v, EdgeStatistics& e) {
+  v("count", e.count, "How many.");
+  v("min_mm", e.min_mm, "Shortest.");
+  v("mean_mm", e.mean_mm, "Mean length.");
+  v("max_mm", e.max_mm, "Longest.");
+}
 
 /// How good the tetrahedra are. The dihedral angle is the one between two faces of a tet: 70.5 degrees in a regular
 /// one, near 0 or 180 in a sliver. The radius ratio is 3 x inscribed / circumscribed radius: 1 in a regular tet, 0 in a
@@ -35,6 +41,18 @@ struct MeshQuality {
   double smallest_tet_mm3 = 0.0;  ///< signed: negative when a tet is inverted
   EdgeStatistics edges;
 };
+inline void describe(Visitor& v, MeshQuality& q) {
+  v("tets", q.tets, "How many.");
+  v("vertices", q.vertices, "How many.");
+  v("volume_mm3", q.volume_mm3, "Of all tets.");
+  v("min_dihedral_deg", q.min_dihedral_deg, "Smallest angle between two faces of a tet.");
+  v("max_dihedral_deg", q.max_dihedral_deg, "Greatest such angle.");
+  v("dihedral_histogram", q.dihedral_histogram, "Angles in bins of 5 degrees.");
+  v("min_radius_ratio", q.min_radius_ratio, "Worst ratio of the radii of inscribed and circumscribed sphere, times 3.");
+  v("mean_radius_ratio", q.mean_radius_ratio, "Its mean.");
+  v("smallest_tet_mm3", q.smallest_tet_mm3, "Signed: negative when a tet is inverted.");
+  v("edges", q.edges, "Lengths of the edges.");
+}
 
 /// Measures every tet and edge. O(M log M). An empty mesh has zeros everywhere.
 /// @throws InvalidArgument for a vertex that is not finite or an index out of range, naming the first.

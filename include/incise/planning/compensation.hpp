@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/planning/plan_path.hpp>
 
 #include <cstdint>
@@ -35,6 +36,16 @@ struct Compensation {
   std::size_t interpolated_waypoints = 0;
   double max_move_mm = 0.0;  ///< greatest |move|
 };
+inline void describe(Visitor& v, Compensation& c) {
+  v("path", c.path, "The corrected path.");
+  v("error_mm", c.error_mm, "Signed error measured at each waypoint.");
+  v("move_mm", c.move_mm, "Of each waypoint; positive: away from the tumour.");
+  v("is_limited", c.is_limited, "Of each waypoint: whether its move was cut short.");
+  v("is_interpolated", c.is_interpolated, "Of each waypoint: whether nothing was measured there.");
+  v("limited_waypoints", c.limited_waypoints, "How many.");
+  v("interpolated_waypoints", c.interpolated_waypoints, "How many.");
+  v("max_move_mm", c.max_move_mm, "Greatest move.");
+}
 
 /// The paper's correction: each waypoint moves away from, or towards, the tumour's centre by the error that was
 /// measured in its direction. Error of waypoint i: mean signed error (see contour_errors) of the measured points whose

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/verdict.hpp>
 #include <incise/planning/plan_path.hpp>
 
@@ -26,6 +27,15 @@ struct PathErrors {
   /// end of the simulation.
   VerdictStatus verdict = VerdictStatus::Ok;
 };
+inline void describe(Visitor& v, PathErrors& e) {
+  v("places_mm", e.places, "Where the measured contour lies, evenly spaced.");
+  v("signed_error_mm", e.signed_error_mm, "There; positive: farther from the tumour than intended.");
+  v("lag_mm", e.lag_mm, "How far ahead the tissue was dragged when it was cut.");
+  v("is_success", e.is_success, "Whether the cut succeeded.");
+  v("shortfall_mm", e.shortfall_mm, "What the kerf lacks of the depth that is accepted without a caution, mean.");
+  v("open_layers", e.open_layers, "Planned layers in which the ring stayed open.");
+  v("verdict", e.verdict, "Of what another course may mend.");
+}
 
 /// Cuts along a path (in simulation, or in a test's stand-in for tissue) and measures; nullopt: no contour to measure.
 using MeasureCut = std::function<std::optional<PathErrors>(const ToolPath&)>;
@@ -89,6 +99,23 @@ struct CompensationPass {
   /// What passes are compared by: mean |error| and what is missing in depth, mm, weighed alike. @pre measured.
   [[nodiscard]] double cost_mm() const { return mean_abs_error_mm.value() + shortfall_mm; }
 };
+inline void describe(Visitor& v, CompensationPass& p) {
+  v("offset_mm", p.offset_mm, "Of each waypoint from the intended path; positive: outwards.");
+  v("error_mm", p.error_mm, "Of each waypoint, averaged along the path.");
+  v("is_limited", p.is_limited, "Of each waypoint: whether the safe region cut its move short.");
+  v("is_interpolated", p.is_interpolated, "Of each waypoint: whether nothing was measured there.");
+  v("along_mm", p.along_mm, "Of each measured point: its place on the intended path.");
+  v("point_error_mm", p.point_error_mm, "Of each measured point: signed error, with the bias.");
+  v("mean_abs_error_mm", p.mean_abs_error_mm, "Of all measured points.");
+  v("max_abs_error_mm", p.max_abs_error_mm, "Of all measured points.");
+  v("smooth_error_mm", p.smooth_error_mm, "Mean of |error_mm|.");
+  v("lag_mm", p.lag_mm, "Of the tissue when it was cut.");
+  v("shortfall_mm", p.shortfall_mm, "In depth.");
+  v("open_layers", p.open_layers, "Planned layers in which the ring stayed open.");
+  v("verdict", p.verdict, "Of what another course may mend.");
+  v("max_move_mm", p.max_move_mm, "From the pass that it was made from.");
+  v("is_success", p.is_success, "Whether the cut succeeded.");
+}
 
 enum class CompensationOutcome {
   Converged,    ///< mean |error| within the tolerance of the floor, and the cut sound
@@ -97,9 +124,11 @@ enum class CompensationOutcome {
   AtRest,       ///< nothing to move: the error along the path is below least_move_mm, or the safe region holds it
   NoMeasure,    ///< the cut along the intended path left nothing to measure
 };
-/// converged, budget_spent, best_kept, at_rest, no_measure
-[[nodiscard]] std::string_view to_string(CompensationOutcome outcome);
-[[nodiscard]] std::optional<CompensationOutcome> parse_compensation_outcome(std::string_view name);
+inline constexpr std::array<std::string_view, 5> kCompensationOutcomeNames{"converged", "budget_spent", "best_kept",
+                                                                           "at_rest", "no_measure"};
+[[nodiscard]] constexpr Names names_of(CompensationOutcome) {
+  return kCompensationOutcomeNames;
+}
 
 struct ConvergedCompensation {
   ToolPath path;                         ///< of the best pass
@@ -111,6 +140,13 @@ struct ConvergedCompensation {
   std::optional<double> contraction;
   [[nodiscard]] const CompensationPass& result() const { return passes.at(best); }
 };
+inline void describe(Visitor& v, ConvergedCompensation& c) {
+  v("path", c.path, "Of the best pass.");
+  v("passes", c.passes, "One for each simulation, in order.");
+  v("best", c.best, "Which of them.");
+  v("outcome", c.outcome, "How it ended.");
+  v("contraction", c.contraction, "What each pass leaves of the error, geometric mean.");
+}
 
 /// Moves the waypoints of a path across the surface, pass by pass, until the cut that it leads to lies where it was
 /// intended. See docs/models/compensation.md: errors are taken along the path from where the tool cut them (lag behind

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/planning/robust_compensation.hpp>
 
 #include <optional>
@@ -16,7 +17,10 @@ enum class Advice {
   CutAsPlanned,  ///< the simulation may be believed, but the correction wins too little, or costs margin
   DoNotUse,      ///< the simulation is not to be believed of this specimen
 };
-[[nodiscard]] std::string_view to_string(Advice advice);  ///< compensate, cut_as_planned, do_not_use
+inline constexpr std::array<std::string_view, 3> kAdviceNames{"compensate", "cut_as_planned", "do_not_use"};
+[[nodiscard]] constexpr Names names_of(Advice) {
+  return kAdviceNames;
+}
 
 /// One quantity of this specimen against those of the calibration's specimens.
 struct SpecimenDistance {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/geometry/tool_path.hpp>
 
@@ -14,14 +15,20 @@ enum class PlanKind {
   Ring,  ///< closed, around a tumour edge
   Line,  ///< open, along a drawn curve
 };
-[[nodiscard]] std::string_view to_string(PlanKind kind);  ///< ring, line
+inline constexpr std::array<std::string_view, 2> kPlanKindNames{"ring", "line"};
+[[nodiscard]] constexpr Names names_of(PlanKind) {
+  return kPlanKindNames;
+}
 
 /// How the tool is held at a waypoint.
 enum class AxisMode {
   Approach,       ///< along the approach everywhere, as in the paper
   SurfaceNormal,  ///< against the surface's normal, averaged over 2 mm
 };
-[[nodiscard]] std::string_view to_string(AxisMode mode);  ///< approach, surface_normal
+inline constexpr std::array<std::string_view, 2> kAxisModeNames{"approach", "surface_normal"};
+[[nodiscard]] constexpr Names names_of(AxisMode) {
+  return kAxisModeNames;
+}
 
 /// The intended incision. Defaults are the paper's (II-B.4).
 struct PlanSettings {
@@ -37,6 +44,18 @@ struct PlanSettings {
   AxisMode axis_mode = AxisMode::Approach;
   double rim_clearance_mm = 1.0;  ///< the path keeps this far from where the surface ends in the picture, >= 0
 };
+inline void describe(Visitor& v, PlanSettings& s) {
+  v("kind", s.kind, "A ring around the tumour edge, or an open cut along a drawn curve.");
+  v("lateral_margin_mm", s.lateral_margin_mm, "From the tumour edge to the kerf's mid-line.", kPositive);
+  v("depth_mm", s.depth_mm, "Of the tool's tip below the surface.", kPositive);
+  v("speed_mm_s", s.speed_mm_s, "Of the real tool.", kPositive);
+  v("power_w", s.power_w, "Electrosurgical power.", kPositive);
+  v("approach", s.approach, "Into the tissue, as camera and surgeon look.");
+  v("start_direction", s.start_direction, "A ring starts at its waypoint farthest along this.");
+  v("waypoints", s.waypoints, "Evenly spaced along the path.");
+  v("tool_axis", s.axis_mode, "How the tool is held at a waypoint.");
+  v("rim_clearance_mm", s.rim_clearance_mm, "From where the surface ends in the picture.", kNotNegative);
+}
 
 /// Every violation, one sentence each with the field's name; empty: valid.
 [[nodiscard]] std::vector<std::string> validate(const PlanSettings& settings);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/planning/converging_compensation.hpp>
 
 #include <cstdint>
@@ -55,7 +56,10 @@ enum class RobustOutcome {
   NotMet,  ///< no path that was found inside the safe region does; the one of the least probability is returned
   NoMeasure,  ///< no scenario could be measured along the intended or the corrected path
 };
-[[nodiscard]] std::string_view to_string(RobustOutcome outcome);  ///< met, not_met, no_measure
+inline constexpr std::array<std::string_view, 3> kRobustOutcomeNames{"met", "not_met", "no_measure"};
+[[nodiscard]] constexpr Names names_of(RobustOutcome) {
+  return kRobustOutcomeNames;
+}
 
 struct RobustCompensation {
   ToolPath path;

@@ -25,6 +25,15 @@ struct IncisionSettings {
   TriMesh tumor_surface;              ///< closed, stretched tissue before the cut, mm; without triangles: not known
   int frames = 0;                     ///< moments to keep for pictures, evenly spaced over the cut; 0: none
 };
+inline void describe(Visitor& v, IncisionSettings& s) {
+  v("cut", s.cut, "How the tool cuts.");
+  v("tool", s.tool, "The instrument.");
+  v("approach", s.approach, "The direction in which camera and surgeon look.");
+  v("midline_layer_mm", s.midline_layer_mm, "The mid-line is that of the kerf down to this depth.", kPositive);
+  v("layer_depths_mm", s.layer_depths_mm, "Middles of the layers with a mid-line of their own.");
+  v("tumor_surface", s.tumor_surface, "Stretched tissue before the cut; without triangles: not known.");
+  v("frames", s.frames, "Moments to keep for pictures.", kNotNegative);
+}
 
 /// A simulated incision, however it ended.
 struct IncisionResult {
@@ -53,6 +62,30 @@ struct IncisionResult {
   double peak_tool_torque_mn_mm = 0.0;   ///< about the tool's tip
   double wall_s = 0.0;
 };
+inline void describe(Visitor& v, IncisionResult& r) {
+  v("outcome", r.outcome, "How the cut ended.");
+  v("is_closed_loop", r.is_closed_loop, "Whether the ring closed; absent for an open cut.");
+  v("gap_mm", r.gap_mm, "Of a ring that stayed open: width of the widest uncut bridge.");
+  v("gap_deg", r.gap_deg, "Of a ring that stayed open: largest angle without kerf.");
+  v("kerf_width_mm", r.kerf_width_mm, "Mean, across the mid-line.");
+  v("centerline", r.centerline, "Mid-line of the kerf, stretched tissue before the cut.");
+  v("inner_edge", r.inner_edge, "Border of the tissue inside the ring, tool out.");
+  v("final_tumor_edge", r.final_tumor_edge, "The tumour's edge, tool out.");
+  v("kerf", r.kerf, "Measures of the kerf.");
+  v("record", r.record, "Every tet that was removed.");
+  v("final_state", r.final_state, "Tool out, tissue still stretched.");
+  v("frames", r.frames, "Kept for pictures.");
+  v("steps", r.steps, "The log, step by step.");
+  v("solver_iterations", r.solver_iterations, "Sum over all steps.");
+  v("is_at_rest", r.is_at_rest, "Whether nothing moved any more in the last step.");
+  v("unconverged_steps", r.unconverged_steps, "Steps whose linear solve reached its limit.");
+  v("held_back_vertices", r.held_back_vertices, "Vertex steps that were cut short.");
+  v("inverted_tets", r.inverted_tets, "Live tets of negative volume at the end.");
+  v("slipped_bonds", r.slipped_bonds, "Slips, summed over all steps.");
+  v("peak_tool_force_mn", r.peak_tool_force_mn, "Greatest force on the tool.");
+  v("peak_tool_torque_mn_mm", r.peak_tool_torque_mn_mm, "Greatest torque about the tool's tip.");
+  v("wall_s", r.wall_s, "Time that the simulation took.");
+}
 
 /// An incision that has not begun: the tool over the first waypoint, the tissue stretched.
 /// @param stretched  equilibrium of the clamped and stretched tissue.

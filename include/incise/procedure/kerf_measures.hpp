@@ -16,6 +16,11 @@ struct Spread {
   double min = 0.0;
   double max = 0.0;
 };
+inline void describe(Visitor& v, Spread& s) {
+  v("mean", s.mean, "Mean.");
+  v("min", s.min, "Least.");
+  v("max", s.max, "Greatest.");
+}
 
 /// The kerf's mid-line in a layer of 1 mm at some depth below the skin.
 struct KerfLayer {
@@ -26,6 +31,14 @@ struct KerfLayer {
   double width_mm = 0.0;              ///< of the kerf there, mean; 0 without a mid-line
   std::optional<Contour> centerline;  ///< at that depth, stretched tissue before the cut, mm
 };
+inline void describe(Visitor& v, KerfLayer& l) {
+  v("depth_mm", l.depth_mm, "Of the layer's middle, along the approach.");
+  v("is_within_plan", l.is_within_plan, "Whether the planned depth reaches it.");
+  v("is_closed", l.is_closed, "Whether a ring closed there.");
+  v("gap_mm", l.gap_mm, "Of a ring that stayed open there: width of the widest uncut bridge.");
+  v("width_mm", l.width_mm, "Of the kerf there, mean.");
+  v("centerline", l.centerline, "The mid-line there, stretched tissue before the cut.");
+}
 
 /// The kerf as a body, in the stretched tissue before the cut: the removed tets together.
 struct KerfBody {
@@ -34,6 +47,12 @@ struct KerfBody {
   Manifoldness boundary;    ///< of `surface`
   Manifoldness live_skin;   ///< of the skin of the tissue that is left
 };
+inline void describe(Visitor& v, KerfBody& b) {
+  v("surface", b.surface, "Boundary of the removed tets, outwards.");
+  v("volume_mm3", b.volume_mm3, "Enclosed.");
+  v("boundary", b.boundary, "Of the surface.");
+  v("live_skin", b.live_skin, "Of the skin of the tissue that is left.");
+}
 
 /// How deep the kerf goes along the path that the tool followed.
 struct DepthReached {
@@ -42,6 +61,12 @@ struct DepthReached {
   std::vector<double> planned_at_mm;  ///< N, as the profile: depth of the tip below the entry point there, along the approach
   Spread depth_mm;          ///< of the profile
 };
+inline void describe(Visitor& v, DepthReached& d) {
+  v("planned_mm", d.planned_mm, "Mean depth of the tool's tip below its entry points.");
+  v("profile", d.profile, "Along the path.");
+  v("planned_at_mm", d.planned_at_mm, "At each place of the profile.");
+  v("depth_mm", d.depth_mm, "Of the profile.");
+}
 
 /// How far tissue was from its place in the stretched, uncut body when it was cut: along the tool's course (lag) and
 /// across it (drift). One entry per step in which tets went that had been touched long enough; means over them,
@@ -55,6 +80,14 @@ struct TissueDrag {
   Spread lag;    ///< of the entries; means weighted by rest volume
   Spread drift;
 };
+inline void describe(Visitor& v, TissueDrag& d) {
+  v("time_s", d.time_s, "Ascending.");
+  v("arclength_mm", d.arclength_mm, "That the tip had gone since the plunge.");
+  v("lag_mm", d.lag_mm, "Along the course; positive: dragged ahead.");
+  v("drift_mm", d.drift_mm, "Across the course; positive: outwards on a ring.");
+  v("lag", d.lag, "Of the entries, weighted by rest volume.");
+  v("drift", d.drift, "Likewise.");
+}
 
 /// How near the kerf comes to the body of the tumour, stretched tissue before the cut, mm. A place of the kerf is
 /// beneath the tumour when it lies farther along the approach than across it from the nearest point of the tumour, else
@@ -65,6 +98,12 @@ struct DeepMargin {
   std::optional<double> beneath_mm;  ///< least distance to what lies beneath; absent: nothing does
   Spread floor_below_mm;  ///< along the path: by how much the kerf's floor lies deeper than the tumour's deepest point
 };
+inline void describe(Visitor& v, DeepMargin& m) {
+  v("nearest_mm", m.nearest_mm, "Least distance of kerf and tumour; negative: the kerf enters it.");
+  v("beside_mm", m.beside_mm, "Of what lies beside the tumour.");
+  v("beneath_mm", m.beneath_mm, "Of what lies beneath it.");
+  v("floor_below_mm", m.floor_below_mm, "How much deeper the kerf's bottom is than the tumour.");
+}
 
 /// What came out of a cut, beside the two contours.
 struct KerfMeasures {
@@ -78,6 +117,15 @@ struct KerfMeasures {
   std::optional<Contour>
       inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
 };
+inline void describe(Visitor& v, KerfMeasures& k) {
+  v("body", k.body, "The kerf as a body.");
+  v("layers", k.layers, "As asked for.");
+  v("depth", k.depth, "Along the path.");
+  v("drag", k.drag, "Of the tissue when it was cut.");
+  v("deep_margin", k.deep_margin, "Distance from the tumour's surface.");
+  v("final_centerline", k.final_centerline, "The mid-line, tool out.");
+  v("inner_edge_reference", k.inner_edge_reference, "The inner edge's points in the stretched tissue before the cut.");
+}
 
 /// A ring that closed, by its mid-line.
 struct ClosedRing {
@@ -85,6 +133,11 @@ struct ClosedRing {
   double half_width_mm = 0.0;  ///< of the kerf there
   Contour midline;             ///< stretched tissue before the cut, lifted along the approach to the skin's height, mm
 };
+inline void describe(Visitor& v, ClosedRing& r) {
+  v("depth_mm", r.depth_mm, "Of the layer's middle below the skin.");
+  v("half_width_mm", r.half_width_mm, "Of the kerf there.");
+  v("midline", r.midline, "Stretched tissue before the cut, lifted along the approach to the skin's height.");
+}
 
 /// The shallowest layer in which the ring closed; nothing where none did.
 /// @param approach  unit length.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/monitor.hpp>
+#include <incise/core/names.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/registration/similarity.hpp>
 
@@ -44,7 +45,11 @@ enum class DriftOutcome {
                ///< rotation follows from them
   Cancelled,
 };
-[[nodiscard]] std::string_view to_string(DriftOutcome outcome);  ///< converged, iteration_limit, degenerate, cancelled
+inline constexpr std::array<std::string_view, 4> kDriftOutcomeNames{"converged", "iteration_limit", "degenerate",
+                                                                    "cancelled"};
+[[nodiscard]] constexpr Names names_of(DriftOutcome) {
+  return kDriftOutcomeNames;
+}
 
 struct Drift {
   Similarity T_target_source;
@@ -54,15 +59,6 @@ struct Drift {
   int iterations = 0;
   double last_step_mm = 0.0;  ///< root mean square movement of the source in the last step
 };
-
-/// One step of the expectation maximisation from the identity, on all pairs: new transform and σ².
-struct DriftStep {
-  Similarity T_target_source;
-  double variance_mm2 = 0.0;
-};
-/// @param variance_mm2  σ² of the E-step, > 0.
-[[nodiscard]] DriftStep drift_step(std::span<const Vec3> source, std::span<const Vec3> target, double variance_mm2,
-                                   const DriftSettings& settings, Workers& workers);
 
 /// Rigid coherent point drift with scale from one start: the target is taken as drawn from Gaussians about the moved
 /// source points and a uniform background, and transform and width are those of greatest likelihood (EM). The E-step
@@ -74,19 +70,5 @@ struct DriftStep {
 /// @pre finite points, at least one each.  @throws InvalidArgument.  Source: [Myronenko2010], Fig. 2.
 [[nodiscard]] Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start,
                                 const DriftSettings& settings, Workers& workers, Monitor& monitor);
-
-/// An affine map, p_target = linear · p_source + translation.
-struct AffineDrift {
-  Mat3 linear = Mat3::Identity();
-  Vec3 translation_mm = Vec3::Zero();
-  DriftOutcome outcome = DriftOutcome::IterationLimit;
-  double sigma_mm = 0.0;
-  int iterations = 0;
-};
-/// Affine coherent point drift, for clouds of a few thousand points: every step sees all points. Source:
-/// [Myronenko2010], Fig. 3.
-/// @pre, @throws as rigid_drift; the scale range of the settings is not used.
-[[nodiscard]] AffineDrift affine_drift(std::span<const Vec3> source, std::span<const Vec3> target,
-                                       const DriftSettings& settings, Workers& workers, Monitor& monitor);
 
 }  // namespace incise

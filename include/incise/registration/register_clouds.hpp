@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/monitor.hpp>
+#include <incise/core/names.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/geometry/point_cloud.hpp>
 #include <incise/registration/drift.hpp>
@@ -49,8 +50,12 @@ enum class RegistrationOutcome {
   Degenerate,      ///< a cloud is a point or a line, or has fewer than 12 points; no transform follows
   Cancelled,
 };
-/// converged, iteration_limit, ill_determined, ambiguous, mirrored, poor_fit, other_shape, scale_at_limit, degenerate, cancelled
-[[nodiscard]] std::string_view to_string(RegistrationOutcome outcome);
+inline constexpr std::array<std::string_view, 10> kRegistrationOutcomeNames{
+    "converged", "iteration_limit", "ill_determined", "ambiguous",  "mirrored",
+    "poor_fit",  "other_shape",     "scale_at_limit", "degenerate", "cancelled"};
+[[nodiscard]] constexpr Names names_of(RegistrationOutcome) {
+  return kRegistrationOutcomeNames;
+}
 
 /// How well two surfaces fix the transform between them. Seven motions (three turns and three shifts about the
 /// overlap's middle, and the logarithm of the scale) are turned into the seven independent ones that the distances

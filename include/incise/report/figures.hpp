@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/report/report_data.hpp>
 
 #include <span>
@@ -12,6 +13,10 @@ enum class ErrorColors {
   Safe,  ///< blue - grey - rust: can be told apart with any colour vision
   Jet,   ///< blue - cyan - yellow - red, as in the paper's Fig. 6
 };
+inline constexpr std::array<std::string_view, 2> kErrorColorsNames{"safe", "jet"};
+[[nodiscard]] constexpr Names names_of(ErrorColors) {
+  return kErrorColorsNames;
+}
 
 /// What figures of one report share.
 struct FigureStyle {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <array>
@@ -82,7 +83,11 @@ enum class InverseOutcome {
   InsideShoulder,  ///< the wrist would lie inside the cylinder that the shoulder's offset sweeps
   WristSingular    ///< joints 4 and 6 turn about parallel axes: only their sum is known, joint 6 was chosen
 };
-[[nodiscard]] std::string_view to_string(InverseOutcome outcome);  ///< solved, too_far, inside_shoulder, wrist_singular
+inline constexpr std::array<std::string_view, 4> kInverseOutcomeNames{"solved", "too_far", "inside_shoulder",
+                                                                      "wrist_singular"};
+[[nodiscard]] constexpr Names names_of(InverseOutcome) {
+  return kInverseOutcomeNames;
+}
 
 struct InverseSolution {
   Joints q_rad = Joints::Zero();  ///< each in (-pi, pi]

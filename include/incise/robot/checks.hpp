@@ -97,8 +97,6 @@ struct ProgramChecks {
   std::vector<ProgramCheck> checks;
   std::vector<std::string> not_made;  ///< what nobody has looked at: read it before a robot moves
   CheckSettings settings{};           ///< that they were made with
-  [[nodiscard]] bool all_passed() const;
-  [[nodiscard]] bool may_be_written() const;  ///< every check has passed or is overridden
 };
 
 /// Checks a program and the path that it came from. Names of the checks, in this order:

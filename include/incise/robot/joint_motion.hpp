@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/robot/arm.hpp>
 
 #include <cstddef>
@@ -38,7 +39,10 @@ enum class MotionOutcome {
   Unreachable,  ///< no branch and no spin reaches every place of the course
   Jump          ///< the chosen branch needs a jump of the joints (a singularity is crossed)
 };
-[[nodiscard]] std::string_view to_string(MotionOutcome outcome);  ///< found, unreachable, jump
+inline constexpr std::array<std::string_view, 3> kMotionOutcomeNames{"found", "unreachable", "jump"};
+[[nodiscard]] constexpr Names names_of(MotionOutcome) {
+  return kMotionOutcomeNames;
+}
 
 /// The arm at one time.
 struct JointSample {

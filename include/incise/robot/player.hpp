@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/robot/program_reading.hpp>
 
 #include <string>
@@ -43,9 +44,13 @@ enum class ReplayOutcome {
   Altered,         ///< … but it is not the program that was checked: its digest differs
   FalseChecks      ///< … but its header tells of checks that come out otherwise when they are made again
 };
-/// completed, unreachable, jump, blends_overlap, joint_limits, starts_in_tissue, ends_in_tissue, too_long, joint_speed,
-/// off_course, wrong_axis, wrong_order, wrong_speed, rests_in_tissue, breaks_limit, altered, false_checks
-[[nodiscard]] std::string_view to_string(ReplayOutcome outcome);
+inline constexpr std::array<std::string_view, 17> kReplayOutcomeNames{
+    "completed",      "unreachable",     "jump",         "blends_overlap", "joint_limits", "starts_in_tissue",
+    "ends_in_tissue", "too_long",        "joint_speed",  "off_course",     "wrong_axis",   "wrong_order",
+    "wrong_speed",    "rests_in_tissue", "breaks_limit", "altered",        "false_checks"};
+[[nodiscard]] constexpr Names names_of(ReplayOutcome) {
+  return kReplayOutcomeNames;
+}
 
 /// The arm in one cycle.
 struct ReplaySample {

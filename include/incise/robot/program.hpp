@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/geometry/tool_path.hpp>
 #include <incise/robot/joint_motion.hpp>
 
@@ -21,7 +22,11 @@ enum class ProgramPhase {
   Exit,      ///< back out along the axis
   Retreat    ///< away through the air
 };
-[[nodiscard]] std::string_view to_string(ProgramPhase phase);  ///< approach, plunge, cut, overlap, dwell, exit, retreat
+inline constexpr std::array<std::string_view, 7> kProgramPhaseNames{"approach", "plunge", "cut",    "overlap",
+                                                                    "dwell",    "exit",   "retreat"};
+[[nodiscard]] constexpr Names names_of(ProgramPhase) {
+  return kProgramPhaseNames;
+}
 
 /// How a path becomes a program.
 struct ProgramSettings {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/robot/program_text.hpp>
 
 #include <filesystem>
@@ -43,7 +44,10 @@ enum class ProgramDigest {
   Matches,  ///< it is
   Differs   ///< it was changed afterwards, or put together by hand
 };
-[[nodiscard]] std::string_view to_string(ProgramDigest digest);  ///< absent, matches, differs
+inline constexpr std::array<std::string_view, 3> kProgramDigestNames{"absent", "matches", "differs"};
+[[nodiscard]] constexpr Names names_of(ProgramDigest) {
+  return kProgramDigestNames;
+}
 
 /// What a program was made with and held to.
 struct ProgramRecord {

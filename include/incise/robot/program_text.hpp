@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/robot/checks.hpp>
 #include <incise/robot/program.hpp>
 
@@ -25,6 +26,10 @@ enum class ScriptMotion {
   MoveP,  ///< `movel` and `movep` with blends: the controller finds the joints and keeps the tip's speed
   ServoJ  ///< a stream of joint positions at even times
 };
+inline constexpr std::array<std::string_view, 2> kScriptMotionNames{"movep", "servoj"};
+[[nodiscard]] constexpr Names names_of(ScriptMotion) {
+  return kScriptMotionNames;
+}
 struct UrScriptSettings {
   ScriptMotion motion = ScriptMotion::MoveP;
   std::string function_name = "incise_cut";  ///< letters, digits and _, not starting with a digit

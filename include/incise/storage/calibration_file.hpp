@@ -14,31 +14,6 @@
 
 namespace incise {
 
-/// Finished simulations of a calibration as files, one each: `FOLDER/<first 16 digits of the key>.json`. The key is the
-/// hash of everything that determines the run: the specimen's case with all its inputs, the version, and the setting.
-/// So a run is found again whatever else the calibration asks for, and one made from other inputs is not.
-class RunFolder : public RunStore {
- public:
-  /// @param folder  is made when the first run is saved.
-  /// @param specimen_keys  one for each specimen: the hash of its case (FolderStore::product_key).
-  RunFolder(std::filesystem::path folder, std::vector<std::string> specimen_keys);
-
-  /// A damaged or changed file is reported and treated as missing: the run is simulated again and replaces it.
-  std::optional<CalibrationRun> load(std::size_t specimen, const RunSetting& setting, Monitor& monitor) override;
-  void save(std::size_t specimen, const CalibrationRun& run) override;
-
-  /// Where a run is or would be.
-  [[nodiscard]] std::filesystem::path file_of(std::size_t specimen, const RunSetting& setting) const;
-  /// Runs saved by this object.
-  [[nodiscard]] std::size_t saved() const { return saved_; }
-
- private:
-  [[nodiscard]] std::string key_of(std::size_t specimen, const RunSetting& setting) const;
-  std::filesystem::path folder_;
-  std::vector<std::string> specimen_keys_;
-  std::size_t saved_ = 0;
-};
-
 /// `calibration.json` (incise.calibration/1): method, chosen, score_percent, rows, baseline_mm, specimens, and of a fit
 /// its posterior, residual and what the data tell apart.
 [[nodiscard]] nlohmann::ordered_json to_json(const Calibration& calibration);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/monitor.hpp>
+#include <incise/core/names.hpp>
 #include <incise/core/workers.hpp>
 
 #include <string>
@@ -32,6 +33,10 @@ enum class Criterion {
   Within,   ///< |found - expected| <= tolerance
   AtLeast,  ///< found >= expected - tolerance
 };
+inline constexpr std::array<std::string_view, 2> kCriterionNames{"within", "at_least"};
+[[nodiscard]] constexpr Names names_of(Criterion) {
+  return kCriterionNames;
+}
 
 /// One question with a known answer, put to the solver on this machine.
 struct VerificationCheck {

@@ -20,6 +20,11 @@ struct BenchResolution {
   double coarse_mm = 6.0;  ///< far from it, >= fine_mm
   double way_mm = 0.5;     ///< of the tool in a step, > 0
 };
+inline void describe(Visitor& v, BenchResolution& r) {
+  v("fine_mm", r.fine_mm, "Edge length of the tets round the tumour's ring.", kPositive);
+  v("coarse_mm", r.coarse_mm, "Far from it.", kPositive);
+  v("way_mm", r.way_mm, "Of the tool in a step.", kPositive);
+}
 
 /// A virtual specimen in its holder: clamped, its tip pulled forward. mm, LPS frame of its CT. Hidden from whoever
 /// plans.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
+
 #include <cstdint>
 #include <span>
 #include <string>
@@ -71,7 +73,10 @@ enum class DrawnAs {
   Normal,     ///< mean a, standard deviation b, redrawn until within the limits
   LogNormal,  ///< median a, standard deviation b of the natural logarithm, redrawn until within the limits
 };
-[[nodiscard]] std::string_view to_string(DrawnAs drawn_as);  ///< uniform, normal, lognormal
+inline constexpr std::array<std::string_view, 3> kDrawnAsNames{"uniform", "normal", "lognormal"};
+[[nodiscard]] constexpr Names names_of(DrawnAs) {
+  return kDrawnAsNames;
+}
 
 /// One hidden parameter.
 struct ParameterSpec {
@@ -86,6 +91,8 @@ struct ParameterSpec {
 };
 /// All of them, in the order of Specimen.
 [[nodiscard]] std::span<const ParameterSpec> parameter_specs();
+
+void describe(Visitor& v, Specimen& specimen);
 
 /// A specimen at random. Each parameter has a stream of its own: a new one leaves the others as they were.
 [[nodiscard]] Specimen draw_specimen(std::uint64_t seed);

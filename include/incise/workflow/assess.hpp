@@ -49,8 +49,8 @@ struct Assessment {
 /// one. See docs/models/eligibility.md.
 /// @param done  the case's study up to Stage::Verify, however it ended.
 /// @throws as correct_robustly.
-[[nodiscard]] Assessment assess(const Case& settings, Store& store, const Study& done, const CalibratedBelief& belief,
-                                const AssessmentRequest& request, ScenarioRunStore& runs, Workers& workers,
+[[nodiscard]] Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
+                                const CalibratedBelief& belief, const AssessmentRequest& request, Workers& workers,
                                 Monitor& monitor);
 
 inline constexpr const char* kVirtualCalibration =

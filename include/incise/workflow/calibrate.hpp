@@ -1,25 +1,18 @@
 #pragma once
 
 #include <incise/calibration/calibration.hpp>
+#include <incise/core/cache.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/workflow/case.hpp>
-#include <incise/workflow/store.hpp>
+#include <incise/workflow/inputs.hpp>
+#include <incise/workflow/product_sink.hpp>
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace incise {
-
-/// Where finished simulations of a calibration are kept, so that an interrupted one goes on and none is made twice.
-class RunStore {
- public:
-  virtual ~RunStore() = default;
-  /// The run of that specimen (its place in the list) with that setting, if there is one made from today's inputs.
-  virtual std::optional<CalibrationRun> load(std::size_t specimen, const RunSetting& setting, Monitor& monitor) = 0;
-  virtual void save(std::size_t specimen, const CalibrationRun& run) = 0;
-};
 
 /// A specimen that was cut and photographed, and the case that says how it was held and along which path.
 struct CalibrationSubject {
@@ -28,8 +21,14 @@ struct CalibrationSubject {
   std::string case_file;                            ///< named where the case cannot be used
   Case settings;                                    ///< plan.kind: ring
   std::optional<RegistrationQuality> registration;  ///< kept for whoever compares a further specimen with this one
-  Store* store = nullptr;                           ///< of the case; not null
+  Inputs* inputs = nullptr;                         ///< of the case; not null
+  Cache* cache = nullptr;                           ///< of what is made of the case; not null
+  ProductSink* sink = nullptr;                      ///< of what is made of the case; null: nobody looks
 };
+
+/// The key of a simulated cut of a specimen. @param held  digest of the specimen, held and planned on: all that its
+/// cuts depend on beside their setting.
+[[nodiscard]] CacheKey calibration_run_key(const std::string& held, const RunSetting& setting);
 
 /// What is simulated. Defaults: the paper's grid; for the fit, seven cuts of each specimen, one or two near the place
 /// that they point to, and one that checks.
@@ -50,12 +49,12 @@ struct CalibrationRequest {
 [[nodiscard]] std::vector<std::string> validate(const CalibrationRequest& request);
 
 /// Finds the settings with which simulated cuts come out as the photographed ones. Simulations run side by side, one
-/// thread each; those that the store has are not made again. A simulation that fails is a row.
+/// thread each; those that the cache has are not made again. A simulation that fails is a row.
 /// @throws CaseError for a case that cannot be held, stretched or planned (the file is named); DataError for a
 /// photograph
 ///         that is mirrored, turned far, or does not show a ring round the tumour; InvalidArgument for a request that
-///         is not valid; Cancelled when the monitor asks to stop: finished runs are in the store.
+///         is not valid; Cancelled when the monitor asks to stop: finished runs are in the cache.
 [[nodiscard]] Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request,
-                                    RunStore& runs, Workers& workers, Monitor& monitor);
+                                    Cache& runs, Workers& workers, Monitor& monitor);
 
 }  // namespace incise

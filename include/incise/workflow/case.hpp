@@ -1,10 +1,11 @@
 #pragma once
 
+#include <incise/core/names.hpp>
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/cutting/thermal.hpp>
 #include <incise/cutting/tool.hpp>
-#include <incise/geometry/tet_mesh.hpp>
 #include <incise/evaluation/evaluation.hpp>
+#include <incise/geometry/tet_mesh.hpp>
 #include <incise/imaging/segmentation.hpp>
 #include <incise/mechanics/constraints.hpp>
 #include <incise/mechanics/material.hpp>
@@ -24,6 +25,12 @@ struct MeshingChoice {
   int tets = 0;                     ///< count to aim for by scaling both lengths; 0: as the lengths give
   std::optional<double> survey_mm;  ///< of the coarse mesh with which the planned cut is found in the unstretched body; absent: the default coarse_mm
 };
+inline void describe(Visitor& v, MeshingChoice& m) {
+  v("fine_mm", m.fine_mm, "Edge length where the needle and its neighbourhood pass.", kPositive);
+  v("coarse_mm", m.coarse_mm, "Longest edge length, far from the cut.", kPositive);
+  v("tets", m.tets, "Count to aim for; 0: as the lengths give.", kNotNegative);
+  v("survey_mm", m.survey_mm, "Edge length of the mesh with which the planned cut is found at rest.", kPositive);
+}
 
 /// What the tets with one value of the mesh's cell array `label` are made of, where they differ from the rest.
 struct LabelMaterial {
@@ -31,35 +38,59 @@ struct LabelMaterial {
   std::optional<double> youngs_modulus_kpa;
   std::optional<double> poissons_ratio;
 };
+inline void describe(Visitor& v, LabelMaterial& m) {
+  v("label", m.label, "Value of the mesh's cell array 'label'.");
+  v("youngs_modulus_kpa", m.youngs_modulus_kpa, "Young's modulus there; absent: as elsewhere.");
+  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio there; absent: as elsewhere.");
+}
 
 /// Which differences of material within the specimen a study takes from its mesh.
 struct MaterialVariation {
   bool from_mesh = false;             ///< cell data youngs_modulus_kpa, poissons_ratio, fibre_direction (those that are there)
   std::vector<LabelMaterial> labels;  ///< laid over `from_mesh`; tets with a label that is not listed keep what they have
 };
+inline void describe(Visitor& v, MaterialVariation& m) {
+  v("from_mesh", m.from_mesh, "Whether the mesh's cell data hold.");
+  v("labels", m.labels, "Parts of the mesh with another stiffness.");
+}
 
 /// How tough the tets with one value of the mesh's cell array `label` are.
 struct LabelToughness {
   int label = 0;
   double toughness = 1.0;  ///< relative to the reference tissue, > 0
 };
+inline void describe(Visitor& v, LabelToughness& m) {
+  v("label", m.label, "Value of the mesh's cell array 'label'.");
+  v("toughness", m.toughness, "There; the reference tissue has 1.", kPositive);
+}
 
 /// How tough the specimen is against cutting, relative to the tissue for which speed and dullness hold; 1 where nothing else is said.
 struct ToughnessVariation {
   bool from_mesh = false;              ///< the mesh's cell array `toughness`
   std::vector<LabelToughness> labels;  ///< laid over `from_mesh`
 };
+inline void describe(Visitor& v, ToughnessVariation& m) {
+  v("from_mesh", m.from_mesh, "Whether the mesh's cell data toughness hold.");
+  v("labels", m.labels, "Parts of the mesh that take more or less dose to cut.");
+}
 
 enum class TumorConfiguration {
   Stretched,  ///< the edge is marked on the clamped and stretched tissue, as in the paper
   Rest,       ///< on the tissue as it was scanned
 };
+inline constexpr std::array<std::string_view, 2> kTumorConfigurationNames{"stretched", "rest"};
+[[nodiscard]] constexpr Names names_of(TumorConfiguration) {
+  return kTumorConfigurationNames;
+}
 
 enum class CompensationMethod {
   Default,  ///< pass by pass, until the cut lies where it was intended
   Paper,    ///< each waypoint moves once by the error measured there
 };
-[[nodiscard]] std::string_view to_string(CompensationMethod method);  ///< default, paper
+inline constexpr std::array<std::string_view, 2> kCompensationMethodNames{"default", "paper"};
+[[nodiscard]] constexpr Names names_of(CompensationMethod) {
+  return kCompensationMethodNames;
+}
 
 /// How the path is corrected.
 struct CompensationChoice {
@@ -67,6 +98,11 @@ struct CompensationChoice {
   ContourKind observable = ContourKind::Centerline;  ///< which line of the cut is brought to its target; the paper's method: the mid-line
   double bias_mm = 0.0;  ///< expected error of the real cut less that of the simulated one, positive = farther out; the paper's method: none
 };
+inline void describe(Visitor& v, CompensationChoice& m) {
+  v("method", m.method, "How the path is corrected.");
+  v("observable", m.observable, "Which line of the cut is brought to its target.");
+  v("bias_mm", m.bias_mm, "Expected error of the real cut less that of the simulated one.");
+}
 
 /// What a study asks for, whatever files it came from. Every default is written here or in the structs that it holds.
 struct Case {

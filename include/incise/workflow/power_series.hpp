@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/calibration/power_choice.hpp>
+#include <incise/core/cache.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/virtual_bench/body.hpp>
@@ -28,15 +29,10 @@ struct PowerRequest {
 /// Every violation, one sentence each with the field's name; empty: valid.
 [[nodiscard]] std::vector<std::string> validate(const PowerRequest& request);
 
-/// Where a series finds cuts that are there already and keeps those that it makes.
-class PowerCutStore {
- public:
-  virtual ~PowerCutStore() = default;
-  /// @returns nothing where there is none, or one that was made from something else.
-  virtual std::optional<PowerCut> load(const PowerSubject& subject, double power_w, double speed_mm_s,
-                                       Monitor& monitor) = 0;
-  virtual void save(const PowerSubject& subject, const PowerCut& cut) = 0;
-};
+/// The key of a virtual cut: the specimen with all its hidden parameters, the bench's resolution, power, speed, the
+/// build and the instruction set. Its name is no part of it.
+[[nodiscard]] CacheKey power_cut_key(const Specimen& specimen, const BenchResolution& resolution, double power_w,
+                                     double speed_mm_s);
 
 /// What a series found. Virtual.
 struct PowerSeries {
@@ -48,13 +44,13 @@ struct PowerSeries {
 };
 
 /// Cuts every specimen of the virtual bench as planned at every power, chooses the lowest that fits (see choose_power),
-/// and cuts every specimen at that power at every speed. Cuts run side by side, one thread each; those that the store
+/// and cuts every specimen at that power at every speed. Cuts run side by side, one thread each; those that the cache
 /// has are not made again. A cut that fails is a row.
 /// @param subjects  at least one.
 /// @throws InvalidArgument for a request that is not valid; Cancelled when the monitor asks to stop: finished cuts are
 /// in
 ///         the store.
 [[nodiscard]] PowerSeries run_power_series(const std::vector<PowerSubject>& subjects, const PowerRequest& request,
-                                           PowerCutStore& store, Workers& workers, Monitor& monitor);
+                                           Cache& kept, Workers& workers, Monitor& monitor);
 
 }  // namespace incise

@@ -20,6 +20,10 @@ struct MeshProduct {
   MeshingResult meshing;
   Contour planned_cut_rest;  ///< where the planned cut lies in the unstretched body, mm; empty when the mesh was given
 };
+inline void describe(Visitor& v, MeshProduct& m) {
+  v("meshing", m.meshing, "The mesh and how it was made.");
+  v("planned_cut_rest", m.planned_cut_rest, "Where the planned cut lies in the unstretched body.");
+}
 
 /// Errors of the mid-line in one layer against the lateral margin, as seen along the approach; absent: no mid-line there.
 struct LayerErrors {
@@ -53,5 +57,11 @@ struct Correction {
   std::optional<double> floor_mm;                 ///< see mesh_floor_mm; the default method only
   std::optional<ConvergedCompensation> iteration;  ///< pass by pass; the default method only
 };
+inline void describe(Visitor& v, Correction& c) {
+  v("method", c.method, "How the path was corrected.");
+  v("moves", c.moves, "The corrected path and how far its waypoints moved.");
+  v("floor_mm", c.floor_mm, "Mean |error| that the mesh alone leaves.");
+  v("iteration", c.iteration, "Pass by pass.");
+}
 
 }  // namespace incise

@@ -3,11 +3,12 @@
 #include <incise/calibration/calibration_run.hpp>
 #include <incise/calibration/stiffness_trend.hpp>
 #include <incise/calibration/tissue_scenarios.hpp>
+#include <incise/core/cache.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/planning/robust_compensation.hpp>
 #include <incise/workflow/case.hpp>
-#include <incise/workflow/store.hpp>
+#include <incise/workflow/inputs.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <optional>
@@ -43,14 +44,13 @@ struct ScenarioRun {
   std::string problem;               ///< why it could not be carried out; empty: it was
 };
 
-/// Where finished scenarios are kept, so that none is simulated twice.
-class ScenarioRunStore {
- public:
-  virtual ~ScenarioRunStore() = default;
-  /// The run with that setting along that path, if there is one made from today's inputs.
-  virtual std::optional<ScenarioRun> load(const RunSetting& setting, const ToolPath& path, Monitor& monitor) = 0;
-  virtual void save(const ScenarioRun& run, const ToolPath& path) = 0;
-};
+inline void describe(Visitor& v, ScenarioRun& r) {
+  v("setting", r.setting, "The tissue.");
+  v("errors", r.errors, "Absent: no closed ring.");
+  v("problem", r.problem, "Why it could not be carried out; empty: it was.");
+}
+/// The key of a scenario's cut. @param held  digest of the held specimen, as for calibration_run_key.
+[[nodiscard]] CacheKey scenario_run_key(const std::string& held, const RunSetting& setting, const ToolPath& path);
 
 /// The tissues that were simulated for a correction.
 struct ScenarioSet {
@@ -77,10 +77,10 @@ struct RobustCorrection {
 /// @param done  the case's study, with a correction by the default method.
 /// A tissue that cannot be stretched counts as one that left nothing to measure.
 /// @throws CaseError where force and calibration do not go together; Cancelled when the monitor asks to stop: finished
-/// runs are in the store.
-[[nodiscard]] RobustCorrection correct_robustly(const Case& settings, Store& store, const Study& done,
+/// runs are in the cache.
+[[nodiscard]] RobustCorrection correct_robustly(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
                                                 const CalibratedBelief& belief, const ScenarioRequest& request,
-                                                ScenarioRunStore& runs, Workers& workers, Monitor& monitor);
+                                                Workers& workers, Monitor& monitor);
 
 struct CorrectionOutlook {
   ScenarioSet scenarios;
@@ -89,8 +89,8 @@ struct CorrectionOutlook {
 };
 
 /// The same cuts along the intended and the corrected path alone: what the correction is expected to win.
-[[nodiscard]] CorrectionOutlook foresee_correction(const Case& settings, Store& store, const Study& done,
-                                                   const CalibratedBelief& belief, const ScenarioRequest& request,
-                                                   ScenarioRunStore& runs, Workers& workers, Monitor& monitor);
+[[nodiscard]] CorrectionOutlook foresee_correction(const Case& settings, Inputs& inputs, Cache& cache,
+                                                   const Study& done, const CalibratedBelief& belief,
+                                                   const ScenarioRequest& request, Workers& workers, Monitor& monitor);
 
 }  // namespace incise

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <incise/core/cache.hpp>
+#include <incise/core/error.hpp>
 #include <incise/core/monitor.hpp>
+#include <incise/core/names.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/workflow/case.hpp>
+#include <incise/workflow/inputs.hpp>
+#include <incise/workflow/product_sink.hpp>
 #include <incise/workflow/products.hpp>
-#include <incise/workflow/store.hpp>
 
 #include <memory>
 #include <optional>
@@ -16,14 +20,21 @@ namespace incise {
 
 /// The steps from a scan to a corrected path, in order; each needs those before it.
 enum class Stage { Segment, Mesh, Stretch, Plan, Simulate, Compensate, Verify };
-[[nodiscard]] std::string_view to_string(Stage stage);  ///< segment, mesh, stretch, plan, simulate, compensate, verify
+inline constexpr std::array<std::string_view, 7> kStageNames{"segment",  "mesh",       "stretch", "plan",
+                                                             "simulate", "compensate", "verify"};
+[[nodiscard]] constexpr Names names_of(Stage) {
+  return kStageNames;
+}
 
 enum class StageState {
   Computed,
-  Reused,    ///< the store had it, made from the same settings and inputs
-  Skipped,   ///< not needed: the product was given, or a later product was reused
+  Reused,   ///< the cache had it, made from the same settings and inputs
+  Skipped,  ///< not needed: the product was given, or a later product was reused
 };
-[[nodiscard]] std::string_view to_string(StageState state);  ///< computed, reused, skipped
+inline constexpr std::array<std::string_view, 3> kStageStateNames{"computed", "reused", "skipped"};
+[[nodiscard]] constexpr Names names_of(StageState) {
+  return kStageStateNames;
+}
 
 struct StageReport {
   Stage stage;
@@ -56,17 +67,53 @@ struct Study {
 /// Why a stretch is of no use and what may help, for a person; empty when it is a success.
 [[nodiscard]] std::string explain_stretch(const StaticResult& stretched);
 
-/// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch, plan, cut, correct
-/// the path by the measured error and cut again, once or until the cut lies where it was intended. Products that the store already has are used; new ones are saved as soon as they are made.
-/// @throws CaseError or DataError of the stage that cannot use what it was given; Cancelled when the monitor asks to stop between products.
-[[nodiscard]] Study run_study(const Case& settings, Store& store, Stage until, Workers& workers, Monitor& monitor);
+/// Most passes of the compensation after the first cut; four more where something argues against the nearest ring.
+inline constexpr int kUsualPasses = 3;
+inline constexpr int kMostPasses = 7;
+/// The name of a cut along the path of a pass; that of pass 0 is as_planned.
+[[nodiscard]] std::string name_of_pass(int pass);
+/// The slot of a cache in which a cut under way is kept. @param cut  as_planned, pass_1 …, corrected.
+[[nodiscard]] std::string checkpoint_slot(const std::string& cut);
+
+/// A cut was interrupted; what was done of it is kept.
+class CutInterrupted : public Cancelled {
+ public:
+  CutInterrupted(const std::string& what, std::string slot) : Cancelled(what), slot_(std::move(slot)) {}
+  /// Of the cache, in which its checkpoint is.
+  [[nodiscard]] const std::string& slot() const { return slot_; }
+
+ private:
+  std::string slot_;
+};
+
+/// How far a run goes, and what it does with cuts that were interrupted.
+struct RunOptions {
+  Stage until = Stage::Verify;
+  bool must_resume =
+      false;  ///< go on from the checkpoint of the cut that comes next, or refuse before anything is computed
+  double checkpoint_s =
+      30.0;  ///< least time between two checkpoints of a cut; one that is interrupted always leaves one
+};
+
+/// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch,
+/// plan, cut, correct the path by the measured error and cut again, once or until the cut lies where it was intended.
+/// Products that the cache already has are used; new ones are kept as soon as they are made, a cut under way at each
+/// checkpoint.
+/// @throws CaseError or DataError of the stage that cannot use what it was given; Cancelled when the monitor asks to
+/// stop between products; CutInterrupted when it asks to within a cut.
+[[nodiscard]] Study run_study(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options,
+                              Workers& workers, Monitor& monitor, ProductSink& sink);
+[[nodiscard]] Study run_study(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options,
+                              Workers& workers, Monitor& monitor);
 
 /// The single stages, for those who have the inputs in memory.
 /// Evaluates a simulated incision: mid-line and, for a ring, inner edge; and heat along the path.
 /// @param followed  by the tool: its speeds and depths count for heat.  @param tets  of the mesh before the cut.
 [[nodiscard]] SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended,
                                  std::size_t tets);
-[[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy, Store& store, Workers& workers,
+[[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
+                                                  const std::optional<Contour>& tumor_edge,
+                                                  const std::optional<Contour>& line, Workers& workers,
                                                   Monitor& monitor);
 /// The specimen as the case holds it: material (label by label, where it varies), constraints (the default ones, where none are given)
 /// and gravity on a mesh. @throws CaseError as make_tissue_model and material_field.
@@ -82,11 +129,13 @@ struct Study {
                                          TriMesh surface, const std::optional<Contour>& drawn_edge);
 /// How a case's cut is simulated; the tumour's surface is not in it.
 [[nodiscard]] IncisionSettings incision_settings(const Case& settings);
-/// @param tumor_surface  closed, stretched tissue before the cut, mm; without triangles: not known.
-/// @param from  an interrupted cut along this path; nothing: from the beginning.  @param keep  see continue_incision.
+/// The same for a cut along a path: layers down to its deepest place. @param tumor_surface  closed, stretched
+/// tissue before the cut, mm; without triangles: not known.
+[[nodiscard]] IncisionSettings incision_settings_for(const Case& settings, const ToolPath& path,
+                                                     const TriMesh& tumor_surface);
+/// A cut along a path from its beginning, the tumour's surface not known, and its evaluation.
 [[nodiscard]] SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,
-                                         const ToolPath& path, const ToolPath& intended, Workers& workers, Monitor& monitor,
-                                         const TriMesh& tumor_surface = {},
-                                         std::optional<IncisionProgress> from = {}, const ProgressKeeper& keep = {});
+                                         const ToolPath& path, const ToolPath& intended, Workers& workers,
+                                         Monitor& monitor);
 
 }  // namespace incise

@@ -213,9 +213,8 @@ def results():
     put("photographed_cut", "ring", json.dumps(dict(cut, tumor_edge={"x_mm": [1, 0, -1], "y_mm": [0, 1, 0], "z_mm": [0, 0, 0]}, approach=[0, 0, -1], virtual=True)))
     put("outcome", "success", '{"outcome": "success"}')
     put("specimen", "drawn", '{"schema": "incise.specimen/1", "seed": 7}')
-    head = b"INCISECP" + struct.pack("<I", 1)
-    body = b"0" * 64 + b"incise 0.1.0\n" + bytes(range(64))
-    put("checkpoint", "begun", head + struct.pack("<Q", len(head) + 8 + len(body)) + body)
+    tissue, doses_and_bonds, pose = struct.pack("<5Q", 0, 0, 0, 0, 0), struct.pack("<3Q", 0, 0, 0), struct.pack("<9d", *range(9))
+    put("checkpoint", "begun", tissue + doses_and_bonds + pose + struct.pack("<dqQqQQd", 0.5, 3, 0, 0, 0, 0, 1.5))
 
 
 if __name__ == "__main__":

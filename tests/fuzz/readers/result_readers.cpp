@@ -2,11 +2,13 @@
 
 #include "reader.hpp"
 
+#include <incise/core/described_bytes.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
+#include <incise/procedure/incision_progress.hpp>
 #include <incise/storage/bench_files.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/case_file.hpp>
-#include <incise/storage/checkpoint_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/power_file.hpp>
 #include <incise/storage/published_table_file.hpp>
@@ -33,15 +35,33 @@ void calibration(const fs::path& file) {
 std::vector<Reader> all_readers() {
   return {
       {"case", "case", {"case.yaml"}, study_case},
-      {"registration", "result", {"registration.json"}, [](const fs::path& file) { static_cast<void>(read_registration(file)); }},
+      {"registration",
+       "result",
+       {"registration.json"},
+       [](const fs::path& file) { static_cast<void>(read_registration(file)); }},
       {"calibration", "result", {"calibration.json"}, calibration},
-      {"evaluation", "result", {"cut.json"}, [](const fs::path& file) { static_cast<void>(read_evaluation_file(file)); }},
-      {"photographed_cut", "result", {"cut.json"}, [](const fs::path& file) { static_cast<void>(read_photographed_cut(file)); }},
-      {"outcome", "result", {"incision.json"}, [](const fs::path& file) { static_cast<void>(read_outcome(read_json(file), "outcome", file)); }},
+      {"evaluation",
+       "result",
+       {"cut.json"},
+       [](const fs::path& file) { static_cast<void>(read_evaluation_file(file)); }},
+      {"photographed_cut",
+       "result",
+       {"cut.json"},
+       [](const fs::path& file) { static_cast<void>(read_photographed_cut(file)); }},
+      {"outcome",
+       "result",
+       {"incision.json"},
+       [](const fs::path& file) { static_cast<void>(read_outcome(read_json(file), "outcome", file)); }},
       {"specimen", "result", {"specimen.json"}, [](const fs::path& file) { static_cast<void>(read_specimen(file)); }},
-      {"published_table", "csv", {"table.csv"}, [](const fs::path& file) { static_cast<void>(read_published_table(file)); }},
+      {"published_table",
+       "csv",
+       {"table.csv"},
+       [](const fs::path& file) { static_cast<void>(read_published_table(file)); }},
       {"timed_cuts", "csv", {"cuts.csv"}, [](const fs::path& file) { static_cast<void>(read_timed_cuts(file)); }},
-      {"checkpoint", "checkpoint", {"checkpoint"}, [](const fs::path& file) { static_cast<void>(CheckpointFile(file)); }},
+      {"checkpoint",
+       "checkpoint",
+       {"checkpoint"},
+       [](const fs::path& file) { static_cast<void>(from_bytes<IncisionProgress>(read_text(file), file)); }},
   };
 }
 

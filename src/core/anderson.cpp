@@ -1,8 +1,4 @@
-#include "planning/anderson.hpp"
-
-#include <incise/geometry/types.hpp>
-
-#include <Eigen/Cholesky>
+#include <incise/core/anderson.hpp>
 
 namespace incise {
 
@@ -21,11 +17,7 @@ std::vector<double> accelerated_step(const IterationPoint& base, std::span<const
       moved.col(j) = as_vector(base.x) - as_vector(other.x);
       changed.col(j) = as_vector(base.f) - as_vector(other.f);
     }
-    // The combination of the earlier changes that comes nearest to f; each column's own noise is what a change of f
-    // that says nothing would look like.
-    Eigen::MatrixXd normal = changed.transpose() * changed;
-    normal.diagonal().array() += 2.0 * noise * noise * static_cast<double>(n) + 1e-12 * normal.trace();
-    const Vector share = normal.ldlt().solve(changed.transpose() * step);
+    const Vector share = anderson_weights<Eigen::Dynamic>(changed, step, noise);
     step -= (moved + changed) * share;
   }
   std::vector<double> next(base.x.size());

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <incise/core/cache.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/storage/case_file.hpp>
+#include <incise/workflow/inputs.hpp>
+#include <incise/workflow/product_sink.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace incise {
+
+/// What every manifest of a run says beside settings and inputs.
+struct RunContext {
+  std::string command;  ///< the command line
+  std::uint64_t seed = 0;
+  int threads = 1;
+};
+
+/// The folder of a run: what its case is given comes from the case's files, what it makes is kept in a cache, and each
+/// product that people look at has a folder of its own, written under a temporary name and renamed when complete:
+///
+///   cache/       what the next run takes in place of computing it: one file for each stage, and one for a cut under way,
+///                as_planned.checkpoint.bin; may be removed at any time
+///   labels/      labels.nrrd, occupancy.nrrd, segment.json
+///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
+///   stretched/   deformed.vtu, deform.json
+///   plan/        path.json, path.vtp, plan.json
+///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, steps.csv, removed.vtu,
+///                frames.pvd, frames/, kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv,
+///                inner_edge_reference.csv
+///   correction/  path.json, path.vtp, compensate.json, history.csv, errors.csv
+///   corrected/   as as_planned/
+///   robust/      path.json, path.vtp, robust.json: see write_robust; removed when a product it depends on is remade
+///   assessment/  assess.json: see write_assessment; removed likewise
+///
+/// and in each `manifest.json` and `stage.json`: the key of what is in it and a digest of each of its files. No run
+/// reads a product's folder: one of another key is written anew, and one of which a file was changed since is refused.
+/// When a product changes, the folders of those after it are removed; the run that goes on writes them again.
+class RunFolder : public Inputs, public ProductSink {
+ public:
+  /// @param root  is made if missing. @throws DataError if that fails.
+  RunFolder(CaseFile file, std::filesystem::path root, RunContext context);
+
+  [[nodiscard]] const CaseFile& case_file() const { return file_; }
+  [[nodiscard]] const std::filesystem::path& root() const { return root_; }
+  [[nodiscard]] Cache& cache() { return cache_; }
+  /// Of a product. @param name  see ProductNote.
+  [[nodiscard]] std::filesystem::path folder(const std::string& name) const { return root_ / name; }
+  /// Whether any product is there.
+  [[nodiscard]] bool has_products() const;
+
+  CtVolume read_ct(Monitor& monitor) override;
+  std::string ct_digest(Monitor& monitor) override;
+  std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) override;
+  std::optional<Contour> read_tumor_edge() override;
+  std::optional<TriMesh> read_tumor_surface() override;
+  std::optional<Contour> read_line() override;
+  std::optional<ToolPath> read_given_path() override;
+
+  void labels(const ProductNote& note, const Segmentation& segmentation) override;
+  void mesh(const ProductNote& note, const MeshProduct& product) override;
+  void stretched(const ProductNote& note, const TissueModel& model, const StaticResult& result) override;
+  void plan(const ProductNote& note, const ToolPath& path) override;
+  void cut(const ProductNote& note, const TissueModel& model, const StaticResult& stretched,
+           const SimulatedCut& cut) override;
+  void correction(const ProductNote& note, const Correction& correction) override;
+  void absent(const std::string& name) override;
+  void verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
+
+  /// Adds what an earlier `assess` of this folder advised against the path: as planned, that the simulation is not to
+  /// be used; corrected, anything but to compensate.
+  void add_advice_to(Verdict& verdict, bool is_corrected) const;
+
+  /// Before a run: removes the verdicts beside the paths, which the run notes again at its end, and a program and a
+  /// summary that were made with other settings or inputs than the case's. Says so. @throws DataError where an input
+  /// cannot be read.
+  void remove_what_is_out_of_date(Monitor& monitor);
+
+  /// Of the case, or of its scan or mesh. @throws DataError where that cannot be read.
+  [[nodiscard]] std::string specimen_id();
+  /// A manifest for an output folder of this run. @param verdict  of the run; null: the folder has none.
+  void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);
+
+ private:
+  [[nodiscard]] ToolPath with_specimen(ToolPath path);
+  [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
+  [[nodiscard]] Manifest manifest_now(double wall_s);
+  /// Whether a result's manifest has the settings, inputs, version and specimen that this case has now.
+  [[nodiscard]] bool is_made_as_now(const std::filesystem::path& result);
+  /// Writes the folder of a product, unless it is there already. @throws DataError where a file of it was changed
+  /// since.
+  void write(const ProductNote& note, const std::function<void(const std::filesystem::path&)>& fill);
+
+  CaseFile file_;
+  std::filesystem::path root_;
+  RunContext context_;
+  Cache cache_;
+  std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
+};
+
+/// The rest mesh with what a deformation did to it: point data `displacement_mm` and `position_mm`, cell data
+/// `von_mises_kpa`.
+[[nodiscard]] TetMesh deformed_mesh(const TissueModel& model, const TissueState& state);
+
+}  // namespace incise

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/geometry/contour.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+#include <incise/geometry/tool_path.hpp>
+#include <incise/geometry/volume.hpp>
+
+#include <optional>
+#include <string>
+
+namespace incise {
+
+/// What a run is given, wherever it comes from. A specimen is a CT, or a mesh.
+class Inputs {
+ public:
+  virtual ~Inputs() = default;
+
+  virtual CtVolume read_ct(Monitor& monitor) = 0;
+  /// Hash of all that read_ct depends on; by default of what it gives.
+  virtual std::string ct_digest(Monitor& monitor);
+  virtual std::optional<TetMesh> read_specimen_mesh(Monitor&) {
+    return std::nullopt;
+  }  ///< nothing: the mesh is made from the CT
+  virtual std::optional<Contour> read_tumor_edge() { return std::nullopt; }
+  /// The tumour's closed surface, in the configuration of its edge; nothing: only the edge is known.
+  virtual std::optional<TriMesh> read_tumor_surface() { return std::nullopt; }
+  virtual std::optional<Contour> read_line() { return std::nullopt; }  ///< the curve of an open cut
+  virtual std::optional<ToolPath> read_given_path() {
+    return std::nullopt;
+  }  ///< a path to follow in place of the planned one
+};
+
+}  // namespace incise
