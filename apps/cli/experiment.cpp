@@ -85,8 +85,12 @@ double mean_modulus_kpa(const ExperimentJson& calibration) {
 class Experiment {
  public:
   Experiment(ExperimentSettings settings, const CommonOptions& options, Console& console)
-      : settings_(std::move(settings)), options_(options), console_(console), root_(options.required_output("experiment")),
-        truth_(settings_.truth.empty() ? root_ / "truth" : settings_.truth), threads_(options.context().threads) {
+      : settings_(std::move(settings)),
+        options_(options),
+        console_(console),
+        root_(options.required_output("experiment")),
+        truth_(settings_.truth.empty() ? root_ / "truth" : settings_.truth),
+        threads_(options.context().threads) {
     for (std::uint64_t i = 0; i < settings_.specimens; ++i) {
       Trial trial;
       trial.name = fmt::format("S{}", i + 1);
@@ -415,7 +419,8 @@ void Experiment::compare() {
 /// Every command in an order in which they could be given by hand. 4 is an answer: not acceptable.
 void Experiment::write_commands() const {
   write_atomically(root_ / "commands.sh", [&](std::ostream& out) {
-    out << "#!/bin/sh\n# The commands of this virtual experiment. Case files and tumor.csv are written between them by `incise experiment`.\nset -e\n"
+    out << "#!/bin/sh\n# The commands of this virtual experiment. Case files and tumor.csv are written between them by "
+           "`incise experiment`.\nset -e\n"
            "incise() { command incise \"$@\" || [ $? -eq 4 ]; }\n";
     const auto write = [&out](const std::string& title, const std::vector<std::string>& lines) {
       out << "\n# " << title << '\n';

@@ -1,5 +1,7 @@
 #include <incise/core/cache.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/isa.hpp>
+#include <incise/core/version.hpp>
 
 #include <fmt/format.h>
 
@@ -29,7 +31,9 @@ std::string header_of(const CacheKey& key, std::string_view payload) {
 
 }  // namespace
 
-CacheKey::CacheKey(std::string_view stage, int code) : stage_(stage), parts_(fmt::format("{} {}\n", stage, code)) {}
+CacheKey::CacheKey(std::string_view stage)
+    : stage_(stage),
+      parts_(fmt::format("{}\n{} {} {}\n", stage, version(), source_commit(), to_string(active_isa()))) {}
 
 CacheKey& CacheKey::add_text(std::string_view text) {
   parts_ += fmt::format("{} {}\n", text.size(),

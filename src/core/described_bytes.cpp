@@ -68,7 +68,7 @@ void ByteWriter::text(const Field&, std::string& value) {
   bytes_ += value;
 }
 
-void ByteWriter::choice(const Field&, std::size_t& value, std::span<const std::string_view>) {
+void ByteWriter::choice(const Field&, std::size_t& value, Names) {
   append(bytes_, static_cast<std::uint32_t>(value));
 }
 
@@ -123,7 +123,7 @@ void ByteReader::text(const Field& field, std::string& value) {
   value = std::string(take(field, size));
 }
 
-void ByteReader::choice(const Field& field, std::size_t& value, std::span<const std::string_view> names) {
+void ByteReader::choice(const Field& field, std::size_t& value, Names names) {
   value = number_in<std::uint32_t>(take(field, sizeof(std::uint32_t)));
   if (value >= names.size()) refuse(field, fmt::format("{}", value), fmt::format("a number below {}", names.size()));
 }

@@ -163,8 +163,7 @@ void RunFolder::write(const ProductNote& note, const std::function<void(const st
   AtomicFolder target(target_folder);
   fill(target.path());
   write_manifest_to(target.path(), note.wall_s);
-  write_json(target.path() / kStageFile,
-             {{"key", key}, {"wall_s", note.wall_s}, {"files", digests_in(target.path())}});
+  write_json(target.path() / kStageFile, {{"key", key}, {"wall_s", note.wall_s}, {"files", digests_in(target.path())}});
   // What was made from the older product is of no use any more, and a report must not mix the two. It goes first: a run
   // that is killed here leaves nothing that would look like the new product's.
   for (const char* made_of_it : kMadeOfThem) remove_replaceable(root_ / made_of_it);
@@ -192,9 +191,10 @@ bool RunFolder::is_made_as_now(const std::filesystem::path& result) {
 
 void RunFolder::remove_what_is_out_of_date(Monitor& monitor) {
   if (has_products() && !std::filesystem::exists(root_ / "cache")) {
-    monitor.message(Severity::Notice, fmt::format("{}: its results have no cache beside them, as those of version 0.1.0: "
-                                                  "all of them are computed again",
-                                                  root_.string()));
+    monitor.message(Severity::Notice,
+                    fmt::format("{}: its results have no cache beside them, as those of version 0.1.0: "
+                                "all of them are computed again",
+                                root_.string()));
   }
   // What a path is worth depends on more than the path: the run that is about to begin says it again at its end.
   for (const char* product : {"plan", "correction"}) {

@@ -473,7 +473,7 @@ class CalibrationRunner {
 }  // namespace
 
 CacheKey calibration_run_key(const std::string& held, const RunSetting& setting) {
-  return CacheKey("calibration_run", 1).add_text(held).add(setting);
+  return CacheKey("calibration_run").add_text(held).add(setting);
 }
 
 Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, Cache& runs,

@@ -1,8 +1,6 @@
 #include "workflow/calibration_body.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/isa.hpp>
-#include <incise/core/version.hpp>
 #include <incise/workflow/assess.hpp>
 #include <incise/workflow/cut_doubts.hpp>
 
@@ -70,8 +68,7 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
 std::string CalibrationBody::digest_of_all() const {
   const Case& settings = subject_.settings;
   const RunSetting none{.speed_mm_s = 1.0, .dullness = 1.0, .stiffness_of_case = 1.0};
-  CacheKey key("held", 1);
-  key.add_text(version()).add_text(source_commit()).add_text(to_string(active_isa()));
+  CacheKey key("held");
   key.add(study_.model->mesh)
       .add(settings.material)
       .add(settings.variation)

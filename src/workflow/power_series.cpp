@@ -1,7 +1,5 @@
 #include <incise/core/batch_monitor.hpp>
 #include <incise/core/error.hpp>
-#include <incise/core/isa.hpp>
-#include <incise/core/version.hpp>
 #include <incise/workflow/planned_bench_cut.hpp>
 #include <incise/workflow/power_series.hpp>
 
@@ -182,8 +180,7 @@ void check_list(std::vector<std::string>& violations, const char* name, const st
 }  // namespace
 
 CacheKey power_cut_key(const Specimen& specimen, const BenchResolution& resolution, double power_w, double speed_mm_s) {
-  return CacheKey("power_cut", 1)
-      .add_text(fmt::format("{} {} {}", version(), source_commit(), to_string(active_isa())))
+  return CacheKey("power_cut")
       .add(specimen)
       .add(resolution)
       .add(power_w)

@@ -217,7 +217,7 @@ class TissueCuts {
 }  // namespace
 
 CacheKey scenario_run_key(const std::string& held, const RunSetting& setting, const ToolPath& path) {
-  return CacheKey("scenario_run", 1).add_text(held).add(setting).add(unmarked(path));
+  return CacheKey("scenario_run").add_text(held).add(setting).add(unmarked(path));
 }
 
 RobustCorrection correct_robustly(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,

@@ -1,8 +1,6 @@
 #include <incise/core/error.hpp>
-#include <incise/core/isa.hpp>
 #include <incise/core/memory.hpp>
 #include <incise/core/problem_text.hpp>
-#include <incise/core/version.hpp>
 #include <incise/cutting/tool_program.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/geometry/surface_query.hpp>
@@ -47,13 +45,24 @@ bool fits(const TissueModel& model, const TissueState& state) {
          std::ranges::all_of(state.positions, [](const Vec3& p) { return p.allFinite(); });
 }
 
+template <class Item>
+bool are_of(const TissueModel& model, const std::vector<Item>& items) {
+  return std::ranges::all_of(
+      items, [&model](const Item& item) { return item.tet.is_valid() && item.tet.index() < model.mesh.tets.size(); });
+}
+
+/// Whether all corners of tets or triangles are vertices.
+template <class Cell>
+bool are_of(const Points& vertices, const std::vector<Cell>& cells) {
+  return std::ranges::all_of(cells, [&vertices](const Cell& cell) {
+    return std::ranges::all_of(cell, [&vertices](VertexId v) { return v.is_valid() && v.index() < vertices.size(); });
+  });
+}
+
 bool fits(const TissueModel& model, const CutState& state) {
-  const auto is_of_mesh = [&model](const auto& item) {
-    return item.tet.is_valid() && item.tet.index() < model.mesh.tets.size();
-  };
   return fits(model, state.tissue) && state.dose.size() == model.mesh.tets.size() &&
-         state.tear_dose.size() == model.mesh.tets.size() && std::ranges::all_of(state.bonds, is_of_mesh) &&
-         std::ranges::all_of(state.record.removals, is_of_mesh);
+         state.tear_dose.size() == model.mesh.tets.size() && are_of(model, state.bonds) &&
+         are_of(model, state.record.removals);
 }
 
 bool fits(const TissueModel& model, const std::vector<CutFrame>& frames) {
@@ -62,23 +71,17 @@ bool fits(const TissueModel& model, const std::vector<CutFrame>& frames) {
   });
 }
 
+bool fits(const TissueModel& model, const IncisionProgress& progress) {
+  return fits(model, progress.state) && fits(model, progress.frames);
+}
+
 bool fits(const TissueModel& model, const IncisionResult& result) {
-  const auto is_of_mesh = [&model](const Removal& item) {
-    return item.tet.is_valid() && item.tet.index() < model.mesh.tets.size();
-  };
   const TriMesh& body = result.kerf.body.surface;
   const DepthReached& depth = result.kerf.depth;
   const std::size_t places = depth.profile.course.points.size();
-  return fits(model, result.final_state) && fits(model, result.frames) &&
-         std::ranges::all_of(result.record.removals, is_of_mesh) &&
-         std::ranges::all_of(body.triangles,
-                             [&body](const Triangle& corners) {
-                               return std::ranges::all_of(corners, [&body](VertexId v) {
-                                 return v.is_valid() && v.index() < body.vertices.size();
-                               });
-                             }) &&
-         depth.profile.arclength_mm.size() == places && depth.profile.depth_mm.size() == places &&
-         depth.planned_at_mm.size() == places;
+  return fits(model, result.final_state) && fits(model, result.frames) && are_of(model, result.record.removals) &&
+         are_of(body.vertices, body.triangles) && depth.profile.arclength_mm.size() == places &&
+         depth.profile.depth_mm.size() == places && depth.planned_at_mm.size() == places;
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -148,13 +151,6 @@ class Runner {
                     "Without --resume what is missing is computed from the beginning");
   }
 
-  /// A key of this version of the code, and of the instruction set: kernels of two of them round differently.
-  static CacheKey key_for(std::string_view name) {
-    CacheKey key(name, 1);
-    key.add_text(version()).add_text(source_commit()).add_text(to_string(active_isa()));
-    return key;
-  }
-
   /// How the specimen is held and what it is made of.
   void add_specimen(CacheKey& key) const {
     key.add(settings_.material).add(settings_.variation).add(settings_.gravity_mm_s2).add(settings_.constraints);
@@ -172,30 +168,30 @@ class Runner {
   T product(Stage stage, ProductNote& note, const CacheKey& key, const Make& make, bool may_resume_in_it = false) {
     const auto start = std::chrono::steady_clock::now();
     note.key = key.digest();
-    auto kept = cache_.find<Timed<T>>(note.name, key, monitor_);
-    if (kept && is_usable(note.name, fits_mesh(kept->value))) {
+    bool is_made = false;
+    const auto make_in_time = [&] {
+      if (must_resume_ && !may_resume_in_it) refuse_to_resume(fmt::format("no finished {} of it", to_string(stage)));
+      is_made = true;
+      Timed<T> made{make(), 0.0};
+      made.wall_s = seconds_since(start);
+      return made;
+    };
+    Timed<T> timed = cache_.get_or_make<Timed<T>>(
+        note.name, key, monitor_, [this](const Timed<T>& kept) { return fits_mesh(kept.value); }, make_in_time);
+    note.wall_s = timed.wall_s;
+    if (is_made) {
+      report_done(stage, timed.wall_s);
+    } else {
       study_.stages.push_back({stage, StageState::Reused, seconds_since(start)});
-      note.wall_s = kept->wall_s;
-      return std::move(kept->value);
     }
-    if (must_resume_ && !may_resume_in_it) refuse_to_resume(fmt::format("no finished {} of it", to_string(stage)));
-    Timed<T> made{make(), 0.0};
-    made.wall_s = note.wall_s = seconds_since(start);
-    cache_.keep(note.name, key, made);
-    report_done(stage, made.wall_s);
-    return std::move(made.value);
+    return std::move(timed.value);
   }
 
   /// Whether a product holds together, and with the mesh where it is of one.
   template <class T>
   bool fits_mesh(const T& value) const {
     if constexpr (std::is_same_v<T, StaticResult>) return fits(*study_.model, value.state);
-    if constexpr (std::is_same_v<T, MeshProduct>) {
-      const TetMesh& mesh = value.meshing.mesh;
-      return std::ranges::all_of(mesh.tets, [&mesh](const Tet& tet) {
-        return std::ranges::all_of(tet, [&mesh](VertexId v) { return v.is_valid() && v.index() < mesh.vertices.size(); });
-      });
-    }
+    if constexpr (std::is_same_v<T, MeshProduct>) return are_of(value.meshing.mesh.vertices, value.meshing.mesh.tets);
     if constexpr (std::is_same_v<T, Segmentation>) {
       return value.labels.voxels.size() == value.labels.grid.voxel_count() &&
              value.occupancy.voxels.size() == value.occupancy.grid.voxel_count();
@@ -216,8 +212,8 @@ class Runner {
       study_.stages.push_back({Stage::Segment, StageState::Skipped, 0.0});
       return true;
     }
-    CacheKey key("labels", 1);
-    key.add_text(version()).add_text(source_commit()).add(settings_.segmentation).add_text(inputs_.ct_digest(monitor_));
+    CacheKey key("labels");
+    key.add(settings_.segmentation).add_text(inputs_.ct_digest(monitor_));
     ProductNote note{"labels", {}, 0.0};
     study_.segmentation = product<Segmentation>(Stage::Segment, note, key, [&] {
       return incise::segment(inputs_.read_ct(monitor_), settings_.segmentation, monitor_);
@@ -234,7 +230,7 @@ class Runner {
       mesh = std::move(*given_mesh_);
       study_.stages.push_back({Stage::Mesh, StageState::Skipped, 0.0});
     } else {
-      CacheKey key = key_for("mesh").add(study_.segmentation->occupancy).add(settings_.meshing);
+      CacheKey key = CacheKey("mesh").add(study_.segmentation->occupancy).add(settings_.meshing);
       add_specimen(key);
       add_plan(key);
       ProductNote note{"mesh", {}, 0.0};
@@ -274,7 +270,7 @@ class Runner {
 
   bool stretch_tissue() {
     const TissueModel& model = *study_.model;
-    CacheKey key = key_for("stretched").add(model.mesh);
+    CacheKey key = CacheKey("stretched").add(model.mesh);
     add_specimen(key);
     ProductNote note{"stretched", {}, 0.0};
     study_.stretched = product<StaticResult>(Stage::Stretch, note, key, [&] {
@@ -289,14 +285,14 @@ class Runner {
   }
 
   bool plan() {
-    CacheKey key = key_for("plan").add(study_.model->mesh).add(study_.stretched->state.positions);
+    CacheKey key = CacheKey("plan").add(study_.model->mesh).add(study_.stretched->state.positions);
     add_plan(key);
     ProductNote note{"plan", {}, 0.0};
     study_.plan = product<ToolPath>(Stage::Plan, note, key, [&] {
       return plan_on(settings_, *study_.model, study_.stretched->state.positions, tumor_edge_, line_);
     });
     sink_.plan(note, *study_.plan);
-    CacheKey held = key_for("held").add(study_.model->mesh).add(study_.stretched->state).add(settings_.toughness);
+    CacheKey held = CacheKey("held").add(study_.model->mesh).add(study_.stretched->state).add(settings_.toughness);
     add_specimen(held);
     held_ = held.digest();
     return true;
@@ -306,7 +302,7 @@ class Runner {
   CacheKey key_of_cut(const ToolPath& path) const {
     ToolPath course = unmarked(path);
     course.tumor_edge = study_.plan->tumor_edge;
-    return key_for("cut").add_text(held_).add(course).add(incision_settings_for(settings_, path, placed_tumor()));
+    return CacheKey("cut").add_text(held_).add(course).add(incision_settings_for(settings_, path, placed_tumor()));
   }
 
   /// The tool runs on beyond the start of a ring, but not round it again.
@@ -343,20 +339,11 @@ class Runner {
   };
 
   std::optional<KeptCut> find_cut(const std::string& name, const CacheKey& key, const ToolPath& path) {
-    auto kept = cache_.find<Timed<IncisionResult>>(name, key, monitor_);
-    if (!kept || !is_usable(name, fits(*study_.model, kept->value))) return std::nullopt;
+    auto kept = cache_.find<Timed<IncisionResult>>(
+        name, key, monitor_, [this](const Timed<IncisionResult>& cut) { return fits(*study_.model, cut.value); });
+    if (!kept) return std::nullopt;
     cache_.remove(checkpoint_slot(name));  // a run that was killed once it had kept the cut has left it
     return KeptCut{judged(std::move(kept->value), path), kept->wall_s};
-  }
-
-  /// Reports an entry that points outside the mesh.
-  bool is_usable(const std::string& slot, bool fits_the_mesh) {
-    if (!fits_the_mesh) {
-      monitor_.message(Severity::Warning, fmt::format("{}: found what does not fit the mesh, expected what was kept. It is "
-                                                      "computed again",
-                                                      cache_.place_of(slot).string()));
-    }
-    return fits_the_mesh;
   }
 
   void keep_cut(const std::string& name, const CacheKey& key, KeptCut& made) {
@@ -371,8 +358,8 @@ class Runner {
   KeptCut make_cut(std::string_view what, const std::string& name, const CacheKey& key, const ToolPath& path) {
     const auto start = std::chrono::steady_clock::now();
     const std::string slot = checkpoint_slot(name);
-    std::optional<IncisionProgress> from = cache_.find<IncisionProgress>(slot, key, monitor_);
-    if (from && !is_usable(slot, fits(*study_.model, from->state) && fits(*study_.model, from->frames))) from.reset();
+    std::optional<IncisionProgress> from = cache_.find<IncisionProgress>(
+        slot, key, monitor_, [this](const IncisionProgress& progress) { return fits(*study_.model, progress); });
     if (must_resume_ && !from) refuse_to_resume(fmt::format("no checkpoint of the cut {} that fits", name));
     must_resume_ = false;
     if (from) {
@@ -471,7 +458,7 @@ class Runner {
     const bool is_paper = settings_.compensation.method == CompensationMethod::Paper;
     const bool is_ring = settings_.plan.kind == PlanKind::Ring;
     if (!is_ring || (is_paper && !study_.as_planned->incision.centerline)) return skip_correction("it needs a ring whose mid-line could be measured");
-    const CacheKey key = key_for("correction")
+    const CacheKey key = CacheKey("correction")
                              .add_text(key_of_cut(*study_.followed).digest())
                              .add(settings_.compensation)
                              .add(settings_.close_margin_mm)

@@ -25,35 +25,45 @@ TEST(Cache, MakesAResultOnce) {
   Cache cache;
   Monitor quiet;
   int made = 0;
+  const auto any = [](const Answer&) { return true; };
   const auto make = [&] { return Answer{static_cast<double>(++made)}; };
-  const CacheKey key = CacheKey("answer", 1).add(Answer{0.5});
-  EXPECT_EQ(cache.get_or_make<Answer>("a", key, quiet, make).value_mm, 1.0);
-  EXPECT_EQ(cache.get_or_make<Answer>("a", CacheKey("answer", 1).add(Answer{0.5}), quiet, make).value_mm, 1.0);
+  const CacheKey key = CacheKey("answer").add(Answer{0.5});
+  EXPECT_EQ(cache.get_or_make<Answer>("a", key, quiet, any, make).value_mm, 1.0);
+  EXPECT_EQ(cache.get_or_make<Answer>("a", CacheKey("answer").add(Answer{0.5}), quiet, any, make).value_mm, 1.0);
   EXPECT_TRUE(cache.holds("a"));
   EXPECT_FALSE(cache.holds("b"));
   EXPECT_EQ(made, 1);
 }
 
-TEST(Cache, MakesItAgainForOtherSettingsOtherCodeAndAnotherStage) {
+TEST(Cache, MakesItAgainForOtherSettingsAndAnotherStage) {
   Cache cache;
   Monitor quiet;
-  cache.keep("a", CacheKey("answer", 1).add(Answer{0.5}), Answer{7.0});
-  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("answer", 1).add(Answer{0.25}), quiet));
-  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("answer", 2).add(Answer{0.5}), quiet));
-  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("question", 1).add(Answer{0.5}), quiet));
-  EXPECT_TRUE(cache.find<Answer>("a", CacheKey("answer", 1).add(Answer{0.5}), quiet));
+  cache.keep("a", CacheKey("answer").add(Answer{0.5}), Answer{7.0});
+  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("answer").add(Answer{0.25}), quiet));
+  EXPECT_FALSE(cache.find<Answer>("a", CacheKey("question").add(Answer{0.5}), quiet));
+  EXPECT_TRUE(cache.find<Answer>("a", CacheKey("answer").add(Answer{0.5}), quiet));
 }
 
 TEST(CacheKey, TellsPartsApart) {
-  EXPECT_NE(CacheKey("s", 1).add_text("ab").add_text("c").digest(),
-            CacheKey("s", 1).add_text("a").add_text("bc").digest());
+  EXPECT_NE(CacheKey("s").add_text("ab").add_text("c").digest(), CacheKey("s").add_text("a").add_text("bc").digest());
+}
+
+TEST(Cache, ReportsAValueThatDoesNotFitAndMakesItAgain) {
+  Cache cache;
+  Messages told;
+  const CacheKey key = CacheKey("answer").add_text("x");
+  cache.keep("a", key, Answer{-7.0});
+  const auto is_length = [](const Answer& kept) { return kept.value_mm >= 0.0; };
+  EXPECT_EQ(cache.get_or_make<Answer>("a", key, told, is_length, [] { return Answer{7.0}; }).value_mm, 7.0);
+  EXPECT_NE(told.all.find("values that do not fit each other"), std::string::npos);
+  EXPECT_EQ(cache.find<Answer>("a", key, told, is_length)->value_mm, 7.0);
 }
 
 TEST(Cache, ReportsADamagedEntryAndMakesItAgain) {
   testing::Entries entries;
   Cache cache(std::make_unique<testing::CountedEntries>(entries));
   Messages told;
-  const CacheKey key = CacheKey("answer", 1).add_text("x");
+  const CacheKey key = CacheKey("answer").add_text("x");
   cache.keep("a", key, Answer{7.0});
   const std::string sound = entries.bytes.at("a");
   for (std::size_t i = 0; i < sound.size(); ++i) {

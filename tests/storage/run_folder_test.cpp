@@ -153,7 +153,7 @@ TEST_F(RunFolderTest, ReadsWhatTheCaseNames) {
 
 TEST_F(RunFolderTest, KeepsItsCacheInTheFolderSoThatItMayBeMoved) {
   Monitor quiet;
-  const CacheKey key = CacheKey("plan", 1).add(small_ring());
+  const CacheKey key = CacheKey("plan").add(small_ring());
   open().cache().keep("plan", key, small_ring());
   EXPECT_EQ(bytes_of(open().cache().find<ToolPath>("plan", key, quiet).value()), bytes_of(small_ring()));
   std::filesystem::rename(folder_ / "out", folder_ / "moved");

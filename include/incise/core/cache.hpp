@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/described_bytes.hpp>
+#include <incise/core/error.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/sha256.hpp>
 
@@ -30,12 +31,13 @@ class EntryStore {
   [[nodiscard]] virtual std::filesystem::path place_of(const std::string& name) const { return name; }
 };
 
-/// What determines a result: hash of the stage, of the version of its code, and of all that was added: settings as they
-/// are described, and the contents of inputs. Names and places of files are no part of it.
+/// What determines a result: hash of the stage, of this build (version, commit, instruction set: kernels of two of them
+/// round differently), and of all that was added: settings as they are described, and the contents of inputs. Names and
+/// places of files are no part of it.
 class CacheKey {
  public:
-  /// @param stage  names the result.  @param code  counts up when the same inputs give another result.
-  CacheKey(std::string_view stage, int code);
+  /// @param stage  names the result.
+  explicit CacheKey(std::string_view stage);
   template <class T>
   CacheKey& add(const T& described) {
     return add_text(bytes_of(described));
@@ -62,26 +64,35 @@ class Cache {
   explicit Cache(std::unique_ptr<EntryStore> store) : store_(std::move(store)) {}
 
   /// The result of that key. A damaged entry is reported as a warning and treated as absent. @param slot  the entry's
-  /// name; an entry of another key under the same name gives way.
-  template <class T>
-  [[nodiscard]] std::optional<T> find(const std::string& slot, const CacheKey& key, Monitor& monitor) {
+  /// name; an entry of another key under the same name gives way. @param fits  whether a value that was read may be
+  /// used: an entry whose digest is right may still have been written by someone else.
+  template <class T, class Fits>
+  [[nodiscard]] std::optional<T> find(const std::string& slot, const CacheKey& key, Monitor& monitor,
+                                      const Fits& fits) {
     const std::optional<std::string> bytes = payload(slot, key, monitor);
     if (!bytes) return std::nullopt;
     try {
-      return from_bytes<T>(*bytes, store_->place_of(slot));
+      T value = from_bytes<T>(*bytes, store_->place_of(slot));
+      if (fits(value)) return value;
+      throw DataError(store_->place_of(slot), "", "values that do not fit each other", "those that were kept");
     } catch (const std::exception& damaged) {
       report_damage(damaged, monitor);
       return std::nullopt;
     }
   }
   template <class T>
+  [[nodiscard]] std::optional<T> find(const std::string& slot, const CacheKey& key, Monitor& monitor) {
+    return find<T>(slot, key, monitor, [](const T&) { return true; });
+  }
+  template <class T>
   void keep(const std::string& slot, const CacheKey& key, const T& value) {
     keep_payload(slot, key, bytes_of(value));
   }
   /// Finds the result or makes and keeps it.
-  template <class T, class Make>
-  [[nodiscard]] T get_or_make(const std::string& slot, const CacheKey& key, Monitor& monitor, const Make& make) {
-    if (std::optional<T> kept = find<T>(slot, key, monitor)) return std::move(*kept);
+  template <class T, class Fits, class Make>
+  [[nodiscard]] T get_or_make(const std::string& slot, const CacheKey& key, Monitor& monitor, const Fits& fits,
+                              const Make& make) {
+    if (std::optional<T> kept = find<T>(slot, key, monitor, fits)) return std::move(*kept);
     T made = make();
     keep(slot, key, made);
     return made;

@@ -33,7 +33,7 @@ class ByteWriter : public Visitor {
   void integer(const Field& field, std::int64_t& value, const Range& range) override;
   void flag(const Field& field, bool& value) override;
   void text(const Field& field, std::string& value) override;
-  void choice(const Field& field, std::size_t& value, std::span<const std::string_view> names) override;
+  void choice(const Field& field, std::size_t& value, Names names) override;
   void block(const Field& field, const Block& block) override;
   [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
 
@@ -56,7 +56,7 @@ class ByteReader : public Visitor {
   void integer(const Field& field, std::int64_t& value, const Range& range) override;
   void flag(const Field& field, bool& value) override;
   void text(const Field& field, std::string& value) override;
-  void choice(const Field& field, std::size_t& value, std::span<const std::string_view> names) override;
+  void choice(const Field& field, std::size_t& value, Names names) override;
   void block(const Field& field, const Block& block) override;
   [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
 

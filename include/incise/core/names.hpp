@@ -24,7 +24,7 @@ concept Named = std::is_enum_v<E> && requires(E value) {
   { names_of(value) } -> std::convertible_to<Names>;
 };
 
-/// The name of a value; "unknown" where it is none of the enum's.
+/// The name of a value, or "unknown" for a number that is not a value of the enum.
 template <Named E>
 [[nodiscard]] constexpr std::string_view to_string(E value) {
   const Names names = names_of(value);

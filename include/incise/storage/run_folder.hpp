@@ -23,8 +23,8 @@ struct RunContext {
 /// The folder of a run: what its case is given comes from the case's files, what it makes is kept in a cache, and each
 /// product that people look at has a folder of its own, written under a temporary name and renamed when complete:
 ///
-///   cache/       what the next run takes in place of computing it: one file for each stage, and one for a cut under way,
-///                as_planned.checkpoint.bin; may be removed at any time
+///   cache/       what the next run takes in place of computing it: a file for each stage, and for a cut under way
+///                (as_planned.checkpoint.bin); may be removed at any time
 ///   labels/      labels.nrrd, occupancy.nrrd, segment.json
 ///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
 ///   stretched/   deformed.vtu, deform.json
