@@ -1,5 +1,5 @@
 // What a cut holds: expected_memory_bytes beside the peak of a process that makes the model of a block and cuts a few
-// steps, less what it held before. One process for each size; prints the table of docs/models/cutting.md.
+// steps, less what it held before. One process for each size; prints the table of docs/records/cutting.md.
 #include "process_cost.hpp"
 
 #include <incise/procedure/incision.hpp>

@@ -10,7 +10,7 @@
 
 namespace incise {
 
-/// Bodies with more vertices than this are left to conjugate gradients. Measured: docs/models/solvers.md.
+/// Bodies with more vertices than this are left to conjugate gradients. Measured: docs/records/solvers.md.
 inline constexpr std::size_t kMostVerticesForCholesky = 3000;
 
 /// The linear solver behind Newton's method: chooses one, keeps what can be kept from system to system, and counts.

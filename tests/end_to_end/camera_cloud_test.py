@@ -3,7 +3,7 @@
   camera_cloud_test.py COMMAND EXAMPLES [--seeds N] [--every-way]
 
 The specimen is virtual: the camera's lengths are 2 % too long, its points 0.3 mm noisy and with holes, the tissue has settled
-by 1 mm. With --seeds the figures of docs/models/registration.md are printed; --every-way adds what happens without the plate,
+by 1 mm. With --seeds the figures of docs/records/registration.md are printed; --every-way adds what happens without the plate,
 and without looking for the settling.
 """
 

@@ -38,7 +38,7 @@ Cut cut_as_planned(std::uint64_t seed) {
 // 1.4 to 2.1 mm, and that the mean of their three standard deviations along the contour lies in 0.5 to 1.0 mm. What is
 // wanted of the bench is more: a mean standard deviation of 0.6 to 1.0 mm over some 200 specimens. Single specimens lie
 // anywhere from 0.4 to 1.0 mm, so that three cannot tell 0.6 from a little less: `incise_bench_study 1 200 photo=1`
-// judges both bands on 200 (23 min on two cores; 1.631 and 0.603 mm, docs/models/virtual_bench.md).
+// judges both bands on 200 (23 min on two cores; 1.631 and 0.603 mm, docs/records/virtual_bench.md).
 TEST(BenchBands, CutsAsPlannedErrAsThePapersDo) {
   double means = 0.0;
   double sds = 0.0;

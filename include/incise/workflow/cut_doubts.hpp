@@ -10,7 +10,7 @@ namespace incise {
 
 /// Refuses to cut tissue of which a tet resists change of volume by itself at a Poisson's ratio above 0.495: such tets
 /// lock, are dragged less than they should be, and the errors come out too small without any other sign
-/// (docs/models/cutting.md).
+/// (docs/records/cutting.md).
 /// @throws CaseError (field specimen.material.volume)
 void require_no_locking(const TissueModel& model);
 
