@@ -29,4 +29,11 @@ std::string describe(const Range& range) {
                      range.is_most_open ? ')' : ']');
 }
 
+std::size_t Visitor::key(std::size_t& place, std::span<const Field> keys) {
+  std::vector<std::string_view> names;
+  for (const Field& key : keys) names.push_back(key.name);
+  choice(Field{"kind", "Which of the keys it is."}, place, names);
+  return 1;
+}
+
 }  // namespace incise

@@ -1,6 +1,8 @@
 #include <incise/core/expect.hpp>
 #include <incise/cutting/tool.hpp>
 
+#include <fmt/format.h>
+
 namespace incise {
 namespace {
 
@@ -25,15 +27,42 @@ void list_violations(const Ball& ball, const Expect& expect) {
   expect(ball.diameter_mm > 0.0, "diameter_mm", ball.diameter_mm, "a diameter above 0 mm");
 }
 
+/// A dimension of the tool; null: it has none of that name. @throws as Visitor::refuse where one is given all the same.
+void dimension(Visitor& v, std::string_view tool, const Field& field, double* value, const Range& range) {
+  if (value != nullptr) return v(field, *value, range);
+  std::optional<double> none;
+  v(field, none, range);
+  if (none) v.refuse(field, "a dimension of another tool", fmt::format("no such key for tool.kind: {}", tool));
+}
+
+void dimensions(Visitor& v, std::string_view tool, double* diameter_mm, double* length_mm, double* thickness_mm,
+                double* width_mm) {
+  dimension(v, tool, {"diameter_mm", "Of needle or ball.", "mm"}, diameter_mm, {0.05, 10.0});
+  dimension(v, tool, {"length_mm", "Of needle or blade, from its tip.", "mm"}, length_mm, {0.0, 200.0, true});
+  dimension(v, tool, {"thickness_mm", "Of a blade; 0.5 unless given.", "mm"}, thickness_mm, {0.05, 10.0});
+  dimension(v, tool, {"width_mm", "Of a blade, in the direction of travel; 2.4 unless given.", "mm"}, width_mm,
+            {0.05, 50.0});
+}
+
+void describe_dimensions(Visitor& v, Needle& t) {
+  dimensions(v, "needle", &t.diameter_mm, &t.length_mm, nullptr, nullptr);
+}
+void describe_dimensions(Visitor& v, Blade& t) {
+  dimensions(v, "blade", nullptr, &t.length_mm, &t.thickness_mm, &t.width_mm);
+}
+void describe_dimensions(Visitor& v, Ball& t) {
+  dimensions(v, "ball", &t.diameter_mm, nullptr, nullptr, nullptr);
+}
+
 }  // namespace
 
+void describe(Visitor& v, Tool& tool) {
+  v.kind({"kind", "A needle, a blade that is led edge first, or a ball."}, tool);
+  std::visit([&v](auto& t) { describe_dimensions(v, t); }, tool);
+}
+
 std::string_view kind_of(const Tool& tool) {
-  struct Kind {
-    std::string_view operator()(const Needle&) const { return "needle"; }
-    std::string_view operator()(const Blade&) const { return "blade"; }
-    std::string_view operator()(const Ball&) const { return "ball"; }
-  };
-  return std::visit(Kind{}, tool);
+  return kToolNames[tool.index()];
 }
 
 double radius_mm(const Tool& tool) {

@@ -258,6 +258,35 @@ void note_lost_volume(double sharp_mm3, Segmentation& result) {
 
 }  // namespace
 
+void describe(Visitor& v, SegmentationSettings& s) {
+  std::array<double, 2> window{s.window_low_hu, s.window_high_hu};
+  v({"window_hu", "Least and greatest value of tissue.", "HU"}, window, {-1024.0, 32767.0});
+  v({"roi_box_mm", "Low and high corner (LPS) of the box that holds the specimen; absent: the whole volume.", "mm"},
+    s.roi_box_mm);
+  std::optional<Vec3> seed;
+  Points others;
+  if (!s.seeds_mm.empty()) {
+    seed = s.seeds_mm.front();
+    others.assign(s.seeds_mm.begin() + 1, s.seeds_mm.end());
+  }
+  v({"seed_mm", "A point inside the specimen (LPS); absent: the largest piece is taken.", "mm"}, seed);
+  v.internal("other_seeds_mm", others, "More points in the same piece.");
+  v({"opening_radius_mm", "Pieces joined only by bridges thinner than twice this are separated.", "mm"},
+    s.opening_radius_mm, {0.0, 20.0});
+  v.internal("fill_holes", s.fill_holes, "Whether cavities without a way out become tissue.");
+  v({"smoothing_mm",
+     "Standard deviation of the Gaussian that smooths the tissue's surface; absent: 0.6, or 1.2 voxels where that is "
+     "less.",
+     "mm"},
+    s.smoothing_mm, {0.0, 5.0});
+  v.internal("margin_voxels", s.margin_voxels, "Of air around the body.");
+  if (!v.sets()) return;
+  s.window_low_hu = window[0];
+  s.window_high_hu = window[1];
+  s.seeds_mm = std::move(others);
+  if (seed) s.seeds_mm.insert(s.seeds_mm.begin(), *seed);
+}
+
 std::vector<std::string> validate(const SegmentationSettings& settings) {
   std::vector<std::string> problems;
   const Expect expect(problems);

@@ -7,9 +7,71 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <sstream>
 
 namespace incise {
 namespace {
+
+constexpr std::array<Field, 6> kRegionKeys{
+    {{"box_mm", "low and high corner, rest positions, LPS"},
+     {"sphere"},
+     {"end", "vertices at most within_mm from the body's extreme point along direction"},
+     {"plane",
+      "vertices on the plane or on its normal's side; with within_mm: at most that far from the plane, on either side"},
+     {"cell_array", "NAME=VALUE of a cell array of the mesh: the corners of those tets"},
+     {"point_array", "NAME=VALUE of a point array of the mesh"}}};
+constexpr std::array<Field, 2> kSupportKeys{
+    {{"surface", "triangles of a holder, normals towards the tissue (mm, LPS)"}, {"plane"}}};
+
+constexpr std::string_view kWhereItActs = "where it acts";
+
+void describe_under(Visitor& v, const Field& key, BoxRegion& r) {
+  v(key, r.box_mm);
+  if (v.sets() && r.box_mm.isEmpty())
+    v.refuse(key, "a low corner above the high corner", "[[low x, y, z], [high x, y, z]]");
+}
+
+void describe_under(Visitor& v, const Field& key, SphereRegion& r) {
+  v.begin(key);
+  v("center_mm", r.center_mm);
+  v("radius_mm", r.radius_mm, {}, kPositive);
+  v.end();
+}
+
+void describe_under(Visitor& v, const Field& key, EndRegion& r) {
+  v.begin(key);
+  v.direction("direction", r.direction);
+  v("within_mm", r.within_mm, {}, kPositive);
+  v.end();
+}
+
+void describe_under(Visitor& v, const Field& key, PlaneRegion& r) {
+  v.begin(key);
+  v("point_mm", r.point_mm);
+  v.direction("normal", r.normal);
+  v("within_mm", r.within_mm, {}, kNotNegative);
+  v.end();
+}
+
+/// Written NAME=VALUE.
+void name_and_value(Visitor& v, const Field& key, std::string& name, double& value) {
+  std::string text = fmt::format("{}={}", name, value);
+  v(key, text);
+  if (!v.sets()) return;
+  const std::size_t equals = std::min(text.find('='), text.size());
+  name = text.substr(0, equals);
+  std::istringstream number(text.substr(std::min(equals + 1, text.size())));
+  if (name.empty() || !(number >> value) || !(number >> std::ws).eof() || !std::isfinite(value))
+    v.refuse(key, "'" + text + "'", "NAME=VALUE, such as clamp=1");
+}
+
+void describe_under(Visitor& v, const Field& key, CellArrayRegion& r) {
+  name_and_value(v, key, r.name, r.value);
+}
+
+void describe_under(Visitor& v, const Field& key, PointArrayRegion& r) {
+  name_and_value(v, key, r.name, r.value);
+}
 
 template <class Predicate>
 std::vector<VertexId> vertices_where(const TetMesh& mesh, const Predicate& is_inside) {
@@ -93,6 +155,81 @@ std::vector<VertexId> select_region(const TetMesh& mesh, const CellArrayRegion& 
 }
 
 }  // namespace
+
+void describe(Visitor& v, Region& region) {
+  std::size_t place = region.index();
+  const std::size_t found = v.key(place, kRegionKeys);
+  if (found == 0) v.refuse({}, "an empty group", "box_mm, sphere, end, plane, point_array or cell_array");
+  if (found > 1)
+    v.refuse({}, fmt::format("{} regions", found), "one of box_mm, sphere, end, plane, point_array, cell_array");
+  if (place == Visitor::kUnchanged) return;
+  const auto describe_own = [&v](Region& own) {
+    std::visit([&](auto& r) { describe_under(v, kRegionKeys[own.index()], r); }, own);
+  };
+  if (place == Visitor::kEveryKind) {
+    for (std::size_t i = 0; i < kRegionKeys.size(); ++i) {
+      Region made;
+      Visitor::emplace(made, i);
+      describe_own(made);
+    }
+    return;
+  }
+  if (v.sets()) Visitor::emplace(region, place);
+  describe_own(region);
+}
+
+void describe(Visitor& v, FixedConstraint& c) {
+  v("where", c.where, kWhereItActs);
+  constexpr std::string_view kLetters = "xyz";
+  std::optional<std::string> axes{std::in_place};
+  for (std::size_t i = 0; i < kLetters.size(); ++i)
+    if (c.axes[i]) *axes += kLetters[i];
+  const Field field{"axes", {}, {}, "^[xyz]+$"};
+  v(field, axes);
+  if (!v.sets()) return;
+  const std::string letters = axes.value_or(std::string(kLetters));
+  c.axes = {};
+  if (letters.empty()) v.refuse(field, "nothing", "some of the letters x, y, z");
+  for (const char letter : letters) {
+    const std::size_t axis = kLetters.find(letter);
+    if (axis == std::string_view::npos) v.refuse(field, "'" + letters + "'", "some of the letters x, y, z");
+    c.axes[axis] = true;
+  }
+}
+
+void describe(Visitor& v, DisplacedConstraint& c) {
+  v("where", c.where, kWhereItActs);
+  v("displacement_mm", c.displacement_mm);
+}
+
+void describe(Visitor& v, SupportConstraint& c) {
+  std::size_t place = c.holder ? 0 : 1;
+  const std::size_t found = v.key(place, kSupportKeys);
+  if (found == 0) v.refuse({}, "no `plane`", "plane: {point_mm, normal}, or surface: FILE");
+  if (found > 1) v.refuse({}, "a plane and a surface", "only one of plane and surface");
+  if (place == 0 || place == Visitor::kEveryKind) {
+    HolderSurface holder = c.holder ? *c.holder : HolderSurface{};
+    if (v.is_complete()) {
+      v(kSupportKeys[0], holder.surface);
+    } else {
+      v(kSupportKeys[0], holder.name);
+      if (v.sets() && holder.name.empty())
+        v.refuse(kSupportKeys[0], "no name", "a file with triangles: .stl, .ply, .obj or .vtp");
+    }
+    if (v.sets()) c.holder = std::make_shared<HolderSurface>(std::move(holder));
+  }
+  if (place == 1 || place == Visitor::kEveryKind) {
+    v.begin(kSupportKeys[1]);
+    v("point_mm", c.point_mm);
+    v.direction("normal", c.normal);
+    v.end();
+  }
+}
+
+void describe(Visitor& v, TractionConstraint& c) {
+  v("where", c.where, kWhereItActs);
+  v("traction_kpa", c.traction_kpa);
+}
 
 std::vector<VertexId> select(const TetMesh& mesh, const Region& region) {
   return std::visit([&](const auto& r) { return select_region(mesh, r); }, region);

@@ -1,4 +1,3 @@
-#include "describe_case.hpp"
 #include "field_writers.hpp"
 #include "yaml_reader.hpp"
 
@@ -181,12 +180,11 @@ void read_holders(CaseFile& file, const std::string& name) {
   }
 }
 
-/// The description is one walk for reading and writing, so writers need a file that they may walk.
-template <class Visitor>
-Visitor walk(CaseFile file) {
-  Visitor visitor;
-  describe_case(file, visitor);
-  return visitor;
+template <class Writer>
+Writer walk(const CaseFile& file) {
+  Writer writer;
+  describe(writer, const_cast<CaseFile&>(file));  // a writer changes nothing
+  return writer;
 }
 
 }  // namespace
@@ -204,7 +202,7 @@ CaseFile read_case(const std::filesystem::path& file_or_folder) {
     throw CaseError(name, "schema", "nothing", fmt::format("schema: {}", kCaseSchemaName));
   }
   YamlReader reader(root, name);
-  describe_case(file, reader);
+  describe(reader, file);
   reader.finish();
   for (std::filesystem::path* path : {&file.inputs.ct_volume, &file.inputs.specimen_mesh, &file.inputs.tumor_contour,
                                       &file.inputs.tumor_surface,

@@ -1,269 +1,271 @@
 #include "field_writers.hpp"
 
+#include <incise/core/error.hpp>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace incise {
 namespace {
 
-nlohmann::ordered_json number_schema(const Range& range, const char* type) {
-  nlohmann::ordered_json schema{{"type", type}};
+using Json = nlohmann::ordered_json;
+
+Json number_schema(const Range& range, const char* type) {
+  Json schema{{"type", type}};
   if (std::isfinite(range.least)) schema[range.is_least_open ? "exclusiveMinimum" : "minimum"] = range.least;
   if (std::isfinite(range.most)) schema[range.is_most_open ? "exclusiveMaximum" : "maximum"] = range.most;
   return schema;
 }
 
-nlohmann::ordered_json vector_schema() {
-  return {{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 3}, {"maxItems", 3}};
+Json list_schema(const Json& item, std::size_t size) {
+  return {{"type", "array"}, {"items", item}, {"minItems", size}, {"maxItems", size}};
 }
 
-nlohmann::ordered_json direction_schema() {
-  return {{"oneOf",
-           {vector_schema(), {{"enum", {"anterior", "posterior", "left", "right", "superior", "inferior"}}}}}};
+/// The numbers of a block. A visitor of files of settings is shown doubles only.
+std::span<const double> numbers_of(const Block& block) {
+  INCISE_REQUIRE(block.kind == Block::Kind::Double, "expected numbers of double precision in a file of settings");
+  return {static_cast<const double*>(block.data), block.count};
 }
 
-nlohmann::ordered_json region_schema() {
-  const nlohmann::ordered_json positive{{"type", "number"}, {"exclusiveMinimum", 0}};
-  nlohmann::ordered_json properties;
-  properties["box_mm"] = {{"type", "array"}, {"items", vector_schema()}, {"minItems", 2}, {"maxItems", 2},
-                          {"description", "low and high corner, rest positions, LPS"}};
-  properties["sphere"] = {{"type", "object"}, {"properties", {{"center_mm", vector_schema()}, {"radius_mm", positive}}},
-                          {"required", {"center_mm", "radius_mm"}}, {"additionalProperties", false}};
-  properties["end"] = {{"type", "object"}, {"properties", {{"direction", direction_schema()}, {"within_mm", positive}}},
-                       {"required", {"direction", "within_mm"}}, {"additionalProperties", false},
-                       {"description", "vertices at most within_mm from the body's extreme point along direction"}};
-  properties["plane"] = {{"type", "object"},
-                         {"properties", {{"point_mm", vector_schema()}, {"normal", direction_schema()},
-                                         {"within_mm", {{"type", "number"}, {"minimum", 0}}}}},
-                         {"required", {"point_mm", "normal"}}, {"additionalProperties", false},
-                         {"description", "vertices on the plane or on its normal's side; with within_mm: at most that far from "
-                                         "the plane, on either side"}};
-  properties["cell_array"] = {{"type", "string"}, {"description", "NAME=VALUE of a cell array of the mesh: the corners of those tets"}};
-  properties["point_array"] = {{"type", "string"}, {"description", "NAME=VALUE of a point array of the mesh"}};
-  return {{"type", "object"}, {"properties", properties}, {"minProperties", 1}, {"maxProperties", 1},
-          {"additionalProperties", false}};
+/// Whether a block is lists in a list: a box as two corners, a transform as four rows.
+bool has_rows(const Block& block) {
+  return block.columns > 1 && block.columns < block.count;
 }
 
-nlohmann::ordered_json constraint_schema(const char* kind, nlohmann::ordered_json properties, std::vector<std::string> required) {
-  nlohmann::ordered_json all{{"kind", {{"const", kind}}}};
-  all.update(properties);
-  required.insert(required.begin(), "kind");
-  return {{"type", "object"}, {"properties", all}, {"required", required}, {"additionalProperties", false}};
+[[noreturn]] void refuse_description(const Field& field, const std::string& found, const std::string& expected) {
+  core_detail::throw_invalid_argument("describe",
+                                      fmt::format("{}: found {}, expected {}", field.name, found, expected));
 }
 
 }  // namespace
 
-SchemaWriter::SchemaWriter() { levels_.emplace_back(nlohmann::ordered_json::object()); }
-
-void SchemaWriter::add(const FieldInfo& info, nlohmann::ordered_json schema) {
-  schema["description"] = info.meaning;
-  if (*info.unit != '\0') schema["x-unit"] = info.unit;
-  levels_.back()[info.name] = std::move(schema);
+void SchemaWriter::add(const Field& field, Json schema) {
+  Level& level = levels_.back();
+  const bool is_required = !std::exchange(is_there_, std::nullopt) && level.is_of_item;
+  if (!field.meaning.empty()) schema["description"] = field.meaning;
+  if (!field.unit.empty()) schema["x-unit"] = field.unit;
+  if (field.name.empty()) {
+    level.items.push_back(std::move(schema));
+    return;
+  }
+  const std::string name(field.name);
+  if (is_required && std::find(level.keys.begin(), level.keys.end(), name) == level.keys.end())
+    level.required.push_back(name);
+  level.properties[name] = std::move(schema);
 }
 
-void SchemaWriter::begin_group(const FieldInfo& info) {
-  groups_.push_back(info);
-  levels_.emplace_back(nlohmann::ordered_json::object());
+template <class Value>
+void SchemaWriter::add_with_default(const Field& field, Json schema, const Value& value) {
+  if (is_there_.value_or(!levels_.back().is_of_item)) schema["default"] = value;
+  add(field, std::move(schema));
 }
 
-void SchemaWriter::end_group() {
-  nlohmann::ordered_json properties = std::move(levels_.back());
+SchemaWriter::Level& SchemaWriter::open(const Field& field) {
+  Level inner;
+  inner.field = field;
+  inner.is_optional = is_there_.has_value();
+  inner.is_of_item = levels_.back().is_of_item;
+  is_there_.reset();
+  return levels_.emplace_back(std::move(inner));
+}
+
+SchemaWriter::Level SchemaWriter::close() {
+  Level level = std::move(levels_.back());
   levels_.pop_back();
-  add(groups_.back(), {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}});
+  if (level.is_optional) is_there_ = false;
+  return level;
+}
+
+void SchemaWriter::begin(const Field& field) {
+  open(field);
+}
+
+void SchemaWriter::end() {
+  Level level = close();
+  const auto group = [](const Json& properties, const std::vector<std::string>& required) {
+    Json schema{{"type", "object"}, {"properties", properties}};
+    if (!required.empty()) schema["required"] = required;
+    return schema;
+  };
+  std::vector<Json> forms;
+  if (level.keys.empty()) forms.push_back(group(level.properties, level.required));
+  if (!level.keys.empty() && level.properties.size() == level.keys.size()) {
+    forms.push_back(group(level.properties, {}));
+    forms.back()["minProperties"] = 1;
+    forms.back()["maxProperties"] = 1;
+    level.field.meaning = {};  // the keys say it
+  } else {
+    for (const std::string& key : level.keys) {
+      Json properties = level.properties;
+      for (const std::string& other : level.keys)
+        if (other != key) properties.erase(other);
+      std::vector<std::string> required = level.required;
+      required.push_back(key);
+      forms.push_back(group(properties, required));
+    }
+  }
+  for (Json& form : forms) {
+    form["additionalProperties"] = false;
+    add(level.field, std::move(form));
+  }
+}
+
+std::size_t SchemaWriter::begin_list(const Field& field, std::size_t, std::size_t) {
+  open(field).is_of_item = true;
+  return kEveryKind;
+}
+
+void SchemaWriter::end_list() {
+  Level list = close();
+  Json schema{{"type", "array"}};
+  if (list.is_optional) schema["minItems"] = 1;
+  schema["items"] = list.items.size() == 1 ? std::move(list.items.front()) : Json{{"oneOf", std::move(list.items)}};
+  add(list.field, std::move(schema));
+}
+
+bool SchemaWriter::optional(const Field&, bool is_there) {
+  is_there_ = is_there;
+  return true;
+}
+
+void SchemaWriter::number(const Field& field, double& value, const Range& range) {
+  add_with_default(field, number_schema(range, "number"), value);
+}
+
+void SchemaWriter::integer(const Field& field, std::int64_t& value, const Range& range) {
+  add_with_default(field, number_schema(range, "integer"), value);
+}
+
+void SchemaWriter::flag(const Field& field, bool& value) {
+  add_with_default(field, {{"type", "boolean"}}, value);
+}
+
+void SchemaWriter::text(const Field& field, std::string& value) {
+  Json schema{{"type", "string"}};
+  if (!field.pattern.empty()) schema["pattern"] = field.pattern;
+  add_with_default(field, std::move(schema), value);
+}
+
+void SchemaWriter::choice(const Field& field, std::size_t& value, Names names) {
+  if (levels_.back().is_of_item) {  // tells the items of a list apart
+    add({field.name}, {{"const", names[value]}});
+  } else {
+    add_with_default(field, {{"enum", std::vector<std::string>(names.begin(), names.end())}}, names[value]);
+  }
+}
+
+void SchemaWriter::block(const Field& field, const Block& block) {
+  const std::span<const double> numbers = numbers_of(block);
+  const Json item = number_schema(block.range, "number");
+  Json schema = list_schema(item, block.count);
+  if (has_rows(block)) schema = list_schema(list_schema(item, block.columns), block.count / block.columns);
+  if (block.is_direction) {
+    schema = {{"oneOf", {schema, {{"enum", {"anterior", "posterior", "left", "right", "superior", "inferior"}}}}}};
+  }
+  add_with_default(field, std::move(schema), std::vector<double>(numbers.begin(), numbers.end()));
+}
+
+std::size_t SchemaWriter::key(std::size_t& place, std::span<const Field> keys) {
+  for (const Field& key : keys) levels_.back().keys.emplace_back(key.name);
+  place = kEveryKind;
+  return 1;
+}
+
+void SchemaWriter::refuse(const Field& field, const std::string& found, const std::string& expected) const {
+  refuse_description(field, found, expected);
+}
+
+void SettingLister::add(const Field& field, std::string value, bool is_group) {
+  if (depth_ == 0) {
+    lines_.push_back({fmt::format("{}", fmt::join(groups_, ".")), std::string(field.name), std::move(value),
+                      std::string(field.unit), std::string(field.meaning), is_group});
+    return;
+  }
+  if (list_.back() != '[' && list_.back() != '{') list_ += ", ";
+  if (!field.name.empty()) list_ += fmt::format("{}: ", field.name);
+  list_ += value;
+}
+
+void SettingLister::open(const Field& field, char bracket) {
+  add(field, std::string(1, bracket));
+  ++depth_;
+}
+
+void SettingLister::close(char bracket) {
+  list_ += bracket;
+  --depth_;
+}
+
+void SettingLister::begin(const Field& field) {
+  if (depth_ > 0) return open(field, '{');
+  add(field, "", true);
+  groups_.emplace_back(field.name);
+}
+
+void SettingLister::end() {
+  if (depth_ > 0) return close('}');
   groups_.pop_back();
 }
 
-void SchemaWriter::number(const FieldInfo& info, double& value, const Range& range) {
-  nlohmann::ordered_json schema = number_schema(range, "number");
-  schema["default"] = value;
-  add(info, std::move(schema));
-}
-
-void SchemaWriter::optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) {
-  nlohmann::ordered_json schema = number_schema(range, "number");
-  if (value) schema["default"] = *value;
-  add(info, std::move(schema));
-}
-
-void SchemaWriter::integer(const FieldInfo& info, int& value, const Range& range) {
-  nlohmann::ordered_json schema = number_schema(range, "integer");
-  schema["default"] = value;
-  add(info, std::move(schema));
-}
-
-void SchemaWriter::flag(const FieldInfo& info, bool& value) { add(info, {{"type", "boolean"}, {"default", value}}); }
-
-void SchemaWriter::table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>&) {
-  nlohmann::ordered_json properties = nlohmann::ordered_json::object();
-  std::vector<std::string> required;
-  for (const Column& column : columns) {
-    nlohmann::ordered_json schema = number_schema(column.range, column.is_whole ? "integer" : "number");
-    schema["description"] = column.info.meaning;
-    if (*column.info.unit != '\0') schema["x-unit"] = column.info.unit;
-    properties[column.info.name] = std::move(schema);
-    if (column.is_required) required.emplace_back(column.info.name);
-  }
-  add(info, {{"type", "array"},
-             {"items", {{"type", "object"}, {"properties", std::move(properties)}, {"required", required},
-                        {"additionalProperties", false}}}});
-}
-
-void SchemaWriter::text(const FieldInfo& info, std::string& value) { add(info, {{"type", "string"}, {"default", value}}); }
-
-void SchemaWriter::path(const FieldInfo& info, std::filesystem::path&) { add(info, {{"type", "string"}}); }
-
-void SchemaWriter::choice(const FieldInfo& info, std::size_t& value, Names names) {
-  add(info, {{"enum", std::vector<std::string>(names.begin(), names.end())}, {"default", names[value]}});
-}
-
-void SchemaWriter::numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) {
-  const nlohmann::ordered_json item = number_schema(range, "number");
-  nlohmann::ordered_json schema{{"type", "array"}};
-  if (values.size() == 6 || values.size() == 16) {  // a box as two corners, a transform as four rows
-    const std::size_t row = values.size() == 6 ? 3 : 4;
-    schema["items"] = {{"type", "array"}, {"items", item}, {"minItems", row}, {"maxItems", row}};
-    schema["minItems"] = schema["maxItems"] = values.size() / row;
+std::size_t SettingLister::begin_list(const Field& field, std::size_t size, std::size_t) {
+  if (depth_ == 0) {  // its line is filled in by end_list
+    add(field, "");
+    list_ = "[";
+    ++depth_;
   } else {
-    schema["items"] = item;
-    schema["minItems"] = schema["maxItems"] = values.size();
+    open(field, '[');
   }
-  if (is_given) schema["default"] = std::vector<double>(values.begin(), values.end());
-  add(info, std::move(schema));
+  return size;
 }
 
-void SchemaWriter::direction(const FieldInfo& info, Vec3& value) {
-  nlohmann::ordered_json schema = direction_schema();
-  schema["default"] = {value.x(), value.y(), value.z()};
-  add(info, std::move(schema));
+void SettingLister::end_list() {
+  close(']');
+  if (depth_ == 0 && list_ != "[]") lines_.back().value = std::move(list_);
 }
 
-void SchemaWriter::constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>&) {
-  nlohmann::ordered_json kinds = nlohmann::ordered_json::array();
-  kinds.push_back(constraint_schema("fixed", {{"where", region_schema()}, {"axes", {{"type", "string"}, {"pattern", "^[xyz]+$"},
-                                    {"default", "xyz"}}}}, {"where"}));
-  kinds.push_back(constraint_schema("displaced", {{"where", region_schema()}, {"displacement_mm", vector_schema()}},
-                                    {"where", "displacement_mm"}));
-  nlohmann::ordered_json holder = constraint_schema(
-      "support", {{"surface", {{"type", "string"}, {"description", "triangles of a holder, normals towards the tissue (mm, LPS)"}}}},
-      {"surface"});
-  kinds.push_back(std::move(holder));
-  kinds.push_back(constraint_schema("support",
-                                    {{"plane", {{"type", "object"}, {"properties", {{"point_mm", vector_schema()},
-                                     {"normal", direction_schema()}}}, {"required", {"point_mm", "normal"}},
-                                     {"additionalProperties", false}}}}, {"plane"}));
-  kinds.push_back(constraint_schema("traction", {{"where", region_schema()}, {"traction_kpa", vector_schema()}},
-                                    {"where", "traction_kpa"}));
-  add(info, {{"type", "array"}, {"minItems", 1}, {"items", {{"oneOf", kinds}}}});
+bool SettingLister::optional(const Field& field, bool is_there) {
+  if (!is_there && depth_ == 0) add(field, "");
+  return is_there;
 }
 
-void SettingLister::add(const FieldInfo& info, std::string value) {
-  lines_.push_back({fmt::format("{}", fmt::join(groups_, ".")), info.name, std::move(value), info.unit, info.meaning, false});
+void SettingLister::number(const Field& field, double& value, const Range&) {
+  add(field, fmt::format("{}", value));
 }
 
-void SettingLister::begin_group(const FieldInfo& info) {
-  lines_.push_back({fmt::format("{}", fmt::join(groups_, ".")), info.name, "", info.unit, info.meaning, true});
-  groups_.emplace_back(info.name);
+void SettingLister::integer(const Field& field, std::int64_t& value, const Range&) {
+  add(field, fmt::format("{}", value));
 }
 
-void SettingLister::end_group() { groups_.pop_back(); }
-
-void SettingLister::number(const FieldInfo& info, double& value, const Range&) { add(info, fmt::format("{}", value)); }
-
-void SettingLister::optional_number(const FieldInfo& info, std::optional<double>& value, const Range&) {
-  add(info, value ? fmt::format("{}", *value) : std::string());
+void SettingLister::flag(const Field& field, bool& value) {
+  add(field, value ? "true" : "false");
 }
 
-void SettingLister::integer(const FieldInfo& info, int& value, const Range&) { add(info, fmt::format("{}", value)); }
-
-void SettingLister::flag(const FieldInfo& info, bool& value) { add(info, value ? "true" : "false"); }
-
-void SettingLister::table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) {
-  std::vector<std::string> lines;
-  for (const Row& row : rows) {
-    std::vector<std::string> cells;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      if (row[c]) cells.push_back(fmt::format("{}: {}", columns[c].info.name, *row[c]));
-    }
-    lines.push_back(fmt::format("{{{}}}", fmt::join(cells, ", ")));
-  }
-  add(info, rows.empty() ? std::string() : fmt::format("[{}]", fmt::join(lines, ", ")));
+void SettingLister::text(const Field& field, std::string& value) {
+  // In a list only a word, or NAME=VALUE, goes without quotes.
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+  const std::size_t end = value.find_first_not_of(kPlain);
+  const bool is_plain = depth_ == 0 || end == std::string::npos || value[end] == '=';
+  add(field, is_plain ? value : fmt::format("\"{}\"", value));
 }
 
-void SettingLister::text(const FieldInfo& info, std::string& value) { add(info, value); }
-
-void SettingLister::path(const FieldInfo& info, std::filesystem::path& value) { add(info, value.generic_string()); }
-
-void SettingLister::choice(const FieldInfo& info, std::size_t& value, Names names) {
-  add(info, std::string(names[value]));
+void SettingLister::choice(const Field& field, std::size_t& value, Names names) {
+  add(field, std::string(names[value]));
 }
 
-void SettingLister::numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range&) {
-  add(info, is_given ? fmt::format("[{}]", fmt::join(values, ", ")) : std::string());
+void SettingLister::block(const Field& field, const Block& block) {
+  const std::span<const double> numbers = numbers_of(block);
+  if (depth_ == 0 || !has_rows(block)) return add(field, fmt::format("[{}]", fmt::join(numbers, ", ")));
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < block.count; i += block.columns)
+    rows.push_back(fmt::format("[{}]", fmt::join(numbers.subspan(i, block.columns), ", ")));
+  add(field, fmt::format("[{}]", fmt::join(rows, ", ")));
 }
 
-void SettingLister::direction(const FieldInfo& info, Vec3& value) {
-  add(info, fmt::format("[{}, {}, {}]", value.x(), value.y(), value.z()));
-}
-
-namespace {
-
-std::string shown(const Region& region) {
-  struct Show {
-    std::string operator()(const BoxRegion& r) const {
-      const Vec3& a = r.box_mm.min();
-      const Vec3& b = r.box_mm.max();
-      return fmt::format("{{box_mm: [[{}, {}, {}], [{}, {}, {}]]}}", a.x(), a.y(), a.z(), b.x(), b.y(), b.z());
-    }
-    std::string operator()(const SphereRegion& r) const {
-      return fmt::format("{{sphere: {{center_mm: [{}, {}, {}], radius_mm: {}}}}}", r.center_mm.x(), r.center_mm.y(),
-                         r.center_mm.z(), r.radius_mm);
-    }
-    std::string operator()(const EndRegion& r) const {
-      return fmt::format("{{end: {{direction: [{}, {}, {}], within_mm: {}}}}}", r.direction.x(), r.direction.y(),
-                         r.direction.z(), r.within_mm);
-    }
-    std::string operator()(const PlaneRegion& r) const {
-      return fmt::format("{{plane: {{point_mm: [{}, {}, {}], normal: [{}, {}, {}]{}}}}}", r.point_mm.x(), r.point_mm.y(),
-                         r.point_mm.z(), r.normal.x(), r.normal.y(), r.normal.z(),
-                         r.within_mm ? fmt::format(", within_mm: {}", *r.within_mm) : std::string());
-    }
-    std::string operator()(const PointArrayRegion& r) const { return fmt::format("{{point_array: {}={}}}", r.name, r.value); }
-    std::string operator()(const CellArrayRegion& r) const { return fmt::format("{{cell_array: {}={}}}", r.name, r.value); }
-  };
-  return std::visit(Show{}, region);
-}
-
-std::string shown(const Constraint& constraint) {
-  struct Show {
-    std::string operator()(const FixedConstraint& c) const {
-      return fmt::format("{{kind: fixed, where: {}, axes: {}{}{}}}", shown(c.where), c.axes[0] ? "x" : "", c.axes[1] ? "y" : "",
-                         c.axes[2] ? "z" : "");
-    }
-    std::string operator()(const DisplacedConstraint& c) const {
-      return fmt::format("{{kind: displaced, where: {}, displacement_mm: [{}, {}, {}]}}", shown(c.where), c.displacement_mm.x(),
-                         c.displacement_mm.y(), c.displacement_mm.z());
-    }
-    std::string operator()(const SupportConstraint& c) const {
-      if (c.holder) return fmt::format("{{kind: support, surface: \"{}\"}}", c.holder->name);
-      return fmt::format("{{kind: support, plane: {{point_mm: [{}, {}, {}], normal: [{}, {}, {}]}}}}", c.point_mm.x(),
-                         c.point_mm.y(), c.point_mm.z(), c.normal.x(), c.normal.y(), c.normal.z());
-    }
-    std::string operator()(const TractionConstraint& c) const {
-      return fmt::format("{{kind: traction, where: {}, traction_kpa: [{}, {}, {}]}}", shown(c.where), c.traction_kpa.x(),
-                         c.traction_kpa.y(), c.traction_kpa.z());
-    }
-  };
-  return std::visit(Show{}, constraint);
-}
-
-}  // namespace
-
-void SettingLister::constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) {
-  std::vector<std::string> lines;
-  if (value) {
-    for (const Constraint& constraint : *value) lines.push_back(shown(constraint));
-  }
-  add(info, value ? fmt::format("[{}]", fmt::join(lines, ", ")) : std::string());
+void SettingLister::refuse(const Field& field, const std::string& found, const std::string& expected) const {
+  refuse_description(field, found, expected);
 }
 
 }  // namespace incise

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "field_visitor.hpp"
-
-#include <incise/storage/case_file.hpp>
+#include <incise/core/describe.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -11,34 +9,49 @@
 
 namespace incise {
 
-/// Builds the JSON Schema of the fields that it visits: the values found are the defaults.
-class SchemaWriter : public FieldVisitor {
+/// Builds the JSON Schema of what is described: the values found are the defaults. Items of a list have no defaults but
+/// for optional fields.
+class SchemaWriter : public Visitor {
  public:
-  SchemaWriter();
-  void begin_group(const FieldInfo& info) override;
-  void end_group() override;
-  void number(const FieldInfo& info, double& value, const Range& range) override;
-  void optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) override;
-  void integer(const FieldInfo& info, int& value, const Range& range) override;
-  void flag(const FieldInfo& info, bool& value) override;
-  void text(const FieldInfo& info, std::string& value) override;
-  void path(const FieldInfo& info, std::filesystem::path& value) override;
-  void choice(const FieldInfo& info, std::size_t& value, Names names) override;
-  void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) override;
-  void direction(const FieldInfo& info, Vec3& value) override;
-  void table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) override;
-  void constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) override;
+  [[nodiscard]] bool sets() const override { return false; }
+  [[nodiscard]] bool is_complete() const override { return false; }
+  void begin(const Field& field) override;
+  void end() override;
+  std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) override;
+  void end_list() override;
+  bool optional(const Field& field, bool is_there) override;
+  void number(const Field& field, double& value, const Range& range) override;
+  void integer(const Field& field, std::int64_t& value, const Range& range) override;
+  void flag(const Field& field, bool& value) override;
+  void text(const Field& field, std::string& value) override;
+  void choice(const Field& field, std::size_t& value, Names names) override;
+  void block(const Field& field, const Block& block) override;
+  std::size_t key(std::size_t& place, std::span<const Field> keys) override;
+  [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
   /// Properties of the outermost level.
-  [[nodiscard]] nlohmann::ordered_json properties() const { return levels_.front(); }
+  [[nodiscard]] nlohmann::ordered_json properties() const { return levels_.front().properties; }
 
  private:
-  void add(const FieldInfo& info, nlohmann::ordered_json schema);
-  std::vector<nlohmann::ordered_json> levels_;
-  std::vector<FieldInfo> groups_;
+  struct Level {
+    Field field;
+    bool is_optional = false;
+    bool is_of_item = false;  ///< an item of a list, or in one
+    nlohmann::ordered_json properties = nlohmann::ordered_json::object();
+    nlohmann::ordered_json items = nlohmann::ordered_json::array();  ///< of a list: one of each kind
+    std::vector<std::string> required;
+    std::vector<std::string> keys;  ///< just one of them is there
+  };
+  Level& open(const Field& field);
+  [[nodiscard]] Level close();
+  void add(const Field& field, nlohmann::ordered_json schema);
+  template <class Value>
+  void add_with_default(const Field& field, nlohmann::ordered_json schema, const Value& value);
+  std::vector<Level> levels_ = std::vector<Level>(1);
+  std::optional<bool> is_there_;  ///< of the field that comes next, where it is optional
 };
 
-/// Lists every setting as one line, in order; absent optional ones have an empty value.
-class SettingLister : public FieldVisitor {
+/// Lists every setting as one line, in order; absent optional ones have an empty value. A list is one line, too.
+class SettingLister : public Visitor {
  public:
   struct Line {
     std::string group;  ///< dotted
@@ -48,25 +61,31 @@ class SettingLister : public FieldVisitor {
     std::string meaning;
     bool is_group = false;
   };
-  void begin_group(const FieldInfo& info) override;
-  void end_group() override;
-  void number(const FieldInfo& info, double& value, const Range& range) override;
-  void optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) override;
-  void integer(const FieldInfo& info, int& value, const Range& range) override;
-  void flag(const FieldInfo& info, bool& value) override;
-  void text(const FieldInfo& info, std::string& value) override;
-  void path(const FieldInfo& info, std::filesystem::path& value) override;
-  void choice(const FieldInfo& info, std::size_t& value, Names names) override;
-  void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) override;
-  void direction(const FieldInfo& info, Vec3& value) override;
-  void table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) override;
-  void constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) override;
+  [[nodiscard]] bool sets() const override { return false; }
+  [[nodiscard]] bool is_complete() const override { return false; }
+  void begin(const Field& field) override;
+  void end() override;
+  std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) override;
+  void end_list() override;
+  bool optional(const Field& field, bool is_there) override;
+  void number(const Field& field, double& value, const Range& range) override;
+  void integer(const Field& field, std::int64_t& value, const Range& range) override;
+  void flag(const Field& field, bool& value) override;
+  void text(const Field& field, std::string& value) override;
+  void choice(const Field& field, std::size_t& value, Names names) override;
+  void block(const Field& field, const Block& block) override;
+  std::size_t key(std::size_t&, std::span<const Field>) override { return 1; }
+  [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
   [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
 
  private:
-  void add(const FieldInfo& info, std::string value);
+  void add(const Field& field, std::string value, bool is_group = false);
+  void open(const Field& field, char bracket);
+  void close(char bracket);
   std::vector<Line> lines_;
   std::vector<std::string> groups_;
+  std::string list_;       ///< the list that is open, as far as it is written
+  std::size_t depth_ = 0;  ///< of brackets that are open in it
 };
 
 }  // namespace incise

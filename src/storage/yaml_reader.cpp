@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace incise {
 namespace {
@@ -21,92 +22,141 @@ std::string shown(const YAML::Node& node) {
   return text.size() <= kShown ? fmt::format("'{}'", text) : fmt::format("'{}…'", text.substr(0, kShown));
 }
 
-}  // namespace
-
-std::optional<Vec3> anatomical_direction(const std::string& word) {
-  if (word == "left") return Vec3::UnitX();
-  if (word == "right") return -Vec3::UnitX();
-  if (word == "posterior") return Vec3::UnitY();
-  if (word == "anterior") return -Vec3::UnitY();
-  if (word == "superior") return Vec3::UnitZ();
-  if (word == "inferior") return -Vec3::UnitZ();
+/// Unit vector of an anatomical direction in LPS; nothing for any other word.
+std::optional<Eigen::Vector3d> anatomical_direction(const std::string& word) {
+  using Eigen::Vector3d;
+  if (word == "left") return Vector3d::UnitX();
+  if (word == "right") return -Vector3d::UnitX();
+  if (word == "posterior") return Vector3d::UnitY();
+  if (word == "anterior") return -Vector3d::UnitY();
+  if (word == "superior") return Vector3d::UnitZ();
+  if (word == "inferior") return -Vector3d::UnitZ();
   return std::nullopt;
 }
 
+}  // namespace
+
 YamlReader::YamlReader(const YAML::Node& root, std::string name) : name_(std::move(name)) {
   require_map(root, "");
-  levels_.push_back({root, "", {}});
+  levels_.push_back({.node = root});
 }
 
-std::string YamlReader::field(const char* name) const {
-  const std::string& group = levels_.back().name;
-  return group.empty() ? name : fmt::format("{}.{}", group, name);
+std::string YamlReader::path_of(std::string_view name) const {
+  const Level& level = levels_.back();
+  if (level.is_list) return fmt::format("{}[{}]", level.name, level.next - 1);
+  if (name.empty()) return level.name;
+  return level.name.empty() ? std::string(name) : fmt::format("{}.{}", level.name, name);
 }
 
-void YamlReader::refuse(const YAML::Node& node, const std::string& field, const std::string& found,
+void YamlReader::refuse(const Field& field, const std::string& found, const std::string& expected) const {
+  const Level& level = levels_.back();
+  if (field.name.empty() && level.node.IsDefined()) refuse_unknown_keys(level);  // may be why
+  const YAML::Node node = find(field.name);
+  refuse(node.IsDefined() ? node : level.node, path_of(field.name), found, expected);
+}
+
+void YamlReader::refuse(const YAML::Node& node, const std::string& path, const std::string& found,
                         const std::string& expected, const std::string& hint) const {
   const YAML::Mark mark = node.IsDefined() ? node.Mark() : YAML::Mark::null_mark();
   const std::string where = mark.is_null() ? name_ : fmt::format("{} line {}", name_, mark.line + 1);
-  throw CaseError(where, field, found, expected, hint);
+  throw CaseError(where, path, found, expected, hint);
 }
 
-void YamlReader::require_map(const YAML::Node& node, const std::string& field) const {
-  if (!node.IsMap()) refuse(node, field, shown(node), "a group of `key: value` lines");
+void YamlReader::require_map(const YAML::Node& node, const std::string& path) const {
+  if (!node.IsMap()) refuse(node, path, shown(node), "a group of `key: value` lines");
   std::set<std::string> seen;
   for (const auto& entry : node) {
-    if (!entry.first.IsScalar()) refuse(entry.first, field, "a key that is not a word", "plain keys");
+    if (!entry.first.IsScalar()) refuse(entry.first, path, "a key that is not a word", "plain keys");
     if (!seen.insert(entry.first.Scalar()).second) {
-      refuse(entry.first, field, fmt::format("the key '{}' twice", entry.first.Scalar()), "each key once");
+      refuse(entry.first, path, fmt::format("the key '{}' twice", entry.first.Scalar()), "each key once");
     }
   }
 }
 
-void YamlReader::refuse_unknown_keys(const YAML::Node& node, const std::string& field,
-                                     const std::vector<std::string>& known) const {
-  for (const auto& entry : node) {
+void YamlReader::refuse_unknown_keys(const Level& level) const {
+  for (const auto& entry : level.node) {
     const std::string& key = entry.first.Scalar();
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const std::string place = field.empty() ? key : fmt::format("{}.{}", field, key);
-    refuse(entry.first, place, "an unknown key", fmt::format("one of {}", fmt::join(known, ", ")),
-           fmt::format("Did you mean '{}'?", nearest_name(key, known)));
+    if (std::find(level.known.begin(), level.known.end(), key) != level.known.end()) continue;
+    const std::string path = level.name.empty() ? key : fmt::format("{}.{}", level.name, key);
+    refuse(entry.first, path, "an unknown key", fmt::format("one of {}", fmt::join(level.known, ", ")),
+           fmt::format("Did you mean '{}'?", nearest_name(key, level.known)));
   }
 }
 
-YAML::Node YamlReader::take(const char* name) {
+/// The node of a field; of no name: of the level itself.
+YAML::Node YamlReader::find(std::string_view name) const {
+  const YAML::Node& node = levels_.back().node;  // const: looking up must not insert
+  if (name.empty()) return node;
+  if (!node.IsDefined() || !node.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
+  return node[std::string(name)];
+}
+
+/// The node of a field that is visited, which is known from now on, or of the next item of a list.
+YAML::Node YamlReader::take(const Field& field) {
   Level& level = levels_.back();
-  level.known.emplace_back(name);
-  if (!level.node.IsDefined() || !level.node.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
-  const YAML::Node& map = level.node;  // const: looking up must not insert
-  return map[name];
+  const bool is_optional = std::exchange(is_optional_, false);
+  if (level.is_list) return level.node[level.next++];
+  const bool is_required = level.is_of_item && !is_optional;
+  if (std::find(level.known.begin(), level.known.end(), field.name) == level.known.end())
+    level.known.emplace_back(field.name);
+  YAML::Node node = find(field.name);
+  if (is_required && field.meaning.empty()) level.required.emplace_back(field.name);
+  if (is_required && level.node.IsDefined() && !node.IsDefined() && !level.missing) level.missing = field;
+  return node;
 }
 
-void YamlReader::begin_group(const FieldInfo& info) {
-  const YAML::Node node = take(info.name);
-  const std::string name = field(info.name);
-  if (node.IsDefined()) require_map(node, name);
-  levels_.push_back({node, name, {}});
+void YamlReader::begin(const Field& field) {
+  Level inner{.node = take(field), .name = path_of(field.name), .is_of_item = levels_.back().is_of_item};
+  if (inner.node.IsDefined()) require_map(inner.node, inner.name);
+  levels_.push_back(std::move(inner));
 }
 
-void YamlReader::end_group() {
-  const Level& level = levels_.back();
-  if (level.node.IsDefined() && level.node.IsMap()) refuse_unknown_keys(level.node, level.name, level.known);
+void YamlReader::end() {
+  const Level level = std::move(levels_.back());
+  levels_.pop_back();
+  if (!level.node.IsDefined()) return;
+  refuse_unknown_keys(level);
+  if (!level.missing) return;
+  const std::string_view meaning = level.missing->meaning;
+  refuse(level.node, level.name, fmt::format("no `{}`", level.missing->name),
+         meaning.empty() ? fmt::format("{}", fmt::join(level.required, " and ")) : std::string(meaning));
+}
+
+std::size_t YamlReader::begin_list(const Field& field, std::size_t, std::size_t) {
+  const bool is_optional = is_optional_;
+  Level list{.node = take(field), .name = path_of(field.name), .is_list = true, .is_of_item = true};
+  const bool is_there = list.node.IsDefined();
+  if (is_there && is_optional && (!list.node.IsSequence() || list.node.size() == 0)) {
+    refuse(list.node, list.name, list.node.IsSequence() ? "an empty list" : "no list",
+           fmt::format("a list of {}", field.name));
+  }
+  if (is_there && !list.node.IsSequence()) refuse(list.node, list.name, shown(list.node), "a list of groups");
+  levels_.push_back(std::move(list));
+  return is_there ? levels_.back().node.size() : kUnchanged;
+}
+
+void YamlReader::end_list() {
   levels_.pop_back();
 }
 
-void YamlReader::finish() { refuse_unknown_keys(levels_.front().node, "", levels_.front().known); }
+bool YamlReader::optional(const Field& field, bool is_there) {
+  is_optional_ = true;
+  const bool is_given = take(field).IsDefined() || is_there;
+  is_optional_ = is_given;
+  return is_given;
+}
 
-double YamlReader::read_number(const YAML::Node& node, const std::string& field, const Range& range) const {
+double YamlReader::read_number(const YAML::Node& node, const std::string& path, const Range& range) const {
   double value = 0.0;
-  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) refuse(node, field, shown(node), describe(range));
-  if (!contains(range, value)) refuse(node, field, node.Scalar(), describe(range));
+  if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) refuse(node, path, shown(node), describe(range));
+  if (!contains(range, value)) refuse(node, path, node.Scalar(), describe(range));
   return value;
 }
 
-void YamlReader::read_numbers(const YAML::Node& node, const std::string& field, std::span<double> values,
-                              const Range& range) const {
+void YamlReader::read_numbers(const YAML::Node& node, const std::string& path, const Block& block) const {
   // Nested lists (a box as two corners, a matrix as four rows) are read in order.
   std::vector<YAML::Node> flat;
-  if (!node.IsSequence()) refuse(node, field, shown(node), fmt::format("a list of {} numbers", values.size()));
+  if (!node.IsSequence()) refuse(node, path, shown(node), fmt::format("a list of {} numbers", block.count));
   for (const auto& item : node) {
     if (item.IsSequence()) {
       for (const auto& inner : item) flat.push_back(inner);
@@ -114,51 +164,48 @@ void YamlReader::read_numbers(const YAML::Node& node, const std::string& field, 
       flat.push_back(item);
     }
   }
-  if (flat.size() != values.size()) {
-    refuse(node, field, fmt::format("{} numbers", flat.size()), fmt::format("{} numbers", values.size()));
+  if (flat.size() != block.count) {
+    refuse(node, path, fmt::format("{} numbers", flat.size()), fmt::format("{} numbers", block.count));
   }
-  for (std::size_t i = 0; i < flat.size(); ++i) values[i] = read_number(flat[i], fmt::format("{}[{}]", field, i), range);
+  for (std::size_t i = 0; i < flat.size(); ++i)
+    static_cast<double*>(block.data)[i] = read_number(flat[i], fmt::format("{}[{}]", path, i), block.range);
 }
 
-void YamlReader::number(const FieldInfo& info, double& value, const Range& range) {
-  const YAML::Node node = take(info.name);
-  if (node.IsDefined()) value = read_number(node, field(info.name), range);
+void YamlReader::number(const Field& field, double& value, const Range& range) {
+  const YAML::Node node = take(field);
+  if (node.IsDefined()) value = read_number(node, path_of(field.name), range);
 }
 
-void YamlReader::optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) {
-  const YAML::Node node = take(info.name);
-  if (node.IsDefined()) value = read_number(node, field(info.name), range);
-}
-
-void YamlReader::integer(const FieldInfo& info, int& value, const Range& range) {
-  const YAML::Node node = take(info.name);
+void YamlReader::integer(const Field& field, std::int64_t& value, const Range& range) {
+  const YAML::Node node = take(field);
   if (!node.IsDefined()) return;
-  const double number = read_number(node, field(info.name), range);
-  if (number != std::floor(number) || std::abs(number) > 1e9) refuse(node, field(info.name), node.Scalar(), "a whole number");
-  value = static_cast<int>(number);
+  const double number = read_number(node, path_of(field.name), range);
+  if (number != std::floor(number)) refuse(node, path_of(field.name), node.Scalar(), "a whole number");
+  value = static_cast<std::int64_t>(number);
 }
 
-void YamlReader::flag(const FieldInfo& info, bool& value) {
-  const YAML::Node node = take(info.name);
+void YamlReader::flag(const Field& field, bool& value) {
+  const YAML::Node node = take(field);
   if (!node.IsDefined()) return;
-  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) refuse(node, field(info.name), shown(node), "true or false");
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) {
+    refuse(node, path_of(field.name), shown(node), "true or false");
+  }
 }
 
-void YamlReader::text(const FieldInfo& info, std::string& value) {
-  const YAML::Node node = take(info.name);
+void YamlReader::text(const Field& field, std::string& value) {
+  const YAML::Node node = take(field);
   if (!node.IsDefined()) return;
-  if (!node.IsScalar()) refuse(node, field(info.name), shown(node), "a text");
+  if (!node.IsScalar()) refuse(node, path_of(field.name), shown(node), "a text");
   value = node.Scalar();
 }
 
-void YamlReader::path(const FieldInfo& info, std::filesystem::path& value) {
-  std::string name = value.string();
-  text(info, name);
-  value = name;
-}
-
-void YamlReader::choice(const FieldInfo& info, std::size_t& value, Names names) {
-  const YAML::Node node = take(info.name);
+void YamlReader::choice(const Field& field, std::size_t& value, Names names) {
+  const YAML::Node node = take(field);
+  const Level& level = levels_.back();
+  if (!node.IsDefined() && level.missing && level.missing->name == field.name) {  // what else is known depends on it
+    refuse(level.node, level.name, fmt::format("no `{}`", field.name),
+           fmt::format("{}: {}", field.name, choices(names)));
+  }
   if (!node.IsDefined()) return;
   const auto found = std::find_if(names.begin(), names.end(),
                                   [&](std::string_view name) { return node.IsScalar() && node.Scalar() == name; });
@@ -166,61 +213,44 @@ void YamlReader::choice(const FieldInfo& info, std::size_t& value, Names names) 
     const std::vector<std::string> valid(names.begin(), names.end());
     const std::string hint =
         node.IsScalar() ? fmt::format("Did you mean '{}'?", nearest_name(node.Scalar(), valid)) : std::string();
-    refuse(node, field(info.name), shown(node), fmt::format("one of {}", fmt::join(valid, ", ")), hint);
+    refuse(node, path_of(field.name), shown(node), fmt::format("one of {}", fmt::join(valid, ", ")), hint);
   }
   value = static_cast<std::size_t>(found - names.begin());
 }
 
-void YamlReader::numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) {
-  const YAML::Node node = take(info.name);
+void YamlReader::block(const Field& field, const Block& block) {
+  INCISE_REQUIRE(block.kind == Block::Kind::Double, "expected numbers of double precision in a file of settings");
+  const Level& level = levels_.back();
+  const YAML::Node node = level.is_list ? level.node : take(field);
   if (!node.IsDefined()) return;
-  read_numbers(node, field(info.name), values, range);
-  is_given = true;
-}
-
-void YamlReader::table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) {
-  const YAML::Node list = take(info.name);
-  if (!list.IsDefined()) return;
-  if (!list.IsSequence()) refuse(list, field(info.name), shown(list), "a list of groups");
-  std::vector<std::string> known;
-  for (const Column& column : columns) known.emplace_back(column.info.name);
-  rows.clear();
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const YAML::Node entry = list[i];
-    const std::string place = fmt::format("{}[{}]", field(info.name), i);
-    require_map(entry, place);
-    refuse_unknown_keys(entry, place, known);
-    Row row;
-    for (const Column& column : columns) {
-      const YAML::Node value = entry[column.info.name];
-      const std::string cell = fmt::format("{}.{}", place, column.info.name);
-      if (!value.IsDefined()) {
-        if (column.is_required) refuse(entry, place, fmt::format("no `{}`", column.info.name), column.info.meaning);
-        row.emplace_back();
-        continue;
-      }
-      const double number = read_number(value, cell, column.range);
-      if (column.is_whole && number != std::floor(number)) refuse(value, cell, value.Scalar(), "a whole number");
-      row.emplace_back(number);
-    }
-    rows.push_back(std::move(row));
+  const std::string path = level.is_list ? level.name : path_of(field.name);
+  auto* const values = static_cast<double*>(block.data);
+  if (block.is_direction && node.IsScalar()) {
+    const std::optional<Eigen::Vector3d> named = anatomical_direction(node.Scalar());
+    if (!named)
+      refuse(node, path, shown(node), "a vector, or one of anterior, posterior, left, right, superior, inferior");
+    std::copy_n(named->data(), 3, values);
+    return;
   }
+  read_numbers(node, path, block);
+  if (!block.is_direction) return;
+  Eigen::Map<Eigen::Vector3d> direction(values);
+  if (direction.norm() < 1e-9) refuse(node, path, "a vector of length 0", "a direction");
+  direction.normalize();
 }
 
-Vec3 YamlReader::read_direction(const YAML::Node& node, const std::string& field) const {
-  if (node.IsScalar()) {
-    if (const auto named = anatomical_direction(node.Scalar())) return *named;
-    refuse(node, field, shown(node), "a vector, or one of anterior, posterior, left, right, superior, inferior");
+std::size_t YamlReader::key(std::size_t& place, std::span<const Field> keys) {
+  Level& level = levels_.back();
+  for (const Field& key : keys) level.known.emplace_back(key.name);
+  if (!level.node.IsDefined()) {
+    place = kUnchanged;
+    return 1;
   }
-  Vec3 vector = Vec3::Zero();
-  read_numbers(node, field, {vector.data(), 3}, kAny);
-  if (vector.norm() < 1e-9) refuse(node, field, "a vector of length 0", "a direction");
-  return vector.normalized();
-}
-
-void YamlReader::direction(const FieldInfo& info, Vec3& value) {
-  const YAML::Node node = take(info.name);
-  if (node.IsDefined()) value = read_direction(node, field(info.name));
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (find(keys[i].name).IsDefined() && found++ == 0) place = i;
+  }
+  return found;
 }
 
 }  // namespace incise

@@ -1,66 +1,67 @@
 #pragma once
 
-#include "field_visitor.hpp"
+#include <incise/core/describe.hpp>
 
 #include <yaml-cpp/yaml.h>
 
-#include <set>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace incise {
 
-/// Fills a tree of settings from YAML, strictly: what is absent keeps its default, what is unknown or does not fit is a CaseError that
-/// says where ("case.yaml line 7"), which field, what was found and what was expected.
-class YamlReader : public FieldVisitor {
+/// Sets what is described from YAML, strictly: what is absent keeps its default, what is unknown or does not fit is a
+/// CaseError that says where ("case.yaml line 7"), which field, what was found and what was expected. In an item of a
+/// list every field has to be there that is not optional.
+class YamlReader : public Visitor {
  public:
   /// @param name  the file's name for messages.
   YamlReader(const YAML::Node& root, std::string name);
 
-  void begin_group(const FieldInfo& info) override;
-  void end_group() override;
-  void number(const FieldInfo& info, double& value, const Range& range) override;
-  void optional_number(const FieldInfo& info, std::optional<double>& value, const Range& range) override;
-  void integer(const FieldInfo& info, int& value, const Range& range) override;
-  void flag(const FieldInfo& info, bool& value) override;
-  void text(const FieldInfo& info, std::string& value) override;
-  void path(const FieldInfo& info, std::filesystem::path& value) override;
-  void choice(const FieldInfo& info, std::size_t& value, Names names) override;
-  void numbers(const FieldInfo& info, std::span<double> values, bool& is_given, const Range& range) override;
-  void direction(const FieldInfo& info, Vec3& value) override;
-  void table(const FieldInfo& info, std::span<const Column> columns, std::vector<Row>& rows) override;
-  void constraints(const FieldInfo& info, std::optional<std::vector<Constraint>>& value) override;
+  [[nodiscard]] bool sets() const override { return true; }
+  [[nodiscard]] bool is_complete() const override { return false; }
+  void begin(const Field& field) override;
+  void end() override;
+  std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) override;
+  void end_list() override;
+  bool optional(const Field& field, bool is_there) override;
+  void number(const Field& field, double& value, const Range& range) override;
+  void integer(const Field& field, std::int64_t& value, const Range& range) override;
+  void flag(const Field& field, bool& value) override;
+  void text(const Field& field, std::string& value) override;
+  void choice(const Field& field, std::size_t& value, Names names) override;
+  void block(const Field& field, const Block& block) override;
+  std::size_t key(std::size_t& place, std::span<const Field> keys) override;
+  [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
 
   /// Refuses keys of the outermost level that no field asked for. Call once, after the walk.
-  void finish();
+  void finish() { end(); }
 
  private:
   struct Level {
-    YAML::Node node;                ///< a map, or undefined when the group is absent
-    std::string name;               ///< dotted, "" for the outermost
-    std::vector<std::string> known; ///< fields that were asked for
+    YAML::Node node;   ///< a map or list, or undefined where it is absent
+    std::string name;  ///< dotted, "" for the outermost
+    bool is_list = false;
+    bool is_of_item = false;            ///< an item of a list, or in one
+    std::size_t next = 0;               ///< item
+    std::vector<std::string> known;     ///< fields that were asked for
+    std::vector<std::string> required;  ///< of them, those without a meaning
+    std::optional<Field> missing;       ///< the first one of them that is not there
   };
-  [[nodiscard]] YAML::Node take(const char* name);
-  [[nodiscard]] std::string field(const char* name) const;
-  [[noreturn]] void refuse(const YAML::Node& node, const std::string& field, const std::string& found,
+  [[nodiscard]] YAML::Node find(std::string_view name) const;
+  [[nodiscard]] YAML::Node take(const Field& field);
+  [[nodiscard]] std::string path_of(std::string_view name) const;
+  [[noreturn]] void refuse(const YAML::Node& node, const std::string& path, const std::string& found,
                            const std::string& expected, const std::string& hint = "") const;
-  [[nodiscard]] double read_number(const YAML::Node& node, const std::string& field, const Range& range) const;
-  void read_numbers(const YAML::Node& node, const std::string& field, std::span<double> values, const Range& range) const;
-  void require_map(const YAML::Node& node, const std::string& field) const;
-  void refuse_unknown_keys(const YAML::Node& node, const std::string& field, const std::vector<std::string>& known) const;
-  [[nodiscard]] Vec3 read_direction(const YAML::Node& node, const std::string& field) const;
-  [[nodiscard]] Region read_region(const YAML::Node& node, const std::string& field) const;
-  [[nodiscard]] PlaneRegion read_plane_region(const YAML::Node& node, const std::string& field) const;
-  [[nodiscard]] std::pair<std::string, double> read_name_and_value(const YAML::Node& node, const std::string& field) const;
-  [[nodiscard]] SupportConstraint read_support(const YAML::Node& node, const std::string& field) const;
-  [[nodiscard]] Constraint read_constraint(const YAML::Node& node, const std::string& field) const;
-  [[nodiscard]] YAML::Node required(const YAML::Node& map, const char* key, const std::string& field, const char* expected) const;
+  [[nodiscard]] double read_number(const YAML::Node& node, const std::string& path, const Range& range) const;
+  void read_numbers(const YAML::Node& node, const std::string& path, const Block& block) const;
+  void require_map(const YAML::Node& node, const std::string& path) const;
+  void refuse_unknown_keys(const Level& level) const;
 
   std::string name_;
   std::vector<Level> levels_;
+  bool is_optional_ = false;  ///< the field that comes next
 };
-
-/// Unit vector of an anatomical direction in LPS; nullopt for any other word.
-[[nodiscard]] std::optional<Vec3> anatomical_direction(const std::string& word);
 
 }  // namespace incise

@@ -1,6 +1,7 @@
 #include <incise/core/described_bytes.hpp>
 #include <incise/core/error.hpp>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,6 +120,71 @@ TEST(DescribedBytes, TakeNoMoreMemoryThanTheBytesAllow) {
   std::string bytes = bytes_of(std::vector<double>{1.0});
   for (int i = 0; i < 8; ++i) bytes[static_cast<std::size_t>(i)] = '\x7f';  // the count
   EXPECT_THROW(static_cast<void>(from_bytes<std::vector<double>>(bytes, "test")), DataError);
+}
+
+struct Place {
+  std::filesystem::path file;
+  std::optional<Eigen::AlignedBox3d> box;
+  Eigen::Vector3d towards = Eigen::Vector3d::UnitX();
+  int margin = 4;
+};
+void describe(Visitor& v, Place& p) {
+  v("file", p.file, "Where it lies.");
+  v({"box_mm", "What it holds.", "mm"}, p.box);
+  v.direction("towards", p.towards, "Where it points.");
+  v.internal("margin", p.margin, "Around the box.");
+}
+
+TEST(DescribedBytes, HoldFilesBoxesDirectionsAndWhatNoFileSets) {
+  const Place place{"a/b.csv", Eigen::AlignedBox3d(Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(4, 5, 6)), {0, 0, 2}, 7};
+  const auto back = from_bytes<Place>(bytes_of(place), "test");
+  EXPECT_EQ(back.file, place.file);
+  EXPECT_EQ(back.box->min(), place.box->min());
+  EXPECT_EQ(back.box->max(), place.box->max());
+  EXPECT_EQ(back.towards, place.towards) << "with its length";
+  EXPECT_EQ(back.margin, 7);
+  EXPECT_TRUE(from_bytes<Place>(bytes_of(Place{}), "test").file.empty());
+}
+
+/// Is shown what there may be: every kind of item, and values that are absent.
+class Examples : public ByteWriter {
+ public:
+  std::size_t begin_list(const Field& field, std::size_t, std::size_t) override {
+    seen += fmt::format("{}[", field.name);
+    return kEveryKind;
+  }
+  void end_list() override { seen += "]"; }
+  bool optional(const Field&, bool is_there) override {
+    seen += is_there ? "" : "?";
+    return true;
+  }
+  void number(const Field& field, double&, const Range&) override { seen += fmt::format("{} ", field.name); }
+  void choice(const Field&, std::size_t& value, Names names) override { seen += fmt::format("{} ", names[value]); }
+  std::string seen;
+};
+
+struct Disc {
+  double radius_mm = 1.0;
+};
+void describe(Visitor& v, Disc& d) {
+  v("radius_mm", d.radius_mm);
+}
+struct Slab {
+  std::optional<double> width_mm;
+};
+void describe(Visitor& v, Slab& s) {
+  v("width_mm", s.width_mm);
+}
+Names names_of(const std::variant<Disc, Slab>&) {
+  return kShapeNames;
+}
+
+TEST(Visitor, MayBeShownEveryKindOfItemAndWhatIsAbsent) {
+  std::vector<std::variant<Disc, Slab>> none;
+  Examples examples;
+  examples("shapes", none);
+  EXPECT_EQ(examples.seen, "shapes[round radius_mm square ?width_mm ]");
+  EXPECT_TRUE(none.empty());
 }
 
 TEST(NamesOf, GoBothWays) {

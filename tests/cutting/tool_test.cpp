@@ -1,3 +1,4 @@
+#include <incise/core/described_bytes.hpp>
 #include <incise/cutting/tool.hpp>
 
 #include <gmock/gmock.h>
@@ -28,6 +29,14 @@ TEST(Blade, EachDimensionOfZeroIsRefused) {
 TEST(Ball, ADiameterThatIsNoNumberIsRefused) {
   EXPECT_THAT(validate(Ball{}), IsEmpty());
   EXPECT_THAT(validate(Ball{.diameter_mm = std::nan("")}), ElementsAre(HasSubstr("diameter_mm: found nan")));
+}
+
+TEST(Tool, IsTheSameAgainFromItsBytes) {
+  for (const Tool& tool : {Tool(Needle{0.8, 20.0}), Tool(Blade{0.4, 3.0, 20.0}), Tool(Ball{3.0})}) {
+    const auto back = from_bytes<Tool>(bytes_of(tool), "test");
+    EXPECT_EQ(kind_of(back), kind_of(tool));
+    EXPECT_EQ(bytes_of(back), bytes_of(tool));
+  }
 }
 
 TEST(ToolPose, HalfWayBetweenTwoPosesTheAxisIsAUnitVector) {

@@ -1,5 +1,6 @@
 #include "mechanics/bodies.hpp"
 
+#include <incise/core/described_bytes.hpp>
 #include <incise/core/error.hpp>
 #include <incise/mechanics/constraints.hpp>
 
@@ -98,6 +99,34 @@ TEST(Select, AnUnknownArrayIsToldWithTheKnownOnes) {
 
 TEST(Select, ARegionOutsideTheBodyIsEmpty) {
   EXPECT_THAT(select(small_block(), SphereRegion{Vec3(0, 0, 99), 1.0}), IsEmpty());
+}
+
+TEST(Constraint, IsTheSameAgainFromItsBytesWhateverItsRegion) {
+  const Region regions[] = {BoxRegion{Box3(Vec3(1, 2, 3), Vec3(4, 5, 6))},
+                            SphereRegion{Vec3(1, 2, 3), 4.0},
+                            EndRegion{Vec3::UnitZ(), 3.0},
+                            PlaneRegion{Vec3(1, 2, 3), Vec3(0, 0, 2), 0.1},
+                            CellArrayRegion{"part", 0.1},
+                            PointArrayRegion{"clamp", -2.0}};
+  std::vector<Constraint> all;
+  for (const Region& region : regions) all.emplace_back(FixedConstraint{region, {true, false, true}});
+  all.emplace_back(DisplacedConstraint{regions[0], Vec3(0, 20, 0)});
+  all.emplace_back(SupportConstraint{Vec3(1, 2, 3), Vec3::UnitX(), nullptr});
+  all.emplace_back(TractionConstraint{regions[1], Vec3(0, 0, 1)});
+  const auto back = from_bytes<std::vector<Constraint>>(bytes_of(all), "test");
+  EXPECT_EQ(bytes_of(back), bytes_of(all));
+  EXPECT_EQ(std::get<CellArrayRegion>(std::get<FixedConstraint>(back[4]).where).value, 0.1);
+  EXPECT_FALSE(std::get<FixedConstraint>(back[0]).axes[1]);
+}
+
+TEST(Constraint, IsKnownByTheSurfaceOfItsHolderNotByTheFilesName) {
+  TriMesh surface;
+  surface.vertices = {Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(0, 9, 0)};
+  const auto bytes = [](const std::string& name, const TriMesh& of) {
+    return bytes_of(Constraint(SupportConstraint{.holder = std::make_shared<HolderSurface>(HolderSurface{name, of})}));
+  };
+  EXPECT_EQ(bytes("a.stl", surface), bytes("b.stl", surface));
+  EXPECT_NE(bytes("a.stl", surface), bytes("a.stl", TriMesh{}));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
@@ -43,6 +44,7 @@ struct Field {
   std::string_view name;
   std::string_view meaning = {};
   std::string_view unit = {};
+  std::string_view pattern = {};  ///< regular expression that a text matches
 };
 
 /// Many numbers of one kind that lie side by side in memory: `columns` of them belong together.
@@ -52,6 +54,8 @@ struct Block {
   void* data = nullptr;
   std::size_t count = 0;
   std::size_t columns = 1;
+  Range range = kAny;         ///< of each number
+  bool is_direction = false;  ///< three numbers whose length does not matter, as long as it is not 0
 };
 
 class Visitor;
@@ -60,13 +64,17 @@ class Visitor;
 ///
 ///     inline void describe(Visitor& v, Bond& b) {
 ///       v("tet", b.tet, "The tet that is held.");
-///       v("offset_mm", b.offset_mm, "Of the tet's centroid from the tool's tip when first touched.");
+///       v({"offset_mm", "Of the tet's centroid from the tool's tip when first touched.", "mm"}, b.offset_mm);
 ///     }
 ///
 /// Files, keys, comparison, schema and reports are visitors of that description, so that none of them can miss a field.
 /// A visitor that only shows leaves every value as it is: it may be given a constant.
 class Visitor {
  public:
+  /// Answers of a visitor in place of a size or a place.
+  static constexpr std::size_t kUnchanged = std::numeric_limits<std::size_t>::max();  ///< a list stays as it is
+  static constexpr std::size_t kEveryKind = kUnchanged - 1;  ///< show what there may be: one item or value of each kind
+
   virtual ~Visitor() = default;
 
   /// Whether values are set, not shown.
@@ -74,10 +82,11 @@ class Visitor {
   virtual void begin(const Field& field) = 0;  ///< of a described value inside another one
   virtual void end() = 0;
   /// Items follow, then end_list. @param size  that is shown. @param item_bytes  least size of an item in memory.
-  /// @returns how many there are
+  /// @returns how many there are, or kUnchanged, or kEveryKind
   virtual std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) = 0;
   virtual void end_list() = 0;
-  /// Before a value that may be absent. @returns whether it is there
+  /// Before a value that may be absent. @returns whether it is there; a visitor that only shows may say so of an absent
+  /// value, and is shown one that was just made
   virtual bool optional(const Field& field, bool is_there) = 0;
   virtual void number(const Field& field, double& value, const Range& range) = 0;
   virtual void integer(const Field& field, std::int64_t& value, const Range& range) = 0;
@@ -86,6 +95,12 @@ class Visitor {
   /// One of `names`; `value` is its place among them.
   virtual void choice(const Field& field, std::size_t& value, Names names) = 0;
   virtual void block(const Field& field, const Block& block) = 0;
+  /// Which of these fields stands in the group: just one does, and is visited next. @param place  of the first one that
+  /// is there, or kEveryKind. @returns how many are there
+  virtual std::size_t key(std::size_t& place, std::span<const Field> keys);
+  /// Whether everything is walked that determines a result. A file that people write names files in place of what they
+  /// hold, and lacks what only code may choose.
+  [[nodiscard]] virtual bool is_complete() const { return true; }
   /// Refuses what was read. @throws DataError, or CaseError where a case is read, naming the place.
   [[noreturn]] virtual void refuse(const Field& field, const std::string& found, const std::string& expected) const = 0;
 
@@ -97,15 +112,32 @@ class Visitor {
   void operator()(const Field& field, T& value, const Range& range = kAny) {
     visit(field, value, range);
   }
+  /// A field that no file sets.
+  template <class T>
+  void internal(std::string_view name, T& value, std::string_view meaning = {}, const Range& range = kAny) {
+    if (is_complete()) visit(Field{name, meaning}, value, range);
+  }
+  /// A vector that counts for where it points.
+  void direction(std::string_view name, Eigen::Vector3d& value, std::string_view meaning = {}) {
+    block(Field{name, meaning}, {Block::Kind::Double, value.data(), 3, 3, kAny, true});
+  }
+  /// Which alternative a variant holds, by its name.
+  template <class... T>
+  void kind(const Field& field, std::variant<T...>& value) {
+    std::size_t place = value.index();
+    choice(field, place, names_of(value));
+    if (sets()) emplace(value, place);
+  }
+  /// Makes a variant hold the default of one of its alternatives.
+  template <class... T>
+  static void emplace(std::variant<T...>& value, std::size_t place) {
+    std::size_t i = 0;
+    ((i++ == place ? static_cast<void>(value = T{}) : static_cast<void>(0)), ...);
+  }
 
  private:
   template <class T>
   void visit(const Field& field, T& value, const Range& range);
-  template <class... T>
-  static void emplace_kind(std::variant<T...>& value, std::size_t kind) {
-    std::size_t i = 0;
-    ((i++ == kind ? static_cast<void>(value = T{}) : static_cast<void>(0)), ...);
-  }
   template <class T>
   void visit_list(const Field& field, std::vector<T>& values, const Range& range);
 };
@@ -137,6 +169,11 @@ template <class T>
 inline constexpr bool kIsVariant = false;
 template <class... T>
 inline constexpr bool kIsVariant<std::variant<T...>> = true;
+template <class T>
+constexpr std::size_t kinds_of() {
+  if constexpr (kIsVariant<T>) return std::variant_size_v<T>;
+  return 1;
+}
 template <class T>
 inline constexpr bool kIsShared = false;
 template <class T>
@@ -189,15 +226,15 @@ void Visitor::visit(const Field& field, T& value, const Range& range) {
       if (sets()) value.reset();
       return;
     }
-    if (sets() && !value) value.emplace();
-    visit(field, *value, range);
-  } else if constexpr (kIsVariant<T>) {
-    begin(field);
-    std::size_t kind = value.index();
-    choice(Field{"kind", "Which it is."}, kind, names_of(value));
-    if (sets()) emplace_kind(value, kind);
-    std::visit([this](auto& own) { describe(*this, own); }, value);
-    end();
+    if (value) return visit(field, *value, range);
+    typename T::value_type made{};
+    visit(field, made, range);
+    if (sets()) value = std::move(made);
+  } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
+    std::optional<std::string> name;
+    if (!value.empty()) name = value.generic_string();
+    visit(field, name, range);
+    if (sets()) value = name.value_or("");
   } else if constexpr (kIsShared<T>) {
     const bool is_there = optional(field, value != nullptr);
     std::remove_const_t<typename T::element_type> own;
@@ -206,16 +243,15 @@ void Visitor::visit(const Field& field, T& value, const Range& range) {
     if (sets()) value = is_there ? std::make_shared<const typename T::element_type>(std::move(own)) : nullptr;
   } else if constexpr (kIsMatrix<T>) {
     block(field, {Block::Kind::Double, value.data(), static_cast<std::size_t>(value.size()),
-                  static_cast<std::size_t>(value.rows())});
+                  static_cast<std::size_t>(value.rows()), range});
   } else if constexpr (std::is_same_v<T, Eigen::AlignedBox3d>) {
-    begin(field);
-    visit(Field{"low", "Low corner."}, value.min(), kAny);
-    visit(Field{"high", "High corner."}, value.max(), kAny);
-    end();
+    std::array<Eigen::Vector3d, 2> corners{value.min(), value.max()};
+    visit(field, corners, range);
+    if (sets()) value = T(corners[0], corners[1]);
   } else if constexpr (kIsArray<T>) {
     constexpr auto kLayout = layout_of<typename T::value_type>();
     if constexpr (kLayout.has_value()) {
-      block(field, {kLayout->first, value.data(), value.size() * kLayout->second, kLayout->second});
+      block(field, {kLayout->first, value.data(), value.size() * kLayout->second, kLayout->second, range});
     } else {
       const std::size_t size = begin_list(field, value.size(), 1);
       if (size != value.size()) refuse(field, std::to_string(size) + " items", std::to_string(value.size()));
@@ -235,10 +271,18 @@ template <class T>
 void Visitor::visit_list(const Field& field, std::vector<T>& values, const Range& range) {
   constexpr auto kLayout = describe_detail::layout_of<T>();
   const std::size_t size = begin_list(field, values.size(), kLayout.has_value() ? sizeof(T) : 1);
+  if (size == kUnchanged) return end_list();
   if (sets()) values.clear();
   if constexpr (kLayout.has_value()) {
     if (sets()) values.resize(size);
-    block({}, {kLayout->first, values.data(), size * kLayout->second, kLayout->second});
+    block({}, {kLayout->first, values.data(), values.size() * kLayout->second, kLayout->second, range});
+  } else if (size == kEveryKind) {
+    constexpr std::size_t kKinds = describe_detail::kinds_of<T>();
+    for (std::size_t i = 0; i < kKinds; ++i) {
+      T made{};
+      if constexpr (describe_detail::kIsVariant<T>) emplace(made, i);
+      visit(Field{}, made, range);
+    }
   } else {
     for (std::size_t i = 0; i < size; ++i) {
       if (sets()) values.emplace_back();
@@ -246,6 +290,13 @@ void Visitor::visit_list(const Field& field, std::vector<T>& values, const Range
     }
   }
   end_list();
+}
+
+/// One of several types, told apart by the key `kind`; a variant may have another description of its own.
+template <class... T>
+void describe(Visitor& v, std::variant<T...>& value) {
+  v.kind(Field{"kind", "Which it is."}, value);
+  std::visit([&v](auto& own) { describe(v, own); }, value);
 }
 
 /// Named lists, in the order of their names.

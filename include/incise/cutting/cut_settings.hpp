@@ -33,25 +33,36 @@ struct CutSettings {
   /// Duration of one simulation step, s.
   [[nodiscard]] double step_s() const { return advance_per_step_mm / speed_mm_s; }
 };
-inline void describe(Visitor& v, CutSettings& s) {
-  v("speed_mm_s", s.speed_mm_s, "Of the simulated tool.", kPositive);
-  v("dullness", s.dullness, "Contact needed before a tet is removed, in reference steps.", kPositive);
-  v("reference_step_s", s.reference_step_s, "The time that one unit of dullness stands for.", kPositive);
-  v("power_w", s.power_w, "Of the electrode.", kPositive);
-  v("reference_power_w", s.reference_power_w, "Power for which dullness holds.", kPositive);
-  v("power_exponent", s.power_exponent, "Contact cuts (power_w / reference_power_w) to this times as fast.",
-    Range{0.0, 10.0});
-  v("tear_energy_kpa", s.tear_energy_kpa,
-    "Work of the tool per volume at which held tissue tears; absent: it does not.", kPositive);
-  v("slip_mm", s.slip_mm, "Tissue that the tool has left this far behind slips; absent: never.", kPositive);
-  v("advance_per_step_mm", s.advance_per_step_mm, "Tool travel in one simulation step.", kPositive);
-  v("reach_mm", s.reach_mm, "Tissue is in contact within the tool's radius plus this of its core.", kNotNegative);
-  v("bond_stiffness_kpa_mm2", s.bond_stiffness_kpa_mm2,
-    "Pull of the tool on tissue that it holds, per volume and offset.", kNotNegative);
-  v("overlap_mm", s.overlap_mm, "A ring is cut this far beyond its start.", kNotNegative);
+/// What decides when tissue is cut; a case file puts the tissue's toughness behind it.
+inline void describe_effect(Visitor& v, CutSettings& s) {
+  v({"speed_mm_s", "Of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
+  v({"dullness", "Contact needed before a tetrahedron goes, in reference steps.", "steps"}, s.dullness,
+    {0.0, 1000.0, true});
+  v({"reference_step_s", "The time that one unit of dullness stands for.", "s"}, s.reference_step_s, {0.0, 1.0, true});
+  v.internal("power_w", s.power_w, "Of the electrode.", {0.0, 120.0, true});
+  v({"reference_power_w", "Power for which dullness holds.", "W"}, s.reference_power_w, {0.0, 120.0, true});
+  v("power_exponent", s.power_exponent,
+    "Contact cuts (plan.power_w / reference_power_w) to this times as fast; 0: power has no effect.", {0.0, 10.0});
+  v({"tear_energy_kpa", "Work of the tool per volume at which held tissue tears; absent: it does not.", "kPa"},
+    s.tear_energy_kpa, {1e-3, 1e6});
+  v({"slip_mm", "Tissue that the tool has left this far behind slips; absent: never.", "mm"}, s.slip_mm, kPositive);
+}
+/// How the cut is simulated, step by step.
+inline void describe_steps(Visitor& v, CutSettings& s) {
+  v({"advance_per_step_mm", "Tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
+    s.advance_per_step_mm, {0.01, 10.0});
+  v({"reach_mm", "Tissue is in contact within the tool's radius plus this of its core.", "mm"}, s.reach_mm, {0.0, 5.0});
+  v({"bond_stiffness_kpa_mm2", "Pull of the tool on tissue that it holds, per volume and offset; 0: no drag.",
+     "kPa/mm2"},
+    s.bond_stiffness_kpa_mm2, {0.0, 1e6});
+  v({"overlap_mm", "A ring is cut this far beyond its start, less than once round.", "mm"}, s.overlap_mm, {0.0, 50.0});
   v("residual_tolerance", s.residual_tolerance, "Of each step's linear solve, relative to the contact force.",
-    Range{1e-6, 0.3});
-  v("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step.", kPositive);
+    {1e-6, 0.3});
+  v.internal("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step.", kPositive);
+}
+inline void describe(Visitor& v, CutSettings& s) {
+  describe_effect(v, s);
+  describe_steps(v, s);
 }
 
 /// Every violation, one sentence each with the field's name; empty: valid. The step is checked against the tool's diameter or thickness.

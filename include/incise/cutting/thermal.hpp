@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
+
 #include <string>
 #include <vector>
 
@@ -20,6 +22,19 @@ struct ThermalSettings {
   /// Heat diffuses at k / (ρ c), mm²/s.
   [[nodiscard]] double diffusivity_mm2_s() const { return conductivity_w_m_k / heat_capacity_mj_m3_k; }
 };
+
+inline void describe(Visitor& v, ThermalSettings& s) {
+  v({"conductivity_w_m_k", "Of heat in tissue; muscle in the IT'IS database.", "W/(m K)"}, s.conductivity_w_m_k,
+    {0.01, 100.0});
+  v({"heat_capacity_mj_m3_k", "Per volume; muscle in the IT'IS database.", "MJ/(m3 K)"}, s.heat_capacity_mj_m3_k,
+    {0.01, 100.0});
+  v({"body_c", "Temperature of the tissue before the cut.", "°C"}, s.body_c, {-20.0, 60.0});
+  v({"damage_c",
+     "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); at least 5 K above body_c.", "°C"},
+    s.damage_c, {45.0, 200.0});
+  v("absorbed_fraction", s.absorbed_fraction,
+    "Share of the power that heats the tissue beside the kerf; 1: an upper bound.", {0.001, 1.0});
+}
 
 /// Every violation, one sentence each with the field's name; empty: valid.
 [[nodiscard]] std::vector<std::string> validate(const ThermalSettings& settings);

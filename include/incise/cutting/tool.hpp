@@ -20,10 +20,6 @@ struct Needle {
   double length_mm = 25.0;   ///< > 0, from the tip to the insulated shaft
   [[nodiscard]] double radius_mm() const { return 0.5 * diameter_mm; }
 };
-inline void describe(Visitor& v, Needle& t) {
-  v("diameter_mm", t.diameter_mm, "Of the needle.", kPositive);
-  v("length_mm", t.length_mm, "From its tip.", kPositive);
-}
 
 /// A blade electrode: a thin box with rounded edges, led edge first. Its mid-plane is a rectangle, `width_mm` along the heading and
 /// `length_mm` along the axis; the blade is what lies within half its thickness of that rectangle. The defaults are a common size, no standard's.
@@ -32,19 +28,11 @@ struct Blade {
   double width_mm = 2.4;      ///< > 0, of the mid-plane, centred on the axis
   double length_mm = 25.0;    ///< > 0, from the tip to the insulated shaft
 };
-inline void describe(Visitor& v, Blade& t) {
-  v("thickness_mm", t.thickness_mm, "Across axis and heading.", kPositive);
-  v("width_mm", t.width_mm, "In the direction of travel.", kPositive);
-  v("length_mm", t.length_mm, "From its tip.", kPositive);
-}
 
 /// A ball electrode: a sphere about the tip. It has no length: the wire that carries it touches nothing. The default is a common size, no standard's.
 struct Ball {
   double diameter_mm = 2.0;  ///< > 0
 };
-inline void describe(Visitor& v, Ball& t) {
-  v("diameter_mm", t.diameter_mm, "Of the ball.", kPositive);
-}
 
 /// An instrument. All are alike for contact: what lies within `radius_mm` of a flat convex core (ToolCore).
 using Tool = std::variant<Needle, Blade, Ball>;
@@ -52,6 +40,8 @@ inline constexpr std::array<std::string_view, 3> kToolNames{"needle", "blade", "
 [[nodiscard]] constexpr std::span<const std::string_view> names_of(const Tool&) {
   return kToolNames;
 }
+/// Each tool has some of the dimensions of all. @throws as Visitor::refuse for one that belongs to another tool.
+void describe(Visitor& v, Tool& tool);
 
 [[nodiscard]] std::string_view kind_of(const Tool& tool);  ///< needle, blade, ball
 /// How far the tool's skin lies from its core, mm: half of its diameter or thickness, and half the width of an ideal kerf.

@@ -26,17 +26,7 @@ struct SegmentationSettings {
   std::optional<double> smoothing_mm;  ///< length over which the occupancy is smoothed; 0: none; [0, 5]; absent: see smoothing_length_mm
   int margin_voxels = 4;      ///< of air around the body, also where the region of interest cuts through it; [3, 50]
 };
-inline void describe(Visitor& v, SegmentationSettings& s) {
-  v("window_low_hu", s.window_low_hu, "Least value of tissue.");
-  v("window_high_hu", s.window_high_hu, "Greatest value of tissue.");
-  v("roi_box_mm", s.roi_box_mm, "Box that holds the specimen; absent: the whole volume.");
-  v("seeds_mm", s.seeds_mm, "Points inside the specimen, all in one piece; none: the largest piece is taken.");
-  v("opening_radius_mm", s.opening_radius_mm, "Pieces joined only by bridges thinner than twice this are separated.");
-  v("fill_holes", s.fill_holes, "Whether cavities without a way out become tissue.");
-  v("smoothing_mm", s.smoothing_mm,
-    "Length over which the tissue's surface is smoothed; absent: it follows from the voxels.");
-  v("margin_voxels", s.margin_voxels, "Of air around the body.");
-}
+void describe(Visitor& v, SegmentationSettings& s);
 
 /// Every violation, one sentence each; empty: valid.
 [[nodiscard]] std::vector<std::string> validate(const SegmentationSettings& settings);

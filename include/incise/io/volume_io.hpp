@@ -56,17 +56,16 @@ struct CtReadSettings {
   bool first_picture_is_head = false;  ///< pictures numbered from head to foot instead of from foot to head
 };
 
-inline void describe(Visitor& v, GrayToHu& h) {
-  v("slope", h.slope, "HU = slope * gray + intercept.");
-  v("intercept", h.intercept, "HU = slope * gray + intercept.");
-}
 inline void describe(Visitor& v, CtReadSettings& s) {
-  v("series_uid", s.series_uid, "DICOM: which series to read.");
+  v("series_uid", s.series_uid, "DICOM: which series to read, where a folder holds several.");
   v("irregular_slices", s.irregular, "What to do with a tilted or unevenly spaced series.");
   v("missing_slices", s.missing, "What to do with holes in a series.");
-  v("spacing_mm", s.spacing_mm, "Pictures only: column, row and slice spacing.");
-  v("hu", s.hu, "Pictures only: gray level to HU.");
-  v("first_picture_is_head", s.first_picture_is_head, "Whether pictures are numbered from head to foot.");
+  v({"spacing_mm", "PNG slices only: column, row and slice spacing.", "mm"}, s.spacing_mm, kPositive);
+  std::optional<std::array<double, 2>> hu;
+  if (s.hu) hu = {s.hu->slope, s.hu->intercept};
+  v({"hu", "PNG slices only: [slope, intercept] with HU = slope * gray + intercept.", "HU"}, hu);
+  if (v.sets()) s.hu = hu ? std::optional(GrayToHu{(*hu)[0], (*hu)[1]}) : std::nullopt;
+  v.internal("first_picture_is_head", s.first_picture_is_head, "Whether pictures are numbered from head to foot.");
 }
 
 /// What was found on the way; `notices` are the same sentences that the monitor received.

@@ -16,27 +16,16 @@ namespace incise {
 struct BoxRegion {
   Box3 box_mm;
 };
-inline void describe(Visitor& v, BoxRegion& r) {
-  v("box_mm", r.box_mm, "Its corners.");
-}
 struct SphereRegion {
   Vec3 center_mm = Vec3::Zero();
   double radius_mm = 0.0;
 };
-inline void describe(Visitor& v, SphereRegion& r) {
-  v("center_mm", r.center_mm, "Its centre.");
-  v("radius_mm", r.radius_mm, "Its radius.", kPositive);
-}
 /// Vertices at most `within_mm` from the body's extreme point along `direction` (unit): "the last 12 mm at the
 /// posterior end".
 struct EndRegion {
   Vec3 direction = Vec3::UnitY();
   double within_mm = 10.0;
 };
-inline void describe(Visitor& v, EndRegion& r) {
-  v("direction", r.direction, "Towards the body's extreme point.");
-  v("within_mm", r.within_mm, "From that point, along the direction.", kPositive);
-}
 /// Without `within_mm`: vertices on the plane or on the side that the normal points to. With it: vertices at most that
 /// far from the plane, on either side.
 struct PlaneRegion {
@@ -44,36 +33,20 @@ struct PlaneRegion {
   Vec3 normal = Vec3::UnitZ();  ///< any length but 0
   std::optional<double> within_mm;
 };
-inline void describe(Visitor& v, PlaneRegion& r) {
-  v("point_mm", r.point_mm, "On the plane.");
-  v("normal", r.normal, "Towards the side that is meant.");
-  v("within_mm", r.within_mm, "From the plane, on either side.", kNotNegative);
-}
 /// Vertices whose point array `name` holds `value`.
 struct PointArrayRegion {
   std::string name;
   double value = 1.0;
 };
-inline void describe(Visitor& v, PointArrayRegion& r) {
-  v("name", r.name, "Of the point array.");
-  v("value", r.value, "That it holds there.");
-}
 /// Corners of the tets whose cell array `name` holds `value`: a labelled part of the body, its rim included.
 struct CellArrayRegion {
   std::string name;
   double value = 1.0;
 };
-inline void describe(Visitor& v, CellArrayRegion& r) {
-  v("name", r.name, "Of the cell array.");
-  v("value", r.value, "That it holds there.");
-}
-using Region = std::variant<BoxRegion, SphereRegion, EndRegion, PlaneRegion, PointArrayRegion, CellArrayRegion>;
+using Region = std::variant<BoxRegion, SphereRegion, EndRegion, PlaneRegion, CellArrayRegion, PointArrayRegion>;
 
-inline constexpr std::array<std::string_view, 6> kRegionNames{"box_mm", "sphere",      "end",
-                                                              "plane",  "point_array", "cell_array"};
-[[nodiscard]] constexpr std::span<const std::string_view> names_of(const Region&) {
-  return kRegionNames;
-}
+/// A group with one key, which names what it is: {end: {direction: posterior, within_mm: 12}}, {cell_array: clamp=1}.
+void describe(Visitor& v, Region& region);
 
 /// Vertices of the mesh inside a region, ascending.
 [[nodiscard]] std::vector<VertexId> select(const TetMesh& mesh, const Region& region);
@@ -83,29 +56,17 @@ struct FixedConstraint {
   Region where;
   std::array<bool, 3> axes{true, true, true};
 };
-inline void describe(Visitor& v, FixedConstraint& r) {
-  v("where", r.where, "Which vertices.");
-  v("axes", r.axes, "Along which axes they are held.");
-}
 /// Vertices moved by a given displacement, mm, and held there.
 struct DisplacedConstraint {
   Region where;
   Vec3 displacement_mm = Vec3::Zero();
 };
-inline void describe(Visitor& v, DisplacedConstraint& r) {
-  v("where", r.where, "Which vertices.");
-  v("displacement_mm", r.displacement_mm, "By which they are moved.");
-}
 /// The surface of a rigid holder: closed (a body, which tissue stays outside of) or open (a tray or sheet, on whose
 /// normals' side tissue stays; what lies beyond its rim is not touched).
 struct HolderSurface {
   std::string name;  ///< the file that it came from, for messages and lists
   TriMesh surface;   ///< mm, LPS, in the frame of the specimen; neighbours oriented alike
 };
-/// The name is no part of it: what a file holds counts, not where it lies.
-inline void describe(Visitor& v, HolderSurface& r) {
-  v("surface", r.surface, "Neighbours oriented alike.");
-}
 /// A rigid platform: tissue stays on the side that the normal points to, and may lift off. Frictionless. A plane, or
 /// the surface of a holder, where one is given.
 struct SupportConstraint {
@@ -114,20 +75,11 @@ struct SupportConstraint {
   std::shared_ptr<const HolderSurface>
       holder;  ///< null: the plane; shared, because constraints are copied with the model
 };
-inline void describe(Visitor& v, SupportConstraint& r) {
-  v("point_mm", r.point_mm, "On the plane.");
-  v("normal", r.normal, "Towards the tissue.");
-  v("holder", r.holder, "Surface in place of the plane.");
-}
 /// A dead load on the boundary faces whose corners all lie in the region, kPa.
 struct TractionConstraint {
   Region where;
   Vec3 traction_kpa = Vec3::Zero();
 };
-inline void describe(Visitor& v, TractionConstraint& r) {
-  v("where", r.where, "Which faces.");
-  v("traction_kpa", r.traction_kpa, "On them.");
-}
 /// The force of a traction on one vertex, mN.
 struct VertexLoad {
   VertexId vertex;
@@ -143,5 +95,11 @@ inline constexpr std::array<std::string_view, 4> kConstraintNames{"fixed", "disp
 [[nodiscard]] constexpr std::span<const std::string_view> names_of(const Constraint&) {
   return kConstraintNames;
 }
+void describe(Visitor& v, FixedConstraint& c);
+void describe(Visitor& v, DisplacedConstraint& c);
+/// By the name of the holder's file in a file of settings, by its surface in what is complete: a key does not depend on
+/// where a file lies.
+void describe(Visitor& v, SupportConstraint& c);
+void describe(Visitor& v, TractionConstraint& c);
 
 }  // namespace incise

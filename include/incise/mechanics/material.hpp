@@ -35,7 +35,7 @@ struct PronyTerm {
 };
 inline void describe(Visitor& v, PronyTerm& t) {
   v("shear_share", t.shear_share, "Shear modulus of the branch over the long-time one.", kPositive);
-  v("time_s", t.time_s, "Relaxation time.", kPositive);
+  v({"time_s", "Relaxation time.", "s"}, t.time_s, kPositive);
 }
 
 /// Young's modulus and density must lie in [least, most] and (0, most]. Far beyond any tissue, and wide enough for bodies in
@@ -43,6 +43,8 @@ inline void describe(Visitor& v, PronyTerm& t) {
 inline constexpr double kLeastYoungsModulusKpa = 1e-6;
 inline constexpr double kMostYoungsModulusKpa = 1e9;
 inline constexpr double kMostDensityKgM3 = 1e9;
+inline constexpr Range kYoungsModulusLimits{kLeastYoungsModulusKpa, kMostYoungsModulusKpa};
+inline constexpr Range kPoissonsRatioLimits{0.0, 0.5, false, true};
 
 /// What tissue is made of. Defaults are the paper's (II-C.3); 70 kPa is an effective value, ~10 x published tongue
 /// stiffness.
@@ -58,17 +60,18 @@ struct Material {
   double kelvin_voigt_time_s = 0.0;       ///< >= 0; shear viscosity over long-time shear modulus, 0: none
 };
 inline void describe(Visitor& v, Material& m) {
-  v("model", m.model, "The law.");
-  v("volume", m.volume, "How volume change is resisted.");
-  v("youngs_modulus_kpa", m.youngs_modulus_kpa, "Young's modulus.",
-    Range{kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
-  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio.", Range{0.0, 0.5, false, true});
-  v("density_kg_m3", m.density_kg_m3, "Density.", Range{0.0, kMostDensityKgM3, true});
-  v("fibre_modulus_kpa", m.fibre_modulus_kpa, "Stiffness added along the fibres; 0: none.", kNotNegative);
-  v("fibre_direction", m.fibre_direction, "Of the fibres at rest, where the mesh gives none.");
-  v("prony", m.prony, "Branches that relax with time.");
-  v("kelvin_voigt_time_s", m.kelvin_voigt_time_s, "Shear viscosity over long-time shear modulus; 0: none.",
-    kNotNegative);
+  v("model", m.model, "Linear elasticity in a frame that turns with each tet, as in the paper; or a hyperelastic law.");
+  v("volume", m.volume,
+    "How volume change is resisted: tet by tet (locks as Poisson's ratio nears 0.5), or as a mean about each vertex.");
+  v({"youngs_modulus_kpa", "Young's modulus; the paper's 70 is about ten times published tongue stiffness.", "kPa"},
+    m.youngs_modulus_kpa, kYoungsModulusLimits);
+  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio.", kPoissonsRatioLimits);
+  v({"density_kg_m3", "Density.", "kg/m3"}, m.density_kg_m3, {0.0, kMostDensityKgM3, true});
+  v({"fibre_modulus_kpa", "Stiffness added along the fibres; 0: none.", "kPa"}, m.fibre_modulus_kpa, kNotNegative);
+  v.direction("fibre_direction", m.fibre_direction, "Of the fibres at rest, where the mesh gives none.");
+  v("prony", m.prony, "Branches that relax with time, in steps of time only; absent: none.");
+  v({"kelvin_voigt_time_s", "Shear viscosity over long-time shear modulus, in steps of time only; 0: none.", "s"},
+    m.kelvin_voigt_time_s, kNotNegative);
 }
 
 /// What differs from tet to tet, one item per tet each; an empty list takes the material's own value everywhere.

@@ -44,17 +44,29 @@ struct PlanSettings {
   AxisMode axis_mode = AxisMode::Approach;
   double rim_clearance_mm = 1.0;  ///< the path keeps this far from where the surface ends in the picture, >= 0
 };
-inline void describe(Visitor& v, PlanSettings& s) {
+/// Its first field; a case file puts the drawn curve beside it.
+inline void describe_kind(Visitor& v, PlanSettings& s) {
   v("kind", s.kind, "A ring around the tumour edge, or an open cut along a drawn curve.");
-  v("lateral_margin_mm", s.lateral_margin_mm, "From the tumour edge to the kerf's mid-line.", kPositive);
-  v("depth_mm", s.depth_mm, "Of the tool's tip below the surface.", kPositive);
-  v("speed_mm_s", s.speed_mm_s, "Of the real tool.", kPositive);
-  v("power_w", s.power_w, "Electrosurgical power.", kPositive);
-  v("approach", s.approach, "Into the tissue, as camera and surgeon look.");
-  v("start_direction", s.start_direction, "A ring starts at its waypoint farthest along this.");
-  v("waypoints", s.waypoints, "Evenly spaced along the path.");
+}
+/// All the others.
+inline void describe_course(Visitor& v, PlanSettings& s) {
+  v({"lateral_margin_mm", "From the tumour edge to the kerf's mid-line.", "mm"}, s.lateral_margin_mm, {0.5, 50.0});
+  v({"depth_mm", "Of the tool's tip below the surface.", "mm"}, s.depth_mm, {0.5, 50.0});
+  v({"speed_mm_s", "Of the real tool.", "mm/s"}, s.speed_mm_s, {0.1, 50.0});
+  v({"power_w",
+     "Electrosurgical power: how fast contact cuts (cut.power_exponent), and how far beside the cut heat reaches.",
+     "W"},
+    s.power_w, {0.0, 120.0, true});
+  v.direction("approach", s.approach, "Into the tissue, as camera and surgeon look.");
+  v.direction("start_direction", s.start_direction,
+              "A ring starts at its waypoint farthest along this; the start decides where the error falls.");
+  v("waypoints", s.waypoints, "Evenly spaced along the path.", {2.0, 2000.0});
   v("tool_axis", s.axis_mode, "How the tool is held at a waypoint.");
-  v("rim_clearance_mm", s.rim_clearance_mm, "From where the surface ends in the picture.", kNotNegative);
+  v.internal("rim_clearance_mm", s.rim_clearance_mm, "From where the surface ends in the picture.", kNotNegative);
+}
+inline void describe(Visitor& v, PlanSettings& s) {
+  describe_kind(v, s);
+  describe_course(v, s);
 }
 
 /// Every violation, one sentence each with the field's name; empty: valid.

@@ -36,6 +36,12 @@ struct CaseFile {
   CaseInputs inputs;
 };
 
+inline constexpr std::string_view kCaseSchemaName = "incise.case/1";
+
+/// The case file: its groups, in the order in which they are written, and what the descriptions of the settings say of
+/// each field. Reading, the list of settings, the schema and the printed defaults are visitors of it.
+void describe(Visitor& v, CaseFile& file);
+
 /// Reads `case.yaml` (YAML or JSON), or the file of that name in a folder. Unknown keys, wrong types and values out of range are refused.
 /// @throws CaseError with line, field, found, expected and the nearest valid key; DataError if the file is missing or not YAML, or the
 ///         surface of a holder cannot be read.

@@ -26,11 +26,23 @@ struct MeshingChoice {
   std::optional<double> survey_mm;  ///< of the coarse mesh with which the planned cut is found in the unstretched body; absent: the default coarse_mm
 };
 inline void describe(Visitor& v, MeshingChoice& m) {
-  v("fine_mm", m.fine_mm, "Edge length where the needle and its neighbourhood pass.", kPositive);
-  v("coarse_mm", m.coarse_mm, "Longest edge length, far from the cut.", kPositive);
-  v("tets", m.tets, "Count to aim for; 0: as the lengths give.", kNotNegative);
-  v("survey_mm", m.survey_mm, "Edge length of the mesh with which the planned cut is found at rest.", kPositive);
+  v({"fine_mm",
+     "Edge length where the needle and its neighbourhood pass; absent: 0.8, in proportion for a body shorter than 40 "
+     "mm.",
+     "mm"},
+    m.fine_mm, {0.1, 20.0});
+  v({"coarse_mm", "Longest edge length, far from the cut; absent: 4, in proportion for a body shorter than 40 mm.",
+     "mm"},
+    m.coarse_mm, {0.1, 50.0});
+  v("tets", m.tets, "Count to aim for by scaling both lengths; 0: as the lengths give.", {0.0, 5e6});
+  v({"survey_mm",
+     "Edge length of the coarse mesh with which the planned cut is found in the unstretched body; absent: 4, in "
+     "proportion for a body shorter than 40 mm.",
+     "mm"},
+    m.survey_mm, {0.5, 20.0});
 }
+
+inline constexpr Range kLabelRange{-1e9, 1e9};
 
 /// What the tets with one value of the mesh's cell array `label` are made of, where they differ from the rest.
 struct LabelMaterial {
@@ -39,9 +51,10 @@ struct LabelMaterial {
   std::optional<double> poissons_ratio;
 };
 inline void describe(Visitor& v, LabelMaterial& m) {
-  v("label", m.label, "Value of the mesh's cell array 'label'.");
-  v("youngs_modulus_kpa", m.youngs_modulus_kpa, "Young's modulus there; absent: as elsewhere.");
-  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio there; absent: as elsewhere.");
+  v("label", m.label, "Value of the mesh's cell array 'label'.", kLabelRange);
+  v({"youngs_modulus_kpa", "Young's modulus there; absent: as elsewhere.", "kPa"}, m.youngs_modulus_kpa,
+    kYoungsModulusLimits);
+  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio there; absent: as elsewhere.", kPoissonsRatioLimits);
 }
 
 /// Which differences of material within the specimen a study takes from its mesh.
@@ -50,8 +63,10 @@ struct MaterialVariation {
   std::vector<LabelMaterial> labels;  ///< laid over `from_mesh`; tets with a label that is not listed keep what they have
 };
 inline void describe(Visitor& v, MaterialVariation& m) {
-  v("from_mesh", m.from_mesh, "Whether the mesh's cell data hold.");
-  v("labels", m.labels, "Parts of the mesh with another stiffness.");
+  v("from_mesh", m.from_mesh,
+    "Whether the mesh's cell data youngs_modulus_kpa, poissons_ratio and fibre_direction hold, as far as they are "
+    "there.");
+  v("labels", m.labels, "Parts of the mesh with another stiffness, by the cell array 'label'; absent: none.");
 }
 
 /// How tough the tets with one value of the mesh's cell array `label` are.
@@ -60,8 +75,8 @@ struct LabelToughness {
   double toughness = 1.0;  ///< relative to the reference tissue, > 0
 };
 inline void describe(Visitor& v, LabelToughness& m) {
-  v("label", m.label, "Value of the mesh's cell array 'label'.");
-  v("toughness", m.toughness, "There; the reference tissue has 1.", kPositive);
+  v("label", m.label, "Value of the mesh's cell array 'label'.", kLabelRange);
+  v("toughness", m.toughness, "There; the reference tissue has 1.", {1e-3, 1e3});
 }
 
 /// How tough the specimen is against cutting, relative to the tissue for which speed and dullness hold; 1 where nothing else is said.
@@ -70,8 +85,9 @@ struct ToughnessVariation {
   std::vector<LabelToughness> labels;  ///< laid over `from_mesh`
 };
 inline void describe(Visitor& v, ToughnessVariation& m) {
-  v("from_mesh", m.from_mesh, "Whether the mesh's cell data toughness hold.");
-  v("labels", m.labels, "Parts of the mesh that take more or less dose to cut.");
+  v("toughness", m.labels,
+    "Parts of the mesh that take more or less dose to cut, by the cell array 'label'; absent: 1 everywhere.");
+  v("toughness_from_mesh", m.from_mesh, "Whether the mesh's cell data toughness hold.");
 }
 
 enum class TumorConfiguration {
@@ -99,9 +115,12 @@ struct CompensationChoice {
   double bias_mm = 0.0;  ///< expected error of the real cut less that of the simulated one, positive = farther out; the paper's method: none
 };
 inline void describe(Visitor& v, CompensationChoice& m) {
-  v("method", m.method, "How the path is corrected.");
-  v("observable", m.observable, "Which line of the cut is brought to its target.");
-  v("bias_mm", m.bias_mm, "Expected error of the real cut less that of the simulated one.");
+  v("method", m.method, "Pass by pass until the cut lies where it was intended, or the paper's one pass.");
+  v("observable", m.observable, "Which line of the cut is brought to its target; the paper's method: the mid-line.");
+  v({"bias_mm",
+     "Expected error of the real cut less that of the simulated one, positive: farther out; default method only.",
+     "mm"},
+    m.bias_mm, {-10.0, 10.0});
 }
 
 /// What a study asks for, whatever files it came from. Every default is written here or in the structs that it holds.
