@@ -1,4 +1,5 @@
 #include <incise/core/describe.hpp>
+#include <incise/core/error.hpp>
 
 #include <fmt/format.h>
 
@@ -27,6 +28,11 @@ std::string describe(const Range& range) {
   }
   return fmt::format("a number in {}{}, {}{}", range.is_least_open ? '(' : '[', range.least, range.most,
                      range.is_most_open ? ')' : ']');
+}
+
+void Visitor::refuse(const Field& field, const std::string& found, const std::string& expected) const {
+  core_detail::throw_invalid_argument("describe",
+                                      fmt::format("{}: found {}, expected {}", field.name, found, expected));
 }
 
 std::size_t Visitor::key(std::size_t& place, std::span<const Field> keys) {

@@ -76,11 +76,6 @@ void ByteWriter::block(const Field&, const Block& block) {
   bytes_.append(static_cast<const char*>(block.data), block.count * size_of(block.kind));
 }
 
-void ByteWriter::refuse(const Field& field, const std::string& found, const std::string& expected) const {
-  core_detail::throw_invalid_argument("bytes_of",
-                                      fmt::format("{}: found {}, expected {}", field.name, found, expected));
-}
-
 std::string_view ByteReader::take(const Field& field, std::size_t count) {
   last_ = at_;
   if (bytes_.size() - at_ < count) refuse(field, "the end of the bytes", fmt::format("{} more", count));

@@ -17,8 +17,8 @@ constexpr double kMostResidualTolerance = 0.3;    // beyond it a step leaves mor
 
 double CutSettings::dwell_rate_per_s() const { return std::pow(power_w / reference_power_w, power_exponent) / dwell_s(); }
 
-std::vector<std::string> validate(const CutSettings& s, double tool_diameter_mm) {
-  std::vector<std::string> violations;
+std::vector<Problem> validate(const CutSettings& s, double tool_diameter_mm) {
+  std::vector<Problem> violations;
   const Expect expect(violations);
   expect(s.speed_mm_s > 0.0, "speed_mm_s", s.speed_mm_s, "a speed above 0 mm/s");
   expect(s.dullness > 0.0, "dullness", s.dullness, "a number of reference steps above 0");
@@ -30,9 +30,11 @@ std::vector<std::string> validate(const CutSettings& s, double tool_diameter_mm)
   if (s.dullness > 0.0 && s.reference_step_s > 0.0 && s.power_w > 0.0 && s.reference_power_w > 0.0) {
     const double contact_s = 1.0 / s.dwell_rate_per_s();
     if (!(contact_s <= kMaxContactS)) {
-      violations.push_back(fmt::format(
-          "power_w: found {} with power_exponent {}, dullness {} and reference_step_s {}: {:.3g} s of contact until tissue is cut, expected at most {} s",
-          s.power_w, s.power_exponent, s.dullness, s.reference_step_s, contact_s, kMaxContactS));
+      violations.push_back({"power_w",
+                            fmt::format("{} with power_exponent {}, dullness {} and reference_step_s {}: {:.3g} s of "
+                                        "contact until tissue is cut",
+                                        s.power_w, s.power_exponent, s.dullness, s.reference_step_s, contact_s),
+                            fmt::format("at most {} s", kMaxContactS)});
     }
   }
   if (s.tear_energy_kpa)

@@ -79,8 +79,8 @@ std::optional<double> radius_of(double level) {
 
 }  // namespace
 
-std::vector<std::string> validate(const ThermalSettings& s) {
-  std::vector<std::string> violations;
+std::vector<Problem> validate(const ThermalSettings& s) {
+  std::vector<Problem> violations;
   const Expect expect(violations);
   expect(s.conductivity_w_m_k > 0.0, "conductivity_w_m_k", s.conductivity_w_m_k, "a conductivity above 0 W/(m K)");
   expect(s.heat_capacity_mj_m3_k > 0.0, "heat_capacity_mj_m3_k", s.heat_capacity_mj_m3_k,
@@ -94,12 +94,12 @@ std::vector<std::string> validate(const ThermalSettings& s) {
 }
 
 double thermal_half_width_mm(const ThermalSettings& settings, double power_w, double speed_mm_s, double depth_mm) {
-  std::vector<std::string> violations = validate(settings);
+  std::vector<Problem> violations = validate(settings);
   const Expect expect(violations);
   expect(power_w > 0.0, "power_w", power_w, "a power above 0 W");
   expect(speed_mm_s > 0.0, "speed_mm_s", speed_mm_s, "a speed above 0 mm/s");
   expect(depth_mm > 0.0, "depth_mm", depth_mm, "a depth above 0 mm");
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(sentences(violations), "; ")));
   constexpr double kWPerMm = 1e-3;  // of W/m
   const double line_w_mm = power_w * settings.absorbed_fraction / depth_mm;
   const double scale_k = line_w_mm / (2.0 * std::numbers::pi * settings.conductivity_w_m_k * kWPerMm);

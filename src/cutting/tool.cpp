@@ -80,8 +80,8 @@ double half_width_mm(const Tool& tool) {
   return blade != nullptr ? 0.5 * blade->width_mm : 0.0;
 }
 
-std::vector<std::string> validate(const Tool& tool) {
-  std::vector<std::string> violations;
+std::vector<Problem> validate(const Tool& tool) {
+  std::vector<Problem> violations;
   const Expect expect(violations);
   std::visit([&expect](const auto& t) { list_violations(t, expect); }, tool);
   return violations;

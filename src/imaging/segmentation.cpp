@@ -287,25 +287,27 @@ void describe(Visitor& v, SegmentationSettings& s) {
   if (seed) s.seeds_mm.insert(s.seeds_mm.begin(), *seed);
 }
 
-std::vector<std::string> validate(const SegmentationSettings& settings) {
-  std::vector<std::string> problems;
+std::vector<Problem> validate(const SegmentationSettings& settings) {
+  std::vector<Problem> problems;
   const Expect expect(problems);
   if (!std::isfinite(settings.window_low_hu) || !std::isfinite(settings.window_high_hu) ||
       settings.window_low_hu >= settings.window_high_hu)
-    problems.push_back(fmt::format("window_hu: found [{}, {}], expected two finite numbers, the first below the second",
-                                   settings.window_low_hu, settings.window_high_hu));
+    problems.push_back({"window_hu", fmt::format("[{}, {}]", settings.window_low_hu, settings.window_high_hu),
+                        "two finite numbers, the first below the second"});
   if (settings.roi_box_mm) {
     const Box3& box = *settings.roi_box_mm;
     if (!box.min().allFinite() || !box.max().allFinite() || !(box.min().array() < box.max().array()).all())
-      problems.push_back(
-          fmt::format("roi_box_mm: found [[{}, {}, {}], [{}, {}, {}]], expected finite corners, the first below the "
-                      "second on each axis",
-                      box.min().x(), box.min().y(), box.min().z(), box.max().x(), box.max().y(), box.max().z()));
+      problems.push_back({"roi_box_mm",
+                          fmt::format("[[{}, {}, {}], [{}, {}, {}]]", box.min().x(), box.min().y(), box.min().z(),
+                                      box.max().x(), box.max().y(), box.max().z()),
+                          "finite corners, the first below the second on each axis"});
   }
   for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s)
     if (!settings.seeds_mm[s].allFinite())
-      problems.push_back(fmt::format("seed_mm[{}]: found [{}, {}, {}], expected finite numbers", s,
-                                     settings.seeds_mm[s].x(), settings.seeds_mm[s].y(), settings.seeds_mm[s].z()));
+      problems.push_back(
+          {fmt::format("seed_mm[{}]", s),
+           fmt::format("[{}, {}, {}]", settings.seeds_mm[s].x(), settings.seeds_mm[s].y(), settings.seeds_mm[s].z()),
+           "finite numbers"});
   expect.in_range("opening_radius_mm", settings.opening_radius_mm, 0.0, 20.0);
   expect.in_range("smoothing_mm", settings.smoothing_mm.value_or(0.0), 0.0, 5.0);
   expect.in_range("margin_voxels", settings.margin_voxels, 3, 50);
@@ -323,10 +325,10 @@ int Segmentation::cut_faces() const {
 }
 
 Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor) {
-  const std::vector<std::string> problems = validate(settings);
+  const std::vector<Problem> problems = validate(settings);
   if (!problems.empty())
     throw CaseError("segmentation", "settings",
-                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(problems, "; ")),
+                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(sentences(problems), "; ")),
                     "settings in their ranges");
   require_sound_volume(ct);
   const auto report = [&](double fraction) {

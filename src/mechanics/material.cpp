@@ -19,8 +19,8 @@ constexpr const char* kYoungsModulusRange = "a number in [1e-6, 1e9] kPa";
 
 }  // namespace
 
-std::vector<std::string> validate(const Material& material) {
-  std::vector<std::string> violations;
+std::vector<Problem> validate(const Material& material) {
+  std::vector<Problem> violations;
   const Expect expect(violations);
   expect(is_youngs_modulus(material.youngs_modulus_kpa), "youngs_modulus_kpa", material.youngs_modulus_kpa,
          kYoungsModulusRange);
@@ -33,7 +33,7 @@ std::vector<std::string> validate(const Material& material) {
   expect(material.kelvin_voigt_time_s >= 0.0, "kelvin_voigt_time_s", material.kelvin_voigt_time_s,
          "a finite number of at least 0");
   if (!is_direction(material.fibre_direction)) {
-    violations.push_back(fmt::format("fibre_direction: found {}, expected a finite direction", text_of(material.fibre_direction)));
+    violations.push_back({"fibre_direction", text_of(material.fibre_direction), "a finite direction"});
   }
   for (std::size_t i = 0; i < material.prony.size(); ++i) {
     const auto& [share, time_s] = material.prony[i];

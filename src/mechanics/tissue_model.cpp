@@ -20,16 +20,12 @@ void require_sound(const TetMesh& mesh) {
 }
 
 void require_valid(const Material& material) {
-  const std::vector<std::string> violations = validate(material);
+  const std::vector<Problem> violations = validate(material);
   if (violations.empty()) return;
-  // "name: found …, expected …" of the first violation; the others follow as the hint.
-  const std::string& first = violations.front();
-  const std::size_t colon = first.find(": found ");
-  const std::size_t comma = first.find(", expected ");
   std::string others;
-  for (std::size_t i = 1; i < violations.size(); ++i) others += (i > 1 ? "; also " : "Also ") + violations[i];
-  throw CaseError("case", "specimen.material." + first.substr(0, colon), first.substr(colon + 8, comma - colon - 8),
-                  first.substr(comma + 11), others);
+  for (std::size_t i = 1; i < violations.size(); ++i) others += (i > 1 ? "; also " : "Also ") + sentence(violations[i]);
+  const auto& [path, found, expected] = violations.front();
+  throw CaseError("case", "specimen.material." + path, found, expected, others);
 }
 
 void require_valid(const MaterialField& field, std::size_t tets) {

@@ -10,8 +10,8 @@
 namespace incise {
 
 ToolPath plan_line(const SurfaceQuery& surface, const Contour& line, const PlanSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  const std::vector<Problem> violations = validate(settings);
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(sentences(violations), "; ")));
   INCISE_REQUIRE(settings.kind == PlanKind::Line, "expected settings of a line, found those of a ring");
   INCISE_REQUIRE(!line.is_closed && line.points.size() >= 2, "expected an open line of at least 2 points");
 

@@ -12,8 +12,8 @@ bool is_direction(const Vec3& v) {
 
 }  // namespace
 
-std::vector<std::string> validate(const PlanSettings& s) {
-  std::vector<std::string> violations;
+std::vector<Problem> validate(const PlanSettings& s) {
+  std::vector<Problem> violations;
   const Expect expect(violations);
   expect(s.lateral_margin_mm > 0.0, "lateral_margin_mm", s.lateral_margin_mm, "a distance above 0 mm");
   expect(s.depth_mm > 0.0, "depth_mm", s.depth_mm, "a depth above 0 mm");
@@ -23,18 +23,17 @@ std::vector<std::string> validate(const PlanSettings& s) {
   const int least = s.kind == PlanKind::Ring ? 8 : 2;
   if (s.waypoints < least) {
     violations.push_back(
-        fmt::format("waypoints: found {}, expected at least {} for a {}", s.waypoints, least, to_string(s.kind)));
+        {"waypoints", std::to_string(s.waypoints), fmt::format("at least {} for a {}", least, to_string(s.kind))});
   }
   const auto expect_direction = [&](const char* field, const Vec3& v) {
     if (is_direction(v)) return;
-    violations.push_back(
-        fmt::format("{}: found ({}, {}, {}), expected a finite vector that is not zero", field, v.x(), v.y(), v.z()));
+    violations.push_back({field, fmt::format("({}, {}, {})", v.x(), v.y(), v.z()), "a finite vector that is not zero"});
   };
   expect_direction("approach", s.approach);
   expect_direction("start_direction", s.start_direction);
   if (is_direction(s.approach) && is_direction(s.start_direction) &&
       s.approach.normalized().cross(s.start_direction.normalized()).norm() < 1e-3) {
-    violations.push_back("start_direction: found the approach's own direction, expected one across it");
+    violations.push_back({"start_direction", "the approach's own direction", "one across it"});
   }
   return violations;
 }

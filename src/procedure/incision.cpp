@@ -23,21 +23,21 @@ constexpr int kMaxRelaxationSteps = 60;   // after the tool is out
 constexpr int kStepsToTellFrom = 20;      // a run's duration is told after these
 
 void require_valid(const IncisionSettings& settings) {
-  std::vector<std::string> violations = validate(settings.cut, 2.0 * radius_mm(settings.tool));
-  const std::vector<std::string> tool = validate(settings.tool);
+  std::vector<Problem> violations = validate(settings.cut, 2.0 * radius_mm(settings.tool));
+  const std::vector<Problem> tool = validate(settings.tool);
   violations.insert(violations.end(), tool.begin(), tool.end());
   if (!(settings.midline_layer_mm > 0.0)) {
-    violations.push_back(fmt::format("midline_layer_mm: found {}, expected above 0 mm", settings.midline_layer_mm));
+    violations.push_back({"midline_layer_mm", fmt::format("{}", settings.midline_layer_mm), "above 0 mm"});
   }
   for (std::size_t i = 0; i < settings.layer_depths_mm.size(); ++i) {
     const double depth = settings.layer_depths_mm[i];
     const bool is_ascending = i == 0 || depth > settings.layer_depths_mm[i - 1];
     if (std::isfinite(depth) && depth >= 0.5 * kLayerThicknessMm && is_ascending) continue;
-    violations.push_back(fmt::format("layer_depths_mm[{}]: found {}, expected {} mm or more, ascending", i, depth,
-                                     0.5 * kLayerThicknessMm));
+    violations.push_back({fmt::format("layer_depths_mm[{}]", i), fmt::format("{}", depth),
+                          fmt::format("{} mm or more, ascending", 0.5 * kLayerThicknessMm)});
   }
-  if (settings.frames < 0) violations.push_back(fmt::format("frames: found {}, expected 0 or more", settings.frames));
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  if (settings.frames < 0) violations.push_back({"frames", std::to_string(settings.frames), "0 or more"});
+  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(sentences(violations), "; ")));
 }
 
 /// Keeps frames evenly spaced over the cut, the first before it and the last after the tissue came to rest.

@@ -85,16 +85,11 @@ YAML::Node parse(const std::filesystem::path& file) {
 /// What a single range cannot say: values that have to fit each other.
 void require_consistent(const CaseFile& file, const std::string& name) {
   const Case& c = file.settings;
-  const auto refuse = [&name](const std::string& group, const std::vector<std::string>& violations, const char* expected) {
-    if (violations.empty()) return;
-    // "field: found …, expected …"
-    const std::string& first = violations.front();
-    const std::size_t colon = first.find(": found ");
-    const std::size_t comma = first.find(", expected ");
-    if (violations.size() > 1 || colon == std::string::npos || comma == std::string::npos) {
-      throw CaseError(name, group, fmt::format("{}", fmt::join(violations, "; ")), expected);
-    }
-    throw CaseError(name, group + "." + first.substr(0, colon), first.substr(colon + 8, comma - colon - 8), first.substr(comma + 11));
+  const auto refuse = [&name](const std::string& group, const std::vector<Problem>& problems, const char* expected) {
+    if (problems.empty()) return;
+    if (problems.size() > 1)
+      throw CaseError(name, group, fmt::format("{}", fmt::join(sentences(problems), "; ")), expected);
+    throw CaseError(name, group + "." + problems[0].path, problems[0].found, problems[0].expected);
   };
   if (!c.specimen_id.empty() && !is_specimen_id(c.specimen_id))
     throw CaseError(name, "specimen_id", fmt::format("'{}'", c.specimen_id),

@@ -35,11 +35,6 @@ bool has_rows(const Block& block) {
   return block.columns > 1 && block.columns < block.count;
 }
 
-[[noreturn]] void refuse_description(const Field& field, const std::string& found, const std::string& expected) {
-  core_detail::throw_invalid_argument("describe",
-                                      fmt::format("{}: found {}, expected {}", field.name, found, expected));
-}
-
 }  // namespace
 
 void SchemaWriter::add(const Field& field, Json schema) {
@@ -91,13 +86,14 @@ void SchemaWriter::end() {
     return schema;
   };
   std::vector<Json> forms;
-  if (level.keys.empty()) forms.push_back(group(level.properties, level.required));
-  if (!level.keys.empty() && level.properties.size() == level.keys.size()) {
+  if (level.keys.empty()) {
+    forms.push_back(group(level.properties, level.required));
+  } else if (level.properties.size() == level.keys.size()) {
     forms.push_back(group(level.properties, {}));
     forms.back()["minProperties"] = 1;
     forms.back()["maxProperties"] = 1;
     level.field.meaning = {};  // the keys say it
-  } else {
+  } else {                     // a form for each of the keys
     for (const std::string& key : level.keys) {
       Json properties = level.properties;
       for (const std::string& other : level.keys)
@@ -172,10 +168,6 @@ std::size_t SchemaWriter::key(std::size_t& place, std::span<const Field> keys) {
   for (const Field& key : keys) levels_.back().keys.emplace_back(key.name);
   place = kEveryKind;
   return 1;
-}
-
-void SchemaWriter::refuse(const Field& field, const std::string& found, const std::string& expected) const {
-  refuse_description(field, found, expected);
 }
 
 void SettingLister::add(const Field& field, std::string value, bool is_group) {
@@ -262,10 +254,6 @@ void SettingLister::block(const Field& field, const Block& block) {
   for (std::size_t i = 0; i < block.count; i += block.columns)
     rows.push_back(fmt::format("[{}]", fmt::join(numbers.subspan(i, block.columns), ", ")));
   add(field, fmt::format("[{}]", fmt::join(rows, ", ")));
-}
-
-void SettingLister::refuse(const Field& field, const std::string& found, const std::string& expected) const {
-  refuse_description(field, found, expected);
 }
 
 }  // namespace incise

@@ -27,7 +27,6 @@ class SchemaWriter : public Visitor {
   void choice(const Field& field, std::size_t& value, Names names) override;
   void block(const Field& field, const Block& block) override;
   std::size_t key(std::size_t& place, std::span<const Field> keys) override;
-  [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
   /// Properties of the outermost level.
   [[nodiscard]] nlohmann::ordered_json properties() const { return levels_.front().properties; }
 
@@ -75,7 +74,6 @@ class SettingLister : public Visitor {
   void choice(const Field& field, std::size_t& value, Names names) override;
   void block(const Field& field, const Block& block) override;
   std::size_t key(std::size_t&, std::span<const Field>) override { return 1; }
-  [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
   [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
 
  private:

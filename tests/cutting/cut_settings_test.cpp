@@ -28,7 +28,7 @@ TEST(CutSettings, EveryViolationIsListedWithItsField) {
   settings.speed_mm_s = 0.0;
   settings.dullness = -1.0;
   settings.bond_stiffness_kpa_mm2 = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(validate(settings, kNeedleDiameterMm),
+  EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
               ElementsAre(HasSubstr("speed_mm_s: found 0"), HasSubstr("dullness: found -1"),
                           HasSubstr("bond_stiffness_kpa_mm2: found nan")));
 }
@@ -36,7 +36,8 @@ TEST(CutSettings, EveryViolationIsListedWithItsField) {
 TEST(CutSettings, AStepLongerThanTheNeedleIsWideIsRefused) {
   CutSettings settings;
   settings.advance_per_step_mm = 1.01;
-  EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("advance_per_step_mm: found 1.01")));
+  EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
+              ElementsAre(HasSubstr("advance_per_step_mm: found 1.01")));
 }
 
 TEST(CutSettings, APowerThatTakesForEverIsRefused) {
@@ -44,7 +45,9 @@ TEST(CutSettings, APowerThatTakesForEverIsRefused) {
   settings.power_exponent = 3.0;
   for (const double power_w : {1e-3, 1e-200}) {
     settings.power_w = power_w;
-    EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("s of contact until tissue is cut, expected at most 600 s"))) << power_w;
+    EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
+                ElementsAre(HasSubstr("s of contact until tissue is cut, expected at most 600 s")))
+        << power_w;
   }
 }
 
@@ -56,14 +59,17 @@ TEST(CutSettings, StepsSolvedSoLooselyOrTightlyThatNoCutIsToBeBelievedAreRefused
   }
   for (const double bad : {1e-300, 9e-7, 0.31, 0.99}) {
     settings.residual_tolerance = bad;
-    EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("expected a fraction in [1e-06, 0.3]"))) << bad;
+    EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
+                ElementsAre(HasSubstr("expected a fraction in [1e-06, 0.3]")))
+        << bad;
   }
 }
 
 TEST(CutSettings, AStepThatNoCutEndsWithIsRefused) {
   CutSettings settings;
   settings.advance_per_step_mm = 1e-9;
-  EXPECT_THAT(validate(settings, kNeedleDiameterMm), ElementsAre(HasSubstr("advance_per_step_mm: found 1e-09")));
+  EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
+              ElementsAre(HasSubstr("advance_per_step_mm: found 1e-09")));
 }
 
 TEST(CutSettings, APowerOfTheLawOutOfRangeIsRefused) {
@@ -72,9 +78,9 @@ TEST(CutSettings, APowerOfTheLawOutOfRangeIsRefused) {
   settings.power_exponent = 10.5;
   settings.tear_energy_kpa = 0.0;
   settings.slip_mm = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(validate(settings, kNeedleDiameterMm),
-              ElementsAre(HasSubstr("power_w: found 0"), HasSubstr("power_exponent: found 10.5"), HasSubstr("tear_energy_kpa: found 0"),
-                          HasSubstr("slip_mm: found inf")));
+  EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
+              ElementsAre(HasSubstr("power_w: found 0"), HasSubstr("power_exponent: found 10.5"),
+                          HasSubstr("tear_energy_kpa: found 0"), HasSubstr("slip_mm: found inf")));
 }
 
 TEST(CutSettings, TwiceThePowerCutsTwiceAsFastOrAsTheExponentSays) {

@@ -99,9 +99,10 @@ TEST(ThermalSettings, EveryViolationIsListedWithItsField) {
   settings.absorbed_fraction = 1.1;
   ThermalSettings lukewarm;
   lukewarm.damage_c = 37.0000001;  // "damaged" hundreds of kilometres away
-  EXPECT_THAT(validate(lukewarm), ElementsAre(HasSubstr("damage_c: found 37.0000001")));
-  EXPECT_THAT(validate(settings), ElementsAre(HasSubstr("conductivity_w_m_k: found 0"), HasSubstr("damage_c: found 37"),
-                                              HasSubstr("absorbed_fraction: found 1.1")));
+  EXPECT_THAT(sentences(validate(lukewarm)), ElementsAre(HasSubstr("damage_c: found 37.0000001")));
+  EXPECT_THAT(sentences(validate(settings)),
+              ElementsAre(HasSubstr("conductivity_w_m_k: found 0"), HasSubstr("damage_c: found 37"),
+                          HasSubstr("absorbed_fraction: found 1.1")));
 }
 
 }  // namespace

@@ -17,18 +17,19 @@ TEST(Needle, ADiameterOfZeroIsRefused) {
   Needle needle;
   EXPECT_THAT(validate(needle), IsEmpty());
   needle.diameter_mm = 0.0;
-  EXPECT_THAT(validate(needle), ElementsAre(HasSubstr("diameter_mm: found 0")));
+  EXPECT_THAT(sentences(validate(needle)), ElementsAre(HasSubstr("diameter_mm: found 0")));
 }
 
 TEST(Blade, EachDimensionOfZeroIsRefused) {
   EXPECT_THAT(validate(Blade{}), IsEmpty());
-  EXPECT_THAT(validate(Blade{.thickness_mm = 0.0, .width_mm = -1.0, .length_mm = 0.0}),
-              ElementsAre(HasSubstr("thickness_mm: found 0"), HasSubstr("width_mm: found -1"), HasSubstr("length_mm: found 0")));
+  EXPECT_THAT(sentences(validate(Blade{.thickness_mm = 0.0, .width_mm = -1.0, .length_mm = 0.0})),
+              ElementsAre(HasSubstr("thickness_mm: found 0"), HasSubstr("width_mm: found -1"),
+                          HasSubstr("length_mm: found 0")));
 }
 
 TEST(Ball, ADiameterThatIsNoNumberIsRefused) {
   EXPECT_THAT(validate(Ball{}), IsEmpty());
-  EXPECT_THAT(validate(Ball{.diameter_mm = std::nan("")}), ElementsAre(HasSubstr("diameter_mm: found nan")));
+  EXPECT_THAT(sentences(validate(Ball{.diameter_mm = std::nan("")})), ElementsAre(HasSubstr("diameter_mm: found nan")));
 }
 
 TEST(Tool, IsTheSameAgainFromItsBytes) {

@@ -32,7 +32,7 @@ TEST(Material, NamesEveryViolation) {
   material.youngs_modulus_kpa = -70.0;
   material.poissons_ratio = 0.5;
   material.density_kg_m3 = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(validate(material),
+  EXPECT_THAT(sentences(validate(material)),
               ElementsAre(HasSubstr("youngs_modulus_kpa: found -70"), HasSubstr("poissons_ratio: found 0.5"),
                           HasSubstr("density_kg_m3: found nan")));
 }
@@ -41,7 +41,7 @@ TEST(Material, StiffnessAndDensityHaveARange) {
   Material material;
   for (const double e : {0.99e-6, 1.01e9, 1e300}) {
     material.youngs_modulus_kpa = e;
-    EXPECT_THAT(validate(material), ElementsAre(HasSubstr("expected a number in [1e-6, 1e9] kPa"))) << e;
+    EXPECT_THAT(sentences(validate(material)), ElementsAre(HasSubstr("expected a number in [1e-6, 1e9] kPa"))) << e;
     MaterialField field;
     field.youngs_modulus_kpa = {70.0, e};
     EXPECT_THAT(validate(field, 2), ElementsAre(HasSubstr("expected a number in [1e-6, 1e9] kPa"))) << e;
@@ -52,7 +52,8 @@ TEST(Material, StiffnessAndDensityHaveARange) {
   }
   for (const double density : {0.0, 1.01e9}) {
     material.density_kg_m3 = density;
-    EXPECT_THAT(validate(material), ElementsAre(HasSubstr("expected a number in (0, 1e9] kg/m3"))) << density;
+    EXPECT_THAT(sentences(validate(material)), ElementsAre(HasSubstr("expected a number in (0, 1e9] kg/m3")))
+        << density;
   }
 }
 

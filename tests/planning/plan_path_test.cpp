@@ -164,8 +164,8 @@ TEST(PlanSettings, TellEveryViolation) {
   PlanSettings settings;
   EXPECT_THAT(validate(settings), ElementsAre());
   settings = {.lateral_margin_mm = 0.0, .depth_mm = -1.0, .start_direction = Vec3::UnitZ(), .waypoints = 3};
-  EXPECT_THAT(validate(settings), ElementsAre(HasSubstr("lateral_margin_mm"), HasSubstr("depth_mm"),
-                                              HasSubstr("waypoints"), HasSubstr("start_direction")));
+  EXPECT_THAT(sentences(validate(settings)), ElementsAre(HasSubstr("lateral_margin_mm"), HasSubstr("depth_mm"),
+                                                         HasSubstr("waypoints"), HasSubstr("start_direction")));
   const SurfaceQuery surface(testing::flat_body());
   EXPECT_THROW(static_cast<void>(plan_ring(surface, testing::circle(10.0, 90), settings)), InvalidArgument);
 }

@@ -54,7 +54,7 @@ struct Block {
   void* data = nullptr;
   std::size_t count = 0;
   std::size_t columns = 1;
-  Range range = kAny;         ///< of each number
+  Range range = kAny;         ///< of each number that people write; bytes keep any
   bool is_direction = false;  ///< three numbers whose length does not matter, as long as it is not 0
 };
 
@@ -95,14 +95,15 @@ class Visitor {
   /// One of `names`; `value` is its place among them.
   virtual void choice(const Field& field, std::size_t& value, Names names) = 0;
   virtual void block(const Field& field, const Block& block) = 0;
-  /// Which of these fields stands in the group: just one does, and is visited next. @param place  of the first one that
-  /// is there, or kEveryKind. @returns how many are there
+  /// Which of these fields is in the group: just one has to be, and is visited next. @param place  set to that of the
+  /// first one that is there; or kEveryKind: visit them all; or kUnchanged: none. @returns how many are there
   virtual std::size_t key(std::size_t& place, std::span<const Field> keys);
   /// Whether everything is walked that determines a result. A file that people write names files in place of what they
   /// hold, and lacks what only code may choose.
   [[nodiscard]] virtual bool is_complete() const { return true; }
   /// Refuses what was read. @throws DataError, or CaseError where a case is read, naming the place.
-  [[noreturn]] virtual void refuse(const Field& field, const std::string& found, const std::string& expected) const = 0;
+  /// One that only shows blames the description: InvalidArgument.
+  [[noreturn]] virtual void refuse(const Field& field, const std::string& found, const std::string& expected) const;
 
   template <class T>
   void operator()(std::string_view name, T& value, std::string_view meaning = {}, const Range& range = kAny) {

@@ -35,7 +35,6 @@ class ByteWriter : public Visitor {
   void text(const Field& field, std::string& value) override;
   void choice(const Field& field, std::size_t& value, Names names) override;
   void block(const Field& field, const Block& block) override;
-  [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
 
   [[nodiscard]] std::string take() { return std::move(bytes_); }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/problem.hpp>
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,7 +12,8 @@ namespace incise {
 class Expect {
  public:
   /// @param violations  that are added to; has to outlive this.
-  explicit Expect(std::vector<std::string>& violations) : violations_(violations) {}
+  explicit Expect(std::vector<Problem>& violations) : problems_(&violations) {}
+  explicit Expect(std::vector<std::string>& violations) : sentences_(&violations) {}
 
   /// A number that is not valid, or not finite.
   void operator()(bool is_valid, std::string_view field, double found, std::string_view expected) const;
@@ -18,7 +21,9 @@ class Expect {
   void in_range(std::string_view field, double found, double low, double high) const;
 
  private:
-  std::vector<std::string>& violations_;
+  void note(const Problem& problem) const;
+  std::vector<Problem>* problems_ = nullptr;
+  std::vector<std::string>* sentences_ = nullptr;
 };
 
 }  // namespace incise

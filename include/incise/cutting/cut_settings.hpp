@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 
 #include <optional>
 #include <string>
@@ -65,7 +66,7 @@ inline void describe(Visitor& v, CutSettings& s) {
   describe_steps(v, s);
 }
 
-/// Every violation, one sentence each with the field's name; empty: valid. The step is checked against the tool's diameter or thickness.
-[[nodiscard]] std::vector<std::string> validate(const CutSettings& settings, double tool_diameter_mm);
+/// Every violation; empty: valid. The step is checked against the tool's diameter or thickness.
+[[nodiscard]] std::vector<Problem> validate(const CutSettings& settings, double tool_diameter_mm);
 
 }  // namespace incise

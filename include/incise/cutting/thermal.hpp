@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 
 #include <string>
 #include <vector>
@@ -36,8 +37,8 @@ inline void describe(Visitor& v, ThermalSettings& s) {
     "Share of the power that heats the tissue beside the kerf; 1: an upper bound.", {0.001, 1.0});
 }
 
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const ThermalSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const ThermalSettings& settings);
 
 /// How far beside a line source that runs straight on at constant speed through an infinite body tissue reaches the temperature of damage,
 /// mm: T − T₀ = q′ / (2 π k) · exp(−v x / (2 a)) · K₀(v r / (2 a)), largest over x, with q′ the absorbed power per length of needle in tissue.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <array>
@@ -50,8 +51,8 @@ void describe(Visitor& v, Tool& tool);
 [[nodiscard]] std::optional<double> length_mm(const Tool& tool);
 /// How far its outermost point of the core lies from the axis, mm: what a turn of the heading moves. 0 for what is round about its axis.
 [[nodiscard]] double half_width_mm(const Tool& tool);
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const Tool& tool);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const Tool& tool);
 
 /// Where a tool is: its tip, the direction from shaft to tip, and the direction in which it is led.
 struct ToolPose {

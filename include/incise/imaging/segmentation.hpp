@@ -3,6 +3,7 @@
 #include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/core/verdict.hpp>
 #include <incise/geometry/volume.hpp>
 
@@ -28,8 +29,8 @@ struct SegmentationSettings {
 };
 void describe(Visitor& v, SegmentationSettings& s);
 
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const SegmentationSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const SegmentationSettings& settings);
 
 /// What the occupancy is smoothed over: as the settings say, else 0.6 mm, or 1.2 of the longest side of a voxel where that is less: the
 /// finer the scan, the smaller what it shows.

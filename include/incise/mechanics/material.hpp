@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/types.hpp>
 
@@ -85,9 +86,9 @@ struct MaterialField {
 /// The fields of elasticity that a mesh carries as cell data: `youngs_modulus_kpa`, `poissons_ratio` (1 component), `fibre_direction` (3).
 [[nodiscard]] MaterialField material_field_of(const TetMesh& mesh);
 
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const Material& material);
-/// The same for a field of `tets` items.
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const Material& material);
+/// The same for a field of `tets` items, one sentence each.
 [[nodiscard]] std::vector<std::string> validate(const MaterialField& field, std::size_t tets);
 
 struct LameParameters {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/geometry/tool_path.hpp>
 
@@ -69,8 +70,8 @@ inline void describe(Visitor& v, PlanSettings& s) {
   describe_course(v, s);
 }
 
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const PlanSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const PlanSettings& settings);
 
 /// A drawn contour laid onto the surface along the approach. Points are kept in order; segments longer than 1 mm are
 /// subdivided so that the result hugs the surface.
