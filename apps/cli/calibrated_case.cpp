@@ -15,13 +15,13 @@ CLI::Option* add_calibrated_options(CLI::App& verb, CalibratedOptions& options) 
 }
 
 CalibrationInput read_calibration_input(const CalibratedOptions& options) {
-  CalibrationRecord record = read_calibration(options.calibration);
-  CalibratedBelief belief = belief_of(record, options.calibration);
+  Calibration found = read_calibration(options.calibration);
+  CalibratedBelief belief = belief_of(found, options.calibration);
   if (options.stretch_force_n && !belief.knows_forces) {
     throw CaseError("command line", "--stretch-force-n", "a pull, and a calibration that was made without",
                     "both with the pull of the suture, or both without");
   }
-  return {options.calibration, std::move(record), std::move(belief)};
+  return {options.calibration, std::move(found), std::move(belief)};
 }
 
 ScenarioRequest scenario_request(const CalibratedOptions& chosen, const CommonOptions& options) {

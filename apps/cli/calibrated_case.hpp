@@ -22,7 +22,7 @@ CLI::Option* add_calibrated_options(CLI::App& verb, CalibratedOptions& options);
 /// A calibration's file, read and looked through before anything is computed.
 struct CalibrationInput {
   std::filesystem::path file;
-  CalibrationRecord record;
+  Calibration found;
   CalibratedBelief belief;
 };
 /// @throws DataError for a file that is missing, damaged or without a posterior; CaseError for a force where the

@@ -173,7 +173,7 @@ ComparisonOutput compared(ComparedFiles files, const ComparisonSettings& setting
 
   Json& json = output.json;
   json["measure"] = to_string(settings.measure);
-  json["contour"] = output.files.before.front().contour;
+  json["contour"] = to_string(output.files.before.front().contour);
   json["target_mm"] = output.files.before.front().target_mm;
   json["mean_before_mm"] = comparison ? Json(comparison->points.before.mean) : Json(nullptr);
   json["mean_after_mm"] = comparison ? Json(comparison->points.after.mean) : Json(nullptr);

@@ -6,6 +6,7 @@
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
@@ -13,7 +14,6 @@
 #include <incise/io/pvd_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/table_io.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/io/written_json.hpp>
 #include <incise/meshing/quality.hpp>
@@ -75,13 +75,14 @@ CtVolume crop(const CtVolume& ct, const VolumeGrid& around) {
 /// That of the run; of a folder that a single stage filled, that of its last cut.
 void add_verdict(const fs::path& root, const Json& study, ReportData& data) {
   if (study.contains("verdict")) {
-    data.verdict = verdict_from_json(study.at("verdict"), root / "study.json");
+    data.verdict = from_json<Verdict>(study.at("verdict"), root / "study.json", "/verdict");
     return;
   }
   for (const char* cut : {"as_planned", "corrected"}) {
     const fs::path file = root / cut / "incision.json";
     if (fs::exists(file))
-      data.verdict = from_written_json(file, [&] { return verdict_from_json(read_json(file).at("verdict"), file); });
+      data.verdict =
+          from_written_json(file, [&] { return from_json<Verdict>(read_json(file).at("verdict"), file, "/verdict"); });
   }
 }
 
@@ -164,7 +165,7 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
   ReportIncision incision;
   incision.name = cut.name;
   incision.outcome = read_outcome(json, "outcome", folder / "incision.json");
-  incision.verdict = verdict_from_json(json.at("verdict"), folder / "incision.json");
+  incision.verdict = from_json<Verdict>(json.at("verdict"), folder / "incision.json", "/verdict");
   if (json.at("closed_loop").is_boolean()) incision.closed_loop = json.at("closed_loop").get<bool>();
   if (json.at("negative_margin").is_boolean()) incision.negative_margin = json.at("negative_margin").get<bool>();
   incision.target_mm = file.settings.plan.lateral_margin_mm;

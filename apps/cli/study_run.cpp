@@ -11,10 +11,10 @@
 #include <incise/core/version.hpp>
 #include <incise/cutting/path_heat.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/workflow/robot_frame.hpp>

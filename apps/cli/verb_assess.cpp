@@ -3,8 +3,8 @@
 #include "registration_trust.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/storage/registration_json.hpp>
 #include <incise/workflow/assess.hpp>
 
@@ -50,7 +50,7 @@ void require_ring_by_default_method(const CaseFile& file) {
 }
 
 /// A correction by another tool than the calibration's is seldom what is meant. Empty: it is the same.
-std::string other_tool(const CutSettings& cut, const CalibrationRecord& calibration) {
+std::string other_tool(const CutSettings& cut, const Calibration& calibration) {
   if (!calibration.chosen) return {};
   constexpr double kSame = 1e-3;
   const double here_mm = cut.speed_mm_s * cut.dwell_s();
@@ -88,13 +88,13 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   const CalibrationInput calibration = read_calibration_input(chosen.calibrated);
   AssessmentRequest request;
   request.scenarios = scenario_request(chosen.calibrated, options);
-  request.calibrated = range_of(calibration.record);
-  request.is_calibration_virtual = calibration.record.is_virtual;
+  request.calibrated = range_of(calibration.found);
+  request.is_calibration_virtual = calibration.found.is_virtual;
   const Verdict of_registration = read_specimens_registration(chosen.registration, request);
   tell(of_registration, console);
   const CaseFile asked = case_as_asked(chosen.case_path, chosen.cut);
   require_ring_by_default_method(asked);
-  const std::string note = other_tool(asked.settings.cut, calibration.record);
+  const std::string note = other_tool(asked.settings.cut, calibration.found);
   if (!note.empty()) console.message(Severity::Warning, note);
   const std::filesystem::path output = output_of(chosen.case_path, options);
   StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
@@ -109,7 +109,7 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   nlohmann::ordered_json result = to_json(assessment, request);
   result["specimen_is"] = run.folder.case_file().settings.is_virtual ? "virtual" : "real";
-  result["calibration_is"] = calibration.record.is_virtual ? "virtual" : "real";
+  result["calibration_is"] = calibration.found.is_virtual ? "virtual" : "real";
   result["specimen_id"] = run.folder.specimen_id();
   result["verdict"] = nullptr;  // known once the assessment is kept
   write_assessment(run.folder, result, calibration.file, chosen.registration, wall.count());

@@ -35,7 +35,8 @@ void require_alike(const CompareArguments& arguments, const ComparedFiles& files
       throw DataError(path, key, found, fmt::format("{} as in {}", expected, arguments.before.front().string()),
                       "Only like is compared with like");
     };
-    if (file.contour != first.contour) refuse("contour", file.contour, first.contour);
+    if (file.contour != first.contour)
+      refuse("contour", std::string(to_string(file.contour)), std::string(to_string(first.contour)));
     if (file.target_mm != first.target_mm) {
       refuse("target_mm", fmt::format("{}", file.target_mm), fmt::format("{}", first.target_mm));
     }

@@ -3,7 +3,7 @@
 #include "option_checks.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/verdict_json.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/workflow/assess.hpp>
 
@@ -93,7 +93,7 @@ nlohmann::ordered_json add_robust_path(const CompensateOptions& chosen, const Ca
   nlohmann::ordered_json json = robust_summary_json(robust);
   json["path"] = (run.folder.root() / "robust" / "path.json").string();
   json["wall_s"] = wall.count();
-  if (calibration.record.is_virtual && !run.folder.case_file().settings.is_virtual)
+  if (calibration.found.is_virtual && !run.folder.case_file().settings.is_virtual)
     console.message(Severity::Warning, fmt::format("robust path: {}", kVirtualCalibration));
   const RobustCompensation& made = robust.compensation;
   if (made.outcome != RobustOutcome::Met) {

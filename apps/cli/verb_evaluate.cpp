@@ -12,9 +12,9 @@
 #include <incise/imaging/photo_doubts.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>
 

@@ -10,12 +10,12 @@
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/cutting/path_heat.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/nearest_name.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/registration_json.hpp>
 

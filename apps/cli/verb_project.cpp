@@ -6,6 +6,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
@@ -13,7 +14,6 @@
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/planning/project_path.hpp>
 #include <incise/robot/checks.hpp>
 #include <incise/storage/registration_json.hpp>

@@ -45,10 +45,6 @@ void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monit
   }
 }
 
-nlohmann::ordered_json to_json(const VerdictGate& gate) {
-  return {{"open", gate.is_open}, {"accepted", gate.accepted}, {"missing", gate.missing}, {"refused", gate.refused}};
-}
-
 Verdict as_verdict_of_mark(const Verdict& of_cut) {
   Verdict verdict;
   for (const VerdictReason& reason : of_cut.reasons()) {

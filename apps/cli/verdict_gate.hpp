@@ -20,9 +20,6 @@ void require_accepted_ids(const std::vector<std::string>& accepted);
 /// Says on the console what stands between a verdict and its program, or which cautions were accepted.
 void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor);
 
-/// `{open, accepted, missing, refused}`.
-[[nodiscard]] nlohmann::ordered_json to_json(const VerdictGate& gate);
-
 /// The verdict of a cut as one of a mark of the tumour's edge: a mark cuts nothing, so that of the cautions only those
 /// against its place remain; what is refused as a cut is not marked either.
 [[nodiscard]] Verdict as_verdict_of_mark(const Verdict& of_cut);

@@ -1,8 +1,192 @@
 #include <incise/calibration/calibration.hpp>
+#include <incise/mechanics/material.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace incise {
+namespace {
+
+constexpr double kWeightTolerance = 1e-6;
+constexpr Range kForceN{1e-6, 1e6};
+
+/// What a row says of one specimen.
+struct RunFigures {
+  const std::string& name;
+  const CalibrationRun& run;
+};
+std::optional<double> mean_of(const std::optional<Summary>& summary) {
+  return summary ? std::optional(summary->mean) : std::nullopt;
+}
+void describe(Visitor& v, RunFigures& f) {
+  const std::optional<Summary>& errors = f.run.paper_abs_error_mm;
+  v.derived("name", f.name, "Of the specimen.");
+  v.derived("outcome", f.run.outcome, "How the cut ended.");
+  v.derived("failure", f.run.is_failure(), "Whether it failed in the paper's sense.");
+  if (!f.run.problem.empty()) v.derived("problem", f.run.problem, "Why it could not be carried out.");
+  v.derived("stiffness_of_case", f.run.setting.stiffness_of_case, "Young's modulus over that of the case.");
+  v.derived("mean_abs_mm", mean_of(errors), "Mean |error| as the paper takes it.");
+  v.derived("sd_abs_mm", errors ? std::optional(errors->sd) : std::nullopt, "Its standard deviation.");
+  v.derived("max_abs_mm", errors ? std::optional(errors->max) : std::nullopt, "Its greatest value.");
+  v.derived("mean_signed_mm", mean_of(f.run.signed_error_mm), "Of the mid-line.");
+  v.derived("mean_inner_signed_mm", mean_of(f.run.inner_signed_error_mm), "Of the inner edge.");
+  v.derived("tets", f.run.tets, "Of the mesh before the cut.");
+  v.derived("wall_s", f.run.wall_s, "Time that the simulation took.");
+}
+
+/// A row of the table, its specimens one by one.
+struct RowFigures {
+  const Calibration& calibration;
+  const ScoreRow& row;
+};
+void describe(Visitor& v, RowFigures& f) {
+  const ScoreRow& row = f.row;
+  const RunSetting& setting = row.setting;
+  v.derived("speed_mm_s", setting.speed_mm_s, "Of the simulated tool.");
+  v.derived("dullness", setting.dullness, "In reference steps.");
+  v.derived("drag_length_mm", setting.speed_mm_s * setting.dullness * f.calibration.reference_step_s,
+            "How far held tissue is drawn along.");
+  v.derived("failure", row.is_failure, "Whether one specimen at least failed.");
+  v.derived("mean_abs_mm", row.mean_abs_mm, "Mean of the specimens' means.");
+  v.derived("sd_abs_mm", row.sd_abs_mm, "Mean of their standard deviations.");
+  v.derived("max_abs_mm", row.max_abs_mm, "Greatest of any specimen that did not fail.");
+  v.derived("mean_signed_mm", row.mean_signed_mm, "Of the mid-lines.");
+  v.derived("mean_inner_signed_mm", row.mean_inner_signed_mm, "Of the inner edges.");
+  v.derived("score_percent", row.percent, "Of the baseline; 0 for a failure.");
+  v.derived("inner_edge_score_percent", row.inner_percent, "Inner edges against photographs.");
+  v.derived("inner_edge_specimens", row.inner_specimens, "Whose inner edges count.");
+  v.begin_list({"specimens"}, f.calibration.specimens.size(), 1);
+  for (const CalibratedSpecimen& specimen : f.calibration.specimens) {
+    RunFigures run{specimen.name, specimen.runs[row.run]};
+    v(Field{}, run);
+  }
+  v.end_list();
+}
+
+void describe_parameter(Visitor& v, const Field& field, ParameterEstimate& estimate, ParameterVerdict& verdict) {
+  v.begin(field);
+  describe(v, estimate);
+  describe(v, verdict);
+  v.end();
+}
+
+void describe_parameters(Visitor& v, DragFit& fit, Identifiability& told) {
+  describe_parameter(v, {"drag_length_mm", "How far held tissue is drawn along.", "mm"}, fit.drag_length_mm,
+                     told.parameters[0]);
+  describe_parameter(v, {"ln_stiffness_factor", "Logarithm of the stiffness over the reference."}, fit.ln_stiffness,
+                     told.parameters[1]);
+  describe_parameter(v, {"bias_mm", "To be added to simulated signed errors.", "mm"}, fit.bias_mm, told.parameters[2]);
+  v.derived("stiffness_varied", fit.knows_stiffness, "Whether a second stiffness was cut for every specimen.");
+  v.derived("correlation", fit.correlation, "Of the three, in this order.");
+}
+
+/// A reader needs the samples, the residual and, for the trend with stiffness, the fitted errors.
+void describe_fit(Visitor& v, DragFit& fit, Identifiability& told) {
+  v.begin({"posterior"});
+  if (!v.sets()) describe_parameters(v, fit, told);
+  v("samples", fit.samples, "Of the posterior.");
+  double sum = 0.0;
+  for (const PosteriorSample& sample : fit.samples) sum += sample.weight;
+  if (v.sets() && (fit.samples.empty() || std::abs(sum - 1.0) > kWeightTolerance))
+    v.refuse({"samples"}, fmt::format("weights that add up to {}", sum), "weights that add up to 1");
+  v.end();
+  v("residual", fit.residual, "What the fit leaves.");
+  std::optional<std::vector<SpecimenFit>> fitted = fit.specimens;
+  v("fitted", fitted, "Specimen by specimen.");
+  if (v.sets()) fit.specimens = fitted.value_or(std::vector<SpecimenFit>{});
+  v.derived("identifiability", told.sentences, "What the data tell apart.");
+}
+/// A reader's fitted specimens are those of the calibration, with errors that a photograph can have.
+void require_fitted_specimens(const Visitor& v, const Calibration& calibration) {
+  const std::vector<SpecimenFit>& fitted = calibration.fit->specimens;
+  if (fitted.empty()) return;
+  const std::size_t count = calibration.specimens.size();
+  if (fitted.size() != count)
+    v.refuse({"fitted"}, fmt::format("{} specimens", fitted.size()),
+             fmt::format("{}, one for each of specimens", count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string place = fmt::format("fitted/{}", i);
+    const SpecimenFit& one = fitted[i];
+    if (one.name != calibration.specimens[i].name)
+      v.refuse({place + "/name"}, one.name, calibration.specimens[i].name + ", as in specimens");
+    if (one.observed_mm.empty() || one.fitted_mm.size() != one.observed_mm.size())
+      v.refuse({place + "/fitted_mm"}, fmt::format("{} numbers", one.fitted_mm.size()),
+               fmt::format("as many as observed_mm, {}, and at least one", one.observed_mm.size()));
+    if (const double mean = difference_mm(one); !contains(kAnatomyErrorMm, mean))
+      v.refuse({place + "/observed_mm"}, fmt::format("{:.3g} mm off in the mean", mean), "millimetres");
+  }
+}
+
+}  // namespace
+
+void describe(Visitor& v, CalibratedSpecimen& s) {
+  v("name", s.name, "Of the specimen.");
+  v.derived("photographed_mean_abs_mm", s.photographed.mean_mm, "Mean |error| of the photograph.");
+  v.derived("photographed_max_abs_mm", s.photographed.max_mm, "Greatest |error| of the photograph.");
+  v({"photographed_mean_signed_mm", "Mean signed error of the photograph.", "mm"}, s.signed_mean_mm, kAnatomyErrorMm);
+  v({"youngs_modulus_kpa", "Reference: the case's, or what the pull makes of it.", "kPa"}, s.youngs_modulus_kpa,
+    {kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
+  v({"stretch_force_n", "Measured pull.", "N"}, s.stretch_force_n, kForceN);
+  v({"simulated_force_n", "Pull of the simulated specimen.", "N"}, s.simulated_force_n, {0.0, kForceN.most});
+  std::optional<double> stretch_mm = s.stretch_mm;
+  v({"stretch_mm", "How far its end was displaced.", "mm"}, stretch_mm, {0.0, kAnatomyMm.most});
+  s.stretch_mm = stretch_mm.value_or(0.0);
+  v("registration", s.registration, "How well the simulated surface lies on the measured one.");
+  v.derived("picture_turn_deg", s.picture.turn_deg, "Turn of the photograph.");
+  v.derived("picture_rms_mm", s.picture.rms_mm, "Of the distances between the edges that is left.");
+  v.derived("read_by_midline", s.read_by_midline, "Runs whose ring closed, but not at the skin.");
+}
+
+void describe(Visitor& v, Calibration& c) {
+  describe_schema(v, "incise.calibration/1");
+  v("method", c.method, "How it was calibrated.");
+  v("virtual", c.is_virtual, "Whether one specimen at least is.");
+  const bool has_chosen = v.optional({"chosen"}, c.chosen.has_value());
+  if (v.sets()) c.chosen = has_chosen ? std::optional(RunSetting{}) : std::nullopt;
+  if (has_chosen) {
+    v.begin({"chosen", "With which a simulated ring comes out as photographed."});
+    describe(v, *c.chosen);
+    v.derived("drag_length_mm", c.chosen->speed_mm_s * c.chosen->dullness * c.reference_step_s,
+              "How far held tissue is drawn along.");
+    v.end();
+  }
+  v("score_percent", c.score_percent, "Of the chosen setting.");
+  v({"baseline_mm", "0.75 mean + 0.25 max of the photographed errors.", "mm"}, c.table.baseline_mm, kAnatomyMm);
+  v({"reference_step_s", "The time that one unit of dullness stands for.", "s"}, c.reference_step_s, {1e-6, 1.0});
+  v.derived("simulations", c.simulations, "In all.");
+  v.derived("verdict", c.verdict, "On the photographs.");
+  v("specimens", c.specimens, "Calibrated to.");
+  v.derived("left_out", c.left_out, "Of which the fit could make nothing.");
+  const bool has_fit = v.optional({"posterior"}, c.fit.has_value());
+  if (v.sets()) {
+    c.fit = has_fit ? std::optional(DragFit{}) : std::nullopt;
+    c.identifiability = has_fit ? std::optional(Identifiability{}) : std::nullopt;
+  }
+  if (has_fit) {
+    describe_fit(v, *c.fit, *c.identifiability);
+    if (v.sets()) require_fitted_specimens(v, c);
+  }
+  if (v.sets()) {
+    const bool is_fit = c.method == CalibrationMethod::Fit;
+    if (is_fit && !has_fit) v.refuse({"posterior"}, "null", "that of a fit");
+    return;
+  }
+  v.begin_list({"rows", "Setting by setting."}, c.table.rows.size(), 1);
+  for (const ScoreRow& row : c.table.rows) {
+    RowFigures figures{c, row};
+    v(Field{}, figures);
+  }
+  v.end_list();
+}
+
+double difference_mm(const SpecimenFit& fitted) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < fitted.observed_mm.size(); ++i) sum += fitted.observed_mm[i] - fitted.fitted_mm[i];
+  return sum / static_cast<double>(fitted.observed_mm.size());
+}
 
 bool is_usable(const Calibration& calibration) {
   if (!calibration.fit) return calibration.score_percent.value_or(0.0) > 0.0;

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace incise {
 namespace {
 
 constexpr VerdictStatus kCaution = VerdictStatus::Caution;
 constexpr VerdictStatus kRefused = VerdictStatus::Refused;
+constexpr std::size_t kShownCharacters = 40;
 
 // The one table of limits. Change it together with docs/models/verdict.md.
 constexpr auto kRules = std::to_array<VerdictRule>({
@@ -119,7 +121,40 @@ void Verdict::add(std::string_view id, std::optional<double> value, std::string 
                     std::move(message)});
 }
 
+void describe(Visitor& v, VerdictReason& reason) {
+  v("id", reason.id, "Of its rule in the table of limits.");
+  const auto rule = std::find_if(kRules.begin(), kRules.end(), [&](const VerdictRule& r) { return r.id == reason.id; });
+  if (v.sets() && rule == kRules.end())
+    v.refuse({"id"}, "'" + reason.id.substr(0, kShownCharacters) + "'", "the id of a rule of the verdict");
+  v("severity", reason.severity, "That of its rule.");
+  if (v.sets() && reason.severity != rule->severity) {
+    v.refuse({"severity"}, std::string(to_string(reason.severity)), std::string(to_string(rule->severity)));
+  }
+  v("value", reason.value, "What was found.");
+  v("limit", reason.limit, "What it was held against.");
+  v("unit", reason.unit, "Of both.");
+  v("at", reason.at, "Where.");
+  v("message", reason.message, "One sentence for a person.");
+}
+
+void describe(Visitor& v, Verdict& verdict) {
+  VerdictStatus status = verdict.status();
+  if (v.is_summary()) v("status", status, "That of the worst reason.");
+  std::vector<VerdictReason> reasons = verdict.reasons_;
+  v("reasons", reasons, "Worst first.");
+  if (!v.sets()) return;
+  verdict.reasons_.clear();
+  for (VerdictReason& reason : reasons) verdict.add(std::move(reason));
+  if (v.is_summary() && status != verdict.status()) {
+    v.refuse({"status"}, std::string(to_string(status)),
+             fmt::format("{}, that of the worst reason", to_string(verdict.status())));
+  }
+}
+
 void Verdict::add(VerdictReason reason) {
+  for (std::optional<double>* number : {&reason.value, &reason.limit}) {
+    if (*number && !std::isfinite(**number)) number->reset();  // it could not be measured
+  }
   const bool is_there = std::any_of(reasons_.begin(), reasons_.end(),
                                     [&](const VerdictReason& r) { return r.id == reason.id && r.message == reason.message; });
   if (is_there) return;

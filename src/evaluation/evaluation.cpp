@@ -156,4 +156,39 @@ Evaluation evaluate(const std::optional<Contour>& incision, const Contour& tumor
   return result;
 }
 
+void describe(Visitor& v, Evaluation& e) {
+  v("outcome", e.outcome, "How the cut ended.");
+  v("closed_loop", e.closed_loop, "Whether the ring closed; absent for an open cut.");
+  v("negative_margin", e.negative_margin, "Whether tissue is left all round the tumour edge.");
+  v("contour", e.contour, "Which line of the cut was measured.");
+  v({"target_mm", "Intended distance of that line from the tumour edge.", "mm"}, e.target_mm);
+  v("n_points", e.n_points, "At which errors were taken.");
+  v({"abs_error_mm", "Of |error|.", "mm"}, e.abs_error_mm);
+  v({"signed_error_mm", "Positive: farther from the tumour than intended.", "mm"}, e.signed_error_mm);
+  v({"paper_abs_error_mm", "Mean |error| as the paper takes it.", "mm"}, e.paper_abs_error_mm);
+  v({"paper_max_abs_error_mm", "Greatest |error| as the paper takes it.", "mm"}, e.paper_max_abs_error_mm);
+  v("paper_success", e.paper_success, "Success in the paper's sense.");
+  v("hu_score", e.hu_score, "Tumour edge against incision, as OpenCV's I1.");
+  v("hu_score_ideal", e.hu_score_ideal, "What the edge's perfect offset would score.");
+  v("hu_score_seven", e.hu_score_seven, "With all seven invariants.");
+  v("hu_seven_unstable", e.hu_seven_unstable, "Whether that score rests on rounding.");
+  v("hu_unstable", e.hu_unstable, "Whether hu_score does.");
+  v("hu_excess", e.hu_excess, "hu_score less hu_score_ideal.");
+  v("hu_score_to_ideal", e.hu_score_to_ideal, "The ideal offset against the incision; 0 for a perfect cut.");
+  v("hu_ideal_unstable", e.hu_ideal_unstable, "Whether the two before rest on rounding.");
+  v({"centroid_shift_mm", "Between the centres of the two filled regions.", "mm"}, e.centroid_shift_mm);
+  v("close_margin", e.close_margin, "Points that leave too little tissue beside the tumour edge.");
+  v.begin({"zones", "Points in the zones of the paper's Fig. 6."});
+  v("positive_margin", e.positive_zone, "No tissue left beside the tumour edge.");
+  v("too_close", e.too_close_zone, "Some, but no more than the close margin.");
+  v.end();
+  v({"hausdorff_mm", "Distance between the incision and the ideal line.", "mm"}, e.hausdorff);
+  v("by_clock", e.by_clock, "Hour by hour.");
+  v("coverage", e.coverage, "Share of directions from the tumour's centre that meet the incision.");
+  v({"start_gap_mm", "By how much an open cut falls short of the line's start.", "mm"}, e.start_gap_mm);
+  v({"end_gap_mm", "The same at the line's end.", "mm"}, e.end_gap_mm);
+  v.bulk("errors", e.errors, "Point by point.");
+  v.bulk("clock_h", e.clock_h, "Of each of these points.");
+}
+
 }  // namespace incise

@@ -2,9 +2,9 @@
 #include "io/number_text.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
-#include <incise/io/verdict_json.hpp>
 
 #include <fmt/format.h>
 
@@ -92,7 +92,7 @@ Manifest read_manifest(const std::filesystem::path& folder) {
   manifest.wall_s = root.at("wall_s").number();
   manifest.machine = root.at("machine").text();
   if (const auto id = root.find("specimen_id")) manifest.specimen_id = id->text();
-  if (root.find("verdict")) manifest.verdict = verdict_from_json(document["verdict"], file);
+  if (root.find("verdict")) manifest.verdict = from_json<Verdict>(document["verdict"], file, "/verdict");
   return manifest;
 }
 

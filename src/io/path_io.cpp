@@ -3,11 +3,11 @@
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/io/verdict_json.hpp>
 
 #include <fmt/format.h>
 
@@ -178,7 +178,7 @@ Verdict read_path_verdict(const std::filesystem::path& file) {
   const ToolPath path = read_path(root);
   const std::optional<JsonValue> place = root.find(kVerdict);
   if (!place) return not_simulated("the path's file holds no verdict: no simulated cut along it is known");
-  const Verdict stated = verdict_from_json(document.at(kVerdict), file);
+  const Verdict stated = from_json<Verdict>(document.at(kVerdict), file, "/verdict");
   if (place->at(kDigest).text() == digest_of(path, stated)) return stated;
   // A changed digit does not make a refused path one that can be accepted.
   Verdict verdict =
@@ -194,7 +194,7 @@ void require_path_unchanged(const std::filesystem::path& file) {
   const JsonValue root(document, file);
   const std::optional<JsonValue> place = root.find(kVerdict);
   if (!place) return;
-  const std::string digest = digest_of(read_path(root), verdict_from_json(document.at(kVerdict), file));
+  const std::string digest = digest_of(read_path(root), from_json<Verdict>(document.at(kVerdict), file, "/verdict"));
   if (place->at(kDigest).text() != digest)
     throw DataError(file, "/verdict/digest_sha256", "that of another path", digest + ", that of the path in this file");
 }

@@ -30,7 +30,7 @@ set(text_sources
   text_encoding.cpp
   text_table.cpp
   transform_json.cpp
-  verdict_json.cpp
+  described_json.cpp
   vtk_bytes.cpp
   vtk_legacy_reader.cpp
   vtk_xml_reader.cpp

@@ -1,9 +1,9 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/io/written_json.hpp>
 #include <incise/planning/eligibility.hpp>
 #include <incise/storage/result_json.hpp>

@@ -61,10 +61,9 @@ TetMesh removed_mesh(const TetMesh& mesh, const Points& stretched, const CutReco
   return removed;
 }
 
-/// All numbers of a cut, and how its program ended and what it removed.
+/// All numbers of a cut, and what it removed.
 nlohmann::ordered_json incision_json(const SimulatedCut& cut) {
   nlohmann::ordered_json json = to_json(cut);
-  json["program_outcome"] = to_string(cut.incision.outcome);
   json["removal_columns"] = {"tet", "step", "time_s", "cause", "rest_volume_mm3"};
   json["removal_causes"] = nlohmann::ordered_json::array();  // by the number in the column
   for (const std::string_view cause : names_of(RemovalCause{})) json["removal_causes"].push_back(cause);

@@ -9,18 +9,6 @@ void name(Visitor& v, const Field& field, std::string_view only) {
   v.choice(field, place, Names(&only, 1));
 }
 
-/// Row by row.
-void transform(Visitor& v, const Field& field, std::optional<Mat4>& value) {
-  using Rows = std::array<std::array<double, 4>, 4>;
-  using RowMajor = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
-  std::optional<Rows> rows;
-  if (value) Eigen::Map<RowMajor>(rows.emplace().front().data()) = *value;
-  v(field, rows);
-  if (!v.sets()) return;
-  value.reset();
-  if (rows) value = Eigen::Map<const RowMajor>(rows->front().data());
-}
-
 }  // namespace
 
 void describe(Visitor& v, CaseFile& file) {
@@ -91,12 +79,10 @@ void describe(Visitor& v, CaseFile& file) {
   v("path", in.tool_path, "A path.json (frame sim_stretched) to follow in place of the planned one.");
   v.begin({"robot", "The arm, its tool, and where the specimen lies under it."});
   name(v, {"model", "The arm."}, "ur10e");
-  transform(v,
-            {"T_robot_sim",
+  v({"T_robot_sim",
              "Rigid 4 x 4 transform, rows, from simulation to robot coordinates; absent: no program is made.", "mm"},
             c.T_robot_sim);
-  transform(v,
-            {"T_flange_tool",
+  v({"T_flange_tool",
              "Rigid 4 x 4 transform, rows, from the tool's coordinates (origin at the needle's tip, z along the "
              "needle) to those of the arm's flange; absent: the tip lies 150 mm straight in front of it.",
              "mm"},

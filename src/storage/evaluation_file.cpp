@@ -1,12 +1,9 @@
-#include "storage/json_place.hpp"
-
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour_checks.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/storage/evaluation_file.hpp>
-#include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>
 
@@ -15,159 +12,167 @@
 namespace incise {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr std::array<const char*, 3> kCoordinates{"x_mm", "y_mm", "z_mm"};
-constexpr double kFarthestPlaceMm = 1e5;   // from a scan's or a robot's origin
+constexpr Range kPlaceMm{-1e5, 1e5};  // from a scan's or a robot's origin
+constexpr Range kDistanceMm{-kLargestBodyMm, kLargestBodyMm};
 constexpr double kLongestDirection = 1e6;  // and its inverse the shortest
 constexpr const char* kEvaluationHint = "Write the file with `incise evaluate … -o FILE.json`";
 
-std::optional<double> zone_border(const JsonPlace& zones, const char* name) {
-  return zones.at(name, "a zone or null").is_null() ? std::nullopt
-                                                    : std::optional(zones.inside(name).number("at_or_below_mm"));
+void require_all(const Visitor& v, std::string_view name, const std::vector<double>& values, const Range& range) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (v.sets() && !contains(range, values[i]))
+      v.refuse({fmt::format("{}/{}", name, i)}, fmt::format("{:.4g}", values[i]), describe(range));
 }
 
-void read_points(const JsonPlace& file, EvaluationFile& result) {
-  const double count = file.number("n_points");
-  if (count == 0.0) return;  // no incision was found: a result, without errors
-  const JsonPlace points = file.inside("points");
-  std::vector<double>& errors = result.specimen.signed_error_mm;
-  errors = points.numbers("signed_error_mm");
-  if (static_cast<double>(errors.size()) != count) {
-    points.refuse("signed_error_mm", fmt::format("{} numbers", errors.size()), fmt::format("n_points = {}", count));
-  }
-  if (errors.size() < 3) points.refuse("signed_error_mm", fmt::format("{} numbers", errors.size()), "at least 3");
-  for (const double error : errors) {
-    if (std::abs(error) > kLargestBodyMm) points.refuse("signed_error_mm", fmt::format("{:.4g}", error), fmt::format("distances within {} mm", kLargestBodyMm));
-  }
-  if (!points.object.contains("clock_h")) return;
-  result.clock_h = points.numbers("clock_h");
-  if (result.clock_h.size() != errors.size()) {
-    points.refuse("clock_h", fmt::format("{} numbers", result.clock_h.size()), fmt::format("n_points = {}", count));
-  }
-  for (const double hour : result.clock_h) {
-    if (!(hour >= 0.0 && hour < 12.0)) points.refuse("clock_h", fmt::format("{}", hour), "hours in [0, 12)");
-  }
+void require_size(const Visitor& v, const char* name, const std::vector<double>& values, std::size_t size) {
+  if (values.size() != size) v.refuse({name}, fmt::format("{} numbers", values.size()), fmt::format("{}", size));
 }
 
-/// What a photograph of a cut cannot show is no measurement of one.
-void require_size(const JsonPlace& file, const char* key, const Contour& contour, const char* what, double largest_mm) {
-  if (const auto problem = size_problem(contour, what, largest_mm)) file.refuse(key, problem->found, problem->expected);
+/// A contour as files of evaluations hold it: equally long lists of coordinates.
+struct CoordinateLists {
+  Contour contour;
+};
+void describe(Visitor& v, CoordinateLists& c) {
+  constexpr std::array<const char*, 3> kNames{"x_mm", "y_mm", "z_mm"};
+  std::array<std::vector<double>, 3> lists;
+  for (const Vec3& p : c.contour.points)
+    for (int axis = 0; axis < 3; ++axis) lists[static_cast<std::size_t>(axis)].push_back(p[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    v({kNames[axis], "Coordinates of the points.", "mm"}, lists[axis]);
+    require_all(v, kNames[axis], lists[axis], kPlaceMm);
+    if (v.sets()) require_size(v, kNames[axis], lists[axis], lists[0].size());
+  }
+  if (!v.sets()) return;
+  if (lists[0].size() < 3) v.refuse({kNames[0]}, fmt::format("{} numbers", lists[0].size()), "at least 3");
+  c.contour = Contour{};
+  for (std::size_t i = 0; i < lists[0].size(); ++i)
+    c.contour.points.emplace_back(lists[0][i], lists[1][i], lists[2][i]);
 }
 
-Vec3 direction_of(const JsonPlace& file, const char* key) {
-  const std::vector<double> numbers = file.numbers(key);
-  if (numbers.size() != 3) file.refuse(key, fmt::format("{} numbers", numbers.size()), "3");
-  const Vec3 direction(numbers.data());
-  const double length = direction.norm();
-  if (!(length >= 1.0 / kLongestDirection && length <= kLongestDirection))
-    file.refuse(key, fmt::format("a vector of length {:.4g}", length), "a direction");
-  return direction / length;
+/// The points of an evaluation, without their places.
+struct PointErrors {
+  std::vector<double> signed_error_mm, clock_h;
+};
+void describe(Visitor& v, PointErrors& p) {
+  v({"signed_error_mm", "Positive: farther from the tumour than intended.", "mm"}, p.signed_error_mm);
+  std::optional<std::vector<double>> clock_h = p.clock_h.empty() ? std::nullopt : std::optional(p.clock_h);
+  if (v.sets() || clock_h) v({"clock_h", "Hour of a clock face over the tumour.", "h"}, clock_h);
+  if (!v.sets()) return;
+  p.clock_h = clock_h.value_or(std::vector<double>{});
+  if (p.signed_error_mm.size() < 3)
+    v.refuse({"signed_error_mm"}, fmt::format("{} numbers", p.signed_error_mm.size()), "at least 3");
+  require_all(v, "signed_error_mm", p.signed_error_mm, kDistanceMm);
+  require_all(v, "clock_h", p.clock_h, {0.0, 12.0, false, true});
+}
+
+/// What is read of one of the zones.
+struct ZoneBorder {
+  double at_or_below_mm = 0.0;
+};
+void describe(Visitor& v, ZoneBorder& z) {
+  v({"at_or_below_mm", "Upper border.", "mm"}, z.at_or_below_mm);
 }
 
 /// A photograph whose scale or perspective is wrong has numbers, but none that a comparison or a calibration may use.
-void require_not_refused(const Json& json, const std::filesystem::path& path) {
-  if (!json.contains("verdict")) return;  // of contours, or of a version before verdicts
-  const Verdict verdict = verdict_from_json(json.at("verdict"), path);
-  if (verdict.status() != VerdictStatus::Refused) return;
-  const VerdictReason& worst = verdict.reasons().front();
-  throw DataError(path, "verdict", fmt::format("a refused measurement ({}: {})", worst.id, worst.message),
+void require_not_refused(const std::optional<Verdict>& verdict, const std::filesystem::path& path) {
+  if (!verdict || verdict->status() != VerdictStatus::Refused) return;
+  const VerdictReason& worst = verdict->reasons().front();
+  throw DataError(path, "/verdict", fmt::format("a refused measurement ({}: {})", worst.id, worst.message),
                   "a measurement that is ok or a caution", "Take the photograph again, or give its scale another way.");
+}
+
+/// The contours of a photographed cut.
+struct PhotographedContours {
+  CoordinateLists points, tumor_edge;
+  Vec3 approach = Vec3::Zero();
+};
+void describe(Visitor& v, PhotographedContours& c) {
+  v("points", c.points, "The incision.");
+  v("tumor_edge", c.tumor_edge, "That it was to keep clear of.");
+  v("approach", c.approach, "In which the camera looked.");
+  const double length = c.approach.norm();
+  if (v.sets() && !(length >= 1.0 / kLongestDirection && length <= kLongestDirection))
+    v.refuse({"approach"}, fmt::format("a vector of length {:.4g}", length), "a direction");
+}
+
+/// What a photograph of a cut cannot show is no measurement of one.
+void require_size(const Contour& contour, const char* what, double largest_mm, const std::filesystem::path& path,
+                  const char* place) {
+  if (const auto problem = size_problem(contour, what, largest_mm))
+    throw DataError(path, place, problem->found, problem->expected, kEvaluationHint);
 }
 
 }  // namespace
 
-Json contour_json(const Contour& contour) {
-  Json json;
-  for (int axis = 0; axis < 3; ++axis) {
-    Json list = Json::array();
-    for (const Vec3& p : contour.points) list.push_back(p[axis]);
-    json[kCoordinates[static_cast<std::size_t>(axis)]] = std::move(list);
-  }
-  return json;
+nlohmann::ordered_json contour_json(const Contour& contour) {
+  return to_json(CoordinateLists{contour});
 }
 
-Contour contour_of(const JsonPlace& place) {
-  const std::vector<double> x = place.numbers("x_mm");
-  const std::vector<double> y = place.numbers("y_mm");
-  const std::vector<double> z = place.numbers("z_mm");
-  if (x.size() < 3) place.refuse("x_mm", fmt::format("{} numbers", x.size()), "at least 3");
-  if (y.size() != x.size()) place.refuse("y_mm", fmt::format("{} numbers", y.size()), fmt::format("{} as x_mm", x.size()));
-  if (z.size() != x.size()) place.refuse("z_mm", fmt::format("{} numbers", z.size()), fmt::format("{} as x_mm", x.size()));
-  Contour contour;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    contour.points.emplace_back(x[i], y[i], z[i]);
-    for (std::size_t axis = 0; axis < kCoordinates.size(); ++axis) {
-      const double coordinate = contour.points.back()[static_cast<Eigen::Index>(axis)];
-      if (std::abs(coordinate) <= kFarthestPlaceMm) continue;
-      place.refuse(fmt::format("{}[{}]", kCoordinates[axis], i), fmt::format("{:.4g}", coordinate),
-                   fmt::format("a place within {} mm of the origin", kFarthestPlaceMm));
-    }
-  }
-  return contour;
-}
-
-Json points_json(const Evaluation& evaluation) {
+nlohmann::ordered_json points_json(const Evaluation& evaluation) {
   const Points& points = evaluation.errors.points.points;
-  Json json = contour_json(evaluation.errors.points);
-  Json arclengths = Json::array();
-  double arclength = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i > 0) arclength += (points[i] - points[i - 1]).norm();
-    arclengths.push_back(arclength);
-  }
+  nlohmann::ordered_json json = contour_json(evaluation.errors.points);
+  std::vector<double> arclengths;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    arclengths.push_back(i == 0 ? 0.0 : arclengths.back() + (points[i] - points[i - 1]).norm());
   json["arclength_mm"] = std::move(arclengths);
-  json["signed_error_mm"] = evaluation.errors.signed_error_mm;
-  if (!evaluation.clock_h.empty()) json["clock_h"] = evaluation.clock_h;
+  json.update(to_json(PointErrors{evaluation.errors.signed_error_mm, evaluation.clock_h}));
   return json;
+}
+
+void describe(Visitor& v, EvaluationFile& f) {
+  v("outcome", f.outcome, "How the cut ended.");
+  std::optional<bool> closed_loop = f.specimen.is_ring;
+  v("closed_loop", closed_loop, "Whether the ring closed.");
+  f.specimen.is_ring = closed_loop.value_or(false);
+  v("negative_margin", f.negative_margin, "Whether tissue is left all round.");
+  v("contour", f.contour, "Which line of the cut was measured.");
+  v({"target_mm", "Intended distance of that line from the tumour edge.", "mm"}, f.target_mm, kDistanceMm);
+  v("hu_score", f.hu_score, "Tumour edge against incision.");
+  v("hu_score_ideal", f.hu_score_ideal, "What the perfect offset would score.");
+  v({"centroid_shift_mm", "Between the centres of the filled regions.", "mm"}, f.centroid_shift_mm);
+  std::optional<ZoneBorder> positive, too_close;
+  v.begin({"zones"});
+  v("positive_margin", positive, "No tissue left.");
+  v("too_close", too_close, "Too little tissue left.");
+  v.end();
+  if (positive) f.positive_at_mm = positive->at_or_below_mm;
+  if (too_close) f.too_close_at_mm = too_close->at_or_below_mm;
+  std::size_t count = f.specimen.signed_error_mm.size();
+  v("n_points", count, "At which errors were taken.", kNotNegative);
+  v("verdict", f.verdict, "On the measurement.");
+  if (count == 0) return;  // no incision was found: a result, without errors
+  PointErrors points{f.specimen.signed_error_mm, f.clock_h};
+  v("points", points, "Point by point.");
+  require_size(v, "points/signed_error_mm", points.signed_error_mm, count);
+  if (!points.clock_h.empty()) require_size(v, "points/clock_h", points.clock_h, count);
+  f.specimen.signed_error_mm = std::move(points.signed_error_mm);
+  f.clock_h = std::move(points.clock_h);
 }
 
 EvaluationFile read_evaluation_file(const std::filesystem::path& path) {
-  const Json json = read_json(path);
-  if (!json.is_object()) throw DataError(path, "", "no object", "the result of an evaluation", kEvaluationHint);
-  const JsonPlace file{path, json, "", kEvaluationHint};
-  require_not_refused(json, path);
-  EvaluationFile result;
+  EvaluationFile result = from_json<EvaluationFile>(read_json(path), path, {}, kEvaluationHint);
+  require_not_refused(result.verdict, path);
   result.specimen.name = path.stem().string();
-  static_cast<void>(file.text("outcome"));
-  result.outcome = read_outcome(json, "outcome", path);
-  result.specimen.is_ring = file.flag_or_null("closed_loop").value_or(false);
-  result.negative_margin = file.flag_or_null("negative_margin");
-  result.contour = file.text("contour");
-  if (result.contour != to_string(ContourKind::Centerline) && result.contour != to_string(ContourKind::InnerEdge)) {
-    file.refuse("contour", result.contour.substr(0, 40), "centerline or inner_edge");
-  }
-  result.target_mm = file.number_between("target_mm", -kLargestBodyMm, kLargestBodyMm);
-  result.hu_score = file.number_or_null("hu_score");
-  result.hu_score_ideal = file.number_or_null("hu_score_ideal");
-  result.centroid_shift_mm = file.number_or_null("centroid_shift_mm");
-  const JsonPlace zones = file.inside("zones");
-  result.positive_at_mm = zone_border(zones, "positive_margin");
-  result.too_close_at_mm = zone_border(zones, "too_close");
-  read_points(file, result);
   return result;
 }
 
 PhotographedCut read_photographed_cut(const std::filesystem::path& path) {
   const EvaluationFile evaluation = read_evaluation_file(path);
-  const Json json = read_json(path);
-  const JsonPlace file{path, json, "", kEvaluationHint};
-  if (!file.flag_or_null("closed_loop").value_or(false)) {
-    file.refuse("closed_loop", file.at("closed_loop", "true").dump(), "true: an incision is compared all round");
-  }
-  if (evaluation.contour != to_string(ContourKind::InnerEdge)) {
-    file.refuse("contour", evaluation.contour, "inner_edge, as a photograph shows it");
-  }
+  if (!evaluation.specimen.is_ring)
+    throw DataError(path, "/closed_loop", "no closed ring", "true: an incision is compared all round", kEvaluationHint);
+  if (evaluation.contour != ContourKind::InnerEdge)
+    throw DataError(path, "/contour", std::string(to_string(evaluation.contour)),
+                    "inner_edge, as a photograph shows it", kEvaluationHint);
+  const auto contours = from_json<PhotographedContours>(read_json(path), path, {}, kEvaluationHint);
   PhotographedCut cut;
   cut.name = evaluation.specimen.name;
-  cut.incision = contour_of(file.inside("points"));
-  cut.tumor_edge = contour_of(file.inside("tumor_edge"));
-  require_size(file, "points", cut.incision, "an incision", kLargestIncisionMm);
-  require_size(file, "tumor_edge", cut.tumor_edge, "a tumour", kLargestTumorMm);
+  cut.incision = contours.points.contour;
+  cut.tumor_edge = contours.tumor_edge.contour;
+  cut.approach = contours.approach.normalized();
+  require_size(cut.incision, "an incision", kLargestIncisionMm, path, "/points");
+  require_size(cut.tumor_edge, "a tumour", kLargestTumorMm, path, "/tumor_edge");
   Contour both = cut.incision;
   both.points.insert(both.points.end(), cut.tumor_edge.points.begin(), cut.tumor_edge.points.end());
-  require_size(file, "tumor_edge", both, "an incision with its tumour", kLargestIncisionMm);
-  cut.approach = direction_of(file, "approach");
+  require_size(both, "an incision with its tumour", kLargestIncisionMm, path, "/tumor_edge");
   return cut;
 }
 

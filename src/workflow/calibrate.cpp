@@ -87,11 +87,13 @@ class CalibrationRunner {
     const ContourErrors errors = contour_errors(subject.photographed.incision, subject.photographed.tumor_edge,
                                                 target_of(subject.settings), subject.photographed.approach);
     const auto count = static_cast<double>(errors.signed_error_mm.size());
+    double signed_mean_mm = 0.0;
     for (const double e : errors.signed_error_mm) {
       specimen.photographed.mean_mm += std::abs(e) / count;
       specimen.photographed.max_mm = std::max(specimen.photographed.max_mm, std::abs(e));
-      specimen.signed_mean_mm += e / count;
+      signed_mean_mm += e / count;
     }
+    specimen.signed_mean_mm = signed_mean_mm;
   }
 
   [[nodiscard]] std::vector<Knot> grid() const {

@@ -8,6 +8,29 @@
 namespace incise {
 namespace {
 
+/// A layer of the kerf and its errors.
+struct JudgedLayer {
+  KerfLayer layer;
+  LayerErrors errors;
+};
+void describe(Visitor& v, JudgedLayer& l) {
+  describe(v, l.layer);
+  describe(v, l.errors);
+}
+
+std::vector<JudgedLayer> judged_layers(const SimulatedCut& cut) {
+  const std::vector<KerfLayer>& layers = cut.incision.kerf.layers;
+  std::vector<JudgedLayer> judged;
+  for (std::size_t i = 0; i < layers.size(); ++i) judged.push_back({layers[i], cut.layers.at(i)});
+  return judged;
+}
+
+std::optional<std::string> why_no_deep_margin(const SimulatedCut& cut) {
+  if (cut.incision.kerf.deep_margin) return std::nullopt;
+  if (cut.incision.record.removals.empty()) return "nothing was cut";
+  return "the case names no tumor.surface: an edge does not tell how deep the tumour goes";
+}
+
 EvaluationSettings evaluation_settings(const Case& settings, ContourKind contour) {
   EvaluationSettings evaluation;
   evaluation.contour = contour;
@@ -127,6 +150,23 @@ SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const
   IncisionResult incision =
       simulate_incision(model, stretched, with_edge, incision_settings_for(settings, path, {}), workers, monitor);
   return judge(settings, std::move(incision), path, intended, model.mesh.tets.size());
+}
+
+void describe(Visitor& v, SimulatedCut& cut) {
+  describe(v, cut.centerline);
+  describe(v, cut.incision);
+  v("outcome", cut.outcome, "Of incision and margin together.");
+  v.bulk("inner_edge_evaluation", cut.inner_edge, "Inner edge against margin less electrode radius, tool out.");
+  v.derived("inner_edge", cut.incision.is_closed_loop ? std::optional(cut.inner_edge) : std::nullopt,
+            "The same of a ring; an open cut has none.");
+  v.bulk("layer_errors", cut.layers, "One for each layer.");
+  v.derived("layers", judged_layers(cut), "Layer by layer.");
+  v.derived("deep_margin_unknown", why_no_deep_margin(cut), "Why there is no deep margin.");
+  v("tets", cut.tets, "Of the mesh before the cut.");
+  v({"thermal_half_width_mm", "How far beside the electrode heat damages tissue.", "mm"}, cut.thermal_half_width_mm);
+  v({"thermal_margin_mm", "Tissue left unheated beside the tumour edge.", "mm"}, cut.thermal_margin_mm);
+  v({"line_to_edge_mm", "Least distance of an open cut from the tumour's edge.", "mm"}, cut.line_to_edge_mm);
+  v("verdict", cut.verdict, "What is held against the path that was cut.");
 }
 
 }  // namespace incise

@@ -121,8 +121,8 @@ class CalibrateTest(CommandTest):
     def test_an_evaluation_that_no_photograph_shows_is_refused_before_anything_runs(self):
         good = json.loads(self.observed.read_text())
         far = self.folder / "far.json"
-        for group, axis, value, says in (("points", "x_mm", 1e300, "points.x_mm[3]: found 1e+300"), ("points", "z_mm", -1e9, "points.z_mm[3]: found -1e+09"),
-                                         ("tumor_edge", "y_mm", 1e300, "tumor_edge.y_mm[3]: found 1e+300"), ("points", "y_mm", 900.0, "points: found an incision")):
+        for group, axis, value, says in (("points", "x_mm", 1e300, "/points/x_mm/3: found 1e+300"), ("points", "z_mm", -1e9, "/points/z_mm/3: found -1e+09"),
+                                         ("tumor_edge", "y_mm", 1e300, "/tumor_edge/y_mm/3: found 1e+300"), ("points", "y_mm", 900.0, "/points: found an incision")):
             changed = json.loads(json.dumps(good))
             changed[group][axis][3] = value
             far.write_text(json.dumps(changed))

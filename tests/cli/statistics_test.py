@@ -169,7 +169,7 @@ class CompareTest(ContourTest):
         self.four()
         good = json.loads((self.folder / "s1.json").read_text())
         for key, value, says in (("points", None, "points"), ("target_mm", "far", "target_mm"), ("outcome", "fine", "outcome"), ("contour", "middle", "contour"),
-                                 ("n_points", 7, "points.signed_error_mm")):
+                                 ("n_points", 7, "/points/signed_error_mm")):
             with self.subTest(key=key):
                 (self.folder / "bad.json").write_text(json.dumps({**good, key: value}))
                 done = self.incise("compare", "--before", "bad.json", "--after", "s3.json", "-o", "out")

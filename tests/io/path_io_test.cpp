@@ -1,9 +1,9 @@
 #include "io/io_test_support.hpp"
 
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
-#include <incise/io/verdict_json.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -139,17 +139,17 @@ Verdict sample_verdict() {
 
 TEST(VerdictJson, ReadsBackWhatWasWritten) {
   const Verdict verdict = sample_verdict();
-  EXPECT_EQ(to_json(verdict_from_json(to_json(verdict), "x")), to_json(verdict));
+  EXPECT_EQ(to_json(from_json<Verdict>(to_json(verdict), "x")), to_json(verdict));
   EXPECT_EQ(to_json(verdict).at("status"), "refused");
   EXPECT_EQ(to_json(verdict).at("reasons").at(0).at("id"), "open_layer");
-  EXPECT_EQ(to_json(verdict_from_json(to_json(Verdict()), "x")), to_json(Verdict()));
+  EXPECT_EQ(to_json(from_json<Verdict>(to_json(Verdict()), "x")), to_json(Verdict()));
 }
 
 TEST(VerdictJson, RefusesAStatusThatIsNotThatOfItsReasonsAndASeverityThatIsNotItsRules) {
   const auto says = [](auto change) {
     nlohmann::ordered_json document = to_json(sample_verdict());
     change(document);
-    return data_error_of([&] { static_cast<void>(verdict_from_json(document, "x")); });
+    return data_error_of([&] { static_cast<void>(from_json<Verdict>(document, "x")); });
   };
   EXPECT_THAT(says([](auto& found) { found["status"] = "ok"; }), HasSubstr("expected refused, that of the worst reason"));
   EXPECT_THAT(says([](auto& found) { found["reasons"][0]["severity"] = "caution"; }), HasSubstr("/reasons/0/severity"));

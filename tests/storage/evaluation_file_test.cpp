@@ -53,7 +53,7 @@ TEST_F(EvaluationFileTest, KeepsEveryErrorToTheLastBit) {
   EXPECT_EQ(file.specimen.signed_error_mm, evaluation.errors.signed_error_mm);
   EXPECT_EQ(file.clock_h, evaluation.clock_h);
   EXPECT_EQ(file.outcome, Outcome::Success);
-  EXPECT_EQ(file.contour, "centerline");
+  EXPECT_EQ(file.contour, ContourKind::Centerline);
   EXPECT_EQ(file.target_mm, 5.0);
   EXPECT_EQ(file.hu_score, evaluation.hu_score);
   EXPECT_NEAR(file.too_close_at_mm.value(), -2.3, 1e-12);
@@ -76,7 +76,7 @@ TEST_F(EvaluationFileTest, WithoutAnIncisionHasNoErrors) {
 TEST_F(EvaluationFileTest, HoldsDistancesOfSpecimensOnlyAndAnOutcomeByName) {
   nlohmann::ordered_json json = file_json(shifted_ring());
   json["points"]["signed_error_mm"][3] = 1e200;  // its square is no number
-  expect_refused(json, "points.signed_error_mm", "1e+200");
+  expect_refused(json, "/points/signed_error_mm", "1e+200");
   json = file_json(shifted_ring());
   json["outcome"] = 4;
   expect_refused(json, "outcome", "4");
@@ -96,20 +96,20 @@ TEST_F(EvaluationFileTest, ThatIsDamagedIsRefusedWithThePlace) {
   expect_refused(json, "points", "no such key");
   json = good;
   json["points"]["signed_error_mm"][7] = "wide";
-  expect_refused(json, "points.signed_error_mm[7]", "wide");
+  expect_refused(json, "/points/signed_error_mm", "wide");
   json = good;
   json["points"]["signed_error_mm"].erase(0);
-  expect_refused(json, "points.signed_error_mm", "numbers");
+  expect_refused(json, "/points/signed_error_mm", "numbers");
   json = good;
   json["points"]["clock_h"][0] = 13.0;
-  expect_refused(json, "points.clock_h", "13");
+  expect_refused(json, "/points/clock_h", "13");
   json = good;
   json["target_mm"] = nullptr;
   expect_refused(json, "target_mm", "null");
   json = good;
   json["outcome"] = "splendid";
   expect_refused(json, "outcome", "splendid");
-  expect_refused(nlohmann::ordered_json::array(), "", "no object");
+  expect_refused(nlohmann::ordered_json::array(), "/", "expected an object");
 }
 
 class PublishedTableTest : public ::testing::Test {

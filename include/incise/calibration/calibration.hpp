@@ -38,12 +38,16 @@ struct RegistrationQuality {
   double rmse_mm = 0.0;
   double scale = 1.0;  ///< of the measured surface over the simulated one
 };
+inline void describe(Visitor& v, RegistrationQuality& r) {
+  v({"rmse_mm", "Of the distances that are left.", "mm"}, r.rmse_mm, kAnatomyMm);
+  v("scale", r.scale, "Of the measured surface over the simulated one.", {1e-3, 1e3});
+}
 
 /// What a calibration holds of one specimen.
 struct CalibratedSpecimen {
   std::string name;
   PhotographedErrors photographed;
-  double signed_mean_mm = 0.0;                      ///< of the photographed inner edge
+  std::optional<double> signed_mean_mm;             ///< of the photographed inner edge; absent: an older file
   double youngs_modulus_kpa = 70.0;                 ///< reference: the case's, or what the measured force makes of it
   double simulated_force_n = 0.0;                   ///< pull of the simulated specimen at the case's modulus
   double stretch_mm = 0.0;                          ///< how far its end was displaced
@@ -54,12 +58,17 @@ struct CalibratedSpecimen {
   std::vector<CalibrationRun> runs;
   std::size_t read_by_midline = 0;  ///< of a fit: runs whose ring closed, but not at the skin
 };
+void describe(Visitor& v, CalibratedSpecimen& specimen);
 
 /// A specimen that a fit could make nothing of.
 struct LeftOutSpecimen {
   std::string name;
   std::string reason;
 };
+inline void describe(Visitor& v, LeftOutSpecimen& s) {
+  v("name", s.name, "Of the specimen.");
+  v("reason", s.reason, "Why it was left out.");
+}
 
 struct Calibration {
   CalibrationMethod method = CalibrationMethod::Fit;
@@ -75,6 +84,13 @@ struct Calibration {
   std::size_t simulations = 0;  ///< runs in all, those reused too
   Verdict verdict;              ///< `photo_specimen` for each photograph that may be of another specimen
 };
+
+/// `calibration.json`, incise.calibration/1: without the runs, whose figures are in its rows. Where it is read, a fit's
+/// weights have to add up to 1, and its fitted specimens to be those of the calibration.
+void describe(Visitor& v, Calibration& calibration);
+
+/// Mean over the ring of photographed less fitted signed error, mm. @pre lists of the same length, not empty.
+[[nodiscard]] double difference_mm(const SpecimenFit& fitted);
 
 /// Whether something was found to cut with: of a grid a setting that did not fail; of a fit, values at which the rings
 /// of more than half of all specimens closed, those that were left out counted as open.

@@ -19,9 +19,9 @@ struct RunSetting {
   bool operator==(const RunSetting&) const = default;
 };
 inline void describe(Visitor& v, RunSetting& s) {
-  v("speed_mm_s", s.speed_mm_s, "Of the simulated tool.", kPositive);
-  v("dullness", s.dullness, "Contact needed before a tet is removed, in reference steps.", kPositive);
-  v("stiffness_of_case", s.stiffness_of_case, "Young's modulus over that of the case.", kPositive);
+  v({"speed_mm_s", "Of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
+  v({"dullness", "Contact needed before a tet is removed, in reference steps.", "steps"}, s.dullness, {1e-6, 1e3});
+  v("stiffness_of_case", s.stiffness_of_case, "Young's modulus over that of the case.", {1e-3, 1e3});
 }
 
 /// What is kept of one simulated cut.

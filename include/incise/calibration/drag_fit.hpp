@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/calibration/drag_response.hpp>
+#include <incise/core/describe.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <optional>
@@ -40,6 +41,15 @@ struct ParameterEstimate {
   std::vector<double> grid;     ///< places at which the marginal density is given
   std::vector<double> density;  ///< integrates to 1
 };
+inline void describe(Visitor& v, ParameterEstimate& e) {
+  v("mean", e.mean, "Of the posterior.");
+  v("sd", e.sd, "Of the posterior.");
+  v("low", e.low, "Lower end of the equal-tailed credible interval.");
+  v("high", e.high, "Its upper end.");
+  v("prior_sd", e.prior_sd, "Of the prior.");
+  v("grid", e.grid, "Places at which the marginal density is given.");
+  v("density", e.density, "There; it integrates to 1.");
+}
 
 /// What simulation and photograph differ by, estimated from the data.
 struct ResidualEstimate {
@@ -50,6 +60,14 @@ struct ResidualEstimate {
   double placement_mm = 0.0;        ///< sd, along each axis of the picture, of the shift of a cut as a whole
   double n_effective = 0.0;         ///< independent places that one contour is worth, for its mean
 };
+inline void describe(Visitor& v, ResidualEstimate& r) {
+  v({"sd_mm", "Along the contour.", "mm"}, r.sd_mm, kAnatomyMm);
+  v({"correlation_deg", "Angle over which the correlation falls to 1/e.", "deg"}, r.correlation_deg, {1e-6, 1e5});
+  v({"reading_mm", "From sector to sector, independent.", "mm"}, r.reading_mm, kAnatomyMm);
+  v({"specimen_spread_mm", "Of the bias from specimen to specimen.", "mm"}, r.specimen_spread_mm, kAnatomyMm);
+  v({"placement_mm", "Of the shift of a cut as a whole, along each axis.", "mm"}, r.placement_mm, kAnatomyMm);
+  v("n_effective", r.n_effective, "Independent places that one contour is worth.", {1e-6, 1e6});
+}
 
 struct PosteriorSample {
   double weight = 0.0;  ///< all together 1
@@ -57,6 +75,12 @@ struct PosteriorSample {
   double stiffness_factor = 1.0;
   double bias_mm = 0.0;  ///< to be added to simulated signed errors
 };
+inline void describe(Visitor& v, PosteriorSample& s) {
+  v("weight", s.weight, "All together 1.", {1e-300, 1.0 + 1e-6});
+  v({"drag_length_mm", "How far held tissue is drawn along.", "mm"}, s.drag_length_mm, kAnatomyMm);
+  v("stiffness_factor", s.stiffness_factor, "Over the reference.", {1e-3, 1e3});
+  v({"bias_mm", "To be added to simulated signed errors.", "mm"}, s.bias_mm, {-10.0, 10.0});
+}
 
 struct SpecimenFit {
   std::string name;
@@ -66,6 +90,14 @@ struct SpecimenFit {
   std::vector<double> simulated_mm;    ///< cut anew at those values, without the bias; empty: not done, or no ring
   std::optional<double> check_rms_mm;  ///< between that and what the straight lines say
 };
+inline void describe(Visitor& v, SpecimenFit& s) {
+  v("name", s.name, "Of the specimen.");
+  v.derived("rms_mm", s.rms_mm, "Of observed less fitted errors.");
+  v({"check_rms_mm", "Of simulated less fitted errors.", "mm"}, s.check_rms_mm);
+  v({"observed_mm", "Signed error round the ring, as photographed.", "mm"}, s.observed_mm);
+  v({"fitted_mm", "The same at the posterior means.", "mm"}, s.fitted_mm);
+  v.derived("simulated_mm", s.simulated_mm, "The same, cut anew at those values.");
+}
 
 /// The posterior of (drag length, ln stiffness factor, bias).
 struct DragFit {

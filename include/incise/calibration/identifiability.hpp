@@ -29,6 +29,16 @@ struct ParameterVerdict {
   double correlation = 0.0;  ///< with that one; 0: with none
   bool is_at_limit = false;  ///< the interval ends where the simulations end: the truth may lie beyond
 };
+inline void describe(Visitor& v, ParameterVerdict& p) {
+  v.bulk("name", p.name, "Of the parameter.");
+  v("told", p.told, "How much the data say of it.");
+  v("share_of_prior_sd", p.share_of_prior_sd, "Posterior sd over that of the prior.");
+  std::optional<std::string> tied_to = p.tied_to.empty() ? std::nullopt : std::optional(p.tied_to);
+  v("tied_to", tied_to, "The other parameter with which it is correlated.");
+  if (v.sets()) p.tied_to = tied_to.value_or("");
+  v("correlation", p.correlation, "With that one.");
+  v("at_limit", p.is_at_limit, "Whether its interval ends where the simulations end.");
+}
 
 /// Which of drag length, stiffness and bias the photographs can tell apart, and the same in plain sentences.
 struct Identifiability {

@@ -58,6 +58,11 @@ struct Block {
   bool is_direction = false;  ///< three numbers whose length does not matter, as long as it is not 0
 };
 
+/// Lengths of anatomy and of what cuts it, mm. Beyond these no tissue, tool or photograph is.
+inline constexpr Range kAnatomyMm{1e-9, 1e3};
+/// Signed distances of the same, mm.
+inline constexpr Range kAnatomyErrorMm{-1e3, 1e3};
+
 class Visitor;
 
 /// One walk over every field of a value. A type is described once, beside its declaration:
@@ -79,6 +84,8 @@ class Visitor {
 
   /// Whether values are set, not shown.
   [[nodiscard]] virtual bool sets() const = 0;
+  /// Whether it is a summary for people and programs, such as a JSON file: see bulk and derived.
+  [[nodiscard]] virtual bool is_summary() const { return false; }
   virtual void begin(const Field& field) = 0;  ///< of a described value inside another one
   virtual void end() = 0;
   /// Items follow, then end_list. @param size  that is shown. @param item_bytes  least size of an item in memory.
@@ -134,6 +141,16 @@ class Visitor {
   static void emplace(std::variant<T...>& value, std::size_t place) {
     std::size_t i = 0;
     ((i++ == place ? static_cast<void>(value = T{}) : static_cast<void>(0)), ...);
+  }
+  /// A field that no summary holds: it is large, and has a file of its own where people need it.
+  template <class T>
+  void bulk(std::string_view name, T& value, std::string_view meaning) {
+    if (!is_summary()) visit(Field{name, meaning, {}}, value, kAny);
+  }
+  /// What follows from other fields: a summary shows it, and nobody reads it back.
+  template <class T>
+  void derived(std::string_view name, T value, std::string_view meaning) {
+    if (is_summary() && !sets()) visit(Field{name, meaning, {}}, value, kAny);
   }
 
  private:
@@ -243,8 +260,15 @@ void Visitor::visit(const Field& field, T& value, const Range& range) {
     if (is_there) visit(field, own, range);
     if (sets()) value = is_there ? std::make_shared<const typename T::element_type>(std::move(own)) : nullptr;
   } else if constexpr (kIsMatrix<T>) {
-    block(field, {Block::Kind::Double, value.data(), static_cast<std::size_t>(value.size()),
-                  static_cast<std::size_t>(value.rows()), range});
+    if constexpr (T::ColsAtCompileTime > 1) {  // row by row, as people write it
+      Eigen::Matrix<double, T::ColsAtCompileTime, T::RowsAtCompileTime> rows = value.transpose();
+      block(field, {Block::Kind::Double, rows.data(), static_cast<std::size_t>(rows.size()),
+                    static_cast<std::size_t>(rows.rows()), range});
+      if (sets()) value = rows.transpose();
+    } else {
+      block(field, {Block::Kind::Double, value.data(), static_cast<std::size_t>(value.size()),
+                    static_cast<std::size_t>(value.rows()), range});
+    }
   } else if constexpr (std::is_same_v<T, Eigen::AlignedBox3d>) {
     std::array<Eigen::Vector3d, 2> corners{value.min(), value.max()};
     visit(field, corners, range);
@@ -308,6 +332,14 @@ void describe(Visitor& v, std::map<std::string, V>& values) {
   v("names", names, "Of what follows.");
   if (v.sets()) values.clear();
   for (const std::string& name : names) v(name, values[name]);
+}
+
+/// The key `schema` of a file that says which format it has; any other format is refused where it is read.
+inline void describe_schema(Visitor& v, std::string_view schema) {
+  if (!v.is_summary()) return;
+  std::string found(schema);
+  v("schema", found, "Format and version of this file.");
+  if (found != schema) v.refuse({"schema"}, found.substr(0, 40), std::string(schema));
 }
 
 }  // namespace incise

@@ -62,15 +62,7 @@ struct VerdictReason {
   std::optional<VerdictPlace> at;
   std::string message;                             ///< one sentence for a person, with the numbers in it
 };
-inline void describe(Visitor& v, VerdictReason& r) {
-  v("id", r.id, "Of its rule in the table of limits.");
-  v("severity", r.severity, "That of its rule.");
-  v("value", r.value, "What was found.");
-  v("limit", r.limit, "What it was held against.");
-  v("unit", r.unit, "Of both.");
-  v("at", r.at, "Where.");
-  v("message", r.message, "One sentence for a person.");
-}
+void describe(Visitor& v, VerdictReason& reason);
 
 /// The verdict and its reasons, worst first. Every face (terminal, JSON, report, manifest, gate of the robot program) shows this object.
 class Verdict {
@@ -88,11 +80,15 @@ class Verdict {
   [[nodiscard]] VerdictStatus status() const;  ///< that of the worst reason; Ok without one
   [[nodiscard]] const std::vector<VerdictReason>& reasons() const { return reasons_; }
   [[nodiscard]] bool has(std::string_view id) const;
-  friend void describe(Visitor& v, Verdict& verdict) { v("reasons", verdict.reasons_, "Worst first."); }
+  friend void describe(Visitor& v, Verdict& verdict);
 
  private:
   std::vector<VerdictReason> reasons_;
 };
+
+/// Refuses, where it is read, a reason that the table does not have, a severity that is not its rule's, and a status
+/// that is not that of the worst reason.
+void describe(Visitor& v, Verdict& verdict);
 
 /// What stands between a verdict and a robot program, after a person has accepted some cautions.
 struct VerdictGate {
@@ -101,6 +97,12 @@ struct VerdictGate {
   std::vector<std::string> missing;     ///< ids of the cautions that nobody accepted
   std::vector<std::string> refused;     ///< ids of the reasons that nobody can accept
 };
+inline void describe(Visitor& v, VerdictGate& g) {
+  v("open", g.is_open, "Whether the program may be written.");
+  v("accepted", g.accepted, "Ids of the cautions that were accepted.");
+  v("missing", g.missing, "Ids of the cautions that nobody accepted.");
+  v("refused", g.refused, "Ids of the reasons that nobody can accept.");
+}
 
 /// @param accepted_ids  as given with `--accept`; ids of reasons that the verdict does not have are passed over.
 [[nodiscard]] VerdictGate gate_of(const Verdict& verdict, std::span<const std::string> accepted_ids);

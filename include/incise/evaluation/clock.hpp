@@ -17,6 +17,13 @@ struct ClockSector {
   std::optional<double> min_mm;
   std::optional<double> max_mm;
 };
+inline void describe(Visitor& v, ClockSector& s) {
+  v("hour", s.hour, "1 to 12; half an hour to both sides.");
+  v("points", s.points, "How many; 0: no cut there.");
+  v({"mean_mm", "Mean signed error.", "mm"}, s.mean_mm);
+  v({"min_mm", "Least signed error.", "mm"}, s.min_mm);
+  v({"max_mm", "Greatest signed error.", "mm"}, s.max_mm);
+}
 
 /// Where points lie on a clock face about `center`, as the observer sees it along the approach: hours in [0, 12),
 /// clockwise, 0 = 12 o'clock.

@@ -13,6 +13,11 @@ struct ContourErrors {
   std::vector<double>
       signed_error_mm;  ///< N: signed_distance_mm - target; positive = farther from the tumour than intended
 };
+inline void describe(Visitor& v, ContourErrors& e) {
+  v("points", e.points, "The incision, resampled evenly.");
+  v("signed_distance_mm", e.signed_distance_mm, "To the tumour edge; negative inside it.");
+  v("signed_error_mm", e.signed_error_mm, "Positive: farther from the tumour than intended.");
+}
 
 /// Signed errors of an incision contour against a tumour edge: e_i = ± min_j |p_i − segment_j| − target, with the sign
 /// of the distance negative where p_i, seen along the approach, lies inside the edge (so e_i <= -target: the contour

@@ -50,6 +50,10 @@ struct CloseMargin {
   std::size_t points = 0;
   double fraction = 0.0;  ///< of all points, [0, 1]
 };
+inline void describe(Visitor& v, CloseMargin& m) {
+  v("points", m.points, "How many leave too little tissue.");
+  v("fraction", m.fraction, "Of all points.");
+}
 
 /// Points in one of the zones of the paper's Fig. 6. Borders are signed errors of the contour that was measured: -4.5
 /// and -2.3 mm for an inner edge at 4.5 mm and a cut-off of 2.2 mm, and for a mid-line at 5.0 mm just the same.
@@ -58,6 +62,11 @@ struct ErrorZone {
   std::size_t points = 0;
   double fraction = 0.0;  ///< of all points, [0, 1]
 };
+inline void describe(Visitor& v, ErrorZone& z) {
+  v("at_or_below_mm", z.at_or_below_mm, "Upper border, which belongs to the zone.");
+  v("points", z.points, "How many.");
+  v("fraction", z.fraction, "Of all points.");
+}
 
 /// The measures of one incision (paper III-A.1, III-A.2; docs/models/measures.md). What could not be measured is
 /// absent.
@@ -102,6 +111,7 @@ struct Evaluation {
   std::vector<double> clock_h;         ///< of each of these points, see clock_hours; empty for an open cut
   std::vector<ClockSector> by_clock;   ///< hours 1 … 12; empty for an open cut and where nothing was measured
 };
+void describe(Visitor& v, Evaluation& evaluation);
 
 /// Measures a ring-shaped incision against the tumour edge that it was to keep clear of.
 /// @param incision    as measured, mm; absent when none was found (then only the outcome, open_loop, is given); a

@@ -64,8 +64,8 @@ struct Segmentation {
   [[nodiscard]] int cut_faces() const;  ///< how many of the six are touched
 };
 inline void describe(Visitor& v, Segmentation& s) {
-  v("labels", s.labels, "1: tissue.");
-  v("occupancy", s.occupancy, "Share of each voxel that is tissue, smooth.");
+  v.bulk("labels", s.labels, "1: tissue.");
+  v.bulk("occupancy", s.occupancy, "Share of each voxel that is tissue, smooth.");
   v("voxels", s.voxels, "That are tissue.");
   v("volume_mm3", s.volume_mm3, "Of these voxels.");
   v("occupancy_volume_mm3", s.occupancy_volume_mm3, "Inside the 0.5 iso-surface of the occupancy.");
@@ -74,6 +74,7 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("holes_filled", s.holes_filled, "Cavities.");
   v("hole_voxels", s.hole_voxels, "Voxels of the cavities.");
   v("cut_voxels", s.cut_voxels, "Voxels of the body at each face of the region.");
+  v.derived("cut_faces", s.cut_faces(), "How many faces of the region cut through tissue.");
   v("smoothing_mm", s.smoothing_mm, "Length that was taken.");
   v("verdict", s.verdict, "On this tissue.");
 }

@@ -6,6 +6,7 @@
 #include <incise/mechanics/solvers.hpp>
 #include <incise/mechanics/tissue.hpp>
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -35,15 +36,21 @@ struct StaticResult {
   double wall_s = 0.0;
   std::string solver;  ///< what was chosen and why, for a person
 };
+/// Why a stretch is of no use and what may help, for a person; empty when it is a success.
+[[nodiscard]] std::string explain_stretch(const StaticResult& stretched);
 inline void describe(Visitor& v, StaticResult& r) {
   v("outcome", r.outcome, "How the search for equilibrium ended.");
-  v("state", r.state, "The tissue then.");
+  v.derived("converged", r.outcome == Outcome::Success, "Whether it is a success.");
+  v.derived("note", explain_stretch(r), "Why it is of no use and what may help; empty when it is a success.");
+  v.bulk("state", r.state, "The tissue then.");
   v("iterations", r.iterations, "Newton steps.");
   v("load_steps", r.load_steps, "Steps in which the load was applied.");
   v("linear_iterations", r.linear_iterations, "Of conjugate gradients.");
-  v("relative_residual", r.relative_residual, "Last one measured; not a number: none was.");
-  v("residual_history", r.residual_history, "One for each Newton step.");
-  v("reactions_mn", r.reactions_mn, "Force of each constraint on the tissue.");
+  v.bulk("relative_residual", r.relative_residual, "Last one measured; not a number: none was.");
+  v.derived("relative_residual", std::isfinite(r.relative_residual) ? std::optional(r.relative_residual) : std::nullopt,
+            "Last one measured.");
+  v.bulk("residual_history", r.residual_history, "One for each Newton step.");
+  v("reaction_mn", r.reactions_mn, "Force of each constraint on the tissue.");
   v("max_displacement_mm", r.max_displacement_mm, "Farthest that a vertex moved.");
   v("penetration_mm", r.penetration_mm, "Deepest vertex behind a support.");
   v("inverted_tets", r.inverted_tets, "How many.");

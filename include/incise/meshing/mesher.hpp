@@ -69,8 +69,8 @@ struct [[nodiscard]] MeshingResult {
   double wall_s = 0.0;
 };
 inline void describe(Visitor& v, MeshingResult& m) {
-  v("mesh", m.mesh, "One component, positively oriented.");
-  v("quality", m.quality, "Of the mesh.");
+  v.bulk("mesh", m.mesh, "One component, positively oriented.");
+  describe(v, m.quality);
   v("meets_quality", m.meets_quality, "Whether the smallest dihedral angle is large enough.");
   v("meets_volume", m.meets_volume, "Whether the volume is near the label's.");
   v("meets_target", m.meets_target, "Whether the count is near the one aimed for.");

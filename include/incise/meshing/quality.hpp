@@ -18,9 +18,9 @@ struct EdgeStatistics {
 };
 inline void describe(Visitor& v, EdgeStatistics& e) {
   v("count", e.count, "How many.");
-  v("min_mm", e.min_mm, "Shortest.");
-  v("mean_mm", e.mean_mm, "Mean length.");
-  v("max_mm", e.max_mm, "Longest.");
+  v({"min", "Shortest.", "mm"}, e.min_mm);
+  v({"mean", "Mean length.", "mm"}, e.mean_mm);
+  v({"max", "Longest.", "mm"}, e.max_mm);
 }
 
 /// How good the tetrahedra are. The dihedral angle is the one between two faces of a tet: 70.5 degrees in a regular
@@ -47,11 +47,14 @@ inline void describe(Visitor& v, MeshQuality& q) {
   v("volume_mm3", q.volume_mm3, "Of all tets.");
   v("min_dihedral_deg", q.min_dihedral_deg, "Smallest angle between two faces of a tet.");
   v("max_dihedral_deg", q.max_dihedral_deg, "Greatest such angle.");
-  v("dihedral_histogram", q.dihedral_histogram, "Angles in bins of 5 degrees.");
+  v.begin({"dihedral_histogram", "Angles in bins."});
+  v.derived("bin_width_deg", MeshQuality::kBinWidthDeg, "Of each bin.");
+  v("counts", q.dihedral_histogram, "Six angles of each tet.");
+  v.end();
   v("min_radius_ratio", q.min_radius_ratio, "Worst ratio of the radii of inscribed and circumscribed sphere, times 3.");
   v("mean_radius_ratio", q.mean_radius_ratio, "Its mean.");
   v("smallest_tet_mm3", q.smallest_tet_mm3, "Signed: negative when a tet is inverted.");
-  v("edges", q.edges, "Lengths of the edges.");
+  v("edge_mm", q.edges, "Lengths of the edges.");
 }
 
 /// Measures every tet and edge. O(M log M). An empty mesh has zeros everywhere.

@@ -37,11 +37,12 @@ struct Compensation {
   double max_move_mm = 0.0;  ///< greatest |move|
 };
 inline void describe(Visitor& v, Compensation& c) {
-  v("path", c.path, "The corrected path.");
+  v.bulk("path", c.path, "The corrected path.");
+  v.derived("waypoints", c.path.waypoints.size(), "How many.");
   v("error_mm", c.error_mm, "Signed error measured at each waypoint.");
   v("move_mm", c.move_mm, "Of each waypoint; positive: away from the tumour.");
-  v("is_limited", c.is_limited, "Of each waypoint: whether its move was cut short.");
-  v("is_interpolated", c.is_interpolated, "Of each waypoint: whether nothing was measured there.");
+  v.bulk("is_limited", c.is_limited, "Of each waypoint: whether its move was cut short.");
+  v.bulk("is_interpolated", c.is_interpolated, "Of each waypoint: whether nothing was measured there.");
   v("limited_waypoints", c.limited_waypoints, "How many.");
   v("interpolated_waypoints", c.interpolated_waypoints, "How many.");
   v("max_move_mm", c.max_move_mm, "Greatest move.");

@@ -4,6 +4,7 @@
 #include <incise/core/verdict.hpp>
 #include <incise/planning/plan_path.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -103,9 +104,10 @@ inline void describe(Visitor& v, CompensationPass& p) {
   v("offset_mm", p.offset_mm, "Of each waypoint from the intended path; positive: outwards.");
   v("error_mm", p.error_mm, "Of each waypoint, averaged along the path.");
   v("is_limited", p.is_limited, "Of each waypoint: whether the safe region cut its move short.");
+  v.derived("limited_waypoints", std::count(p.is_limited.begin(), p.is_limited.end(), 1), "How many.");
   v("is_interpolated", p.is_interpolated, "Of each waypoint: whether nothing was measured there.");
-  v("along_mm", p.along_mm, "Of each measured point: its place on the intended path.");
-  v("point_error_mm", p.point_error_mm, "Of each measured point: signed error, with the bias.");
+  v.bulk("along_mm", p.along_mm, "Of each measured point: its place on the intended path.");
+  v.bulk("point_error_mm", p.point_error_mm, "Of each measured point: signed error, with the bias.");
   v("mean_abs_error_mm", p.mean_abs_error_mm, "Of all measured points.");
   v("max_abs_error_mm", p.max_abs_error_mm, "Of all measured points.");
   v("smooth_error_mm", p.smooth_error_mm, "Mean of |error_mm|.");
@@ -114,7 +116,7 @@ inline void describe(Visitor& v, CompensationPass& p) {
   v("open_layers", p.open_layers, "Planned layers in which the ring stayed open.");
   v("verdict", p.verdict, "Of what another course may mend.");
   v("max_move_mm", p.max_move_mm, "From the pass that it was made from.");
-  v("is_success", p.is_success, "Whether the cut succeeded.");
+  v("success", p.is_success, "Whether the cut succeeded.");
 }
 
 enum class CompensationOutcome {
@@ -141,11 +143,12 @@ struct ConvergedCompensation {
   [[nodiscard]] const CompensationPass& result() const { return passes.at(best); }
 };
 inline void describe(Visitor& v, ConvergedCompensation& c) {
-  v("path", c.path, "Of the best pass.");
-  v("passes", c.passes, "One for each simulation, in order.");
-  v("best", c.best, "Which of them.");
-  v("outcome", c.outcome, "How it ended.");
+  v.bulk("path", c.path, "Of the best pass.");
+  v("compensation_outcome", c.outcome, "How it ended.");
+  v.derived("simulations", c.passes.size(), "How many.");
+  v("best_pass", c.best, "Which of them.");
   v("contraction", c.contraction, "What each pass leaves of the error, geometric mean.");
+  v("history", c.passes, "One for each simulation, in order.");
 }
 
 /// Moves the waypoints of a path across the surface, pass by pass, until the cut that it leads to lies where it was

@@ -33,11 +33,11 @@ struct KerfLayer {
 };
 inline void describe(Visitor& v, KerfLayer& l) {
   v("depth_mm", l.depth_mm, "Of the layer's middle, along the approach.");
-  v("is_within_plan", l.is_within_plan, "Whether the planned depth reaches it.");
-  v("is_closed", l.is_closed, "Whether a ring closed there.");
+  v("within_plan", l.is_within_plan, "Whether the planned depth reaches it.");
+  v("closed_loop", l.is_closed, "Whether a ring closed there.");
   v("gap_mm", l.gap_mm, "Of a ring that stayed open there: width of the widest uncut bridge.");
-  v("width_mm", l.width_mm, "Of the kerf there, mean.");
-  v("centerline", l.centerline, "The mid-line there, stretched tissue before the cut.");
+  v("kerf_width_mm", l.width_mm, "Mean, there.");
+  v.bulk("centerline", l.centerline, "The mid-line there, stretched tissue before the cut.");
 }
 
 /// The kerf as a body, in the stretched tissue before the cut: the removed tets together.
@@ -48,9 +48,11 @@ struct KerfBody {
   Manifoldness live_skin;   ///< of the skin of the tissue that is left
 };
 inline void describe(Visitor& v, KerfBody& b) {
-  v("surface", b.surface, "Boundary of the removed tets, outwards.");
-  v("volume_mm3", b.volume_mm3, "Enclosed.");
-  v("boundary", b.boundary, "Of the surface.");
+  v.begin({"kerf", "Boundary of the removed tets."});
+  describe(v, b.boundary);
+  v({"volume_mm3", "Enclosed.", "mm3"}, b.volume_mm3);
+  v.bulk("surface", b.surface, "The boundary, outwards.");
+  v.end();
   v("live_skin", b.live_skin, "Of the skin of the tissue that is left.");
 }
 
@@ -62,10 +64,10 @@ struct DepthReached {
   Spread depth_mm;          ///< of the profile
 };
 inline void describe(Visitor& v, DepthReached& d) {
-  v("planned_mm", d.planned_mm, "Mean depth of the tool's tip below its entry points.");
-  v("profile", d.profile, "Along the path.");
-  v("planned_at_mm", d.planned_at_mm, "At each place of the profile.");
-  v("depth_mm", d.depth_mm, "Of the profile.");
+  describe(v, d.depth_mm);
+  v({"planned", "Mean depth of the tool's tip below its entry points.", "mm"}, d.planned_mm);
+  v.bulk("profile", d.profile, "Along the path.");
+  v.bulk("planned_at_mm", d.planned_at_mm, "At each place of the profile.");
 }
 
 /// How far tissue was from its place in the stretched, uncut body when it was cut: along the tool's course (lag) and
@@ -99,10 +101,10 @@ struct DeepMargin {
   Spread floor_below_mm;  ///< along the path: by how much the kerf's floor lies deeper than the tumour's deepest point
 };
 inline void describe(Visitor& v, DeepMargin& m) {
-  v("nearest_mm", m.nearest_mm, "Least distance of kerf and tumour; negative: the kerf enters it.");
-  v("beside_mm", m.beside_mm, "Of what lies beside the tumour.");
-  v("beneath_mm", m.beneath_mm, "Of what lies beneath it.");
-  v("floor_below_mm", m.floor_below_mm, "How much deeper the kerf's bottom is than the tumour.");
+  v({"nearest", "Least distance of kerf and tumour; negative: the kerf enters it.", "mm"}, m.nearest_mm);
+  v({"beside", "Of what lies beside the tumour.", "mm"}, m.beside_mm);
+  v({"beneath", "Of what lies beneath it.", "mm"}, m.beneath_mm);
+  v({"floor_below", "How much deeper the kerf's bottom is than the tumour.", "mm"}, m.floor_below_mm);
 }
 
 /// What came out of a cut, beside the two contours.
@@ -118,13 +120,16 @@ struct KerfMeasures {
       inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
 };
 inline void describe(Visitor& v, KerfMeasures& k) {
-  v("body", k.body, "The kerf as a body.");
-  v("layers", k.layers, "As asked for.");
-  v("depth", k.depth, "Along the path.");
-  v("drag", k.drag, "Of the tissue when it was cut.");
-  v("deep_margin", k.deep_margin, "Distance from the tumour's surface.");
-  v("final_centerline", k.final_centerline, "The mid-line, tool out.");
-  v("inner_edge_reference", k.inner_edge_reference, "The inner edge's points in the stretched tissue before the cut.");
+  describe(v, k.body);
+  v.bulk("layers", k.layers, "As asked for.");
+  v({"depth_reached_mm", "Along the path.", "mm"}, k.depth);
+  v.bulk("drag", k.drag, "Of the tissue when it was cut.");
+  v.derived("lag_mm", k.drag ? std::optional(k.drag->lag) : std::nullopt, "How far tissue was dragged ahead.");
+  v.derived("drift_mm", k.drag ? std::optional(k.drag->drift) : std::nullopt, "How far it was pushed outwards.");
+  v({"deep_margin_mm", "Distance from the tumour's surface.", "mm"}, k.deep_margin);
+  v.bulk("final_centerline", k.final_centerline, "The mid-line, tool out.");
+  v.bulk("inner_edge_reference", k.inner_edge_reference,
+         "The inner edge's points in the stretched tissue before the cut.");
 }
 
 /// A ring that closed, by its mid-line.

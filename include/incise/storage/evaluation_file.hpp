@@ -27,15 +27,17 @@ struct EvaluationFile {
   MeasuredSpecimen specimen;  ///< named after the file, without its ending; no errors where no incision was found
   Outcome outcome = Outcome::OpenLoop;
   std::optional<bool> negative_margin;
-  std::string contour;  ///< centerline or inner_edge
+  ContourKind contour = ContourKind::Centerline;
   double target_mm = 0.0;
   std::vector<double> clock_h;  ///< one for each error; empty for an open cut
   std::optional<double> hu_score, hu_score_ideal, centroid_shift_mm;
   std::optional<double> positive_at_mm, too_close_at_mm;  ///< upper borders of the two zones
+  std::optional<Verdict> verdict;                         ///< on the measurement; of a photograph only
 };
+void describe(Visitor& v, EvaluationFile& file);
 
-/// @throws DataError naming the file and the key that is missing, of another kind, not finite, or of another length; for
-/// a file whose `verdict` is refused.
+/// @throws DataError naming the file and the place that is missing, of another kind, not finite, or of another length;
+/// for a file whose `verdict` is refused.
 [[nodiscard]] EvaluationFile read_evaluation_file(const std::filesystem::path& path);
 
 /// What a calibration takes from one file of `incise evaluate`: the contours of a closed ring, named after the file.

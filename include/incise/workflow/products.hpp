@@ -30,6 +30,10 @@ struct LayerErrors {
   std::optional<Summary> signed_error_mm;
   std::optional<Summary> abs_error_mm;
 };
+inline void describe(Visitor& v, LayerErrors& e) {
+  v({"signed_error_mm", "Of the mid-line there against the lateral margin.", "mm"}, e.signed_error_mm);
+  v({"abs_error_mm", "Its absolute value.", "mm"}, e.abs_error_mm);
+}
 
 /// One simulated incision and what it is worth.
 struct SimulatedCut {
@@ -48,6 +52,7 @@ struct SimulatedCut {
   std::optional<double> thermal_margin_mm;
   Verdict verdict;  ///< what is held against the path that was cut: verdict_of_cut, and what was known of mesh and path before it
 };
+void describe(Visitor& v, SimulatedCut& cut);
 
 /// How the path was corrected.
 struct Correction {
@@ -59,9 +64,10 @@ struct Correction {
 };
 inline void describe(Visitor& v, Correction& c) {
   v("method", c.method, "How the path was corrected.");
-  v("moves", c.moves, "The corrected path and how far its waypoints moved.");
   v("floor_mm", c.floor_mm, "Mean |error| that the mesh alone leaves.");
-  v("iteration", c.iteration, "Pass by pass.");
+  describe(v, c.moves);
+  v.bulk("iteration", c.iteration, "Pass by pass.");
+  if (c.iteration && v.is_summary()) describe(v, *c.iteration);
 }
 
 }  // namespace incise

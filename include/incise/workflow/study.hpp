@@ -41,6 +41,11 @@ struct StageReport {
   StageState state = StageState::Computed;
   double wall_s = 0.0;
 };
+inline void describe(Visitor& v, StageReport& r) {
+  v("name", r.stage, "Of the stage.");
+  v("state", r.state, "Whether it was computed.");
+  v("wall_s", r.wall_s, "Time that it took.");
+}
 
 /// What a study has made so far; later parts are absent when it was asked to stop earlier or could not go on.
 struct Study {
@@ -63,9 +68,6 @@ struct Study {
 
 /// The cut along the path that a program would follow: the corrected one where the correction is accepted, else the first. Null: none.
 [[nodiscard]] const SimulatedCut* verifying_cut(const Study& study);
-
-/// Why a stretch is of no use and what may help, for a person; empty when it is a success.
-[[nodiscard]] std::string explain_stretch(const StaticResult& stretched);
 
 /// Most passes of the compensation after the first cut; four more where something argues against the nearest ring.
 inline constexpr int kUsualPasses = 3;

@@ -7,6 +7,7 @@
 
 #include <incise/core/monitor.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
@@ -15,7 +16,6 @@
 #include <incise/io/surface_io.hpp>
 #include <incise/io/table_io.hpp>
 #include <incise/io/transform_json.hpp>
-#include <incise/io/verdict_json.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/robot/program_audit.hpp>
 #include <incise/robot/program_reading.hpp>

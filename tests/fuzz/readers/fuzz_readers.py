@@ -15,12 +15,9 @@ LIMITS = ["-timeout=10", "-rss_limit_mb=2048", "-malloc_limit_mb=1024", "-max_le
 
 def readers(programs):
     """(name, words, program) of each reader that reads in this process: those behind ITK are read by the driver, in processes of their own."""
-    found = []
-    for source, program in (("file_readers.cpp", "incise_file_fuzz"), ("result_readers.cpp", "incise_result_fuzz")):
-        for name, words, rest in re.findall(r'^ +\{"(\w+)", "(\w+)", (.*)$', (HERE / source).read_text(), re.MULTILINE):
-            if "kWithAProcess" not in rest:
-                found.append((name, words, programs / program))
-    return found
+    return [(*line.split(), programs / program)
+            for program in ("incise_file_fuzz", "incise_result_fuzz")
+            for line in subprocess.run([programs / program, "--list"], capture_output=True, text=True, check=True).stdout.splitlines()]
 
 
 def main():

@@ -27,9 +27,9 @@ void study_case(const fs::path& file) {
 }
 
 void calibration(const fs::path& file) {
-  const CalibrationRecord record = read_calibration(file);
-  static_cast<void>(range_of(record));
-  static_cast<void>(belief_of(record, file));
+  const Calibration found = read_calibration(file);
+  static_cast<void>(range_of(found));
+  static_cast<void>(belief_of(found, file));
 }
 
 std::vector<Reader> all_readers() {

@@ -1,4 +1,5 @@
-// The entry of libFuzzer and of our own driver: `--reader NAME` says which reader the bytes are for.
+// The entry of libFuzzer and of our own driver: `--reader=NAME` says which reader the bytes are for, `--list` names
+// all.
 
 #include "reader.hpp"
 
@@ -50,6 +51,14 @@ void lay_down(const fs::path& file, std::string_view bytes) {
 
 const Reader* chosen = nullptr;
 
+/// One line for each reader that reads in this process: its name and that of its dictionary.
+[[noreturn]] void list_readers() {
+  for (const Reader& reader : readers()) {
+    if (reader.share == 1.0) std::printf("%s %s\n", reader.name.c_str(), reader.words.c_str());
+  }
+  std::exit(0);
+}
+
 }  // namespace
 
 void read_bytes(const Reader& reader, std::string_view bytes) {
@@ -74,6 +83,7 @@ extern "C" int LLVMFuzzerInitialize(int* count, char*** words) {
   const char* name = nullptr;
   for (int i = 1; i < *count; ++i) {
     if (std::strncmp((*words)[i], "--reader=", 9) == 0) name = (*words)[i] + 9;
+    if (std::strcmp((*words)[i], "--list") == 0) incise::fuzz::list_readers();
   }
   for (const incise::fuzz::Reader& reader : incise::fuzz::readers()) {
     if (name != nullptr && reader.name == name) incise::fuzz::chosen = &reader;
