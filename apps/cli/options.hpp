@@ -4,7 +4,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/manifest.hpp>
-#include <incise/storage/run_folder.hpp>
+#include <incise/storage/case_run.hpp>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -27,14 +27,6 @@ inline constexpr int kBadCase = 2;
 inline constexpr int kBadData = 3;
 inline constexpr int kNotAcceptable = 4;
 inline constexpr int kInterrupted = 130;
-
-/// The person asked to stop and something is kept, by default the finished stages; of a plain Cancelled main says that
-/// nothing was written.
-class StagesKept : public Cancelled {
- public:
-  explicit StagesKept(const std::string& what, const std::string& kept = "the stages that were finished are kept")
-      : Cancelled(what + "; " + kept + ", run the same command to go on") {}
-};
 
 /// Whether a path is a folder, or lies anywhere in it. Links are followed; neither has to exist.
 [[nodiscard]] bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer);

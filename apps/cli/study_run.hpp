@@ -2,8 +2,7 @@
 
 #include "options.hpp"
 
-#include <incise/io/folder_lock.hpp>
-#include <incise/workflow/study.hpp>
+#include <incise/storage/case_run.hpp>
 
 #include <optional>
 #include <string>
@@ -24,44 +23,30 @@ void add_cut_options(CLI::App& verb, CutOptions& options);
 /// Adds --method to a verb that corrects the path.
 void add_compensation_method(CLI::App& verb, CutOptions& options);
 
-/// One way through a study on a folder: the stages up to `until`, and a study.json in the folder that says which case it is of.
-struct StudyRun {
-  /// @param until  the last stage that will be asked for.
-  StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until, const CommonOptions& options,
-           const CutOptions& cut = {});
-
-  Study run(const CommonOptions& options, Monitor& monitor);
-
-  const bool is_new_folder;  ///< the output did not exist before
-
- private:
-  std::optional<FolderLock> lock_;  ///< on the output, before the folder is looked at
-
+/// A run of a case up to a stage, with what the command line says in place of the case.
+class StudyRun : public CaseRun {
  public:
-  RunFolder folder;
+  /// @param until  the last stage that will be asked for.
+  StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until,
+           const CommonOptions& options, const CutOptions& cut = {});
+  [[nodiscard]] Study study(Monitor& monitor);
+  [[nodiscard]] Run run(const std::vector<std::string>& accepted, Monitor& monitor);
 
  private:
-  const RunOptions options_;
-  /// A study that failed before its first product leaves no folder behind.
-  void remove_if_nothing_was_made() const;
+  const int threads_;
 };
 
-/// The case, and the files that it names looked for, before anything is written. @throws CaseError, DataError
-[[nodiscard]] CaseFile case_with_inputs(const std::filesystem::path& case_path);
-
-/// The same with what the command line says in place of the case.
+/// The case, and the files that it names looked for, with what the command line says in place of the case.
 [[nodiscard]] CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut);
 
 /// Where the results of a case go when -o is not given: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
 
 /// 4 where the verdict refuses the cut, else that of the outcome.
-[[nodiscard]] int status_of(const Study& study);
+[[nodiscard]] int status_of(const Study& study, const Verdict& verdict);
 
-/// The whole loop with program and report; the JSON summary of `run` and `demo`.
-/// @returns the exit status; `result` receives the summary.
-/// @param accepted  ids of cautions, see --accept.
-int run_whole_loop(StudyRun& study, const CommonOptions& options, const std::vector<std::string>& accepted, Monitor& monitor,
-                   nlohmann::ordered_json& result);
+/// The whole loop with program and report: what `run` and `demo` do. @returns the exit status.
+int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,
+                   const CommonOptions& options, const CutOptions& cut, Console& console);
 
 }  // namespace incise::cli

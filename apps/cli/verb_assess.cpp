@@ -99,7 +99,7 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   const std::filesystem::path output = output_of(chosen.case_path, options);
   StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
   require_same_specimen(chosen.registration, run.folder.specimen_id(), "the case's");
-  const Study study = run.run(options, console);
+  const Study study = run.study(console);
   Workers workers(options.threads);
   Assessment assessment = with_tissues(run, [&] {
     return assess(run.folder.case_file().settings, run.folder, run.folder.cache(), study, calibration.belief, request,
@@ -115,7 +115,7 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   write_assessment(run.folder, result, calibration.file, chosen.registration, wall.count());
   Verdict verdict = study.verdict;
   verdict.add(of_registration);
-  run.folder.add_advice_to(verdict, study.is_accepted);
+  verdict.add(run.folder.advice_against(study.is_accepted));
   result["verdict"] = to_json(verdict);
   if (study.corrected) {
     Verdict of_corrected = study.about_inputs;

@@ -71,7 +71,7 @@ std::vector<CaseFile> read_inputs(const CalibrateArguments& arguments, std::vect
   }
   std::vector<CaseFile> files;
   for (std::size_t i = 0; i < arguments.cases.size(); ++i) {
-    files.push_back(case_with_inputs(arguments.cases[i]));
+    files.push_back(read_case_with_inputs(arguments.cases[i]));
     require_plan_inputs(files.back());
     CalibrationSubject subject;
     subject.photographed = read_photographed_cut(arguments.observed[i]);

@@ -116,7 +116,7 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
   const std::filesystem::path output = output_of(chosen.case_path, options);
   if (chosen.is_robust) require_default_method(case_as_asked(chosen.case_path, chosen.cut));
   StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
-  const Study study = run.run(options, console);
+  const Study study = run.study(console);
   nlohmann::ordered_json result = summary_of(study);
   bool is_robust_enough = true;
   if (chosen.is_robust) {

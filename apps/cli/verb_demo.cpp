@@ -36,11 +36,7 @@ void add_demo(Application& application) {
     const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
     const std::filesystem::path specimen = specimen_for(root / "specimen", options.seed, console);
     try {
-      StudyRun study(specimen, root, Stage::Verify, options, *cut);
-      nlohmann::ordered_json result;
-      const int status = run_whole_loop(study, options, cut->accepted, console, result);
-      print_study(options, result);
-      return status;
+      return run_whole_loop(specimen, root, options, *cut, console);
     } catch (const StagesKept&) {
       throw;
     } catch (const Cancelled& error) {

@@ -1,6 +1,5 @@
 #include "option_checks.hpp"
 #include "options.hpp"
-#include "own_files.hpp"
 #include "registration_trust.hpp"
 #include "verdict_gate.hpp"
 
@@ -17,6 +16,8 @@
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/robot/program_text.hpp>
+#include <incise/robot/program_verdict.hpp>
+#include <incise/storage/own_files.hpp>
 #include <incise/storage/registration_json.hpp>
 
 #include <fmt/format.h>

@@ -21,14 +21,14 @@ std::shared_ptr<const TissueModel> specimen_of(const CaseFile& file, const std::
   CommonOptions of_study = options;
   of_study.output.clear();
   StudyRun study(case_path, output_of(case_path, of_study), Stage::Mesh, of_study);
-  return study.run(of_study, monitor).model;
+  return study.study(monitor).model;
 }
 
 int export_case(const std::filesystem::path& case_path, const std::string& format, const CommonOptions& options) {
   Console console(options.level());
   const std::filesystem::path output = options.required_output("for_sofa");
   require_replaceable(output);
-  const CaseFile file = case_with_inputs(case_path);
+  const CaseFile file = read_case_with_inputs(case_path);
   refuse_input_as_output("-o", output, {file.file, file.inputs.specimen_mesh});
   const bool is_sofa = format == "sofa";
   const char* name = is_sofa ? "case.scn" : "case.feb";

@@ -1,6 +1,5 @@
 #include "option_checks.hpp"
 #include "options.hpp"
-#include "own_files.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/problem_text.hpp>
@@ -10,6 +9,7 @@
 #include <incise/io/surface_io.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/meshing/mesher.hpp>
+#include <incise/storage/own_files.hpp>
 #include <incise/storage/result_json.hpp>
 
 #include <fmt/format.h>

@@ -16,6 +16,7 @@
 #include <incise/io/transform_json.hpp>
 #include <incise/planning/project_path.hpp>
 #include <incise/robot/checks.hpp>
+#include <incise/robot/program_verdict.hpp>
 #include <incise/storage/registration_json.hpp>
 
 #include <fmt/format.h>

@@ -10,6 +10,7 @@
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/robot/program_audit.hpp>
+#include <incise/storage/run_files.hpp>
 
 #include <fmt/format.h>
 
@@ -26,7 +27,8 @@ void write_folder(const ReplayArguments& arguments, const CommonOptions& options
                   const nlohmann::ordered_json& result) {
   require_replaceable(options.output);
   AtomicFolder target(options.output);
-  write_replay(target.path(), replay);
+  write_true_path(target.path(), replay);
+  write_replay_figure(target.path(), replay);
   write_json(target.path() / "replay.json", result);
   const nlohmann::ordered_json settings{{"speed_slider_percent", arguments.slider_percent},
                                         {"max_deviation_mm", arguments.max_deviation_mm}};

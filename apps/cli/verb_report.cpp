@@ -1,10 +1,10 @@
 #include "options.hpp"
-#include "own_files.hpp"
 #include "study_report.hpp"
 #include "tissue_report.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/folder_lock.hpp>
+#include <incise/storage/own_files.hpp>
 
 #include <optional>
 

@@ -13,11 +13,7 @@ void add_run(Application& application) {
       "incise run my_patient -o my_patient/out", [case_path, cut](const CommonOptions& options) {
         Console console(options.level());
         require_accepted_ids(cut->accepted);
-        StudyRun study(*case_path, output_of(*case_path, options), Stage::Verify, options, *cut);
-        nlohmann::ordered_json result;
-        const int status = run_whole_loop(study, options, cut->accepted, console, result);
-        print_study(options, result);
-        return status;
+        return run_whole_loop(*case_path, output_of(*case_path, options), options, *cut, console);
       });
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, *cut);

@@ -1,11 +1,11 @@
 #include "options.hpp"
-#include "own_files.hpp"
 #include "registration_trust.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/volume_io.hpp>
+#include <incise/storage/own_files.hpp>
 #include <incise/storage/result_json.hpp>
 
 #include <array>

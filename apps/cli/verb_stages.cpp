@@ -22,13 +22,13 @@ int run_stage(Stage stage, const char* product, const std::filesystem::path& cas
               const CutOptions& cut = {}) {
   Console console(options.level());
   StudyRun run(case_path, output_of(case_path, options), stage, options, cut);
-  const Study study = run.run(options, console);
+  const Study study = run.study(console);
   const bool is_stretched = study.stretched && study.stretched->outcome == Outcome::Success;
   nlohmann::ordered_json result = is_stretched ? result_of(stage, study) : to_json(*study.stretched);
   result["folder"] = run.folder.folder(product).string();
   result["stages"] = to_json(study.stages);
   print_result(options, result);
-  return stage == Stage::Simulate ? status_of(study)
+  return stage == Stage::Simulate ? status_of(study, study.verdict)
                                   : status_of(study.outcome);  // before a cut there is nothing to judge
 }
 

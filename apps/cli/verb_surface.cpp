@@ -59,7 +59,7 @@ TriMesh stretched_skin(const std::filesystem::path& case_path, const CommonOptio
   CommonOptions of_study = options;
   of_study.output.clear();
   StudyRun run(case_path, output_of(case_path, of_study), Stage::Stretch, of_study);
-  const Study study = run.run(of_study, monitor);
+  const Study study = run.study(monitor);
   if (!study.stretched || study.stretched->outcome != Outcome::Success) {
     throw DataError(case_path, "stretch", study.stretched ? explain_stretch(*study.stretched) : "none",
                     "a specimen that comes to rest");

@@ -45,28 +45,6 @@ void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monit
   }
 }
 
-Verdict as_verdict_of_mark(const Verdict& of_cut) {
-  Verdict verdict;
-  for (const VerdictReason& reason : of_cut.reasons()) {
-    if (reason.severity == VerdictStatus::Refused || reason.id == "registration" || reason.id == "typed_transform")
-      verdict.add(reason);
-  }
-  return verdict;
-}
-
-void add_failed_checks(const ProgramChecks& checks, Verdict& verdict) {
-  for (const ProgramCheck& check : checks.checks) {
-    if (!check.passed && !check.is_overridden) verdict.add("program_check", check.value, check.message());
-  }
-}
-
-ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate) {
-  ProgramHeader header{{"verdict", std::string(to_string(verdict.status()))}};
-  for (const VerdictReason& reason : verdict.reasons()) header.emplace_back("reason", fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
-  for (const std::string& id : gate.accepted) header.emplace_back("accepted", id);
-  return header;
-}
-
 void print_verdict(const nlohmann::ordered_json& verdict) {
   fmt::print("{:<36} {}\n", "verdict", verdict.at("status").get<std::string>());
   for (const auto& reason : verdict.at("reasons")) {

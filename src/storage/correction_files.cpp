@@ -60,17 +60,20 @@ void RunFolder::correction(const ProductNote& note, const Correction& correction
   });
 }
 
-void RunFolder::add_advice_to(Verdict& verdict, bool is_corrected) const {
+Verdict RunFolder::advice_against(bool is_corrected) const {
+  Verdict verdict;
   const std::filesystem::path file = root_ / "assessment" / "assess.json";
-  if (!std::filesystem::exists(file)) return;
+  if (!std::filesystem::exists(file)) return verdict;
   const Json json = read_json(file);
   const auto [advice, why] = from_written_json(file, [&json] {
     const bool has_reason = json.contains("reasons") && !json.at("reasons").empty();
     return std::pair(json.value("advice", std::string()),
                      has_reason ? ": " + json.at("reasons").front().get<std::string>() : std::string());
   });
-  if (advice == to_string(Advice::Compensate) || (!is_corrected && advice == to_string(Advice::CutAsPlanned))) return;
+  if (advice == to_string(Advice::Compensate) || (!is_corrected && advice == to_string(Advice::CutAsPlanned)))
+    return verdict;
   verdict.add("eligibility", {}, fmt::format("assess advises {}{}", advice.empty() ? "nothing" : advice, why));
+  return verdict;
 }
 
 void RunFolder::verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) {
@@ -78,7 +81,7 @@ void RunFolder::verdicts(const std::optional<Verdict>& of_planned, const std::op
     const std::filesystem::path file = folder(product) / "path.json";
     if (!verdict || !std::filesystem::exists(file)) return;
     Verdict whole = *verdict;
-    add_advice_to(whole, is_corrected);
+    whole.add(advice_against(is_corrected));
     if (to_json(read_path_verdict(file)) == to_json(whole)) return;
     write_tool_path(file, read_tool_path(file), whole);
   };

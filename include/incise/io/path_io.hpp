@@ -49,7 +49,7 @@ void write_tool_path(const std::filesystem::path& file, const ToolPath& path, co
 /// The verdict that a path's file holds. A file without one, and one whose path or verdict was changed since (the
 /// digest differs), gives a caution `not_simulated` that says which: whatever was simulated, it was not this path. What
 /// a changed file's verdict refuses stays refused.
-/// @throws DataError as read_tool_path, and as verdict_from_json.
+/// @throws DataError as read_tool_path, and where the verdict is damaged.
 [[nodiscard]] Verdict read_path_verdict(const std::filesystem::path& file);
 
 /// @throws DataError where the file holds a verdict and a digest that is not of this path and verdict: it was changed

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/robot/program.hpp>
 
@@ -92,6 +93,18 @@ struct ProgramCheck {
   /// "margin: 1.83 mm at waypoint 12 (pose 20), has to be >= 2.2 mm: least distance of …"
   [[nodiscard]] std::string message() const;
 };
+inline void describe(Visitor& v, ProgramCheck& c) {
+  v("name", c.name, "Of the check.");
+  v("passed", c.passed, "Whether the program keeps to it.");
+  v("value", c.value, "What was found.");
+  v("limit", c.limit, "What it is held against.");
+  v("relation", c.relation, "What a good value is to the limit; empty: a plain yes or no.");
+  v("unit", c.unit, "Of both.");
+  v("pose", c.pose, "The worst pose of the program.", kNotNegative);
+  v("text", c.text, "For a person.");
+  v("waypoint", c.waypoint, "Of the path, at or before that pose.", kNotNegative);
+  v("overridden", c.is_overridden, "A person has taken it on them.");
+}
 
 struct ProgramChecks {
   std::vector<ProgramCheck> checks;

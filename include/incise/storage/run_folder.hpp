@@ -60,6 +60,13 @@ class RunFolder : public Inputs, public ProductSink {
   std::optional<TriMesh> read_tumor_surface() override;
   std::optional<Contour> read_line() override;
   std::optional<ToolPath> read_given_path() override;
+  /// Of the case, or of its scan or mesh. @throws DataError where that cannot be read.
+  [[nodiscard]] std::string specimen_id() override;
+  /// The file of a path that was given, else the case's.
+  [[nodiscard]] std::filesystem::path path_name() const override {
+    return file_.inputs.tool_path.empty() ? file_.file : file_.inputs.tool_path;
+  }
+  [[nodiscard]] Verdict advice_against(bool is_corrected) const override;
 
   void labels(const ProductNote& note, const Segmentation& segmentation) override;
   void mesh(const ProductNote& note, const MeshProduct& product) override;
@@ -71,17 +78,11 @@ class RunFolder : public Inputs, public ProductSink {
   void absent(const std::string& name) override;
   void verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
 
-  /// Adds what an earlier `assess` of this folder advised against the path: as planned, that the simulation is not to
-  /// be used; corrected, anything but to compensate.
-  void add_advice_to(Verdict& verdict, bool is_corrected) const;
-
   /// Before a run: removes the verdicts beside the paths, which the run notes again at its end, and a program and a
   /// summary that were made with other settings or inputs than the case's. Says so. @throws DataError where an input
   /// cannot be read.
   void remove_what_is_out_of_date(Monitor& monitor);
 
-  /// Of the case, or of its scan or mesh. @throws DataError where that cannot be read.
-  [[nodiscard]] std::string specimen_id();
   /// A manifest for an output folder of this run. @param verdict  of the run; null: the folder has none.
   void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);
 

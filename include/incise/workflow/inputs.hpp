@@ -1,11 +1,13 @@
 #pragma once
 
 #include <incise/core/monitor.hpp>
+#include <incise/core/verdict.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/tool_path.hpp>
 #include <incise/geometry/volume.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -29,6 +31,14 @@ class Inputs {
   virtual std::optional<ToolPath> read_given_path() {
     return std::nullopt;
   }  ///< a path to follow in place of the planned one
+
+  /// Whose specimen it is (io/specimen_id.hpp); empty: nobody's in particular.
+  [[nodiscard]] virtual std::string specimen_id() { return {}; }
+  /// What messages call the path that is followed.
+  [[nodiscard]] virtual std::filesystem::path path_name() const { return "path"; }
+  /// What an earlier assessment of this specimen advised against the path: as planned, that the simulation is not to
+  /// be used; corrected, anything but to compensate.
+  [[nodiscard]] virtual Verdict advice_against(bool /*is_corrected*/) const { return {}; }
 };
 
 }  // namespace incise

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace incise::cli {
+namespace incise {
 
 /// What an output folder of a case holds beside its folders of results (study.json, report.html, manifest.json,
 /// figures) has to be of an earlier run, and no link. @throws DataError for one that is not; CaseError for the root of
@@ -19,4 +19,4 @@ void require_own_manifest_beside(const std::filesystem::path& result);
 /// cannot be made again. @throws DataError
 void require_own_program(const std::filesystem::path& program);
 
-}  // namespace incise::cli
+}  // namespace incise

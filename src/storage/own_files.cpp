@@ -1,14 +1,13 @@
-#include "own_files.hpp"
-
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/specimen_id.hpp>
+#include <incise/storage/own_files.hpp>
 
 #include <nlohmann/json.hpp>
 
-namespace incise::cli {
+namespace incise {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +67,4 @@ void require_own_program(const fs::path& program) {
   if (!is_own) refuse_foreign(program, "a file of another origin");
 }
 
-}  // namespace incise::cli
+}  // namespace incise
