@@ -5,6 +5,7 @@
 // Keys: speed_mm_s, power_w, fine_mm, coarse_mm, way_mm, threads, draw_only (1: bodies are made and not cut),
 // photo (1: photographs are taken and read), pictures (a folder for them, made before), and every parameter of a
 // specimen (then not drawn).
+#include <incise/bench_studies/planned_bench_cut.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/geometry/kerf_contours.hpp>
@@ -12,7 +13,6 @@
 #include <incise/imaging/picture.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
 #include <incise/virtual_bench/pictures.hpp>
-#include <incise/workflow/planned_bench_cut.hpp>
 
 #include <fmt/format.h>
 

@@ -76,4 +76,10 @@ void require_valid(const std::vector<std::string>& violations) {
   throw CaseError("command line", option, complaint.found, complaint.expected);
 }
 
+Vec3 direction_of(const std::vector<double>& numbers, const char* option) {
+  const Vec3 direction(numbers.data());
+  if (!(direction.norm() > 0.0)) throw CaseError("command line", option, "0 0 0", "a direction");
+  return direction;
+}
+
 }  // namespace incise::cli

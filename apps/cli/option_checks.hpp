@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/names.hpp>
+#include <incise/geometry/types.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -38,5 +39,8 @@ template <Named E>
 /// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), as one about the option of that
 /// name (--close-margin-mm); nothing for none.
 void require_valid(const std::vector<std::string>& violations);
+
+/// Three numbers of an option as a direction. @throws CaseError for one of length 0.
+[[nodiscard]] Vec3 direction_of(const std::vector<double>& numbers, const char* option);
 
 }  // namespace incise::cli

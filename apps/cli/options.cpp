@@ -5,9 +5,6 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/isa.hpp>
-#include <incise/core/version.hpp>
-#include <incise/io/input_file.hpp>
-#include <incise/io/specimen_id.hpp>
 
 #include <fmt/format.h>
 
@@ -35,42 +32,6 @@ void choose_isa(const std::string& name) {
 RunContext CommonOptions::context() const {
   const int all = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   return {command_line, seed, threads > 0 ? threads : all};
-}
-
-namespace {
-
-/// A result that is made of several specimens' files is of none.
-std::string id_that_all_state(const std::vector<std::filesystem::path>& inputs) {
-  std::string id;
-  for (const std::filesystem::path& path : inputs) {
-    const std::string found = specimen_id_of(path);
-    if (are_of_different_specimens(id, found)) return "";
-    if (!found.empty()) id = found;
-  }
-  return id;
-}
-
-}  // namespace
-
-Manifest manifest_of(const CommonOptions& options, std::string settings_json,
-                     const std::vector<std::filesystem::path>& inputs, double wall_s) {
-  Manifest manifest;
-  manifest.version = version();
-  manifest.commit = source_commit();
-  manifest.command = options.command_line;
-  manifest.settings_json = std::move(settings_json);
-  manifest.seed = options.seed;
-  manifest.threads = options.context().threads;
-  manifest.instruction_set = to_string(active_isa());
-  for (const std::filesystem::path& path : inputs) {
-    if (path.empty()) continue;
-    manifest.inputs.push_back(
-        {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path)});
-  }
-  manifest.specimen_id = id_that_all_state(inputs);
-  manifest.wall_s = wall_s;
-  manifest.machine = machine_description();
-  return manifest;
 }
 
 void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
@@ -166,6 +127,16 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
     status_ = run(*options);
   });
   return verb;
+}
+
+int run_step(const CommonOptions& options,
+             const std::function<laboratory::StepResult(const laboratory::StepContext&)>& step,
+             const std::function<void(const CommonOptions&, const nlohmann::ordered_json&)>& print) {
+  Console console(options.level());
+  Workers workers(options.threads);
+  const laboratory::StepResult found = step({options.context(), workers, console, options.start});
+  if (!found.json.is_null()) print(options, found.json);
+  return found.is_acceptable ? kDone : kNotAcceptable;
 }
 
 int status_of(Outcome outcome) {

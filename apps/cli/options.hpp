@@ -3,7 +3,7 @@
 #include "console.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/manifest.hpp>
+#include <incise/laboratory/step.hpp>
 #include <incise/storage/case_run.hpp>
 
 #include <CLI/CLI.hpp>
@@ -82,10 +82,6 @@ class OlderOutput {
   bool is_there_ = false;
 };
 
-/// The manifest of a folder that a verb without a case fills. Empty names among the inputs: not given.
-[[nodiscard]] Manifest manifest_of(const CommonOptions& options, std::string settings_json,
-                                   const std::vector<std::filesystem::path>& inputs, double wall_s);
-
 /// A verb is added to the application together with what it does: a function that returns the exit status.
 class Application {
  public:
@@ -119,6 +115,11 @@ class Application {
 
 /// Prints the result: with --json the one object on standard output, else a short table.
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result);
+/// Runs a step of the library with the command's console and threads, and prints what it found.
+/// @param print  print_result, or what a person wants of it instead. @returns the exit status.
+int run_step(const CommonOptions& options,
+             const std::function<laboratory::StepResult(const laboratory::StepContext&)>& step,
+             const std::function<void(const CommonOptions&, const nlohmann::ordered_json&)>& print = print_result);
 /// The same for a whole loop: for a person, the measures that matter of the two cuts side by side.
 void print_study(const CommonOptions& options, const nlohmann::ordered_json& result);
 

@@ -1,7 +1,5 @@
 #include "power_output.hpp"
 
-#include "figure_file.hpp"
-
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/report/line_plot.hpp>
@@ -55,7 +53,7 @@ bool write_plot(const std::filesystem::path& folder, const MeasurePlot& what, co
   const LineSeries limit{"limit", {first - beside, last + beside}, {what.limit_mm, what.limit_mm}, true};
   const LinePlot plot{
       .title = what.title, .x_label = what.x_label, .y_label = what.y_label, .series = {marks, line, limit}};
-  write_figure(folder / what.file, line_plot_svg(plot));
+  write_atomically(folder / what.file, line_plot_svg(plot));
   return true;
 }
 
@@ -119,7 +117,7 @@ void write_power(const std::filesystem::path& folder, const PowerResult& result,
   const std::string table = csv_text(power_table(result.series));
   write_atomically(folder / "power.csv", table);
   write_figures(folder, result);
-  write_manifest(folder, manifest_of(options, settings_of_power(result), inputs, result.wall_s));
+  write_manifest(folder, laboratory::manifest_of(options.context(), settings_of_power(result), inputs, result.wall_s));
   write_json(folder / "power.json", json_of(result));
 }
 

@@ -2,8 +2,8 @@
 
 #include "options.hpp"
 
+#include <incise/bench_studies/power_series.hpp>
 #include <incise/calibration/incision_speed.hpp>
-#include <incise/workflow/power_series.hpp>
 
 #include <optional>
 

@@ -1,7 +1,5 @@
 #include "study_report.hpp"
 
-#include "compensation_figures.hpp"
-
 #include <incise/core/error.hpp>
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -16,6 +14,7 @@
 #include <incise/io/table_io.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/io/written_json.hpp>
+#include <incise/laboratory/compensation_figures.hpp>
 #include <incise/meshing/quality.hpp>
 #include <incise/report/figures.hpp>
 #include <incise/report/html_report.hpp>
@@ -462,8 +461,9 @@ ReportData study_report(const fs::path& root, Monitor& monitor) {
   }
   add_evaluation(root, data);
   add_kerf(root, data);
-  data.correction = compensation_table(root);
-  for (CompensationFigure& figure : compensation_figures(root)) data.correction_plots.push_back(std::move(figure.plot));
+  data.correction = laboratory::compensation_table(root);
+  for (laboratory::CompensationFigure& figure : laboratory::compensation_figures(root))
+    data.correction_plots.push_back(std::move(figure.plot));
   from_written_json(study_file, [&] {
     if (study.contains("stages")) {
       for (const Json& stage : study.at("stages"))

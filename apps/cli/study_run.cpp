@@ -1,10 +1,10 @@
 #include "study_run.hpp"
 
-#include "compensation_figures.hpp"
 #include "replay_files.hpp"
 #include "study_report.hpp"
-#include "verdict_gate.hpp"
 
+#include <incise/laboratory/compensation_figures.hpp>
+#include <incise/laboratory/robot_steps.hpp>
 #include <incise/storage/run_files.hpp>
 
 namespace incise::cli {
@@ -17,7 +17,7 @@ constexpr double kLongestCheckpointS = 86400;  // a day
 
 std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options) {
   if (!options.output.empty()) return options.output;
-  return (std::filesystem::is_directory(case_path) ? case_path : case_path.parent_path()) / "out";
+  return output_beside(case_path);
 }
 
 void add_cut_options(CLI::App& verb, CutOptions& options) {
@@ -36,31 +36,18 @@ CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions&
   return file;
 }
 
-StudyRun::StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until,
-                   const CommonOptions& options, const CutOptions& cut)
-    : CaseRun(case_as_asked(case_path, cut), output, {until, cut.must_resume, cut.checkpoint_s}, options.context()),
-      threads_(options.threads) {}
-
-Study StudyRun::study(Monitor& monitor) {
-  Workers workers(threads_);
-  return CaseRun::study(workers, monitor);
-}
-
-Run StudyRun::run(const std::vector<std::string>& accepted, Monitor& monitor) {
-  Workers workers(threads_);
-  return CaseRun::run(accepted, workers, monitor);
-}
-
-int status_of(const Study& study, const Verdict& verdict) {
-  return verdict.status() == VerdictStatus::Refused && study.outcome != Outcome::Cancelled ? kNotAcceptable
-                                                                                           : status_of(study.outcome);
+laboratory::CaseRequest case_request(const std::filesystem::path& case_path, Stage until, const CommonOptions& options,
+                                     const CutOptions& cut) {
+  return {case_as_asked(case_path, cut), output_of(case_path, options), {until, cut.must_resume, cut.checkpoint_s}};
 }
 
 int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,
                    const CommonOptions& options, const CutOptions& cut, Console& console) {
-  StudyRun study(case_path, output, Stage::Verify, options, cut);
-  const Run done = study.run(cut.accepted, console);
-  if (done.program) report_gate(done.verdict, done.gate, console);
+  const laboratory::CaseRequest asked = case_request(case_path, Stage::Verify, options, cut);
+  CaseRun study(asked.file, output, asked.options, options.context());
+  Workers workers(options.threads);
+  const Run done = study.run(cut.accepted, workers, console);
+  if (done.program) laboratory::report_gate(done.verdict, done.gate, console);
   nlohmann::ordered_json result = write_run(study.folder, done, options.wall_s(),
                                             [](const std::filesystem::path& folder, const CheckedProgram& made) {
                                               write_replay_figure(folder, *made.replay);
@@ -68,15 +55,16 @@ int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem
   console.message(Severity::Notice, "report: drawing");
   try {
     write_report_and_figures(study_report(output, console), output / "report.html");
-    write_compensation_figures(output, output / "figures");
+    laboratory::write_compensation_figures(output, output / "figures");
   } catch (const Cancelled& error) {
     throw StagesKept(error.what());
   }
   result["report"] = (output / "report.html").string();
   result["wall_s"] = options.wall_s();
   print_study(options, result);
-  const bool lacks_program = done.study.plan && study.folder.case_file().settings.T_robot_sim && !done.gate.is_open;
-  return lacks_program ? kNotAcceptable : status_of(done.study, done.verdict);
+  const bool lacks_program = done.study.plan && asked.file.settings.T_robot_sim && !done.gate.is_open;
+  const bool is_refused = done.verdict.status() == VerdictStatus::Refused;
+  return lacks_program || is_refused ? kNotAcceptable : status_of(done.study.outcome);
 }
 
 }  // namespace incise::cli

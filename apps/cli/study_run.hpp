@@ -2,7 +2,7 @@
 
 #include "options.hpp"
 
-#include <incise/storage/case_run.hpp>
+#include <incise/laboratory/case_steps.hpp>
 
 #include <optional>
 #include <string>
@@ -23,27 +23,15 @@ void add_cut_options(CLI::App& verb, CutOptions& options);
 /// Adds --method to a verb that corrects the path.
 void add_compensation_method(CLI::App& verb, CutOptions& options);
 
-/// A run of a case up to a stage, with what the command line says in place of the case.
-class StudyRun : public CaseRun {
- public:
-  /// @param until  the last stage that will be asked for.
-  StudyRun(const std::filesystem::path& case_path, const std::filesystem::path& output, Stage until,
-           const CommonOptions& options, const CutOptions& cut = {});
-  [[nodiscard]] Study study(Monitor& monitor);
-  [[nodiscard]] Run run(const std::vector<std::string>& accepted, Monitor& monitor);
-
- private:
-  const int threads_;
-};
-
 /// The case, and the files that it names looked for, with what the command line says in place of the case.
 [[nodiscard]] CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut);
 
+/// The case as asked, its output, and how far it is run.
+[[nodiscard]] laboratory::CaseRequest case_request(const std::filesystem::path& case_path, Stage until,
+                                                   const CommonOptions& options, const CutOptions& cut);
+
 /// Where the results of a case go when -o is not given: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
-
-/// 4 where the verdict refuses the cut, else that of the outcome.
-[[nodiscard]] int status_of(const Study& study, const Verdict& verdict);
 
 /// The whole loop with program and report: what `run` and `demo` do. @returns the exit status.
 int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,

@@ -1,15 +1,8 @@
 #include "calibrated_case.hpp"
-#include "compensation_figures.hpp"
 #include "option_checks.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/described_json.hpp>
-#include <incise/storage/result_json.hpp>
-#include <incise/workflow/assess.hpp>
 
-#include <fmt/format.h>
-
-#include <chrono>
 #include <memory>
 
 namespace incise::cli {
@@ -19,44 +12,9 @@ struct CompensateOptions {
   std::filesystem::path case_path;
   CutOptions cut;
   bool is_robust = false;
-  CalibratedOptions calibrated;
+  laboratory::CalibratedRequest calibrated;
   double max_probability = ScenarioRequest{}.max_probability;
 };
-
-/// What was left of the mean error per pass; one pass of the paper's: after over before.
-nlohmann::ordered_json contraction_of(const Study& study) {
-  if (!study.correction) return nullptr;
-  if (study.correction->iteration) {
-    const std::optional<double>& contraction = study.correction->iteration->contraction;
-    return contraction ? nlohmann::ordered_json(*contraction) : nlohmann::ordered_json(nullptr);
-  }
-  if (!study.corrected || !study.corrected->centerline.abs_error_mm) return nullptr;
-  return study.corrected->centerline.abs_error_mm->mean / study.as_planned->centerline.abs_error_mm->mean;
-}
-
-nlohmann::ordered_json summary_of(const Study& study) {
-  nlohmann::ordered_json json;
-  if (!study.as_planned) return to_json(*study.stretched);
-  const std::size_t simulations = study.correction && study.correction->iteration
-                                      ? study.correction->iteration->passes.size()
-                                  : study.corrected ? 2
-                                                    : 1;
-  json["outcome"] = to_string(study.outcome);
-  json["verdict"] = to_json(study.verdict);
-  json["accepted"] = study.is_accepted;
-  json["passes"] = simulations - 1;
-  json["simulations"] = simulations;
-  json["contraction"] = contraction_of(study);
-  json["compensation_outcome"] = nullptr;
-  if (study.correction && study.correction->iteration)
-    json["compensation_outcome"] = to_string(study.correction->iteration->outcome);
-  json["floor_mm"] = nullptr;
-  if (study.correction && study.correction->floor_mm) json["floor_mm"] = *study.correction->floor_mm;
-  json["before"] = to_json(*study.as_planned);
-  json["after"] = study.corrected ? to_json(*study.corrected) : nlohmann::ordered_json(nullptr);
-  json["correction"] = study.correction ? correction_summary_json(*study.correction) : nlohmann::ordered_json(nullptr);
-  return json;
-}
 
 /// --robust and what it needs go together.
 void require_robust_options(const CompensateOptions& chosen) {
@@ -71,75 +29,17 @@ void require_robust_options(const CompensateOptions& chosen) {
   }
 }
 
-void require_default_method(const CaseFile& file) {
-  if (file.settings.compensation.method == CompensationMethod::Default) return;
-  throw CaseError("command line", "--robust", "the paper's method", "--method default, from whose path it starts");
-}
-
-/// The path that is right for the whole posterior; what is said of it.
-nlohmann::ordered_json add_robust_path(const CompensateOptions& chosen, const CalibrationInput& calibration,
-                                       StudyRun& run, const Study& study, const CommonOptions& options,
-                                       Console& console) {
-  const auto start = std::chrono::steady_clock::now();
-  Workers workers(options.threads);
-  ScenarioRequest request = scenario_request(chosen.calibrated, options);
-  request.max_probability = chosen.max_probability;
-  const RobustCorrection robust = with_tissues(run, [&] {
-    return correct_robustly(run.folder.case_file().settings, run.folder, run.folder.cache(), study, calibration.belief,
-                            request, workers, console);
-  });
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  write_robust(run.folder, robust, calibration.file, wall.count());
-  nlohmann::ordered_json json = robust_summary_json(robust);
-  json["path"] = (run.folder.root() / "robust" / "path.json").string();
-  json["wall_s"] = wall.count();
-  if (calibration.found.is_virtual && !run.folder.case_file().settings.is_virtual)
-    console.message(Severity::Warning, fmt::format("robust path: {}", kVirtualCalibration));
-  const RobustCompensation& made = robust.compensation;
-  if (made.outcome != RobustOutcome::Met) {
-    console.message(
-        Severity::Warning,
-        fmt::format(
-            "robust path: {}: a margin below {} mm somewhere has a probability of {:.3f}, or {:.3f} if the tissues "
-            "whose ring stayed open count, and not at most {}",
-            to_string(made.outcome), robust.settings.region.close_margin_mm, made.robust.p_close_margin,
-            made.robust.p_close_bound(), chosen.max_probability));
-  }
-  return json;
-}
-
 int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
-  Console console(options.level());
   require_robust_options(chosen);
-  std::optional<CalibrationInput> calibration;
-  if (chosen.is_robust) calibration = read_calibration_input(chosen.calibrated);
-  const std::filesystem::path output = output_of(chosen.case_path, options);
-  if (chosen.is_robust) require_default_method(case_as_asked(chosen.case_path, chosen.cut));
-  StudyRun run(chosen.case_path, output, Stage::Verify, options, chosen.cut);
-  const Study study = run.study(console);
-  nlohmann::ordered_json result = summary_of(study);
-  bool is_robust_enough = true;
-  if (chosen.is_robust) {
-    result["robust"] = nullptr;
-    is_robust_enough = false;
-    if (study.corrected) {
-      result["robust"] = add_robust_path(chosen, *calibration, run, study, options, console);
-      is_robust_enough = result["robust"]["outcome"] == to_string(RobustOutcome::Met);
-    }
-  }
-  result["folder"] = run.folder.folder("correction").string();
-  if (study.correction) result["path"] = (run.folder.folder("correction") / "path.json").string();
-  result["figures"] = nlohmann::ordered_json::array();
-  for (const auto& figure : write_compensation_figures(output, output / "figures"))
-    result["figures"].push_back(figure.string());
-  result["stages"] = to_json(study.stages);
-  print_study(options, result);
-  if (study.outcome == Outcome::Success && !study.is_accepted) {
-    console.message(Severity::Warning,
-                    "the correction is not accepted: the mean error has to be below the electrode's radius and smaller than before, and "
-                    "depth and closure no worse");
-  }
-  return study.is_accepted && is_robust_enough && study.verdict.status() != VerdictStatus::Refused ? kDone : kNotAcceptable;
+  std::optional<laboratory::RobustRequest> robust;
+  if (chosen.is_robust) robust = {laboratory::read_calibration_input(chosen.calibrated), chosen.max_probability};
+  return run_step(
+      options,
+      [&](const auto& context) {
+        return laboratory::compensate_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), robust,
+                                           context);
+      },
+      print_study);
 }
 
 }  // namespace

@@ -18,10 +18,9 @@ std::shared_ptr<const TissueModel> specimen_of(const CaseFile& file, const std::
   if (!file.inputs.specimen_mesh.empty()) {
     return std::make_shared<TissueModel>(tissue_of(file.settings, read_specimen_mesh(file, monitor)));
   }
-  CommonOptions of_study = options;
-  of_study.output.clear();
-  StudyRun study(case_path, output_of(case_path, of_study), Stage::Mesh, of_study);
-  return study.study(monitor).model;
+  Workers workers(options.threads);
+  CaseRun study(file, output_beside(case_path), {.until = Stage::Mesh}, options.context());
+  return study.study(workers, monitor).model;
 }
 
 int export_case(const std::filesystem::path& case_path, const std::string& format, const CommonOptions& options) {

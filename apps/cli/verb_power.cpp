@@ -1,4 +1,3 @@
-#include "kept_output.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 #include "power_output.hpp"
@@ -6,6 +5,7 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/entry_folder.hpp>
+#include <incise/laboratory/case_steps.hpp>
 #include <incise/storage/bench_files.hpp>
 #include <incise/storage/power_file.hpp>
 
@@ -70,7 +70,7 @@ void make_output(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw DataError(folder, "", error.message(), "a folder that can be made");
-  require_own_or_empty(folder, {"power.json", "cache"}, "a series");
+  laboratory::require_own_or_empty(folder, {"power.json", "cache"}, "a series");
   require_writable(folder / "power.json");
 }
 
@@ -93,7 +93,7 @@ int find_power(PowerArguments arguments, const CommonOptions& options) {
   for (const char* name : {"power.json", "power.csv"}) refuse_input_as_output("-o", output / name, inputs);
   OlderOutput older(output / "power.json", console);
   Workers workers(options.threads);
-  return with_parts_kept(output, [&] {
+  laboratory::with_parts_kept(output, [&] {
     make_output(output);
     Cache cuts(std::make_unique<EntryFolder>(output / "cache"));
     result.series = run_power_series(result.subjects, result.request, cuts, workers, console);
@@ -101,8 +101,8 @@ int find_power(PowerArguments arguments, const CommonOptions& options) {
     write_power(output, result, inputs, options);
     older.replaced();
     print_power(options, result, output);
-    return result.series.choice.chosen_w ? kDone : kNotAcceptable;
   });
+  return result.series.choice.chosen_w ? kDone : kNotAcceptable;
 }
 
 void add_limits(CLI::App& verb, PowerRequest& request) {

@@ -32,8 +32,9 @@ void write_folder(const ReplayArguments& arguments, const CommonOptions& options
   write_json(target.path() / "replay.json", result);
   const nlohmann::ordered_json settings{{"speed_slider_percent", arguments.slider_percent},
                                         {"max_deviation_mm", arguments.max_deviation_mm}};
-  write_manifest(target.path(), manifest_of(options, settings.dump(), {arguments.program, arguments.path},
-                                            result.at("wall_s").get<double>()));
+  write_manifest(target.path(),
+                 laboratory::manifest_of(options.context(), settings.dump(), {arguments.program, arguments.path},
+                                         result.at("wall_s").get<double>()));
   target.commit();
 }
 

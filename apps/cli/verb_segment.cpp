@@ -1,14 +1,8 @@
 #include "options.hpp"
-#include "registration_trust.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/manifest.hpp>
-#include <incise/io/specimen_id.hpp>
-#include <incise/io/volume_io.hpp>
-#include <incise/storage/own_files.hpp>
-#include <incise/storage/result_json.hpp>
+#include <incise/laboratory/tissue_steps.hpp>
 
-#include <array>
 #include <optional>
 
 namespace incise::cli {
@@ -27,15 +21,11 @@ void add_segment(Application& application) {
   auto [verb, a] = application.add_verb<Arguments>(
       "segment", "", "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd",
       [](const Arguments& arguments, const CommonOptions& options) {
-        Console console(options.level());
-        const std::filesystem::path output = options.required_output("labels.nrrd");
-        refuse_input_as_output("-o", output, {arguments.ct});
-        require_volume_name(output);
-        require_own_manifest_beside(output);
-        CtReadSettings reading;
-        if (!arguments.spacing.empty()) reading.spacing_mm = Vec3(arguments.spacing.data());
-        if (!arguments.hu.empty()) reading.hu = GrayToHu{arguments.hu[0], arguments.hu[1]};
-        SegmentationSettings settings;
+        laboratory::SegmentRequest request{.ct = arguments.ct, .output = options.required_output("labels.nrrd")};
+        refuse_input_as_output("-o", request.output, {request.ct});
+        if (!arguments.spacing.empty()) request.reading.spacing_mm = Vec3(arguments.spacing.data());
+        if (!arguments.hu.empty()) request.reading.hu = GrayToHu{arguments.hu[0], arguments.hu[1]};
+        SegmentationSettings& settings = request.settings;
         settings.window_low_hu = arguments.window[0];
         settings.window_high_hu = arguments.window[1];
         settings.opening_radius_mm = arguments.opening_mm;
@@ -48,23 +38,7 @@ void add_segment(Application& application) {
           }
         }
         if (!arguments.seed.empty()) settings.seeds_mm.emplace_back(arguments.seed.data());
-        const Segmentation found = segment(read_ct(arguments.ct, reading, console).volume, settings, console);
-        tell(found.verdict, console);
-        const nlohmann::json chosen{{"window_hu", arguments.window},
-                                    {"roi_box_mm", arguments.roi},
-                                    {"seed_mm", arguments.seed},
-                                    {"spacing_mm", arguments.spacing},
-                                    {"hu", arguments.hu},
-                                    {"opening_mm", settings.opening_radius_mm},
-                                    {"smoothing_mm", found.smoothing_mm}};
-        Manifest manifest = manifest_of(options, chosen.dump(), {arguments.ct}, options.wall_s());
-        if (manifest.specimen_id.empty()) manifest.specimen_id = specimen_id_of_scan(manifest.inputs.front().sha256);
-        write_labels(output, found.labels);
-        write_manifest_beside(output, manifest);
-        nlohmann::ordered_json result = to_json(found);
-        result["labels"] = output.string();
-        print_result(options, result);
-        return kDone;
+        return run_step(options, [&](const auto& context) { return laboratory::segment_scan(request, context); });
       });
   verb->add_option("ct", a.ct, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
   verb->add_option("--window-hu", a.window, "Least and greatest HU of tissue")->expected(2);

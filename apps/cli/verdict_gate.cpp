@@ -32,19 +32,6 @@ void require_accepted_ids(const std::vector<std::string>& accepted) {
   }
 }
 
-void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor) {
-  for (const VerdictReason& reason : verdict.reasons()) {
-    const bool is_accepted = std::find(gate.accepted.begin(), gate.accepted.end(), reason.id) != gate.accepted.end();
-    if (is_accepted) {
-      monitor.message(Severity::Warning, fmt::format("accepted: {}: {}", reason.id, reason.message));
-    } else if (reason.severity == VerdictStatus::Refused) {
-      monitor.message(Severity::Warning, fmt::format("no program: refused: {}: {}", reason.id, reason.message));
-    } else {
-      monitor.message(Severity::Warning, fmt::format("no program: caution: {}: {}. --accept {} takes it on you", reason.id, reason.message, reason.id));
-    }
-  }
-}
-
 void print_verdict(const nlohmann::ordered_json& verdict) {
   fmt::print("{:<36} {}\n", "verdict", verdict.at("status").get<std::string>());
   for (const auto& reason : verdict.at("reasons")) {

@@ -15,9 +15,6 @@ void add_accept(CLI::App& verb, std::vector<std::string>& accepted);
 /// Refuses ids that are no cautions of verdict_rules() (status 2), naming the nearest one.
 void require_accepted_ids(const std::vector<std::string>& accepted);
 
-/// Says on the console what stands between a verdict and its program, or which cautions were accepted.
-void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor);
-
 /// The verdict for a person: its status, then a line for each reason, worst first.
 void print_verdict(const nlohmann::ordered_json& verdict);
 

@@ -1,13 +1,14 @@
 #pragma once
 
 // What a laboratory needs from a case to the program of its robot, and to measure what the robot cut. Link
-// incise::storage. Every other header is a part of one of these rooms: see README.md, "How it is built".
+// incise::laboratory. Every other header is a part of one of these rooms: see README.md, "How it is built".
 #include <incise/evaluation/comparison.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/imaging/photo_contours.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/entry_folder.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/laboratory/experiment.hpp>
 #include <incise/registration/register_clouds.hpp>
 #include <incise/robot/player.hpp>
 #include <incise/storage/calibration_file.hpp>

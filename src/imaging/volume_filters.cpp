@@ -1,5 +1,7 @@
 #include "imaging/volume_filters.hpp"
 
+#include <incise/core/image_library_turn.hpp>
+
 #include <itkConnectedComponentImageFilter.h>
 #include <itkDiscreteGaussianImageFilter.h>
 #include <itkImage.h>
@@ -55,6 +57,7 @@ std::int32_t renumber(std::vector<std::int32_t>& numbers) {
 }  // namespace
 
 Pieces find_pieces(const Mask& mask) {
+  const ImageLibraryTurn turn;
   auto filter = itk::ConnectedComponentImageFilter<Image<std::uint8_t>, Image<std::int32_t>>::New();
   filter->SetInput(image_from(mask));
   filter->SetFullyConnected(false);
@@ -67,6 +70,7 @@ Pieces find_pieces(const Mask& mask) {
 GrayVolume distance_to(const Mask& mask) {
   if (std::find(mask.voxels.begin(), mask.voxels.end(), std::uint8_t{1}) == mask.voxels.end())
     return {mask.grid, std::vector<float>(mask.voxels.size(), std::numeric_limits<float>::infinity())};
+  const ImageLibraryTurn turn;
   auto filter = itk::SignedMaurerDistanceMapImageFilter<Image<std::uint8_t>, Image<float>>::New();
   filter->SetInput(image_from(mask));
   filter->SetSquaredDistance(false);
@@ -81,6 +85,7 @@ GrayVolume distance_to(const Mask& mask) {
 
 GrayVolume gaussian(GrayVolume volume, double sigma) {
   if (sigma == 0.0) return volume;
+  const ImageLibraryTurn turn;
   auto filter = itk::DiscreteGaussianImageFilter<Image<float>, Image<float>>::New();
   filter->SetInput(image_from(volume));
   filter->SetVariance(sigma * sigma);

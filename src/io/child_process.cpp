@@ -1,9 +1,9 @@
 #include "io/child_process.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/image_library_turn.hpp>
 
 #include <fmt/format.h>
-
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -96,6 +96,7 @@ std::string read_all(int from) {
 
 std::string in_child_process(const std::filesystem::path& file, const std::string& what, const ChildLimits& limits,
                              const std::function<std::string()>& work) {
+  const ImageLibraryTurn turn;
   int ends[2];
   if (::pipe(ends) != 0) throw DataError(file, "", std::strerror(errno), "a process to read it in");
   const pid_t child = ::fork();

@@ -2,6 +2,7 @@
 #include "io/volume_quiet.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/image_library_turn.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/volume_io.hpp>
@@ -197,6 +198,7 @@ void write_dicom_series(const fs::path& folder, const CtVolume& volume, const Di
   INCISE_REQUIRE(std::max(volume.grid.size[0], volume.grid.size[1]) <= 65535,
                  "expected at most 65535 rows and columns");
   const Series series = plan_series(folder, volume, tags);
+  const ImageLibraryTurn turn;
   const QuietImageLibraries quiet;
   AtomicFolder target(folder);
   for (int k = 0; k < volume.grid.size[2]; ++k) {

@@ -10,6 +10,7 @@
 #include "io/volume_staging.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/image_library_turn.hpp>
 #include <incise/io/input_file.hpp>
 
 #include <fmt/format.h>
@@ -390,6 +391,7 @@ VolumeFormat format_to_write(const fs::path& path) {
 
 void write_itk_image(const fs::path& path, const VolumeGrid& grid, Component component, const void* voxels) {
   const VolumeFormat format = format_to_write(path);
+  const ImageLibraryTurn turn;
   const QuietImageLibraries quiet;
   const StagingFolder staging(path);
   const auto io = make_image_io(format);

@@ -132,7 +132,8 @@ TEST(ForbiddenIncludes, TheBenchCannotSeeTheSimulation) {
 }
 
 TEST(ForbiddenIncludes, ThePlannerCannotSeeTheBench) {
-  for (const char* planner : {"planning", "calibration", "procedure", "cutting", "registration", "evaluation"})
+  for (const char* planner :
+       {"planning", "calibration", "procedure", "cutting", "registration", "evaluation", "workflow"})
     EXPECT_EQ(check_text(planner, "#include <incise/virtual_bench/body.hpp>\n").size(), 1U) << planner;
 }
 
@@ -154,7 +155,8 @@ TEST(LayersTable, WhatMayBeIncludedIsTransitive) {
   const Layers table = layers();
   EXPECT_THAT(table.at("procedure").may_include, ElementsAre("core", "cutting", "geometry", "mechanics", "procedure"));
   EXPECT_EQ(table.at("workflow").may_include.count("io"), 0U);
-  for (const char* planner : {"planning", "calibration"}) EXPECT_EQ(table.at(planner).may_include.count("virtual_bench"), 0U);
+  for (const char* planner : {"planning", "calibration", "workflow"})
+    EXPECT_EQ(table.at(planner).may_include.count("virtual_bench"), 0U) << planner;
   for (const char* hidden : {"cutting", "procedure", "planning", "calibration"})
     EXPECT_EQ(table.at("virtual_bench").may_include.count(hidden), 0U);
 }

@@ -86,7 +86,7 @@ def files_of(folder):
     found = {}
     for file in sorted(folder.rglob("*")):
         kind = kind_of(file) if file.is_file() and not file.is_symlink() else None
-        # The records of an experiment's steps hold digests of files that say how long something took.
+        # The records of an older version's experiment hold digests of files that say how long something took.
         if not kind or "head_ct_case" in file.parts or "steps" in file.parts:
             continue
         name = file.relative_to(folder)

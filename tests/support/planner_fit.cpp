@@ -2,9 +2,9 @@
 
 #include "support/phantom_inputs.hpp"
 
+#include <incise/bench_studies/planned_bench_cut.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
-#include <incise/workflow/planned_bench_cut.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <incise/bench_studies/power_series.hpp>
 #include <incise/calibration/incision_speed.hpp>
 #include <incise/io/table_io.hpp>
-#include <incise/workflow/power_series.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <incise/evaluation/comparison.hpp>
+#include <incise/evaluation/evaluation.hpp>
+#include <incise/imaging/photo_contours.hpp>
+#include <incise/imaging/photo_scale.hpp>
+#include <incise/laboratory/step.hpp>
+#include <incise/report/figures.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise::laboratory {
+
+/// How a photograph's scale is given: exactly one way.
+struct ScaleRequest {
+  double mm_per_pixel = 0.0;         ///< 0: not given
+  std::optional<RulerKind> ruler;    ///< found in the photograph
+  std::optional<double> ruler_mm;    ///< between two of its finest ticks, by default 1; of a bar: its length
+  std::vector<double> two_points;    ///< u v u v mm
+  std::vector<double> rectangle;     ///< corners, lower left first, counter-clockwise: u v each
+  std::vector<double> rectangle_mm;  ///< its width and height
+  [[nodiscard]] int ways() const;
+};
+
+/// From a photograph of a cut, or from contours, to its measures.
+struct EvaluateRequest {
+  std::filesystem::path photo;     ///< empty: contours
+  std::filesystem::path incision;  ///< of contours
+  std::filesystem::path tumor;     ///< of contours: the edge; or …
+  std::filesystem::path line;      ///< … for an open cut the line that it was to follow
+  bool is_open = false;            ///< the incision's contour is open
+  EvaluationSettings settings;     ///< valid
+  ScaleRequest scale;              ///< of a photograph
+  RedLine red = RedLine::Annotation;
+  double max_gap_mm = PhotoSettings{}.max_gap_mm;
+  std::string specimen_id;       ///< whose cut it is; empty: as the files state
+  std::filesystem::path figure;  ///< empty: none
+  ErrorColors colors = ErrorColors::Safe;
+  std::filesystem::path output;  ///< JSON; empty: no file
+};
+/// Not acceptable: a cut whose outcome is none of success, or a measurement whose verdict refuses it. `outcome` of the
+/// JSON says which. @throws DataError, CaseError
+[[nodiscard]] StepResult evaluate_cut(const EvaluateRequest& request, const StepContext& context);
+
+/// From evaluations before and after a change to tests, tables and figures.
+struct CompareRequest {
+  std::vector<std::filesystem::path> before;  ///< at least one
+  std::vector<std::filesystem::path> after;   ///< at least one
+  ComparisonSettings settings;                ///< valid
+  std::filesystem::path output;               ///< folder; empty: no files
+};
+/// Not acceptable: a side on which no cut has errors. @throws DataError for files that are not of one kind.
+[[nodiscard]] StepResult compare_cuts(const CompareRequest& request, const StepContext& context);
+
+}  // namespace incise::laboratory

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/storage/run_folder.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace incise {
+
+/// What an experiment on the virtual bench is asked for.
+struct ExperimentSettings {
+  std::uint64_t specimens = 4;  ///< half to calibrate on, half to test; even
+  std::optional<std::uint64_t>
+      outside;                       ///< further ones, unlike the others; absent: one with four specimens, else none
+  std::filesystem::path truth;       ///< empty: truth/ in the output
+  bool is_quick = false;             ///< without Table I
+  bool with_paper_pass = false;      ///< test specimens are cut along the paper's single correction, too
+  bool with_known_physics = false;   ///< and along that of a planner that knows the bench's physics
+  bool with_withheld_force = false;  ///< advice is asked for once more without the pull
+  int tets = 25000;                  ///< of the planner's meshes
+};
+
+/// The whole experiment: specimens are cut as planned, the simulation is calibrated to their photographs, further ones
+/// are cut as planned and corrected, and everything is measured and written to a folder. Specimens go side by side, one
+/// thread each. Steps that were finished before are not run again: each folder's `cache/` holds them, under the
+/// contents of what they are made from, as long as nothing that they wrote has changed since.
+///
+///   S1/ …         of a specimen: lab/ (readings), planned/, compensated/, photographs, cache/, log.txt
+///   truth/        the specimens themselves; nothing that plans a cut is given it
+///   calibration/  table_1/  comparison/  advice/
+///   table_2.csv  commands.sh  study.json  report.html  manifest.json  experiment.json
+///
+/// @param run  what the manifests say; `seed` is that of the first specimen.
+/// @returns what study.json holds.
+/// @throws DataError where nothing is left to calibrate on or a file cannot be written; Cancelled: finished steps are
+/// kept.
+[[nodiscard]] nlohmann::ordered_json experiment(const ExperimentSettings& settings, const std::filesystem::path& output,
+                                                const RunContext& run, Workers& workers, Monitor& monitor);
+/// The same on every thread of the machine and without messages.
+[[nodiscard]] nlohmann::ordered_json experiment(const ExperimentSettings& settings, const std::filesystem::path& output,
+                                                std::uint64_t seed = 1);
+
+}  // namespace incise

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <incise/laboratory/step.hpp>
+#include <incise/robot/checks.hpp>
+#include <incise/robot/program.hpp>
+#include <incise/robot/program_text.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise::laboratory {
+
+/// What a program is written as.
+enum class ProgramForm { UrScript, JointCsv, RosTrajectory, Json };
+inline constexpr std::array<std::string_view, 4> kProgramFormNames{"urscript", "joint-csv", "ros-trajectory", "json"};
+[[nodiscard]] constexpr Names names_of(ProgramForm) {
+  return kProgramFormNames;
+}
+
+/// From a path in the robot's frame to a checked program.
+struct ExportRequest {
+  std::filesystem::path path;
+  std::filesystem::path intended;      ///< the path before correction; empty: not known
+  std::filesystem::path surface;       ///< the tissue in the robot's frame; empty: not known
+  std::filesystem::path registration;  ///< that laid the path down; empty: not known
+  std::optional<PathKind> kind;        ///< in place of the one in the path's file
+  bool is_open = false;                ///< the path is an open cut
+  ProgramForm form = ProgramForm::UrScript;
+  ScriptMotion motion = ScriptMotion::MoveP;
+  CheckSettings checks;
+  ProgramSettings settings;
+  std::optional<double> overlap_mm;  ///< of a closed path; absent: 5 mm for an incision, none for a mark
+  ArmSetup setup;
+  std::optional<double> power_w;       ///< of the generator; absent: not known
+  std::vector<std::string> overrides;  ///< checks that a person takes on them
+  std::vector<std::string> accepted;   ///< cautions of the verdict, likewise
+  std::filesystem::path output;
+};
+/// Writes the program if the verdict allows it; else the result is not acceptable, and nothing is written.
+/// @throws DataError for a file that cannot be used; CaseError for overrides or a tool that do not go with the path.
+[[nodiscard]] StepResult export_program(const ExportRequest& request, const StepContext& context);
+
+/// Tells what stands between a verdict and its program, or which cautions were accepted.
+void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor);
+
+}  // namespace incise::laboratory

@@ -1,0 +1,177 @@
+#include <incise/bench_studies/planned_bench_cut.hpp>
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/input_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/laboratory/bench_steps.hpp>
+#include <incise/storage/bench_files.hpp>
+#include <incise/virtual_bench/course.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace incise::laboratory {
+namespace {
+
+/// The seed stays out of the laboratory's folder: who knows it can draw the specimen.
+void write_run(const std::filesystem::path& folder, const StepContext& context, const std::string& command,
+               const std::vector<std::filesystem::path>& inputs) {
+  Manifest manifest = manifest_of(context.run, "{}", inputs, context.wall_s());
+  manifest.command = command;
+  manifest.seed = 0;
+  manifest.specimen_id.clear();
+  write_manifest(folder, manifest);
+}
+
+void make_parent(const std::filesystem::path& folder) {
+  if (folder.empty()) return;
+  const auto parent = std::filesystem::absolute(folder).parent_path();
+  std::error_code error;
+  std::filesystem::create_directories(parent, error);
+  if (error) throw DataError(folder, "", error.message(), "a folder that can be made");
+  require_replaceable(folder);
+}
+
+/// A specimen that cannot be held and stretched is a result: it is told, and there is nothing to read or to cut.
+bool is_held(const BenchBody& body, Monitor& monitor) {
+  if (body.inverted_tets > 0)
+    monitor.message(Severity::Detail,
+                    fmt::format("{} tets of the stretched specimen are turned inside out", body.inverted_tets));
+  if (body.outcome != Outcome::NotConverged) return true;
+  monitor.message(Severity::Warning, fmt::format("the specimen could not be stretched: {}, residual {:.2g}",
+                                                 to_string(body.outcome), body.equilibrium_residual));
+  return false;
+}
+
+nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut) {
+  nlohmann::ordered_json json;
+  json["note"] = "The truth about a virtual cut, for tests: nothing of this may reach a planner.";
+  json["outcome"] = to_string(cut.outcome);
+  if (cut.inner_edge) {
+    double mean = 0.0;
+    const std::vector<double> errors = true_errors_mm(body, cut, kInnerEdgeTargetMm);
+    for (const double e : errors) mean += std::abs(e) / static_cast<double>(errors.size());
+    json["mean_abs_error_mm"] = mean;
+    json["signed_errors_mm"] = errors;
+  }
+  json["bulge_mm"] = cut.bulge_mm;
+  json["thermal_width_mm"] = cut.thermal_width_mm;
+  json["mean_drag_force_mn"] = cut.mean_force_mn;
+  json["removed_tets"] = cut.removed_tets;
+  return json;
+}
+
+}  // namespace
+
+StepResult make_specimen(const MakeSpecimenRequest& request, const StepContext& context) {
+  const Specimen specimen =
+      request.specimen.empty() ? draw_specimen(context.run.seed) : read_specimen(request.specimen);
+  for (const auto& folder : {request.output, request.truth}) make_parent(folder);
+  const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
+  if (!is_held(body, context.monitor)) return {nullptr, false};
+  const Readings readings = take_readings(body, request.has_elasticity, context.monitor);
+  const std::string name = "VIRTUAL-" + sha256_of_text(to_json(specimen).dump()).substr(0, 8);
+  AtomicFolder folder(request.output);
+  write_readings(folder.path(), readings, name);
+  write_run(folder.path(), context, "incise bench make", {});
+  if (!request.truth.empty()) {
+    AtomicFolder truth(request.truth);
+    write_truth(truth.path(), body);
+    write_run(truth.path(), context, context.run.command, {});
+    truth.commit();
+  }
+  folder.commit();
+  StepResult done;
+  nlohmann::ordered_json& result = done.json;
+  result["specimen"] = name;
+  result["folder"] = request.output.string();
+  result["ct"] = (request.output / "ct").string();
+  result["scan"] = (request.output / "scan.ply").string();
+  result["scan_points"] = readings.cloud_mm.size();
+  result["stretch_force_n"] = readings.stretch_force_n;
+  if (!request.truth.empty()) result["truth"] = request.truth.string();
+  result["virtual"] = true;
+  result["wall_s"] = context.wall_s();
+  return done;
+}
+
+StepResult cut_specimen_by(const CutSpecimenRequest& request, const StepContext& context) {
+  const Specimen specimen = read_specimen(request.specimen);
+  const WrittenProgram program = program_from_text(read_text(request.program), request.program);
+  const Replay replay = play(program);
+  if (replay.outcome != ReplayOutcome::Completed) {
+    throw DataError(request.program, replay.line > 0 ? fmt::format("line {}", replay.line) : "",
+                    fmt::format("a motion that ends as {}", to_string(replay.outcome)),
+                    "a program that the arm can run to its end, and that ends outside the tissue",
+                    "`incise replay` shows how far it gets.");
+  }
+  for (const auto& folder : {request.output, request.truth}) make_parent(folder);
+  const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
+  if (!is_held(body, context.monitor)) return {nullptr, false};
+  const std::vector<TipPose> course =
+      tip_course(asked_course(replay, program.T_flange_tool), specimen, T_robot_specimen(specimen).inverse());
+  if (const auto misfit = find_misfit(body, course)) {
+    throw DataError(request.program, "poses", *misfit, "a course in this specimen's tissue round its tumour",
+                    "Is it the program of another specimen?");
+  }
+  const BenchCut made = cut_specimen(body, course, request.power_w, context.workers, context.monitor);
+  if (made.outcome == Outcome::NotConverged) {
+    context.monitor.message(Severity::Warning, "the cut did not converge: nothing to photograph");
+    return {nullptr, false};
+  }
+  PhotographSettings settings;
+  settings.mm_per_pixel = request.mm_per_pixel;
+  AtomicFolder folder(request.output);
+  write_picture(folder.path() / "photo.png", photograph(body, made, settings));
+  write_json(folder.path() / "photo.json", {{"note", "Virtual photograph: no real tissue."},
+                                            {"mm_per_pixel", settings.mm_per_pixel},
+                                            {"ruler_tick_mm", 1.0},
+                                            {"red", "annotation"}});
+  write_run(folder.path(), context, "incise bench cut", {request.program});
+  if (!request.truth.empty()) {
+    AtomicFolder truth(request.truth);
+    write_json(truth.path() / "cut_truth.json", truth_of(body, made));
+    write_run(truth.path(), context, context.run.command, {request.specimen, request.program});
+    truth.commit();
+  }
+  folder.commit();
+  StepResult done;
+  nlohmann::ordered_json& result = done.json;
+  result["photo"] = (request.output / "photo.png").string();
+  result["mm_per_pixel"] = settings.mm_per_pixel;
+  result["virtual"] = true;
+  result["wall_s"] = context.wall_s();
+  return done;
+}
+
+StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const StepContext& context) {
+  const Specimen specimen = read_specimen(request.specimen);
+  if (std::filesystem::is_directory(request.output))
+    throw DataError(request.output, "", "a folder", "the name of a file to write");
+  const auto parent = std::filesystem::absolute(request.output).parent_path();
+  if (!std::filesystem::is_directory(parent)) throw DataError(parent, "", "no such folder", "a folder to write into");
+  const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
+  if (!is_held(body, context.monitor)) return {nullptr, false};
+  PlanSettings plan;
+  plan.power_w = request.power_w;
+  const KnownPhysicsCut made = cut_knowing_physics(body, plan, request.simulations, context.workers, context.monitor);
+  StepResult result_of;
+  nlohmann::ordered_json& result = result_of.json;
+  result["note"] = "From the truth about a virtual specimen: nothing of this may reach a planner.";
+  result["virtual"] = true;
+  result["outcome"] = to_string(made.cut.outcome);
+  result["compensation_outcome"] = to_string(made.correction.outcome);
+  const bool is_good = made.cut.outcome == Outcome::Success;
+  result["mean_abs_error_mm"] = is_good ? truth_of(body, made.cut).at("mean_abs_error_mm") : nlohmann::ordered_json();
+  result["passes_mm"] = nlohmann::ordered_json::array();
+  for (const CompensationPass& pass : made.correction.passes)
+    result["passes_mm"].push_back(pass.mean_abs_error_mm ? nlohmann::ordered_json(*pass.mean_abs_error_mm)
+                                                         : nlohmann::ordered_json());
+  result["wall_s"] = context.wall_s();
+  write_json(request.output, result);
+  result_of.is_acceptable = is_good;
+  return result_of;
+}
+
+}  // namespace incise::laboratory

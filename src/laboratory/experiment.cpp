@@ -1,0 +1,517 @@
+#include "laboratory/experiment_advice.hpp"
+#include "laboratory/experiment_report.hpp"
+#include "laboratory/experiment_tables.hpp"
+#include "laboratory/outside_range.hpp"
+#include "laboratory/virtual_laboratory.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/version.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/folder_lock.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/laboratory/case_steps.hpp>
+#include <incise/laboratory/cut_steps.hpp>
+#include <incise/laboratory/experiment.hpp>
+#include <incise/report/html_report.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <ostream>
+#include <string_view>
+#include <thread>
+
+namespace incise::laboratory {
+namespace {
+
+using ExperimentJson = nlohmann::ordered_json;
+
+/// A correction and the cut along it.
+struct SecondCut {
+  ExperimentJson compensation;  // what `incise compensate` printed
+  TrialCut cut;
+};
+
+/// Whether a correction ended with a path of its own.
+bool has_path(const ExperimentJson& compensation) {
+  return compensation.is_object() && compensation.contains("path") && compensation.at("path").is_string();
+}
+
+/// A step of all specimens together cannot be done without.
+void require_done(const StepAnswer& answer, const char* step, const StepRunner& runner) {
+  if (answer.end != StepEnd::Done)
+    throw DataError(runner.folder() / "log.txt", step, refusal_of(step, answer), "a step that can be gone on with");
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+ExperimentJson settings_json(const ExperimentSettings& settings) {
+  return {{"specimens", settings.specimens},
+          {"outside", settings.outside ? ExperimentJson(*settings.outside) : ExperimentJson(nullptr)},
+          {"quick", settings.is_quick},
+          {"paper_pass", settings.with_paper_pass},
+          {"known_physics", settings.with_known_physics},
+          {"withheld_force", settings.with_withheld_force},
+          {"tets", settings.tets},
+          {"truth", settings.truth.string()}};
+}
+
+/// What the calibration's data say: estimates and sentences, without the posterior's samples. Null without a fit.
+ExperimentJson fit_summary(const ExperimentJson& calibration) {
+  if (!calibration.is_object() || !calibration.at("posterior").is_object()) return nullptr;
+  ExperimentJson json;
+  for (const char* parameter : {"drag_length_mm", "ln_stiffness_factor", "bias_mm"}) {
+    const ExperimentJson& estimate = calibration.at("posterior").at(parameter);
+    for (const char* key : {"mean", "sd", "told", "at_limit"}) json[parameter][key] = estimate.at(key);
+  }
+  json["stiffness_varied"] = calibration.at("posterior").at("stiffness_varied");
+  json["score_percent"] = calibration.at("score_percent");
+  json["identifiability"] = calibration.at("identifiability");
+  return json;
+}
+
+/// Geometric mean of the specimens that a calibration is of.
+double mean_modulus_kpa(const ExperimentJson& calibration) {
+  double sum = 0.0;
+  const ExperimentJson& specimens = calibration.at("specimens");
+  for (const ExperimentJson& specimen : specimens) sum += std::log(specimen.at("youngs_modulus_kpa").get<double>());
+  return std::exp(sum / static_cast<double>(specimens.size()));
+}
+
+class Experiment {
+ public:
+  Experiment(ExperimentSettings settings, std::filesystem::path output, RunContext run, Workers& workers,
+             Monitor& monitor)
+      : settings_(std::move(settings)),
+        context_(std::move(run)),
+        workers_(workers),
+        monitor_(monitor),
+        root_(std::move(output)),
+        truth_(settings_.truth.empty() ? root_ / "truth" : settings_.truth) {
+    for (std::uint64_t i = 0; i < settings_.specimens; ++i) {
+      Trial trial;
+      trial.name = fmt::format("S{}", i + 1);
+      trial.seed = context_.seed + i;
+      trial.role = i < settings_.specimens / 2 ? TrialRole::Calibrate : TrialRole::Test;
+      trials_.push_back(std::move(trial));
+    }
+    add_outside(context_.seed);
+  }
+
+  ExperimentJson run();
+
+ private:
+  void claim_folder() const;
+  void remove_summaries() const;
+  void add_outside(std::uint64_t seed);
+  [[nodiscard]] double cost_of(const Trial& trial) const;
+  [[nodiscard]] double calibration_cost() const;
+  void report_end(const Trial* trial, double cost);
+  void tell();
+  void run_trials(TrialRole first, TrialRole last);
+  void run_trial(Trial& trial);
+  void assess(SpecimenTrial& specimen, Trial& trial);
+  [[nodiscard]] ExperimentJson advice_of(SpecimenTrial& specimen, const std::string& step,
+                                         const std::filesystem::path& file, const std::filesystem::path& folder,
+                                         std::optional<double> force_n) const;
+  void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
+  void correct(SpecimenTrial& specimen, Trial& trial);
+  [[nodiscard]] SecondCut cut_again(SpecimenTrial& specimen, const std::filesystem::path& file,
+                                    const std::filesystem::path& folder, const std::string& tag);
+  void correct_as_paper(SpecimenTrial& specimen, Trial& trial);
+  void calibrate();
+  void compare();
+  void write_commands() const;
+
+  ExperimentSettings settings_;
+  RunContext context_;
+  Workers& workers_;
+  Monitor& monitor_;
+  std::filesystem::path root_, truth_;
+  FolderLock lock_{root_};
+  std::vector<Trial> trials_;
+  std::optional<ChosenTool> tool_;
+  double calibrated_kpa_ = 0.0;  // geometric mean of the calibrated specimens' moduli
+  ExperimentJson calibration_, table_1_, comparison_;
+  std::vector<std::string> calibration_commands_, comparison_commands_;
+  std::mutex mutex_;  // of what is not told yet, while specimens go side by side
+  std::vector<std::string> warnings_;
+  double done_ = 0.0;                                          // of the whole cost
+  const std::thread::id caller_ = std::this_thread::get_id();  // it alone may tell the monitor
+};
+
+ExperimentJson Experiment::run() {
+  const auto start = std::chrono::steady_clock::now();
+  claim_folder();
+  remove_summaries();
+  run_trials(TrialRole::Calibrate, TrialRole::Calibrate);
+  calibrate();
+  run_trials(TrialRole::Test, TrialRole::Outside);
+  compare();
+  write_table_2(root_ / "table_2.csv", trials_);
+  const ExperimentJson advice = hold_advice_against_truth(trials_, truth_);
+  if (!advice.is_null()) {
+    AtomicFolder folder(root_ / "advice");
+    write_advice(folder.path(), advice);
+    write_manifest(folder.path(), manifest_of(context_, settings_json(settings_).dump(), {}, seconds_since(start)));
+    folder.commit();
+  }
+  write_commands();
+  const TrialSummary summary = summary_of(trials_, TrialRole::Test);
+  ExperimentJson result;
+  result["specimen_is"] = "virtual";
+  result["specimens"] = trials_.size();
+  result["tested"] = summary.specimens;
+  const ExperimentJson of_test = to_json(summary);
+  for (const auto& [key, value] : of_test.items())
+    if (key != "specimens") result[key] = value;
+  if (settings_.with_paper_pass)
+    result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, &Trial::paper_pass));
+  if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
+  result["advice"] = advice;
+  result["calibration"] =
+      calibration_.is_object() ? calibration_.value("chosen", ExperimentJson()) : ExperimentJson(nullptr);
+  result["fit"] = fit_summary(calibration_);
+  result["left_out_of_calibration"] =
+      calibration_.is_object() ? calibration_.value("left_out", ExperimentJson::array()) : ExperimentJson::array();
+  result["specimens_test"] =
+      comparison_.is_object() ? comparison_.value("specimens", ExperimentJson()) : ExperimentJson(nullptr);
+  result["table_1"] = table_1_.is_object() ? table_1_.value("rows", ExperimentJson()) : ExperimentJson(nullptr);
+  result["table_2"] = table_2_json(trials_);
+  result["assessments"] = assessments_json(trials_);
+  result["figures"] = ExperimentJson::array();
+  for (const char* figure : {"comparison/box_plot.svg", "comparison/error_by_clock.svg", "table_1/table_1.svg",
+                             "calibration/fit.svg", "advice/roc.svg", "advice/reliability.svg"}) {
+    const bool is_of_grid = std::string_view(figure).starts_with("table_1");
+    if (is_of_grid && !table_1_.is_object()) continue;  // an earlier run's, which is kept
+    if (std::filesystem::exists(root_ / figure)) result["figures"].push_back((root_ / figure).string());
+  }
+  result["commands"] = (root_ / "commands.sh").string();
+  ReportData page = experiment_report(trials_, result, root_);
+  const ExperimentJson asked = settings_json(settings_);
+  for (const auto& [name, value] : asked.items()) page.settings.push_back({name, value.dump(), ""});
+  page.provenance = {{"version", std::string(version()), ""},
+                     {"commit", std::string(source_commit()), ""},
+                     {"command", context_.command, ""},
+                     {"seed", std::to_string(context_.seed), ""},
+                     {"threads", std::to_string(context_.threads), ""},
+                     {"machine", machine_description(), ""}};
+  write_report(page, root_ / "report.html");
+  result["report"] = (root_ / "report.html").string();
+  result["wall_s"] = seconds_since(start);
+  write_manifest(root_, manifest_of(context_, settings_json(settings_).dump(), {}, result["wall_s"].get<double>()));
+  write_json(root_ / "study.json", result);
+  return result;
+}
+
+/// One folder holds one experiment: runs with other options go on with it, those with other specimens would mix with
+/// it.
+void Experiment::claim_folder() const {
+  const std::filesystem::path file = root_ / "experiment.json";
+  if (!std::filesystem::exists(file)) {
+    require_own_or_empty(root_, {file.filename().string()}, "an experiment");
+    write_json(file, {{"schema", "incise.experiment/1"}, {"specimen_is", "virtual"}, {"seed", context_.seed}});
+    return;
+  }
+  const ExperimentJson kept = read_json(file);
+  const ExperimentJson seed = kept.is_object() ? kept.value("seed", ExperimentJson()) : ExperimentJson();
+  if (seed != ExperimentJson(context_.seed)) {
+    throw DataError(file, "seed", seed.dump(), fmt::format("{}, that of this command", context_.seed),
+                    "Its specimens are others: choose another place for the output");
+  }
+}
+
+/// What an earlier run with other options said of the whole: it would be taken for this one's.
+void Experiment::remove_summaries() const {
+  for (const char* folder : {"advice", "comparison"}) {
+    remove_replaceable(root_ / folder);  // somebody else's folder of that name is none of ours to remove
+  }
+  for (const char* file : {"study.json", "report.html", "table_2.csv", "commands.sh"})
+    std::filesystem::remove(root_ / file);
+}
+
+void Experiment::add_outside(std::uint64_t seed) {
+  const bool is_papers = settings_.specimens == 4;  // two to calibrate, two corrected, and one that fails
+  const std::uint64_t count = settings_.outside.value_or(is_papers ? 1 : 0);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Trial trial;
+    trial.seed = seed + settings_.specimens + i;
+    trial.name = fmt::format("S{}", settings_.specimens + i + 1);
+    trial.role = TrialRole::Outside;
+    OutsideKind kind = is_papers && !settings_.outside ? failed_specimen() : outside_specimen(trial.seed, i);
+    trial.kind = std::move(kind.name);
+    trial.given = std::move(kind.given);
+    trials_.push_back(std::move(trial));
+  }
+}
+
+/// Specimens side by side, one thread each.
+void Experiment::run_trials(TrialRole first, TrialRole last) {
+  std::vector<Trial*> mine;
+  for (Trial& trial : trials_)
+    if (trial.role >= first && trial.role <= last) mine.push_back(&trial);
+  workers_.for_each(mine.size(), 1, [&](std::size_t i) {
+    run_trial(*mine[i]);
+    report_end(mine[i], cost_of(*mine[i]));
+  });
+  tell();
+}
+
+/// Notes that something has ended; the monitor is told when its own thread comes by.
+void Experiment::report_end(const Trial* trial, double cost) {
+  {
+    const std::scoped_lock lock(mutex_);
+    done_ += cost;
+    if (trial != nullptr) {
+      for (const std::string& reason : refusals_of(*trial))
+        warnings_.push_back(fmt::format("{} ended at {}", trial->name, reason));
+    }
+  }
+  if (std::this_thread::get_id() == caller_) tell();
+}
+
+void Experiment::tell() {
+  const std::scoped_lock lock(mutex_);
+  for (const std::string& warning : warnings_) monitor_.message(Severity::Warning, warning);
+  warnings_.clear();
+  double total = calibration_cost();
+  for (const Trial& trial : trials_) total += cost_of(trial);
+  monitor_.progress("virtual specimens", std::min(1.0, done_ / total));
+}
+
+/// Roughly how long a specimen takes, in times of one that is cut as planned and no more: measured on a machine with
+/// two cores, and used for nothing but the time that is left.
+double Experiment::cost_of(const Trial& trial) const {
+  if (trial.role == TrialRole::Calibrate) return 1.0;
+  double cost = 3.2;
+  if (settings_.with_withheld_force) cost += 1.6;
+  if (trial.role == TrialRole::Test && settings_.with_paper_pass) cost += 0.9;
+  if (trial.role == TrialRole::Test && settings_.with_known_physics) cost += 1.5;
+  return cost;
+}
+
+/// Of fit and, unless it is left out, grid.
+double Experiment::calibration_cost() const {
+  const double specimens = static_cast<double>(settings_.specimens / 2);
+  return specimens * (settings_.is_quick ? 1.2 : 3.0);
+}
+
+void Experiment::run_trial(Trial& trial) {
+  Workers one(1);
+  StepRunner steps(root_ / trial.name, one, monitor_);
+  VirtualLaboratory bench({trial.seed, trial.given, truth_ / trial.name}, steps);
+  SpecimenTrial specimen({.name = trial.name, .tets = settings_.tets}, steps, bench);
+  if (specimen.prepare(tool_)) {
+    trial.planned = specimen.cut(specimen.planned_path(), "planned");
+    const bool goes_on = trial.planned.is_made && trial.role != TrialRole::Calibrate;
+    const bool is_test = goes_on && trial.role == TrialRole::Test;
+    if (goes_on) {
+      assess(specimen, trial);
+      correct(specimen, trial);
+    }
+    if (goes_on && settings_.with_withheld_force) assess_without_pull(specimen, trial);
+    if (is_test && settings_.with_paper_pass) correct_as_paper(specimen, trial);
+    if (is_test && settings_.with_known_physics) trial.known_physics = bench.known_physics().result;
+  }
+  trial.stretch_force_n = specimen.stretch_force_n();
+  trial.youngs_modulus_kpa = specimen.youngs_modulus_kpa();
+  trial.registration_rmse_mm = specimen.registration_rmse_mm();
+  trial.ended_at = specimen.ended_at();
+  trial.commands = steps.lines();
+}
+
+/// What would be advised before the robot moves. The corrected cut is made on the bench whatever it says: whether the
+/// advice was right is part of the experiment.
+void Experiment::assess(SpecimenTrial& specimen, Trial& trial) {
+  trial.assessment =
+      advice_of(specimen, "assess", specimen.case_file(), specimen.at("compensated"), specimen.stretch_force_n());
+}
+
+/// The same advice of a laboratory that cannot measure the pull: the tissue is taken to be as stiff as the calibrated
+/// one is on average. It corrects along another path, which is cut, too.
+void Experiment::assess_without_pull(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path folder = specimen.at("withheld");
+  const std::filesystem::path file =
+      specimen.write_variant("withheld.yaml", tool_, calibrated_kpa_, CompensationMethod::Default);
+  trial.assessment_without_pull = advice_of(specimen, "assess_without_pull", file, folder, std::nullopt);
+  trial.withheld = cut_again(specimen, file, folder, "withheld").cut;
+}
+
+/// @param force_n  absent: not measured.
+ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string& step,
+                                     const std::filesystem::path& file, const std::filesystem::path& folder,
+                                     std::optional<double> force_n) const {
+  const std::filesystem::path registration = specimen.registration();
+  const CalibratedRequest known{root_ / "calibration/calibration.json", force_n};
+  std::vector<std::string> words{"assess",         file.string(),        "--calibration", known.calibration.string(),
+                                 "--registration", registration.string()};
+  if (force_n) words.insert(words.end(), {"--stretch-force-n", fmt::format("{}", *force_n)});
+  words.insert(words.end(), {"-o", folder.string()});
+  return specimen
+      .ask({step,
+            words,
+            {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), known.calibration, registration},
+            {folder / "assessment/assess.json"},
+            [=](const StepContext& context) {
+              const CalibrationInput calibration = read_calibration_input(known);
+              return assess_case({read_case_with_inputs(file), folder, {}}, calibration, registration, context);
+            }})
+      .result;
+}
+
+/// The paper's correction with the same tool: one pass, radially, by the mid-line.
+void Experiment::correct_as_paper(SpecimenTrial& specimen, Trial& trial) {
+  const std::filesystem::path file =
+      specimen.write_variant("paper_pass.yaml", tool_, specimen.youngs_modulus_kpa(), CompensationMethod::Paper);
+  trial.paper_pass = cut_again(specimen, file, specimen.at("paper_pass"), "paper_pass").cut;
+}
+
+/// The correction of a case, verified in simulation, and another cut of the same specimen along it. Where its own
+/// simulation does not accept it, it is cut all the same: whether that was right is part of the experiment.
+SecondCut Experiment::cut_again(SpecimenTrial& specimen, const std::filesystem::path& file,
+                                const std::filesystem::path& folder, const std::string& tag) {
+  const std::filesystem::path path = folder / "correction/path.json";
+  const StepAnswer corrected =
+      specimen.ask({tag + "_compensate",
+                    {"compensate", file.string(), "-o", folder.string()},
+                    {file, specimen.at("tumor.csv"), specimen.at("lab/ct")},
+                    {path},
+                    [=](const StepContext& context) {
+                      return compensate_case({read_case_with_inputs(file), folder, {}}, std::nullopt, context);
+                    }});
+  if (corrected.end == StepEnd::Done || (corrected.end == StepEnd::NotAcceptable && has_path(corrected.result)))
+    return {corrected.result, specimen.cut(path, tag)};
+  TrialCut none;
+  none.ended_at = refusal_of(tag + "_compensate", corrected);
+  return {corrected.result, none};
+}
+
+void Experiment::correct(SpecimenTrial& specimen, Trial& trial) {
+  // The case holds what was calibrated: tool, stiffness, bias.
+  SecondCut again = cut_again(specimen, specimen.case_file(), specimen.at("compensated"), "corrected");
+  trial.compensation = std::move(again.compensation);
+  trial.corrected = std::move(again.cut);
+}
+
+void Experiment::calibrate() {
+  CalibrateRequest asked;
+  std::vector<std::filesystem::path> inputs;
+  for (const Trial& trial : trials_) {
+    if (trial.role != TrialRole::Calibrate || !trial.planned.measured) continue;
+    const std::filesystem::path folder = root_ / trial.name;
+    asked.cases.push_back(folder / "case.yaml");
+    asked.observed.push_back(trial.planned.measured->evaluation);
+    asked.forces_n.push_back(trial.stretch_force_n);
+    asked.registrations.push_back(folder / "registration/registration.json");
+    for (const std::filesystem::path& input : {asked.cases.back(), folder / "tumor.csv", folder / "lab/ct",
+                                               asked.observed.back(), asked.registrations.back()})
+      inputs.push_back(input);
+  }
+  if (asked.cases.empty())
+    throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
+  StepRunner steps(root_, workers_, monitor_);
+  const auto calibrated = [&](const char* step, CalibrationMethod method, const char* folder, const char* product) {
+    CalibrateRequest request = asked;
+    request.request.method = method;
+    request.output = root_ / folder;
+    std::vector<std::string> words{"calibrate"};
+    for (const auto& file : request.cases) words.push_back(file.string());
+    words.emplace_back("--observed");
+    for (const auto& file : request.observed) words.push_back(file.string());
+    words.emplace_back("--stretch-force-n");
+    for (const double force_n : request.forces_n) words.push_back(fmt::format("{}", force_n));
+    words.emplace_back("--registration");
+    for (const auto& file : request.registrations) words.push_back(file.string());
+    words.insert(words.end(), {"--method", std::string(to_string(method)), "-o", request.output.string()});
+    const StepAnswer answer =
+        steps.run({step, words, inputs, {request.output / product}, [=](const StepContext& context) {
+                     return calibrate_on_cuts(request, context).step;
+                   }});
+    require_done(answer, step, steps);
+    return answer.result;
+  };
+  calibration_ = calibrated("calibrate", CalibrationMethod::Fit, "calibration", "calibration.json");
+  const ExperimentJson& chosen = calibration_.at("chosen");
+  tool_ = ChosenTool{chosen.at("speed_mm_s").get<double>(), chosen.at("dullness").get<double>(),
+                     calibration_.at("posterior").at("bias_mm").at("mean").get<double>()};
+  calibrated_kpa_ = mean_modulus_kpa(calibration_);
+  if (!settings_.is_quick) table_1_ = calibrated("table_1", CalibrationMethod::Paper, "table_1", "table_1.csv");
+  calibration_commands_ = steps.lines();
+  report_end(nullptr, calibration_cost());
+}
+
+void Experiment::compare() {
+  CompareRequest request{.output = root_ / "comparison"};
+  for (const Trial& trial : trials_) {
+    if (trial.role != TrialRole::Test || !trial.planned.measured || !trial.corrected.measured) continue;
+    request.before.push_back(trial.planned.measured->evaluation);
+    request.after.push_back(trial.corrected.measured->evaluation);
+  }
+  if (request.before.empty()) return;
+  request.settings.is_paired = true;
+  std::vector<std::string> words{"compare", "--before"};
+  for (const auto& file : request.before) words.push_back(file.string());
+  words.emplace_back("--after");
+  for (const auto& file : request.after) words.push_back(file.string());
+  words.insert(words.end(), {"--paired", "-o", request.output.string()});
+  std::vector<std::filesystem::path> inputs = request.before;
+  inputs.insert(inputs.end(), request.after.begin(), request.after.end());
+  StepRunner steps(root_, workers_, monitor_);
+  const StepAnswer compared =
+      steps.run({"compare", words, inputs, {request.output / "compare.json"}, [=](const StepContext& context) {
+                   CompareRequest seeded = request;
+                   seeded.settings.bootstrap.seed = context.run.seed;
+                   return compare_cuts(seeded, context);
+                 }});
+  require_done(compared, "compare", steps);
+  comparison_ = compared.result;
+  comparison_commands_ = steps.lines();
+}
+
+/// Every command in an order in which they could be given by hand. 4 is an answer: not acceptable.
+void Experiment::write_commands() const {
+  write_atomically(root_ / "commands.sh", [&](std::ostream& out) {
+    out << "#!/bin/sh\n# The commands of this virtual experiment. Case files and tumor.csv are written between them by "
+           "`incise experiment`.\nset -e\n"
+           "incise() { command incise \"$@\" || [ $? -eq 4 ]; }\n";
+    const auto write = [&out](const std::string& title, const std::vector<std::string>& lines) {
+      out << "\n# " << title << '\n';
+      for (const std::string& line : lines) out << line << '\n';
+    };
+    const auto write_trials = [&](bool is_calibration) {
+      for (const Trial& trial : trials_) {
+        if ((trial.role == TrialRole::Calibrate) == is_calibration)
+          write(fmt::format("{} ({})", trial.name, to_string(trial.role)), trial.commands);
+      }
+    };
+    write_trials(true);
+    write("calibration", calibration_commands_);
+    write_trials(false);
+    write("before and after", comparison_commands_);
+  });
+}
+
+}  // namespace
+}  // namespace incise::laboratory
+
+namespace incise {
+
+nlohmann::ordered_json experiment(const ExperimentSettings& settings, const std::filesystem::path& output,
+                                  const RunContext& run, Workers& workers, Monitor& monitor) {
+  return laboratory::Experiment(settings, output, run, workers, monitor).run();
+}
+
+nlohmann::ordered_json experiment(const ExperimentSettings& settings, const std::filesystem::path& output,
+                                  std::uint64_t seed) {
+  Workers all(0);
+  Monitor quiet;
+  return experiment(settings, output, {"incise::experiment", seed, all.thread_count()}, all, quiet);
+}
+
+}  // namespace incise

@@ -1,0 +1,172 @@
+#include "laboratory/experiment_report.hpp"
+
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/report/figures.hpp>
+#include <incise/storage/calibration_file.hpp>
+#include <incise/storage/evaluation_file.hpp>
+
+#include <fmt/format.h>
+
+namespace incise::laboratory {
+namespace {
+
+using ReportJson = nlohmann::ordered_json;
+
+constexpr const char* kVirtualNotice =
+    "Virtual specimens, cut by a computed bench: no real tissue, no robot. Nothing here is a clinical result.";
+
+ReportTable table_of(const std::string& title, const ReportJson& rows) {
+  ReportTable table;
+  table.title = title;
+  if (rows.empty()) return table;
+  for (const auto& [column, value] : rows.front().items()) table.columns.push_back(column);
+  for (const ReportJson& row : rows) {
+    std::vector<std::string>& cells = table.rows.emplace_back();
+    for (const std::string& column : table.columns) cells.push_back(row.contains(column) ? cell(row.at(column)) : "");
+  }
+  return table;
+}
+
+void add_picture(ReportData& data, const std::filesystem::path& svg, const std::string& title,
+                 const std::string& lead) {
+  if (!std::filesystem::exists(svg)) return;
+  data.on_tissue.push_back({title, lead, read_text(svg), {}});
+}
+
+/// What the paper measured, as the paper's: never ours.
+ReportTable papers_table() {
+  ReportTable table;
+  table.title = "For comparison: what the paper reports of four ex vivo tongues (its Table II; not ours)";
+  table.columns = {"specimen", "cut", "mean_abs_error_mm", "sd_abs_error_mm", "hu_score", "centroid_shift_mm"};
+  table.rows = {{"S1 (paper)", "as planned", "1.57", "0.66", "0.08", "1.96"},
+                {"S2 (paper)", "as planned", "1.91", "0.90", "0.12", "2.22"},
+                {"S1, S2 (paper)", "as planned", "1.73", "0.80", "0.10", ""},
+                {"S3, S4 (paper)", "corrected", "1.46", "", "0.06", ""}};
+  return table;
+}
+
+/// A cut as its photograph shows it: after the paper's Fig. 5 c to f, in the colours of its Fig. 6 c, d.
+void add_cut(ReportData& data, const Trial& trial, const MeasuredCut& cut, const char* name) {
+  const ReportJson json = read_json(cut.evaluation);
+  const PhotographedCut photographed = read_photographed_cut(cut.evaluation);
+  ReportIncision incision;
+  incision.name = fmt::format("{} {} (virtual)", trial.name, name);
+  incision.closed_loop = true;
+  incision.mean_abs_error_mm = json.at("abs_error_mm").at("mean").get<double>();
+  incision.target_mm = json.at("target_mm").get<double>();
+  incision.measured_contour = "kerf's inner edge";
+  incision.tumor_edge = photographed.tumor_edge;
+  const ReportJson& points = json.at("points");
+  const auto x = points.at("x_mm").get<std::vector<double>>(), y = points.at("y_mm").get<std::vector<double>>();
+  for (std::size_t i = 0; i < x.size(); ++i) incision.incision.points.emplace_back(x[i], y.at(i), 0.0);
+  incision.signed_error_mm = points.at("signed_error_mm").get<std::vector<double>>();
+  data.on_tissue.push_back(
+      {incision.name,
+       "Tumour edge and inner edge of the kerf, found in the virtual photograph; colour: signed error.",
+       contour_figure_svg(incision, {.error_limit_mm = 3.0, .approach = photographed.approach}),
+       {}});
+}
+
+/// The first two specimens that were cut twice, as the paper shows two.
+void add_cuts(ReportData& data, const std::vector<Trial>& trials) {
+  int shown = 0;
+  for (const Trial& trial : trials) {
+    if (trial.role != TrialRole::Test || !trial.planned.measured || !trial.corrected.measured || shown == 2) continue;
+    add_cut(data, trial, *trial.planned.measured, "as planned");
+    add_cut(data, trial, *trial.corrected.measured, "corrected");
+    ++shown;
+  }
+}
+
+void add_gain(ReportTable& table, const char* name, const ReportJson& summary) {
+  table.rows.push_back({name, cell(summary.at("pairs")), cell(summary.at("mean_before_mm")),
+                        cell(summary.at("mean_after_mm")), cell(summary.at("gain_percent")), cell(summary.at("worse")),
+                        cell(summary.at("most_worse_mm"))});
+}
+
+/// The figures that the experiment was made for.
+ReportTable outcome_table(const ReportJson& result) {
+  ReportTable table{
+      "What came of it (virtual): specimens cut twice, mean over specimens of the photographs' mean absolute error",
+      {"cut", "specimens", "as_planned_mm", "after_mm", "gain_percent", "worse", "most_worse_mm"},
+      {}};
+  add_gain(table, "corrected", result);
+  if (result.contains("paper_pass")) add_gain(table, "the paper's single pass", result.at("paper_pass"));
+  if (result.contains("known_physics")) {
+    const ReportJson& floor = result.at("known_physics");
+    table.rows.push_back({"floor: physics known, the arm's errors not (from the truth)", cell(floor.at("specimens")),
+                          "", cell(floor.at("mean_after_mm")), "", "", ""});
+  }
+  return table;
+}
+
+/// What the cuts of the calibration's specimens say of the simulated tool.
+ReportTable fit_table(const ReportJson& result) {
+  ReportTable table{"Calibration (virtual): what the photographs say of the simulated tool",
+                    {"parameter", "mean", "sd", "told by the data", "at the end of what was simulated"},
+                    {}};
+  const ReportJson& fit = result.at("fit");
+  for (const char* parameter : {"drag_length_mm", "ln_stiffness_factor", "bias_mm"}) {
+    const ReportJson& estimate = fit.at(parameter);
+    if (std::string_view(parameter) == "ln_stiffness_factor" && !fit.at("stiffness_varied").get<bool>()) {
+      table.rows.push_back({parameter, "", "", "not varied", ""});
+      continue;
+    }
+    table.rows.push_back({parameter, fmt::format("{:.3f}", estimate.at("mean").get<double>()),
+                          fmt::format("{:.3f}", estimate.at("sd").get<double>()),
+                          estimate.at("told").get<std::string>(), estimate.at("at_limit").get<bool>() ? "yes" : "no"});
+  }
+  for (const ReportJson& one : result.at("left_out_of_calibration"))
+    table.rows.push_back(
+        {"left out: " + one.at("name").get<std::string>(), "", "", one.at("reason").get<std::string>(), ""});
+  return table;
+}
+
+}  // namespace
+
+ReportData experiment_report(const std::vector<Trial>& trials, const ReportJson& result,
+                             const std::filesystem::path& folder) {
+  ReportData data;
+  data.title = "Virtual experiment: cut, calibrate, correct, cut again";
+  data.virtual_notice = kVirtualNotice;
+  data.is_of_a_study = false;
+  data.pictures_heading = "Results on the virtual bench";
+  const TrialSummary summary = summary_of(trials, TrialRole::Test);
+  if (summary.pairs > 0) {
+    data.subtitle = fmt::format(
+        "Mean absolute error of the photographs of {} virtual specimens: {:.2f} mm as planned, {:.2f} mm corrected "
+        "({:.0f} % less); {} worse.",
+        summary.pairs, summary.mean_before_mm, summary.mean_after_mm, summary.gain_percent, summary.worse);
+  }
+  add_picture(
+      data, folder / "comparison/box_plot.svg", "Errors before and after",
+      "Absolute and signed errors along the contours of the virtual photographs, after the paper's Fig. 6 a, b.");
+  add_cuts(data, trials);
+  add_picture(data, folder / "comparison/error_by_clock.svg", "Error round the ring",
+              "Signed error by the place on a clock face over the tumour.");
+  add_picture(data, folder / "advice/roc.svg", "Was the advice right?",
+              "Stated probability that the corrected cut is the worse one, against which one it was.");
+  add_picture(data, folder / "advice/reliability.svg", "Close margins, stated and seen",
+              "Stated probability of a margin below 2.2 mm somewhere, against how often there was one.");
+  if (result.at("table_1").is_array())
+    add_picture(data, folder / "table_1/table_1.svg", "Table I of this experiment",
+                "Simulated speed and dullness against the photographs, after the paper's Table I.");
+  add_picture(data, folder / "calibration/fit.svg", "Calibration",
+              "Signed error photographed and simulated, and what the data say of each parameter.");
+  data.tables.push_back(outcome_table(result));
+  if (result.at("fit").is_object()) data.tables.push_back(fit_table(result));
+  data.tables.push_back(
+      table_of("Table II of this experiment (virtual): every cut, measured in its photograph", table_2_json(trials)));
+  data.tables.push_back(papers_table());
+  if (result.contains("table_1") && result.at("table_1").is_array())
+    data.tables.push_back(
+        table_of("Table I of this experiment (simulated, against virtual photographs)", result.at("table_1")));
+  ReportTable commands{"Commands", {"command"}, {}};
+  for (const Trial& trial : trials)
+    for (const std::string& line : trial.commands) commands.rows.push_back({line});
+  data.tables.push_back(std::move(commands));
+  return data;
+}
+
+}  // namespace incise::laboratory

@@ -1,0 +1,191 @@
+#include "laboratory/experiment_tables.hpp"
+
+#include <incise/io/atomic_file.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ostream>
+
+namespace incise::laboratory {
+namespace {
+
+using TableJson = nlohmann::ordered_json;
+
+/// The columns of Table II, and where an evaluation holds them.
+struct Measure {
+  const char* column;
+  const char* pointer;
+};
+constexpr Measure kMeasures[] = {{"mean_abs_error_mm", "/abs_error_mm/mean"},
+                                 {"sd_abs_error_mm", "/abs_error_mm/sd"},
+                                 {"max_abs_error_mm", "/abs_error_mm/max"},
+                                 {"mean_signed_error_mm", "/signed_error_mm/mean"},
+                                 {"hu_score", "/hu_score"},
+                                 {"centroid_shift_mm", "/centroid_shift_mm"},
+                                 {"close_margin_fraction", "/close_margin/fraction"}};
+
+TableJson measure_at(const TableJson& measures, const char* pointer) {
+  const TableJson::json_pointer at(pointer);
+  return measures.contains(at) ? measures.at(at) : TableJson(nullptr);
+}
+
+double mean_error_mm(const TrialCut& cut) {
+  return cut.measured->measures.at("abs_error_mm").at("mean").get<double>();
+}
+
+TableJson row_of(const Trial& trial, const char* cut_name, const TrialCut& cut) {
+  TableJson row;
+  row["specimen"] = trial.name;
+  row["seed"] = trial.seed;
+  row["role"] = to_string(trial.role);
+  row["kind"] = trial.kind.empty() ? TableJson(nullptr) : TableJson(trial.kind);
+  row["cut"] = cut_name;
+  row["outcome"] = cut.measured ? measure_at(cut.measured->measures, "/outcome")
+                                : TableJson(cut.is_made ? "no_closed_ring" : "not_cut");
+  for (const Measure& measure : kMeasures)
+    row[measure.column] = cut.measured ? measure_at(cut.measured->measures, measure.pointer) : TableJson(nullptr);
+  row["stretch_force_n"] = trial.stretch_force_n;
+  row["registration_rmse_mm"] =
+      trial.registration_rmse_mm ? TableJson(*trial.registration_rmse_mm) : TableJson(nullptr);
+  row["advice"] = trial.assessment.is_object() ? measure_at(trial.assessment, "/advice") : TableJson(nullptr);
+  const std::string& ended_at = trial.ended_at.empty() ? cut.ended_at : trial.ended_at;
+  row["ended_at"] = ended_at.empty() ? TableJson(nullptr) : TableJson(ended_at);
+  return row;
+}
+
+/// A cell of a CSV file: quoted where it has to be.
+std::string csv_cell(const TableJson& value) {
+  std::string text = value.is_number_float() ? fmt::format("{}", value.get<double>()) : cell(value);
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
+std::string cell(const TableJson& value) {
+  if (value.is_null()) return "";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
+  return value.dump();
+}
+
+std::vector<std::string> refusals_of(const Trial& trial) {
+  std::vector<std::string> list;
+  for (const std::string* reason : {&trial.ended_at, &trial.planned.ended_at, &trial.corrected.ended_at,
+                                    &trial.paper_pass.ended_at, &trial.withheld.ended_at})
+    if (!reason->empty()) list.push_back(*reason);
+  return list;
+}
+
+TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, TrialCut Trial::*after) {
+  TrialSummary summary;
+  double uncorrected_mm = 0.0;
+  for (const Trial& trial : trials) {
+    if (trial.role != role) continue;
+    ++summary.specimens;
+    const TrialCut& second = trial.*after;
+    if (!trial.planned.measured) continue;
+    const double before_mm = mean_error_mm(trial.planned);
+    if (!second.is_made) {
+      ++summary.uncorrected;
+      uncorrected_mm += before_mm;
+      continue;
+    }
+    if (!second.measured) {
+      ++summary.opened;
+      ++summary.worse;
+      continue;
+    }
+    const double after_mm = mean_error_mm(second);
+    ++summary.pairs;
+    summary.mean_before_mm += before_mm;
+    summary.mean_after_mm += after_mm;
+    if (after_mm > before_mm) ++summary.worse;
+    summary.most_worse_mm = std::max(summary.most_worse_mm, after_mm - before_mm);
+  }
+  if (summary.pairs == 0) return summary;
+  summary.gain_percent_of_all =
+      100.0 * (1.0 - (summary.mean_after_mm + uncorrected_mm) / (summary.mean_before_mm + uncorrected_mm));
+  summary.mean_before_mm /= static_cast<double>(summary.pairs);
+  summary.mean_after_mm /= static_cast<double>(summary.pairs);
+  summary.gain_percent = 100.0 * (1.0 - summary.mean_after_mm / summary.mean_before_mm);
+  return summary;
+}
+
+TableJson to_json(const TrialSummary& summary) {
+  const auto number = [&summary](double value) { return summary.pairs > 0 ? TableJson(value) : TableJson(nullptr); };
+  return {{"specimens", summary.specimens},
+          {"pairs", summary.pairs},
+          {"opened", summary.opened},
+          {"uncorrected", summary.uncorrected},
+          {"mean_before_mm", number(summary.mean_before_mm)},
+          {"mean_after_mm", number(summary.mean_after_mm)},
+          {"gain_percent", number(summary.gain_percent)},
+          {"gain_percent_of_all", number(summary.gain_percent_of_all)},
+          {"worse", summary.worse},
+          {"most_worse_mm", summary.most_worse_mm}};
+}
+
+TableJson known_physics_json(const std::vector<Trial>& trials) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const Trial& trial : trials) {
+    const TableJson mean =
+        trial.known_physics.is_object() ? measure_at(trial.known_physics, "/mean_abs_error_mm") : TableJson(nullptr);
+    if (!mean.is_number() || !trial.planned.measured || !trial.corrected.measured) continue;
+    sum += mean.get<double>();
+    ++count;
+  }
+  return {{"specimens", count},
+          {"mean_after_mm", count > 0 ? TableJson(sum / static_cast<double>(count)) : TableJson(nullptr)}};
+}
+
+TableJson table_2_json(const std::vector<Trial>& trials) {
+  TableJson rows = TableJson::array();
+  for (const Trial& trial : trials) {
+    rows.push_back(row_of(trial, "planned", trial.planned));
+    if (trial.role != TrialRole::Calibrate) rows.push_back(row_of(trial, "corrected", trial.corrected));
+    if (trial.paper_pass.is_made || !trial.paper_pass.ended_at.empty())
+      rows.push_back(row_of(trial, "paper_pass", trial.paper_pass));
+  }
+  return rows;
+}
+
+TableJson assessments_json(const std::vector<Trial>& trials) {
+  TableJson list = TableJson::array();
+  for (const Trial& trial : trials) {
+    if (!trial.assessment.is_object()) continue;
+    TableJson entry{{"specimen", trial.name},
+                    {"role", to_string(trial.role)},
+                    {"kind", trial.kind.empty() ? TableJson(nullptr) : TableJson(trial.kind)}};
+    for (const char* key : {"advice", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike",
+                            "p_unlike", "p_close_margin", "distances"})
+      entry[key] = trial.assessment.value(key, TableJson());
+    const bool is_pair = trial.planned.measured && trial.corrected.measured;
+    entry["accepted"] =
+        trial.compensation.is_object() ? trial.compensation.value("accepted", TableJson()) : TableJson(nullptr);
+    entry["gain_mm"] =
+        is_pair ? TableJson(mean_error_mm(trial.planned) - mean_error_mm(trial.corrected)) : TableJson(nullptr);
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials) {
+  const TableJson rows = table_2_json(trials);
+  write_atomically(file, [&rows](std::ostream& out) {
+    out << "specimen_is";
+    for (const auto& [column, value] : rows.front().items()) out << ',' << column;
+    out << '\n';
+    for (const TableJson& row : rows) {
+      out << "virtual";
+      for (const TableJson& value : row) out << ',' << csv_cell(value);
+      out << '\n';
+    }
+  });
+}
+
+}  // namespace incise::laboratory

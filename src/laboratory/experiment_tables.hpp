@@ -1,0 +1,75 @@
+#pragma once
+
+#include "laboratory/specimen_trial.hpp"
+
+#include <incise/core/names.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise::laboratory {
+
+enum class TrialRole { Calibrate, Test, Outside };
+inline constexpr std::array<std::string_view, 3> kTrialRoleNames{"calibrate", "test", "outside"};
+[[nodiscard]] constexpr Names names_of(TrialRole) {
+  return kTrialRoleNames;
+}
+
+/// One specimen of an experiment, and what came of it.
+struct Trial {
+  std::string name;
+  std::uint64_t seed = 0;
+  TrialRole role = TrialRole::Calibrate;
+  std::string kind;                                   ///< of a specimen outside the calibrated range; else empty
+  std::vector<std::pair<std::string, double>> given;  ///< hidden parameters that are not drawn from the seed
+  TrialCut planned, corrected;
+  TrialCut paper_pass;                             ///< along the paper's single correction; not made unless asked for
+  TrialCut withheld;                               ///< corrected as if the pull had not been measured; likewise
+  nlohmann::ordered_json compensation;             ///< what `incise compensate` printed; null: not run
+  nlohmann::ordered_json assessment;               ///< what `incise assess` printed; null: not run
+  nlohmann::ordered_json assessment_without_pull;  ///< the same, had the pull not been measured
+  nlohmann::ordered_json known_physics;            ///< what `incise bench floor` printed; null: not run
+  double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0;
+  std::optional<double> registration_rmse_mm;  ///< absent: `register` refused, or was not reached
+  std::string ended_at;                        ///< the step before the first cut that refused; empty: none did
+  std::vector<std::string> commands;
+};
+
+/// Every step that refused this specimen or a cut of it.
+[[nodiscard]] std::vector<std::string> refusals_of(const Trial& trial);
+
+/// The test specimens that were cut twice, and what the correction did to them.
+struct TrialSummary {
+  std::size_t specimens = 0;  ///< with that role, whatever came of them
+  std::size_t pairs = 0;      ///< of them: two closed rings
+  std::size_t opened = 0;  ///< a closed ring as planned, and the second cut's was open or not to be found: worse, too
+  std::size_t uncorrected = 0;                       ///< a closed ring as planned, and no second cut: a step refused it
+  double mean_before_mm = 0.0, mean_after_mm = 0.0;  ///< mean over specimens of the mean absolute error
+  double gain_percent = 0.0;
+  double gain_percent_of_all = 0.0;  ///< with the uncorrected ones, whose error stays what it was
+  std::size_t worse = 0;             ///< specimens whose error grew, and those that opened
+  double most_worse_mm = 0.0;        ///< by how much an error grew at most; 0: none did
+};
+/// Of the specimens with that role, as planned against another cut. No pairs: zeros.
+[[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role,
+                                      TrialCut Trial::*after = &Trial::corrected);
+/// The same names; what is of the pairs is null without any.
+[[nodiscard]] nlohmann::ordered_json to_json(const TrialSummary& summary);
+/// What is left to a planner that knows the bench's physics, of the specimens that summary_of counts as pairs:
+/// `specimens`, `mean_after_mm` (from the truth, not from photographs).
+[[nodiscard]] nlohmann::ordered_json known_physics_json(const std::vector<Trial>& trials);
+
+/// One row a cut: the paper's Table II in our own version.
+[[nodiscard]] nlohmann::ordered_json table_2_json(const std::vector<Trial>& trials);
+/// By specimen, what `incise assess` said and whether its corrected cut was the worse one.
+[[nodiscard]] nlohmann::ordered_json assessments_json(const std::vector<Trial>& trials);
+void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials);
+
+/// A cell as a person reads it: four digits, nothing for null.
+[[nodiscard]] std::string cell(const nlohmann::ordered_json& value);
+
+}  // namespace incise::laboratory

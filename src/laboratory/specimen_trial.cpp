@@ -1,0 +1,250 @@
+#include "laboratory/specimen_trial.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/verdict.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/json_text.hpp>
+#include <incise/io/transform_json.hpp>
+#include <incise/laboratory/camera_steps.hpp>
+#include <incise/laboratory/case_steps.hpp>
+#include <incise/laboratory/cut_steps.hpp>
+#include <incise/laboratory/robot_steps.hpp>
+#include <incise/laboratory/tissue_steps.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+
+namespace incise::laboratory {
+namespace {
+
+using StudyJson = nlohmann::ordered_json;
+
+constexpr double kReferenceKpa = 70.0;  // at which the survey is stretched: the pull is proportional to it
+constexpr double kPlatformZMm =
+    150.0;  // height of the virtual holder's platform in the robot's frame: known to the laboratory
+constexpr double kSurveyEdgeMm = 4.0;  // of the mesh that finds the stretched shape
+constexpr double kMmPerPixel = 0.03;   // of the photograph, as the paper's
+constexpr double kSurfaceSpacingMm = 1.0;
+constexpr double kMostHoleMm =
+    8.0;  // of the depth under the mark: the edge is laid onto the simulated tissue, whose heights are whole
+
+std::string text(double number) {
+  return fmt::format("{}", number);
+}
+
+/// Pull of the suture: the largest force on a held region along the stretch (y), N.
+double pull_n(const StudyJson& stretched) {
+  double largest = 0.0;
+  for (const StudyJson& reaction : stretched.at("reaction_mn"))
+    largest = std::max(largest, -reaction.at(1).get<double>());
+  INCISE_REQUIRE(largest > 0.0, "expected a pull on the stretched end");
+  return 1e-3 * largest;
+}
+
+}  // namespace
+
+std::optional<StudyJson> SpecimenTrial::run(const ExperimentStep& step) {
+  StepAnswer answer = steps_.run(step);
+  if (answer.end == StepEnd::Done) return std::move(answer.result);
+  ended_at_ = refusal_of(step.name, answer);
+  return std::nullopt;
+}
+
+bool SpecimenTrial::prepare(const std::optional<ChosenTool>& tool) {
+  if (!read() || !find_shape() || !find_place()) return false;
+  const std::filesystem::path file = write_variant("case.yaml", tool, youngs_modulus_kpa_, CompensationMethod::Default);
+  const std::filesystem::path output = at("planned");
+  return run({"plan",
+              {"plan", file.string(), "-o", output.string()},
+              {file, at("tumor.csv"), at("lab/ct")},
+              {planned_path()},
+              [=](const StepContext& context) {
+                return run_stages({read_case_with_inputs(file), output, {.until = Stage::Plan}}, context);
+              }})
+      .has_value();
+}
+
+bool SpecimenTrial::read() {
+  const StepAnswer readings = laboratory_.take_readings(at("lab"));
+  if (readings.end != StepEnd::Done) {
+    ended_at_ = refusal_of("bench_make", readings);
+    return false;
+  }
+  stretch_force_n_ = readings.result.at("stretch_force_n").get<double>();
+  return true;
+}
+
+bool SpecimenTrial::find_shape() {
+  const std::filesystem::path ct = at("lab/ct"), labels = at("labels.nrrd"), mesh = at("survey.vtu"),
+                              survey = at("survey.yaml");
+  if (!run(
+          {"segment", {"segment", ct.string(), "-o", labels.string()}, {ct}, {labels}, [=](const StepContext& context) {
+             return segment_scan({.ct = ct, .output = labels}, context);
+           }}))
+    return false;
+  const MeshRequest meshing{.input = labels, .coarse_mm = kSurveyEdgeMm, .output = mesh};
+  if (!run({"survey_mesh",
+            {"mesh", labels.string(), "--coarse-mm", text(kSurveyEdgeMm), "-o", mesh.string()},
+            {labels},
+            {mesh},
+            [=](const StepContext& context) { return mesh_body(meshing, context); }}))
+    return false;
+  write_atomically(survey, fmt::format("schema: incise.case/1\nspecimen_is: virtual\nspecimen:\n  mesh: survey.vtu\n  "
+                                       "material: {{youngs_modulus_kpa: {}}}\n",
+                                       kReferenceKpa));
+  const std::filesystem::path output = at("survey"), simulated = at("simulated.ply");
+  const auto stretched =
+      run({"survey_deform",
+           {"deform", survey.string(), "-o", output.string()},
+           {survey, mesh},
+           {at("survey/stretched")},
+           [=](const StepContext& context) {
+             return run_stages({read_case_with_inputs(survey), output, {.until = Stage::Stretch}}, context);
+           }});
+  if (!stretched) return false;
+  youngs_modulus_kpa_ = kReferenceKpa * stretch_force_n_ / pull_n(*stretched);
+  SurfaceRequest seen{.input = survey, .output = simulated};
+  seen.view.spacing_mm = kSurfaceSpacingMm;
+  return run({"simulated_surface",
+              {"surface", survey.string(), "--spacing-mm", text(kSurfaceSpacingMm), "-o", simulated.string()},
+              {survey, mesh},
+              {simulated},
+              [=](const StepContext& context) { return see_surface(seen, context); }})
+      .has_value();
+}
+
+bool SpecimenTrial::find_place() {
+  const std::filesystem::path camera = at("lab/camera.json"), cloud = at("tracked/cloud.ply"),
+                              tissue = at("tissue.ply");
+  TrackRequest tracking{.color = at("lab/rgb.png"), .depth = at("lab/depth.png"), .intrinsics = camera};
+  tracking.lift.max_hole_mm = kMostHoleMm;
+  tracking.output = at("tracked");
+  if (!run({"track",
+            {"track", tracking.color.string(), tracking.depth.string(), "--intrinsics", camera.string(),
+             "--max-hole-mm", text(kMostHoleMm), "-o", tracking.output.string()},
+            {tracking.color, tracking.depth, camera},
+            {at("tracked/contour.csv"), cloud},
+            [=](const StepContext& context) { return track_mark(tracking, context); }}))
+    return false;
+  SurfaceRequest cleaning{
+      .input = cloud, .approach = Vec3(Vec3::UnitZ()), .camera = camera, .plane_z_mm = kPlatformZMm, .output = tissue};
+  cleaning.cleaning.planes = 1;
+  cleaning.cleaning.voxel_mm = kSurfaceSpacingMm;
+  const auto cleaned =
+      run({"tissue",
+           {"surface", cloud.string(), "--planes", "1", "--voxel-mm", text(kSurfaceSpacingMm), "--approach", "0", "0",
+            "1", "--camera", camera.string(), "--plane-z-mm", text(kPlatformZMm), "-o", tissue.string()},
+           {cloud, camera},
+           {tissue},
+           [=](const StepContext& context) { return see_surface(cleaning, context); }});
+  if (!cleaned) return false;
+  camera_scale_ = cleaned->at("camera_scale").get<double>();
+  RegisterRequest laying{.source = at("simulated.ply"), .target = tissue, .output = at("registration")};
+  laying.settings.scale = ScaleRange::fixed();
+  const auto laid = run({"register",
+                         {"register", "--source", laying.source.string(), "--target", tissue.string(), "--scale",
+                          "fixed", "-o", laying.output.string()},
+                         {laying.source, tissue},
+                         {registration()},
+                         [=](const StepContext& context) { return lay_clouds(laying, context); }});
+  if (!laid) return false;
+  registration_rmse_mm_ = laid->at("rmse_mm").get<double>();
+  write_edge(*laid);
+  return true;
+}
+
+/// The edge that was marked on the tissue, as the simulation would have it.
+void SpecimenTrial::write_edge(const StudyJson& registration) const {
+  Contour edge = read_contour(at("tracked/contour.csv"));
+  const Mat4 T_sim_camera = transform_in(registration, "T_target_source", this->registration()).inverse();
+  for (Vec3& p : edge.points) p = (T_sim_camera * (p / camera_scale_).homogeneous()).head<3>();
+  write_contour_csv(at("tumor.csv"), edge);
+}
+
+std::filesystem::path SpecimenTrial::write_variant(const std::string& name, const std::optional<ChosenTool>& tool,
+                                                   double youngs_modulus_kpa, CompensationMethod method) const {
+  std::string yaml = fmt::format(
+      "schema: incise.case/1\nspecimen_is: virtual\nct: {{volume: lab/ct}}\nmeshing: {{tets: {}}}\nspecimen:\n  "
+      "material: {{youngs_modulus_kpa: {:.4f}}}\n"
+      "tumor: {{contour: tumor.csv, configuration: stretched}}\nplan: {{power_w: {}}}\n",
+      setup_.tets, youngs_modulus_kpa, setup_.power_w);
+  if (tool) {
+    yaml += fmt::format("cut: {{speed_mm_s: {}, dullness: {}}}\n", tool->speed_mm_s, tool->dullness);
+    yaml += method == CompensationMethod::Paper
+                ? std::string("compensation: {method: paper}\n")
+                : fmt::format("compensation: {{observable: inner_edge, bias_mm: {}}}\n", tool->bias_mm);
+  }
+  write_atomically(at(name), yaml);
+  return at(name);
+}
+
+TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string& tag) {
+  const auto named = [&](const std::string& name) { return at(tag + "_" + name); };
+  const std::filesystem::path camera = at("lab/camera.json"), registration = this->registration(), photo = named("cut"),
+                              found = at(fmt::format("{}_{}.json", setup_.name, tag));
+  ProjectRequest projecting{.path = path,
+                            .transform = registration,
+                            .surface = at("tissue.ply"),
+                            .camera = camera,
+                            .output = named("on_tissue")};
+  ExportRequest exporting{.path = projecting.output / "path.json",
+                          .surface = projecting.output / "surface.ply",
+                          .registration = registration,
+                          .power_w = setup_.power_w,
+                          .output = named("cut.script")};
+  std::vector<std::string> exported{"export",
+                                    exporting.path.string(),
+                                    "--surface",
+                                    exporting.surface.string(),
+                                    "--registration",
+                                    registration.string(),
+                                    "--power-w",
+                                    text(setup_.power_w),
+                                    "-o",
+                                    exporting.output.string()};
+  // The bench's tissue is virtual, and the cut as planned is made to see how far it misses: cautions are taken. What a
+  // simulation refuses is not cut here either.
+  for (const VerdictRule& rule : verdict_rules()) {
+    if (rule.severity != VerdictStatus::Caution) continue;
+    exporting.accepted.emplace_back(rule.id);
+    exported.insert(exported.end(), {"--accept", std::string(rule.id)});
+  }
+  EvaluateRequest evaluating{.photo = photo / "photo.png", .figure = named("found.png"), .output = found};
+  evaluating.settings.contour = ContourKind::InnerEdge;
+  evaluating.scale.mm_per_pixel = kMmPerPixel;
+  const ExperimentStep project{
+      tag + "_project",
+      {"project", path.string(), "--transform", registration.string(), "--surface", projecting.surface.string(),
+       "--camera", camera.string(), "-o", projecting.output.string()},
+      {path, registration, projecting.surface, camera},
+      {projecting.output},
+      [=](const StepContext& context) { return project_onto_tissue(projecting, context); }};
+  const ExperimentStep make_program{tag + "_export",
+                                    exported,
+                                    {exporting.path, exporting.surface, registration},
+                                    {exporting.output},
+                                    [=](const StepContext& context) { return export_program(exporting, context); }};
+  const ExperimentStep evaluate{tag + "_evaluate",
+                                {"evaluate", evaluating.photo.string(), "--mm-per-pixel", text(kMmPerPixel), "--figure",
+                                 evaluating.figure.string(), "-o", found.string()},
+                                {evaluating.photo},
+                                {found},
+                                [=](const StepContext& context) { return evaluate_cut(evaluating, context); }};
+  TrialCut result;
+  const auto goes_on = [&result](const std::string& step, const StepAnswer& answer) {
+    if (answer.end == StepEnd::Done) return true;
+    result.ended_at = refusal_of(step, answer);
+    return false;
+  };
+  for (const ExperimentStep* step : {&project, &make_program})
+    if (!goes_on(step->name, steps_.run(*step))) return result;
+  if (!goes_on(tag + "_bench_cut", laboratory_.cut(exporting.output, setup_.power_w, photo, tag))) return result;
+  result.is_made = true;
+  StepAnswer measured = steps_.run(evaluate);
+  if (goes_on(evaluate.name, measured)) result.measured = MeasuredCut{found, std::move(measured.result)};
+  return result;
+}
+
+}  // namespace incise::laboratory

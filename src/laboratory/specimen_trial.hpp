@@ -1,0 +1,90 @@
+#pragma once
+
+#include "laboratory/step_runner.hpp"
+
+#include <incise/core/monitor.hpp>
+#include <incise/workflow/case.hpp>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise::laboratory {
+
+/// A specimen on its way through an experiment. Everything that its planner is given lies in the runner's folder; the
+/// specimen itself is behind the laboratory.
+struct TrialSetup {
+  std::string name;  ///< "S1"
+  double power_w = 35.0;
+  int tets = 25000;  ///< of the planner's mesh
+};
+
+/// The simulated tool that a calibration chose, and by how much real inner edges lie farther out than simulated ones.
+struct ChosenTool {
+  double speed_mm_s = 13.0;
+  double dullness = 9.0;
+  double bias_mm = 0.0;
+};
+
+/// A cut whose photograph shows a closed ring.
+struct MeasuredCut {
+  std::filesystem::path evaluation;  ///< file of `incise evaluate`
+  nlohmann::ordered_json measures;   ///< what it printed: of the photograph
+};
+
+/// What came of a path.
+struct TrialCut {
+  bool is_made = false;                 ///< the bench cut along it; else a step before refused, or it was not asked for
+  std::optional<MeasuredCut> measured;  ///< absent: not made, or its ring is open, or not found in the photograph
+  std::string ended_at;                 ///< the step that refused, and why; empty: none did
+};
+
+class SpecimenTrial {
+ public:
+  /// @param steps  of the specimen's folder; both outlive the trial.
+  SpecimenTrial(TrialSetup setup, StepRunner& steps, Laboratory& laboratory)
+      : setup_(std::move(setup)), steps_(steps), laboratory_(laboratory) {}
+
+  /// From the readings to the planned path: the specimen is made; its CT is meshed, clamped and stretched; that surface
+  /// is laid on the camera's cloud, whose scale the platform of known height gives; the marked edge is carried into the
+  /// simulation; stiffness follows from the suture's pull; the path is planned. @returns false where a step refused.
+  bool prepare(const std::optional<ChosenTool>& tool);
+  /// Projects a path (sim_stretched) on the tissue, exports the program after its checks, has the bench cut, and
+  /// measures the photograph. @param tag  of the files: planned, corrected …
+  [[nodiscard]] TrialCut cut(const std::filesystem::path& path, const std::string& tag);
+  /// Writes another case of the same specimen into its folder. @returns the file.
+  [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const std::optional<ChosenTool>& tool,
+                                                    double youngs_modulus_kpa, CompensationMethod method) const;
+  /// Runs one more step in this specimen's folder, whose refusal is an answer.
+  StepAnswer ask(const ExperimentStep& step) { return steps_.run(step); }
+
+  [[nodiscard]] std::filesystem::path at(const std::string& name) const { return steps_.folder() / name; }
+  [[nodiscard]] std::filesystem::path case_file() const { return at("case.yaml"); }
+  [[nodiscard]] std::filesystem::path registration() const { return at("registration/registration.json"); }
+  [[nodiscard]] std::filesystem::path planned_path() const { return at("planned/plan/path.json"); }
+  [[nodiscard]] double stretch_force_n() const { return stretch_force_n_; }
+  [[nodiscard]] double youngs_modulus_kpa() const { return youngs_modulus_kpa_; }
+  [[nodiscard]] const std::optional<double>& registration_rmse_mm() const { return registration_rmse_mm_; }
+  /// The step of prepare() that refused, and why; empty: none did.
+  [[nodiscard]] const std::string& ended_at() const { return ended_at_; }
+
+ private:
+  /// @returns nothing where it refused: see ended_at().
+  std::optional<nlohmann::ordered_json> run(const ExperimentStep& step);
+  bool read();
+  bool find_shape();
+  bool find_place();
+  void write_edge(const nlohmann::ordered_json& registration) const;
+
+  TrialSetup setup_;
+  StepRunner& steps_;
+  Laboratory& laboratory_;
+  std::string ended_at_;
+  double stretch_force_n_ = 0.0;
+  double youngs_modulus_kpa_ = 0.0;
+  double camera_scale_ = 1.0;
+  std::optional<double> registration_rmse_mm_;  ///< absent: no registration was accepted
+};
+
+}  // namespace incise::laboratory

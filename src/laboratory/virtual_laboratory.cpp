@@ -1,0 +1,57 @@
+#include "laboratory/virtual_laboratory.hpp"
+
+#include <incise/io/json_text.hpp>
+#include <incise/laboratory/bench_steps.hpp>
+
+#include <fmt/format.h>
+
+namespace incise::laboratory {
+
+StepAnswer VirtualLaboratory::take_readings(const std::filesystem::path& folder) {
+  std::vector<std::string> arguments{"bench", "make"};
+  std::vector<std::filesystem::path> inputs;
+  MakeSpecimenRequest request{.output = folder, .truth = hidden_.truth};
+  std::filesystem::create_directories(hidden_.truth.parent_path());
+  if (!hidden_.given.empty()) {
+    nlohmann::ordered_json specimen{{"schema", "incise.specimen/1"}, {"seed", hidden_.seed}};
+    for (const auto& [key, value] : hidden_.given) specimen[key] = value;
+    request.specimen = hidden_.truth.string() + ".json";
+    write_json(request.specimen, specimen);
+    arguments.push_back(request.specimen.string());
+    inputs.push_back(request.specimen);
+  }
+  arguments.insert(arguments.end(),
+                   {"--seed", std::to_string(hidden_.seed), "-o", folder.string(), "--truth", hidden_.truth.string()});
+  const std::uint64_t seed = hidden_.seed;
+  return steps_.run({"bench_make", arguments, inputs, {folder, hidden_.truth}, [=](const StepContext& context) {
+                       StepContext of_seed = context;
+                       of_seed.run.seed = seed;
+                       return make_specimen(request, of_seed);
+                     }});
+}
+
+StepAnswer VirtualLaboratory::cut(const std::filesystem::path& program, double power_w,
+                                  const std::filesystem::path& folder, const std::string& tag) {
+  const CutSpecimenRequest request{.specimen = specimen(),
+                                   .program = program,
+                                   .power_w = power_w,
+                                   .output = folder,
+                                   .truth = hidden_.truth.string() + "_" + tag};
+  return steps_.run({tag + "_bench_cut",
+                     {"bench", "cut", request.specimen.string(), program.string(), "--power-w",
+                      fmt::format("{}", power_w), "-o", folder.string(), "--truth", request.truth.string()},
+                     {request.specimen, program},
+                     {folder / "photo.png", request.truth / "cut_truth.json"},
+                     [=](const StepContext& context) { return cut_specimen_by(request, context); }});
+}
+
+StepAnswer VirtualLaboratory::known_physics() {
+  const KnownPhysicsRequest request{.specimen = specimen(), .output = hidden_.truth.string() + "_floor.json"};
+  return steps_.run({"known_physics",
+                     {"bench", "floor", request.specimen.string(), "-o", request.output.string()},
+                     {request.specimen},
+                     {request.output},
+                     [=](const StepContext& context) { return cut_by_known_physics(request, context); }});
+}
+
+}  // namespace incise::laboratory
