@@ -137,6 +137,8 @@ void describe(Visitor& v, CalibratedSpecimen& s) {
   v("registration", s.registration, "How well the simulated surface lies on the measured one.");
   v.derived("picture_turn_deg", s.picture.turn_deg, "Turn of the photograph.");
   v.derived("picture_rms_mm", s.picture.rms_mm, "Of the distances between the edges that is left.");
+  v.bulk("held", s.held, "Digest of the held specimen.");
+  v.bulk("runs", s.runs, "Its simulated cuts.");
   v.derived("read_by_midline", s.read_by_midline, "Runs whose ring closed, but not at the skin.");
 }
 

@@ -128,7 +128,7 @@ class CalibrateTest(CommandTest):
             far.write_text(json.dumps(changed))
             self.assert_refused(self.calibrate(observed=far), BAD_DATA, f"far.json: {says}")
         far.write_text(json.dumps({**good, "approach": [1e300, 0, 0]}))
-        self.assert_refused(self.calibrate(observed=far), BAD_DATA, "far.json: approach: found a vector of length inf, expected a direction")
+        self.assert_refused(self.calibrate(observed=far), BAD_DATA, "far.json: /approach: found a vector of length inf, expected a direction")
         self.assert_nothing_written()
 
     def test_a_case_without_a_ring_or_a_tumour_is_refused(self):
