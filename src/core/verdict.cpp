@@ -13,6 +13,7 @@ namespace {
 constexpr VerdictStatus kCaution = VerdictStatus::Caution;
 constexpr VerdictStatus kRefused = VerdictStatus::Refused;
 constexpr std::size_t kShownCharacters = 40;
+constexpr std::size_t kMostReasons = 1000;
 
 // The one table of limits. Change it together with docs/models/verdict.md.
 constexpr auto kRules = std::to_array<VerdictRule>({
@@ -143,6 +144,8 @@ void describe(Visitor& v, Verdict& verdict) {
   std::vector<VerdictReason> reasons = verdict.reasons_;
   v("reasons", reasons, "Worst first.");
   if (!v.sets()) return;
+  if (reasons.size() > kMostReasons)
+    v.refuse({"reasons"}, fmt::format("{} reasons", reasons.size()), fmt::format("at most {}", kMostReasons));
   verdict.reasons_.clear();
   for (VerdictReason& reason : reasons) verdict.add(std::move(reason));
   if (v.is_summary() && status != verdict.status()) {

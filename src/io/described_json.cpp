@@ -181,7 +181,8 @@ void JsonReader::block(const Field& field, const Block& block) {
         const Json& item = is_number ? group : group[k];
         const double value = item.is_number() ? item.get<double>() : std::nan("");
         const bool is_whole = std::is_floating_point_v<Number> || item.is_number_integer();
-        const bool fits = is_whole && std::abs(value) <= static_cast<double>(std::numeric_limits<Number>::max());
+        const bool fits = is_whole && value >= static_cast<double>(std::numeric_limits<Number>::lowest()) &&
+                          value <= static_cast<double>(std::numeric_limits<Number>::max());
         if (!fits || !contains(block.range, value))
           refuse(field, fmt::format("{} at [{}]", shown(item), i), describe(block.range));
         numbers[i * block.columns + k] = static_cast<Number>(value);

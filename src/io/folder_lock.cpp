@@ -88,7 +88,10 @@ FolderLock::FolderLock(std::filesystem::path folder) : folder_(std::move(folder)
 FolderLock::~FolderLock() { release(); }
 
 void FolderLock::release() {
-  if (file_ >= 0) ::close(file_);
+  if (file_ >= 0) {
+    ::flock(file_, LOCK_UN);  // a child that another thread has forked holds a copy of the descriptor
+    ::close(file_);
+  }
   file_ = -1;
 }
 

@@ -1,10 +1,11 @@
 #include "laboratory/calibrated_case.hpp"
 
-#include <incise/io/specimen_id.hpp>
 #include <incise/io/described_json.hpp>
+#include <incise/io/specimen_id.hpp>
 #include <incise/laboratory/registration_trust.hpp>
 #include <incise/storage/registration_json.hpp>
 #include <incise/workflow/assess.hpp>
+#include <incise/workflow/cut_verdict.hpp>
 
 #include <cmath>
 
@@ -82,11 +83,14 @@ StepResult assess_case(const CaseRequest& of, const CalibrationInput& calibratio
   write_assessment(run.folder, result, calibration.request.calibration, registration, wall_s);
   Verdict verdict = study.verdict;
   verdict.add(of_registration);
-  verdict.add(run.folder.advice_against(study.is_accepted));
+  const Verdict advice = run.folder.advice_against(study.is_accepted);
+  verdict.add(advice);
+  run.folder.remove_program_made_without(advice, context.monitor);
   result["verdict"] = to_json(verdict);
   if (study.corrected) {
     Verdict of_corrected = study.about_inputs;
     of_corrected.add(study.corrected->verdict);
+    if (!study.is_accepted) of_corrected.add("not_corrected", {}, kRejectedCorrection);
     run.folder.verdicts({}, of_corrected);
   }
   result["folder"] = run.folder.root().string();

@@ -185,6 +185,11 @@ StepAnswer StepRunner::made_now(const ExperimentStep& step) {
   } catch (const std::filesystem::filesystem_error& error) {
     return unusable(
         fmt::format("{}: found {}, expected a path that can be used", error.path1().string(), error.code().message()));
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const std::exception& error) {  // a fault of the program: the experiment ends, and says where
+    log.refused(fmt::format("incise: {}: {}", step.name, error.what()));
+    throw DataError(folder_ / "log.txt", step.name, error.what(), "a step that ends");
   }
 }
 

@@ -43,18 +43,18 @@ std::vector<Problem> validate(const Material& material) {
   return violations;
 }
 
-std::vector<std::string> validate(const MaterialField& field, std::size_t tets) {
-  std::vector<std::string> violations;
+std::vector<Problem> validate(const MaterialField& field, std::size_t tets) {
+  std::vector<Problem> violations;
   const auto check = [&](const char* name, const auto& values, const auto& is_good, const auto& text, const char* expected) {
     if (values.empty()) return;
     if (values.size() != tets) {
-      violations.push_back(fmt::format("{}: found {} items, expected one for each of {} tets", name, values.size(), tets));
+      violations.push_back(
+          {name, fmt::format("{} items", values.size()), fmt::format("one for each of {} tets", tets)});
       return;
     }
     const auto bad = std::find_if_not(values.begin(), values.end(), is_good);
     if (bad == values.end()) return;
-    violations.push_back(
-        fmt::format("{}: found {} at tet {}, expected {}", name, text(*bad), bad - values.begin(), expected));
+    violations.push_back({name, fmt::format("{} at tet {}", text(*bad), bad - values.begin()), expected});
   };
   const auto number = [](double value) { return fmt::format("{}", value); };
   check("youngs_modulus_kpa", field.youngs_modulus_kpa, is_youngs_modulus, number, kYoungsModulusRange);
@@ -66,20 +66,32 @@ std::vector<std::string> validate(const MaterialField& field, std::size_t tets) 
   return violations;
 }
 
-MaterialField material_field_of(const TetMesh& mesh) {
-  MaterialField field;
-  const auto find = [&](const char* name, int components) -> const DataArray* {
+std::optional<Problem> malformed_material_array(const TetMesh& mesh) {
+  const std::pair<const char*, int> arrays[] = {
+      {"youngs_modulus_kpa", 1}, {"poissons_ratio", 1}, {"fibre_direction", 3}};
+  for (const auto& [name, components] : arrays) {
     const auto found = mesh.cell_data.find(name);
-    if (found == mesh.cell_data.end()) return nullptr;
-    INCISE_REQUIRE(found->second.components == components,
-                   fmt::format("expected cell data \"{}\" with {} component{}, found {}", name, components,
-                               components == 1 ? "" : "s",
-                               found->second.components));
-    return &found->second;
+    if (found == mesh.cell_data.end() || found->second.components == components) continue;
+    return Problem{name, fmt::format("{}", found->second.components),
+                   fmt::format("cell data \"{}\" with {} component{}", name, components, components == 1 ? "" : "s")};
+  }
+  return std::nullopt;
+}
+
+MaterialField material_field_of(const TetMesh& mesh) {
+  const std::optional<Problem> malformed = malformed_material_array(mesh);
+  if (malformed) {
+    core_detail::throw_invalid_argument("material_field_of",
+                                        fmt::format("expected {}, found {}", malformed->expected, malformed->found));
+  }
+  MaterialField field;
+  const auto find = [&](const char* name) -> const DataArray* {
+    const auto found = mesh.cell_data.find(name);
+    return found == mesh.cell_data.end() ? nullptr : &found->second;
   };
-  if (const DataArray* values = find("youngs_modulus_kpa", 1)) field.youngs_modulus_kpa = values->values;
-  if (const DataArray* values = find("poissons_ratio", 1)) field.poissons_ratio = values->values;
-  if (const DataArray* values = find("fibre_direction", 3)) {
+  if (const DataArray* values = find("youngs_modulus_kpa")) field.youngs_modulus_kpa = values->values;
+  if (const DataArray* values = find("poissons_ratio")) field.poissons_ratio = values->values;
+  if (const DataArray* values = find("fibre_direction")) {
     for (std::size_t i = 0; i + 2 < values->values.size(); i += 3) {
       field.fibre_directions.emplace_back(values->values[i], values->values[i + 1], values->values[i + 2]);
     }

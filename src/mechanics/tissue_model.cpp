@@ -29,9 +29,9 @@ void require_valid(const Material& material) {
 }
 
 void require_valid(const MaterialField& field, std::size_t tets) {
-  const std::vector<std::string> violations = validate(field, tets);
+  const std::vector<Problem> violations = validate(field, tets);
   std::string text;
-  for (const std::string& violation : violations) text += (text.empty() ? "" : "; ") + violation;
+  for (const Problem& violation : violations) text += (text.empty() ? "" : "; ") + sentence(violation);
   INCISE_REQUIRE(violations.empty(), "expected sound values for every tet, but " + text);
 }
 

@@ -15,6 +15,7 @@
 #include <CGAL/refine_mesh_3.h>
 
 #include <atomic>
+#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -30,21 +31,16 @@ using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 constexpr std::size_t kCallsBetweenCancelChecks = 8192;
 
-/// CGAL prints ten lines of a check that failed, and then throws what the caller turns into one sentence.
-class QuietChecks {
- public:
-  QuietChecks() : error_(CGAL::set_error_handler(say_nothing)), warning_(CGAL::set_warning_handler(say_nothing)) {}
-  ~QuietChecks() {
-    CGAL::set_error_handler(error_);
-    CGAL::set_warning_handler(warning_);
-  }
-  QuietChecks(const QuietChecks&) = delete;
-  QuietChecks& operator=(const QuietChecks&) = delete;
-
- private:
-  static void say_nothing(const char*, const char*, const char*, int, const char*) {}
-  CGAL::Failure_function error_, warning_;
-};
+/// CGAL prints ten lines of a check that failed, and then throws what the caller turns into one sentence. Its handlers
+/// are the process's, so they are set once, whoever meshes first.
+void quiet_checks() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    const auto say_nothing = [](const char*, const char*, const char*, int, const char*) {};
+    CGAL::set_error_handler(say_nothing);
+    CGAL::set_warning_handler(say_nothing);
+  });
+}
 
 Vec3 to_vec3(const Kernel::Point_3& p) {
   return {p.x(), p.y(), p.z()};
@@ -92,7 +88,7 @@ struct DelaunayMesher::State {
 };
 
 DelaunayMesher::DelaunayMesher(DelaunayDomain domain, const DelaunayCriteria& criteria) {
-  const QuietChecks quiet;
+  quiet_checks();
   state_ = std::make_unique<State>(std::move(domain), criteria);
 }
 DelaunayMesher::~DelaunayMesher() = default;
@@ -101,7 +97,7 @@ DelaunayMesher& DelaunayMesher::operator=(DelaunayMesher&&) noexcept = default;
 
 RefineEnd DelaunayMesher::refine() {
   using namespace CGAL::parameters;
-  const QuietChecks quiet;
+  quiet_checks();
   CGAL::get_default_random() = CGAL::Random(0);  // a second run in one process starts like the first
   State& s = *state_;
   std::atomic<bool> stop = false;
@@ -126,14 +122,14 @@ RefineEnd DelaunayMesher::refine() {
 }
 
 bool DelaunayMesher::perturb(double sliver_bound_deg) {
-  const QuietChecks quiet;
+  quiet_checks();
   // No time limit: the answer must not depend on how fast the machine is. The search ends by itself.
   return CGAL::perturb_mesh_3(state_->complex, state_->domain, CGAL::parameters::time_limit = 0,
                               CGAL::parameters::sliver_bound = sliver_bound_deg) == CGAL::BOUND_REACHED;
 }
 
 bool DelaunayMesher::exude(double sliver_bound_deg) {
-  const QuietChecks quiet;
+  quiet_checks();
   return CGAL::exude_mesh_3(state_->complex, CGAL::parameters::time_limit = 0,
                             CGAL::parameters::sliver_bound = sliver_bound_deg) == CGAL::BOUND_REACHED;
 }

@@ -1,3 +1,4 @@
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/storage/case_run.hpp>
 #include <incise/storage/own_files.hpp>
@@ -81,8 +82,15 @@ Study CaseRun::study(Workers& workers, Monitor& monitor) {
 
 Run CaseRun::run(std::span<const std::string> accepted, Workers& workers, Monitor& monitor) {
   return guarded(monitor, [&] {
-    return incise::run(folder.case_file().settings, folder, folder.cache(), options_, accepted, workers, monitor,
-                       folder);
+    try {
+      return incise::run(folder.case_file().settings, folder, folder.cache(), options_, accepted, workers, monitor,
+                         folder);
+    } catch (const Cancelled&) {
+      throw;
+    } catch (...) {  // an earlier program is not one of a run that failed
+      remove_replaceable(folder.root() / "program");
+      throw;
+    }
   });
 }
 

@@ -69,7 +69,7 @@ struct ZoneBorder {
   double at_or_below_mm = 0.0;
 };
 void describe(Visitor& v, ZoneBorder& z) {
-  v({"at_or_below_mm", "Upper border.", "mm"}, z.at_or_below_mm);
+  v({"at_or_below_mm", "Upper border.", "mm"}, z.at_or_below_mm, kDistanceMm);
 }
 
 /// A photograph whose scale or perspective is wrong has numbers, but none that a comparison or a calibration may use.
@@ -126,9 +126,10 @@ void describe(Visitor& v, EvaluationFile& f) {
   v("negative_margin", f.negative_margin, "Whether tissue is left all round.");
   v("contour", f.contour, "Which line of the cut was measured.");
   v({"target_mm", "Intended distance of that line from the tumour edge.", "mm"}, f.target_mm, kDistanceMm);
-  v("hu_score", f.hu_score, "Tumour edge against incision.");
-  v("hu_score_ideal", f.hu_score_ideal, "What the perfect offset would score.");
-  v({"centroid_shift_mm", "Between the centres of the filled regions.", "mm"}, f.centroid_shift_mm);
+  v("hu_score", f.hu_score, "Tumour edge against incision.", kNotNegative);
+  v("hu_score_ideal", f.hu_score_ideal, "What the perfect offset would score.", kNotNegative);
+  v({"centroid_shift_mm", "Between the centres of the filled regions.", "mm"}, f.centroid_shift_mm,
+    {0.0, kLargestBodyMm});
   std::optional<ZoneBorder> positive, too_close;
   v.begin({"zones"});
   v("positive_margin", positive, "No tissue left.");

@@ -224,6 +224,21 @@ void RunFolder::remove_what_is_out_of_date(Monitor& monitor) {
                               program.string()));
 }
 
+void RunFolder::remove_program_made_without(const Verdict& advice, Monitor& monitor) {
+  const std::filesystem::path program = root_ / "program";
+  if (advice.reasons().empty() || !is_own_manifest(program / "manifest.json")) return;
+  const std::optional<Verdict> known = read_manifest(program).verdict;
+  const auto is_known = [&known](const VerdictReason& reason) {
+    return known &&
+           std::any_of(known->reasons().begin(), known->reasons().end(), [&reason](const VerdictReason& other) {
+             return other.id == reason.id && other.message == reason.message;
+           });
+  };
+  if (std::all_of(advice.reasons().begin(), advice.reasons().end(), is_known)) return;
+  remove_replaceable(program);
+  monitor.message(Severity::Warning, fmt::format("{}: removed, it was written before this advice", program.string()));
+}
+
 void RunFolder::absent(const std::string& name) {
   if (std::filesystem::exists(folder(name) / kStageFile)) remove_replaceable(folder(name));
 }

@@ -1,5 +1,4 @@
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/workflow/case.hpp>
 
 #include <fmt/format.h>
@@ -23,29 +22,18 @@ std::string cell_arrays(const TetMesh& mesh) {
 
 MaterialField field_from(const TetMesh& mesh) {
   const char* field_name = "specimen.material.from_mesh";
-  MaterialField field;
-  try {
-    field = material_field_of(mesh);
-  } catch (const InvalidArgument& problem) {
-    // "expected …, found …"
-    const std::string text = without_function_name(problem);
-    const std::size_t comma = text.rfind(", found ");
-    INCISE_ASSERT(comma != std::string::npos && text.starts_with("expected "));
-    throw CaseError(kWhere, field_name, text.substr(comma + 8), text.substr(9, comma - 9));
-  }
+  if (const auto malformed = malformed_material_array(mesh))
+    throw CaseError(kWhere, field_name, malformed->found, malformed->expected);
+  MaterialField field = material_field_of(mesh);
   if (field.youngs_modulus_kpa.empty() && field.poissons_ratio.empty() && field.fibre_directions.empty()) {
     throw CaseError(kWhere, field_name, cell_arrays(mesh),
                     "at least one of the cell arrays youngs_modulus_kpa, poissons_ratio, fibre_direction",
                     "A mesh that is made from a CT carries none");
   }
-  const std::vector<std::string> violations = validate(field, mesh.tets.size());
+  const std::vector<Problem> violations = validate(field, mesh.tets.size());
   if (violations.empty()) return field;
-  // "name: found …, expected …" of the first violation; there is one at most for each array.
-  const std::string& first = violations.front();
-  const std::size_t colon = first.find(": found ");
-  const std::size_t comma = first.find(", expected ");
-  throw CaseError(kWhere, field_name, fmt::format("{} of {}", first.substr(0, colon), first.substr(colon + 8, comma - colon - 8)),
-                  first.substr(comma + 11));
+  const auto& [path, found, expected] = violations.front();
+  throw CaseError(kWhere, field_name, fmt::format("{} of {}", path, found), expected);
 }
 
 /// @param field  of the case that asks for labels.

@@ -323,7 +323,7 @@ class Runner {
       return verdict;
     };
     sink_.verdicts(given_path_ ? std::nullopt : of(study_.as_planned, kUncorrectedPath),
-                   of(study_.corrected, "this is a correction that was not accepted"));
+                   of(study_.corrected, kRejectedCorrection));
   }
 
   /// A cut with what is held against it.

@@ -76,6 +76,24 @@ class AssessTest(CommandTest):
         self.assertIn({"id": "registration", "message": "the mirror image fits as well"},
                       [{key: reason[key] for key in ("id", "message")} for reason in found["verdict"]["reasons"]])
 
+    def test_advice_against_a_path_takes_its_program_away_and_no_doubt_from_it(self):
+        small_case.write_case(self.folder / "case", small_case.SOUND)
+        small_case.write_tumor_surface(self.folder / "case" / "tumor.stl")
+        doubts = lambda: [reason["id"] for reason in json.loads((self.out / "correction" / "path.json").read_text())["verdict"]["reasons"]]
+        done = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        script = self.out / "program" / "program.script"
+        self.assertTrue(script.exists())
+        before = doubts()
+        self.assertIn("not_corrected", before)
+        self.registered(rmse_mm=1.8)
+        done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
+        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        self.assertFalse(script.exists(), "it was written before the advice")
+        self.assertIn("removed, it was written before this advice", done.stderr)
+        self.assertIn("eligibility", doubts())
+        self.assertLessEqual(set(before), set(doubts()), "a rejected correction stays one")
+
     def test_outside_the_calibrated_range_or_badly_registered_is_not_to_be_used(self):
         found = self.assessed("--stretch-force-n", 5.0 * PULL_N, status=NOT_ACCEPTABLE)
         self.assertEqual(found["advice"], "do_not_use")

@@ -123,6 +123,7 @@ TEST(DescribedJson, RefusesByFileAndPlace) {
   expect_refused("/place/1", std::numeric_limits<double>::infinity(), "/deep/place");
   expect_refused("/transform/2", Json::array(), "/deep/transform: found []");
   expect_refused("/flags/1", 256, "/deep/flags");
+  expect_refused("/flags/1", -5, "/deep/flags");
   expect_refused("/flags/1", 0.5, "/deep/flags");
   expect_refused("/rows/2", 4, "/deep/rows/2: found 4");
   expect_refused("/rows/2/1", "x", "/deep/rows/2");

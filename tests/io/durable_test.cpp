@@ -204,6 +204,20 @@ TEST(RemoveAbandonedTemporaries, LeavesWhatAnotherProcessWritesWhateverItsNumber
   for (const int end : {ready[0], ready[1], go[0]}) ::close(end);
 }
 
+TEST(FolderLock, IsGivenBackThoughAChildThatWasForkedMeanwhileLives) {
+  const TemporaryFolder folder;
+  std::optional<FolderLock> lock(folder / "out");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::pause();
+    ::_exit(0);
+  }
+  lock.reset();
+  EXPECT_NO_THROW(FolderLock(folder / "out"));
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+}
+
 TEST(FolderLock, IsHeldByOneAndGivenBackByAKilledProcess) {
   const incise::testing::TemporaryFolder folder;
   {

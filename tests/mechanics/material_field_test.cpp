@@ -105,12 +105,12 @@ TEST(MaterialField, NamesEveryViolation) {
   field.youngs_modulus_kpa = {70.0, kNan, -1.0};
   field.poissons_ratio = {0.3, 0.3};
   field.fibre_directions = {Vec3::UnitX(), Vec3::UnitY(), Vec3::Zero()};
-  EXPECT_THAT(validate(field, 3),
+  EXPECT_THAT(sentences(validate(field, 3)),
               ElementsAre(AllOf(HasSubstr("youngs_modulus_kpa: found nan at tet 1"), HasSubstr("[1e-6, 1e9] kPa")),
                           HasSubstr("poissons_ratio: found 2 items, expected one for each of 3 tets"),
                           HasSubstr("fibre_direction: found [0, 0, 0] at tet 2")));
   field.poissons_ratio = {0.3, 0.5, kNan};
-  EXPECT_THAT(validate(field, 3)[1], HasSubstr("poissons_ratio: found 0.5 at tet 1"));
+  EXPECT_THAT(sentence(validate(field, 3)[1]), HasSubstr("poissons_ratio: found 0.5 at tet 1"));
 }
 
 TEST(MaterialField, IsRefusedWithTheReasonWhenAModelIsMade) {

@@ -5,6 +5,7 @@
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/types.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -83,13 +84,17 @@ struct MaterialField {
   std::vector<double> toughness;  ///< how much more it takes to cut a tet than one of the reference tissue, > 0; of itself 1
 };
 
-/// The fields of elasticity that a mesh carries as cell data: `youngs_modulus_kpa`, `poissons_ratio` (1 component), `fibre_direction` (3).
+/// The fields of elasticity that a mesh carries as cell data: `youngs_modulus_kpa`, `poissons_ratio` (1 component),
+/// `fibre_direction` (3).
+/// @throws InvalidArgument for an array of another number of components, see malformed_material_array.
 [[nodiscard]] MaterialField material_field_of(const TetMesh& mesh);
+/// The first of these arrays that has another number of components; nothing: none has.
+[[nodiscard]] std::optional<Problem> malformed_material_array(const TetMesh& mesh);
 
 /// Every violation; empty: valid.
 [[nodiscard]] std::vector<Problem> validate(const Material& material);
-/// The same for a field of `tets` items, one sentence each.
-[[nodiscard]] std::vector<std::string> validate(const MaterialField& field, std::size_t tets);
+/// The same for a field of `tets` items; one at most for each array.
+[[nodiscard]] std::vector<Problem> validate(const MaterialField& field, std::size_t tets);
 
 struct LameParameters {
   double lambda_kpa = 0.0;

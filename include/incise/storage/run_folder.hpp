@@ -68,6 +68,9 @@ class RunFolder : public Inputs, public ProductSink {
   }
   [[nodiscard]] Verdict advice_against(bool is_corrected) const override;
 
+  /// Removes a program whose verdict does not hold this advice: it was written before the advice was known. Says so.
+  void remove_program_made_without(const Verdict& advice, Monitor& monitor);
+
   void labels(const ProductNote& note, const Segmentation& segmentation) override;
   void mesh(const ProductNote& note, const MeshProduct& product) override;
   void stretched(const ProductNote& note, const TissueModel& model, const StaticResult& result) override;

@@ -39,6 +39,8 @@ struct EdgeFit {
 /// What `not_corrected` says of a path as planned.
 inline constexpr const char* kUncorrectedPath =
     "the correction is not accepted: a program would follow the uncorrected path";
+/// The same of a path that was corrected, where the correction was rejected.
+inline constexpr const char* kRejectedCorrection = "this is a correction that was not accepted";
 
 /// The verdict of a run: that of the cut that verifies the path which a program would follow, and what is known beside it.
 /// @param about_inputs  what was found before anything was cut.
