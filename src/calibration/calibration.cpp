@@ -143,7 +143,7 @@ void describe(Visitor& v, CalibratedSpecimen& s) {
 }
 
 void describe(Visitor& v, Calibration& c) {
-  describe_schema(v, "incise.calibration/1");
+  constant(v, {"schema", "Format and version of this file."}, "incise.calibration/1");
   v("method", c.method, "How it was calibrated.");
   v("virtual", c.is_virtual, "Whether one specimen at least is.");
   const bool has_chosen = v.optional({"chosen"}, c.chosen.has_value());

@@ -33,7 +33,7 @@ void make_parent(const std::filesystem::path& folder) {
   require_replaceable(folder);
 }
 
-/// A specimen that cannot be held and stretched is a result: it is told, and there is nothing to read or to cut.
+/// A specimen that cannot be held and stretched is a result. The monitor gets a warning; nothing is read or cut.
 bool is_held(const BenchBody& body, Monitor& monitor) {
   if (body.inverted_tets > 0)
     monitor.message(Severity::Detail,

@@ -263,7 +263,7 @@ void Experiment::run_trials(TrialRole first, TrialRole last) {
   tell();
 }
 
-/// Notes that something has ended; the monitor is told when its own thread comes by.
+/// Notes that something has ended. Only the caller's thread reports to the monitor.
 void Experiment::report_end(const Trial* trial, double cost) {
   {
     const std::scoped_lock lock(mutex_);

@@ -22,8 +22,8 @@
 namespace incise::laboratory {
 namespace {
 
-constexpr double kTipMm = 0.3;  // what an uncertain scale may move the tip by before a person is told; the path is
-                                // worth nothing from the clinical cut-off on
+// Largest shift of the tip by an uncertain scale that needs no warning; at the clinical cut-off the path is refused.
+constexpr double kTipMm = 0.3;
 
 /// What `register` wrote. A search that did not end well is no ground for moving a robot.
 RegistrationRecord trusted_registration(const std::filesystem::path& file, Monitor& monitor) {
@@ -68,8 +68,8 @@ Vec3 middle_of(const ToolPath& path, const Mat4& T) {
   return (T * (sum / static_cast<double>(path.waypoints.size())).homogeneous()).head<3>();
 }
 
-/// Takes the fitted scale out of the camera's lengths. What stands still is told by the user, or the camera's origin,
-/// or, where no one knows it, the middle of the path.
+/// Takes the fitted scale out of the camera's lengths. The fixed point is the user's, else the camera's origin, else
+/// the middle of the path.
 void take_true_size(Placement& placement, const ToolPath& path, const RegistrationRecord& registration,
                     const ProjectRequest& request, const std::optional<Vec3>& camera_mm, Monitor& monitor) {
   const Vec3 middle = middle_of(path, placement.T_robot_sim);
@@ -218,8 +218,8 @@ void hold_changes(Verdict& verdict, const RegistrationRecord& registration, cons
   }
 }
 
-/// That of the simulated path goes with the projected one, as long as it is cut as it was simulated. A mark cuts
-/// nothing: what speaks against its place remains.
+/// The projected path keeps the verdict of the simulated one as long as it is cut as it was simulated. A mark cuts
+/// nothing, so it keeps only the reasons against its position.
 Verdict verdict_along(const RegistrationRecord& registration, const ProjectRequest& request) {
   const ProjectSettings& settings = request.settings;
   Verdict verdict = read_path_verdict(request.path);

@@ -10,6 +10,12 @@ void add_failed_checks(const ProgramChecks& checks, Verdict& verdict) {
   }
 }
 
+void add_failed_replay(const Replay& replay, Verdict& verdict) {
+  if (replay.outcome == ReplayOutcome::Completed) return;
+  verdict.add("program_check", {},
+              fmt::format("the replay of the program ended as {}: {}", to_string(replay.outcome), replay.reason));
+}
+
 ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate) {
   ProgramHeader header{{"verdict", std::string(to_string(verdict.status()))}};
   for (const VerdictReason& reason : verdict.reasons()) {

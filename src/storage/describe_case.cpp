@@ -1,20 +1,10 @@
 #include <incise/storage/case_file.hpp>
 
 namespace incise {
-namespace {
-
-/// A choice of one: the name of what there is.
-void name(Visitor& v, const Field& field, std::string_view only) {
-  std::size_t place = 0;
-  v.choice(field, place, Names(&only, 1));
-}
-
-}  // namespace
-
 void describe(Visitor& v, CaseFile& file) {
   Case& c = file.settings;
   CaseInputs& in = file.inputs;
-  name(v, {"schema", "Format and version of this file."}, kCaseSchemaName);
+  constant(v, {"schema", "Format and version of this file."}, kCaseSchemaName);
   v("title", c.title, "Shown on the report.");
   v("specimen_id", c.specimen_id,
     "Name of the specimen, 1 to 64 letters, digits, '.', '_' and '-'; travels with every result. By default it follows "
@@ -78,7 +68,7 @@ void describe(Visitor& v, CaseFile& file) {
 
   v("path", in.tool_path, "A path.json (frame sim_stretched) to follow in place of the planned one.");
   v.begin({"robot", "The arm, its tool, and where the specimen lies under it."});
-  name(v, {"model", "The arm."}, "ur10e");
+  constant(v, {"model", "The arm."}, "ur10e");
   v({"T_robot_sim",
              "Rigid 4 x 4 transform, rows, from simulation to robot coordinates; absent: no program is made.", "mm"},
             c.T_robot_sim);

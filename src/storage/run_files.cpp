@@ -1,9 +1,9 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/table_io.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/storage/run_files.hpp>

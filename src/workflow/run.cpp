@@ -97,6 +97,9 @@ void add_program(const Case& settings, Inputs& inputs, std::span<const std::stri
   if (!run.gate.is_open) return;
   const WrittenProgram script = program_from_text(to_urscript(made.program, made.header), "program.script");
   made.replay = play(script, made.program.setup.arm);
+  add_failed_replay(*made.replay, run.verdict);
+  run.gate = gate_of(run.verdict, accepted);
+  made.header = header_of(made, settings, specimen_id, run);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct Whole {
   std::vector<double> large;
 };
 void describe(Visitor& v, Whole& w) {
-  describe_schema(v, "test/1");
+  constant(v, {"schema"}, "test/1");
   v("on", w.is_on);
   v("text", w.text);
   v("outcome", w.outcome);
@@ -114,7 +114,7 @@ TEST(DescribedJson, RefusesByFileAndPlace) {
         ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("w.json"), HasSubstr(says), HasSubstr("Make it again"))))
         << pointer;
   };
-  expect_refused("/schema", "test/2", "/deep/schema: found test/2, expected test/1");
+  expect_refused("/schema", "test/2", "/deep/schema: found \"test/2\", expected test/1");
   expect_refused("/on", 1, "/deep/on: found 1, expected true or false");
   expect_refused("/text", nullptr, "/deep/text: found null, expected text");
   expect_refused("/outcome", "splendid", "/deep/outcome: found \"splendid\"");

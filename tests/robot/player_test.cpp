@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/robot/player.hpp>
+#include <incise/robot/program_verdict.hpp>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -373,6 +374,21 @@ TEST(ProgramFromText, NamesTheRowOfADamagedTableAndTheKeyOfADamagedJson) {
   EXPECT_THAT(message_of(endless, "cut.json"), HasSubstr("found a number beyond 1.8e308"));
   csv.replace(csv.find("elbow_joint_rad"), 5, "elbov");
   EXPECT_THAT(message_of(csv, "cut.csv"), HasSubstr("the columns that `incise export` writes"));
+}
+
+TEST(Player, AReplayThatDoesNotCompleteClosesTheGateForEverybody) {
+  Replay replay;
+  replay.outcome = ReplayOutcome::Completed;
+  Verdict verdict;
+  add_failed_replay(replay, verdict);
+  EXPECT_EQ(verdict.status(), VerdictStatus::Ok);
+  replay.outcome = ReplayOutcome::EndsInTissue;
+  replay.reason = "the tip ends 1 mm below the surface";
+  add_failed_replay(replay, verdict);
+  EXPECT_FALSE(gate_of(verdict, std::vector<std::string>{"program_check"}).is_open);
+  ASSERT_EQ(verdict.reasons().size(), 1U);
+  EXPECT_EQ(verdict.reasons()[0].message,
+            "the replay of the program ended as ends_in_tissue: the tip ends 1 mm below the surface");
 }
 
 }  // namespace

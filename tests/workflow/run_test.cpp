@@ -1,4 +1,6 @@
 // From a case in memory to the checked program: which path is followed, what joins the verdict, when the gate is open.
+#include "support/block_inputs.hpp"
+
 #include <incise/workflow/run.hpp>
 
 #include <gtest/gtest.h>
@@ -10,18 +12,8 @@ namespace incise {
 namespace {
 
 /// A block of tissue under the arm with a round tumour edge on it, of which an assessment may have advised something.
-class AssessedBlock : public Inputs {
+class AssessedBlock : public testing::BlockInputs {
  public:
-  CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
-  std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return make_block({44, 50, 10}, {30, 34, 7}); }
-  std::optional<Contour> read_tumor_edge() override {
-    Contour edge;
-    for (int i = 0; i < 60; ++i) {
-      const double angle = 2.0 * M_PI * i / 60.0;
-      edge.points.emplace_back(22.0 + 5.0 * std::cos(angle), 24.0 + 5.0 * std::sin(angle), 10.0);
-    }
-    return edge;
-  }
   std::string specimen_id() override { return "BLOCK-1"; }
   Verdict advice_against(bool is_corrected) const override {
     EXPECT_EQ(is_corrected, expects_correction);

@@ -1,3 +1,4 @@
+#include "support/block_inputs.hpp"
 #include "support/counted_entries.hpp"
 
 #include <incise/core/error.hpp>
@@ -19,19 +20,8 @@ namespace incise {
 namespace {
 
 /// A block of tissue, a round tumour edge on it, and what a run keeps of it.
-class Block : public Inputs {
+class Block : public testing::BlockInputs {
  public:
-  CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
-  std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return make_block({44, 50, 10}, {30, 34, 7}); }
-  std::optional<Contour> read_tumor_edge() override {
-    Contour edge;
-    for (int i = 0; i < 60; ++i) {
-      const double angle = 2.0 * M_PI * i / 60.0;
-      edge.points.emplace_back(22.0 + 5.0 * std::cos(angle), 24.0 + 5.0 * std::sin(angle), 10.0);
-    }
-    return edge;
-  }
-
   testing::Entries kept;
   Cache cache{std::make_unique<testing::CountedEntries>(kept)};
 };

@@ -11,6 +11,11 @@
 
 namespace incise {
 
+/// Lengths of anatomy and of what cuts it: no tissue, tool or photograph is smaller or larger. mm
+inline constexpr Range kAnatomyMm{1e-9, 1e3};
+/// Signed distances of the same, mm.
+inline constexpr Range kAnatomyErrorMm{-1e3, 1e3};
+
 /// What one simulated cut of a calibration is made with, beside its case.
 struct RunSetting {
   double speed_mm_s = 13.0;        ///< of the simulated tool, > 0

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/calibration/calibration_run.hpp>
 #include <incise/calibration/drag_response.hpp>
 #include <incise/core/describe.hpp>
 #include <incise/geometry/types.hpp>

@@ -58,11 +58,6 @@ struct Block {
   bool is_direction = false;  ///< three numbers whose length does not matter, as long as it is not 0
 };
 
-/// Lengths of anatomy and of what cuts it, mm. Beyond these no tissue, tool or photograph is.
-inline constexpr Range kAnatomyMm{1e-9, 1e3};
-/// Signed distances of the same, mm.
-inline constexpr Range kAnatomyErrorMm{-1e3, 1e3};
-
 class Visitor;
 
 /// One walk over every field of a value. A type is described once, beside its declaration:
@@ -334,12 +329,10 @@ void describe(Visitor& v, std::map<std::string, V>& values) {
   for (const std::string& name : names) v(name, values[name]);
 }
 
-/// The key `schema` of a file that says which format it has; any other format is refused where it is read.
-inline void describe_schema(Visitor& v, std::string_view schema) {
-  if (!v.is_summary()) return;
-  std::string found(schema);
-  v("schema", found, "Format and version of this file.");
-  if (found != schema) v.refuse({"schema"}, found.substr(0, 40), std::string(schema));
+/// A choice of one: the format of a file with its version, or the only thing of its kind. Anything else is refused.
+inline void constant(Visitor& v, const Field& field, std::string_view only) {
+  std::size_t place = 0;
+  v.choice(field, place, Names(&only, 1));
 }
 
 }  // namespace incise

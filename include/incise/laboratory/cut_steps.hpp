@@ -41,8 +41,8 @@ struct EvaluateRequest {
   ErrorColors colors = ErrorColors::Safe;
   std::filesystem::path output;  ///< JSON; empty: no file
 };
-/// Not acceptable: a cut whose outcome is none of success, or a measurement whose verdict refuses it. `outcome` of the
-/// JSON says which. @throws DataError, CaseError
+/// The result is not acceptable if the cut's outcome is not a success, or if the verdict refuses the measurement; see
+/// `outcome` and `verdict` of the JSON. @throws DataError, CaseError
 [[nodiscard]] StepResult evaluate_cut(const EvaluateRequest& request, const StepContext& context);
 
 /// From evaluations before and after a change to tests, tables and figures.

@@ -12,8 +12,7 @@ namespace incise::laboratory {
 /// the digest of `incise register`, and one `registration` for each doubt that `register` itself wrote into it.
 [[nodiscard]] Verdict verdict_of(const RegistrationRecord& registration, const std::filesystem::path& file);
 
-/// A registration is worth what its clouds were when it was made. One that is not there any more is told on the
-/// console.
+/// A registration holds only for the clouds that it was made from. A cloud that no longer exists gets a warning.
 /// @throws DataError for a cloud that was changed since.
 void require_clouds_unchanged(const RegistrationRecord& registration, const std::filesystem::path& file,
                               Monitor& monitor);

@@ -42,7 +42,7 @@ struct ExportRequest {
 /// @throws DataError for a file that cannot be used; CaseError for overrides or a tool that do not go with the path.
 [[nodiscard]] StepResult export_program(const ExportRequest& request, const StepContext& context);
 
-/// Tells what stands between a verdict and its program, or which cautions were accepted.
+/// Warns of each reason that blocks the program, and of each caution that was accepted.
 void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor);
 
 }  // namespace incise::laboratory

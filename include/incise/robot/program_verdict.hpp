@@ -2,6 +2,7 @@
 
 #include <incise/core/verdict.hpp>
 #include <incise/robot/checks.hpp>
+#include <incise/robot/player.hpp>
 #include <incise/robot/program_text.hpp>
 
 namespace incise {
@@ -11,6 +12,8 @@ inline constexpr const char* kVirtualSpecimen = "VIRTUAL SPECIMEN: made for a sy
 
 /// Failed checks of a program that nobody took on themselves join the verdict as `program_check`.
 void add_failed_checks(const ProgramChecks& checks, Verdict& verdict);
+/// So does a replay that did not complete.
+void add_failed_replay(const Replay& replay, Verdict& verdict);
 
 /// What a program's header says of its verdict: the status, each reason, each accepted caution.
 [[nodiscard]] ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate);

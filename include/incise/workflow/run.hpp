@@ -19,7 +19,7 @@ struct CheckedProgram {
   RobotProgram program;  ///< along it
   ProgramChecks checks;
   ProgramHeader header;          ///< what the written program says of itself, its verdict included
-  std::optional<Replay> replay;  ///< what the arm does with the script; absent where the gate is closed
+  std::optional<Replay> replay;  ///< what the arm does with the script; absent where the gate was closed before it
 };
 
 /// The whole loop on one specimen.
@@ -33,7 +33,7 @@ struct Run {
 
 /// Runs the whole loop as run_study does, up to the cut along the corrected path, then makes and checks the robot
 /// program: along the corrected path where the correction is accepted, else along the path that was cut first. Failed
-/// checks join the verdict; the gate is open if the verdict allows the program.
+/// checks, and a replay that does not complete, join the verdict; the gate is open if the verdict allows the program.
 /// @param options  `until` is not read: all stages run.
 /// @param accepted  ids of the cautions that a person takes on them.
 /// @throws as run_study; CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place that no arm works at; DataError
