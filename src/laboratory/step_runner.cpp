@@ -15,6 +15,22 @@
 #include <set>
 
 namespace incise::laboratory {
+
+/// Writes warnings to a file; the experiment is asked whether to stop.
+class StepRunner::LogFile : public Monitor {
+ public:
+  LogFile(const std::filesystem::path& file, const Monitor& outer) : out_(file, std::ios::app), outer_(outer) {}
+  void message(Severity severity, std::string_view text) override {
+    if (severity == Severity::Warning) out_ << "warning: " << text << std::endl;
+  }
+  [[nodiscard]] bool is_cancelled() const override { return outer_.is_cancelled(); }
+  void refused(const std::string& why) { out_ << why << std::endl; }
+
+ private:
+  std::ofstream out_;
+  const Monitor& outer_;
+};
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -30,21 +46,6 @@ void describe(Visitor& v, KeptAnswer& k) {
   v("result", k.result, "What the step found, as JSON.");
   v("products", k.products, "Digest of each file and folder that the step made.");
 }
-
-/// Writes warnings to a file; the experiment is asked whether to stop.
-class LogFile : public Monitor {
- public:
-  LogFile(const std::filesystem::path& file, const Monitor& outer) : out_(file, std::ios::app), outer_(outer) {}
-  void message(Severity severity, std::string_view text) override {
-    if (severity == Severity::Warning) out_ << "warning: " << text << std::endl;
-  }
-  [[nodiscard]] bool is_cancelled() const override { return outer_.is_cancelled(); }
-  void refused(const std::string& why) { out_ << why << std::endl; }
-
- private:
-  std::ofstream out_;
-  const Monitor& outer_;
-};
 
 /// More than one step of an experiment writes.
 constexpr std::size_t kRoomBytes = std::size_t{32} << 20U;
@@ -152,24 +153,23 @@ StepAnswer StepRunner::run(const ExperimentStep& step) {
   throw_if_cancelled(outer_, "the experiment");
   lines_.push_back("incise " + shell_line(step.arguments));
   const CacheKey key = key_of(step);
-  Monitor quiet;  // a damaged answer is as good as none
+  LogFile log(folder_ / "log.txt", outer_);  // a damaged answer is reported there, and the step is run again
   const auto is_whole = [&step](const KeptAnswer& kept) {
     return Json::accept(kept.result) && kept.products.size() == step.products.size() &&
            kept.products == products_of(step);
   };
-  if (const auto kept = cache_.find<KeptAnswer>(step.name, key, quiet, is_whole))
+  if (const auto kept = cache_.find<KeptAnswer>(step.name, key, log, is_whole))
     return {kept->is_acceptable ? StepEnd::Done : StepEnd::NotAcceptable, Json::parse(kept->result)};
   if (cache_.holds(step.name)) remove_own_products(step);
   cache_.remove(step.name);
-  const StepAnswer answer = made_now(step);
+  const StepAnswer answer = made_now(step, log);
   if (answer.end == StepEnd::Unusable) return answer;
   const KeptAnswer kept{answer.end == StepEnd::Done, answer.result.dump(), products_of(step)};
   cache_.keep(step.name, key, kept);
   return {answer.end, Json::parse(kept.result)};
 }
 
-StepAnswer StepRunner::made_now(const ExperimentStep& step) {
-  LogFile log(folder_ / "log.txt", outer_);
+StepAnswer StepRunner::made_now(const ExperimentStep& step, LogFile& log) {
   const auto unusable = [&](const std::string& why) {
     log.refused("incise: " + why);
     require_room(step, folder_);

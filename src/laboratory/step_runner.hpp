@@ -39,7 +39,8 @@ class StepRunner {
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  StepAnswer made_now(const ExperimentStep& step);
+  class LogFile;
+  StepAnswer made_now(const ExperimentStep& step, LogFile& log);
 
   std::filesystem::path folder_;
   Workers& workers_;
