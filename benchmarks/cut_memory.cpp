@@ -2,8 +2,8 @@
 // steps, less what it held before. One process for each size; prints the table of docs/records/cutting.md.
 #include "process_cost.hpp"
 
-#include <incise/procedure/incision.hpp>
-#include <incise/procedure/incision_memory.hpp>
+#include <incise/cutting/incision.hpp>
+#include <incise/cutting/incision_memory.hpp>
 
 #include <fmt/format.h>
 #include <sys/wait.h>

@@ -6,7 +6,7 @@
 #include "support/phantom_inputs.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/procedure/incision.hpp>
+#include <incise/cutting/incision.hpp>
 #include <incise/report/line_plot.hpp>
 
 #include <fmt/format.h>

@@ -7,9 +7,9 @@
 #include "support/phantom_inputs.hpp"
 
 #include <incise/core/isa.hpp>
+#include <incise/cutting/incision.hpp>
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/geometry/contour.hpp>
-#include <incise/procedure/incision.hpp>
 #include <incise/report/line_plot.hpp>
 
 #include <fmt/format.h>

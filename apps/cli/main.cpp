@@ -4,9 +4,9 @@
 #include "verb_list.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/nearest_name.hpp>
 #include <incise/core/utf8.hpp>
 #include <incise/core/version.hpp>
-#include <incise/io/nearest_name.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

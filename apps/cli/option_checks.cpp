@@ -1,7 +1,8 @@
 #include "option_checks.hpp"
 
+#include "described_options.hpp"
+
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,6 @@
 #include <optional>
 
 namespace incise::cli {
-namespace {
 
 std::optional<double> number_in(const std::string& text) {
   double value = 0.0;
@@ -21,6 +21,8 @@ std::optional<double> number_in(const std::string& text) {
   if (error != std::errc{} || at != end || !std::isfinite(value)) return std::nullopt;
   return value;
 }
+
+namespace {
 
 template <typename IsAllowed>
 CLI::Validator check_of(const std::string& option, const std::string& expected, const IsAllowed& is_allowed) {
@@ -68,12 +70,11 @@ CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::
       "");
 }
 
-void require_valid(const std::vector<std::string>& violations) {
+void require_valid(const std::vector<Problem>& violations) {
   if (violations.empty()) return;
-  const Complaint complaint = complaint_of(violations.front(), "settings that can be used");
-  std::string option = complaint.field.empty() ? "" : "--" + complaint.field;
-  std::replace(option.begin(), option.end(), '_', '-');
-  throw CaseError("command line", option, complaint.found, complaint.expected);
+  Problem first = violations.front();
+  first.path = option_name(first.path);
+  throw CaseError("command line", first);
 }
 
 Vec3 direction_of(const std::vector<double>& numbers, const char* option) {

@@ -1,15 +1,20 @@
 #pragma once
 
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace incise::cli {
+
+/// A finite number, all of the text; a leading + is allowed.
+[[nodiscard]] std::optional<double> number_in(const std::string& text);
 
 /// A check of an option's number in the words of all other errors: option, found, expected. The option's name is given
 /// because a check does not learn it. It throws CaseError.
@@ -38,7 +43,7 @@ template <Named E>
 
 /// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), as one about the option of that
 /// name (--close-margin-mm); nothing for none.
-void require_valid(const std::vector<std::string>& violations);
+void require_valid(const std::vector<Problem>& violations);
 
 /// Three numbers of an option as a direction. @throws CaseError for one of length 0.
 [[nodiscard]] Vec3 direction_of(const std::vector<double>& numbers, const char* option);

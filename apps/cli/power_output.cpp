@@ -1,5 +1,6 @@
 #include "power_output.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/report/line_plot.hpp>
@@ -80,17 +81,8 @@ void write_figures(const std::filesystem::path& folder, const PowerResult& resul
 
 /// All that was asked for, defaults included.
 std::string settings_of_power(const PowerResult& result) {
-  const PowerRequest& request = result.request;
-  PowerJson json;
-  json["power_w"] = request.powers_w;
-  json["speed_mm_s"] = request.speed_mm_s;
-  json["speeds_mm_s"] = request.speeds_mm_s;
-  json["bulge_limit_mm"] = request.limits.bulge_limit_mm;
-  json["damage_limit_mm"] = request.limits.damage_limit_mm;
-  json["resolution"] = {{"fine_mm", request.resolution.fine_mm},
-                        {"coarse_mm", request.resolution.coarse_mm},
-                        {"way_mm", request.resolution.way_mm}};
-  for (const PowerSubject& subject : result.subjects) json["specimens"][subject.name] = to_json(subject.specimen);
+  PowerJson json = to_json(result.request);
+  for (const PowerSubject& subject : result.subjects) json["specimens"][subject.name] = specimen_json(subject.specimen);
   return json.dump();
 }
 
@@ -105,7 +97,7 @@ PowerJson json_of(const PowerResult& result) {
   json["schema"] = "incise.power/1";
   json["virtual"] = true;
   json["note"] = kVirtualCuts;
-  json.update(to_json(result.series, result.request));
+  json.update(to_json(result.series));
   json["speed_estimate"] = result.speed ? to_json(*result.speed) : PowerJson(nullptr);
   json["cuts_made"] = result.series.made;
   json["wall_s"] = result.wall_s;

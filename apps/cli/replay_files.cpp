@@ -1,5 +1,6 @@
 #include "replay_files.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/report/replay_figure.hpp>
 
@@ -12,16 +13,8 @@ bool is_in_cut(const ReplaySample& sample) {
 
 }  // namespace
 
-nlohmann::ordered_json to_json(const ProgramAudit& audit, const ProgramHeader& header) {
-  nlohmann::ordered_json json;
-  json["checked"] = audit.is_checked();
-  json["digest_matches"] = audit.digest == ProgramDigest::Absent
-                               ? nlohmann::ordered_json(nullptr)
-                               : nlohmann::ordered_json(audit.digest == ProgramDigest::Matches);
-  json["contradictions"] = audit.contradictions;
-  json["recomputed"] = audit.recomputed;
-  json["not_recomputed"] = audit.not_recomputed;
-  json["moved_limits"] = audit.moved_limits;
+nlohmann::ordered_json audit_json(const ProgramAudit& audit, const ProgramHeader& header) {
+  nlohmann::ordered_json json = to_json(audit);
   for (const char* key : {"verdict", "reason", "accepted", "override", "not_checked"}) {
     json[key] = nlohmann::ordered_json::array();
     for (const auto& [name, value] : header) {

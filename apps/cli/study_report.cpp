@@ -1,10 +1,10 @@
 #include "study_report.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
@@ -386,8 +386,9 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
                        {"machine", manifest.machine, ""}};
     for (const ManifestInput& input : manifest.inputs) data.provenance.push_back({"SHA-256 of " + input.path, input.sha256, ""});
   }
-  static constexpr std::array<std::array<const char*, 2>, 11> kFiles{{
+  static constexpr std::array<std::array<const char*, 2>, 12> kFiles{{
       {"mesh/mesh.vtu", "tetrahedral mesh, unstretched (ParaView)"},
+      {"stretched/rest.vtu", "at rest, with the displacement and stress of the stretch (ParaView)"},
       {"stretched/deformed.vtu", "clamped and stretched, with displacement and stress (ParaView)"},
       {"plan/path.json", "intended path"},
       {"as_planned/frames.pvd", "the first cut over time (ParaView)"},

@@ -1,8 +1,9 @@
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/storage/published_table_file.hpp>
 
@@ -91,7 +92,7 @@ void print_audit(const Audit& audit, const PublishedTable& table) {
 int run(const AuditArguments& given, const CommonOptions& options) {
   AuditArguments arguments = given;
   if (arguments.grain > 0.0) arguments.settings.grain = arguments.grain;
-  require_valid(validate(arguments.settings));
+  require_valid(problems_of(arguments.settings));
   refuse_input_as_output("-o", options.output, {arguments.table});
   const PublishedTable table = read_published_table(arguments.table);
   const Audit result = audit(table.rows, arguments.settings);
@@ -111,10 +112,7 @@ void add_audit(Application& application) {
                    "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
                    "PART_mean_mm, PART_sd_mm, PART_n of what a row was pooled from")
       ->required();
-  verb->add_option("--least", a.settings.least, "No value can be smaller: 0 for absolute errors")
-      ->check(finite("--least"));
-  verb->add_option("--n-at-least", a.settings.n_at_least, "Values behind a mean where the table does not say")
-      ->check(whole_between("--n-at-least", 2, 1000000000));
+  add_options_of(*verb, a.settings, "least", "n_at_least");
   verb->add_option("--grain", a.grain, "Values are whole multiples of this (1 for counts); 0: any number")
       ->check(zero_or_more("--grain"));
 }

@@ -1,4 +1,5 @@
 #include "calibration_output.hpp"
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
@@ -83,16 +84,8 @@ void add_calibrate(Application& application) {
   verb->add_option("--registration", arguments->request.registrations,
                    "Files of `incise register`, one for each case: kept, so that `incise assess` can tell how a "
                    "further specimen compares");
-  verb->add_option("--speeds-mm-s", arguments->request.request.speeds_mm_s, "Of the paper's grid")
-      ->check(above_zero("--speeds-mm-s"));
-  verb->add_option("--dullnesses", arguments->request.request.dullnesses, "Of the paper's grid")
-      ->check(above_zero("--dullnesses"));
-  verb->add_option("--drag-lengths-mm", arguments->request.request.drag_lengths_mm,
-                   "Speed x dwell of the fit's simulations")
-      ->check(above_zero("--drag-lengths-mm"));
-  verb->add_option("--second-drag-lengths-mm", arguments->request.request.second_drag_lengths_mm,
-                   "Those of them that are also simulated with the second stiffness")
-      ->check(above_zero("--second-drag-lengths-mm"));
+  add_options_of(*verb, arguments->request.request, "speeds_mm_s", "dullnesses", "drag_lengths_mm",
+                 "second_drag_lengths_mm");
 }
 
 }  // namespace incise::cli

@@ -1,3 +1,4 @@
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
@@ -85,10 +86,7 @@ void add_compare(Application& application) {
   verb->add_option("--measure", a.measure, "Which error")->check(name_of_any<ErrorMeasure>());
   verb->add_flag("--paired", a.settings.is_paired,
                  "The n-th file before and the n-th file after are the same specimen");
-  verb->add_option("--alpha", a.settings.alpha, "Level of the tests; intervals are at 1 - alpha");
-  verb->add_option("--power", a.settings.power, "Chance to see the effect that is wanted of the next experiment");
-  verb->add_option("--replicates", a.settings.bootstrap.replicates, "Of the block bootstrap")
-      ->check(CLI::Range(99, 1000000));
+  add_options_of(*verb, a.settings, "alpha", "power", "replicates");
 }
 
 }  // namespace incise::cli

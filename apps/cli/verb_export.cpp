@@ -3,8 +3,8 @@
 #include "verdict_gate.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/nearest_name.hpp>
 #include <incise/core/units.hpp>
-#include <incise/io/nearest_name.hpp>
 #include <incise/laboratory/robot_steps.hpp>
 #include <incise/storage/own_files.hpp>
 
@@ -21,7 +21,6 @@ constexpr double kMostPowerW = 400.0;        // no electrosurgical generator giv
 struct ExportArguments {
   laboratory::ExportRequest request;
   std::string robot = "ur10e", format = "urscript", motion = "movep", kind;
-  double overlap_mm = -1.0;  // not given
   double shaft_diameter_mm = 2.0 * CheckSettings{}.shaft_radius_mm;
   double power_w = 0.0;  // not given
   std::vector<double> tcp, near_deg;
@@ -61,7 +60,6 @@ laboratory::ExportRequest request_of(const ExportArguments& arguments) {
   request.form = value_named<laboratory::ProgramForm>(arguments.format);
   request.motion = value_named<ScriptMotion>(arguments.motion);
   if (!arguments.kind.empty()) request.kind = value_named<PathKind>(arguments.kind);
-  if (arguments.overlap_mm >= 0.0) request.overlap_mm = arguments.overlap_mm;
   if (arguments.power_w > 0.0) request.power_w = arguments.power_w;
   request.checks.shaft_radius_mm = 0.5 * arguments.shaft_diameter_mm;
   const std::vector<double>& tcp = arguments.tcp;
@@ -142,7 +140,8 @@ void add_export(Application& application) {
   verb->add_option("--depth-mm", a.request.checks.planned_depth_mm, "Planned depth")->check(above_zero("--depth-mm"));
   verb->add_option("--close-margin-mm", a.request.checks.close_margin_mm, "Least distance from the tumour edge")
       ->check(above_zero("--close-margin-mm"));
-  verb->add_option("--overlap-mm", a.overlap_mm, "How far a ring runs on beyond its start; by default 8, a mark 0")
+  verb->add_option("--overlap-mm", a.request.overlap_mm,
+                   "How far a ring runs on beyond its start; by default 8, a mark 0")
       ->check(CLI::Range(0.0, kLargestLengthMm))
       ->default_str("");
   verb->add_flag("--open", a.request.is_open, "The path is an open cut: closed, gap and encloses are not checked");

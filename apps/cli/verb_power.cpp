@@ -1,7 +1,9 @@
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 #include "power_output.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/entry_folder.hpp>
@@ -106,13 +108,7 @@ int find_power(PowerArguments arguments, const CommonOptions& options) {
 }
 
 void add_limits(CLI::App& verb, PowerRequest& request) {
-  verb.add_option("--bulge-limit-mm", request.limits.bulge_limit_mm,
-                  "Skin ahead of the tool may not stand higher than this, in the mean over a cut. Chosen so that the "
-                  "bench's series comes out as the paper's eye judged its own")
-      ->check(above_zero("--bulge-limit-mm"));
-  verb.add_option("--damage-limit-mm", request.limits.damage_limit_mm,
-                  "Heat may not damage tissue farther beside the tool's axis than this: the electrode's diameter")
-      ->check(above_zero("--damage-limit-mm"));
+  add_options_of(verb, request.limits, "bulge_limit_mm", "damage_limit_mm");
   verb.add_option("--fine-mm", request.resolution.fine_mm,
                   "Tets round the cut; coarser ones are quicker, and their numbers others")
       ->check(between("--fine-mm", 0.8, request.resolution.coarse_mm));

@@ -1,3 +1,4 @@
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
@@ -86,13 +87,7 @@ void add_project(Application& application) {
       ->check(zero_or_more("--depth-mm"));
   verb->add_option("--speed-mm-s", a.speed_mm_s, "Of the tip; 0: 2 mm/s for a mark, as the path says for an incision")
       ->check(zero_or_more("--speed-mm-s"));
-  verb->add_option("--max-gap-mm", a.settings.max_gap_mm, "Farthest from a waypoint to the nearest measured point")
-      ->check(zero_or_more("--max-gap-mm"));
-  verb->add_option("--smoothing-mm", a.settings.smoothing_mm,
-                   "Radius over which the shift onto the surface is averaged; 0: every point by itself")
-      ->check(CLI::Range(0.0, 100.0));
-  verb->add_option("--max-shift-mm", a.settings.max_shift_mm, "Farthest that a point is moved onto the surface")
-      ->check(zero_or_more("--max-shift-mm"));
+  add_options_of(*verb, a.settings, "max_gap_mm", "smoothing_mm", "max_shift_mm");
   verb->add_option("--waypoints", a.settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 2000));
 }
 

@@ -1,3 +1,4 @@
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
@@ -66,27 +67,13 @@ void add_register(Application& application) {
   verb->add_option("--scale", a.scale, "free, fixed, or LO,HI");
   verb->add_option("--method", a.method, "nonrigid: also bend the source to the target (moved_source.ply)")
       ->check(CLI::IsMember({"rigid", "nonrigid"}));
-  verb->add_option("--outlier-weight", a.request.settings.outlier_weight,
-                   "Share of the target that belongs to nothing in the source")
-      ->check(CLI::Range(0.001, 0.95));
-  verb->add_option("--rotations", a.request.settings.rotations, "Starts of the search")->check(CLI::Range(8, 2000));
+  add_options_of(*verb, a.request.settings, "outlier_weight", "rotations", "max_iterations", "settling_mm");
   verb->add_flag("--from-identity", a.from_identity, "No search: the clouds lie nearly right");
   verb->add_flag("--no-icp", a.no_icp, "Coherent point drift alone");
-  verb->add_option("--max-iterations", a.request.settings.max_iterations, "Of the drift and of the finish")
-      ->check(CLI::Range(1, 100000));
   verb->add_option("--max-rmse-mm", a.request.max_rmse_mm,
                    "A larger residual is not acceptable; 0: 3 % of the target's radius")
       ->check(between("--max-rmse-mm", 0.0, 1000.0));
-  verb->add_option(
-          "--settling-mm", a.request.settings.settling_mm,
-          "How far the tissue may have settled, up or down, since it was simulated: pose and settling are then "
-          "found together; 0: the pose alone")
-      ->check(CLI::Range(0.0, 20.0));
-  verb->add_option("--smoothness", a.nonrigid.smoothness,
-                   "nonrigid: range of the bending, share of the source's radius")
-      ->check(between("--smoothness", 0.01, 10.0));
-  verb->add_option("--stiffness", a.nonrigid.stiffness, "nonrigid: cost of bending against misfit")
-      ->check(between("--stiffness", 1e-6, 1e6));
+  add_options_of(*verb, a.nonrigid, "smoothness", "stiffness");
   verb->add_option("--approach", a.approach, "Line of sight of the picture")->expected(3);
 }
 

@@ -2,8 +2,8 @@
 #include "options.hpp"
 #include "replay_files.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/isa.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/core/version.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
@@ -44,7 +44,7 @@ Replay played(const WrittenProgram& program, const PlayerSettings& settings, con
   try {
     return play(program, ur10e(), settings, &*intended);
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(path, "waypoints", error, "a path that a tool can follow");
+    throw DataError(path, "waypoints", error);
   }
 }
 
@@ -80,8 +80,8 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
     console.message(
         Severity::Warning,
         "not checked: the program carries no digest, so nobody knows whether it is the one that was checked");
-  nlohmann::ordered_json result = to_json(replay, settings);
-  result["program_audit"] = to_json(audit, program.header);
+  nlohmann::ordered_json result = to_json(replay);
+  result["program_audit"] = audit_json(audit, program.header);
   result["model"] = "incise's own kinematics and interpolation; not the maker's controller";
   result["wall_s"] = options.wall_s();
   if (!options.output.empty()) write_folder(arguments, options, replay, result);

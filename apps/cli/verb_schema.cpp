@@ -13,7 +13,7 @@ namespace incise::cli {
 namespace {
 
 std::string text_of(const std::string& what, bool has_defaults) {
-  if (what == "bench") return has_defaults ? json_text(to_json(Specimen{})) : bench_schema_json();
+  if (what == "bench") return has_defaults ? json_text(specimen_json(Specimen{})) : bench_schema_json();
   if (what == "path") return path_schema_json();
   return has_defaults ? case_defaults_yaml() : case_schema_json();
 }

@@ -1,3 +1,4 @@
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
@@ -57,22 +58,13 @@ void add_surface(Application& application) {
   verb->add_option("--max-tilt-deg", a.view.largest_tilt_deg, "Mesh: steeper faces are left out")
       ->check(CLI::Range(1.0, 90.0));
   verb->add_option("--box", a.box, "Cloud: keep what lies between two corners, x y z x y z")->expected(6);
-  verb->add_option("--planes", a.cleaning.planes, "Cloud: planes (table, holder) to take away with what lies beneath")
-      ->check(CLI::Range(0, 20));
-  verb->add_option("--plane-tolerance-mm", a.cleaning.plane_tolerance_mm, "Cloud: thickness of a plane to either side")
-      ->check(above_zero("--plane-tolerance-mm"));
+  add_options_of(*verb, a.cleaning, "planes", "plane_tolerance_mm", "outlier_neighbours", "outlier_deviations",
+                 "voxel_mm");
   verb->add_option("--camera", a.camera, "Cloud in a camera's frame: JSON with T_robot_camera; with --plane-z-mm");
   verb->add_option(
       "--plane-z-mm", a.plane_z_mm,
       "Height of the largest plane in the robot's frame: the camera's scale follows from it and is taken out "
       "of the cloud; with --camera and --planes");
-  verb->add_option("--outlier-neighbours", a.cleaning.outlier_neighbours, "Cloud: 0 keeps outliers")
-      ->check(CLI::Range(0, 200));
-  verb->add_option("--outlier-deviations", a.cleaning.outlier_deviations,
-                   "Cloud: above the mean distance, beyond which a point goes")
-      ->check(CLI::Range(0.0, 100.0));
-  verb->add_option("--voxel-mm", a.cleaning.voxel_mm, "Cloud: one point per cube of this size; 0: all")
-      ->check(CLI::Range(0.0, 100.0));
 }
 
 }  // namespace incise::cli

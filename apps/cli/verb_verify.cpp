@@ -2,9 +2,9 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/nearest_name.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
-#include <incise/io/nearest_name.hpp>
 #include <incise/report/line_plot.hpp>
 #include <incise/verification/verification.hpp>
 

@@ -1,6 +1,6 @@
 #include "verdict_gate.hpp"
 
-#include <incise/io/nearest_name.hpp>
+#include <incise/core/nearest_name.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -6,14 +6,11 @@
 namespace incise {
 namespace {
 
-constexpr double kRingOverlapMm = 8.0;  // as `incise export` has it
-
 /// Cuts along a path in the specimen's frame, as its arm would.
 BenchCut cut_along(const BenchBody& body, ToolPath path, const PlanSettings& plan, Workers& workers, Monitor& monitor) {
   path.frame = PathFrame::Robot;  // the robot's base is taken to be the specimen's frame: program poses need no other
   ProgramSettings settings;
   settings.plunge_speed_mm_s = plan.speed_mm_s;
-  settings.overlap_mm = kRingOverlapMm;
   const RobotProgram program = make_program(path, settings);
   const std::vector<TipPose> course = tip_course(asked_course(program), body.specimen, Mat4::Identity());
   return cut_specimen(body, course, plan.power_w, workers, monitor);

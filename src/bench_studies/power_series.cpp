@@ -2,6 +2,7 @@
 #include <incise/bench_studies/power_series.hpp>
 #include <incise/core/batch_monitor.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
 
@@ -63,6 +64,8 @@ class PowerSeriesRunner {
       make_all(series.speed_cuts, "speeds");
     }
     series.made = made_;
+    series.speed_mm_s = request_.speed_mm_s;
+    series.limits = request_.limits;
     return series;
   }
 
@@ -167,13 +170,10 @@ class PowerSeriesRunner {
   std::size_t made_ = 0;
 };
 
-void check_list(std::vector<std::string>& violations, const char* name, const std::vector<double>& values) {
+void require_each_once(std::vector<Problem>& violations, const char* name, const std::vector<double>& values) {
   std::set<double> seen;
   for (const double value : values) {
-    if (!std::isfinite(value) || value <= 0.0)
-      violations.push_back(fmt::format("{}: found {}, expected numbers above 0", name, value));
-    if (!seen.insert(value).second)
-      violations.push_back(fmt::format("{}: found {} twice, expected every value once", name, value));
+    if (!seen.insert(value).second) violations.push_back({name, fmt::format("{} twice", value), "every value once"});
   }
 }
 
@@ -183,26 +183,20 @@ CacheKey power_cut_key(const Specimen& specimen, const BenchResolution& resoluti
   return CacheKey("power_cut").add(specimen).add(resolution).add(power_w).add(speed_mm_s);
 }
 
-std::vector<std::string> validate(const PowerRequest& request) {
-  std::vector<std::string> violations = validate(request.limits);
-  if (request.powers_w.empty()) violations.push_back("power_w: found none, expected at least one power");
-  check_list(violations, "power_w", request.powers_w);
-  check_list(violations, "speed_mm_s", {request.speed_mm_s});
-  check_list(violations, "speeds_mm_s", request.speeds_mm_s);
+std::vector<Problem> validate(const PowerRequest& request) {
+  std::vector<Problem> violations = problems_of(request);
+  if (request.powers_w.empty()) violations.push_back({"power_w", "none", "at least one power"});
+  require_each_once(violations, "power_w", request.powers_w);
+  require_each_once(violations, "speeds_mm_s", request.speeds_mm_s);
   const BenchResolution& r = request.resolution;
-  if (!(std::isfinite(r.fine_mm) && r.fine_mm > 0.0))
-    violations.push_back(fmt::format("fine_mm: found {}, expected a number above 0", r.fine_mm));
-  if (!(std::isfinite(r.coarse_mm) && r.coarse_mm >= r.fine_mm))
-    violations.push_back(fmt::format("coarse_mm: found {}, expected at least fine_mm = {}", r.coarse_mm, r.fine_mm));
-  if (!(std::isfinite(r.way_mm) && r.way_mm > 0.0))
-    violations.push_back(fmt::format("way_mm: found {}, expected a number above 0", r.way_mm));
+  Expect{violations}(r.coarse_mm >= r.fine_mm, "resolution.coarse_mm", r.coarse_mm,
+                     fmt::format("at least fine_mm = {}", r.fine_mm));
   return violations;
 }
 
 PowerSeries run_power_series(const std::vector<PowerSubject>& subjects, const PowerRequest& request, Cache& kept,
                              Workers& workers, Monitor& monitor) {
-  const std::vector<std::string> violations = validate(request);
-  INCISE_REQUIRE(violations.empty(), violations.front());
+  require_none(validate(request));
   INCISE_REQUIRE(!subjects.empty(), "expected at least one specimen, found none");
   std::set<std::string> names;
   for (const PowerSubject& subject : subjects) {

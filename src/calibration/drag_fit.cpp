@@ -42,20 +42,8 @@ SpecimenFit fitted(const FitSpecimen& specimen, const DragFit& fit) {
 
 }  // namespace
 
-std::vector<std::string> validate(const DragFitSettings& s) {
-  std::vector<std::string> violations;
-  const Expect expect(violations);
-  expect(s.stiffness_sd > 0.0, "stiffness_sd", s.stiffness_sd, "a number above 0");
-  expect(s.bias_sd_mm > 0.0, "bias_sd_mm", s.bias_sd_mm, "a number above 0");
-  expect(s.reading_sd_mm > 0.0, "reading_sd_mm", s.reading_sd_mm, "a number above 0");
-  expect(s.credible > 0.0 && s.credible < 1.0, "credible", s.credible, "a share between 0 and 1");
-  expect(s.samples >= 1, "samples", s.samples, "at least 1");
-  return violations;
-}
-
 DragFit fit_drag(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(problems_of(settings));
   require_specimens(specimens);
   const DragPosterior posterior = posterior_on_grid(specimens, settings);
   DragFit fit = summary_of(posterior, settings);

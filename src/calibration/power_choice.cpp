@@ -94,18 +94,9 @@ PowerVerdict judge(double power_w, const CutsOfOnePower& cuts, const PowerLimits
 
 }  // namespace
 
-std::vector<std::string> validate(const PowerLimits& limits) {
-  std::vector<std::string> violations;
-  const Expect expect(violations);
-  expect(limits.bulge_limit_mm > 0.0, "bulge_limit_mm", limits.bulge_limit_mm, "a number above 0");
-  expect(limits.damage_limit_mm > 0.0, "damage_limit_mm", limits.damage_limit_mm, "a number above 0");
-  return violations;
-}
-
 PowerChoice choose_power(std::span<const PowerCut> cuts, const PowerLimits& limits) {
   INCISE_REQUIRE(!cuts.empty(), "expected at least one cut, found none");
-  const std::vector<std::string> violations = validate(limits);
-  INCISE_REQUIRE(violations.empty(), violations.front());
+  require_none(problems_of(limits));
   PowerChoice choice;
   for (const auto& [power_w, of_power] : by_power(cuts)) {
     choice.powers.push_back(judge(power_w, of_power, limits));

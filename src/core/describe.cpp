@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 namespace incise {
 
@@ -15,8 +17,10 @@ bool contains(const Range& range, double value) {
 }
 
 std::string describe(const Range& range) {
-  const bool has_least = std::isfinite(range.least);
-  const bool has_most = std::isfinite(range.most);
+  constexpr double kLargestInt =
+      std::numeric_limits<std::int32_t>::max();  // what a type cannot hold is no bound to state
+  const bool has_least = std::isfinite(range.least) && range.least > -kLargestInt;
+  const bool has_most = std::isfinite(range.most) && range.most < kLargestInt;
   if (!has_least && !has_most) return "a number";
   if (!has_most) {
     return range.is_least_open ? fmt::format("a number above {}", range.least)

@@ -2,70 +2,46 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 
 namespace incise {
-namespace {
 
-constexpr std::size_t kLongestFound = 1000;
+InvalidArgument::InvalidArgument(std::string_view function, std::string text)
+    : Error(fmt::format("{}: {}", function, text)), text_(std::move(text)) {}
 
-/// Fit to be shown: what a file holds may be long, and not text.
-std::string shown(const std::string& found) {
-  std::string text;
-  for (const char c : found.substr(0, kLongestFound)) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F) {
-      text += fmt::format("\\x{:02x}", byte);
-    } else {
-      text += c;
-    }
-  }
-  if (found.size() > kLongestFound) text += fmt::format("... ({} characters)", found.size());
-  return text;
+std::string InvalidArgument::as_hint() const {
+  std::string hint = text_;
+  if (!hint.empty()) hint[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(hint[0])));
+  return hint;
 }
 
-std::string compose(const std::string& where, const std::string& place, const std::string& found,
-                    const std::string& expected, const std::string& hint) {
-  std::string text = where;
-  if (!place.empty()) text += fmt::format(": {}", place);
-  text += fmt::format(": found {}, expected {}", shown(found), expected);
-  if (!hint.empty()) text += fmt::format(". {}", hint);
-  return text;
-}
-
-}  // namespace
+CaseError::CaseError(std::string where, Problem problem)
+    : Error(fmt::format("{}: {}", where, sentence(problem))), where_(std::move(where)), problem_(std::move(problem)) {}
 
 CaseError::CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint)
-    : Error(compose(where, field, found, expected, hint)), field_(std::move(field)) {}
-
-std::size_t CaseError::end_of_place() const {
-  // The message is "<where>: <field>: found …"; what stands before the field, or before "found" where there is none, is the place.
-  return std::string_view(what()).find(field_.empty() ? ": found " : fmt::format(": {}: found ", field_));
-}
-
-std::string CaseError::without_place() const {
-  return std::string(what()).substr(end_of_place() + 2);
-}
+    : CaseError(std::move(where), Problem{std::move(field), std::move(found), std::move(expected), std::move(hint)}) {}
 
 CaseError CaseError::in_file(const std::string& file) const {
-  const std::string text = what();
-  const std::size_t end = end_of_place();
-  const std::string where = text.substr(0, end);
-  if (where.starts_with(file)) return *this;
-  CaseError named = *this;
-  static_cast<Error&>(named) = Error((where == "case" ? file : fmt::format("{}: {}", file, where)) + text.substr(end));
-  return named;
+  if (where_.starts_with(file)) return *this;
+  return {where_ == "case" ? file : fmt::format("{}: {}", file, where_), problem_};
 }
+
+DataError::DataError(const std::filesystem::path& path, const Problem& problem)
+    : Error(fmt::format("{}: {}", path.string(), sentence(problem))), path_(path) {}
 
 DataError::DataError(const std::filesystem::path& path, std::string place, std::string found, std::string expected,
                      std::string hint)
-    : Error(compose(path.string(), place, found, expected, hint)), path_(path) {}
+    : DataError(path, Problem{std::move(place), std::move(found), std::move(expected), std::move(hint)}) {}
+
+DataError::DataError(const std::filesystem::path& path, const std::string& place, const InvalidArgument& broken)
+    : Error(fmt::format("{}: {}{}{}", path.string(), place, place.empty() ? "" : ": ", broken.text())), path_(path) {}
 
 namespace core_detail {
 
 void throw_invalid_argument(const char* function, const std::string& message) {
-  throw InvalidArgument(fmt::format("{}: {}", function, message));
+  throw InvalidArgument(function, message);
 }
 
 void stop_on_broken_invariant(const char* file, int line, const char* condition) {

@@ -1,17 +1,45 @@
+#include <incise/core/error.hpp>
 #include <incise/core/problem.hpp>
 
 #include <fmt/format.h>
 
 namespace incise {
+namespace {
+
+constexpr std::size_t kLongestFound = 1000;
+
+/// Fit to be shown: what a file holds may be long, and not text.
+std::string shown(const std::string& found) {
+  std::string text;
+  for (const char c : found.substr(0, kLongestFound)) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F) {
+      text += fmt::format("\\x{:02x}", byte);
+    } else {
+      text += c;
+    }
+  }
+  if (found.size() > kLongestFound) text += fmt::format("... ({} characters)", found.size());
+  return text;
+}
+
+}  // namespace
 
 std::string sentence(const Problem& problem) {
-  return fmt::format("{}: found {}, expected {}", problem.path, problem.found, problem.expected);
+  std::string text = problem.path.empty() ? "" : problem.path + ": ";
+  text += fmt::format("found {}, expected {}", shown(problem.found), problem.expected);
+  if (!problem.hint.empty()) text += ". " + problem.hint;
+  return text;
 }
 
 std::vector<std::string> sentences(std::span<const Problem> problems) {
   std::vector<std::string> all;
   for (const Problem& problem : problems) all.push_back(sentence(problem));
   return all;
+}
+
+void require_none(std::span<const Problem> problems, const char* function) {
+  if (!problems.empty()) throw InvalidArgument(function, fmt::format("{}", fmt::join(sentences(problems), "; ")));
 }
 
 }  // namespace incise

@@ -1,3 +1,4 @@
+#include <incise/core/defaults.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/verdict.hpp>
 
@@ -23,9 +24,9 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "",
      "",
      "The simulated cut ended in anything but success, or nothing of it could be measured."},
-    {"tumor_distance", kRefused, 2.2, ">", "mm",
+    {"tumor_distance", kRefused, kCloseMarginMm, ">", "mm",
      "Nearest distance of the simulated kerf to the tumour's surface, in any direction."},
-    {"lateral_margin", kRefused, 2.2, ">", "mm",
+    {"lateral_margin", kRefused, kCloseMarginMm, ">", "mm",
      "Least tissue that the simulated cut leaves beside the tumour's edge."},
     {"open_layer", kRefused, {}, "", "mm", "A layer within the planned depth in which the simulated ring stayed open."},
     {"contour_surface", kRefused, 5.0, "<=", "mm", "Farthest that the tumour's edge lies from the tumour's surface."},

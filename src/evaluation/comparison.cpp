@@ -75,20 +75,15 @@ SpecimenTests specimen_tests(const ComparedSide& before, const ComparedSide& aft
 
 }  // namespace
 
-std::vector<std::string> validate(const ComparisonSettings& settings) {
-  std::vector<std::string> violations;
-  const Expect expect(violations);
-  const double alpha = settings.alpha;
-  expect(alpha > 0.0 && alpha < 1.0, "alpha", alpha, "a level in (0, 1)");
-  expect(settings.power > alpha && settings.power < 1.0, "power", settings.power, "more than alpha and less than 1");
-  expect(settings.bootstrap.replicates >= 99, "replicates", settings.bootstrap.replicates, "at least 99");
+std::vector<Problem> validate(const ComparisonSettings& settings) {
+  std::vector<Problem> violations = problems_of(settings);
+  Expect{violations}(settings.power > settings.alpha, "power", settings.power, "more than alpha");
   return violations;
 }
 
 Comparison compare(std::span<const MeasuredSpecimen> before, std::span<const MeasuredSpecimen> after,
                    const ComparisonSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(validate(settings));
   INCISE_REQUIRE(!before.empty() && !after.empty(), "expected at least one specimen before and one after");
   INCISE_REQUIRE(!settings.is_paired || before.size() == after.size(),
                  fmt::format("found {} specimens before and {} after, expected pairs", before.size(), after.size()));

@@ -105,29 +105,22 @@ double target_mm(const EvaluationSettings& settings) {
   return settings.lateral_margin_mm - allowance;
 }
 
-std::vector<std::string> validate(const EvaluationSettings& s) {
-  std::vector<std::string> violations;
+std::vector<Problem> validate(const EvaluationSettings& s) {
+  std::vector<Problem> violations = problems_of(s);
   const Expect expect(violations);
-  expect(s.electrode_radius_mm >= 0.0, "electrode_radius_mm", s.electrode_radius_mm, "0 mm or more");
   expect(s.lateral_margin_mm > s.electrode_radius_mm, "lateral_margin_mm", s.lateral_margin_mm,
          "more than the electrode's radius");
-  if (s.target_mm) expect(*s.target_mm > 0.0, "target_mm", *s.target_mm, "a distance above 0 mm");
-  expect(s.close_margin_mm > 0.0, "close_margin_mm", s.close_margin_mm, "a distance above 0 mm");
-  expect(s.approach.norm() > 0.0, "approach", s.approach.norm(), "a vector of length above 0");
   if (s.twelve_o_clock) {
     const double across = s.twelve_o_clock->cross(s.approach).norm();
     expect(across > 1e-6 * s.approach.norm() * s.twelve_o_clock->norm(), "twelve_o_clock", across,
            "a direction across the approach");
   }
-  expect(s.step_mm > 0.0, "step_mm", s.step_mm, "a distance above 0 mm");
-  expect(s.end_tolerance_mm >= 0.0, "end_tolerance_mm", s.end_tolerance_mm, "0 mm or more");
   return violations;
 }
 
 Evaluation evaluate(const std::optional<Contour>& incision, const Contour& tumor_edge,
                     const EvaluationSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(validate(settings));
   Evaluation result;
   result.contour = settings.contour;
   result.target_mm = target_mm(settings);

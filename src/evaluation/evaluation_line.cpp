@@ -60,8 +60,7 @@ Contour without_repeats(const Contour& line) {
 
 Evaluation evaluate_line(const std::optional<Contour>& incision, const Contour& line,
                          const EvaluationSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(validate(settings));
   const Contour intended = without_repeats(line);
   INCISE_REQUIRE(!line.is_closed && intended.points.size() >= 2,
                  "expected an open line of at least 2 different points");

@@ -1,6 +1,7 @@
 #include "evaluation/audit_rules.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
 
@@ -55,19 +56,6 @@ std::optional<PrintedNumber> printed_number(std::string_view text) {
   return number;
 }
 
-std::vector<std::string> validate(const AuditSettings& settings) {
-  std::vector<std::string> violations;
-  if (!std::isfinite(settings.least))
-    violations.push_back(fmt::format("least: found {}, expected a finite number", settings.least));
-  if (settings.n_at_least < 2) {
-    violations.push_back(fmt::format("n_at_least: found {}, expected at least 2", settings.n_at_least));
-  }
-  if (settings.grain && !(*settings.grain > 0.0 && std::isfinite(*settings.grain))) {
-    violations.push_back(fmt::format("grain: found {}, expected a step above 0", *settings.grain));
-  }
-  return violations;
-}
-
 std::string to_text(const Finding& finding) {
   const std::string whose = finding.group.empty() ? "" : finding.group + ": ";
   const auto say = [&](const char* pattern) {
@@ -108,8 +96,7 @@ std::string to_text(const Finding& finding) {
 }
 
 Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(problems_of(settings));
   Audit result;
   find_baseline(rows, result);
   for (const PrintedRow& row : rows) {

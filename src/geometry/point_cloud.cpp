@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/median.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/neighbours.hpp>
@@ -238,29 +239,18 @@ std::optional<PlaneFit> find_plane(std::span<const Vec3> points, double toleranc
   return best;
 }
 
-std::vector<std::string> validate(const CleaningSettings& s) {
-  std::vector<std::string> problems;
-  const auto check = [&problems](bool is_good, const char* text) {
-    if (!is_good) problems.emplace_back(text);
-  };
-  check(!s.box || (!s.box->isEmpty() && s.box->min().allFinite() && s.box->max().allFinite()),
-        "box: expected low corner <= high corner");
-  check(s.planes >= 0 && s.planes <= 20, "planes: expected 0 to 20");
-  check(std::isfinite(s.plane_tolerance_mm) && s.plane_tolerance_mm > 0.0,
-        "plane_tolerance_mm: expected a length above 0");
-  check(s.plane_least_share > 0.0 && s.plane_least_share <= 1.0, "plane_least_share: expected a share in (0, 1]");
-  check(s.outlier_neighbours >= 0, "outlier_neighbours: expected 0 or more");
-  check(s.outlier_deviations >= 0.0, "outlier_deviations: expected 0 or more");
-  check(std::isfinite(s.voxel_mm) && s.voxel_mm >= 0.0, "voxel_mm: expected 0 or more");
-  check(s.normal_neighbours == 0 || s.normal_neighbours >= 3, "normal_neighbours: expected 0, or at least 3");
-  check(s.seen_along.allFinite() && s.seen_along.norm() > 0.0, "seen_along: expected a direction");
+std::vector<Problem> validate(const CleaningSettings& s) {
+  std::vector<Problem> problems = problems_of(s);
+  const Expect expect(problems);
+  if (s.box) expect(!s.box->isEmpty(), "box", s.box->sizes().minCoeff(), "the low corner below the high one");
+  expect(s.normal_neighbours == 0 || s.normal_neighbours >= 3, "normal_neighbours", s.normal_neighbours,
+         "0, or 3 or more");
   return problems;
 }
 
 CleanedCloud clean_cloud(const PointCloud& cloud, const CleaningSettings& settings, Random& random, Workers& workers) {
   constexpr int kPlaneTrials = 300;  // finds a plane of a fifth of the points with a chance of 0.9
-  const std::vector<std::string> problems = validate(settings);
-  INCISE_REQUIRE(problems.empty(), problems.front());
+  require_none(validate(settings));
   CleanedCloud result;
   result.cloud = settings.box ? crop(cloud, *settings.box) : cloud;
   result.cropped = cloud.points.size() - result.cloud.points.size();

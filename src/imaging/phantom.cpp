@@ -179,38 +179,25 @@ Vec3 middle_of_body(const TongueShape& shape) {
 
 }  // namespace
 
-std::vector<std::string> validate(const PhantomSettings& settings) {
-  std::vector<std::string> problems = validate(settings.shape);
-  const Expect expect(problems);
-  for (int axis = 0; axis < 3; ++axis)
-    expect.in_range(std::array{"spacing_mm[0]", "spacing_mm[1]", "spacing_mm[2]"}[static_cast<std::size_t>(axis)],
-                    settings.spacing_mm[axis], 0.3, 3.0);
-  expect.in_range("tissue_hu", settings.tissue_hu, 0.0, 120.0);
-  expect.in_range("texture_hu", settings.texture_hu, 0.0, 30.0);
-  expect.in_range("noise_hu", settings.noise_hu, 0.0, 60.0);
-  expect.in_range("blur_mm", settings.blur_mm, 0.0, 2.0);
-  expect.in_range("holder_hu", settings.holder_hu, -1000.0, 1500.0);
-  expect.in_range("holder_thickness_mm", settings.holder_thickness_mm, 0.0, 30.0);
-  expect.in_range("tumor_diameter_mm", settings.tumor_diameter_mm, 8.0, 24.0);
-  expect.in_range("tumor_irregularity", settings.tumor_irregularity, 0.0, 0.25);
-  expect.in_range("tumor_depth_mm", settings.tumor_depth_mm, 1.0, 8.0);
-  expect.in_range("tumor_position", settings.tumor_position, 0.4, 0.6);
-  expect.in_range("tumor_points", settings.tumor_points, 24, 1000);
+std::vector<Problem> validate(const PhantomSettings& settings) {
+  std::vector<Problem> problems = problems_of(settings);
   if (settings.field_of_view_mm != 0.0) {
     // The circle must hold the largest specimen that these settings can draw.
     const TongueShapeSettings& shape = settings.shape;
     const double diagonal =
         std::hypot(shape.length_mm, shape.width_mm + 2.0 * shape.bend_mm) * (1.0 + shape.variation + shape.asymmetry);
-    expect.in_range("field_of_view_mm", settings.field_of_view_mm, std::ceil(diagonal + kAirAroundMm), 600.0);
+    const double least = std::ceil(diagonal + kAirAroundMm);
+    Expect{problems}(settings.field_of_view_mm >= least, "field_of_view_mm", settings.field_of_view_mm,
+                     fmt::format("0, or {} or more", least));
   }
   return problems;
 }
 
 Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor) {
-  const std::vector<std::string> problems = validate(settings);
+  const std::vector<Problem> problems = validate(settings);
   if (!problems.empty())
     throw CaseError("phantom", "settings",
-                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(problems, "; ")),
+                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(sentences(problems), "; ")),
                     "settings in their ranges");
   Random random(settings.seed);
   Phantom phantom;

@@ -279,7 +279,7 @@ void describe(Visitor& v, SegmentationSettings& s) {
      "less.",
      "mm"},
     s.smoothing_mm, {0.0, 5.0});
-  v.internal("margin_voxels", s.margin_voxels, "Of air around the body.");
+  v.internal("margin_voxels", s.margin_voxels, "Of air around the body.", {3.0, 50.0});
   if (!v.sets()) return;
   s.window_low_hu = window[0];
   s.window_high_hu = window[1];
@@ -288,29 +288,16 @@ void describe(Visitor& v, SegmentationSettings& s) {
 }
 
 std::vector<Problem> validate(const SegmentationSettings& settings) {
-  std::vector<Problem> problems;
+  std::vector<Problem> problems = problems_of(settings);
   const Expect expect(problems);
-  if (!std::isfinite(settings.window_low_hu) || !std::isfinite(settings.window_high_hu) ||
-      settings.window_low_hu >= settings.window_high_hu)
-    problems.push_back({"window_hu", fmt::format("[{}, {}]", settings.window_low_hu, settings.window_high_hu),
-                        "two finite numbers, the first below the second"});
-  if (settings.roi_box_mm) {
-    const Box3& box = *settings.roi_box_mm;
-    if (!box.min().allFinite() || !box.max().allFinite() || !(box.min().array() < box.max().array()).all())
-      problems.push_back({"roi_box_mm",
-                          fmt::format("[[{}, {}, {}], [{}, {}, {}]]", box.min().x(), box.min().y(), box.min().z(),
-                                      box.max().x(), box.max().y(), box.max().z()),
-                          "finite corners, the first below the second on each axis"});
+  expect(settings.window_low_hu < settings.window_high_hu, "window_hu[0]", settings.window_low_hu,
+         fmt::format("below the second, {}", settings.window_high_hu));
+  if (!settings.roi_box_mm) return problems;
+  const Vec3 low = settings.roi_box_mm->min(), high = settings.roi_box_mm->max();
+  for (int axis = 0; axis < 3; ++axis) {
+    expect(!(low[axis] >= high[axis]), fmt::format("roi_box_mm[0][{}]", axis), low[axis],
+           fmt::format("below that of the second corner, {}", high[axis]));
   }
-  for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s)
-    if (!settings.seeds_mm[s].allFinite())
-      problems.push_back(
-          {fmt::format("seed_mm[{}]", s),
-           fmt::format("[{}, {}, {}]", settings.seeds_mm[s].x(), settings.seeds_mm[s].y(), settings.seeds_mm[s].z()),
-           "finite numbers"});
-  expect.in_range("opening_radius_mm", settings.opening_radius_mm, 0.0, 20.0);
-  expect.in_range("smoothing_mm", settings.smoothing_mm.value_or(0.0), 0.0, 5.0);
-  expect.in_range("margin_voxels", settings.margin_voxels, 3, 50);
   return problems;
 }
 

@@ -82,22 +82,8 @@ TissueSpan span_in(const TongueShape& shape, const Station& station, double u, d
 
 }  // namespace
 
-std::vector<std::string> validate(const TongueShapeSettings& settings) {
-  std::vector<std::string> problems;
-  const Expect expect(problems);
-  expect.in_range("length_mm", settings.length_mm, 80.0, 160.0);
-  expect.in_range("width_mm", settings.width_mm, 46.0, 80.0);
-  expect.in_range("height_mm", settings.height_mm, 30.0, 50.0);
-  expect.in_range("variation", settings.variation, 0.0, 0.08);
-  expect.in_range("bend_mm", settings.bend_mm, 0.0, 5.0);
-  expect.in_range("asymmetry", settings.asymmetry, 0.0, 0.1);
-  expect.in_range("bump_mm", settings.bump_mm, 0.0, 2.0);
-  return problems;
-}
-
 TongueShape draw_tongue_shape(const TongueShapeSettings& settings, Random& random) {
-  const std::vector<std::string> problems = validate(settings);
-  INCISE_REQUIRE(problems.empty(), fmt::format("{}", fmt::join(problems, "; ")));
+  require_none(problems_of(settings));
   TongueShape shape;
   const auto varied = [&](double mean) { return mean * (1.0 + settings.variation * random.uniform(-1.0, 1.0)); };
   shape.length_mm = varied(settings.length_mm);

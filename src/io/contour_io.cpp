@@ -1,7 +1,7 @@
-#include "io/json_reading.hpp"
 #include "io/number_text.hpp"
 #include "io/vtk_xml_reader.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
@@ -18,8 +18,6 @@
 
 namespace incise {
 namespace {
-
-using io_detail::JsonValue;
 
 constexpr std::array<std::string_view, 3> kPointColumns{"x_mm", "y_mm", "z_mm"};
 
@@ -73,46 +71,64 @@ void require_closing(const Contour& contour, const std::filesystem::path& path) 
       "a closed curve", "`incise evaluate --open` takes an open incision");
 }
 
-/// Slicer's markups: "LPS" or "1", "RAS" or "0" (numbers in files of older versions).
-bool is_ras(const JsonValue& markup) {
-  const auto system = markup.find("coordinateSystem");
-  if (!system) return false;
-  const std::string name = system->is_text() ? system->text() : fmt::format("{}", system->number());
-  if (name == "RAS" || name == "0") return true;
-  if (name != "LPS" && name != "1") system->expected("LPS or RAS");
-  return false;
+/// What is read of Slicer's markups.
+struct ControlPoint {
+  Vec3 position = Vec3::Zero();
+  std::optional<std::string> status;
+};
+void describe(Visitor& v, ControlPoint& p) {
+  v("position", p.position);
+  v("positionStatus", p.status);
+  if (p.status && *p.status != "defined") v.refuse({"positionStatus"}, '"' + *p.status + '"', "defined");
+}
+struct Markup {
+  bool is_closed = false, is_ras = false;
+  std::vector<ControlPoint> points;
+};
+void describe(Visitor& v, Markup& m) {
+  static constexpr std::array<std::string_view, 2> kTypes{"Curve", "ClosedCurve"};
+  std::size_t type = 0;
+  v.choice({"type"}, type, kTypes);
+  m.is_closed = type == 1;
+  static constexpr std::array<std::string_view, 4> kSystems{"RAS", "0", "LPS", "1"};  // numbers in older versions
+  std::size_t system = 2;
+  if (v.optional({"coordinateSystem"}, true)) v.choice({"coordinateSystem"}, system, kSystems);
+  m.is_ras = system < 2;
+  std::optional<std::vector<std::string>> units;  // one text, or code, scheme and meaning
+  v("coordinateUnits", units);
+  if (units && std::find(units->begin(), units->end(), "mm") == units->end())
+    v.refuse({"coordinateUnits"}, fmt::format("{}", fmt::join(*units, ", ")), "mm");
+  v("controlPoints", m.points);
+}
+struct Markups {
+  std::vector<Markup> markups;
+};
+void describe(Visitor& v, Markups& m) {
+  v("markups", m.markups);
 }
 
-void require_mm(const JsonValue& markup) {
-  const auto units = markup.find("coordinateUnits");
-  if (!units) return;
-  if (units->is_text() && units->text() == "mm") return;
-  if (units->is_text()) units->expected("mm");
-  for (const JsonValue& unit : units->items()) {  // newer versions: [code, scheme, meaning]
-    if (unit.is_text() && unit.text() == "mm") return;
+/// One form for what versions of Slicer write in two: a number as its text, one unit as a list.
+nlohmann::ordered_json in_one_form(nlohmann::ordered_json document) {
+  if (!document.is_object() || !document.contains("markups") || !document["markups"].is_array()) return document;
+  for (auto& markup : document["markups"]) {
+    if (!markup.is_object()) continue;
+    if (markup.contains("coordinateSystem") && markup["coordinateSystem"].is_number())
+      markup["coordinateSystem"] = fmt::format("{}", markup["coordinateSystem"].get<double>());
+    if (markup.contains("coordinateUnits") && markup["coordinateUnits"].is_string())
+      markup["coordinateUnits"] = {markup["coordinateUnits"]};
   }
-  units->expected("mm");
+  return document;
 }
 
 Contour read_slicer_markup(const std::filesystem::path& path, bool is_closed) {
-  const auto document = read_json(path);
-  const auto markups = JsonValue(document, path).at("markups").items();
-  if (markups.size() != 1) {
-    throw DataError(path, "/markups", fmt::format("{} markups", markups.size()), "one curve");
-  }
-  const JsonValue& markup = markups.front();
-  const JsonValue type = markup.at("type");
-  const std::string kind = type.text();
-  if (kind != "ClosedCurve" && kind != "Curve") type.expected("ClosedCurve or Curve");
-  if ((kind == "ClosedCurve") != is_closed) refuse_kind(path, "/markups/0/type", !is_closed);
-  require_mm(markup);
+  const auto file = from_json<Markups>(in_one_form(read_json(path)), path);
+  if (file.markups.size() != 1)
+    throw DataError(path, "/markups", fmt::format("{} markups", file.markups.size()), "one curve");
+  const Markup& markup = file.markups.front();
+  if (markup.is_closed != is_closed) refuse_kind(path, "/markups/0/type", !is_closed);
   Contour contour{{}, is_closed};
-  for (const JsonValue& control : markup.at("controlPoints").items()) {
-    if (const auto status = control.find("positionStatus"); status && status->text() != "defined")
-      status->expected("defined");
-    contour.points.push_back(control.at("position").point());
-  }
-  if (is_ras(markup)) io_detail::turn_over(contour.points);
+  for (const ControlPoint& control : markup.points) contour.points.push_back(control.position);
+  if (markup.is_ras) io_detail::turn_over(contour.points);
   return contour;
 }
 

@@ -1,87 +1,17 @@
-#include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 namespace incise {
-namespace {
 
-using nlohmann::ordered_json;
-
-constexpr int kDeepestJson = 64;  // deeper than any file of ours; whatever walks through the values calls itself once a level
-
-void require_finite(const ordered_json& value, const std::string& pointer) {
-  if (value.is_number_float()) {
-    INCISE_REQUIRE(std::isfinite(value.get<double>()),
-                   fmt::format("expected a finite number at {}, found {}", pointer, value.get<double>()));
-  } else if (value.is_object()) {
-    for (const auto& [key, item] : value.items()) require_finite(item, pointer + "/" + key);
-  } else if (value.is_array()) {
-    for (std::size_t i = 0; i < value.size(); ++i) require_finite(value[i], fmt::format("{}/{}", pointer, i));
-  }
-}
-
-std::string line_and_column(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, std::min(byte, text.size()));
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t begin = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
-  return fmt::format("line {}, column {}", line, before.size() - begin + 1);
-}
-
-/// The library keeps the last of two equal keys without a word; this watches for them.
-class DuplicateKeys {
- public:
-  explicit DuplicateKeys(const std::filesystem::path& name) : name_(name) {}
-
-  bool operator()(int depth, ordered_json::parse_event_t event, ordered_json& parsed) {
-    if (depth > kDeepestJson) throw DataError(name_, "", fmt::format("values nested more than {} deep", kDeepestJson), "JSON that is less deep");
-    if (event == ordered_json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == ordered_json::parse_event_t::object_end) keys_.pop_back();
-    if (event == ordered_json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {
-      throw DataError(name_, "", fmt::format("the key '{}' twice in one object", parsed.get<std::string>()),
-                      "each key once");
-    }
-    return true;
-  }
-
- private:
-  const std::filesystem::path& name_;
-  std::vector<std::set<std::string>> keys_;
-};
-
-}  // namespace
-
-std::string json_text(const ordered_json& value) {
-  require_finite(value, "");
-  return value.dump(2) + "\n";
-}
-
-void write_json(const std::filesystem::path& path, const ordered_json& value) {
+void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& value) {
   const std::string text = json_text(value);
   write_atomically(path, text);
 }
 
-ordered_json parse_json(std::string_view text, const std::filesystem::path& name) {
-  if (text.size() > kLargestJsonBytes) throw DataError(name, "size", fmt::format("{} bytes", text.size()), fmt::format("at most {} bytes of JSON", kLargestJsonBytes));
-  try {
-    return ordered_json::parse(text, DuplicateKeys(name));
-  } catch (const nlohmann::json::parse_error& error) {
-    const std::size_t byte = error.byte > 0 ? error.byte - 1 : 0;
-    const std::string found = byte >= text.size() ? "the end of the text" : fmt::format("'{}'", text.substr(byte, 1));
-    throw DataError(name, line_and_column(text, byte), found, "JSON");
-  } catch (const nlohmann::json::exception& error) {
-    throw DataError(name, "", error.what(), "JSON with numbers that a double can hold");
-  }
-}
-
-ordered_json read_json(const std::filesystem::path& path) {
+nlohmann::ordered_json read_json(const std::filesystem::path& path) {
   return parse_json(read_text(path), path);
 }
 

@@ -1,13 +1,12 @@
-#include "io/json_reading.hpp"
-
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>
+#include <incise/io/transform_json.hpp>
 
 #include <fmt/format.h>
 
@@ -16,108 +15,84 @@
 namespace incise {
 namespace {
 
-using io_detail::JsonValue;
 using nlohmann::ordered_json;
 
-constexpr const char* kSchema = "incise.path/1";
+constexpr std::string_view kSchema = "incise.path/1";
 constexpr const char* kVerdict = "verdict";
-constexpr const char* kSpecimenIs = "specimen_is";
 constexpr const char* kDigest = "digest_sha256";
 constexpr double kUnitAxisTolerance = 1e-4;  // an axis typed with four digits passes; 0.5 µm at 5 mm depth
 
-/// The enumerator that `place` spells. @throws DataError
-template <Named E>
-E enumerator(const JsonValue& place) {
-  if (const auto value = value_of<E>(place.text())) return *value;
-  place.expected(fmt::format("one of: {}", fmt::join(names_of(E{}), ", ")));
-}
-
-Waypoint read_waypoint(const JsonValue& place) {
-  place.require_only({"position_mm", "axis", "depth_mm", "speed_mm_s"});
-  Waypoint waypoint;
-  waypoint.position_mm = place.at("position_mm").point();
-  const JsonValue axis = place.at("axis");
-  waypoint.axis = axis.point();
-  if (std::abs(waypoint.axis.norm() - 1.0) > kUnitAxisTolerance) {
-    axis.fail(fmt::format("a vector of length {:.6g}", waypoint.axis.norm()), "a unit vector");
-  }
-  const JsonValue depth = place.at("depth_mm");
-  waypoint.depth_mm = depth.number();
-  if (waypoint.depth_mm < 0.0) depth.expected("a depth of 0 mm or more");
-  const JsonValue speed = place.at("speed_mm_s");
-  waypoint.speed_mm_s = speed.number();
-  if (waypoint.speed_mm_s <= 0.0) speed.expected("a speed above 0 mm/s");
-  return waypoint;
-}
-
-std::string read_hash(const JsonValue& place) {
-  const std::string text = place.text();
-  const bool is_hash = text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-  if (!is_hash) place.expected("64 lower-case hex digits");
-  return text;
-}
-
-ToolPath read_path(const JsonValue& root) {
-  root.require_only({"schema", "frame", "kind", "closed", "waypoints", "tumor_edge", "tumor_edge_closed", "T_robot_sim",
-                     "source_sha256", "specimen_id", kSpecimenIs, kVerdict});
-  if (const auto schema = root.find("schema"); schema && schema->text() != kSchema) {
-    schema->expected(fmt::format("\"{}\"", kSchema));
-  }
+/// What `path.json` holds beside the verdict.
+struct PathFile {
   ToolPath path;
-  path.frame = enumerator<PathFrame>(root.at("frame"));
-  path.kind = enumerator<PathKind>(root.at("kind"));
-  path.is_closed = root.at("closed").boolean();
-  for (const JsonValue& item : root.at("waypoints").items(path.is_closed ? 3 : 2)) {
-    path.waypoints.push_back(read_waypoint(item));
-  }
-  if (const auto edge = root.find("tumor_edge")) {
-    for (const JsonValue& item : edge->items()) path.tumor_edge.points.push_back(item.point());
-  }
-  if (const auto closed = root.find("tumor_edge_closed")) path.tumor_edge.is_closed = closed->boolean();
-  if (const auto transform = root.find("T_robot_sim")) path.T_robot_sim = transform->transform();
-  if (const auto hash = root.find("source_sha256")) path.source_sha256 = read_hash(*hash);
-  if (const auto id = root.find("specimen_id")) {
-    path.specimen_id = id->text();
-    if (!is_specimen_id(path.specimen_id)) id->expected(std::string(kSpecimenIdForm));
-  }
-  if (const auto kind = root.find(kSpecimenIs)) {
-    const std::string word = kind->text();
-    if (word != "real" && word != "virtual") kind->expected("one of: real, virtual");
-    path.is_virtual = word == "virtual";
-  }
-  return path;
+};
+
+/// A waypoint as a file has it: its axis is a unit vector.
+struct WaypointEntry {
+  Waypoint waypoint;
+};
+void describe(Visitor& v, WaypointEntry& entry) {
+  describe(v, entry.waypoint);
+  const double length = entry.waypoint.axis.norm();
+  if (v.sets() && std::abs(length - 1.0) > kUnitAxisTolerance)
+    v.refuse({"axis"}, fmt::format("a vector of length {:.6g}", length), "a unit vector");
 }
 
-ordered_json array_of(const Vec3& p) {
-  return ordered_json::array({p.x(), p.y(), p.z()});
+/// A text that is not stated where it is empty.
+template <class IsGood>
+void describe_stated(Visitor& v, Field field, std::string& text, const IsGood& is_good, std::string_view expected) {
+  field.is_omitted = true;
+  if (!v.optional(field, !text.empty())) return;
+  v(field, text);
+  if (v.sets() && !is_good(text)) v.refuse(field, "'" + text + "'", std::string(expected));
+}
+
+bool is_hash(const std::string& text) {
+  return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+void describe(Visitor& v, PathFile& file) {
+  ToolPath& p = file.path;
+  if (v.optional({"schema"}, true)) constant(v, {"schema", "Format and version of this file."}, kSchema);
+  v("frame", p.frame, "Whose coordinates the path has.");
+  v("kind", p.kind, "What the tool does along it.");
+  v("closed", p.is_closed, "Whether the last waypoint leads back to the first.");
+  std::vector<WaypointEntry> waypoints;
+  for (const Waypoint& waypoint : p.waypoints) waypoints.push_back({waypoint});
+  v("waypoints", waypoints, "In the order of travel.");
+  const std::size_t least = p.is_closed ? 3 : 2;
+  if (waypoints.size() < least)
+    v.refuse({"waypoints"}, fmt::format("{} items", waypoints.size()), fmt::format("at least {}", least));
+  if (v.optional({"tumor_edge"}, true)) v({"tumor_edge", "In the same frame.", "mm"}, p.tumor_edge.points);
+  const Field edge_closed{.name = "tumor_edge_closed", .meaning = "By default it is.", .is_omitted = true};
+  if (v.optional(edge_closed, !p.tumor_edge.is_closed)) v(edge_closed, p.tumor_edge.is_closed);
+  const Field transform{.name = "T_robot_sim", .meaning = "Rows; p_robot = T p_sim, mm.", .is_omitted = true};
+  v(transform, p.T_robot_sim);
+  if (v.sets() && p.T_robot_sim) require_similarity(v, transform, *p.T_robot_sim);
+  describe_stated(v, {"source_sha256", "Of what it was made from."}, p.source_sha256, is_hash,
+                  "64 lower-case hex digits");
+  describe_stated(v, {"specimen_id", "That it was planned on."}, p.specimen_id, is_specimen_id, kSpecimenIdForm);
+  static constexpr std::array<std::string_view, 2> kOrigins{"real", "virtual"};
+  const Field origin{.name = "specimen_is", .meaning = "Virtual: a synthetic body.", .is_omitted = true};
+  if (v.optional(origin, p.is_virtual)) {
+    std::size_t place = p.is_virtual ? 1 : 0;
+    v.choice(origin, place, kOrigins);
+    if (v.sets()) p.is_virtual = place == 1;
+  }
+  v.pass_over({kVerdict});
+  if (!v.sets()) return;
+  p.waypoints.clear();
+  for (const WaypointEntry& entry : waypoints) p.waypoints.push_back(entry.waypoint);
+}
+
+ToolPath path_in(const ordered_json& document, const std::filesystem::path& name) {
+  PathFile file;
+  JsonReader(document, name).refuse_unknown_keys()(Field{}, file);
+  return file.path;
 }
 
 ordered_json document_of(const ToolPath& path) {
-  ordered_json document;
-  document["schema"] = kSchema;
-  document["frame"] = to_string(path.frame);
-  document["kind"] = to_string(path.kind);
-  document["closed"] = path.is_closed;
-  document["waypoints"] = ordered_json::array();
-  for (const Waypoint& waypoint : path.waypoints) {
-    document["waypoints"].push_back({{"position_mm", array_of(waypoint.position_mm)},
-                                     {"axis", array_of(waypoint.axis)},
-                                     {"depth_mm", waypoint.depth_mm},
-                                     {"speed_mm_s", waypoint.speed_mm_s}});
-  }
-  document["tumor_edge"] = ordered_json::array();
-  for (const Vec3& point : path.tumor_edge.points) document["tumor_edge"].push_back(array_of(point));
-  if (!path.tumor_edge.is_closed) document["tumor_edge_closed"] = false;
-  if (path.T_robot_sim) {
-    for (int i = 0; i < 4; ++i) {
-      const auto row = path.T_robot_sim->row(i);
-      document["T_robot_sim"].push_back({row(0), row(1), row(2), row(3)});
-    }
-  }
-  if (!path.source_sha256.empty()) document["source_sha256"] = path.source_sha256;
-  if (!path.specimen_id.empty()) document["specimen_id"] = path.specimen_id;
-  if (path.is_virtual) document[kSpecimenIs] = "virtual";
-  return document;
+  return incise::to_json(PathFile{path});
 }
 
 /// Over a path and what is said of it: a change of either shows.
@@ -134,8 +109,7 @@ Verdict not_simulated(const char* why) {
 }  // namespace
 
 ToolPath tool_path_from_json(std::string_view text, const std::filesystem::path& name) {
-  const ordered_json document = parse_json(text, name);
-  return read_path(JsonValue(document, name));
+  return path_in(parse_json(text, name), name);
 }
 
 ToolPath read_tool_path(const std::filesystem::path& path) {
@@ -147,43 +121,59 @@ void require_tumor_size(const ToolPath& path, const std::filesystem::path& file)
   if (const auto problem = size_problem(path.tumor_edge, "a tumour", kLargestTumorMm)) throw DataError(file, "/tumor_edge", problem->found, problem->expected, "Lengths are mm");
 }
 
-std::string to_json(const ToolPath& path) {
+std::string path_json(const ToolPath& path) {
   const ordered_json document = document_of(path);
-  std::string text = json_text(document);
   // What cannot be read back must not be written: the reader's rules are the rules.
-  const std::filesystem::path name = "tool path";
   try {
-    static_cast<void>(read_path(JsonValue(document, name)));
+    static_cast<void>(path_in(document, "tool path"));
   } catch (const DataError& error) {
     throw InvalidArgument(error.what());
   }
-  return text;
+  return json_text(document);
 }
 
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path) {
-  const std::string text = to_json(path);
+  const std::string text = path_json(path);
   write_atomically(file, text);
 }
 
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path, const Verdict& verdict) {
-  ordered_json document = parse_json(to_json(path), file);
+  ordered_json document = parse_json(path_json(path), file);
   document[kVerdict] = to_json(verdict);
   document[kVerdict][kDigest] = digest_of(path, verdict);
   write_json(file, document);
 }
 
+namespace {
+
+/// What a path's file says of the cut along it, with the digest that seals both; nothing where it says nothing.
+struct StatedVerdict {
+  Verdict verdict;
+  std::string digest;
+};
+
+std::optional<StatedVerdict> stated_in(const ordered_json& document, const std::filesystem::path& file) {
+  if (!document.contains(kVerdict)) return std::nullopt;
+  StatedVerdict stated;
+  JsonReader reader(document.at(kVerdict), file, "/verdict");
+  reader.begin({});
+  describe(reader, stated.verdict);
+  reader(kDigest, stated.digest);
+  return stated;
+}
+
+}  // namespace
+
 Verdict read_path_verdict(const std::filesystem::path& file) {
   const ordered_json document = read_json(file);
-  const JsonValue root(document, file);
-  const ToolPath path = read_path(root);
-  const std::optional<JsonValue> place = root.find(kVerdict);
-  if (!place) return not_simulated("the path's file holds no verdict: no simulated cut along it is known");
-  const Verdict stated = from_json<Verdict>(document.at(kVerdict), file, "/verdict");
-  if (place->at(kDigest).text() == digest_of(path, stated)) return stated;
+  const ToolPath path = path_in(document, file);
+  const std::optional<StatedVerdict> stated = stated_in(document, file);
+  if (!stated) return not_simulated("the path's file holds no verdict: no simulated cut along it is known");
+  if (stated->digest == digest_of(path, stated->verdict)) return stated->verdict;
   // A changed digit does not make a refused path one that can be accepted.
   Verdict verdict =
       not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
-  for (const VerdictReason& reason : stated.reasons()) {
+  for (const VerdictReason& reason : stated->verdict.reasons()) {
     if (reason.severity == VerdictStatus::Refused) verdict.add(reason);
   }
   return verdict;
@@ -191,11 +181,11 @@ Verdict read_path_verdict(const std::filesystem::path& file) {
 
 void require_path_unchanged(const std::filesystem::path& file) {
   const ordered_json document = read_json(file);
-  const JsonValue root(document, file);
-  const std::optional<JsonValue> place = root.find(kVerdict);
-  if (!place) return;
-  const std::string digest = digest_of(read_path(root), from_json<Verdict>(document.at(kVerdict), file, "/verdict"));
-  if (place->at(kDigest).text() != digest)
+  const ToolPath path = path_in(document, file);
+  const std::optional<StatedVerdict> stated = stated_in(document, file);
+  if (!stated) return;
+  const std::string digest = digest_of(path, stated->verdict);
+  if (stated->digest != digest)
     throw DataError(file, "/verdict/digest_sha256", "that of another path", digest + ", that of the path in this file");
 }
 

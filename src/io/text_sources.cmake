@@ -10,11 +10,9 @@ set(text_sources
   folder_lock.cpp
   gmsh_reader.cpp
   input_file.cpp
-  json_reading.cpp
   json_text.cpp
   manifest.cpp
   mesh_io.cpp
-  nearest_name.cpp
   number_text.cpp
   obj_reader.cpp
   path_io.cpp
@@ -30,7 +28,6 @@ set(text_sources
   text_encoding.cpp
   text_table.cpp
   transform_json.cpp
-  described_json.cpp
   vtk_bytes.cpp
   vtk_legacy_reader.cpp
   vtk_xml_reader.cpp

@@ -32,11 +32,17 @@ std::string field_text(const std::string& name, std::string_view value) {
 }  // namespace
 
 VtkXmlText::VtkXmlText(std::string kind, const std::string& counts) : kind_(std::move(kind)) {
+  // Slicer looks for SPACE in the field data of surfaces; meshio, which reads only volume meshes, stops at any text
+  // there.
+  const bool is_surface = kind_ == "PolyData";
+  const std::string comment = is_surface ? "" : "<!-- SPACE=LPS, lengths in mm -->\n";
+  const std::string field_data =
+      is_surface ? "<FieldData>\n" + field_text("SPACE", "LPS") + field_text("length_unit", "mm") + "</FieldData>\n"
+                 : "";
   text_ = fmt::format(
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
-      "header_type=\"UInt64\" "
-      "compressor=\"vtkZLibDataCompressor\">\n<{0}>\n<FieldData>\n{1}{2}</FieldData>\n<Piece {3}>\n",
-      kind_, field_text("SPACE", "LPS"), field_text("length_unit", "mm"), counts);
+      "<?xml version=\"1.0\"?>\n{3}<VTKFile type=\"{0}\" version=\"1.0\" byte_order=\"LittleEndian\" "
+      "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<{0}>\n{1}<Piece {2}>\n",
+      kind_, field_data, counts, comment);
 }
 
 void VtkXmlText::open(const std::string& section) {

@@ -1,6 +1,6 @@
 #include "laboratory/calibrated_case.hpp"
 
-#include <incise/io/described_json.hpp>
+#include <incise/core/described_json.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/laboratory/registration_trust.hpp>
 #include <incise/storage/registration_json.hpp>
@@ -74,7 +74,7 @@ StepResult assess_case(const CaseRequest& of, const CalibrationInput& calibratio
   });
   if (!note.empty()) assessment.notes.push_back(note);
   const double wall_s = context.wall_s();
-  StepResult done{to_json(assessment, request)};
+  StepResult done{to_json(assessment)};
   nlohmann::ordered_json& result = done.json;
   result["specimen_is"] = run.folder.case_file().settings.is_virtual ? "virtual" : "real";
   result["calibration_is"] = calibration.found.is_virtual ? "virtual" : "real";

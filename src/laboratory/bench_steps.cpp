@@ -71,7 +71,7 @@ StepResult make_specimen(const MakeSpecimenRequest& request, const StepContext& 
   const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
   if (!is_held(body, context.monitor)) return {nullptr, false};
   const Readings readings = take_readings(body, request.has_elasticity, context.monitor);
-  const std::string name = "VIRTUAL-" + sha256_of_text(to_json(specimen).dump()).substr(0, 8);
+  const std::string name = "VIRTUAL-" + sha256_of_text(specimen_json(specimen).dump()).substr(0, 8);
   AtomicFolder folder(request.output);
   write_readings(folder.path(), readings, name);
   write_run(folder.path(), context, "incise bench make", {});

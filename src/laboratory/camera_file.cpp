@@ -1,8 +1,8 @@
 #include "laboratory/camera_file.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/nearest_name.hpp>
 #include <incise/io/json_text.hpp>
-#include <incise/io/nearest_name.hpp>
 #include <incise/io/transform_json.hpp>
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "laboratory/calibrated_case.hpp"
 
-#include <incise/io/described_json.hpp>
+#include <incise/core/described_json.hpp>
 #include <incise/laboratory/compensation_figures.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/workflow/assess.hpp>
@@ -61,7 +61,7 @@ nlohmann::ordered_json add_robust_path(const RobustRequest& chosen, CaseRun& run
   });
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   write_robust(run.folder, robust, calibration.request.calibration, wall.count());
-  nlohmann::ordered_json json = robust_summary_json(robust);
+  nlohmann::ordered_json json = to_json(robust);
   json["path"] = (run.folder.root() / "robust" / "path.json").string();
   json["wall_s"] = wall.count();
   if (calibration.found.is_virtual && !run.folder.case_file().settings.is_virtual)

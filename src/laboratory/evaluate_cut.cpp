@@ -1,5 +1,5 @@
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/imaging/photo_doubts.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -7,7 +7,6 @@
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/laboratory/cut_steps.hpp>
 #include <incise/report/svg_png.hpp>
 #include <incise/storage/evaluation_file.hpp>
@@ -65,7 +64,7 @@ FoundScale scale_of(const ScaleRequest& request, const ColorPicture& picture, co
       found.summary["source"] = "rectangle";
     }
   } catch (const InvalidArgument& error) {
-    throw CaseError("command line", "scale", "points or lengths that give none", "ones that do", as_sentence(error));
+    throw CaseError("command line", "scale", "points or lengths that give none", "ones that do", error.as_hint());
   }
   if (!request.ruler) return found;
   const Ruler ruler = find_ruler(picture, *request.ruler, request.ruler_mm, name);
@@ -155,7 +154,7 @@ Measured measured(const std::filesystem::path& file, const Measure& measure) {
     result.json["points"] = points_json(result.evaluation);
     return result;
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(file, "", error, "contours that can be measured");
+    throw DataError(file, "", error);
   }
 }
 

@@ -4,6 +4,7 @@
 #include "laboratory/outside_range.hpp"
 #include "laboratory/virtual_laboratory.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -42,7 +43,7 @@ bool has_path(const ExperimentJson& compensation) {
 }
 
 /// A step of all specimens together cannot be done without.
-void require_done(const StepAnswer& answer, const char* step, const StepRunner& runner) {
+void require_done(const StepAnswer& answer, const char* step, const ExperimentSteps& runner) {
   if (answer.end != StepEnd::Done)
     throw DataError(runner.folder() / "log.txt", step, refusal_of(step, answer), "a step that can be gone on with");
 }
@@ -304,7 +305,7 @@ double Experiment::calibration_cost() const {
 
 void Experiment::run_trial(Trial& trial) {
   Workers one(1);
-  StepRunner steps(root_ / trial.name, one, monitor_);
+  ExperimentSteps steps(root_ / trial.name, one, monitor_);
   VirtualLaboratory bench({trial.seed, trial.given, truth_ / trial.name}, steps);
   SpecimenTrial specimen({.name = trial.name, .tets = settings_.tets}, steps, bench);
   if (specimen.prepare(tool_)) {
@@ -415,7 +416,7 @@ void Experiment::calibrate() {
   }
   if (asked.cases.empty())
     throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
-  StepRunner steps(root_, workers_, monitor_);
+  ExperimentSteps steps(root_, workers_, monitor_);
   const auto calibrated = [&](const char* step, CalibrationMethod method, const char* folder, const char* product) {
     CalibrateRequest request = asked;
     request.request.method = method;
@@ -462,7 +463,7 @@ void Experiment::compare() {
   words.insert(words.end(), {"--paired", "-o", request.output.string()});
   std::vector<std::filesystem::path> inputs = request.before;
   inputs.insert(inputs.end(), request.after.begin(), request.after.end());
-  StepRunner steps(root_, workers_, monitor_);
+  ExperimentSteps steps(root_, workers_, monitor_);
   const StepAnswer compared =
       steps.run({"compare", words, inputs, {request.output / "compare.json"}, [=](const StepContext& context) {
                    CompareRequest seeded = request;

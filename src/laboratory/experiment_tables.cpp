@@ -115,20 +115,6 @@ TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, TrialC
   return summary;
 }
 
-TableJson to_json(const TrialSummary& summary) {
-  const auto number = [&summary](double value) { return summary.pairs > 0 ? TableJson(value) : TableJson(nullptr); };
-  return {{"specimens", summary.specimens},
-          {"pairs", summary.pairs},
-          {"opened", summary.opened},
-          {"uncorrected", summary.uncorrected},
-          {"mean_before_mm", number(summary.mean_before_mm)},
-          {"mean_after_mm", number(summary.mean_after_mm)},
-          {"gain_percent", number(summary.gain_percent)},
-          {"gain_percent_of_all", number(summary.gain_percent_of_all)},
-          {"worse", summary.worse},
-          {"most_worse_mm", summary.most_worse_mm}};
-}
-
 TableJson known_physics_json(const std::vector<Trial>& trials) {
   double sum = 0.0;
   std::size_t count = 0;

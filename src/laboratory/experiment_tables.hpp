@@ -2,6 +2,7 @@
 
 #include "laboratory/specimen_trial.hpp"
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
 
 #include <nlohmann/json.hpp>
@@ -54,11 +55,23 @@ struct TrialSummary {
   std::size_t worse = 0;             ///< specimens whose error grew, and those that opened
   double most_worse_mm = 0.0;        ///< by how much an error grew at most; 0: none did
 };
+/// What is of the pairs is null without any.
+inline void describe(Visitor& v, TrialSummary& s) {
+  const auto if_pairs = [&s](double value) { return s.pairs > 0 ? std::optional(value) : std::nullopt; };
+  v("specimens", s.specimens, "With that role, whatever came of them.");
+  v("pairs", s.pairs, "Of them: two closed rings.");
+  v("opened", s.opened, "A closed ring as planned, and the second cut's was open or not to be found.");
+  v("uncorrected", s.uncorrected, "A closed ring as planned, and no second cut.");
+  v.derived("mean_before_mm", if_pairs(s.mean_before_mm), "Mean over specimens of the mean absolute error.");
+  v.derived("mean_after_mm", if_pairs(s.mean_after_mm), "Likewise, of the second cut.");
+  v.derived("gain_percent", if_pairs(s.gain_percent), "Of these.");
+  v.derived("gain_percent_of_all", if_pairs(s.gain_percent_of_all), "With the uncorrected ones.");
+  v("worse", s.worse, "Specimens whose error grew, and those that opened.");
+  v({"most_worse_mm", "By how much an error grew at most; 0: none did.", "mm"}, s.most_worse_mm);
+}
 /// Of the specimens with that role, as planned against another cut. No pairs: zeros.
 [[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role,
                                       TrialCut Trial::*after = &Trial::corrected);
-/// The same names; what is of the pairs is null without any.
-[[nodiscard]] nlohmann::ordered_json to_json(const TrialSummary& summary);
 /// What is left to a planner that knows the bench's physics, of the specimens that summary_of counts as pairs:
 /// `specimens`, `mean_after_mm` (from the truth, not from photographs).
 [[nodiscard]] nlohmann::ordered_json known_physics_json(const std::vector<Trial>& trials);

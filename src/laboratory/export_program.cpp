@@ -1,5 +1,5 @@
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/core/version.hpp>
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/cutting/path_heat.hpp>
@@ -8,7 +8,6 @@
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/laboratory/registration_trust.hpp>
 #include <incise/laboratory/robot_steps.hpp>
 #include <incise/robot/program_verdict.hpp>
@@ -67,7 +66,7 @@ void require_a_mark(const std::vector<std::string>& overrides) {
 /// Settings that follow from others.
 void complete(ExportRequest& a, const ToolPath& path) {
   const bool is_mark = path.kind == PathKind::Mark;
-  a.settings.overlap_mm = a.overlap_mm.value_or(is_mark ? 0.0 : CutSettings{}.overlap_mm);
+  a.settings.overlap_mm = a.overlap_mm.value_or(is_mark ? 0.0 : kRingOverlapMm);
   if (is_mark) a.settings.plunge_speed_mm_s = a.checks.mark_speed_mm_s;
   a.checks.must_be_ring = !a.is_open;
   const double length_mm = a.setup.T_flange_tool.topRightCorner<3, 1>().norm();
@@ -82,7 +81,7 @@ RobotProgram program_of(const ToolPath& path, const ExportRequest& request) {
   try {
     return make_program(path, request.settings, request.setup);
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(request.path, "waypoints", error, "a path that a tool can follow");
+    throw DataError(request.path, "waypoints", error);
   }
 }
 
@@ -126,7 +125,7 @@ std::string text_of(const RobotProgram& program, const ProgramChecks& checks, co
     case ProgramForm::JointCsv:
       return to_joint_csv(program, header);
     case ProgramForm::Json:
-      return to_json(program, &checks, header);
+      return program_json(program, &checks, header);
     case ProgramForm::RosTrajectory:
       return request.output.extension() == ".bag" ? to_rosbag(program, header) : to_ros_yaml(program, header);
     default:
@@ -135,7 +134,7 @@ std::string text_of(const RobotProgram& program, const ProgramChecks& checks, co
 }
 
 nlohmann::ordered_json summary_of(const RobotProgram& program, const ProgramChecks& checks) {
-  nlohmann::ordered_json result = nlohmann::ordered_json::parse(to_json(program, &checks));
+  nlohmann::ordered_json result = nlohmann::ordered_json::parse(program_json(program, &checks));
   result.erase("poses");
   if (result["motion"].contains("samples")) result["motion"].erase("samples");
   double fastest = 0.0;

@@ -1,5 +1,6 @@
 #include "laboratory/cloud_input.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/camera_scale.hpp>

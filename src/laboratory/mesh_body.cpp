@@ -1,5 +1,4 @@
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
@@ -49,7 +48,7 @@ MeshingResult meshed(const MeshRequest& request, const PlannedCut& cut, const Me
     require_body_size(box, input);
     return mesh_surface(surface, sizing_of(request, cut, box.sizes().maxCoeff()), settings, monitor);
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(input, "", error, "a body that can be meshed with these lengths");
+    throw DataError(input, "", error);
   }
 }
 

@@ -1,5 +1,5 @@
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
@@ -7,7 +7,6 @@
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/laboratory/camera_steps.hpp>
 #include <incise/laboratory/registration_trust.hpp>
 #include <incise/robot/checks.hpp>
@@ -147,7 +146,7 @@ ProjectedPath laid_down(const ToolPath& path, const Placement& placement, const 
     projected.path.source_sha256 = sha256_of_file(request.path);
     return projected;
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(request.surface, "", error, "a path, a transform and a surface that fit each other");
+    throw DataError(request.surface, "", error);
   }
 }
 

@@ -29,7 +29,7 @@ bool is_one_of(const std::filesystem::path& path, std::initializer_list<const ch
   return std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return path.extension() == ending; });
 }
 
-/// The skin of a tet mesh: where its file says that the vertices have moved to, or at rest.
+/// The skin of a tet mesh. `deformed.vtu` of version 0.1.0 lay at rest and said where its vertices had moved to.
 TriMesh skin_of(const TetMesh& mesh, const std::filesystem::path& file) {
   TriMesh skin = boundary_surface(mesh);
   const auto moved = mesh.point_data.find("position_mm");

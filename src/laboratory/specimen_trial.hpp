@@ -1,6 +1,6 @@
 #pragma once
 
-#include "laboratory/step_runner.hpp"
+#include "laboratory/experiment_steps.hpp"
 
 #include <incise/core/monitor.hpp>
 #include <incise/workflow/case.hpp>
@@ -43,7 +43,7 @@ struct TrialCut {
 class SpecimenTrial {
  public:
   /// @param steps  of the specimen's folder; both outlive the trial.
-  SpecimenTrial(TrialSetup setup, StepRunner& steps, Laboratory& laboratory)
+  SpecimenTrial(TrialSetup setup, ExperimentSteps& steps, Laboratory& laboratory)
       : setup_(std::move(setup)), steps_(steps), laboratory_(laboratory) {}
 
   /// From the readings to the planned path: the specimen is made; its CT is meshed, clamped and stretched; that surface
@@ -78,7 +78,7 @@ class SpecimenTrial {
   void write_edge(const nlohmann::ordered_json& registration) const;
 
   TrialSetup setup_;
-  StepRunner& steps_;
+  ExperimentSteps& steps_;
   Laboratory& laboratory_;
   std::string ended_at_;
   double stretch_force_n_ = 0.0;

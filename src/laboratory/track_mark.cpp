@@ -2,7 +2,6 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/median.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/grid_cloud.hpp>
@@ -102,7 +101,7 @@ Scene scene_from_pictures(const TrackRequest& request) {
   try {
     scene.cloud = cloud_seen_in_color(depth, camera);
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(request.depth, "", error, "a depth picture that fits " + request.intrinsics.string());
+    throw DataError(request.depth, "", error);
   }
   return scene;
 }
@@ -179,10 +178,9 @@ ToolPath planned(const Tracked& tracked, const TrackRequest& request, const std:
     return plan_marked_path(tracked.lifted.contour, tracked.cloud.vertices, plan);
   } catch (const CaseError& error) {
     // The case file that it names is not the user's.
-    const Complaint complaint = complaint_of(error.what(), "a measured surface all round the path");
-    throw DataError(name, "", complaint.found, complaint.expected);
+    throw DataError(name, error.problem());
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(name, "", error, "a measured surface all round the path");
+    throw DataError(name, "", error);
   }
 }
 

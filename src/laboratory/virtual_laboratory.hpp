@@ -1,6 +1,6 @@
 #pragma once
 
-#include "laboratory/step_runner.hpp"
+#include "laboratory/experiment_steps.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -21,7 +21,7 @@ struct HiddenSpecimen {
 class VirtualLaboratory : public Laboratory {
  public:
   /// @param steps  of the specimen's folder.
-  VirtualLaboratory(HiddenSpecimen hidden, StepRunner& steps) : hidden_(std::move(hidden)), steps_(steps) {}
+  VirtualLaboratory(HiddenSpecimen hidden, ExperimentSteps& steps) : hidden_(std::move(hidden)), steps_(steps) {}
 
   StepAnswer take_readings(const std::filesystem::path& folder) override;
   StepAnswer cut(const std::filesystem::path& program, double power_w, const std::filesystem::path& folder,
@@ -32,7 +32,7 @@ class VirtualLaboratory : public Laboratory {
  private:
   [[nodiscard]] std::filesystem::path specimen() const { return hidden_.truth / "specimen.json"; }
   HiddenSpecimen hidden_;
-  StepRunner& steps_;
+  ExperimentSteps& steps_;
 };
 
 }  // namespace incise::laboratory

@@ -5,7 +5,6 @@
 #include "mechanics/vector_text.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/core/units.hpp>
 
 #include <fmt/format.h>
@@ -52,7 +51,7 @@ class ConstraintApplier {
       vertices = select(model_.mesh, region);
     } catch (const InvalidArgument& problem) {
       throw CaseError(kWhere, field("where"), "an unusable region", "one that can be applied to this mesh",
-                      as_sentence(problem));
+                      problem.as_hint());
     }
     if (vertices.empty()) throw nothing_selected("vertex");
     return vertices;
@@ -144,7 +143,7 @@ class ConstraintApplier {
       plane.holder = std::make_shared<HolderContact>(holder.surface);
     } catch (const InvalidArgument& problem) {
       throw CaseError(kWhere, field("surface"), fmt::format("an unusable surface, '{}'", holder.name),
-                      "triangles, oriented alike, with normals towards the tissue", as_sentence(problem));
+                      "triangles, oriented alike, with normals towards the tissue", problem.as_hint());
     }
     return plane;
   }

@@ -19,30 +19,6 @@ constexpr const char* kYoungsModulusRange = "a number in [1e-6, 1e9] kPa";
 
 }  // namespace
 
-std::vector<Problem> validate(const Material& material) {
-  std::vector<Problem> violations;
-  const Expect expect(violations);
-  expect(is_youngs_modulus(material.youngs_modulus_kpa), "youngs_modulus_kpa", material.youngs_modulus_kpa,
-         kYoungsModulusRange);
-  const double nu = material.poissons_ratio;
-  expect(nu >= 0.0 && nu < 0.5, "poissons_ratio", nu, "a number in [0, 0.5)");
-  expect(material.density_kg_m3 > 0.0 && material.density_kg_m3 <= kMostDensityKgM3, "density_kg_m3",
-         material.density_kg_m3, "a number in (0, 1e9] kg/m3");
-  expect(material.fibre_modulus_kpa >= 0.0 && material.fibre_modulus_kpa <= kMostYoungsModulusKpa, "fibre_modulus_kpa",
-         material.fibre_modulus_kpa, "a number in [0, 1e9] kPa");
-  expect(material.kelvin_voigt_time_s >= 0.0, "kelvin_voigt_time_s", material.kelvin_voigt_time_s,
-         "a finite number of at least 0");
-  if (!is_direction(material.fibre_direction)) {
-    violations.push_back({"fibre_direction", text_of(material.fibre_direction), "a finite direction"});
-  }
-  for (std::size_t i = 0; i < material.prony.size(); ++i) {
-    const auto& [share, time_s] = material.prony[i];
-    expect(share > 0.0, fmt::format("prony[{}].shear_share", i), share, "a finite number above 0");
-    expect(time_s > 0.0, fmt::format("prony[{}].time_s", i), time_s, "a finite number above 0");
-  }
-  return violations;
-}
-
 std::vector<Problem> validate(const MaterialField& field, std::size_t tets) {
   std::vector<Problem> violations;
   const auto check = [&](const char* name, const auto& values, const auto& is_good, const auto& text, const char* expected) {

@@ -4,6 +4,7 @@
 #include "mechanics/viscous_response.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 #include <incise/mechanics/tissue.hpp>
 
@@ -20,12 +21,12 @@ void require_sound(const TetMesh& mesh) {
 }
 
 void require_valid(const Material& material) {
-  const std::vector<Problem> violations = validate(material);
+  const std::vector<Problem> violations = problems_of(material);
   if (violations.empty()) return;
   std::string others;
   for (std::size_t i = 1; i < violations.size(); ++i) others += (i > 1 ? "; also " : "Also ") + sentence(violations[i]);
-  const auto& [path, found, expected] = violations.front();
-  throw CaseError("case", "specimen.material." + path, found, expected, others);
+  const Problem& first = violations.front();
+  throw CaseError("case", "specimen.material." + first.path, first.found, first.expected, others);
 }
 
 void require_valid(const MaterialField& field, std::size_t tets) {

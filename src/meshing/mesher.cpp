@@ -274,11 +274,6 @@ double longest_side_mm(const Volume<Value>& volume, const IsTissue& is_tissue) {
   return (box.sizes() + Eigen::Vector3i::Ones()).cast<double>().cwiseProduct(volume.grid.spacing_mm).maxCoeff();
 }
 
-void require_sound(const MeshingSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  if (!violations.empty()) throw InvalidArgument(fmt::format("meshing settings: {}", fmt::join(violations, "; ")));
-}
-
 }  // namespace
 
 double longest_side_mm(const GrayVolume& occupancy) {
@@ -291,20 +286,20 @@ double longest_side_mm(const LabelVolume& labels) {
 
 MeshingResult mesh_labels(const GrayVolume& occupancy, const SizingField& sizing, const MeshingSettings& settings,
                           Monitor& monitor) {
-  require_sound(settings);
+  require_none(validate(settings));
   return Meshing(occupancy, TissueVolume::InsideSkin, sizing, settings, monitor).run();
 }
 
 MeshingResult mesh_labels(const LabelVolume& labels, const SizingField& sizing, const MeshingSettings& settings,
                           Monitor& monitor) {
-  require_sound(settings);
+  require_none(validate(settings));
   return Meshing(occupancy_of(labels), TissueVolume::SumOfOccupancy, sizing, settings, monitor).run();
 }
 
 MeshingResult mesh_surface(const TriMesh& closed_surface, const SizingField& sizing, const MeshingSettings& settings,
                            Monitor& monitor, std::optional<double> voxel_mm) {
   constexpr double kVoxelsPerFineEdge = 2.0;
-  require_sound(settings);
+  require_none(validate(settings));
   const double edge_mm = voxel_mm.value_or(sizing.settings().fine_mm / kVoxelsPerFineEdge);
   const GrayVolume occupancy = occupancy_of(closed_surface, edge_mm);
   return Meshing(occupancy, TissueVolume::SumOfOccupancy, sizing, settings, monitor).run();

@@ -14,27 +14,25 @@ namespace {
 
 constexpr std::size_t kMaxPathPoints = 256;
 
-void append_violations(std::vector<std::string>& violations, const PlannedCut& cut) {
+void append_violations(std::vector<Problem>& violations, const PlannedCut& cut) {
   const std::size_t needed = cut.path.is_closed ? 3 : 2;
   if (cut.path.points.size() < needed) {
-    violations.push_back(fmt::format("path: found {} points, expected at least {}", cut.path.points.size(), needed));
+    violations.push_back(
+        {"path", fmt::format("{} points", cut.path.points.size()), fmt::format("at least {}", needed)});
   }
   const auto bad =
       std::find_if(cut.path.points.begin(), cut.path.points.end(), [](const Vec3& p) { return !p.allFinite(); });
   if (bad != cut.path.points.end()) {
-    violations.push_back(fmt::format("path: point {} is not finite", bad - cut.path.points.begin()));
+    violations.push_back(
+        {fmt::format("path[{}]", bad - cut.path.points.begin()), "a number that is not finite", "finite ones"});
   } else if (cut.path.points.size() >= needed && !(length_mm(cut.path) > 0.0)) {
-    violations.push_back("path: found length 0, expected > 0");
+    violations.push_back({"path", "length 0", "above 0 mm"});
   }
   if (!cut.approach.allFinite() || !(cut.approach.norm() > 0.0)) {
-    violations.push_back("approach: found a zero or infinite vector, expected a direction");
+    violations.push_back({"approach", "a zero or infinite vector", "a direction"});
   }
   const Expect expect(violations);
   expect(cut.depth_mm > 0.0, "depth_mm", cut.depth_mm, "a finite number > 0");
-}
-
-void throw_if_any(const std::vector<std::string>& violations) {
-  if (!violations.empty()) throw InvalidArgument(fmt::format("mesh sizing: {}", fmt::join(violations, "; ")));
 }
 
 /// How far value lies outside [low, high].
@@ -84,19 +82,10 @@ SizingSettings default_lengths(double longest_side_mm) {
   return settings;
 }
 
-std::vector<std::string> validate(const SizingSettings& settings) {
-  std::vector<std::string> violations;
-  const Expect expect(violations);
-  expect(settings.fine_mm > 0.0, "fine_mm", settings.fine_mm, "a finite number > 0");
-  expect(settings.coarse_mm > 0.0, "coarse_mm", settings.coarse_mm, "a finite number > 0");
-  expect(settings.growth > 0.0, "growth", settings.growth, "a finite number > 0");
-  expect(settings.band_inside_mm >= 0.0, "band_inside_mm", settings.band_inside_mm, "a finite number >= 0");
-  expect(settings.band_outside_mm >= 0.0, "band_outside_mm", settings.band_outside_mm, "a finite number >= 0");
-  expect(settings.band_below_mm >= 0.0, "band_below_mm", settings.band_below_mm, "a finite number >= 0");
-  if (settings.fine_mm > settings.coarse_mm) {
-    violations.push_back(
-        fmt::format("fine_mm: found {}, expected at most coarse_mm = {}", settings.fine_mm, settings.coarse_mm));
-  }
+std::vector<Problem> validate(const SizingSettings& settings) {
+  std::vector<Problem> violations = problems_of(settings);
+  Expect{violations}(settings.fine_mm <= settings.coarse_mm, "fine_mm", settings.fine_mm,
+                     fmt::format("at most coarse_mm = {}", settings.coarse_mm));
   return violations;
 }
 
@@ -104,14 +93,14 @@ SizingField SizingField::uniform(double edge_mm) {
   SizingField field;
   field.settings_.fine_mm = edge_mm;
   field.settings_.coarse_mm = edge_mm;
-  throw_if_any(validate(field.settings_));
+  require_none(validate(field.settings_));
   return field;
 }
 
 SizingField SizingField::around_cut(const PlannedCut& cut, const SizingSettings& settings) {
-  std::vector<std::string> violations = validate(settings);
+  std::vector<Problem> violations = validate(settings);
   append_violations(violations, cut);
-  throw_if_any(violations);
+  require_none(violations);
 
   const double widest_mm = std::max(settings.band_inside_mm, settings.band_outside_mm);
   Band band{.view = view_along(cut.approach),

@@ -134,24 +134,9 @@ void move_waypoints(const SurfaceView& view, const Vec2& center, const Compensat
 
 }  // namespace
 
-std::vector<std::string> validate(const CompensationSettings& s) {
-  std::vector<std::string> violations;
-  const Expect expect(violations);
-  expect(s.target_mm > 0.0, "target_mm", s.target_mm, "a distance above 0 mm");
-  expect(s.relaxation > 0.0 && s.relaxation <= 1.0, "relaxation", s.relaxation, "a share in (0, 1]");
-  expect(s.smoothing_passes >= 0, "smoothing_passes", s.smoothing_passes, "0 or more");
-  expect(s.close_margin_mm > 0.0, "close_margin_mm", s.close_margin_mm, "a distance above 0 mm");
-  expect(s.electrode_radius_mm >= 0.0, "electrode_radius_mm", s.electrode_radius_mm, "0 mm or more");
-  expect(s.approach.norm() > 0.0, "approach", s.approach.norm(), "a vector of length above 0");
-  expect(s.step_mm > 0.0, "step_mm", s.step_mm, "a distance above 0 mm");
-  expect(s.rim_clearance_mm >= 0.0, "rim_clearance_mm", s.rim_clearance_mm, "0 mm or more");
-  return violations;
-}
-
 Compensation compensate_paper(const ToolPath& current, const Contour& measured, const Contour& tumor_edge,
                               const SurfaceQuery& surface, const CompensationSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(problems_of(settings));
   INCISE_REQUIRE(current.is_closed, "expected a closed path, found an open one");
   check_path_as({"compensation"}, current, surface, settings.approach, 0.0);
 

@@ -201,40 +201,9 @@ class ConvergingIteration {
 
 }  // namespace
 
-std::vector<std::string> validate(const SafeRegion& r) {
-  std::vector<std::string> violations;
-  const Expect expect(violations);
-  expect(r.close_margin_mm > 0.0, "region.close_margin_mm", r.close_margin_mm, "a distance above 0 mm");
-  expect(r.electrode_radius_mm >= 0.0, "region.electrode_radius_mm", r.electrode_radius_mm, "0 mm or more");
-  expect(r.max_offset_mm > 0.0, "region.max_offset_mm", r.max_offset_mm, "a distance above 0 mm");
-  expect(r.rim_clearance_mm >= 0.0, "region.rim_clearance_mm", r.rim_clearance_mm, "0 mm or more");
-  expect(r.approach.norm() > 0.0, "region.approach", r.approach.norm(), "a vector of length above 0");
-  return violations;
-}
-
-std::vector<std::string> validate(const ConvergenceSettings& s) {
-  std::vector<std::string> violations = validate(s.region);
-  const Expect expect(violations);
-  expect(s.simulations >= 2, "simulations", s.simulations, "2 or more");
-  expect(s.more_simulations >= 0, "more_simulations", s.more_simulations, "0 or more");
-  expect(s.more_move_mm > 0.0, "more_move_mm", s.more_move_mm, "a distance above 0 mm");
-  expect(s.floor_mm >= 0.0, "floor_mm", s.floor_mm, "0 mm or more");
-  expect(s.tolerance_mm > 0.0, "tolerance_mm", s.tolerance_mm, "a distance above 0 mm");
-  expect(s.smoothing_mm > 0.0, "smoothing_mm", s.smoothing_mm, "a distance above 0 mm");
-  expect(s.relaxation > 0.0 && s.relaxation <= 1.0, "relaxation", s.relaxation, "a share in (0, 1]");
-  expect(s.shift_lags >= 0.0, "shift_lags", s.shift_lags, "0 or more");
-  expect(s.spread_lags >= 0.0, "spread_lags", s.spread_lags, "0 or more");
-  expect(s.memory >= 0, "memory", s.memory, "0 or more");
-  expect(s.trust_mm > 0.0, "trust_mm", s.trust_mm, "a distance above 0 mm");
-  expect(s.least_move_mm >= 0.0, "least_move_mm", s.least_move_mm, "0 mm or more");
-  for (const double bias : s.bias_mm) expect(true, "bias_mm", bias, "finite numbers");
-  return violations;
-}
-
 ConvergedCompensation compensate_converging(const ToolPath& intended, const SurfaceQuery& surface,
                                             const MeasureCut& measure, const ConvergenceSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(problems_of(settings));
   INCISE_REQUIRE(intended.is_closed, "expected a closed path, found an open one");
   INCISE_REQUIRE(intended.tumor_edge.is_closed && intended.tumor_edge.points.size() >= 3,
                  "expected a path with a closed tumour edge of at least 3 points");

@@ -114,20 +114,6 @@ SpecimenDistance distance_from(std::string name, double value, std::span<const d
           kUsualWeight + n - 1.0};
 }
 
-std::vector<std::string> validate(const EligibilityRules& r) {
-  std::vector<std::string> violations;
-  const Expect expect(violations);
-  expect(r.least_gain_sds >= 0.0, "least_gain_sds", r.least_gain_sds, "0 or more");
-  expect(r.most_p_worse >= 0.0 && r.most_p_worse <= 1.0, "most_p_worse", r.most_p_worse, "a probability in [0, 1]");
-  expect(r.most_distance_sds > 0.0, "most_distance_sds", r.most_distance_sds, "a number above 0");
-  expect(r.most_rmse_mm > 0.0, "most_rmse_mm", r.most_rmse_mm, "a distance above 0 mm");
-  expect(r.most_unmeasured >= 0.0 && r.most_unmeasured <= 1.0, "most_unmeasured", r.most_unmeasured,
-         "a share in [0, 1]");
-  expect(r.most_p_close_margin > 0.0 && r.most_p_close_margin < 1.0, "most_p_close_margin", r.most_p_close_margin,
-         "a probability in (0, 1)");
-  return violations;
-}
-
 double probability_unlike(std::span<const SpecimenDistance> distances) {
   if (distances.empty()) return kPriorUnlike;
   double most = 0.0;
@@ -149,8 +135,7 @@ double probability_worse_if_unlike(double move_mm, std::span<const double> error
 }
 
 Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules) {
-  const std::vector<std::string> violations = validate(rules);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(problems_of(rules));
   Eligibility judged;
   judged.reasons = failings(evidence, rules);
   judged.p_unlike = judged.reasons.empty() ? probability_unlike(evidence.distances) : 1.0;

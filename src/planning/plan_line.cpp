@@ -10,8 +10,7 @@
 namespace incise {
 
 ToolPath plan_line(const SurfaceQuery& surface, const Contour& line, const PlanSettings& settings) {
-  const std::vector<Problem> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(sentences(violations), "; ")));
+  require_none(validate(settings));
   INCISE_REQUIRE(settings.kind == PlanKind::Line, "expected settings of a line, found those of a ring");
   INCISE_REQUIRE(!line.is_closed && line.points.size() >= 2, "expected an open line of at least 2 points");
 

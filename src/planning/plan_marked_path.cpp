@@ -60,8 +60,7 @@ ToolPath plan_marked_path(const Contour& mark, std::span<const Vec3> cloud, cons
   PlanSettings settings = plan.settings;
   settings.kind = PlanKind::Ring;
   settings.lateral_margin_mm = plan.margin_mm > 0.0 ? plan.margin_mm : PlanSettings{}.lateral_margin_mm;
-  const std::vector<Problem> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(sentences(violations), "; ")));
+  require_none(validate(settings));
   const CloudSurface surface(cloud, settings.approach);
   if (plan.margin_mm <= 0.0) return along_mark(mark, surface, plan);
   INCISE_REQUIRE(mark.is_closed, "expected a closed mark for an incision around it");

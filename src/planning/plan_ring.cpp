@@ -94,8 +94,7 @@ Contour margin_curve(const SurfaceView& view, const Contour& edge, const MarginF
 }  // namespace
 
 ToolPath plan_ring(const SurfaceQuery& surface, const Contour& tumor_edge, const PlanSettings& settings) {
-  const std::vector<Problem> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(sentences(violations), "; ")));
+  require_none(validate(settings));
   INCISE_REQUIRE(settings.kind == PlanKind::Ring, "expected settings of a ring, found those of a line");
   INCISE_REQUIRE(tumor_edge.is_closed && tumor_edge.points.size() >= 3,
                  "expected a closed tumour edge of at least 3 points");

@@ -1,6 +1,7 @@
 #include "planning/surface_walk.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/planning/project_path.hpp>
 
 #include <fmt/format.h>
@@ -164,27 +165,6 @@ std::vector<Waypoint> course_of(const ToolPath& path, const Similarity& similari
 
 }  // namespace
 
-std::vector<std::string> validate(const ProjectSettings& s) {
-  std::vector<std::string> violations;
-  const auto positive = [&](const char* field, double value) {
-    if (!(std::isfinite(value) && value > 0.0))
-      violations.push_back(fmt::format("{}: expected above 0, found {}", field, value));
-  };
-  positive("mark_depth_mm", s.mark_depth_mm);
-  positive("mark_speed_mm_s", s.mark_speed_mm_s);
-  if (s.incise_depth_mm) positive("incise_depth_mm", *s.incise_depth_mm);
-  if (s.incise_speed_mm_s) positive("incise_speed_mm_s", *s.incise_speed_mm_s);
-  if (s.mark_waypoints < 8)
-    violations.push_back(fmt::format("mark_waypoints: expected 8 or more, found {}", s.mark_waypoints));
-  if (!(std::isfinite(s.max_gap_mm) && s.max_gap_mm >= 0.0))
-    violations.push_back(fmt::format("max_gap_mm: expected 0 or more, found {}", s.max_gap_mm));
-  if (!(std::isfinite(s.smoothing_mm) && s.smoothing_mm >= 0.0))
-    violations.push_back(fmt::format("smoothing_mm: expected 0 or more, found {}", s.smoothing_mm));
-  if (!(std::isfinite(s.max_shift_mm) && s.max_shift_mm >= 0.0))
-    violations.push_back(fmt::format("max_shift_mm: expected 0 or more, found {}", s.max_shift_mm));
-  return violations;
-}
-
 MeasuredSurface::MeasuredSurface(const TriMesh& surface, const Vec3& approach) : approach_(approach.normalized()) {
   if (surface.triangles.empty()) {
     cloud_.emplace(surface.vertices, approach_);
@@ -223,8 +203,7 @@ Mat4 at_true_size(double scale, const Vec3& center_mm) {
 
 ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const MeasuredSurface& surface,
                            const ProjectSettings& settings, const std::filesystem::path& name) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(problems_of(settings));
   INCISE_REQUIRE(path.frame == PathFrame::SimStretched,
                  fmt::format("expected a path in frame sim_stretched, found {}", to_string(path.frame)));
   INCISE_REQUIRE(settings.kind == PathKind::Incise || path.tumor_edge.points.size() >= 3,

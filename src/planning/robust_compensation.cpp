@@ -1,7 +1,5 @@
 #include "planning/scenario_cuts.hpp"
 
-#include <incise/core/expect.hpp>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -194,26 +192,6 @@ class RobustChoice {
 };
 
 }  // namespace
-
-std::vector<std::string> validate(const RobustSettings& s) {
-  std::vector<std::string> violations = validate(s.region);
-  const Expect expect(violations);
-  expect(s.target_mm > 0.0, "target_mm", s.target_mm, "a distance above 0 mm");
-  expect(s.kerf_allowance_mm >= 0.0, "kerf_allowance_mm", s.kerf_allowance_mm, "0 mm or more");
-  expect(s.max_probability > 0.0 && s.max_probability < 1.0, "max_probability", s.max_probability,
-         "a probability in (0, 1)");
-  expect(s.residual_sd_mm > 0.0, "residual_sd_mm", s.residual_sd_mm, "a length above 0 mm");
-  expect(s.residual_length_mm > 0.0, "residual_length_mm", s.residual_length_mm, "a length above 0 mm");
-  expect(s.common_sd_mm >= 0.0, "common_sd_mm", s.common_sd_mm, "0 mm or more");
-  expect(s.placement_sd_mm >= 0.0, "placement_sd_mm", s.placement_sd_mm, "0 mm or more");
-  expect(s.smoothing_mm > 0.0, "smoothing_mm", s.smoothing_mm, "a distance above 0 mm");
-  expect(s.shift_lags >= 0.0, "shift_lags", s.shift_lags, "0 or more");
-  expect(s.spread_lags >= 0.0, "spread_lags", s.spread_lags, "0 or more");
-  expect(s.trust_mm > 0.0, "trust_mm", s.trust_mm, "a distance above 0 mm");
-  expect(s.rounds >= 1, "rounds", s.rounds, "1 or more");
-  expect(s.samples >= 100, "samples", s.samples, "100 or more");
-  return violations;
-}
 
 RobustCompensation compensate_robust(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                                      const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,

@@ -3,6 +3,7 @@
 #include "planning/tissue_response.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -72,8 +73,7 @@ LinearScenario ScenarioCuts::linear(std::size_t place, const PathErrors& errors)
 void require_scenarios(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                        const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
                        const RobustSettings& settings) {
-  const std::vector<std::string> violations = validate(settings);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(problems_of(settings));
   INCISE_REQUIRE(intended.is_closed && intended.tumor_edge.points.size() >= 3,
                  "expected a closed path with a tumour edge of at least 3 points");
   INCISE_REQUIRE(corrected_offset_mm.size() == intended.waypoints.size(),

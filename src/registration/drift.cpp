@@ -3,6 +3,7 @@
 
 #include <incise/core/anderson.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 
 #include <fmt/format.h>
@@ -213,23 +214,9 @@ ScaleRange ScaleRange::free() {
   return {0.0, std::numeric_limits<double>::infinity()};
 }
 
-std::vector<std::string> validate(const DriftSettings& s) {
-  std::vector<std::string> problems;
-  if (!(s.scale.low >= 0.0 && s.scale.high > 0.0 && s.scale.low <= s.scale.high)) {
-    problems.push_back(fmt::format("scale: expected 0 <= low <= high, found {} to {}", s.scale.low, s.scale.high));
-  }
-  if (!(s.outlier_weight > 0.0 && s.outlier_weight < 1.0)) {
-    problems.push_back(fmt::format("outlier_weight: expected a share in (0, 1), found {}", s.outlier_weight));
-  }
-  if (s.max_iterations < 1)
-    problems.push_back(fmt::format("max_iterations: expected at least 1, found {}", s.max_iterations));
-  if (!(s.tolerance > 0.0))
-    problems.push_back(fmt::format("tolerance: expected a share above 0, found {}", s.tolerance));
-  if (s.dimensions != 2 && s.dimensions != 3)
-    problems.push_back(fmt::format("dimensions: expected 2 or 3, found {}", s.dimensions));
-  if (s.first_sigma && !(*s.first_sigma > 0.0)) {
-    problems.push_back(fmt::format("first_sigma: expected a share above 0, found {}", *s.first_sigma));
-  }
+std::vector<Problem> validate(const DriftSettings& s) {
+  std::vector<Problem> problems = problems_of(s);
+  Expect{problems}(s.scale.low <= s.scale.high, "scale.low", s.scale.low, fmt::format("at most {}", s.scale.high));
   return problems;
 }
 
@@ -288,8 +275,7 @@ Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, co
                   const DriftSettings& settings, Workers& workers, Monitor& monitor) {
   require_usable(source, "source");
   require_usable(target, "target");
-  const std::vector<std::string> problems = validate(settings);
-  INCISE_REQUIRE(problems.empty(), problems.front());
+  require_none(validate(settings));
   INCISE_REQUIRE(start.scale > 0.0, "expected a start with a scale above 0");
   Drift drift;
   drift.T_target_source = start;

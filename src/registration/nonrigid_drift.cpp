@@ -2,6 +2,7 @@
 #include "registration/matching.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/registration/nonrigid_drift.hpp>
 
 #include <fmt/format.h>
@@ -99,29 +100,9 @@ class SmoothField {
 
 }  // namespace
 
-std::vector<std::string> validate(const NonrigidSettings& s) {
-  std::vector<std::string> problems;
-  const auto check = [&problems](bool is_good, std::string text) {
-    if (!is_good) problems.push_back(std::move(text));
-  };
-  check(s.smoothness > 0.0 && s.smoothness <= 10.0,
-        fmt::format("smoothness: expected a share in (0, 10], found {}", s.smoothness));
-  check(s.stiffness > 0.0, fmt::format("stiffness: expected a number above 0, found {}", s.stiffness));
-  check(s.outlier_weight > 0.0 && s.outlier_weight < 1.0,
-        fmt::format("outlier_weight: expected a share in (0, 1), found {}", s.outlier_weight));
-  check(s.max_iterations >= 1, fmt::format("max_iterations: expected at least 1, found {}", s.max_iterations));
-  check(s.tolerance > 0.0, fmt::format("tolerance: expected a share above 0, found {}", s.tolerance));
-  check(s.dimensions == 2 || s.dimensions == 3, fmt::format("dimensions: expected 2 or 3, found {}", s.dimensions));
-  check(s.max_centers >= 4 && s.max_centers <= 2000,
-        fmt::format("max_centers: expected 4 to 2000, found {}", s.max_centers));
-  check(!s.first_sigma || *s.first_sigma > 0.0, "first_sigma: expected a share above 0");
-  return problems;
-}
-
 NonrigidDrift nonrigid_drift(std::span<const Vec3> source, std::span<const Vec3> target,
                              const NonrigidSettings& settings, Workers& workers, Monitor& monitor) {
-  const std::vector<std::string> problems = validate(settings);
-  INCISE_REQUIRE(problems.empty(), problems.front());
+  require_none(problems_of(settings));
   INCISE_REQUIRE(!source.empty() && !target.empty(), "expected at least 1 point in each cloud");
   const Measure source_measure = measure_of(source);
   const Measure target_measure = measure_of(target);

@@ -7,6 +7,8 @@
 #include "registration/shape_residual.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
+#include <incise/core/units.hpp>
 #include <incise/registration/register_clouds.hpp>
 
 #include <fmt/format.h>
@@ -377,34 +379,34 @@ class Registering {
 
 }  // namespace
 
-std::vector<std::string> validate(const RegistrationSettings& s) {
-  std::vector<std::string> problems;
-  DriftSettings drift;
-  drift.scale = s.scale;
-  drift.outlier_weight = s.outlier_weight;
-  drift.max_iterations = s.max_iterations;
-  problems = validate(drift);
-  const auto check = [&problems](bool is_good, std::string text) {
-    if (!is_good) problems.push_back(std::move(text));
-  };
-  check(s.rotations >= 8 && s.rotations <= 2000, fmt::format("rotations: expected 8 to 2000, found {}", s.rotations));
-  check(s.drift_points >= 100, fmt::format("drift_points: expected at least 100, found {}", s.drift_points));
-  check(s.largest_rmse > 0.0, fmt::format("largest_rmse: expected a share above 0, found {}", s.largest_rmse));
-  check(s.least_inliers >= 0.0 && s.least_inliers <= 1.0,
-        fmt::format("least_inliers: expected a share in [0, 1], found {}", s.least_inliers));
-  check(s.least_fit >= 0.0 && s.least_fit <= 1.0,
-        fmt::format("least_fit: expected a share in [0, 1], found {}", s.least_fit));
-  check(s.largest_shape_residual > 0.0,
-        fmt::format("largest_shape_residual: expected a share above 0, found {}", s.largest_shape_residual));
-  check(s.largest_sd > 0.0, fmt::format("largest_sd: expected a share above 0, found {}", s.largest_sd));
-  check(s.largest_settled_sd > 0.0,
-        fmt::format("largest_settled_sd: expected a share above 0, found {}", s.largest_settled_sd));
-  check(s.least_sharpness >= 0.0, fmt::format("least_sharpness: expected 0 or more, found {}", s.least_sharpness));
-  check(s.largest_rival > 0.0 && s.largest_rival <= 1.0,
-        fmt::format("largest_rival: expected a share in (0, 1], found {}", s.largest_rival));
-  check(std::isfinite(s.settling_mm) && s.settling_mm >= 0.0,
-        fmt::format("settling_mm: expected 0 or more, found {}", s.settling_mm));
-  check(!s.start || s.start->scale > 0.0, "start: expected a scale above 0");
+void describe(Visitor& v, RegistrationSettings& s) {
+  v("scale", s.scale, "What the scale may be; low = high fixes it.");
+  v("outlier_weight", s.outlier_weight, "Share of the target that belongs to nothing in the source.", {0.001, 0.95});
+  v.internal("start", s.start, "One start; absent: a search over rotations.");
+  v("rotations", s.rotations, "Starts of the search, spread evenly over all rotations.", {8.0, 2000.0});
+  v("finish_with_icp", s.finish_with_icp, "Whether point to plane follows the drift.");
+  v("max_iterations", s.max_iterations, "Of the drift and of the finish.", {1.0, 100000.0});
+  v("drift_points", s.drift_points, "A larger cloud takes part in the drift as about so many clusters.", {100.0});
+  v({"settling_mm",
+     "How far the tissue may have settled along the source's mean normal (up or down) since it was simulated: pose and "
+     "settling are then found together; 0: the pose alone.",
+     "mm"},
+    s.settling_mm, {0.0, 20.0});
+  v("largest_rmse", s.largest_rmse, "Poorer fits are not a success.", kPositive);
+  v("least_inliers", s.least_inliers, "Of the source's points; fewer are not a success.", {0.0, 1.0});
+  v("least_fit", s.least_fit, "Of the source's points above the target that lie on it, for a success.", {0.0, 1.0});
+  v("largest_shape_residual", s.largest_shape_residual,
+    "Misfit that neither noise nor settling explains, for a success.", kPositive);
+  v("largest_sd", s.largest_sd, "Of the pose along its weakest direction, for a success.", kPositive);
+  v("largest_settled_sd", s.largest_settled_sd,
+    "The same where settling was looked for, which leaves more open than noise.", kPositive);
+  v("least_sharpness", s.least_sharpness, "See Certificate::sharpness.", kNotNegative);
+  v("largest_rival", s.largest_rival, "Score of the runner-up over that of the best, for a success.", {0.0, 1.0, true});
+}
+
+std::vector<Problem> validate(const RegistrationSettings& s) {
+  std::vector<Problem> problems = problems_of(s);
+  Expect{problems}(s.scale.low <= s.scale.high, "scale.low", s.scale.low, fmt::format("at most {}", s.scale.high));
   return problems;
 }
 
@@ -412,8 +414,7 @@ Registration register_clouds(const PointCloud& source, const PointCloud& target,
                              Workers& workers, Monitor& monitor) {
   require_usable(source, "source");
   require_usable(target, "target");
-  const std::vector<std::string> problems = validate(settings);
-  INCISE_REQUIRE(problems.empty(), problems.front());
+  require_none(validate(settings));
   Registration result;
   const Measure source_measure = measure_of(source.points);
   const Measure target_measure = measure_of(target.points);
@@ -437,6 +438,44 @@ Registration register_clouds(const PointCloud& source, const PointCloud& target,
     result.reasons.emplace_back(stop.what());
   }
   return result;
+}
+
+void describe(Visitor& v, Registration& r) {
+  const bool is_found = r.outcome != RegistrationOutcome::Degenerate && r.outcome != RegistrationOutcome::Cancelled;
+  const auto if_found = [is_found](auto value) { return is_found ? std::optional(value) : std::nullopt; };
+  const auto finite_if_found = [is_found](double value) { return is_found ? if_finite(value) : std::nullopt; };
+  const Similarity& t = r.T_target_source;
+  v("outcome", r.outcome, "How it ended.");
+  v.derived("converged", r.outcome == RegistrationOutcome::Converged, "Whether nothing argues against the transform.");
+  v("reasons", r.reasons, "Why it is not a success, or what to beware of, worst first.");
+  v.derived("scale", if_found(t.scale), "Of the transform.");
+  v.derived("rotation", if_found(t.rotation), "Of the transform.");
+  v.derived("rotation_deg", if_found(units::deg_from_rad(rotation_vector(t.rotation).norm())), "Its angle.");
+  v.derived("translation_mm", if_found(t.translation_mm), "Of the transform.");
+  v.derived("T_target_source", if_found(matrix_of(t)), "4 x 4, rows, scale included.");
+  v.derived("rmse_mm", finite_if_found(r.rmse_mm), "Of the source's points above the target, along the normals.");
+  v.derived("inlier_fraction", finite_if_found(r.inlier_fraction),
+            "Of the source's points: above the target, distance below 3 robust standard deviations.");
+  v.derived("settled_rms_mm", if_finite(r.settled_rms_mm), "Of the settling that was found beside the pose.");
+  v.derived("settled_max_mm", if_finite(r.settled_max_mm), "Likewise, greatest.");
+  v.derived("noise_mm", if_finite(r.noise_mm), "What rmse_mm would be if the surfaces were alike.");
+  v.derived("fit_fraction", if_finite(r.fit_fraction), "Inliers of those points alone that lie above the target.");
+  v.derived("target_fraction", if_finite(r.target_fraction), "Of the target's points, by the drift's probability.");
+  v.derived("drift_sigma_mm", if_finite(r.drift_sigma_mm), "Width of the drift's Gaussians at the end.");
+  v("iterations", r.iterations, "Of drift and finish.");
+  v("starts", r.starts, "Of the search.");
+  v.derived("score", if_finite(r.score), "Share of the source that lies on the target to within the noise.");
+  v.derived("rival_score", if_finite(r.rival_score), "Of the best pose that is another one; 0: none.");
+  v.derived("rival_T_target_source", r.rival ? std::optional(matrix_of(*r.rival)) : std::nullopt, "That pose.");
+  v.derived("shape_rmse_mm", if_finite(r.shape_rmse_mm), "rmse_mm before settling was looked for.");
+  v.derived("shape_residual_mm", if_finite(r.shape_residual_mm), "Misfit that neither noise nor settling explains.");
+  v.derived("mirror_score", if_finite(r.mirror_score), "Of the best pose found for the source's mirror image.");
+  v.derived("mirror_rmse_mm", if_finite(r.mirror_rmse_mm), "And its residual.");
+  v("handedness_determined", r.is_handedness_determined, "The mirror image fits clearly less well than the source.");
+  v("scale_at_limit", r.scale_at_limit, "The scale is at an end of its range.");
+  v("scale_suspicious", r.is_scale_suspicious, "Outside 0.95 to 1.05: both sensors are metric.");
+  v.derived("certificate", if_found(r.certificate), "How well the pose is determined.");
+  v.bulk("residuals_mm", r.residuals_mm, "Distances along the normals, target to source.");
 }
 
 }  // namespace incise

@@ -1,5 +1,6 @@
 #include "robot/joint_motion.hpp"
 
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 
 #include <fmt/format.h>
@@ -111,16 +112,16 @@ JointMotion follow_branch(const Course& course, const ToolFrame& frame, const Br
 
 }  // namespace robot_detail
 
-std::vector<std::string> validate(const ArmSetup& setup) {
-  std::vector<std::string> broken;
+std::vector<Problem> validate(const ArmSetup& setup) {
+  std::vector<Problem> broken;
+  const Expect expect(broken);
   const Mat3 R = setup.T_flange_tool.topLeftCorner<3, 3>();
   const bool is_rigid = setup.T_flange_tool.allFinite() && (R * R.transpose() - Mat3::Identity()).norm() < 1e-6 &&
                         R.determinant() > 0.0 && setup.T_flange_tool.row(3) == Eigen::RowVector4d(0, 0, 0, 1);
-  if (!is_rigid) broken.emplace_back("T_flange_tool: expected a rigid transform");
-  if (!setup.near_rad.allFinite()) broken.emplace_back("near_rad: expected finite angles");
-  if (!std::isfinite(setup.table_z_mm)) broken.emplace_back("table_z_mm: expected a finite height");
-  if (!(setup.period_s >= 0.001 && setup.period_s <= 0.1))
-    broken.push_back(fmt::format("period_s: found {}, expected 0.001 to 0.1", setup.period_s));
+  expect(is_rigid, "T_flange_tool", R.determinant(), "a rigid transform, of determinant 1");
+  for (int i = 0; i < 6; ++i) expect(true, fmt::format("near_rad[{}]", i), setup.near_rad[i], "a finite angle");
+  expect(true, "table_z_mm", setup.table_z_mm, "a finite height");
+  expect(setup.period_s >= 0.001 && setup.period_s <= 0.1, "period_s", setup.period_s, "0.001 to 0.1 s");
   return broken;
 }
 

@@ -3,6 +3,7 @@
 #include "robot/tip_route.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 #include <incise/robot/player.hpp>
 
@@ -235,31 +236,37 @@ class Playing {
 
 }  // namespace
 
-std::vector<std::string> validate(const PlayerSettings& s) {
-  std::vector<std::string> broken;
-  if (!(s.speed_slider > 0.0 && s.speed_slider <= 1.0))
-    broken.push_back(fmt::format("expected a speed slider in (0, 1], found {}", s.speed_slider));
-  if (!(s.cycle_s >= 1e-4 && s.cycle_s <= 0.02))
-    broken.push_back(fmt::format("expected a cycle of 0.0001 to 0.02 s, found {}", s.cycle_s));
-  if (!(s.end_zone_mm >= 0.0))
-    broken.push_back(fmt::format("expected an end zone of 0 or more, found {}", s.end_zone_mm));
-  if (!(s.max_deviation_mm > 0.0))
-    broken.push_back(fmt::format("expected a largest deviation above 0, found {}", s.max_deviation_mm));
-  for (const auto& [value, name] :
-       {std::pair(s.max_lean_deg, "max_lean_deg"), std::pair(s.speed_tolerance, "speed_tolerance"),
-        std::pair(s.max_way_back_mm, "max_way_back_mm"), std::pair(s.max_way_left_mm, "max_way_left_mm"),
-        std::pair(s.max_rest_s, "max_rest_s")}) {
-    if (!(value > 0.0)) broken.push_back(fmt::format("{}: expected a number above 0, found {}", name, value));
-  }
-  return broken;
+void describe(Visitor& v, Replay& r) {
+  PlayerSettings& s = r.settings;
+  const bool is_course_known = !r.intended_mm.empty();
+  const auto if_known = [is_course_known](double value) {
+    return is_course_known ? std::optional(value) : std::nullopt;
+  };
+  v("outcome", r.outcome, "How it ended.");
+  v.derived("line", r.line > 0 ? std::optional(r.line) : std::nullopt,
+            "Where it ended too early or asks for too much.");
+  v("reason", r.reason, "What was found, where the outcome alone does not say it.");
+  v.derived("speed_slider_percent", 100.0 * s.speed_slider, "Of the controller.");
+  v.derived("duration_s", r.duration_s(), "Of the whole program.");
+  v.derived("max_deviation_mm", if_known(r.max_deviation_mm), "Of the tip from the intended course.");
+  v.derived("max_deviation_at_s", if_known(r.max_deviation_at_s), "When.");
+  v.derived("mean_deviation_mm", if_known(r.mean_deviation_mm), "In the cut.");
+  v.derived("max_cut_deviation_mm", if_known(r.max_cut_deviation_mm), "In the cut; without one: over all of it.");
+  v({"allowed_deviation_mm", "For a success.", "mm"}, s.max_deviation_mm);
+  v("tip_speed_mm_s", r.tip_speed_mm_s, "In the cut, away from its ends.");
+  v({"end_zone_mm", "Of the cut at either end, where the tip speeds up and slows down.", "mm"}, s.end_zone_mm);
+  v("max_joint_speed_share", r.max_joint_speed_share, "Of the joints' limits.");
+  v.derived("min_singular_value", if_finite(r.min_singular_value), "Of the arm's Jacobian.");
+  v.bulk("samples", r.samples, "Joints and tip over time.");
+  v.bulk("intended_mm", r.intended_mm, "The intended course of the tip.");
 }
 
 Replay play(const WrittenProgram& program, const ArmModel& arm, const PlayerSettings& settings,
             const ToolPath* intended) {
-  const auto broken = validate(settings);
-  INCISE_REQUIRE(broken.empty(), fmt::format("{}", fmt::join(broken, "; ")));
+  require_none(problems_of(settings));
   INCISE_REQUIRE(program.joints.size() >= 2 || program.commands.size() >= 2, "expected a program with motions");
   Replay replay;
+  replay.settings = settings;
   Playing playing(program, arm, settings, replay);
   playing.run();
   if (intended == nullptr && program.path) intended = &*program.path;

@@ -135,33 +135,15 @@ void require_valid(const ToolPath& path, const ProgramSettings& settings) {
     INCISE_REQUIRE(w.speed_mm_s > 0.0 && std::isfinite(w.speed_mm_s),
                    fmt::format("expected a speed above 0, found {} at waypoint {}", w.speed_mm_s, i));
   }
-  const auto broken = validate(settings);
-  INCISE_REQUIRE(broken.empty(), fmt::format("settings: {}", fmt::join(broken, "; ")));
+  require_none(validate(settings));
 }
 
 }  // namespace
 
-std::vector<std::string> validate(const ProgramSettings& s) {
-  std::vector<std::string> broken;
-  const Expect expect(broken);
-  const auto positive = [&](double value, const char* name) { expect(value > 0.0, name, value, "a number above 0"); };
-  positive(s.clearance_mm, "clearance_mm");
-  positive(s.approach_speed_mm_s, "approach_speed_mm_s");
-  positive(s.plunge_speed_mm_s, "plunge_speed_mm_s");
-  positive(s.chord_error_mm, "chord_error_mm");
-  positive(s.max_spacing_mm, "max_spacing_mm");
-  positive(s.acceleration_mm_s2, "acceleration_mm_s2");
-  positive(s.jerk_mm_s3, "jerk_mm_s3");
-  expect(s.overlap_mm >= 0.0, "overlap_mm", s.overlap_mm, "0 or more");
-  expect(s.dwell_s >= 0.0, "dwell_s", s.dwell_s, "0 or more");
-  expect(s.approach_height_mm > s.clearance_mm, "approach_height_mm", s.approach_height_mm, "more than clearance_mm");
-  for (const auto& [length_mm, name] :
-       {std::pair(s.overlap_mm, "overlap_mm"), std::pair(s.approach_height_mm, "approach_height_mm")}) {
-    if (length_mm > kLargestLengthMm)
-      broken.push_back(fmt::format("{}: found {}, expected at most {}", name, length_mm, kLargestLengthMm));
-  }
-  if (s.spin_deg && !std::isfinite(*s.spin_deg)) broken.push_back("spin_deg: expected a finite angle");
-  if (!s.tool_x_hint.allFinite() || s.tool_x_hint.norm() == 0.0) broken.push_back("tool_x_hint: expected a direction");
+std::vector<Problem> validate(const ProgramSettings& s) {
+  std::vector<Problem> broken = problems_of(s);
+  Expect{broken}(s.approach_height_mm > s.clearance_mm, "approach_height_mm", s.approach_height_mm,
+                 "more than clearance_mm");
   return broken;
 }
 
@@ -181,8 +163,7 @@ void require_robot_frame(const ToolPath& path, const std::filesystem::path& file
 
 RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings, const ArmSetup& setup) {
   require_valid(path, settings);
-  const auto broken = validate(setup);
-  INCISE_REQUIRE(broken.empty(), fmt::format("setup: {}", fmt::join(broken, "; ")));
+  require_none(validate(setup));
   const Course course(path, settings);
   INCISE_REQUIRE(course.duration_s() <= kLongestProgramS,
                  fmt::format("expected speeds at which the program takes at most {} s, found {:.4g} s", kLongestProgramS,

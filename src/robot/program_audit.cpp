@@ -2,7 +2,6 @@
 #include "robot/program_record.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 #include <incise/core/verdict.hpp>
 #include <incise/robot/program_audit.hpp>
 
@@ -86,7 +85,7 @@ class Auditor {
     try {
       make_again();
     } catch (const InvalidArgument& error) {
-      contradict("no program can be made of its header: " + as_sentence(error));
+      contradict("no program can be made of its header: " + error.as_hint());
     }
     return std::move(audit_);
   }

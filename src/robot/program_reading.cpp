@@ -6,8 +6,6 @@
 #include "robot/text_form.hpp"
 #include "robot/tip_curve.hpp"
 
-#include <incise/core/problem_text.hpp>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -73,7 +71,7 @@ void require_course(const ToolPath& path, double overlap_mm, const std::filesyst
                       fmt::format("less than once around, {:.4g} mm", curve.length_mm()));
     }
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(file, "header waypoint", error, "waypoints that a tool can follow");
+    throw DataError(file, "header waypoint", error);
   }
 }
 

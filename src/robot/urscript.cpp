@@ -2,6 +2,7 @@
 #include "robot/text_form.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 
 #include <fmt/format.h>
@@ -92,27 +93,17 @@ std::string stream(const RobotProgram& program, const UrScriptSettings& settings
 
 }  // namespace
 
-std::vector<std::string> validate(const UrScriptSettings& s) {
-  std::vector<std::string> broken;
-  const auto require = [&broken](bool holds, std::string text) {
-    if (!holds) broken.push_back(std::move(text));
-  };
-  require(is_identifier(s.function_name),
-          fmt::format("expected a function name of letters, digits and _, found '{}'", s.function_name));
-  require(s.blend_fraction >= 0.0 && s.blend_fraction < 0.5,
-          fmt::format("expected a blend fraction in [0, 0.5), found {}", s.blend_fraction));
-  require(s.lookahead_s >= 0.03 && s.lookahead_s <= 0.2,
-          fmt::format("expected a lookahead in [0.03, 0.2] s, found {}", s.lookahead_s));
-  require(s.gain >= 100.0 && s.gain <= 2000.0, fmt::format("expected a gain in [100, 2000], found {}", s.gain));
-  require(s.settle_s >= 0.0 && s.settle_s <= 5.0, fmt::format("expected 0 to 5 s to settle, found {}", s.settle_s));
+std::vector<Problem> validate(const UrScriptSettings& s) {
+  std::vector<Problem> broken = problems_of(s);
+  if (!is_identifier(s.function_name))
+    broken.push_back({"function_name", "'" + s.function_name + "'", "letters, digits and _, not a digit first"});
   return broken;
 }
 
 std::string to_urscript(const RobotProgram& program, const ProgramHeader& header, const UrScriptSettings& settings) {
   robot_detail::require_finite(program);
   robot_detail::require_motion(program);
-  const auto broken = validate(settings);
-  INCISE_REQUIRE(broken.empty(), fmt::format("{}", fmt::join(broken, "; ")));
+  require_none(validate(settings));
   std::string text = robot_detail::header_lines(header);
   text +=
       "# Units: m, s, rad, m/s, m/s^2. Poses p[x, y, z, rx, ry, rz] of the tool's tip in the base frame, rotation as "

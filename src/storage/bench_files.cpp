@@ -1,10 +1,10 @@
 #include <incise/core/error.hpp>
+#include <incise/core/nearest_name.hpp>
 #include <incise/imaging/picture.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
-#include <incise/io/nearest_name.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/storage/bench_files.hpp>
@@ -87,7 +87,7 @@ std::string bench_schema_json() {
   return json_text(schema);
 }
 
-Json to_json(const Specimen& specimen) {
+Json specimen_json(const Specimen& specimen) {
   Json json;
   json["schema"] = kSpecimenSchema;
   json["seed"] = specimen.seed;
@@ -165,7 +165,7 @@ void write_readings(const std::filesystem::path& folder, const Readings& reading
 }
 
 void write_truth(const std::filesystem::path& folder, const BenchBody& body) {
-  write_json(folder / "specimen.json", to_json(body.specimen));
+  write_json(folder / "specimen.json", specimen_json(body.specimen));
   write_contour_csv(folder / "tumor_edge_rest.csv", body.tumor_edge_rest);
   write_contour_csv(folder / "tumor_edge_stretched.csv", tumor_edge_at(body, body.stretched.positions));
   TetMesh stretched;

@@ -2,6 +2,7 @@
 #include "yaml_reader.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/utf8.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
@@ -95,7 +96,7 @@ void require_consistent(const CaseFile& file, const std::string& name) {
     throw CaseError(name, "specimen_id", fmt::format("'{}'", c.specimen_id),
                     std::string(kSpecimenIdForm));
   refuse("ct", validate(c.segmentation), "a usable segmentation");
-  refuse("specimen.material", validate(c.material), "a usable material");
+  refuse("specimen.material", problems_of(c.material), "a usable material");
   refuse("plan", validate(c.plan), "a usable plan");
   refuse("tool", validate(c.tool), "a usable tool");
   CutSettings cut = c.cut;

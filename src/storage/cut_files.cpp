@@ -16,17 +16,24 @@
 namespace incise {
 namespace {
 
-/// The live tets at one moment; the cell array `tet` keeps their place in the uncut mesh.
-TetMesh live_mesh(const TetMesh& mesh, const Points& positions, std::span<const std::uint8_t> is_live) {
-  TetMesh live;
-  live.vertices = positions;
-  DataArray place{1, {}};
-  for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
-    if (is_live[tet] == 0) continue;
-    live.tets.push_back(mesh.tets[tet]);
+/// The live tets at one moment, deformed; the cell array `tet` keeps their place in the uncut mesh. What viscosity adds
+/// to stress is not kept in a frame.
+TetMesh live_mesh(const TissueModel& model, TissueState state, const CutFrame& frame) {
+  state.positions = frame.positions;
+  state.is_live = frame.is_live;
+  TetMesh live = deformed_mesh(model, state);
+  const std::vector<double> stress = std::move(live.cell_data["von_mises_kpa"].values);
+  live.tets.clear();
+  live.cell_data.clear();
+  DataArray place{1, {}}, live_stress{1, {}};
+  for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
+    if (frame.is_live[tet] == 0) continue;
+    live.tets.push_back(model.mesh.tets[tet]);
     place.values.push_back(static_cast<double>(tet));
+    live_stress.values.push_back(stress[tet]);
   }
   live.cell_data["tet"] = std::move(place);
+  live.cell_data["von_mises_kpa"] = std::move(live_stress);
   return live;
 }
 
@@ -90,7 +97,8 @@ void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog
 }
 
 /// Frames as a ParaView time series, the tool beside them as columns of a table.
-void write_frames(const std::filesystem::path& folder, const TetMesh& mesh, const std::vector<CutFrame>& frames) {
+void write_frames(const std::filesystem::path& folder, const TissueModel& model, const TissueState& stretched,
+                  const std::vector<CutFrame>& frames) {
   if (frames.empty()) return;
   std::filesystem::create_directories(folder / "frames");
   std::vector<PvdFrame> series;
@@ -98,7 +106,7 @@ void write_frames(const std::filesystem::path& folder, const TetMesh& mesh, cons
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const CutFrame& frame = frames[i];
     const std::string name = fmt::format("frames/frame_{:04}.vtu", i);
-    write_vtu(folder / name, live_mesh(mesh, frame.positions, frame.is_live));
+    write_vtu(folder / name, live_mesh(model, stretched, frame));
     series.push_back({frame.time_s, name});
     const Vec3& tip = frame.tool.tip_mm;
     const Vec3& axis = frame.tool.axis;
@@ -135,7 +143,7 @@ void RunFolder::cut(const ProductNote& note, const TissueModel& model, const Sta
       write_vtu(to / "removed.vtu", removed_mesh(model.mesh, stretched.state.positions, incision.record));
     }
     write_kerf_files(to, incision.kerf);
-    write_frames(to, model.mesh, incision.frames);
+    write_frames(to, model, stretched.state, incision.frames);
   });
 }
 

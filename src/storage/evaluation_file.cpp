@@ -1,6 +1,6 @@
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour_checks.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/storage/evaluation_file.hpp>
@@ -14,6 +14,7 @@ namespace {
 
 constexpr Range kPlaceMm{-1e5, 1e5};  // from a scan's or a robot's origin
 constexpr Range kDistanceMm{-kLargestBodyMm, kLargestBodyMm};
+constexpr double kMostPoints = 1e5;  // at 0.25 mm: 25 m of contour; whoever compares them draws them over and over
 constexpr double kLongestDirection = 1e6;  // and its inverse the shortest
 constexpr const char* kEvaluationHint = "Write the file with `incise evaluate … -o FILE.json`";
 
@@ -138,7 +139,7 @@ void describe(Visitor& v, EvaluationFile& f) {
   if (positive) f.positive_at_mm = positive->at_or_below_mm;
   if (too_close) f.too_close_at_mm = too_close->at_or_below_mm;
   std::size_t count = f.specimen.signed_error_mm.size();
-  v("n_points", count, "At which errors were taken.", kNotNegative);
+  v("n_points", count, "At which errors were taken.", {0.0, kMostPoints});
   v("verdict", f.verdict, "On the measurement.");
   if (count == 0) return;  // no incision was found: a result, without errors
   PointErrors points{f.specimen.signed_error_mm, f.clock_h};

@@ -1,5 +1,3 @@
-#include "storage/json_values.hpp"
-
 #include <incise/core/error.hpp>
 #include <incise/storage/power_file.hpp>
 
@@ -7,36 +5,6 @@
 
 namespace incise {
 namespace {
-
-nlohmann::ordered_json row_json(const PowerCut& cut) {
-  nlohmann::ordered_json json;
-  json["specimen"] = cut.specimen;
-  json["power_w"] = cut.power_w;
-  json["speed_mm_s"] = cut.speed_mm_s;
-  json["outcome"] = to_string(cut.outcome);
-  if (!cut.problem.empty()) json["problem"] = cut.problem;
-  json["closed_loop"] = cut.outcome == Outcome::Success;
-  json["bulge_mm"] = or_null(cut.bulge_mm);
-  json["thermal_width_mm"] = or_null(cut.thermal_width_mm);
-  json["mean_abs_error_mm"] = or_null(cut.mean_abs_error_mm);
-  return json;
-}
-
-nlohmann::ordered_json rows_json(const std::vector<PowerCut>& cuts) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const PowerCut& cut : cuts) rows.push_back(row_json(cut));
-  return rows;
-}
-
-nlohmann::ordered_json verdict_json(const PowerVerdict& verdict) {
-  nlohmann::ordered_json json;
-  json["power_w"] = verdict.power_w;
-  json["fits"] = verdict.reasons.empty();
-  json["greatest_bulge_mm"] = or_null(verdict.greatest_bulge_mm);
-  json["greatest_thermal_width_mm"] = or_null(verdict.greatest_thermal_width_mm);
-  json["reasons"] = verdict.reasons;
-  return json;
-}
 
 /// A unit that was mistaken would set the robot's speed.
 void require_possible(const TimedCut& cut, const std::filesystem::path& file, std::size_t line) {
@@ -64,32 +32,6 @@ void add_rows(TextTable& table, const char* series, const std::vector<PowerCut>&
 }
 
 }  // namespace
-
-nlohmann::ordered_json to_json(const PowerSeries& series, const PowerRequest& request) {
-  nlohmann::ordered_json json;
-  json["verdict"] = series.choice.chosen_w ? "chosen" : "no_power_fits";
-  json["chosen_w"] = or_null(series.choice.chosen_w);
-  json["speed_mm_s"] = request.speed_mm_s;
-  json["limits"] = {{"bulge_limit_mm", request.limits.bulge_limit_mm},
-                    {"damage_limit_mm", request.limits.damage_limit_mm}};
-  json["powers"] = nlohmann::ordered_json::array();
-  for (const PowerVerdict& verdict : series.choice.powers) json["powers"].push_back(verdict_json(verdict));
-  json["rows"] = rows_json(series.cuts);
-  json["speed_rows"] = rows_json(series.speed_cuts);
-  return json;
-}
-
-nlohmann::ordered_json to_json(const SpeedEstimate& estimate) {
-  nlohmann::ordered_json json;
-  json["cuts"] = estimate.cuts;
-  json["mean_mm_s"] = estimate.mean_mm_s;
-  json["sample_sd_mm_s"] = or_null(estimate.sample_sd_mm_s);
-  json["population_sd_mm_s"] = estimate.population_sd_mm_s;
-  json["min_mm_s"] = estimate.min_mm_s;
-  json["max_mm_s"] = estimate.max_mm_s;
-  json["recommended_mm_s"] = estimate.recommended_mm_s;
-  return json;
-}
 
 TextTable power_table(const PowerSeries& series) {
   TextTable table;

@@ -1,7 +1,6 @@
 #include "storage/json_digest.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/units.hpp>
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/transform_json.hpp>
@@ -9,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -20,87 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json list(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
-
-template <class Matrix>
-Json rows(const Matrix& matrix) {
-  Json json = Json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index k = 0; k < matrix.cols(); ++k) row.push_back(number(matrix(i, k)));
-    json.push_back(row);
-  }
-  return json;
-}
-
-Json certificate_json(const Certificate& c) {
-  Json json;
-  json["motions"] = c.motions;
-  json["visible"] = Json::array();
-  for (int k = 0; k < c.motions; ++k) json["visible"].push_back(number(c.visible[static_cast<std::size_t>(k)]));
-  json["sharpness"] = Json::array({number(c.sharpness[0]), number(c.sharpness[1])});
-  json["weakest_motion"] = c.weakest;
-  json["weakest_sd_mm"] = number(c.weakest_sd_mm);
-  json["sd_mm"] = number(c.sd_mm);
-  json["rotation_sd_deg"] = number(c.rotation_sd_deg);
-  json["translation_sd_mm"] = number(c.translation_sd_mm);
-  json["scale_sd"] = number(c.scale_sd);
-  json["center_mm"] = list(c.center_mm);
-  json["covariance"] = rows(c.covariance);
-  return json;
-}
-
 }  // namespace
-
-Json to_json(const Registration& r) {
-  const bool has_transform =
-      r.outcome != RegistrationOutcome::Degenerate && r.outcome != RegistrationOutcome::Cancelled;
-  Json json;
-  json["outcome"] = to_string(r.outcome);
-  json["converged"] = r.outcome == RegistrationOutcome::Converged;
-  json["reasons"] = r.reasons;
-  if (has_transform) {
-    const Similarity& t = r.T_target_source;
-    json["scale"] = t.scale;
-    json["rotation"] = rows(t.rotation);
-    json["rotation_deg"] = units::deg_from_rad(rotation_vector(t.rotation).norm());
-    json["translation_mm"] = list(t.translation_mm);
-    json["T_target_source"] = rows(matrix_of(t));
-    json["rmse_mm"] = number(r.rmse_mm);
-    json["inlier_fraction"] = number(r.inlier_fraction);
-  } else {
-    for (const char* key :
-         {"scale", "rotation", "rotation_deg", "translation_mm", "T_target_source", "rmse_mm", "inlier_fraction"}) {
-      json[key] = nullptr;
-    }
-  }
-  json["settled_rms_mm"] = number(r.settled_rms_mm);
-  json["settled_max_mm"] = number(r.settled_max_mm);
-  json["noise_mm"] = number(r.noise_mm);
-  json["fit_fraction"] = number(r.fit_fraction);
-  json["target_fraction"] = number(r.target_fraction);
-  json["drift_sigma_mm"] = number(r.drift_sigma_mm);
-  json["iterations"] = r.iterations;
-  json["starts"] = r.starts;
-  json["score"] = number(r.score);
-  json["rival_score"] = number(r.rival_score);
-  json["rival_T_target_source"] = r.rival ? rows(matrix_of(*r.rival)) : Json(nullptr);
-  json["shape_rmse_mm"] = number(r.shape_rmse_mm);
-  json["shape_residual_mm"] = number(r.shape_residual_mm);
-  json["mirror_score"] = number(r.mirror_score);
-  json["mirror_rmse_mm"] = number(r.mirror_rmse_mm);
-  json["handedness_determined"] = r.is_handedness_determined;
-  json["scale_at_limit"] = r.scale_at_limit;
-  json["scale_suspicious"] = r.is_scale_suspicious;
-  json["certificate"] = has_transform ? certificate_json(r.certificate) : Json(nullptr);
-  return json;
-}
 
 void seal_registration(Json& document) {
   document[kDigestKey] = digest_of(document);

@@ -1,6 +1,6 @@
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/table_io.hpp>
@@ -27,13 +27,13 @@ Json program_json(const Run& run) {
     json["reason"] = run.why_without_program;
     return json;
   }
-  json = Json::parse(to_json(run.program->program, &run.program->checks));
+  json = Json::parse(program_json(run.program->program, &run.program->checks));
   json.erase("poses");
   json["motion"].erase("samples");
   json["follows"] = run.study.is_accepted ? "corrected path" : "uncorrected path";
   json["gate"] = to_json(run.gate);
   json["written"] = run.gate.is_open;
-  if (run.program->replay) json["replay"] = to_json(*run.program->replay, PlayerSettings{});
+  if (run.program->replay) json["replay"] = to_json(*run.program->replay);
   return json;
 }
 
@@ -57,7 +57,7 @@ void write_program(RunFolder& folder, const Run& run, const ProgramExtras& extra
   const CheckedProgram& made = *run.program;
   AtomicFolder target(folder.root() / "program");
   write_tool_path(target.path() / "path.json", made.path, run.verdict);
-  write_atomically(target.path() / "program.json", to_json(made.program, &made.checks, made.header));
+  write_atomically(target.path() / "program.json", program_json(made.program, &made.checks, made.header));
   write_urscript(target.path() / "program.script", run);
   write_true_path(target.path(), *made.replay);
   if (extras) extras(target.path(), made);
@@ -83,29 +83,6 @@ Json write_run(RunFolder& folder, const Run& run, double wall_s, const ProgramEx
 void write_urscript(const std::filesystem::path& file, const Run& run) {
   INCISE_REQUIRE(run.program && run.gate.is_open, "expected a run whose gate is open");
   write_atomically(file, to_urscript(run.program->program, run.program->header));
-}
-
-Json to_json(const Replay& replay, const PlayerSettings& settings) {
-  Json json;
-  json["outcome"] = to_string(replay.outcome);
-  if (replay.outcome != ReplayOutcome::Completed) {
-    json["line"] = replay.line > 0 ? Json(replay.line) : Json(nullptr);
-    if (!replay.reason.empty()) json["reason"] = replay.reason;
-  }
-  json["speed_slider_percent"] = 100.0 * settings.speed_slider;
-  json["duration_s"] = replay.duration_s();
-  const bool is_known = !replay.intended_mm.empty();
-  json["max_deviation_mm"] = is_known ? Json(replay.max_deviation_mm) : Json(nullptr);
-  json["max_deviation_at_s"] = is_known ? Json(replay.max_deviation_at_s) : Json(nullptr);
-  json["mean_deviation_mm"] = is_known ? Json(replay.mean_deviation_mm) : Json(nullptr);
-  json["max_cut_deviation_mm"] = is_known ? Json(replay.max_cut_deviation_mm) : Json(nullptr);
-  json["allowed_deviation_mm"] = settings.max_deviation_mm;
-  json["tip_speed_mm_s"] = {
-      {"mean", replay.tip_speed_mm_s.mean}, {"min", replay.tip_speed_mm_s.min}, {"max", replay.tip_speed_mm_s.max}};
-  json["end_zone_mm"] = settings.end_zone_mm;
-  json["max_joint_speed_share"] = replay.max_joint_speed_share;
-  json["min_singular_value"] = replay.min_singular_value;
-  return json;
 }
 
 void write_true_path(const std::filesystem::path& folder, const Replay& replay) {

@@ -38,7 +38,7 @@ nlohmann::ordered_json digests_in(const std::filesystem::path& folder) {
     const std::string name = entry.path().lexically_relative(folder).string();
     if (!entry.is_regular_file() || name == "manifest.json" || name == kStageFile) continue;
     digests[name] =
-        name == "path.json" ? sha256_of_text(to_json(read_tool_path(entry.path()))) : sha256_of_file(entry.path());
+        name == "path.json" ? sha256_of_text(path_json(read_tool_path(entry.path()))) : sha256_of_file(entry.path());
   }
   return digests;
 }
@@ -304,24 +304,27 @@ void RunFolder::mesh(const ProductNote& note, const MeshProduct& product) {
 
 void RunFolder::stretched(const ProductNote& note, const TissueModel& model, const StaticResult& result) {
   write(note, [&](const std::filesystem::path& to) {
+    write_vtu(to / "rest.vtu", rest_mesh(model, result.state));
     write_vtu(to / "deformed.vtu", deformed_mesh(model, result.state));
     write_json(to / "deform.json", to_json(result));
   });
 }
 
-TetMesh deformed_mesh(const TissueModel& model, const TissueState& state) {
+TetMesh rest_mesh(const TissueModel& model, const TissueState& state) {
   TetMesh mesh = model.mesh;
   DataArray displacement{3, {}};
-  DataArray position{3, {}};
   for (std::size_t v = 0; v < state.positions.size(); ++v) {
     const Vec3 moved = state.positions[v] - model.mesh.vertices[v];
     displacement.values.insert(displacement.values.end(), {moved.x(), moved.y(), moved.z()});
-    const Vec3& p = state.positions[v];
-    position.values.insert(position.values.end(), {p.x(), p.y(), p.z()});
   }
   mesh.point_data["displacement_mm"] = std::move(displacement);
-  mesh.point_data["position_mm"] = std::move(position);
   mesh.cell_data["von_mises_kpa"] = {1, von_mises_kpa(model, state)};
+  return mesh;
+}
+
+TetMesh deformed_mesh(const TissueModel& model, const TissueState& state) {
+  TetMesh mesh = rest_mesh(model, state);
+  mesh.vertices = state.positions;
   return mesh;
 }
 

@@ -1,7 +1,7 @@
 #include "yaml_reader.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/nearest_name.hpp>
+#include <incise/core/nearest_name.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

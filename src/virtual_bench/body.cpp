@@ -1,6 +1,7 @@
 #include "virtual_bench/smooth_field.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 #include <incise/mechanics/statics.hpp>
 #include <incise/meshing/mesher.hpp>
@@ -179,9 +180,7 @@ PhantomSettings phantom_settings(const Specimen& specimen) {
 
 BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution, Workers& workers, Monitor& monitor) {
   const auto start = std::chrono::steady_clock::now();
-  if (const auto problems = validate(specimen); !problems.empty()) {
-    throw CaseError("specimen", "parameters", fmt::format("{}", fmt::join(problems, "; ")), "a valid specimen");
-  }
+  if (const auto problems = problems_of(specimen); !problems.empty()) throw CaseError("specimen", problems.front());
   PhantomSettings shown = phantom_settings(specimen);
   shown.spacing_mm = Vec3::Constant(3.0);  // the picture is thrown away: shape and tumour do not depend on it
   const Phantom phantom = make_phantom(shown, monitor);

@@ -170,11 +170,4 @@ void describe(Visitor& v, Specimen& specimen) {
     v(spec.name, specimen.*spec.member, spec.meaning, Range{spec.low, spec.high});
 }
 
-std::vector<std::string> validate(const Specimen& specimen) {
-  std::vector<std::string> problems;
-  const Expect expect(problems);
-  for (const ParameterSpec& spec : kSpecs) expect.in_range(spec.name, specimen.*spec.member, spec.low, spec.high);
-  return problems;
-}
-
 }  // namespace incise

@@ -124,7 +124,7 @@ std::vector<ParameterSensitivity> sensitivity_of(const TissueScenarios& tissues,
 
 Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Study& done, const CalibratedBelief& belief,
                   const AssessmentRequest& request, Workers& workers, Monitor& monitor) {
-  Assessment assessment;
+  Assessment assessment{.rules = request.rules, .registration_scale = request.registration.scale};
   EligibilityEvidence& evidence = assessment.evidence;
   evidence.is_registered = request.is_registered;
   evidence.calibrated_error_mm = request.calibrated.signed_error_mm;
@@ -154,6 +154,44 @@ Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Stud
   if (request.is_calibration_virtual && !settings.is_virtual)
     assessment.eligibility = by_virtual_calibration(std::move(assessment.eligibility));
   return assessment;
+}
+
+void describe(Visitor& v, Assessment& a) {
+  EligibilityEvidence& evidence = a.evidence;
+  v("advice", a.eligibility.advice, "Whether to cut along the corrected path.");
+  v("reasons", a.eligibility.reasons, "Each with its numbers.");
+  v("notes", a.notes, "What was not known, and what that costs.");
+  std::optional<CutGain> gain = evidence.gain;
+  if (gain && !(std::isfinite(gain->mean_mm) && std::isfinite(gain->sd_mm))) gain.reset();
+  if (v.optional({"expected_gain_mm"}, gain.has_value())) {
+    v.begin({"expected_gain_mm", "Of the correction.", "mm"});
+    v("mean", gain->mean_mm, "Over scenarios and residuals.");
+    v("sd", gain->sd_mm, "Likewise.");
+    v.end();
+  }
+  v("p_worse", a.eligibility.p_worse, "That the corrected cut is the worse one.");
+  v.derived("p_worse_if_alike", gain ? std::optional(gain->p_worse) : std::nullopt,
+            "The same, if the specimen is like those calibrated on.");
+  v("p_worse_if_unlike", a.eligibility.p_worse_if_unlike, "The same, if it is not.");
+  v("p_unlike", a.eligibility.p_unlike, "That it is not.");
+  const bool is_foreseen = a.outlook.has_value();
+  if (v.optional({"p_close_margin"}, is_foreseen)) {
+    v.begin({"p_close_margin", "That somewhere less tissue is left than the close margin."});
+    for (auto& [name, risk] : {std::pair("intended", &evidence.intended), std::pair("corrected", &evidence.corrected)})
+      v.derived(name, risk->unmeasured_weight < 1.0 ? std::optional(risk->p_close_margin) : std::nullopt, "Path.");
+    v.end();
+  }
+  if (v.optional({"intended"}, is_foreseen)) v("intended", evidence.intended, "Risk of the intended path.");
+  if (v.optional({"corrected"}, is_foreseen)) v("corrected", evidence.corrected, "Of the corrected one.");
+  if (v.optional({"scenarios"}, is_foreseen)) describe_scenarios(v, a.outlook->scenarios, a.outlook->settings);
+  v.begin({"registration", "Of this specimen."});
+  v("converged", evidence.is_registered, "Whether a transform was found that nothing argues against.");
+  v({"rmse_mm", "Of the simulated surface against the measured one.", "mm"}, evidence.registration_rmse_mm);
+  v("scale", a.registration_scale, "That was found.");
+  v.end();
+  v("distances", evidence.distances, "Of everything that is known of this specimen and the calibrated ones.");
+  v("sensitivity", a.sensitivity, "What one standard deviation of a parameter does to the corrected cut.");
+  v("rules", a.rules, "That it was judged by.");
 }
 
 }  // namespace incise

@@ -184,7 +184,7 @@ class CalibrationRunner {
     try {
       return &bodies_[specimen]->with_stiffness(run.setting.stiffness_of_case, workers_, monitor_);
     } catch (const CaseError& error) {
-      run.problem = error.without_place();
+      run.problem = sentence(error.problem());
       std::string told = error.in_file(subjects_[specimen].of->case_file).what();
       if (const auto [place, is_new] = told_.insert(std::move(told)); is_new)
         monitor_.message(Severity::Warning, *place);  // once, not for every run of that stiffness
@@ -480,8 +480,7 @@ CacheKey calibration_run_key(const std::string& held, const RunSetting& setting)
 
 Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, Cache& runs,
                       Workers& workers, Monitor& monitor) {
-  const std::vector<std::string> violations = validate(request);
-  INCISE_REQUIRE(violations.empty(), fmt::format("{}", fmt::join(violations, "; ")));
+  require_none(validate(request));
   INCISE_REQUIRE(!subjects.empty(), "expected at least one specimen");
   return CalibrationRunner(subjects, request, runs, workers, monitor).run();
 }

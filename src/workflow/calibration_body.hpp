@@ -1,7 +1,7 @@
 #pragma once
 
 #include <incise/core/error.hpp>
-#include <incise/procedure/incision_batch.hpp>
+#include <incise/cutting/incision_batch.hpp>
 #include <incise/workflow/calibrate.hpp>
 #include <incise/workflow/study.hpp>
 

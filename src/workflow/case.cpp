@@ -32,8 +32,8 @@ MaterialField field_from(const TetMesh& mesh) {
   }
   const std::vector<Problem> violations = validate(field, mesh.tets.size());
   if (violations.empty()) return field;
-  const auto& [path, found, expected] = violations.front();
-  throw CaseError(kWhere, field_name, fmt::format("{} of {}", path, found), expected);
+  const Problem& first = violations.front();
+  throw CaseError(kWhere, field_name, fmt::format("{} of {}", first.path, first.found), first.expected);
 }
 
 /// @param field  of the case that asks for labels.

@@ -232,4 +232,42 @@ CorrectionOutlook foresee_correction(const Case& settings, Inputs& inputs, Cache
   return TissueCuts(settings, inputs, cache, done, belief, request, workers, monitor).foresee();
 }
 
+void describe_scenarios(Visitor& v, ScenarioSet& s, RobustSettings& settings) {
+  v.begin({"scenarios", "Tissues that the calibration leaves possible."});
+  v({"reference_kpa", "Young's modulus that stiffness factors are over.", "kPa"}, s.reference_kpa);
+  v({"simulated_force_n", "Pull of the specimen at the case's modulus.", "N"}, s.simulated_force_n);
+  v("own_stiffness_sd", s.own_stiffness_sd, "Of the logarithm of the specimen's own stiffness.");
+  v.begin({"spread", "Of what is believed of the next specimen."});
+  v({"drag_length_sd_mm", "Of the drag length.", "mm"}, s.tissues.drag_length_sd_mm);
+  v("ln_stiffness_sd", s.tissues.ln_stiffness_sd, "The specimen's own included.");
+  v({"bias_sd_mm", "From specimen to specimen included.", "mm"}, s.tissues.bias_sd_mm);
+  v.end();
+  v.begin({"stiffness_shift_mm", "By which the bias is expected to differ at this specimen's stiffness.", "mm"});
+  v("mean", s.stiffness_shift_mm, "Expected.");
+  v("sd", s.stiffness_shift_sd_mm, "Standard deviation.");
+  v.end();
+  v.begin({"residual", "Of a real cut about what its scenario says."});
+  v({"sd_mm", "Standard deviation.", "mm"}, settings.residual_sd_mm);
+  v({"length_mm", "Over which its correlation falls to 1/e.", "mm"}, settings.residual_length_mm);
+  v({"common_sd_mm", "Of what is the same all round.", "mm"}, settings.common_sd_mm);
+  v({"placement_sd_mm", "Of a shift of the whole cut.", "mm"}, settings.placement_sd_mm);
+  v.end();
+  v("tissues", s.tissues.points, "The first: the middle.");
+  v.end();
+}
+
+void describe(Visitor& v, RobustCorrection& r) {
+  RobustCompensation& chosen = r.compensation;
+  v("outcome", chosen.outcome, "Whether the path keeps the probability.");
+  v("max_probability", r.settings.max_probability, "Allowed of less tissue than the close margin.");
+  v({"close_margin_mm", "Clinical cut-off.", "mm"}, r.settings.region.close_margin_mm);
+  v.derived("contour", ContourKind::InnerEdge, "What is measured.");
+  v("intended", chosen.intended, "Risk of the intended path.");
+  v("corrected", chosen.corrected, "Of the corrected one.");
+  v("robust", chosen.robust, "Of the chosen one.");
+  v("simulations", chosen.simulations, "Scenarios times paths.");
+  describe_scenarios(v, r.scenarios, r.settings);
+  v.bulk("corrected_offset_mm", r.corrected_offset_mm, "Per waypoint: of the corrected path.");
+}
+
 }  // namespace incise

@@ -1,4 +1,3 @@
-#include <incise/core/problem_text.hpp>
 #include <incise/core/version.hpp>
 #include <incise/cutting/path_heat.hpp>
 #include <incise/robot/program_verdict.hpp>
@@ -39,7 +38,7 @@ RobotProgram program_along(const ToolPath& path, const Case& settings, const Inp
   try {
     return make_program(path, motion, arm_setup_of(settings));
   } catch (const InvalidArgument& error) {
-    throw fault_of_file(inputs.path_name(), "waypoints", error, "a path that a tool can follow");
+    throw DataError(inputs.path_name(), "waypoints", error);
   }
 }
 

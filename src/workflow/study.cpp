@@ -1,10 +1,9 @@
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
-#include <incise/core/problem_text.hpp>
+#include <incise/cutting/incision_memory.hpp>
 #include <incise/cutting/tool_program.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/geometry/surface_query.hpp>
-#include <incise/procedure/incision_memory.hpp>
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/cut_doubts.hpp>
 #include <incise/workflow/cut_verdict.hpp>
@@ -264,7 +263,7 @@ class Runner {
     try {
       return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, tumor_edge_, line_, workers_, monitor_);
     } catch (const InvalidArgument& error) {
-      throw CaseError("case", "meshing", without_function_name(error), "edge lengths and a count that the tissue can be meshed with");
+      throw CaseError("case", "meshing", error.text(), "edge lengths and a count that the tissue can be meshed with");
     }
   }
 

@@ -125,15 +125,13 @@ TEST(ForbiddenIncludes, SeesQuotesBlanksAndModulesOfTheSameLayer) {
 }
 
 TEST(ForbiddenIncludes, TheBenchCannotSeeTheSimulation) {
-  EXPECT_EQ(
-      check_text("virtual_bench", "#include <incise/cutting/tool.hpp>\n#include <incise/procedure/incision.hpp>\n")
-          .size(),
-      2U);
+  EXPECT_EQ(check_text("virtual_bench", "#include <incise/cutting/tool.hpp>\n#include <incise/cutting/incision.hpp>\n")
+                .size(),
+            2U);
 }
 
 TEST(ForbiddenIncludes, ThePlannerCannotSeeTheBench) {
-  for (const char* planner :
-       {"planning", "calibration", "procedure", "cutting", "registration", "evaluation", "workflow"})
+  for (const char* planner : {"planning", "calibration", "cutting", "registration", "evaluation", "workflow"})
     EXPECT_EQ(check_text(planner, "#include <incise/virtual_bench/body.hpp>\n").size(), 1U) << planner;
 }
 
@@ -153,11 +151,11 @@ TEST(ForbiddenIncludes, OutsideHeadersAreNobodysMatter) {
 
 TEST(LayersTable, WhatMayBeIncludedIsTransitive) {
   const Layers table = layers();
-  EXPECT_THAT(table.at("procedure").may_include, ElementsAre("core", "cutting", "geometry", "mechanics", "procedure"));
+  EXPECT_THAT(table.at("cutting").may_include, ElementsAre("core", "cutting", "geometry", "mechanics"));
   EXPECT_EQ(table.at("workflow").may_include.count("io"), 0U);
   for (const char* planner : {"planning", "calibration", "workflow"})
     EXPECT_EQ(table.at(planner).may_include.count("virtual_bench"), 0U) << planner;
-  for (const char* hidden : {"cutting", "procedure", "planning", "calibration"})
+  for (const char* hidden : {"cutting", "planning", "calibration"})
     EXPECT_EQ(table.at("virtual_bench").may_include.count(hidden), 0U);
 }
 

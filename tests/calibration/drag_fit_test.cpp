@@ -1,6 +1,7 @@
 #include <incise/calibration/drag_fit.hpp>
 #include <incise/calibration/identifiability.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/random.hpp>
 #include <incise/core/units.hpp>
 
@@ -198,7 +199,7 @@ TEST(FitDrag, RefusesSettingsAndProfilesThatDoNotFit) {
   std::vector<FitSpecimen> specimens = photographed({2.0, 0.0, 0.0}, random, 0.2);
   DragFitSettings settings;
   settings.bias_sd_mm = 0.0;
-  EXPECT_THAT(validate(settings), ::testing::ElementsAre(::testing::HasSubstr("bias_sd_mm")));
+  EXPECT_THAT(sentences(problems_of(settings)), ::testing::ElementsAre(::testing::HasSubstr("bias_sd_mm")));
   EXPECT_THROW(static_cast<void>(fit_drag(specimens, settings)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(fit_drag({})), InvalidArgument);
   specimens[0].signed_error_mm.pop_back();

@@ -283,7 +283,7 @@ class SurfaceTest(CommandTest):
         self.assert_refused(done, BAD_DATA, "scan.ply", "0 points left")
         self.assert_nothing_written(self.folder / "tissue.ply")
         done = self.incise("surface", "scan.ply", "-o", "tissue.ply", "--box", *"5 5 5 1 1 1".split())
-        self.assert_refused(done, BAD_CASE, "command line: --box: found", "expected low corner <= high corner")
+        self.assert_refused(done, BAD_CASE, "command line: --box: found", "expected the low corner below the high one")
         self.assertEqual(done.stderr.count("expected"), 1)
 
     def test_another_ending_is_the_command_lines_fault(self):

@@ -7,6 +7,7 @@ import time
 import unittest
 from xml.etree import ElementTree
 
+import meshio
 import small_case
 from command import COMMAND, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
@@ -40,6 +41,11 @@ class LoopTest(CommandTest):
             self.assertTrue(CUT_FILES <= set(files_below(self.out / folder)), files_below(self.out / folder))
         self.assertLess(first["after"]["abs_error_mm"]["mean"], first["before"]["abs_error_mm"]["mean"])
         self.assertTrue(first["program"]["written"])
+        for mesh in sorted(self.out.rglob("*.vtu")):  # meshio reads no .vtp
+            self.assertGreater(len(meshio.read(mesh).points), 3, mesh)
+        frame = meshio.read(self.out / "as_planned" / "frames" / "frame_0001.vtu")
+        self.assertIn("displacement_mm", frame.point_data)
+        self.assertIn("von_mises_kpa", frame.cell_data)
         self.assertLessEqual(first["correction"]["simulations"], 4)
         self.assertIn("pass by pass", (self.out / "report.html").read_text())
         self.assertIn("</html>", (self.out / "report.html").read_text()[-200:])
@@ -103,6 +109,14 @@ class LoopTest(CommandTest):
         pull = abs(result["reaction_mn"][1][1])
         for found, expected in zip(sums, (0.0, 0.0, weight)):
             self.assertAlmostEqual(found, expected, delta=1e-4 * pull)
+        # At rest and deformed: the same vertices, apart by what both files say.
+        rest, deformed = (meshio.read(self.out / "stretched" / name) for name in ("rest.vtu", "deformed.vtu"))
+        for mesh in (rest, deformed):
+            self.assertEqual(mesh.point_data["displacement_mm"].shape, rest.points.shape)
+            self.assertEqual(mesh.cell_data["von_mises_kpa"][0].size, len(rest.cells[0].data))
+        apart = deformed.points - rest.points
+        self.assertLess(abs(apart - rest.point_data["displacement_mm"]).max(), 1e-12)
+        self.assertAlmostEqual(float((apart ** 2).sum(axis=1).max()) ** 0.5, result["max_displacement_mm"], delta=1e-9)
 
     def test_interchange_writes_the_case_for_two_other_solvers(self):
         for program, name in (("sofa", "case.scn"), ("febio", "case.feb")):

@@ -301,12 +301,12 @@ class ExportTest(RobotTest):
         path = ring()
         path["waypoints"][6] = path["waypoints"][5]
         done = self.incise("export", self.write(path), "-o", "cut.script")
-        self.assert_refused(done, BAD_DATA, "path.json: waypoints: found 0 mm after waypoint 5, expected tips more than 0.001 mm apart")
+        self.assert_refused(done, BAD_DATA, "path.json: waypoints: expected tips more than 0.001 mm apart, found 0 mm after waypoint 5")
         self.assertEqual(done.stderr.count("expected"), 1)
         path = ring()
         path["waypoints"][6]["position_mm"][0] = 1e200
         done = self.incise("export", self.write(path), "-o", "cut.script")
-        self.assert_refused(done, BAD_DATA, "path.json: waypoints: found 1e+200 mm at waypoint 6, expected places within 1e+05 mm")
+        self.assert_refused(done, BAD_DATA, "path.json: waypoints: expected places within 1e+05 mm of the base, found 1e+200 mm at waypoint 6")
         tiny = ring(radius=1.2, edge=1.0)
         self.assert_refused(self.incise("export", self.write(tiny), "-o", "cut.script"), BAD_DATA, "found 8 mm, expected an overlap below the path's 7.54")
         self.assert_nothing_written(self.folder / "cut.script")

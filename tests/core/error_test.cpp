@@ -1,5 +1,4 @@
 #include <incise/core/error.hpp>
-#include <incise/core/problem_text.hpp>
 
 #include <gtest/gtest.h>
 
@@ -25,8 +24,7 @@ TEST(CaseError, NamesTheFileThatItsThrowerDidNotKnow) {
   EXPECT_STREQ(unknown.in_file("a/case.yaml").what(),
                "a/case.yaml: specimen.constraints[0].where: found nothing, expected a vertex. Try: a box");
   EXPECT_EQ(unknown.in_file("a/case.yaml").field(), "specimen.constraints[0].where");
-  EXPECT_EQ(unknown.without_place(), std::string(unknown.what()).substr(std::string_view("case: ").size()));
-  EXPECT_EQ(CaseError("case", "", "a list", "a table").without_place(), "found a list, expected a table");
+  EXPECT_EQ(unknown.problem().found, "nothing");
   EXPECT_STREQ(CaseError("tumour edge", "point 3", "x", "y").in_file("case.yaml").what(),
                "case.yaml: tumour edge: point 3: found x, expected y");
   EXPECT_STREQ(CaseError("case", "", "a list", "a table").in_file("case.yaml").what(),
@@ -51,36 +49,14 @@ TEST(Require, ThrowsInvalidArgumentThatNamesTheFunction) {
   }
 }
 
-TEST(ProblemText, LeavesOutTheNameOfTheFunctionAndNothingElse) {
-  const auto text_of = [](const char* what) { return without_function_name(InvalidArgument(what)); };
-  EXPECT_EQ(text_of("find_edges: expected 2 triangles"), "expected 2 triangles");
-  EXPECT_EQ(text_of("operator(): expected a: b"), "expected a: b");
-  EXPECT_EQ(text_of("the edge of two: found 3"), "the edge of two: found 3");
-  EXPECT_EQ(text_of("no colon"), "no colon");
-  EXPECT_EQ(as_sentence(InvalidArgument("find_edges: expected 2 triangles")), "Expected 2 triangles");
-}
-
-TEST(ProblemText, TakesAComplaintApartSoThatNothingIsSaidTwice) {
-  const auto parts = [](const char* sentence) {
-    const Complaint c = complaint_of(sentence, "otherwise");
-    return c.field + "|" + c.found + "|" + c.expected;
-  };
-  EXPECT_EQ(parts("rotations: expected 8 to 2000, found 3"), "rotations|3|8 to 2000");
-  EXPECT_EQ(parts("clearance_mm: found -1, expected a number above 0"), "clearance_mm|-1|a number above 0");
-  EXPECT_EQ(parts("expected tips apart, found 0 mm after waypoint 3"), "|0 mm after waypoint 3|tips apart");
-  EXPECT_EQ(parts("case: plan.depth: found 2, expected 3. Why so"), "case: plan.depth|2|3. Why so");
-  EXPECT_EQ(parts("planes: expected 0 to 20"), "planes|another value|0 to 20");
-  EXPECT_EQ(parts("it is bent"), "|it is bent|otherwise");
-  EXPECT_STREQ(
-      fault_of_file("a.json", "waypoints", InvalidArgument("TipCurve: expected tips apart, found 0 mm"), "x").what(),
-      "a.json: waypoints: found 0 mm, expected tips apart");
-}
-
-TEST(Errors, AreAllCaughtAsTheBase) {
-  EXPECT_THROW(throw CaseError("a", "b", "c", "d"), Error);
-  EXPECT_THROW(throw DataError("a", "b", "c", "d"), Error);
-  EXPECT_THROW(throw InvalidArgument("a"), Error);
-  EXPECT_THROW(throw Cancelled("a"), Error);
+TEST(InvalidArgument, TellsAPersonWhatIsWrongWithoutTheFunction) {
+  const InvalidArgument broken("find_edges", "expected 2 triangles: two, found 1");
+  EXPECT_STREQ(broken.what(), "find_edges: expected 2 triangles: two, found 1");
+  EXPECT_EQ(broken.text(), "expected 2 triangles: two, found 1");
+  EXPECT_EQ(broken.as_hint(), "Expected 2 triangles: two, found 1");
+  EXPECT_STREQ(DataError("a.ply", "triangle 3", broken).what(),
+               "a.ply: triangle 3: expected 2 triangles: two, found 1");
+  EXPECT_STREQ(DataError("a.ply", "", broken).what(), "a.ply: expected 2 triangles: two, found 1");
 }
 
 }  // namespace

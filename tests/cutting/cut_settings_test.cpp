@@ -60,7 +60,7 @@ TEST(CutSettings, StepsSolvedSoLooselyOrTightlyThatNoCutIsToBeBelievedAreRefused
   for (const double bad : {1e-300, 9e-7, 0.31, 0.99}) {
     settings.residual_tolerance = bad;
     EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
-                ElementsAre(HasSubstr("expected a fraction in [1e-06, 0.3]")))
+                ElementsAre(HasSubstr("expected a number in [1e-06, 0.3]")))
         << bad;
   }
 }

@@ -91,7 +91,7 @@ FuzzCut random_cut(std::uint64_t seed) {
   const double width = random.uniform(0.8, 3.0);
   const double length = random.uniform(3.0, 25.0);
   cut.settings.tool = one_of(std::array<Tool, 3>{Needle{width, length}, Blade{0.5 * width, 2.0 * width, length}, Ball{width}});
-  c.speed_mm_s = one_of(std::array{0.5, 7.0, 13.0, 60.0, 500.0});
+  c.speed_mm_s = one_of(std::array{0.5, 7.0, 13.0, 60.0, 100.0});
   c.dullness = one_of(std::array{0.01, 1.0, 9.0, 17.0, 200.0});
   c.advance_per_step_mm = 2.0 * radius_mm(cut.settings.tool) * random.uniform(0.4, 1.0);
   c.reach_mm = random.uniform(0.0, 1.0);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/procedure/incision.hpp>
+#include <incise/cutting/incision.hpp>
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 // Tries to get a robot program past the verdict: whole runs of broken cases, and perturbed variants of their cuts, each held against an
 // oracle of its own (the distance between kerf and tumour, triangle by triangle). And the other way round: sound cases have to be ok.
-#include "procedure/kerf.hpp"
+#include "cutting/kerf.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/imaging/tongue_shape.hpp>
 
 #include <gtest/gtest.h>
@@ -90,7 +91,7 @@ TEST(TongueShape, ListsEverySettingOutOfItsRange) {
   settings.length_mm = -1.0;
   settings.width_mm = std::numeric_limits<double>::quiet_NaN();
   settings.bump_mm = 9.0;
-  const std::vector<std::string> problems = validate(settings);
+  const std::vector<std::string> problems = sentences(problems_of(settings));
   ASSERT_EQ(problems.size(), 3U);
   EXPECT_EQ(problems[0], "length_mm: found -1, expected a number in [80, 160]");
   Random random(1);

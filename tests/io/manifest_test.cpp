@@ -86,7 +86,8 @@ TEST(ManifestFile, RefusesSettingsThatAreNotJsonAndTimesThatAreNotFinite) {
 TEST(ManifestFile, NamesAMissingKey) {
   const TemporaryFolder folder;
   write_file(folder / "manifest.json", R"({"version": "1"})");
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_manifest(folder.path())); }), HasSubstr("no key 'commit'"));
+  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_manifest(folder.path())); }),
+              HasSubstr("/commit: found no such key"));
 }
 
 TEST(MachineDescription, SaysProcessorCoresAndCompilerInOneLine) {

@@ -1,7 +1,7 @@
 #include "io/io_test_support.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/path_io.hpp>
 
@@ -34,7 +34,7 @@ ToolPath sample_path() {
 /// The message for the sample's JSON after a change.
 template <class Change>
 std::string message_after(Change change) {
-  json document = json::parse(to_json(sample_path()));
+  json document = json::parse(path_json(sample_path()));
   change(document);
   return data_error_of([&] { static_cast<void>(tool_path_from_json(document.dump(), "path.json")); });
 }
@@ -67,7 +67,7 @@ TEST(ToolPathFile, KeepsAnOpenPathWithoutOptionalParts) {
   path.tumor_edge = {{}, false};
   path.T_robot_sim.reset();
   path.source_sha256.clear();
-  const ToolPath back = tool_path_from_json(to_json(path), "x");
+  const ToolPath back = tool_path_from_json(path_json(path), "x");
   EXPECT_FALSE(back.is_closed);
   EXPECT_FALSE(back.tumor_edge.is_closed);
   EXPECT_EQ(back.kind, PathKind::Mark);
@@ -84,16 +84,16 @@ TEST(ToolPathFile, NamesTheNearestKeyForAnUnknownOne) {
 }
 
 TEST(ToolPathFile, NamesThePlaceOfWhatIsMissingOrOfTheWrongType) {
-  EXPECT_THAT(message_after([](json& d) { d.erase("frame"); }), HasSubstr("no key 'frame'"));
+  EXPECT_THAT(message_after([](json& d) { d.erase("frame"); }), HasSubstr("/frame: found no such key"));
   EXPECT_THAT(message_after([](json& d) { d["waypoints"][2].erase("axis"); }),
-              HasSubstr("/waypoints/2: found no key 'axis'"));
+              HasSubstr("/waypoints/2/axis: found no such key"));
   EXPECT_THAT(message_after([](json& d) { d["frame"] = "world"; }),
-              HasSubstr("/frame: found \"world\", expected one of: sim_rest, sim_stretched, robot"));
+              HasSubstr("/frame: found \"world\", expected sim_rest, sim_stretched or robot"));
   EXPECT_THAT(message_after([](json& d) { d["closed"] = 1; }), HasSubstr("/closed: found 1, expected true or false"));
   EXPECT_THAT(message_after([](json& d) {
                 d["waypoints"][0]["position_mm"] = {1, 2};
               }),
-              HasSubstr("/waypoints/0/position_mm: found [1,2], expected three numbers"));
+              HasSubstr("/waypoints/0/position_mm: found [1,2], expected a list of 3 numbers"));
   EXPECT_THAT(message_after([](json& d) { d["waypoints"][0]["position_mm"][1] = nullptr; }),
               HasSubstr("/waypoints/0/position_mm/1: found null, expected a number"));
   EXPECT_THAT(message_after([](json& d) { d["waypoints"].erase(0); }), HasSubstr("found 2 items, expected at least 3"));
@@ -108,7 +108,8 @@ TEST(ToolPathFile, RefusesValuesOutOfRange) {
   EXPECT_THAT(message_after([](json& d) { d["waypoints"][1]["depth_mm"] = -1; }), HasSubstr("/waypoints/1/depth_mm"));
   EXPECT_THAT(message_after([](json& d) { d["waypoints"][1]["speed_mm_s"] = 0; }),
               HasSubstr("/waypoints/1/speed_mm_s"));
-  EXPECT_THAT(message_after([](json& d) { d["T_robot_sim"][3][0] = 1; }), HasSubstr("/T_robot_sim/3"));
+  EXPECT_THAT(message_after([](json& d) { d["T_robot_sim"][3][0] = 1; }),
+              HasSubstr("/T_robot_sim: found the last row 1 0 0 1"));
   EXPECT_THAT(message_after([](json& d) { d["T_robot_sim"][0][0] = -1; }), HasSubstr("determinant -1"));
   EXPECT_THAT(message_after([](json& d) { d["source_sha256"] = "abc"; }), HasSubstr("64 lower-case hex digits"));
 }
@@ -194,7 +195,7 @@ TEST(ToolPathFile, ItsTransformIsASimilarity) {
   };
   EXPECT_THAT(with([](json& T) { T[0][1] = 0.05; }), AllOf(HasSubstr("/T_robot_sim"), HasSubstr("a similarity"))) << "shear";
   EXPECT_THAT(with([](json& T) { T[2][2] = 1.05; }), HasSubstr("a similarity")) << "unequal axes";
-  json scaled = json::parse(to_json(sample_path()));
+  json scaled = json::parse(path_json(sample_path()));
   for (int i = 0; i < 3; ++i) scaled["T_robot_sim"][i][i] = 1.02;
   EXPECT_NO_THROW(static_cast<void>(tool_path_from_json(scaled.dump(), "x")));
 }

@@ -142,7 +142,7 @@ TEST(SizingField, RefusesCutsThatAreNoCuts) {
   cut.approach = Vec3::Zero();
   cut.depth_mm = 0.0;
   const std::string message = message_of(cut, {});
-  EXPECT_THAT(message, HasSubstr("point 2 is not finite"));
+  EXPECT_THAT(message, HasSubstr("path[2]: found a number that is not finite"));
   EXPECT_THAT(message, HasSubstr("approach"));
   EXPECT_THAT(message, HasSubstr("depth_mm: found 0"));
 }

@@ -2,6 +2,7 @@
 #include "support/contour_shapes.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/planning/compensation.hpp>
 
@@ -162,7 +163,7 @@ TEST_F(Compensate, RefusesAPathThatDoesNotRunOnceRoundTheTumour) {
 
 TEST_F(Compensate, TellsEveryViolationOfItsSettings) {
   const CompensationSettings bad{.target_mm = 0.0, .relaxation = 1.5, .smoothing_passes = -1};
-  EXPECT_THAT(validate(bad),
+  EXPECT_THAT(sentences(problems_of(bad)),
               ElementsAre(HasSubstr("target_mm"), HasSubstr("relaxation"), HasSubstr("smoothing_passes")));
   EXPECT_THROW(static_cast<void>(compensate_paper(path_, testing::circle(13, 90), edge_, surface_, bad)),
                InvalidArgument);

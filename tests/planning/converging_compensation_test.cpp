@@ -3,6 +3,7 @@
 #include "support/contour_shapes.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/planning/converging_compensation.hpp>
 
 #include <gmock/gmock.h>
@@ -185,8 +186,8 @@ TEST_F(Converge, AimsAtTheRealCutWhereItsBiasIsKnown) {
 
 TEST_F(Converge, TellsEveryViolationOfItsSettings) {
   const ConvergenceSettings bad{.simulations = 1, .smoothing_mm = 0.0, .relaxation = 1.5, .trust_mm = -1.0};
-  EXPECT_THAT(validate(bad), ElementsAre(HasSubstr("simulations"), HasSubstr("smoothing_mm"), HasSubstr("relaxation"),
-                                         HasSubstr("trust_mm")));
+  EXPECT_THAT(sentences(problems_of(bad)), ElementsAre(HasSubstr("simulations"), HasSubstr("relaxation"),
+                                                       HasSubstr("smoothing_mm"), HasSubstr("trust_mm")));
   EXPECT_THROW(static_cast<void>(run({}, bad)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(run({}, {.bias_mm = {0.1, 0.2}})), InvalidArgument);
   ToolPath open = path_;

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/planning/eligibility.hpp>
 
 #include <gmock/gmock.h>
@@ -241,9 +242,9 @@ TEST(JudgeEligibility, CutsAsPlannedWhereASpecimenMayBeUnlike) {
 }
 
 TEST(JudgeEligibility, RefusesRulesThatAreNone) {
-  EXPECT_TRUE(validate(EligibilityRules{}).empty());
+  EXPECT_TRUE(problems_of(EligibilityRules{}).empty());
   const EligibilityRules bad{.least_gain_sds = -1.0, .most_rmse_mm = 0.0, .most_p_close_margin = 1.0};
-  EXPECT_THAT(validate(bad),
+  EXPECT_THAT(sentences(problems_of(bad)),
               ElementsAre(HasSubstr("least_gain_sds"), HasSubstr("most_rmse_mm"), HasSubstr("most_p_close_margin")));
   EXPECT_THROW(static_cast<void>(judge_eligibility(good(), bad)), InvalidArgument);
 }

@@ -3,6 +3,7 @@
 #include "support/contour_shapes.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/random.hpp>
 #include <incise/planning/robust_compensation.hpp>
 
@@ -220,8 +221,8 @@ TEST_F(Robust, IsTheSameForTheSameSeed) {
 
 TEST_F(Robust, TellsEveryViolation) {
   const RobustSettings bad{.max_probability = 1.0, .residual_sd_mm = 0.0, .rounds = 0, .samples = 10};
-  EXPECT_THAT(validate(bad), ElementsAre(HasSubstr("max_probability"), HasSubstr("residual_sd_mm"), HasSubstr("rounds"),
-                                         HasSubstr("samples")));
+  EXPECT_THAT(sentences(problems_of(bad)), ElementsAre(HasSubstr("max_probability"), HasSubstr("residual_sd_mm"),
+                                                       HasSubstr("rounds"), HasSubstr("samples")));
   EXPECT_THROW(static_cast<void>(run(0.0, {scenario(1.0, 0.0, tissue_)}, bad)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(run(0.0, {}, {})), InvalidArgument);
   EXPECT_THROW(static_cast<void>(run(0.0, {scenario(0.0, 0.0, tissue_)}, {})), InvalidArgument);

@@ -54,7 +54,7 @@ TEST(Player, PlaysTheTableAndTheJsonAsTheyWereMade) {
   const RobotProgram program = make_program(path);
   const ProgramHeader header = program_header(program, path, check_program(program, path));
   for (const auto& [text, name] : {std::pair(to_joint_csv(program, header), "cut.csv"),
-                                   std::pair(to_json(program, nullptr, header), "cut.json")}) {
+                                   std::pair(program_json(program, nullptr, header), "cut.json")}) {
     const Replay replay = replayed(text, 1.0, name);
     ASSERT_EQ(replay.outcome, ReplayOutcome::Completed);
     EXPECT_LT(replay.max_deviation_mm, 0.001) << name;
@@ -339,7 +339,7 @@ TEST(ProgramFromText, RefusesLengthsInTheHeaderThatNoProgramHas) {
   }
   const std::size_t first = good.find("# incise.waypoint: "), second = good.find("# incise.waypoint: ", first + 1);
   EXPECT_THAT(message_of(good.substr(0, second) + good.substr(first)),
-              HasSubstr("mm after waypoint 0, expected tips more than"));
+              HasSubstr("expected tips more than 0.001 mm apart, found 0 mm after waypoint 0"));
   EXPECT_THAT(message_of("joint_names:\n", "cut.yaml"),
               HasSubstr("cut.yaml: found a .yaml program, expected URScript"));
 }
@@ -350,9 +350,9 @@ TEST(ProgramFromText, NamesTheRowOfADamagedTableAndTheKeyOfADamagedJson) {
   const ProgramHeader header = program_header(program, path, check_program(program, path));
   std::string csv = to_joint_csv(program, header);
   EXPECT_THAT(message_of(csv.substr(0, csv.size() - 40), "cut.csv"), HasSubstr("columns, expected 23"));
-  std::string json = to_json(program, nullptr, header);
-  EXPECT_THAT(message_of(json.substr(0, 500), "cut.json"), HasSubstr("not JSON"));
-  EXPECT_THAT(message_of("{}", "cut.json"), HasSubstr("/schema: found nothing"));
+  std::string json = program_json(program, nullptr, header);
+  EXPECT_THAT(message_of(json.substr(0, 500), "cut.json"), HasSubstr("found the end of the text, expected JSON"));
+  EXPECT_THAT(message_of("{}", "cut.json"), HasSubstr("/schema: found no such key"));
   const auto with = [&](const std::string& key, const nlohmann::json& value) {
     nlohmann::json document = nlohmann::json::parse(json);
     document[nlohmann::json::json_pointer(key)] = value;
@@ -360,15 +360,15 @@ TEST(ProgramFromText, NamesTheRowOfADamagedTableAndTheKeyOfADamagedJson) {
   };
   EXPECT_THAT(with("/poses", nlohmann::json::array()),
               HasSubstr("cut.json: /poses: found 0 entries, expected a list of 1 or more"));
-  EXPECT_THAT(with("/poses/3/phase", "cutt"),
-              HasSubstr("cut.json: /poses/3/phase: found phase 'cutt', expected approach"));
-  EXPECT_THAT(with("/motion/samples/7", {1, 2, 3}), HasSubstr("cut.json: /motion/samples/7: found 3 entries"));
+  EXPECT_THAT(with("/poses/3/phase", "cutt"), HasSubstr("cut.json: /poses/3/phase: found \"cutt\", expected approach"));
+  EXPECT_THAT(with("/motion/samples/7", {1, 2, 3}),
+              HasSubstr("cut.json: /motion/samples/7: found [1,2,3], expected a list of 13 numbers"));
   EXPECT_THAT(with("/motion/samples/7/2", "x"),
               HasSubstr("cut.json: /motion/samples/7/2: found \"x\", expected a number"));
   EXPECT_THAT(with("/motion/samples/7/2", 1e300), HasSubstr("/motion/samples/7: found a joint at 1e+300 rad"));
   EXPECT_THAT(with("/motion/samples/7/0", 1e12),
               HasSubstr("/motion/samples/7: found a program of 1e+12 s, expected at most 7200 s"));
-  EXPECT_THAT(with("/motion", nlohmann::json::array()), HasSubstr("cut.json: /motion: found no object"));
+  EXPECT_THAT(with("/motion", nlohmann::json::array()), HasSubstr("cut.json: /motion: found [], expected an object"));
   std::string endless = json;
   endless.replace(endless.find("\"duration_s\":") + 13, 0, "1e400, \"was\":");
   EXPECT_THAT(message_of(endless, "cut.json"), HasSubstr("found a number beyond 1.8e308"));

@@ -96,7 +96,7 @@ TEST(ToUrScript, RefusesNamesAndNumbersThatAControllerWouldNotTake) {
   EXPECT_THROW(static_cast<void>(to_urscript(program, {}, {.lookahead_s = 0.3})), InvalidArgument);
   program.poses[4].rotation_vector.y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(static_cast<void>(to_urscript(program, {})), InvalidArgument);
-  EXPECT_THROW(static_cast<void>(to_json(program)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(program_json(program)), InvalidArgument);
 }
 
 TEST(ProgramHeader, NamesEveryOverrideAndWhatWasNotChecked) {
@@ -209,7 +209,7 @@ TEST(ProgramToJson, HoldsEveryPoseEverySampleAndEveryCheck) {
   const ToolPath path = ring_path();
   const RobotProgram program = make_program(path);
   const ProgramChecks checks = check_program(program, path);
-  const auto document = nlohmann::json::parse(to_json(program, &checks));
+  const auto document = nlohmann::json::parse(program_json(program, &checks));
   EXPECT_EQ(document["poses"].size(), program.poses.size());
   EXPECT_EQ(document["poses"][2]["phase"], "plunge");
   EXPECT_EQ(document["poses"][5]["tip_mm"][0].get<double>(), program.poses[5].tip_mm.x());
@@ -217,7 +217,7 @@ TEST(ProgramToJson, HoldsEveryPoseEverySampleAndEveryCheck) {
   EXPECT_EQ(document["duration_s"].get<double>(), program.duration_s());
   EXPECT_EQ(document["checks"].size(), checks.checks.size());
   EXPECT_FALSE(document["checks_not_made"].empty());
-  EXPECT_FALSE(nlohmann::json::parse(to_json(program)).contains("checks"));
+  EXPECT_FALSE(nlohmann::json::parse(program_json(program)).contains("checks"));
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ std::string json() {
   const ToolPath path = ring_path();
   const RobotProgram program = make_program(path);
   const ProgramChecks checks = check_program(program, path);
-  return to_json(program, &checks, program_header(program, path, checks, provenance()));
+  return program_json(program, &checks, program_header(program, path, checks, provenance()));
 }
 
 TEST(Tamper, AnUntouchedProgramOfEachFormIsTheCheckedOne) {
@@ -161,7 +161,7 @@ TEST(Tamper, SoundProgramsOfManyKindsAreAllCheckedAndCompleted) {
     const char* name = form == 2 ? "cut.csv" : form == 3 ? "cut.json" : "cut.script";
     const std::string text =
         form == 2   ? to_joint_csv(program, header)
-        : form == 3 ? to_json(program, &checks, header)
+        : form == 3 ? program_json(program, &checks, header)
                     : to_urscript(program, header, {.motion = form == 0 ? ScriptMotion::MoveP : ScriptMotion::ServoJ});
     const WrittenProgram written = program_from_text(text, name);
     const ProgramAudit audit = audit_program(written);
@@ -191,7 +191,7 @@ TEST(Tamper, ASoundMarkAndAProgramWithAnOverrideAreChecked) {
   override_checks(checks, {"depth"});
   for (const auto& [text, name] :
        {std::pair(to_urscript(program, program_header(program, deep, checks, provenance())), "a.script"),
-        std::pair(to_json(program, &checks, program_header(program, deep, checks, provenance())), "b.json")})
+        std::pair(program_json(program, &checks, program_header(program, deep, checks, provenance())), "b.json")})
     EXPECT_EQ(ending_of(text, name), "completed") << name;
 }
 
@@ -492,7 +492,7 @@ TEST(CommentText, HoldsInEveryFormOfAProgram) {
   const ProgramHeader header = program_header(program, path, check_program(program, path),
                                               {{"title", evil}, {"digest", "mine"}, {"verdict", "ok"}});
   const std::string forms[]{to_urscript(program, header), to_joint_csv(program, header), to_ros_yaml(program, header),
-                            to_json(program, nullptr, header)};
+                            program_json(program, nullptr, header)};
   for (const std::string& text : forms) {
     for (const char* bad : {"\u2028", "\u0085", "\v", "\f", "\r", "\x7f", "\u202e", "\xff"})
       EXPECT_THAT(text, Not(HasSubstr(bad)));

@@ -1,5 +1,6 @@
 #include "support/temporary_folder.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/storage/power_file.hpp>
@@ -42,7 +43,7 @@ TEST(PowerTable, SaysWhatASeriesFoundAndLeavesOutWhatWasNotMeasured) {
   EXPECT_EQ(table.rows[1][4], "not_converged");
   EXPECT_EQ(table.rows[1][5], "");
   EXPECT_EQ(table.rows[1].back(), "the specimen could not be stretched");
-  const nlohmann::ordered_json json = to_json(series, {});
+  const nlohmann::ordered_json json = to_json(series);
   EXPECT_EQ(json["verdict"], "no_power_fits");
   EXPECT_TRUE(json["chosen_w"].is_null());
   EXPECT_TRUE(json["speed_rows"][0]["bulge_mm"].is_null());

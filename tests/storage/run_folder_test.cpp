@@ -382,7 +382,7 @@ TEST_F(RunFolderTest, TheSchemaOfAPathNamesEveryFieldThatIsWritten) {
   path.source_sha256 = sha256_of_text("");
   path.specimen_id = "tongue-07";
   path.is_virtual = true;
-  const auto written = nlohmann::json::parse(to_json(path));
+  const auto written = nlohmann::json::parse(path_json(path));
   const auto keys_of = [](const nlohmann::json& object) {
     std::vector<std::string> keys;
     for (const auto& [key, value] : object.items()) keys.push_back(key);

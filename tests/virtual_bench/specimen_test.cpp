@@ -1,3 +1,4 @@
+#include <incise/core/expect.hpp>
 #include <incise/virtual_bench/specimen.hpp>
 
 #include <fmt/format.h>
@@ -60,7 +61,7 @@ TEST(Specimen, DrawsKeepToTheirSpreads) {
 
 TEST(Specimen, DefaultsAreTheMiddleOfEachSpread) {
   const Specimen middle;
-  EXPECT_THAT(validate(middle), testing::IsEmpty());
+  EXPECT_THAT(problems_of(middle), testing::IsEmpty());
   for (const ParameterSpec& spec : parameter_specs()) {
     const double low = spec.drawn_as == DrawnAs::Uniform  ? spec.a
                        : spec.drawn_as == DrawnAs::Normal ? spec.a - spec.b
@@ -95,8 +96,8 @@ TEST(Specimen, EveryViolationIsNamed) {
   Specimen specimen;
   specimen.youngs_modulus_kpa = -1.0;
   specimen.depth_scale = std::nan("");
-  EXPECT_THAT(validate(specimen), testing::ElementsAre(testing::HasSubstr("youngs_modulus_kpa: found -1"),
-                                                       testing::HasSubstr("depth_scale: found nan")));
+  EXPECT_THAT(sentences(problems_of(specimen)), testing::ElementsAre(testing::HasSubstr("youngs_modulus_kpa: found -1"),
+                                                                     testing::HasSubstr("depth_scale: found nan")));
 }
 
 }  // namespace

@@ -442,8 +442,8 @@ TEST(CalibrationRequest, ListsEveryViolation) {
   request.drag_lengths_mm = {1.0};
   request.second_drag_lengths_mm = {2.0};
   request.second_stiffness = 1.0;
-  EXPECT_THAT(validate(request),
-              ::testing::UnorderedElementsAre(HasSubstr("speeds_mm_s"), HasSubstr("found 1,"),
+  EXPECT_THAT(sentences(validate(request)),
+              ::testing::UnorderedElementsAre(HasSubstr("speeds_mm_s"), HasSubstr("drag_lengths_mm: found 1 values"),
                                               HasSubstr("second_drag_lengths_mm"), HasSubstr("second_stiffness")));
 }
 

@@ -2,7 +2,9 @@
 
 #include <incise/calibration/power_choice.hpp>
 #include <incise/core/cache.hpp>
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/virtual_bench/body.hpp>
 
@@ -20,14 +22,21 @@ struct PowerSubject {
 
 /// What is cut. Defaults: the paper's series [Paper, II-B.3].
 struct PowerRequest {
-  std::vector<double> powers_w{25.0, 30.0, 35.0, 40.0};  ///< each > 0, each once
-  double speed_mm_s = 7.0;                               ///< of the series, > 0
-  std::vector<double> speeds_mm_s;                       ///< of the cuts at the chosen power, each > 0, each once
+  std::vector<double> powers_w{25.0, 30.0, 35.0, 40.0};
+  double speed_mm_s = 7.0;
+  std::vector<double> speeds_mm_s;
   PowerLimits limits;
   BenchResolution resolution;
 };
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const PowerRequest& request);
+inline void describe(Visitor& v, PowerRequest& r) {
+  v({"power_w", "Powers of the generator, each once.", "W"}, r.powers_w, kPositive);
+  v({"speed_mm_s", "Of the series.", "mm/s"}, r.speed_mm_s, kPositive);
+  v({"speeds_mm_s", "Also cut at these speeds, with the chosen power; each once.", "mm/s"}, r.speeds_mm_s, kPositive);
+  describe(v, r.limits);
+  v("resolution", r.resolution, "Of the bench's meshes and steps.");
+}
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const PowerRequest& request);
 
 /// The key of a virtual cut: the specimen with all its hidden parameters, the bench's resolution, power, speed, the
 /// build and the instruction set. Its name is no part of it.
@@ -41,7 +50,20 @@ struct PowerSeries {
   std::vector<PowerCut>
       speed_cuts;        ///< likewise at the chosen power; empty where none was chosen or no speed asked for
   std::size_t made = 0;  ///< cuts made now; the others were there already
+  double speed_mm_s = 0.0;  ///< of the series
+  PowerLimits limits;       ///< that powers were judged by
 };
+/// The keys of `power.json` (incise.power/1) that a series fills.
+inline void describe(Visitor& v, PowerSeries& s) {
+  v.derived("verdict", std::string(s.choice.chosen_w ? "chosen" : "no_power_fits"), "Whether a power fits.");
+  v({"chosen_w", "The lowest power that fits.", "W"}, s.choice.chosen_w);
+  v({"speed_mm_s", "Of the series.", "mm/s"}, s.speed_mm_s);
+  v("limits", s.limits, "That powers were judged by.");
+  v("powers", s.choice.powers, "With the reasons against each, ascending.");
+  v("rows", s.cuts, "Specimen by specimen, powers as they were asked for.");
+  v("speed_rows", s.speed_cuts, "Likewise at the chosen power.");
+  v.internal("made", s.made, "Cuts made now; the others were there already.");
+}
 
 /// Cuts every specimen of the virtual bench as planned at every power, chooses the lowest that fits (see choose_power),
 /// and cuts every specimen at that power at every speed. Cuts run side by side, one thread each; those that the cache

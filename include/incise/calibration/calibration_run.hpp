@@ -1,9 +1,9 @@
 #pragma once
 
 #include <incise/core/outcome.hpp>
+#include <incise/cutting/kerf_measures.hpp>
 #include <incise/evaluation/statistics.hpp>
 #include <incise/geometry/contour.hpp>
-#include <incise/procedure/kerf_measures.hpp>
 
 #include <cstddef>
 #include <optional>

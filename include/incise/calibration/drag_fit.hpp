@@ -22,15 +22,21 @@ struct FitSpecimen {
 /// What is believed before the photographs are looked at. The drag length is uniform where all specimens were
 /// simulated.
 struct DragFitSettings {
-  double stiffness_sd = 0.5;  ///< of ln(stiffness factor) common to all specimens, > 0; its mean is 0
-  double bias_sd_mm = 0.5;    ///< of the common bias, > 0; its mean is 0
-  double reading_sd_mm =
-      0.1;                ///< of a sector's error for reading the photograph and the mesh's grain, > 0; independent
-  double credible = 0.9;  ///< mass of the credible intervals, (0, 1)
-  int samples = 64;       ///< of the posterior, >= 1
+  double stiffness_sd = 0.5;
+  double bias_sd_mm = 0.5;
+  double reading_sd_mm = 0.1;
+  double credible = 0.9;
+  int samples = 64;
 };
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const DragFitSettings& settings);
+inline void describe(Visitor& v, DragFitSettings& s) {
+  v("stiffness_sd", s.stiffness_sd, "Of ln(stiffness factor) common to all specimens; its mean is 0.", kPositive);
+  v({"bias_sd_mm", "Of the common bias; its mean is 0.", "mm"}, s.bias_sd_mm, kPositive);
+  v({"reading_sd_mm",
+     "Of a sector's error for reading the photograph and the mesh's grain; independent of the others'.", "mm"},
+    s.reading_sd_mm, kPositive);
+  v("credible", s.credible, "Mass of the credible intervals.", {0.0, 1.0, true, true});
+  v("samples", s.samples, "Of the posterior.", {1.0});
+}
 
 /// What the data say about one parameter.
 struct ParameterEstimate {

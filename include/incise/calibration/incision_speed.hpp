@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
+
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -25,6 +27,15 @@ struct SpeedEstimate {
   double population_sd_mm_s = 0.0;       ///< divided by n: what the paper prints
   double recommended_mm_s = 0.0;         ///< the mean to a whole mm/s; below 1 mm/s to one digit
 };
+inline void describe(Visitor& v, SpeedEstimate& e) {
+  v("cuts", e.cuts, "How many.");
+  v({"mean_mm_s", "Of the cuts' speeds, each counted once however long it is.", "mm/s"}, e.mean_mm_s);
+  v({"sample_sd_mm_s", "Divided by n - 1; absent for a single cut.", "mm/s"}, e.sample_sd_mm_s);
+  v({"population_sd_mm_s", "Divided by n: what the paper prints.", "mm/s"}, e.population_sd_mm_s);
+  v({"min_mm_s", "Slowest.", "mm/s"}, e.min_mm_s);
+  v({"max_mm_s", "Fastest.", "mm/s"}, e.max_mm_s);
+  v({"recommended_mm_s", "The mean to a whole mm/s; below 1 mm/s to one digit.", "mm/s"}, e.recommended_mm_s);
+}
 
 /// Speed from timed straight cuts. @throws InvalidArgument naming the first cut that is none; without cuts.
 /// Source: [Paper, II-B.1]: six cuts of 10 cm, 7.22 ± 1.89 mm/s, rounded to 7.

@@ -27,6 +27,7 @@ inline void describe(Visitor& v, PowerCut& c) {
   v("speed_mm_s", c.speed_mm_s, "Of the tool.", kPositive);
   v("outcome", c.outcome, "success: the ring is closed.");
   v("problem", c.problem, "Why there is no cut at all; empty: there is one.");
+  v.derived("closed_loop", c.outcome == Outcome::Success, "Whether the ring is closed.");
   v("bulge_mm", c.bulge_mm, "How high skin ahead of the tool stands above the uncut surface.", kNotNegative);
   v("thermal_width_mm", c.thermal_width_mm, "How far beside the tool's axis heat damaged tissue.", kNotNegative);
   v("mean_abs_error_mm", c.mean_abs_error_mm, "Of the inner edge; absent: the ring is open.", kNotNegative);
@@ -35,10 +36,20 @@ inline void describe(Visitor& v, PowerCut& c) {
 /// What is taken for too much. The paper judged both by eye.
 struct PowerLimits {
   double bulge_limit_mm = 1.2;
-  double damage_limit_mm = 1.0;  ///< the electrode's diameter: beyond it the rim is seen to be discoloured
+  double damage_limit_mm = 1.0;
 };
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const PowerLimits& limits);
+inline void describe(Visitor& v, PowerLimits& l) {
+  v({"bulge_limit_mm",
+     "Skin ahead of the tool may not stand higher than this, in the mean over a cut. Chosen so that the bench's series "
+     "comes out as the paper's eye judged its own.",
+     "mm"},
+    l.bulge_limit_mm, kPositive);
+  v({"damage_limit_mm",
+     "Heat may not damage tissue farther beside the tool's axis than this: the electrode's diameter, beyond which the "
+     "rim is seen to be discoloured.",
+     "mm"},
+    l.damage_limit_mm, kPositive);
+}
 
 /// What speaks against one power.
 struct PowerVerdict {
@@ -47,6 +58,13 @@ struct PowerVerdict {
   std::optional<double> greatest_thermal_width_mm;
   std::vector<std::string> reasons;  ///< empty: this power fits
 };
+inline void describe(Visitor& v, PowerVerdict& p) {
+  v({"power_w", "Of the generator.", "W"}, p.power_w);
+  v.derived("fits", p.reasons.empty(), "Whether it keeps both limits.");
+  v({"greatest_bulge_mm", "Over the specimens; absent: measured on none.", "mm"}, p.greatest_bulge_mm);
+  v({"greatest_thermal_width_mm", "Likewise.", "mm"}, p.greatest_thermal_width_mm);
+  v("reasons", p.reasons, "Against it; none: this power fits.");
+}
 
 /// Which power to cut with.
 struct PowerChoice {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/calibration/drag_fit.hpp>
+#include <incise/core/describe.hpp>
 
 #include <vector>
 
@@ -13,6 +14,12 @@ struct TissueScenario {
   double stiffness_factor = 1.0;  ///< Young's modulus over the specimen's reference
   double bias_mm = 0.0;           ///< expected, given the two; to be added to simulated signed errors
 };
+inline void describe(Visitor& v, TissueScenario& t) {
+  v("weight", t.weight, "All together 1.");
+  v({"drag_length_mm", "Speed times dwell.", "mm"}, t.drag_length_mm);
+  v("stiffness_factor", t.stiffness_factor, "Young's modulus over the specimen's reference.");
+  v({"bias_mm", "Expected, given the two; to be added to simulated signed errors.", "mm"}, t.bias_mm);
+}
 
 /// What is believed of the next specimen: a few tissues to simulate, and what needs no simulation.
 struct TissueScenarios {

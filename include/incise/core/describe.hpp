@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -39,12 +40,19 @@ inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity()
 /// "a number above 0", "a number in [0, 0.5)".
 [[nodiscard]] std::string describe(const Range& range);
 
+/// An integer that a visitor is given. @param range  of the field: an unsigned one above 2^63 is passed as its bits.
+[[nodiscard]] inline double as_number(std::int64_t value, const Range& range) {
+  const bool is_large = value < 0 && range.least >= 0.0 && range.most > 9.3e18;
+  return is_large ? static_cast<double>(static_cast<std::uint64_t>(value)) : static_cast<double>(value);
+}
+
 /// What a value is called in files and on the command line, its unit, and what it means in one line.
 struct Field {
   std::string_view name;
   std::string_view meaning = {};
   std::string_view unit = {};
   std::string_view pattern = {};  ///< regular expression that a text matches
+  bool is_omitted = false;        ///< a summary leaves it out where it is absent
 };
 
 /// Many numbers of one kind that lie side by side in memory: `columns` of them belong together.
@@ -100,6 +108,8 @@ class Visitor {
   /// Which of these fields is in the group: just one has to be, and is visited next. @param place  set to that of the
   /// first one that is there; or kEveryKind: visit them all; or kUnchanged: none. @returns how many are there
   virtual std::size_t key(std::size_t& place, std::span<const Field> keys);
+  /// A field that is only shown, while values are set: what is read may hold it.
+  virtual void pass_over(const Field& /*field*/) {}
   /// Whether everything is walked that determines a result. A file that people write names files in place of what they
   /// hold, and lacks what only code may choose.
   [[nodiscard]] virtual bool is_complete() const { return true; }
@@ -145,7 +155,9 @@ class Visitor {
   /// What follows from other fields: a summary shows it, and nobody reads it back.
   template <class T>
   void derived(std::string_view name, T value, std::string_view meaning) {
-    if (is_summary() && !sets()) visit(Field{name, meaning, {}}, value, kAny);
+    if (!is_summary()) return;
+    if (sets()) return pass_over(Field{name, meaning});
+    visit(Field{name, meaning}, value, kAny);
   }
 
  private:
@@ -327,6 +339,11 @@ void describe(Visitor& v, std::map<std::string, V>& values) {
   v("names", names, "Of what follows.");
   if (v.sets()) values.clear();
   for (const std::string& name : names) v(name, values[name]);
+}
+
+/// What a summary shows of a number that may not be known: nothing where it is not finite.
+[[nodiscard]] inline std::optional<double> if_finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 /// A choice of one: the format of a file with its version, or the only thing of its kind. Anything else is refused.

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <incise/core/problem.hpp>
+
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace incise {
 
@@ -15,33 +19,43 @@ class Error : public std::runtime_error {
 /// A caller broke a precondition of a function: a mistake in code, told with what was expected and found.
 class InvalidArgument : public Error {
  public:
-  using Error::Error;
+  explicit InvalidArgument(std::string text) : Error(text), text_(std::move(text)) {}
+  InvalidArgument(std::string_view function, std::string text);
+  /// What was expected and found, without the name of the function: for the person whose file or case broke it.
+  [[nodiscard]] const std::string& text() const { return text_; }
+  /// The same as a sentence of its own: for the hint of another error.
+  [[nodiscard]] std::string as_hint() const;
+
+ private:
+  std::string text_;
 };
 
 /// The command line or a case file asks for something that cannot be done (exit status 2 of the command).
 /// The message reads "<where>: <field>: found <found>, expected <expected>. <hint>".
 class CaseError : public Error {
  public:
+  CaseError(std::string where, Problem problem);
   CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint = "");
-  [[nodiscard]] const std::string& field() const { return field_; }
+  [[nodiscard]] const Problem& problem() const { return problem_; }
+  [[nodiscard]] const std::string& field() const { return problem_.path; }
   /// The same error with the case file named, for a thrower that did not know it: "case" gives way to `file`, a file that
   /// is named already stays, any other place follows the file's name.
   [[nodiscard]] CaseError in_file(const std::string& file) const;
-  /// The message from the field on, for whoever names the case beside it.
-  [[nodiscard]] std::string without_place() const;
 
  private:
-  [[nodiscard]] std::size_t end_of_place() const;
-
-  std::string field_;
+  std::string where_;
+  Problem problem_;
 };
 
 /// A data file is missing, damaged or unsuitable, or an output cannot be written (exit status 3 of the command).
 /// The message reads "<path>: <place>: found <found>, expected <expected>. <hint>"; `place` is a line, byte or field.
 class DataError : public Error {
  public:
+  DataError(const std::filesystem::path& path, const Problem& problem);
   DataError(const std::filesystem::path& path, std::string place, std::string found, std::string expected,
             std::string hint = "");
+  /// What the file holds breaks this precondition. @param place  in it; may be empty
+  DataError(const std::filesystem::path& path, const std::string& place, const InvalidArgument& broken);
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/describe.hpp>
 #include <incise/core/problem.hpp>
 
@@ -23,7 +24,7 @@ struct CutSettings {
   double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step; (0, the tool's diameter or thickness]
   double reach_mm = 0.25;             ///< a tet is in contact within the tool's radius + reach of its core, >= 0
   double bond_stiffness_kpa_mm2 = 1500.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag; finite meshes hold with less
-  double overlap_mm = 8.0;            ///< a ring is cut this far beyond its start, >= 0 and less than once round
+  double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, >= 0 and less than once round
   double residual_tolerance = 0.15;   ///< each step's linear solve: |r| <= this · |contact force|, [1e-6, 0.3]; the next step puts the rest right
   double max_step_mm = 1.0;           ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/evaluation/t_tests.hpp>
 
 #include <cstdint>
@@ -30,10 +31,15 @@ struct ContourCorrelation {
 [[nodiscard]] ContourCorrelation contour_correlation(const ContourValues& contour);
 
 struct BootstrapSettings {
-  int replicates = 9999;   ///< >= 99
-  std::uint64_t seed = 1;  ///< same seed: same result, bit for bit
-  double level = 0.95;     ///< of the interval, (0, 1)
+  int replicates = 9999;
+  std::uint64_t seed = 1;
+  double level = 0.95;
 };
+inline void describe(Visitor& v, BootstrapSettings& s) {
+  v("replicates", s.replicates, "Of the block bootstrap.", {99.0, 1e6});
+  v("seed", s.seed, "Same seed: same result, bit for bit.");
+  v("level", s.level, "Of the interval.", {0.0, 1.0, true, true});
+}
 
 /// Two-tailed test of "the means over all points are equal" for these very contours, from circular block bootstrap
 /// [PolitisRomano1992]. It asks whether the points say more than chance along a contour would; it does not make

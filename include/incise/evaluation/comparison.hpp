@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/evaluation/block_bootstrap.hpp>
 #include <incise/evaluation/effect_size.hpp>
 #include <incise/evaluation/statistics.hpp>
@@ -26,15 +28,23 @@ inline constexpr std::array<std::string_view, 2> kErrorMeasureNames{"absolute", 
 
 struct ComparisonSettings {
   ErrorMeasure measure = ErrorMeasure::Absolute;
-  /// before[i] and after[i] are the same specimen; otherwise the specimens are strangers to each other.
   bool is_paired = false;
-  double alpha = 0.05;  ///< (0, 1); intervals are at 1 - alpha
-  double power = 0.8;   ///< (alpha, 1): wanted of the next experiment
+  double alpha = 0.05;
+  double power = 0.8;
   BootstrapSettings bootstrap;
 };
+inline void describe(Visitor& v, ComparisonSettings& s) {
+  v("measure", s.measure, "Which errors are compared.");
+  v("paired", s.is_paired,
+    "Whether before[i] and after[i] are the same specimen; otherwise the specimens are strangers to each other.");
+  v("alpha", s.alpha, "Level of significance; intervals are at 1 - alpha.", {0.0, 1.0, true, true});
+  v("power", s.power, "Wanted of the next experiment: chance of finding this effect; more than alpha.",
+    {0.0, 1.0, true, true});
+  describe(v, s.bootstrap);
+}
 
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const ComparisonSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const ComparisonSettings& settings);
 
 /// One incision in a comparison.
 struct SpecimenRow {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
 #include <incise/core/outcome.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/evaluation/clock.hpp>
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/evaluation/hausdorff.hpp>
@@ -26,20 +29,35 @@ inline constexpr std::array<std::string_view, 2> kContourKindNames{"centerline",
 
 struct EvaluationSettings {
   ContourKind contour = ContourKind::Centerline;
-  double lateral_margin_mm = 5.0;    ///< intended, from the tumour edge to the kerf's mid-line, > electrode radius
-  double electrode_radius_mm = 0.5;  ///< half the kerf's width, >= 0
-  /// Intended distance of the measured contour, > 0; absent: see target_mm().
+  double lateral_margin_mm = kLateralMarginMm;
+  double electrode_radius_mm = kElectrodeRadiusMm;
   std::optional<double> target_mm = std::nullopt;
-  double close_margin_mm = 2.2;    ///< clinical cut-off of the tissue left beside the tumour, > 0 (paper III-A.1, [30])
-  Vec3 approach = -Vec3::UnitZ();  ///< direction in which the camera looks
-  double step_mm = 0.25;           ///< spacing of the points at which errors are taken, > 0
-  /// 12 o'clock of the clock face over the tumour; absent: up in the picture (view_along(approach).y).
+  double close_margin_mm = kCloseMarginMm;
+  Vec3 approach = -Vec3::UnitZ();
+  double step_mm = 0.25;
   std::optional<Vec3> twelve_o_clock = std::nullopt;
-  double end_tolerance_mm = 1.0;  ///< an open cut is complete if it ends within this of the intended ends, >= 0
+  double end_tolerance_mm = 1.0;
 };
+inline void describe(Visitor& v, EvaluationSettings& s) {
+  v("contour", s.contour, "What was measured.");
+  v({"lateral_margin_mm", "Intended, from the tumour edge to the kerf's mid-line.", "mm"}, s.lateral_margin_mm,
+    kPositive);
+  v({"electrode_radius_mm", "Half the kerf's width.", "mm"}, s.electrode_radius_mm, kNotNegative);
+  v({"target_mm", "Intended distance of the measured contour; absent: 5.0 for a mid-line, 4.5 for an inner edge.",
+     "mm"},
+    s.target_mm, kPositive);
+  v({"close_margin_mm", "Clinical cut-off of the tissue left beside the tumour (paper III-A.1, [30]).", "mm"},
+    s.close_margin_mm, kPositive);
+  v.direction("approach", s.approach, "Direction in which the camera looks.");
+  v({"step_mm", "Spacing of the points at which errors are taken.", "mm"}, s.step_mm, kPositive);
+  v("twelve_o_clock", s.twelve_o_clock,
+    "12 o'clock of the clock face over the tumour; absent: up in the picture (view_along(approach).y).");
+  v({"end_tolerance_mm", "An open cut is complete if it ends within this of the intended ends.", "mm"},
+    s.end_tolerance_mm, kNotNegative);
+}
 
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const EvaluationSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const EvaluationSettings& settings);
 
 /// Intended distance of the measured contour: as set, else the lateral margin, less the electrode radius for an inner
 /// edge.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/evaluation/registration_score.hpp>
 
 #include <cstddef>
@@ -34,15 +36,19 @@ struct PrintedRow {
 };
 
 struct AuditSettings {
-  double least = 0.0;  ///< no value can be smaller: 0 for absolute errors
-  /// Where the table gives no n: how few values there may be. Few values may stray more, so this is what the benefit of
-  /// the doubt costs. >= 2.
+  double least = 0.0;
   std::size_t n_at_least = 10;
-  std::optional<double> grain;  ///< values are whole multiples of this (1 for counts): the GRIM test; needs n
+  std::optional<double> grain;
 };
-
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const AuditSettings& settings);
+inline void describe(Visitor& v, AuditSettings& s) {
+  v("least", s.least, "No value can be smaller: 0 for absolute errors.");
+  v("n_at_least", s.n_at_least,
+    "Where the table gives no n: how few values there may be. Few values may stray more, so this is what the benefit "
+    "of "
+    "the doubt costs.",
+    {2.0, 1e9});
+  v("grain", s.grain, "Values are whole multiples of this (1 for counts): the GRIM test; needs n.", kPositive);
+}
 
 /// What no set of numbers can do. Each holds for every choice of digits behind the printed ones.
 enum class AuditRule {

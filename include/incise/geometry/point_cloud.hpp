@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/core/random.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/geometry/tet_mesh.hpp>
@@ -72,20 +74,36 @@ struct PlaneFit {
 
 /// How a camera's cloud becomes the cloud of the tissue's surface.
 struct CleaningSettings {
-  std::optional<Box3> box;          ///< what lies outside is dropped
-  int planes = 0;                   ///< flat things (table, holder) to take away, largest first
-  double plane_tolerance_mm = 1.0;  ///< a point this near to a plane belongs to it
-  double plane_least_share = 0.1;   ///< of the points left; a smaller plane stays
-  bool drop_beneath_planes = true;  ///< also what lies behind a plane, seen along `seen_along`
-  int outlier_neighbours = 16;      ///< 0: no removal of outliers
+  std::optional<Box3> box;
+  int planes = 0;
+  double plane_tolerance_mm = 1.0;
+  double plane_least_share = 0.1;
+  bool drop_beneath_planes = true;
+  int outlier_neighbours = 16;
   double outlier_deviations = 2.0;
-  double voxel_mm = 0.0;       ///< 0: no downsampling
-  int normal_neighbours = 16;  ///< 0: no normals
+  double voxel_mm = 0.0;
+  int normal_neighbours = 16;
   Vec3 seen_along = -Vec3::UnitZ();
 };
+inline void describe(Visitor& v, CleaningSettings& s) {
+  v({"box", "What lies outside is dropped.", "mm"}, s.box);
+  v("planes", s.planes, "Cloud: flat things (table, holder) to take away with what lies beneath, largest first.",
+    {0.0, 20.0});
+  v({"plane_tolerance_mm", "Cloud: a point this near to a plane belongs to it.", "mm"}, s.plane_tolerance_mm,
+    kPositive);
+  v("plane_least_share", s.plane_least_share, "Of the points left; a smaller plane stays.", {0.0, 1.0, true});
+  v("drop_beneath_planes", s.drop_beneath_planes, "Also what lies behind a plane, seen along `seen_along`.");
+  v("outlier_neighbours", s.outlier_neighbours, "Cloud: neighbours that a point is judged by; 0 keeps outliers.",
+    {0.0, 200.0});
+  v("outlier_deviations", s.outlier_deviations,
+    "Cloud: standard deviations above the mean distance beyond which a point goes.", {0.0, 100.0});
+  v({"voxel_mm", "Cloud: one point per cube of this size; 0: all.", "mm"}, s.voxel_mm, {0.0, 100.0});
+  v("normal_neighbours", s.normal_neighbours, "0: no normals; else at least 3.", kNotNegative);
+  v.direction("seen_along", s.seen_along, "Direction of sight.");
+}
 
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const CleaningSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const CleaningSettings& settings);
 
 struct CleanedCloud {
   PointCloud cloud;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/names.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/types.hpp>
@@ -31,14 +32,14 @@ inline constexpr std::array<std::string_view, 2> kPathKindNames{"incise", "mark"
 struct Waypoint {
   Vec3 position_mm = Vec3::Zero();  ///< on the tissue's surface, in the path's frame
   Vec3 axis = -Vec3::UnitZ();       ///< unit; the direction in which the tool points into the tissue
-  double depth_mm = 5.0;            ///< of the tool's tip below `position_mm`, along `axis`
+  double depth_mm = kPlannedDepthMm;  ///< of the tool's tip below `position_mm`, along `axis`
   double speed_mm_s = 7.0;          ///< of the tip from this waypoint to the next
 };
 inline void describe(Visitor& v, Waypoint& w) {
   v("position_mm", w.position_mm, "On the tissue's surface, in the path's frame.");
   v("axis", w.axis, "Unit; the direction in which the tool points into the tissue.");
-  v("depth_mm", w.depth_mm, "Of the tool's tip below position_mm, along axis.");
-  v("speed_mm_s", w.speed_mm_s, "Of the tip from this waypoint to the next.");
+  v({"depth_mm", "Of the tool's tip below position_mm, along axis.", "mm"}, w.depth_mm, kNotNegative);
+  v({"speed_mm_s", "Of the tip from this waypoint to the next.", "mm/s"}, w.speed_mm_s, kPositive);
 }
 
 /// The course of a tool's entry points over the surface, with depth and axis at each: what `path.json` holds.

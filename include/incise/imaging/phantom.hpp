@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/volume.hpp>
@@ -17,24 +19,43 @@ struct PhantomSettings {
   std::uint64_t seed = 1;
   TongueShapeSettings shape;
 
-  Vec3 spacing_mm = Vec3::Constant(0.8);  ///< of the voxels; each in [0.3, 3]
-  double tissue_hu = 55.0;                ///< muscle; [0, 120]
-  double texture_hu = 6.0;                ///< standard deviation of the slow change within the muscle; [0, 30]
-  double noise_hu = 15.0;                 ///< standard deviation of the scanner's noise; [0, 60]
-  double blur_mm = 0.4;                   ///< standard deviation of the scanner's point spread; [0, 2]
-  double holder_hu = -100.0;              ///< the board beneath: low-density polyethylene; [-1000, 1500]
-  double holder_thickness_mm = 8.0;       ///< [0 = none, 30]
-  double field_of_view_mm = 0.0;  ///< > 0: square slices of this size, padding outside the circle; 0: a tight grid
+  Vec3 spacing_mm = Vec3::Constant(0.8);
+  double tissue_hu = 55.0;
+  double texture_hu = 6.0;
+  double noise_hu = 15.0;
+  double blur_mm = 0.4;
+  double holder_hu = -100.0;
+  double holder_thickness_mm = 8.0;
+  double field_of_view_mm = 0.0;
 
-  double tumor_diameter_mm = 20.0;   ///< mean, seen from above; [8, 24]
-  double tumor_irregularity = 0.10;  ///< sum of the amplitudes of harmonics 2..6 / radius; [0, 0.25]
-  double tumor_depth_mm = 4.0;       ///< of the bowl beneath the edge; [1, 8]
-  double tumor_position = 0.46;      ///< centre, as a share of the length from the tip; [0.4, 0.6]
-  int tumor_points = 120;            ///< of the edge; [24, 1000]
+  double tumor_diameter_mm = 20.0;
+  double tumor_irregularity = 0.10;
+  double tumor_depth_mm = 4.0;
+  double tumor_position = 0.46;
+  int tumor_points = 120;
 };
+inline void describe(Visitor& v, PhantomSettings& s) {
+  v("seed", s.seed, "Of shape, texture and noise.");
+  v("shape", s.shape, "Mean size, and how much one specimen differs from the next.");
+  v({"spacing_mm", "Of the voxels.", "mm"}, s.spacing_mm, {0.3, 3.0});
+  v({"tissue_hu", "Muscle.", "HU"}, s.tissue_hu, {0.0, 120.0});
+  v({"texture_hu", "Standard deviation of the slow change within the muscle.", "HU"}, s.texture_hu, {0.0, 30.0});
+  v({"noise_hu", "Standard deviation of the scanner's noise.", "HU"}, s.noise_hu, {0.0, 60.0});
+  v({"blur_mm", "Standard deviation of the scanner's point spread.", "mm"}, s.blur_mm, {0.0, 2.0});
+  v({"holder_hu", "The board beneath: low-density polyethylene.", "HU"}, s.holder_hu, {-1000.0, 1500.0});
+  v({"holder_thickness_mm", "Of the board; 0: none.", "mm"}, s.holder_thickness_mm, {0.0, 30.0});
+  v({"field_of_view_mm", "Above 0: square slices of this size, padding outside the circle; 0: a tight grid.", "mm"},
+    s.field_of_view_mm, {0.0, 600.0});
+  v({"tumor_diameter_mm", "Mean, seen from above.", "mm"}, s.tumor_diameter_mm, {8.0, 24.0});
+  v("tumor_irregularity", s.tumor_irregularity, "Sum of the amplitudes of harmonics 2 to 6 over the radius.",
+    {0.0, 0.25});
+  v({"tumor_depth_mm", "Of the bowl beneath the edge.", "mm"}, s.tumor_depth_mm, {1.0, 8.0});
+  v("tumor_position", s.tumor_position, "Centre, as a share of the length from the tip.", {0.4, 0.6});
+  v("tumor_points", s.tumor_points, "Of the edge.", {24.0, 1000.0});
+}
 
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const PhantomSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const PhantomSettings& settings);
 
 /// A specimen's CT together with everything that is true about it. mm, LPS; tip anterior (-y), back of the tongue up
 /// (+z).

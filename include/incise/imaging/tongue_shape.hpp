@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/core/random.hpp>
 #include <incise/geometry/types.hpp>
 
@@ -12,17 +14,23 @@ namespace incise {
 
 /// Mean size of a tongue-like specimen and how much one differs from the next. mm.
 struct TongueShapeSettings {
-  double length_mm = 110.0;  ///< tip to root (y); [80, 160]
-  double width_mm = 55.0;    ///< left to right (x); [46, 80]
-  double height_mm = 35.0;   ///< platform to the top of the back (z); [30, 50]
-  double variation = 0.05;   ///< greatest relative change of each of the three; [0, 0.08]
-  double bend_mm = 2.0;      ///< greatest sideways bow of the mid-line; [0, 5]
-  double asymmetry = 0.04;   ///< greatest relative difference of a half width from the mean; [0, 0.1]
-  double bump_mm = 1.2;      ///< greatest height of the low-frequency bumps on the back; [0, 2]
+  double length_mm = 110.0;
+  double width_mm = 55.0;
+  double height_mm = 35.0;
+  double variation = 0.05;
+  double bend_mm = 2.0;
+  double asymmetry = 0.04;
+  double bump_mm = 1.2;
 };
-
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const TongueShapeSettings& settings);
+inline void describe(Visitor& v, TongueShapeSettings& s) {
+  v({"length_mm", "Tip to root (y).", "mm"}, s.length_mm, {80.0, 160.0});
+  v({"width_mm", "Left to right (x).", "mm"}, s.width_mm, {46.0, 80.0});
+  v({"height_mm", "Platform to the top of the back (z).", "mm"}, s.height_mm, {30.0, 50.0});
+  v("variation", s.variation, "Greatest relative change of each of the three.", {0.0, 0.08});
+  v({"bend_mm", "Greatest sideways bow of the mid-line.", "mm"}, s.bend_mm, {0.0, 5.0});
+  v("asymmetry", s.asymmetry, "Greatest relative difference of a half width from the mean.", {0.0, 0.1});
+  v({"bump_mm", "Greatest height of the low-frequency bumps on the back.", "mm"}, s.bump_mm, {0.0, 2.0});
+}
 
 /// One long wave of the back's relief: amplitude_mm cos(wave · (x, y) + phase).
 struct SurfaceWave {

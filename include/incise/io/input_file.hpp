@@ -9,8 +9,6 @@ namespace incise {
 
 /// Largest file that is read at all: well above a whole-body CT, below what would fill a laboratory's machine.
 inline constexpr std::uint64_t kLargestInputBytes = 8ULL << 30;
-/// Largest text that is taken apart item by item (JSON): its items take some twenty times their text.
-inline constexpr std::uint64_t kLargestJsonBytes = 256ULL << 20;
 /// Largest case file: the longest sound one has some ten kilobytes.
 inline constexpr std::uint64_t kLargestCaseBytes = 4ULL << 20;
 

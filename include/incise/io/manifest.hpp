@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/sha256.hpp>
 #include <incise/core/verdict.hpp>
 
@@ -17,6 +18,10 @@ struct ManifestInput {
   std::string path;
   std::string sha256;
 };
+inline void describe(Visitor& v, ManifestInput& i) {
+  v("path", i.path, "As it was given.");
+  v("sha256", i.sha256, "Of its contents.");
+}
 
 /// All that is needed to repeat a run: `manifest.json` of an output folder.
 struct Manifest {
@@ -33,6 +38,7 @@ struct Manifest {
   std::string specimen_id = {};  ///< whose the folder's files are (specimen_id.hpp); empty: nobody's, or several's
   std::optional<Verdict> verdict = {};  ///< of the run that filled the folder, where it has one
 };
+void describe(Visitor& v, Manifest& m);
 
 /// Writes `folder/manifest.json`, all or nothing. @pre settings_json is JSON, wall_s is finite and not negative.
 /// @throws DataError if the file cannot be written.

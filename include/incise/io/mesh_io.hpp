@@ -44,7 +44,8 @@ inline constexpr double kLargestBodyMm = 2000.0;
 void require_body_size(const Box3& box, const std::filesystem::path& path);
 
 /// Writes a `.vtu` that ParaView opens and read_tet_mesh returns exactly: little endian, 64-bit floats, zlib-compressed
-/// base64. Field data say SPACE = LPS and length_unit = mm. The file appears complete or not at all.
+/// base64. A comment says SPACE=LPS and mm: meshio stops at text in field data. The file appears complete or not at
+/// all.
 /// @pre every number is finite, indices are in range, data arrays have the right length (InvalidArgument otherwise).
 /// @throws DataError if the file cannot be written.
 void write_vtu(const std::filesystem::path& path, const TetMesh& mesh);

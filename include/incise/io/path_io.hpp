@@ -38,9 +38,9 @@ void require_tumor_size(const ToolPath& path, const std::filesystem::path& file)
 
 /// The JSON text of a path; reading it back gives the same doubles. @pre the path keeps the rules that reading checks
 /// (else InvalidArgument with the same words).
-[[nodiscard]] std::string to_json(const ToolPath& path);
+[[nodiscard]] std::string path_json(const ToolPath& path);
 
-/// Writes `path.json`, all or nothing. @throws DataError if the file cannot be written; InvalidArgument as to_json.
+/// Writes `path.json`, all or nothing. @throws DataError if the file cannot be written; InvalidArgument as path_json.
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path);
 
 /// The same with the verdict of the simulated cut along the path, and a digest over both under `verdict.digest_sha256`.

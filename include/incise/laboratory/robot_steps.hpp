@@ -31,7 +31,7 @@ struct ExportRequest {
   ScriptMotion motion = ScriptMotion::MoveP;
   CheckSettings checks;
   ProgramSettings settings;
-  std::optional<double> overlap_mm;  ///< of a closed path; absent: 5 mm for an incision, none for a mark
+  std::optional<double> overlap_mm;  ///< of a closed path; absent: kRingOverlapMm for an incision, none for a mark
   ArmSetup setup;
   std::optional<double> power_w;       ///< of the generator; absent: not known
   std::vector<std::string> overrides;  ///< checks that a person takes on them

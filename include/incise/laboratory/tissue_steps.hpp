@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/geometry/point_cloud.hpp>
 #include <incise/geometry/visible_surface.hpp>
 #include <incise/imaging/segmentation.hpp>
@@ -27,7 +28,7 @@ struct MeshRequest {
   std::filesystem::path around;     ///< planned cut, round which the mesh is fine; empty: even all over
   std::optional<double> fine_mm;    ///< > 0; only with `around`
   std::optional<double> coarse_mm;  ///< > 0
-  double depth_mm = 5.0;            ///< of the cut
+  double depth_mm = kPlannedDepthMm;  ///< of the cut
   int tets = 0;                     ///< to aim for; 0: as the lengths give
   std::filesystem::path output;     ///< .vtu; its manifest is written beside it
 };

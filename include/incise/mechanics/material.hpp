@@ -69,7 +69,8 @@ inline void describe(Visitor& v, Material& m) {
     m.youngs_modulus_kpa, kYoungsModulusLimits);
   v("poissons_ratio", m.poissons_ratio, "Poisson's ratio.", kPoissonsRatioLimits);
   v({"density_kg_m3", "Density.", "kg/m3"}, m.density_kg_m3, {0.0, kMostDensityKgM3, true});
-  v({"fibre_modulus_kpa", "Stiffness added along the fibres; 0: none.", "kPa"}, m.fibre_modulus_kpa, kNotNegative);
+  v({"fibre_modulus_kpa", "Stiffness added along the fibres; 0: none.", "kPa"}, m.fibre_modulus_kpa,
+    {0.0, kYoungsModulusLimits.most});
   v.direction("fibre_direction", m.fibre_direction, "Of the fibres at rest, where the mesh gives none.");
   v("prony", m.prony, "Branches that relax with time, in steps of time only; absent: none.");
   v({"kelvin_voigt_time_s", "Shear viscosity over long-time shear modulus, in steps of time only; 0: none.", "s"},
@@ -91,8 +92,6 @@ struct MaterialField {
 /// The first of these arrays that has another number of components; nothing: none has.
 [[nodiscard]] std::optional<Problem> malformed_material_array(const TetMesh& mesh);
 
-/// Every violation; empty: valid.
-[[nodiscard]] std::vector<Problem> validate(const Material& material);
 /// The same for a field of `tets` items; one at most for each array.
 [[nodiscard]] std::vector<Problem> validate(const MaterialField& field, std::size_t tets);
 

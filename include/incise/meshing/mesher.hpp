@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/volume.hpp>
 #include <incise/meshing/quality.hpp>
 #include <incise/meshing/sizing_field.hpp>
@@ -16,24 +18,25 @@ inline constexpr int kFewestTets = 100;  ///< that may be aimed for
 /// How tetrahedra are made. Lengths in mm, angles in degrees; h is the local edge length that the sizing field asks
 /// for.
 struct MeshingSettings {
-  std::optional<int> target_tets;        ///< aim for this count by scaling fine and coarse edge lengths alike, >= 100
-  double target_tolerance = 0.10;        ///< relative; `meets_target` says whether the count is this near, (0, 1)
-  double facet_angle_deg = 25.0;         ///< smallest angle of a surface triangle, (0, 30]
-  double facet_size_factor = 0.9;        ///< circumradius of surface triangles / h, > 0
-  double facet_distance_factor = 0.25;   ///< distance of surface triangles from the surface / smallest h, > 0 ...
-  double facet_distance_floor_mm = 0.1;  ///< ... but never asked to be below this, > 0
-  double radius_edge_ratio = 2.0;        ///< circumradius / shortest edge of tets, >= 2 (theory's limit)
-  double cell_size_factor = 0.75;        ///< circumradius of tets / h, > 0
-  double sliver_bound_deg = 12.0;        ///< dihedral angle that perturbation and exudation work towards, (0, 30]
-  double min_dihedral_deg = 10.0;        ///< what `meets_quality` demands, [0, sliver_bound_deg]
-  double volume_tolerance = 0.01;        ///< relative; what `meets_volume` demands, (0, 1)
-  int max_refinements = 4;               ///< refinements tried to meet count and volume, [1, 20]
-  int max_improvements = 3;              ///< perturbed meshes tried to meet the angle, [1, 20]
-  std::size_t max_tets = 5'000'000;      ///< a prediction above this is refused
+  std::optional<int> target_tets;
+  double target_tolerance = 0.10;
+  double facet_angle_deg = 25.0;
+  double facet_size_factor = 0.9;
+  double facet_distance_factor = 0.25;
+  double facet_distance_floor_mm = 0.1;
+  double radius_edge_ratio = 2.0;
+  double cell_size_factor = 0.75;
+  double sliver_bound_deg = 12.0;
+  double min_dihedral_deg = 10.0;
+  double volume_tolerance = 0.01;
+  int max_refinements = 4;
+  int max_improvements = 3;
+  std::size_t max_tets = 5'000'000;
 };
+void describe(Visitor& v, MeshingSettings& s);
 
 /// Everything that is wrong with the settings, a sentence each; empty: usable.
-[[nodiscard]] std::vector<std::string> validate(const MeshingSettings& settings);
+[[nodiscard]] std::vector<Problem> validate(const MeshingSettings& settings);
 
 struct MeshingPhase {
   std::string name;  ///< body, sizing, refine, perturb, exude, finish

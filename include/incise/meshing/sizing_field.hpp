@@ -1,5 +1,8 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
+#include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/contour.hpp>
 
 #include <optional>
@@ -10,27 +13,36 @@ namespace incise {
 
 /// Edge lengths of a graded mesh: short where the needle and its neighbourhood pass, long elsewhere.
 struct SizingSettings {
-  double fine_mm = 0.8;    ///< edge length inside the band around the cut, > 0
-  double coarse_mm = 4.0;  ///< longest edge length, >= fine_mm
-  double growth = 0.36;    ///< mm of edge length gained per mm of distance from the band, > 0
-  double band_inside_mm =
-      4.0;  ///< band width towards the inside of a closed path, >= 0: the tissue is dragged that way
-  double band_outside_mm = 2.0;  ///< band width away from it, >= 0; an open cut has the larger width on both sides
-  double band_below_mm = 1.5;    ///< band below the tip of the tool, >= 0
+  double fine_mm = 0.8;
+  double coarse_mm = 4.0;
+  double growth = 0.36;
+  double band_inside_mm = 4.0;
+  double band_outside_mm = 2.0;
+  double band_below_mm = 1.5;
 };
+inline void describe(Visitor& v, SizingSettings& s) {
+  v({"fine_mm", "Edge length inside the band around the cut, at most coarse_mm.", "mm"}, s.fine_mm, kPositive);
+  v({"coarse_mm", "Longest edge length.", "mm"}, s.coarse_mm, kPositive);
+  v("growth", s.growth, "Edge length gained per distance from the band, mm per mm.", kPositive);
+  v({"band_inside_mm", "Band towards the inside of a closed path: the tissue is dragged that way.", "mm"},
+    s.band_inside_mm, kNotNegative);
+  v({"band_outside_mm", "Band away from it; an open cut has the larger width on both sides.", "mm"}, s.band_outside_mm,
+    kNotNegative);
+  v({"band_below_mm", "Band below the tip of the tool.", "mm"}, s.band_below_mm, kNotNegative);
+}
 
 /// The settings with the edge lengths of a body whose longest side is this long: the default ones are made for 40 mm and more, a smaller
 /// body has them in proportion. No body (0, refused by the mesher): those of a large one.
 [[nodiscard]] SizingSettings default_lengths(double longest_side_mm);
 
 /// Everything that is wrong with the settings, a sentence each; empty: usable.
-[[nodiscard]] std::vector<std::string> validate(const SizingSettings& settings);
+[[nodiscard]] std::vector<Problem> validate(const SizingSettings& settings);
 
 /// The cut that a mesh is made for.
 struct PlannedCut {
   Contour path;  ///< N x 3, mm, LPS, on the surface of the body as it lies in the CT (rest configuration)
   Vec3 approach = -Vec3::UnitZ();  ///< points into the tissue; need not be unit
-  double depth_mm = 5.0;           ///< of the tip of the tool below the path, along `approach`, > 0
+  double depth_mm = kPlannedDepthMm;  ///< of the tip of the tool below the path, along `approach`, > 0
 };
 
 /// The wanted edge length at every point of space, mm, LPS: `fine_mm` in the band around the wall that the needle

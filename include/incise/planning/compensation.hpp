@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/describe.hpp>
 #include <incise/planning/plan_path.hpp>
 
@@ -9,19 +10,31 @@
 namespace incise {
 
 struct CompensationSettings {
-  double target_mm = 5.0;        ///< intended distance of the measured contour from the edge, > 0: 5.0 for a mid-line
-  double relaxation = 1.0;       ///< share of the measured error that is corrected, (0, 1]; the paper: all of it
-  int smoothing_passes = 0;      ///< of [1 2 1]/4 over the waypoints' errors, >= 0; the paper: none
-  double close_margin_mm = 2.2;  ///< no waypoint is moved to where less tissue than this is left beside the edge, > 0
-  double electrode_radius_mm = 0.5;  ///< >= 0
+  double target_mm = 5.0;
+  double relaxation = 1.0;
+  int smoothing_passes = 0;
+  double close_margin_mm = kCloseMarginMm;
+  double electrode_radius_mm = kElectrodeRadiusMm;
   Vec3 approach = -Vec3::UnitZ();
   AxisMode axis_mode = AxisMode::Approach;
-  double step_mm = 0.25;          ///< spacing of the points at which the measured contour's error is taken, > 0
-  double rim_clearance_mm = 1.0;  ///< the corrected path keeps this far from the surface's rim, >= 0
+  double step_mm = 0.25;
+  double rim_clearance_mm = 1.0;
 };
-
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const CompensationSettings& settings);
+inline void describe(Visitor& v, CompensationSettings& s) {
+  v({"target_mm", "Intended distance of the measured contour from the edge; 5 for a mid-line.", "mm"}, s.target_mm,
+    kPositive);
+  v("relaxation", s.relaxation, "Share of the measured error that is corrected; the paper: all of it.",
+    {0.0, 1.0, true});
+  v("smoothing_passes", s.smoothing_passes, "Of [1 2 1]/4 over the waypoints' errors; the paper: none.", kNotNegative);
+  v({"close_margin_mm", "No waypoint is moved to where less tissue than this is left beside the edge.", "mm"},
+    s.close_margin_mm, kPositive);
+  v({"electrode_radius_mm", "Of the tool.", "mm"}, s.electrode_radius_mm, kNotNegative);
+  v.direction("approach", s.approach, "Into the tissue.");
+  v("tool_axis", s.axis_mode, "How the tool is held at a waypoint.");
+  v({"step_mm", "Spacing of the points at which the measured contour's error is taken.", "mm"}, s.step_mm, kPositive);
+  v({"rim_clearance_mm", "The corrected path keeps this far from the surface's rim.", "mm"}, s.rim_clearance_mm,
+    kNotNegative);
+}
 
 /// A corrected path, and what was done to each waypoint.
 struct Compensation {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/describe.hpp>
 #include <incise/core/verdict.hpp>
 #include <incise/planning/plan_path.hpp>
@@ -43,42 +44,77 @@ using MeasureCut = std::function<std::optional<PathErrors>(const ToolPath&)>;
 
 /// Where waypoints may go.
 struct SafeRegion {
-  double close_margin_mm = 2.2;      ///< a waypoint leaves at least this much tissue beside the tumour edge, > 0
-  double electrode_radius_mm = 0.5;  ///< >= 0
-  double max_offset_mm = 3.8;        ///< farthest from the place on the intended path, > 0; a program whose course is 4 mm off is not exported
-  double rim_clearance_mm = 1.0;     ///< from the surface's rim, >= 0
+  double close_margin_mm = kCloseMarginMm;
+  double electrode_radius_mm = kElectrodeRadiusMm;
+  double max_offset_mm = 3.8;
+  double rim_clearance_mm = 1.0;
   Vec3 approach = -Vec3::UnitZ();
   AxisMode axis_mode = AxisMode::Approach;
 };
-
-/// Every violation, one sentence each with the field's name after `region.`; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const SafeRegion& region);
+inline void describe(Visitor& v, SafeRegion& r) {
+  v({"close_margin_mm", "A waypoint leaves at least this much tissue beside the tumour edge.", "mm"}, r.close_margin_mm,
+    kPositive);
+  v({"electrode_radius_mm", "Of the tool.", "mm"}, r.electrode_radius_mm, kNotNegative);
+  v({"max_offset_mm",
+     "Farthest from the place on the intended path; a program whose course is 4 mm off is not exported.", "mm"},
+    r.max_offset_mm, kPositive);
+  v({"rim_clearance_mm", "From the surface's rim.", "mm"}, r.rim_clearance_mm, kNotNegative);
+  v.direction("approach", r.approach, "Into the tissue.");
+  v("tool_axis", r.axis_mode, "How the tool is held at a waypoint.");
+}
 
 struct ConvergenceSettings {
   SafeRegion region;
-  int simulations = 4;         ///< at most, the first (as intended) and the verifying one counted, >= 2
-  int more_simulations = 0;    ///< beyond these, at most, while the nearest pass has an open layer or a verdict against
-                               ///< it: it is moved by more_move_mm, out and in, then by twice that
-  double more_move_mm = 0.1;   ///< of each waypoint, at first, > 0: enough for other tissue to hang on at the seam, far
-                               ///< less than the electrode's radius
-  double floor_mm = 0.0;       ///< mean |error| that the mesh leaves in tissue that does not move, >= 0
-  double tolerance_mm = 0.05;  ///< converged: mean |error| within this of the floor, > 0
-  double smoothing_mm = 1.5;   ///< errors are averaged along the path with a Gaussian of this standard deviation, > 0
-  double relaxation = 1.0;     ///< share of the error that a plain step corrects, (0, 1]
-  /// The cut answers to the tool's path blurred (see PathErrors::lag_mm): about this share of the lag farther on, with
-  /// this share of the lag as standard deviation; >= 0 both. 0 and 0: every place answers to its own waypoint alone.
+  int simulations = 4;
+  int more_simulations = 0;
+  double more_move_mm = 0.1;
+  double floor_mm = 0.0;
+  double tolerance_mm = 0.05;
+  double smoothing_mm = 1.5;
+  double relaxation = 1.0;
   double shift_lags = 0.15;
   double spread_lags = 1.0;
-  int memory = 2;         ///< earlier passes that Anderson acceleration looks back at, >= 0; 0: plain steps
-  double trust_mm = 4.0;  ///< farthest that a waypoint moves in one pass, > 0; halved after a pass that made it worse
-  double least_move_mm = 0.01;  ///< passes that would move no waypoint by more than this are not made, >= 0
-  /// Expected error of the real cut less that of the simulated one, positive = farther out: none, one for the whole
-  /// path, or one per waypoint. Added to what is measured.
+  int memory = 2;
+  double trust_mm = 4.0;
+  double least_move_mm = 0.01;
   std::vector<double> bias_mm;
 };
-
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const ConvergenceSettings& settings);
+/// The cut answers to the tool's path blurred (see PathErrors::lag_mm). What both ways of compensating take from it.
+inline void describe_blur(Visitor& v, double& smoothing_mm, double& shift_lags, double& spread_lags) {
+  v({"smoothing_mm", "Standard deviation of the Gaussian by which errors are averaged along the path.", "mm"},
+    smoothing_mm, kPositive);
+  v("shift_lags", shift_lags, "How much farther on a place answers to the tool's path, in shares of the lag.",
+    kNotNegative);
+  v("spread_lags", spread_lags, "Standard deviation of that place, likewise; 0 and 0: to its own waypoint alone.",
+    kNotNegative);
+}
+inline void describe(Visitor& v, ConvergenceSettings& s) {
+  v("region", s.region, "Where waypoints may be moved to.");
+  v("simulations", s.simulations, "At most, the first (as intended) and the verifying one counted.", {2.0});
+  v("more_simulations", s.more_simulations,
+    "Beyond these, at most, while the nearest pass has an open layer or a verdict against it: it is moved by "
+    "more_move_mm, out and in, then by twice that.",
+    kNotNegative);
+  v({"more_move_mm",
+     "Of each waypoint, at first: enough for other tissue to hang on at the seam, far less than the electrode's "
+     "radius.",
+     "mm"},
+    s.more_move_mm, kPositive);
+  v({"floor_mm", "Mean |error| that the mesh leaves in tissue that does not move.", "mm"}, s.floor_mm, kNotNegative);
+  v({"tolerance_mm", "Converged: mean |error| within this of the floor.", "mm"}, s.tolerance_mm, kPositive);
+  v("relaxation", s.relaxation, "Share of the error that a plain step corrects.", {0.0, 1.0, true});
+  describe_blur(v, s.smoothing_mm, s.shift_lags, s.spread_lags);
+  v("memory", s.memory, "Earlier passes that Anderson acceleration looks back at; 0: plain steps.", kNotNegative);
+  v({"trust_mm", "Farthest that a waypoint moves in one pass; halved after a pass that made it worse.", "mm"},
+    s.trust_mm, kPositive);
+  v({"least_move_mm", "Passes that would move no waypoint by more than this are not made.", "mm"}, s.least_move_mm,
+    kNotNegative);
+  v({"bias_mm",
+     "Expected error of the real cut less that of the simulated one, positive: farther out; none, one for the whole "
+     "path, or one per waypoint. Added to what is measured.",
+     "mm"},
+    s.bias_mm);
+}
 
 /// One simulated cut of the iteration.
 struct CompensationPass {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/planning/robust_compensation.hpp>
 
 #include <optional>
@@ -31,6 +33,14 @@ struct SpecimenDistance {
   bool is_better_below = false;  ///< a value below the mean speaks for the specimen, however far
   double degrees = 4.0;          ///< degrees of freedom of that standard deviation: n + 3, >= 4
 };
+inline void describe(Visitor& v, SpecimenDistance& d) {
+  v("name", d.name, "Of the quantity.");
+  v("value", d.value, "Of this specimen.");
+  v("calibrated_mean", d.mean, "Of the calibration's specimens; of a logarithmic quantity the geometric one.");
+  v("in_sd", d.in_sd, "Standard deviations of what a next specimen would show by which it lies above the mean.");
+  v.internal("is_better_below", d.is_better_below, "A value below the mean is in favour of the specimen.");
+  v.internal("degrees", d.degrees, "Degrees of freedom of that standard deviation.");
+}
 
 /// How a quantity differs between specimens that are alike.
 struct UsualSpread {
@@ -80,16 +90,23 @@ struct EligibilityEvidence {
 
 /// When which advice is given. Every number is a choice; see docs/models/eligibility.md.
 struct EligibilityRules {
-  double least_gain_sds = 1.0;  ///< the gain has to be above this many of its standard deviations, >= 0
-  /// and the probability that the corrected cut is the worse one at most this, alike and in all, [0, 1]
+  double least_gain_sds = 1.0;
   double most_p_worse = 0.15;
-  double most_distance_sds = 3.0;     ///< of any quantity, > 0
-  double most_rmse_mm = 1.0;          ///< of the registration, > 0
-  double most_unmeasured = 0.5;       ///< of the corrected path's tissues, by weight, [0, 1]
-  double most_p_close_margin = 0.05;  ///< of the corrected path, where it is above the intended one's, (0, 1)
+  double most_distance_sds = 3.0;
+  double most_rmse_mm = 1.0;
+  double most_unmeasured = 0.5;
+  double most_p_close_margin = 0.05;
 };
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const EligibilityRules& rules);
+inline void describe(Visitor& v, EligibilityRules& r) {
+  v("least_gain_sds", r.least_gain_sds, "The gain has to be above this many of its standard deviations.", kNotNegative);
+  v("most_p_worse", r.most_p_worse, "Probability that the corrected cut is the worse one, alike and in all.",
+    {0.0, 1.0});
+  v("most_distance_sds", r.most_distance_sds, "Of any quantity from the calibrated specimens.", kPositive);
+  v({"most_rmse_mm", "Of the registration.", "mm"}, r.most_rmse_mm, kPositive);
+  v("most_unmeasured", r.most_unmeasured, "Of the corrected path's tissues, by weight.", {0.0, 1.0});
+  v("most_p_close_margin", r.most_p_close_margin, "Of the corrected path, where it is above the intended one's.",
+    {0.0, 1.0, true, true});
+}
 
 struct Eligibility {
   Advice advice = Advice::DoNotUse;

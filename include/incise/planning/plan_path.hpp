@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/describe.hpp>
 #include <incise/core/problem.hpp>
 #include <incise/geometry/surface_query.hpp>
@@ -34,8 +35,8 @@ inline constexpr std::array<std::string_view, 2> kAxisModeNames{"approach", "sur
 /// The intended incision. Defaults are the paper's (II-B.4).
 struct PlanSettings {
   PlanKind kind = PlanKind::Ring;
-  double lateral_margin_mm = 5.0;  ///< from the tumour edge to the kerf's mid-line, > 0
-  double depth_mm = 5.0;           ///< of the tool's tip below the surface, along its axis, > 0
+  double lateral_margin_mm = kLateralMarginMm;  ///< from the tumour edge to the kerf's mid-line, > 0
+  double depth_mm = kPlannedDepthMm;            ///< of the tool's tip below the surface, along its axis, > 0
   double speed_mm_s = 7.0;         ///< of the real tool, > 0
   double power_w = 35.0;           ///< electrosurgical, > 0
   Vec3 approach = -Vec3::UnitZ();  ///< into the tissue, as camera and surgeon look; non-zero

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/cloud_surface.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/geometry/tool_path.hpp>
@@ -13,19 +15,32 @@ namespace incise {
 /// How a simulated path is laid on the measured tissue. Defaults are the paper's (II-D.2).
 struct ProjectSettings {
   PathKind kind = PathKind::Incise;
-  double mark_depth_mm = 1.0;    ///< of a marking path below the surface (the paper's inferior offset), > 0
-  double mark_speed_mm_s = 2.0;  ///< > 0
-  int mark_waypoints = 96;       ///< along the tumour edge, >= 8
-  std::optional<double> incise_depth_mm = std::nullopt;    ///< of an incision, > 0; absent: as the path says
-  std::optional<double> incise_speed_mm_s = std::nullopt;  ///< > 0; absent: as the path says
-  double max_gap_mm = 2.0;  ///< farthest from a waypoint to the nearest measured point, in the picture, >= 0
-  double smoothing_mm =
-      10.0;  ///< radius over which the shift onto the surface is averaged, >= 0; 0: every point by itself
-  double max_shift_mm = 5.0;  ///< farthest along the approach that a point is moved onto the surface, >= 0
-  AxisMode axis_mode = AxisMode::Approach;  ///< the tool as the path holds it, or against the measured surface's normal
+  double mark_depth_mm = 1.0;
+  double mark_speed_mm_s = 2.0;
+  int mark_waypoints = 96;
+  std::optional<double> incise_depth_mm = std::nullopt;
+  std::optional<double> incise_speed_mm_s = std::nullopt;
+  double max_gap_mm = 2.0;
+  double smoothing_mm = 10.0;
+  double max_shift_mm = 5.0;
+  AxisMode axis_mode = AxisMode::Approach;
 };
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const ProjectSettings& settings);
+inline void describe(Visitor& v, ProjectSettings& s) {
+  v("kind", s.kind, "A mark along the tumour edge, or the incision.");
+  v({"mark_depth_mm", "Of a marking path below the surface (the paper's inferior offset).", "mm"}, s.mark_depth_mm,
+    kPositive);
+  v({"mark_speed_mm_s", "Of a marking path.", "mm/s"}, s.mark_speed_mm_s, kPositive);
+  v("mark_waypoints", s.mark_waypoints, "Along the tumour edge.", {8.0});
+  v({"incise_depth_mm", "Of an incision; absent: as the path says.", "mm"}, s.incise_depth_mm, kPositive);
+  v({"incise_speed_mm_s", "Of an incision; absent: as the path says.", "mm/s"}, s.incise_speed_mm_s, kPositive);
+  v({"max_gap_mm", "Farthest from a waypoint to the nearest measured point, in the picture.", "mm"}, s.max_gap_mm,
+    kNotNegative);
+  v({"smoothing_mm", "Radius over which the shift onto the surface is averaged; 0: every point by itself.", "mm"},
+    s.smoothing_mm, {0.0, 100.0});
+  v({"max_shift_mm", "Farthest along the approach that a point is moved onto the surface.", "mm"}, s.max_shift_mm,
+    kNotNegative);
+  v("tool_axis", s.axis_mode, "The tool as the path holds it, or against the measured surface's normal.");
+}
 
 /// The measured tissue: a cloud or a mesh of triangles, in the robot's frame, seen along an approach.
 class MeasuredSurface {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/planning/converging_compensation.hpp>
 
 #include <cstdint>
@@ -23,24 +25,41 @@ using MeasureScenarios = std::function<std::vector<std::optional<PathErrors>>(co
 
 struct RobustSettings {
   SafeRegion region;
-  double target_mm = 5.0;  ///< intended distance of the measured contour from the edge, > 0
-  /// What of the target is no tissue: the electrode's radius for a mid-line, 0 for an inner edge; >= 0.
+  double target_mm = 5.0;
   double kerf_allowance_mm = 0.5;
-  double max_probability = 0.05;    ///< of less tissue than the region's close margin anywhere along the cut, (0, 1)
-  double residual_sd_mm = 0.3;      ///< of a real cut's error about what its scenario says, > 0 …
-  double residual_length_mm = 6.0;  ///< … and the way along the path over which its correlation falls to 1/e, > 0
-  double common_sd_mm = 0.0;        ///< of a further error that is the same all round, >= 0
-  double placement_sd_mm = 0.0;     ///< of a shift of the whole cut, along each axis of the picture, >= 0
-  double smoothing_mm = 1.5;        ///< as in ConvergenceSettings
-  double shift_lags = 0.15;         ///< as there
-  double spread_lags = 1.0;         ///< as there
-  double trust_mm = 4.0;            ///< farthest that a waypoint moves from the corrected path, > 0
-  int rounds = 2;                   ///< most times that the path is chosen and cut in every scenario, >= 1
-  int samples = 4000;               ///< residuals that probabilities are counted over, >= 100
+  double max_probability = 0.05;
+  double residual_sd_mm = 0.3;
+  double residual_length_mm = 6.0;
+  double common_sd_mm = 0.0;
+  double placement_sd_mm = 0.0;
+  double smoothing_mm = 1.5;
+  double shift_lags = 0.15;
+  double spread_lags = 1.0;
+  double trust_mm = 4.0;
+  int rounds = 2;
+  int samples = 4000;
   std::uint64_t seed = 1;
 };
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const RobustSettings& settings);
+inline void describe(Visitor& v, RobustSettings& s) {
+  v("region", s.region, "Where waypoints may be moved to.");
+  v({"target_mm", "Intended distance of the measured contour from the edge.", "mm"}, s.target_mm, kPositive);
+  v({"kerf_allowance_mm",
+     "What of the target is no tissue: the electrode's radius for a mid-line, 0 for an inner edge.", "mm"},
+    s.kerf_allowance_mm, kNotNegative);
+  v("max_probability", s.max_probability, "Of less tissue than the region's close margin anywhere along the cut.",
+    {0.0, 1.0, true, true});
+  v({"residual_sd_mm", "Of a real cut's error about what its scenario says.", "mm"}, s.residual_sd_mm, kPositive);
+  v({"residual_length_mm", "Way along the path over which its correlation falls to 1/e.", "mm"}, s.residual_length_mm,
+    kPositive);
+  v({"common_sd_mm", "Of a further error that is the same all round.", "mm"}, s.common_sd_mm, kNotNegative);
+  v({"placement_sd_mm", "Of a shift of the whole cut, along each axis of the picture.", "mm"}, s.placement_sd_mm,
+    kNotNegative);
+  describe_blur(v, s.smoothing_mm, s.shift_lags, s.spread_lags);
+  v({"trust_mm", "Farthest that a waypoint moves from the corrected path.", "mm"}, s.trust_mm, kPositive);
+  v("rounds", s.rounds, "Most times that the path is chosen and cut in every scenario.", {1.0});
+  v("samples", s.samples, "Residuals that probabilities are counted over.", {100.0});
+  v("seed", s.seed, "Of these.");
+}
 
 /// What is to be expected of a path, from cuts along it in every scenario.
 struct PathRisk {
@@ -50,6 +69,16 @@ struct PathRisk {
   /// The probability if every scenario that could not be measured came too close.
   [[nodiscard]] double p_close_bound() const { return unmeasured_weight + (1.0 - unmeasured_weight) * p_close_margin; }
 };
+inline void describe(Visitor& v, PathRisk& r) {
+  const auto if_measured = [&r](double value) {
+    return r.unmeasured_weight < 1.0 ? std::optional(value) : std::nullopt;
+  };
+  v.derived("expected_abs_error_mm", if_measured(r.expected_abs_error_mm),
+            "Mean over scenarios, residuals and the path.");
+  v.derived("p_close_margin", if_measured(r.p_close_margin),
+            "That somewhere less tissue is left than the close margin.");
+  v("unmeasured_weight", r.unmeasured_weight, "Share of the scenarios whose cut left nothing to measure.", {0.0, 1.0});
+}
 
 enum class RobustOutcome {
   Met,     ///< the path keeps the probability, in the scenarios' own cuts, those without a measure counted as too close

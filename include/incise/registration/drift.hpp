@@ -1,10 +1,13 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/registration/similarity.hpp>
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,22 +24,38 @@ struct ScaleRange {
   [[nodiscard]] static ScaleRange free();
   [[nodiscard]] bool is_fixed() const { return low == high; }
 };
+inline void describe(Visitor& v, ScaleRange& r) {
+  v("low", r.low, "Least scale.", kNotNegative);
+  std::optional<double> high = if_finite(r.high);
+  v("high", high, "Greatest, at least the least one; absent: any.", kPositive);
+  if (v.sets()) r.high = high.value_or(std::numeric_limits<double>::infinity());
+}
 
 /// Settings of coherent point drift. All are free of units: lengths are shares of the target's root mean square radius.
 struct DriftSettings {
   ScaleRange scale = ScaleRange::free();
-  double outlier_weight = 0.1;  ///< w: share of the target's points that belong to nothing in the source, (0, 1)
-  int max_iterations = 300;     ///< EM steps, on all levels together
-  double tolerance =
-      1e-4;  ///< converged when all further steps together would move the source by less than this (estimated)
-  int dimensions = 3;          ///< 2: drawings with all z equal; rotation about z only
-  bool coarse_to_fine = true;  ///< wide Gaussians see clusters in place of points; false: every step sees all points
-  std::optional<double> first_sigma;  ///< width to start with, as a share of the radius; absent: the clouds' mean
-                                      ///< squared distance says it
+  double outlier_weight = 0.1;
+  int max_iterations = 300;
+  double tolerance = 1e-4;
+  int dimensions = 3;
+  bool coarse_to_fine = true;
+  std::optional<double> first_sigma;
 };
+inline void describe(Visitor& v, DriftSettings& s) {
+  v("scale", s.scale, "What the scale may be; low = high fixes it.");
+  v("outlier_weight", s.outlier_weight, "w: share of the target that belongs to nothing in the source.",
+    {0.0, 1.0, true, true});
+  v("max_iterations", s.max_iterations, "Steps of expectation and maximisation, on all levels together.", {1.0});
+  v("tolerance", s.tolerance, "Converged when all further steps together would move the source by less (estimated).",
+    kPositive);
+  v("dimensions", s.dimensions, "2: drawings with all z equal; rotation about z only.", {2.0, 3.0});
+  v("coarse_to_fine", s.coarse_to_fine, "Wide Gaussians see clusters in place of points; false: all points always.");
+  v("first_sigma", s.first_sigma,
+    "Width to start with, as a share of the radius; absent: from the clouds' mean squared distance.", kPositive);
+}
 
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const DriftSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const DriftSettings& settings);
 
 enum class DriftOutcome {
   Converged,

@@ -1,23 +1,34 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/registration/drift.hpp>
 
 namespace incise {
 
 struct NonrigidSettings {
-  double smoothness = 0.8;      ///< β: range of the deformation, as a share of the source's root mean square radius
-  double stiffness = 30.0;      ///< λ: how much bending costs against misfit
-  double outlier_weight = 0.1;  ///< w, (0, 1)
+  double smoothness = 0.8;
+  double stiffness = 30.0;
+  double outlier_weight = 0.1;
   int max_iterations = 300;
-  double tolerance =
-      1e-4;  ///< converged when a step moves the points by less than this share of the radius (rms), twice in a row
-  int dimensions = 3;                 ///< 2: drawings with all z equal
-  int max_centers = 400;              ///< rank of the deformation; a smoother one needs fewer
-  std::optional<double> first_sigma;  ///< as in DriftSettings; for clouds that are aligned already, say 0.1
+  double tolerance = 1e-4;
+  int dimensions = 3;
+  int max_centers = 400;
+  std::optional<double> first_sigma;
 };
-
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const NonrigidSettings& settings);
+inline void describe(Visitor& v, NonrigidSettings& s) {
+  v("smoothness", s.smoothness, "Nonrigid: range of the bending (β), share of the source's root mean square radius.",
+    {0.01, 10.0});
+  v("stiffness", s.stiffness, "Nonrigid: cost of bending against misfit (λ).", {1e-6, 1e6});
+  v("outlier_weight", s.outlier_weight, "w: share of the target that belongs to nothing in the source.",
+    {0.0, 1.0, true, true});
+  v("max_iterations", s.max_iterations, "Steps of expectation and maximisation.", {1.0});
+  v("tolerance", s.tolerance,
+    "Converged when a step moves the points by less than this share of the radius (rms), twice in a row.", kPositive);
+  v("dimensions", s.dimensions, "2: drawings with all z equal.", {2.0, 3.0});
+  v("max_centers", s.max_centers, "Rank of the deformation; a smoother one needs fewer.", {4.0, 2000.0});
+  v("first_sigma", s.first_sigma, "As in DriftSettings; for clouds that are aligned already, say 0.1.", kPositive);
+}
 
 struct NonrigidDrift {
   Points moved_mm;  ///< the source's points where they end

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/geometry/point_cloud.hpp>
 #include <incise/registration/drift.hpp>
@@ -18,25 +20,26 @@ namespace incise {
 /// matter; but for `settling_mm`, which is in the clouds' unit.
 struct RegistrationSettings {
   ScaleRange scale{0.9, 1.1};
-  double outlier_weight = 0.3;  ///< w of the drift: share of the target that belongs to nothing in the source, (0, 1)
-  std::optional<Similarity> start;   ///< one start; absent: a search over rotations
-  int rotations = 160;               ///< starts of the search, spread evenly over all rotations; 8 to 2000
-  bool finish_with_icp = true;       ///< point to plane after the drift
-  int max_iterations = 300;          ///< of the drift, and of the finish
-  std::size_t drift_points = 20000;  ///< a larger cloud takes part in the drift as about so many clusters
-  double settling_mm = 0.0;       ///< how far tissue may have settled along the source's mean normal; 0: not looked for
-  double largest_rmse = 0.03;     ///< poorer fits are not a success
-  double least_inliers = 0.15;    ///< of the source's points; fewer are not a success
-  double least_fit = 0.7;            ///< share of the source's points above the target that lie on it, for a success
-  double largest_shape_residual = 0.0055;  ///< misfit that neither noise nor settling explains, for a success
-  double largest_sd = 0.01;       ///< of the pose along its weakest direction, for a success
-  double largest_settled_sd = 0.02;  ///< the same where settling was looked for, which leaves more open than noise
-  double least_sharpness = 7e-4;  ///< see Certificate::sharpness
-  double largest_rival = 0.95;    ///< score of the runner-up over that of the best, for a success
+  double outlier_weight = 0.3;
+  std::optional<Similarity> start;  ///< one start; absent: a search over rotations
+  int rotations = 160;
+  bool finish_with_icp = true;
+  int max_iterations = 300;
+  std::size_t drift_points = 20000;
+  double settling_mm = 0.0;
+  double largest_rmse = 0.03;
+  double least_inliers = 0.15;
+  double least_fit = 0.7;
+  double largest_shape_residual = 0.0055;
+  double largest_sd = 0.01;
+  double largest_settled_sd = 0.02;
+  double least_sharpness = 7e-4;
+  double largest_rival = 0.95;
 };
+void describe(Visitor& v, RegistrationSettings& s);
 
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const RegistrationSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const RegistrationSettings& settings);
 
 enum class RegistrationOutcome {
   Converged,
@@ -80,6 +83,25 @@ struct Certificate {
   Vec3 center_mm = Vec3::Zero();            ///< middle of the overlap, target frame
   std::string weakest;                      ///< for a person: what kind of motion is least visible
 };
+inline void describe(Visitor& v, Certificate& c) {
+  v("motions", c.motions, "7, or 6 with the scale fixed.");
+  std::vector<std::optional<double>> visible;
+  for (int k = 0; k < c.motions; ++k) visible.push_back(if_finite(c.visible[static_cast<std::size_t>(k)]));
+  v.derived("visible", visible, "Share of each motion that appears in the distances, ascending.");
+  v.derived("sharpness", std::vector{if_finite(c.sharpness[0]), if_finite(c.sharpness[1])},
+            "Of the two least visible ones, from moving the source to and fro.");
+  v("weakest_motion", c.weakest, "What kind of motion is least visible.");
+  v.derived("weakest_sd_mm", if_finite(c.weakest_sd_mm), "Along the least visible motion.");
+  v.derived("sd_mm", if_finite(c.sd_mm), "Of the overlap's position from noise, all motions together (rms).");
+  v.derived("rotation_sd_deg", if_finite(c.rotation_sd_deg), "Of the rotation.");
+  v.derived("translation_sd_mm", if_finite(c.translation_sd_mm), "Of the overlap's middle.");
+  v.derived("scale_sd", if_finite(c.scale_sd), "Relative.");
+  v({"center_mm", "Middle of the overlap, target frame.", "mm"}, c.center_mm);
+  std::vector<std::vector<std::optional<double>>> covariance(7);
+  for (int i = 0; i < 7; ++i)
+    for (int k = 0; k < 7; ++k) covariance[static_cast<std::size_t>(i)].push_back(if_finite(c.covariance(i, k)));
+  v.derived("covariance", covariance, "Of rotation vector (rad), translation (mm) and log scale, about center_mm.");
+}
 
 struct Registration {
   Similarity T_target_source;
@@ -113,6 +135,7 @@ struct Registration {
   bool is_scale_suspicious = false;  ///< outside 0.95 to 1.05: both sensors are metric
   Certificate certificate;
 };
+void describe(Visitor& v, Registration& r);
 
 /// Finds the similarity that lays a source surface on a target surface which shows part of it, with noise, holes and
 /// points that belong to nothing. Search: rigid coherent point drift on coarse clusters from starts spread over all

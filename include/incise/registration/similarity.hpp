@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <span>
@@ -14,6 +15,11 @@ struct Similarity {
 
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return scale * (rotation * p) + translation_mm; }
 };
+inline void describe(Visitor& v, Similarity& t) {
+  v("scale", t.scale, "Factor of all lengths.", kPositive);
+  v("rotation", t.rotation, "Rows of the proper rotation.");
+  v({"translation_mm", "After scale and rotation.", "mm"}, t.translation_mm);
+}
 
 /// a after b: (a * b)(p) = a(b(p)).
 [[nodiscard]] Similarity operator*(const Similarity& a, const Similarity& b);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/outcome.hpp>
 #include <incise/core/verdict.hpp>
@@ -96,7 +97,7 @@ struct ReportIncision {
   std::optional<bool> negative_margin;  ///< the cut keeps clear of the tumour edge; none: not known
   double mean_abs_error_mm = 0.0;
   double target_mm = 5.0;        ///< the distance to the tumour edge that was aimed at
-  double close_margin_mm = 2.2;  ///< less tissue than this counts as too close
+  double close_margin_mm = kCloseMarginMm;  ///< less tissue than this counts as too close
   double kerf_allowance_mm = 0.0;  ///< how much nearer to the tumour the kerf's edge is than this contour: the electrode's radius for a mid-line
   std::string measured_contour;  ///< "kerf mid-line": what the errors belong to
   Contour tumor_edge;

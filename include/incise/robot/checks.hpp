@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/describe.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/robot/program.hpp>
@@ -24,9 +25,9 @@ struct CheckSettings {
   bool must_be_ring = true;     ///< the plan is a ring (plan.kind: ring), so the path has to be closed
   double min_speed_mm_s = 0.5;  ///< of the tip in the tissue
   double max_speed_mm_s = 30.0;
-  double planned_depth_mm = 5.0;
+  double planned_depth_mm = kPlannedDepthMm;
   double depth_tolerance_mm = 0.5;
-  double close_margin_mm = 2.2;  ///< least distance of the path from the tumour edge, on its outside
+  double close_margin_mm = kCloseMarginMm;  ///< least distance of the path from the tumour edge, on its outside
   /// Neighbouring waypoints of a ring lie no farther apart than this many medians of these ways, or `max_gap_mm` …
   double max_gap_ratio = 4.0;
   double max_gap_mm = 2.0;  ///< … whichever is more

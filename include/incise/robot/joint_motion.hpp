@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/robot/arm.hpp>
 
 #include <cstddef>
@@ -21,8 +23,8 @@ struct ArmSetup {
   double table_z_mm = 0.0;  ///< height of the table's plane in the base frame
   double period_s = 0.008;  ///< between two samples of a motion
 };
-/// Every rule that the setup breaks, in words; empty: none.
-[[nodiscard]] std::vector<std::string> validate(const ArmSetup& setup);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const ArmSetup& setup);
 
 /// What a motion is held to when its branch is chosen; the export's checks have limits of their own.
 struct BranchPreferences {

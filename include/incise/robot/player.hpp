@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/robot/program_reading.hpp>
 
 #include <string>
@@ -11,19 +13,33 @@ namespace incise {
 
 /// How a program is played.
 struct PlayerSettings {
-  double speed_slider = 1.0;      ///< share in (0, 1] that the controller's slider stands at
-  double cycle_s = 0.002;         ///< of the controller: 500 Hz
-  double end_zone_mm = 2.0;       ///< of the cut at either end, where the tip speeds up and slows down
-  double max_deviation_mm = 1.0;  ///< most that the tip may leave the intended course by, for a success
+  double speed_slider = 1.0;
+  double cycle_s = 0.002;
+  double end_zone_mm = 2.0;
+  double max_deviation_mm = 1.0;
   // Of a program that says which path it was made for and how, on its own course.
-  double max_lean_deg = 2.0;      ///< of the tool's axis from the intended one
-  double speed_tolerance = 0.05;  ///< share by which the tip may be faster than intended, or slower in the cut
-  double max_way_back_mm = 0.2;   ///< along the course
-  double max_way_left_mm = 2.0;   ///< of the course, before its first and after its last place
-  double max_rest_s = 1.5;        ///< in the tissue, beyond the intended dwell: a stream holds still where motions end
+  double max_lean_deg = 2.0;
+  double speed_tolerance = 0.05;
+  double max_way_back_mm = 0.2;
+  double max_way_left_mm = 2.0;
+  double max_rest_s = 1.5;
 };
-/// Every rule that the settings break, in words; empty: none.
-[[nodiscard]] std::vector<std::string> validate(const PlayerSettings& settings);
+inline void describe(Visitor& v, PlayerSettings& s) {
+  v("speed_slider", s.speed_slider, "Share that the controller's slider stands at.", {0.0, 1.0, true});
+  v({"cycle_s", "Of the controller; 0.002: 500 Hz.", "s"}, s.cycle_s, {1e-4, 0.02});
+  v({"end_zone_mm", "Of the cut at either end, where the tip speeds up and slows down.", "mm"}, s.end_zone_mm,
+    kNotNegative);
+  v({"max_deviation_mm", "Most that the tip may leave the intended course by, for a success.", "mm"},
+    s.max_deviation_mm, kPositive);
+  v({"max_lean_deg", "Of the tool's axis from the intended one.", "deg"}, s.max_lean_deg, kPositive);
+  v("speed_tolerance", s.speed_tolerance, "Share by which the tip may be faster than intended, or slower in the cut.",
+    kPositive);
+  v({"max_way_back_mm", "Along the course.", "mm"}, s.max_way_back_mm, kPositive);
+  v({"max_way_left_mm", "Of the course, before its first and after its last place.", "mm"}, s.max_way_left_mm,
+    kPositive);
+  v({"max_rest_s", "In the tissue, beyond the intended dwell: a stream holds still where motions end.", "s"},
+    s.max_rest_s, kPositive);
+}
 
 enum class ReplayOutcome {
   Completed,
@@ -63,9 +79,24 @@ struct ReplaySample {
   ProgramPhase phase = ProgramPhase::Approach;
 };
 
+inline void describe(Visitor& v, ReplaySample& s) {
+  v({"time_s", "From the start of the program.", "s"}, s.time_s);
+  v({"q_rad", "Joints.", "rad"}, s.q_rad);
+  v({"tip_mm", "Of the tool.", "mm"}, s.tip_mm);
+  v("axis", s.axis, "Of the tool, out of its tip.");
+  v({"tip_speed_mm_s", "Over the cycle before.", "mm/s"}, s.tip_speed_mm_s);
+  v({"deviation_mm", "Of the tip from the intended course; 0 where none is known.", "mm"}, s.deviation_mm);
+  v("phase", s.phase, "Of the program.");
+}
+
 struct SpeedNumbers {
   double mean = 0.0, min = 0.0, max = 0.0;
 };
+inline void describe(Visitor& v, SpeedNumbers& n) {
+  v("mean", n.mean, "Over time.");
+  v("min", n.min, "Least.");
+  v("max", n.max, "Greatest.");
+}
 
 /// What the arm would do.
 struct [[nodiscard]] Replay {
@@ -81,8 +112,10 @@ struct [[nodiscard]] Replay {
   SpeedNumbers tip_speed_mm_s;  ///< in the cut, away from its ends
   double max_joint_speed_share = 0.0;
   double min_singular_value = 0.0;
+  PlayerSettings settings;  ///< that it was played with
   [[nodiscard]] double duration_s() const { return samples.empty() ? 0.0 : samples.back().time_s; }
 };
+void describe(Visitor& v, Replay& r);
 
 /// Runs a program through our own kinematics and a model of the controller (docs/models/robot.md), cycle by cycle:
 /// - movej: the program begins where it ends; the way there is not played

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/geometry/tool_path.hpp>
 #include <incise/robot/joint_motion.hpp>
 
@@ -28,31 +31,50 @@ inline constexpr std::array<std::string_view, 7> kProgramPhaseNames{"approach", 
   return kProgramPhaseNames;
 }
 
-/// How a path becomes a program.
-struct ProgramSettings {
-  double approach_height_mm = 30.0;   ///< of the first and the last pose's tip above the entry, against the tool's axis
-  double clearance_mm = 5.0;          ///< height at which the fast approach ends and the plunge begins
-  double approach_speed_mm_s = 50.0;  ///< through the air
-  double plunge_speed_mm_s = 7.0;     ///< into the tissue and out of it
-  double overlap_mm = 5.0;       ///< how far a closed path runs on beyond its start; without it the ring may stay open
-  double dwell_s = 0.0;          ///< rest at the end of the cut, before the exit
-  double chord_error_mm = 0.02;  ///< most that the straight moves between poses deviate from the smooth course
-  double max_spacing_mm = 2.0;   ///< of the poses along the cut
-  double acceleration_mm_s2 = 100.0;  ///< most that the tip speeds up or slows down by
-  double jerk_mm_s3 = 2000.0;         ///< most that this acceleration changes by
-  Vec3 tool_x_hint = Vec3::UnitX();   ///< the tool's x axis lies as close to this direction as its mean z axis allows,
-  /// and is then turned by this angle about that mean axis. Not given: whatever suits the arm best, for a needle is
-  /// round.
-  std::optional<double> spin_deg{};
-};
 /// Longest overlap, clearance, approach height or depth of a program, mm: the arm reaches no farther than 1300.
 inline constexpr double kLargestLengthMm = 1000.0;
+
+/// How a path becomes a program.
+struct ProgramSettings {
+  double approach_height_mm = 30.0;
+  double clearance_mm = 5.0;
+  double approach_speed_mm_s = 50.0;
+  double plunge_speed_mm_s = 7.0;
+  double overlap_mm = kRingOverlapMm;
+  double dwell_s = 0.0;
+  double chord_error_mm = 0.02;
+  double max_spacing_mm = 2.0;
+  double acceleration_mm_s2 = 100.0;
+  double jerk_mm_s3 = 2000.0;
+  Vec3 tool_x_hint = Vec3::UnitX();
+  std::optional<double> spin_deg{};
+};
+inline void describe(Visitor& v, ProgramSettings& s) {
+  v({"approach_height_mm", "Of the first and the last pose's tip above the entry, against the tool's axis.", "mm"},
+    s.approach_height_mm, {0.0, kLargestLengthMm});
+  v({"clearance_mm", "Height at which the fast approach ends and the plunge begins.", "mm"}, s.clearance_mm, kPositive);
+  v({"approach_speed_mm_s", "Through the air.", "mm/s"}, s.approach_speed_mm_s, kPositive);
+  v({"plunge_speed_mm_s", "Into the tissue and out of it.", "mm/s"}, s.plunge_speed_mm_s, kPositive);
+  v({"overlap_mm", "How far a closed path runs on beyond its start; without it the ring may stay open.", "mm"},
+    s.overlap_mm, {0.0, kLargestLengthMm});
+  v({"dwell_s", "Rest at the end of the cut, before the exit.", "s"}, s.dwell_s, kNotNegative);
+  v({"chord_error_mm", "Most that the straight moves between poses deviate from the smooth course.", "mm"},
+    s.chord_error_mm, kPositive);
+  v({"max_spacing_mm", "Of the poses along the cut.", "mm"}, s.max_spacing_mm, kPositive);
+  v({"acceleration_mm_s2", "Most that the tip speeds up or slows down by.", "mm/s2"}, s.acceleration_mm_s2, kPositive);
+  v({"jerk_mm_s3", "Most that this acceleration changes by.", "mm/s3"}, s.jerk_mm_s3, kPositive);
+  v.direction("tool_x_hint", s.tool_x_hint,
+              "The tool's x axis lies as close to this direction as its mean z axis allows.");
+  v({"spin_deg", "Turn from there about that mean axis; absent: whatever suits the arm best, for a needle is round.",
+     "deg"},
+    s.spin_deg);
+}
 /// Longest that a program may take. The paper's ring takes half a minute; more than two hours is a mistaken unit.
 inline constexpr double kLongestProgramS = 2.0 * 3600.0;
 /// Farthest coordinate of a waypoint, mm: what lies beyond is no place near an arm, and its square may overflow.
 inline constexpr double kFarthestPlaceMm = 1e5;
-/// Every rule that the settings break, in words; empty: none.
-[[nodiscard]] std::vector<std::string> validate(const ProgramSettings& settings);
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const ProgramSettings& settings);
 
 /// One pose of the tool, in the robot's base frame.
 struct ProgramPose {

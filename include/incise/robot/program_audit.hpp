@@ -18,6 +18,16 @@ struct [[nodiscard]] ProgramAudit {
   /// It is the program that was written, to the byte, and its checks come out as it says.
   [[nodiscard]] bool is_checked() const { return digest == ProgramDigest::Matches && contradictions.empty(); }
 };
+inline void describe(Visitor& v, ProgramAudit& a) {
+  v.derived("checked", a.is_checked(), "It is the program that was written, and its checks come out as it says.");
+  v.derived("digest_matches",
+            a.digest == ProgramDigest::Absent ? std::nullopt : std::optional(a.digest == ProgramDigest::Matches),
+            "Absent: it carries no digest.");
+  v("contradictions", a.contradictions, "Lines of the header that are not so.");
+  v("recomputed", a.recomputed, "Names of the checks that were made again.");
+  v("not_recomputed", a.not_recomputed, "Of those that only the header states, or why none was made again.");
+  v("moved_limits", a.moved_limits, "What options moved.");
+}
 
 /// Makes the program again from its header (path, tumour edge, settings, limits), checks it again and holds the
 /// header's lines against what comes out. What needs the tissue's surface, the registration or the path before

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/robot/checks.hpp>
 #include <incise/robot/program.hpp>
 
@@ -32,14 +34,24 @@ inline constexpr std::array<std::string_view, 2> kScriptMotionNames{"movep", "se
 }
 struct UrScriptSettings {
   ScriptMotion motion = ScriptMotion::MoveP;
-  std::string function_name = "incise_cut";  ///< letters, digits and _, not starting with a digit
-  double blend_fraction = 0.4;  ///< blend radius of the cut's poses, as a fraction of their spacing; in [0, 0.5)
-  double lookahead_s = 0.1;     ///< of servoj, [0.03, 0.2]: less lag, less smoothing
-  double gain = 300.0;          ///< of servoj, [100, 2000]
-  double settle_s = 0.4;        ///< of servoj: rest added where a motion ends, so that the arm has caught up
+  std::string function_name = "incise_cut";
+  double blend_fraction = 0.4;
+  double lookahead_s = 0.1;
+  double gain = 300.0;
+  double settle_s = 0.4;
 };
-/// Every rule that the settings break, in words; empty: none.
-[[nodiscard]] std::vector<std::string> validate(const UrScriptSettings& settings);
+inline void describe(Visitor& v, UrScriptSettings& s) {
+  v("motion", s.motion, "movep (blends, constant speed) or servoj (timed joints).");
+  v("function_name", s.function_name, "Letters, digits and _, not starting with a digit.");
+  v("blend_fraction", s.blend_fraction, "Blend radius of the cut's poses, as a fraction of their spacing.",
+    {0.0, 0.5, false, true});
+  v({"lookahead_s", "Of servoj: less lag, less smoothing.", "s"}, s.lookahead_s, {0.03, 0.2});
+  v("gain", s.gain, "Of servoj.", {100.0, 2000.0});
+  v({"settle_s", "Of servoj: rest added where a motion ends, so that the arm has caught up.", "s"}, s.settle_s,
+    {0.0, 5.0});
+}
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const UrScriptSettings& settings);
 
 /// The program as a URScript function and a call to it: metres, seconds, axis-angle poses p[x, y, z, rx, ry, rz] of the
 /// tool's tip in the base frame. It sets the tool centre point, goes to the first joint positions by `movej` (this
@@ -70,7 +82,7 @@ struct UrScriptSettings {
 /// pose, waypoint, text) and `checks_not_made`; and `motion` with the arm's branch and `samples` [time_s, six joints,
 /// six speeds].
 /// @pre the program's numbers are finite (InvalidArgument).
-[[nodiscard]] std::string to_json(const RobotProgram& program, const ProgramChecks* checks = nullptr,
-                                  const ProgramHeader& header = {});
+[[nodiscard]] std::string program_json(const RobotProgram& program, const ProgramChecks* checks = nullptr,
+                                       const ProgramHeader& header = {});
 
 }  // namespace incise

@@ -15,7 +15,7 @@ namespace incise {
 /// reading through which it shows (`x-spread`, `x-source`, `x-shows-in`).
 [[nodiscard]] std::string bench_schema_json();
 /// A specimen file in full; with the specimen of all defaults it is what `schema bench --defaults` prints.
-[[nodiscard]] nlohmann::ordered_json to_json(const Specimen& specimen);
+[[nodiscard]] nlohmann::ordered_json specimen_json(const Specimen& specimen);
 
 /// Reads a specimen file: `schema` and `seed`, and any parameters that are not to be drawn from the seed.
 /// @throws DataError naming the key: not there, unknown (with the nearest valid one), not a number, out of range.

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <incise/calibration/calibration.hpp>
-#include <incise/io/described_json.hpp>
+#include <incise/core/described_json.hpp>
 #include <incise/io/table_io.hpp>
 #include <incise/workflow/assess.hpp>
 #include <incise/workflow/calibrate.hpp>

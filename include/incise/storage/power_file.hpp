@@ -4,19 +4,12 @@
 #include <incise/calibration/incision_speed.hpp>
 #include <incise/io/table_io.hpp>
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace incise {
-
-/// The keys of `power.json` (incise.power/1) that a series fills: verdict (chosen, no_power_fits), chosen_w, limits,
-/// powers with the reasons against each, rows, speed_rows, virtual.
-[[nodiscard]] nlohmann::ordered_json to_json(const PowerSeries& series, const PowerRequest& request);
-[[nodiscard]] nlohmann::ordered_json to_json(const SpeedEstimate& estimate);
 
 /// All cuts, one a row; the column `series` says which of the two they belong to, power or speed. What was not measured
 /// is an empty field.

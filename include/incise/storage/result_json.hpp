@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/io/described_json.hpp>
+#include <incise/core/described_json.hpp>
 #include <incise/workflow/products.hpp>
 #include <incise/workflow/study.hpp>
 

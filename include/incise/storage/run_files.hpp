@@ -26,8 +26,6 @@ nlohmann::ordered_json write_run(RunFolder& folder, const Run& run, double wall_
 /// @pre run.gate.is_open (InvalidArgument).  @throws DataError where the file cannot be written.
 void write_urscript(const std::filesystem::path& file, const Run& run);
 
-/// The numbers of a replay.
-[[nodiscard]] nlohmann::ordered_json to_json(const Replay& replay, const PlayerSettings& settings);
 /// Writes `true_path.csv`, cycle by cycle: time, tip, its speed and deviation, joints.
 void write_true_path(const std::filesystem::path& folder, const Replay& replay);
 

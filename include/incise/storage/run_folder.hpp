@@ -106,8 +106,9 @@ class RunFolder : public Inputs, public ProductSink {
   std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
 };
 
-/// The rest mesh with what a deformation did to it: point data `displacement_mm` and `position_mm`, cell data
-/// `von_mises_kpa`.
+/// The mesh at rest with what a deformation did to it: point data `displacement_mm`, cell data `von_mises_kpa`.
+[[nodiscard]] TetMesh rest_mesh(const TissueModel& model, const TissueState& state);
+/// The same with its vertices where they were moved to.
 [[nodiscard]] TetMesh deformed_mesh(const TissueModel& model, const TissueState& state);
 
 }  // namespace incise

@@ -97,7 +97,4 @@ void describe(Visitor& v, Specimen& specimen);
 /// A specimen at random. Each parameter has a stream of its own: a new one leaves the others as they were.
 [[nodiscard]] Specimen draw_specimen(std::uint64_t seed);
 
-/// Every violation, one sentence each; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const Specimen& specimen);
-
 }  // namespace incise

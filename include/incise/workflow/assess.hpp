@@ -35,6 +35,13 @@ struct ParameterSensitivity {
   double change_mm = 0.0;       ///< by how much the error along the corrected path then changes: root mean square …
   double mean_change_mm = 0.0;  ///< … and signed mean, positive = farther out
 };
+inline void describe(Visitor& v, ParameterSensitivity& s) {
+  v("name", s.name, "Of the parameter.");
+  v("sd", s.sd, "Of the parameter.");
+  v({"change_mm", "By how much one such deviation changes the error along the corrected path, rms.", "mm"},
+    s.change_mm);
+  v({"mean_change_mm", "The same, signed mean; positive: farther out.", "mm"}, s.mean_change_mm);
+}
 
 struct Assessment {
   Eligibility eligibility;
@@ -42,7 +49,10 @@ struct Assessment {
   std::optional<CorrectionOutlook> outlook;       ///< absent: there was no correction to look at
   std::vector<ParameterSensitivity> sensitivity;  ///< empty, likewise or where a tissue could not be measured
   std::vector<std::string> notes;                 ///< what was not known, and what that costs
+  EligibilityRules rules;                         ///< that it was judged by
+  double registration_scale = 1.0;
 };
+void describe(Visitor& v, Assessment& a);
 
 /// Should this specimen be cut along the corrected path? Gathers what is known of it, cuts both paths in the tissues
 /// that the calibration leaves possible, and judges. A calibration of virtual specimens never advises to correct a real

@@ -2,7 +2,9 @@
 
 #include <incise/calibration/calibration.hpp>
 #include <incise/core/cache.hpp>
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
+#include <incise/core/problem.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/workflow/case.hpp>
 #include <incise/workflow/inputs.hpp>
@@ -34,19 +36,33 @@ struct CalibrationSubject {
 /// that they point to, and one that checks.
 struct CalibrationRequest {
   CalibrationMethod method = CalibrationMethod::Fit;
-  std::vector<double> speeds_mm_s{1.0, 5.0, 9.0, 13.0, 17.0};  ///< of the grid, each > 0
-  std::vector<double> dullnesses{1.0, 5.0, 9.0, 13.0, 17.0};   ///< of the grid, each > 0
-  double fit_speed_mm_s = 13.0;                                ///< of all cuts of a fit, > 0
-  std::vector<double> drag_lengths_mm{0.26, 1.04, 1.82, 2.6,
-                                      3.38};              ///< of the fit, at the reference stiffness; at least 2
-  std::vector<double> second_drag_lengths_mm{1.04, 2.6};  ///< some of those, cut again with the second stiffness
-  double second_stiffness = 2.0;                          ///< over the reference, > 0 and not 1
-  double force_sd = 0.05;                                 ///< of a measured force, relative, > 0
-  double stiffness_sd_with_force = 0.1;  ///< of ln(stiffness factor) where every specimen's force was measured, > 0
-  DragFitSettings fit;                   ///< stiffness_sd: without forces
+  std::vector<double> speeds_mm_s{1.0, 5.0, 9.0, 13.0, 17.0};
+  std::vector<double> dullnesses{1.0, 5.0, 9.0, 13.0, 17.0};
+  double fit_speed_mm_s = 13.0;
+  std::vector<double> drag_lengths_mm{0.26, 1.04, 1.82, 2.6, 3.38};
+  std::vector<double> second_drag_lengths_mm{1.04, 2.6};
+  double second_stiffness = 2.0;
+  double force_sd = 0.05;
+  double stiffness_sd_with_force = 0.1;
+  DragFitSettings fit;
 };
-/// Every violation, one sentence each with the field's name; empty: valid.
-[[nodiscard]] std::vector<std::string> validate(const CalibrationRequest& request);
+inline void describe(Visitor& v, CalibrationRequest& r) {
+  v("method", r.method, "A fit of drag and stiffness, or the paper's grid of speed and dullness.");
+  v({"speeds_mm_s", "Of the paper's grid.", "mm/s"}, r.speeds_mm_s, kPositive);
+  v("dullnesses", r.dullnesses, "Of the paper's grid.", kPositive);
+  v({"fit_speed_mm_s", "Of all cuts of a fit.", "mm/s"}, r.fit_speed_mm_s, kPositive);
+  v({"drag_lengths_mm", "Speed x dwell of the fit's simulations, at the reference stiffness; at least 2.", "mm"},
+    r.drag_lengths_mm, kPositive);
+  v({"second_drag_lengths_mm", "Those of them that are also simulated with the second stiffness.", "mm"},
+    r.second_drag_lengths_mm, kPositive);
+  v("second_stiffness", r.second_stiffness, "Over the reference; not 1.", kPositive);
+  v("force_sd", r.force_sd, "Of a measured force, relative.", kPositive);
+  v("stiffness_sd_with_force", r.stiffness_sd_with_force,
+    "Of ln(stiffness factor) where every specimen's force was measured.", kPositive);
+  describe(v, r.fit);
+}
+/// Every violation; empty: valid.
+[[nodiscard]] std::vector<Problem> validate(const CalibrationRequest& request);
 
 /// Finds the settings with which simulated cuts come out as the photographed ones. Simulations run side by side, one
 /// thread each; those that the cache has are not made again. A simulation that fails is a row.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/names.hpp>
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/cutting/thermal.hpp>
@@ -142,7 +143,8 @@ struct Case {
   ToughnessVariation toughness;
   ThermalSettings thermal;
   CompensationChoice compensation;
-  double close_margin_mm = 2.2;             ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
+  double close_margin_mm =
+      kCloseMarginMm;  ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
   int frames = 24;                          ///< moments of the cut that are kept for pictures
   std::optional<Mat4> T_robot_sim;          ///< where the specimen lies under the robot, until registration finds it
   std::optional<Mat4> T_flange_tool;        ///< the needle's tip (z along the needle) on the arm's flange; absent: 150 mm in front of it

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <incise/core/verdict.hpp>
+#include <incise/cutting/incision.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/meshing/mesher.hpp>
 #include <incise/planning/compensation.hpp>
 #include <incise/planning/converging_compensation.hpp>
-#include <incise/procedure/incision.hpp>
 #include <incise/workflow/case.hpp>
 
 #include <optional>

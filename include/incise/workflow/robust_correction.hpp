@@ -87,6 +87,10 @@ struct CorrectionOutlook {
   RobustSettings settings;
   PathOutlook paths;
 };
+void describe(Visitor& v, RobustCorrection& r);
+
+/// The tissues that were simulated, their spread, the specimen's reference stiffness and the residual about them.
+void describe_scenarios(Visitor& v, ScenarioSet& scenarios, RobustSettings& settings);
 
 /// The same cuts along the intended and the corrected path alone: what the correction is expected to win.
 [[nodiscard]] CorrectionOutlook foresee_correction(const Case& settings, Inputs& inputs, Cache& cache,

@@ -5,9 +5,9 @@
 #include "io/volume_png.hpp"
 #include "reader.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/io/contour_io.hpp>
-#include <incise/io/described_json.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_text.hpp>
 #include <incise/io/mesh_io.hpp>

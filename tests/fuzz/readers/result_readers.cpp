@@ -3,9 +3,9 @@
 #include "reader.hpp"
 
 #include <incise/core/described_bytes.hpp>
+#include <incise/cutting/incision_progress.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_text.hpp>
-#include <incise/procedure/incision_progress.hpp>
 #include <incise/storage/bench_files.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/case_file.hpp>

@@ -1,0 +1,138 @@
+#include "described_options.hpp"
+
+#include "option_checks.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <span>
+#include <vector>
+
+namespace incise::cli {
+namespace {
+
+/// Shows one field of a value as an option has it, or sets it from the texts that were given; leaves all others.
+class OneField : public Visitor {
+ public:
+  explicit OneField(std::string_view name, const std::vector<std::string>* texts = nullptr)
+      : name_(name), texts_(texts) {}
+
+  [[nodiscard]] bool sets() const override { return texts_ != nullptr; }
+  void begin(const Field&) override { ++depth_; }
+  void end() override { --depth_; }
+  std::size_t begin_list(const Field& field, std::size_t size, std::size_t) override {
+    is_in_list_ = is_it(field);
+    ++depth_;
+    if (!is_in_list_) return sets() ? kUnchanged : size;
+    count = kUnchanged;
+    return sets() ? texts_->size() : size;
+  }
+  void end_list() override {
+    --depth_;
+    is_in_list_ = false;
+  }
+  bool optional(const Field& field, bool is_there) override { return (is_it(field) && sets()) || is_there; }
+  void number(const Field& field, double& value, const Range& range) override {
+    if (!is_it(field, "FLOAT", range)) return;
+    if (sets()) value = number_from(texts_->front(), range);
+    shown = fmt::format("{}", value);
+  }
+  void integer(const Field& field, std::int64_t& value, const Range& range) override {
+    if (!is_it(field, "INT", range)) return;
+    if (sets()) {
+      const std::string& text = texts_->front();
+      const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      const bool is_octal = text.size() > 1 && text.front() == '0';  // as C would read it
+      const bool is_whole = error == std::errc{} && at == text.data() + text.size() && !is_octal;
+      if (!is_whole || !contains(range, static_cast<double>(value))) refuse_text(text, whole_number(range));
+    }
+    shown = fmt::format("{}", value);
+  }
+  void flag(const Field&, bool&) override {}
+  void text(const Field& field, std::string& value) override {
+    if (is_it(field, "TEXT") && sets()) value = texts_->front();
+  }
+  void choice(const Field& field, std::size_t& value, Names names) override {
+    if (!is_it(field, "TEXT")) return;
+    expected = fmt::format("one of: {}", fmt::join(names, ", "));
+    if (sets()) {
+      const auto found = std::find(names.begin(), names.end(), texts_->front());
+      if (found == names.end())
+        throw CaseError("command line", option_name(name_), "'" + texts_->front() + "'", expected);
+      value = static_cast<std::size_t>(found - names.begin());
+    }
+    shown = std::string(names[value]);
+  }
+  void block(const Field& field, const Block& block) override {
+    if (!is_in_list_ && !is_it(field)) return;
+    describe_it(field, "FLOAT", block.range);
+    if (!is_in_list_) count = block.count;
+    const std::span<double> values(static_cast<double*>(block.data), block.count);
+    for (std::size_t i = 0; sets() && i < values.size(); ++i) values[i] = number_from(texts_->at(i), block.range);
+    shown = fmt::format("{}", fmt::join(values, " "));
+  }
+
+  bool is_found = false;
+  std::string meaning, type, expected, shown;  ///< `shown`: the value, as it would be given
+  std::size_t count = 1;                       ///< of texts; kUnchanged: any
+
+ private:
+  bool is_it(const Field& field, const char* kind = "FLOAT", const Range& range = kAny) {
+    if (depth_ > 0 || field.name != name_) return false;
+    is_found = true;
+    describe_it(field, kind, range);
+    return true;
+  }
+  void describe_it(const Field& field, const char* kind, const Range& range) {
+    type = kind;
+    if (!field.meaning.empty()) meaning = std::string(field.meaning);
+    if (range.least > kAny.least || range.most < kAny.most) expected = describe(range);
+  }
+  [[nodiscard]] double number_from(const std::string& text, const Range& range) const {
+    const std::optional<double> value = number_in(text);
+    if (!value || !contains(range, *value)) refuse_text(text, describe(range));
+    return *value;
+  }
+  static std::string whole_number(const Range& range) {
+    if (range.most > 1e18) return fmt::format("a whole number of {} or more, in digits", range.least);
+    return fmt::format("a whole number from {} to {}, in digits", range.least, range.most);
+  }
+  [[noreturn]] void refuse_text(const std::string& text, const std::string& wanted) const {
+    throw CaseError("command line", option_name(name_), number_in(text) ? text : "'" + text + "'", wanted);
+  }
+
+  std::string name_;
+  const std::vector<std::string>* texts_;
+  int depth_ = 0;
+  bool is_in_list_ = false;
+};
+
+}  // namespace
+
+std::string option_name(std::string_view field) {
+  std::string name = fmt::format("--{}", field);
+  std::replace(name.begin(), name.end(), '_', '-');
+  return name;
+}
+
+CLI::Option* add_option_of(CLI::App& verb, std::string_view field, const std::function<void(Visitor&)>& walk) {
+  OneField known(field);
+  walk(known);
+  INCISE_REQUIRE(known.is_found, fmt::format("expected a field of these settings, found {}", field));
+  const std::string help = known.expected.empty() ? known.meaning : fmt::format("{} {}", known.meaning, known.expected);
+  CLI::Option* option = verb.add_option_function<std::vector<std::string>>(
+      option_name(field),
+      [walk, name = std::string(field)](const std::vector<std::string>& texts) {
+        OneField set(name, &texts);
+        walk(set);
+      },
+      help);
+  if (known.count != Visitor::kUnchanged) option->expected(static_cast<int>(known.count));
+  return option->type_name(known.type)->default_str(known.shown);
+}
+
+}  // namespace incise::cli

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <incise/core/describe.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace incise::cli {
+
+/// "--residual-sd-mm" of the field residual_sd_mm.
+[[nodiscard]] std::string option_name(std::string_view field);
+
+/// An option that sets a field of described settings: its name, meaning, unit, range, choices and default are those of
+/// the description. A value that the description does not allow is a CaseError.
+/// @param walk  visits the settings; they have to live as long as the verb.
+CLI::Option* add_option_of(CLI::App& verb, std::string_view field, const std::function<void(Visitor&)>& walk);
+
+/// The same. @param fields  of `settings` itself, not of a value inside them.
+template <class T, class... Names>
+void add_options_of(CLI::App& verb, T& settings, const Names&... fields) {
+  const std::function<void(Visitor&)> walk = [&settings](Visitor& v) { describe(v, settings); };
+  (add_option_of(verb, fields, walk), ...);
+}
+
+}  // namespace incise::cli

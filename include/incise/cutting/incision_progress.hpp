@@ -1,0 +1,72 @@
+#pragma once
+
+#include <incise/cutting/carving.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace incise {
+
+/// The tissue at one moment of the cut.
+struct CutFrame {
+  double time_s = 0.0;
+  ToolPose tool;
+  bool is_tool_in = true;
+  Points positions;                   ///< N x 3, mm
+  std::vector<std::uint8_t> is_live;  ///< per tet
+};
+inline void describe(Visitor& v, CutFrame& f) {
+  v("time_s", f.time_s, "Since the tool began to plunge.");
+  v("tool", f.tool, "Where it is.");
+  v("is_tool_in", f.is_tool_in, "Whether it is in the tissue.");
+  v("positions", f.positions, "Of the vertices.");
+  v("is_live", f.is_live, "Of each tet.");
+}
+
+/// One line of the log of a cut.
+struct CutStepLog {
+  double time_s = 0.0;
+  int iterations = 0;     ///< of the linear solver
+  bool converged = true;  ///< the linear solve did not reach its limit
+  std::size_t tets_in_contact = 0;
+  std::size_t removed = 0;
+  std::size_t held_back_vertices = 0;     ///< vertices whose step was cut to CutSettings::max_step_mm
+  std::size_t slipped = 0;                ///< bonds that slipped
+  Vec3 tool_force_mn = Vec3::Zero();      ///< of the tissue on the tool
+  Vec3 tool_torque_mn_mm = Vec3::Zero();  ///< of the tissue on the tool, about its tip
+};
+inline void describe(Visitor& v, CutStepLog& s) {
+  v("time_s", s.time_s, "Since the tool began to plunge.");
+  v("iterations", s.iterations, "Of the linear solver.");
+  v("converged", s.converged, "Whether the linear solve did not reach its limit.");
+  v("tets_in_contact", s.tets_in_contact, "How many.");
+  v("removed", s.removed, "Tets removed in the step.");
+  v("held_back_vertices", s.held_back_vertices, "Vertices whose step was cut short.");
+  v("slipped", s.slipped, "Bonds that slipped.");
+  v("tool_force_mn", s.tool_force_mn, "Of the tissue on the tool.");
+  v("tool_torque_mn_mm", s.tool_torque_mn_mm, "Of the tissue on the tool, about its tip.");
+}
+
+/// An incision on its way, as a value: all that its further course depends on beside tissue, path and settings, and
+/// what it has left behind so far.
+struct IncisionProgress {
+  CutState state;
+  int relaxation_steps = 0;  ///< done since the tool is out; 0 while it is in
+  std::vector<CutStepLog> steps;
+  std::vector<CutFrame> frames;
+  double wall_s = 0.0;  ///< spent so far, all processes together
+};
+inline void describe(Visitor& v, IncisionProgress& p) {
+  v("state", p.state, "Of tissue and tool.");
+  v("relaxation_steps", p.relaxation_steps, "Done since the tool is out.", kNotNegative);
+  v("steps", p.steps, "The log, step by step.");
+  v("frames", p.frames, "Kept for pictures.");
+  v("wall_s", p.wall_s, "Time spent so far.");
+}
+
+/// Is shown the progress at each renewal step (see is_renewal_step), from which a later call, in another process too,
+/// goes on with the same bits. `is_interrupted`: the monitor asked to stop, and this is the last that will be shown.
+using ProgressKeeper = std::function<void(const IncisionProgress& progress, bool is_interrupted)>;
+
+}  // namespace incise

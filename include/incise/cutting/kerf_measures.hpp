@@ -1,0 +1,152 @@
+#pragma once
+
+#include <incise/geometry/contour.hpp>
+#include <incise/geometry/kerf_depth.hpp>
+#include <incise/geometry/manifoldness.hpp>
+#include <incise/geometry/tet_mesh.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace incise {
+
+/// Mean and range of a list of numbers, in their unit.
+struct Spread {
+  double mean = 0.0;
+  double min = 0.0;
+  double max = 0.0;
+};
+inline void describe(Visitor& v, Spread& s) {
+  v("mean", s.mean, "Mean.");
+  v("min", s.min, "Least.");
+  v("max", s.max, "Greatest.");
+}
+
+/// The kerf's mid-line in a layer of 1 mm at some depth below the skin.
+struct KerfLayer {
+  double depth_mm = 0.0;              ///< of the layer's middle, along the approach
+  bool is_within_plan = false;        ///< the planned depth reaches the layer's middle; if not, nothing was looked for
+  std::optional<bool> is_closed;      ///< whether a ring closed there; absent for an open cut, or outside the plan
+  std::optional<double> gap_mm;       ///< ring that stayed open there: width of the widest uncut bridge
+  double width_mm = 0.0;              ///< of the kerf there, mean; 0 without a mid-line
+  std::optional<Contour> centerline;  ///< at that depth, stretched tissue before the cut, mm
+};
+inline void describe(Visitor& v, KerfLayer& l) {
+  v("depth_mm", l.depth_mm, "Of the layer's middle, along the approach.");
+  v("within_plan", l.is_within_plan, "Whether the planned depth reaches it.");
+  v("closed_loop", l.is_closed, "Whether a ring closed there.");
+  v("gap_mm", l.gap_mm, "Of a ring that stayed open there: width of the widest uncut bridge.");
+  v("kerf_width_mm", l.width_mm, "Mean, there.");
+  v.bulk("centerline", l.centerline, "The mid-line there, stretched tissue before the cut.");
+}
+
+/// The kerf as a body, in the stretched tissue before the cut: the removed tets together.
+struct KerfBody {
+  TriMesh surface;          ///< their boundary, outwards; sheets may touch
+  double volume_mm3 = 0.0;  ///< enclosed: the sum of the tets' volumes there
+  Manifoldness boundary;    ///< of `surface`
+  Manifoldness live_skin;   ///< of the skin of the tissue that is left
+};
+inline void describe(Visitor& v, KerfBody& b) {
+  v.begin({"kerf", "Boundary of the removed tets."});
+  describe(v, b.boundary);
+  v({"volume_mm3", "Enclosed.", "mm3"}, b.volume_mm3);
+  v.bulk("surface", b.surface, "The boundary, outwards.");
+  v.end();
+  v("live_skin", b.live_skin, "Of the skin of the tissue that is left.");
+}
+
+/// How deep the kerf goes along the path that the tool followed.
+struct DepthReached {
+  double planned_mm = 0.0;  ///< mean depth of the tool's tip below its entry points, along the approach
+  DepthProfile profile;     ///< see depth_along
+  std::vector<double>
+      planned_at_mm;  ///< N, as the profile: depth of the tip below the entry point there, along the approach
+  Spread depth_mm;    ///< of the profile
+};
+inline void describe(Visitor& v, DepthReached& d) {
+  describe(v, d.depth_mm);
+  v({"planned", "Mean depth of the tool's tip below its entry points.", "mm"}, d.planned_mm);
+  v.bulk("profile", d.profile, "Along the path.");
+  v.bulk("planned_at_mm", d.planned_at_mm, "At each place of the profile.");
+}
+
+/// How far tissue was from its place in the stretched, uncut body when it was cut: along the tool's course (lag) and
+/// across it (drift). One entry per step in which tets went that had been touched long enough; means over them,
+/// weighted by rest volume.
+struct TissueDrag {
+  std::vector<double> time_s;        ///< ascending
+  std::vector<double> arclength_mm;  ///< that the tip had gone since the plunge; on a ring the overlap counts on
+  std::vector<double> lag_mm;  ///< positive: dragged ahead, so that tissue is cut that belongs farther on the way back
+  std::vector<double>
+      drift_mm;  ///< positive: pushed outwards on a ring, to the left (seen against the approach) of an open cut
+  Spread lag;    ///< of the entries; means weighted by rest volume
+  Spread drift;
+};
+inline void describe(Visitor& v, TissueDrag& d) {
+  v("time_s", d.time_s, "Ascending.");
+  v("arclength_mm", d.arclength_mm, "That the tip had gone since the plunge.");
+  v("lag_mm", d.lag_mm, "Along the course; positive: dragged ahead.");
+  v("drift_mm", d.drift_mm, "Across the course; positive: outwards on a ring.");
+  v("lag", d.lag, "Of the entries, weighted by rest volume.");
+  v("drift", d.drift, "Likewise.");
+}
+
+/// How near the kerf comes to the body of the tumour, stretched tissue before the cut, mm. A place of the kerf is
+/// beneath the tumour when it lies farther along the approach than across it from the nearest point of the tumour, else
+/// beside it.
+struct DeepMargin {
+  double nearest_mm = 0.0;           ///< in any direction; negative: the kerf enters the tumour that far
+  std::optional<double> beside_mm;   ///< least distance to what lies beside; absent: nothing does
+  std::optional<double> beneath_mm;  ///< least distance to what lies beneath; absent: nothing does
+  Spread floor_below_mm;  ///< along the path: by how much the kerf's floor lies deeper than the tumour's deepest point
+};
+inline void describe(Visitor& v, DeepMargin& m) {
+  v({"nearest", "Least distance of kerf and tumour; negative: the kerf enters it.", "mm"}, m.nearest_mm);
+  v({"beside", "Of what lies beside the tumour.", "mm"}, m.beside_mm);
+  v({"beneath", "Of what lies beneath it.", "mm"}, m.beneath_mm);
+  v({"floor_below", "How much deeper the kerf's bottom is than the tumour.", "mm"}, m.floor_below_mm);
+}
+
+/// What came out of a cut, beside the two contours.
+struct KerfMeasures {
+  KerfBody body;
+  std::vector<KerfLayer> layers;  ///< as asked for
+  DepthReached depth;
+  std::optional<TissueDrag> drag;           ///< absent: nothing was cut, or the tip never moved along the path
+  std::optional<DeepMargin> deep_margin;    ///< absent: nothing was cut, or the tumour's surface is not known
+  std::optional<Contour> final_centerline;  ///< the mid-line moved with the tissue on both its sides, tool out, mm;
+                                            ///< absent also where a straight line across it meets no tissue on one side
+  std::optional<Contour>
+      inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
+};
+inline void describe(Visitor& v, KerfMeasures& k) {
+  describe(v, k.body);
+  v.bulk("layers", k.layers, "As asked for.");
+  v({"depth_reached_mm", "Along the path.", "mm"}, k.depth);
+  v.bulk("drag", k.drag, "Of the tissue when it was cut.");
+  v.derived("lag_mm", k.drag ? std::optional(k.drag->lag) : std::nullopt, "How far tissue was dragged ahead.");
+  v.derived("drift_mm", k.drag ? std::optional(k.drag->drift) : std::nullopt, "How far it was pushed outwards.");
+  v({"deep_margin_mm", "Distance from the tumour's surface.", "mm"}, k.deep_margin);
+  v.bulk("final_centerline", k.final_centerline, "The mid-line, tool out.");
+  v.bulk("inner_edge_reference", k.inner_edge_reference,
+         "The inner edge's points in the stretched tissue before the cut.");
+}
+
+/// A ring that closed, by its mid-line.
+struct ClosedRing {
+  double depth_mm = 0.0;       ///< of the layer's middle
+  double half_width_mm = 0.0;  ///< of the kerf there
+  Contour midline;             ///< stretched tissue before the cut, lifted along the approach to the skin's height, mm
+};
+inline void describe(Visitor& v, ClosedRing& r) {
+  v("depth_mm", r.depth_mm, "Of the layer's middle below the skin.");
+  v("half_width_mm", r.half_width_mm, "Of the kerf there.");
+  v("midline", r.midline, "Stretched tissue before the cut, lifted along the approach to the skin's height.");
+}
+
+/// The shallowest layer in which the ring closed; nothing where none did.
+/// @param approach  unit length.
+[[nodiscard]] std::optional<ClosedRing> shallowest_closed_ring(const KerfMeasures& kerf, const Vec3& approach);
+
+}  // namespace incise

@@ -1,0 +1,139 @@
+#include "kerf.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/geometry/kerf_contours.hpp>
+#include <incise/geometry/surface_query.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace incise {
+namespace {
+
+constexpr double kBeyondWallMm =
+    4.0;  // beside the mid-line, live tissue is looked for this far behind the kerf's mean wall, which is rough
+
+/// The middle of what a ring runs round: the tumour if there is one, else the path.
+Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
+  return curve_centroid(tumor_edge.points.empty() ? entry_contour(path) : tumor_edge);
+}
+
+KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                     const IncisionSettings& settings, const CutRecord& record) {
+  KerfInput kerf;
+  for (const Removal& removal : record.removals) {
+    const Tet& t = model.mesh.tets[removal.tet.index()];
+    const Points& x = stretched.positions;
+    kerf.removed_tets.push_back({x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]});
+  }
+  kerf.surface = skin_of(model.mesh, stretched.positions);
+  kerf.approach = settings.approach;
+  kerf.inside_mm = inside_of(path.tumor_edge, path);
+  kerf.is_closed = path.is_closed;
+  return kerf;
+}
+
+/// Where material points of the stretched tissue lie after the cut.
+Contour carried(const Contour& curve, const TetMesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to) {
+  constexpr double kOnSkinMm = 0.5;  // points of a curve on the skin may lie this far outside the flat faces
+  const TetLocator locator(mesh, from);
+  Contour moved{{}, curve.is_closed};
+  for (std::size_t i = 0; i < curve.points.size(); ++i) {
+    const auto point = locator.locate(curve.points[i], kOnSkinMm);
+    INCISE_REQUIRE(point.has_value(),
+                   fmt::format("point {} of the tumour edge lies farther than {} mm from the tissue", i, kOnSkinMm));
+    moved.points.push_back(position_of(*point, mesh, to));
+  }
+  return moved;
+}
+
+CutSurface cut_surface(const TetMesh& mesh, const TissueState& tissue, const IncisionSettings& settings,
+                       const Vec3& inside) {
+  CutSurface surface;
+  surface.vertices = tissue.positions;
+  surface.approach = settings.approach;
+  surface.inside_mm = inside;
+  // Both lists run by tet, then face: a face of the live skin is original where it stands in the uncut skin, too.
+  const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
+  auto original = uncut.begin();
+  for (const BoundaryFace& face : boundary_faces(mesh, tissue.is_live)) {
+    while (original != uncut.end() && original->tet < face.tet) ++original;
+    const bool is_skin =
+        std::any_of(original, uncut.end() - original > 4 ? original + 4 : uncut.end(),
+                    [&face](const BoundaryFace& o) { return o.tet == face.tet && o.corners == face.corners; });
+    surface.triangles.push_back(face.corners);
+    surface.is_skin.push_back(is_skin ? 1 : 0);
+  }
+  return surface;
+}
+
+void measure_midline(const KerfInput& kerf, const KerfMidlineSettings& midline_settings, IncisionResult& result) {
+  const KerfMidline midline = midline_contour(kerf, midline_settings);
+  result.centerline = midline.contour;
+  result.kerf_width_mm = midline.mean_width_mm;
+  if (!kerf.is_closed) return;
+  result.is_closed_loop = midline.is_closed;
+  if (!midline.is_closed && std::isfinite(midline.gap_mm)) result.gap_mm = midline.gap_mm;
+  result.gap_deg = midline.gap_deg;
+}
+
+/// Where the tumour edge lies after the cut, and the inner edge of a ring.
+void measure_final_edges(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                         const IncisionSettings& settings, double bridge_mm, IncisionResult& result) {
+  if (path.tumor_edge.points.size() < 3) return;
+  const TissueState& tissue = result.final_state.tissue;
+  result.final_tumor_edge = carried(path.tumor_edge, model.mesh, stretched.positions, tissue.positions);
+  if (!path.is_closed) return;
+  InnerEdgeSettings edge_settings;
+  edge_settings.opening_mm = bridge_mm;
+  result.inner_edge = inner_edge_contour(
+      cut_surface(model.mesh, tissue, settings, inside_of(result.final_tumor_edge, path)), edge_settings);
+  if (!result.inner_edge) return;
+  result.kerf.inner_edge_reference = carried_with_live(*result.inner_edge, 0.0, settings.approach, model.mesh,
+                                                       tissue.is_live, tissue.positions, stretched.positions);
+}
+
+}  // namespace
+
+std::optional<ClosedRing> shallowest_closed_ring(const KerfMeasures& kerf, const Vec3& approach) {
+  for (const KerfLayer& layer : kerf.layers) {
+    if (!layer.centerline || !layer.is_closed.value_or(false)) continue;
+    ClosedRing ring{layer.depth_mm, 0.5 * layer.width_mm, *layer.centerline};
+    for (Vec3& p : ring.midline.points) p -= layer.depth_mm * approach;
+    return ring;
+  }
+  return std::nullopt;
+}
+
+void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                  const IncisionSettings& settings, IncisionResult& result, Workers& workers) {
+  KerfMidlineSettings midline_settings;
+  midline_settings.layer_bottom_mm = settings.midline_layer_mm;
+  const KerfInput kerf = kerf_input(model, stretched, path, settings, result.record);
+  const TissueState& tissue = result.final_state.tissue;
+  KerfMeasures& measures = result.kerf;
+  measures.layers.resize(settings.layer_depths_mm.size());
+  // Each writes what no other reads; the slow ones stand apart, so that threads share them.
+  std::vector<std::function<void()>> tasks{
+      [&] { measure_midline(kerf, midline_settings, result); },
+      [&] { measures.body = kerf_body(model, stretched.positions, tissue.is_live); },
+      [&] { measures.depth = depth_reached(kerf, path, settings); },
+      [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, result.record); },
+      // A strip of tissue that the mid-line overlooks does not hold the plug either.
+      [&] { measure_final_edges(model, stretched, path, settings, midline_settings.closing_mm, result); }};
+  for (std::size_t i = 0; i < measures.layers.size(); ++i) {
+    tasks.emplace_back([&, i] { measures.layers[i] = kerf_layer(kerf, path, settings.layer_depths_mm[i]); });
+  }
+  workers.for_each(tasks.size(), 1, [&](std::size_t i) { tasks[i](); });
+  measures.deep_margin = deep_margin(measures.body, measures.depth, settings);
+  if (!result.centerline) return;
+  measures.final_centerline =
+      carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
+                        tissue.is_live, stretched.positions, tissue.positions);
+}
+
+}  // namespace incise

@@ -1,0 +1,121 @@
+#include "kerf.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/geometry/surface_query.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace incise {
+namespace {
+
+Spread spread_of(std::span<const double> values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return {std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()), *low, *high};
+}
+
+/// Least distances between the kerf and the tumour, sorted by where the kerf lies.
+class Nearest {
+ public:
+  explicit Nearest(const Vec3& approach) : approach_(approach) {}
+
+  /// @param outward  from the tumour's surface to the kerf, or, where the kerf is within the tumour, from it to the
+  /// surface.
+  void add(const Vec3& outward, bool is_inside) {
+    const double length = outward.norm();
+    const double distance = is_inside ? -length : length;
+    nearest = std::min(nearest, distance);
+    const double down = outward.dot(approach_);
+    std::optional<double>& part = down > (outward - down * approach_).norm() ? beneath : beside;
+    part = std::min(part.value_or(distance), distance);
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  std::optional<double> beside;
+  std::optional<double> beneath;
+
+ private:
+  Vec3 approach_;
+};
+
+/// Whether a ray along the approach leaves the closed surface before it enters it.
+bool is_within(const Vec3& p, const SurfaceQuery& surface, const Box3& bounds, const Vec3& approach) {
+  if (!bounds.contains(p)) return false;
+  const std::optional<SurfacePoint> hit = surface.first_hit(p, approach);
+  return hit && hit->normal.dot(approach) > 0.0;
+}
+
+}  // namespace
+
+namespace {
+
+/// Depth of the tool's tip below the path at points of the profile, along the approach: linear between waypoints.
+std::vector<double> planned_along(const ToolPath& path, const DepthProfile& profile, const Vec3& approach) {
+  const std::size_t n = path.waypoints.size();
+  const auto depth_of = [&](std::size_t i) {
+    return path.waypoints[i % n].depth_mm * path.waypoints[i % n].axis.dot(approach);
+  };
+  const Contour entries = entry_contour(path);
+  std::vector<double> planned;
+  planned.reserve(profile.course.points.size());
+  for (const Vec3& p : profile.course.points) {
+    const ContourPoint at = nearest_on(entries, p);
+    planned.push_back((1.0 - at.fraction) * depth_of(at.segment) + at.fraction * depth_of(at.segment + 1));
+  }
+  return planned;
+}
+
+}  // namespace
+
+DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings) {
+  DepthReached result;
+  for (const Waypoint& waypoint : path.waypoints) {
+    result.planned_mm +=
+        waypoint.depth_mm * waypoint.axis.dot(settings.approach) / static_cast<double>(path.waypoints.size());
+  }
+  KerfDepthSettings depth;
+  depth.needle_diameter_mm = 2.0 * radius_mm(settings.tool);
+  depth.pixel_mm = std::min(depth.pixel_mm, 0.25 * depth.needle_diameter_mm);
+  depth.reach_mm = std::max(depth.reach_mm, depth.needle_diameter_mm);
+  result.profile = depth_along(kerf, entry_contour(path), depth);
+  result.planned_at_mm = planned_along(path, result.profile, settings.approach);
+  result.depth_mm = spread_of(result.profile.depth_mm);
+  return result;
+}
+
+std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& depth,
+                                      const IncisionSettings& settings) {
+  const TriMesh& tumor = settings.tumor_surface;
+  if (tumor.triangles.empty() || body.surface.triangles.empty()) return std::nullopt;
+  const double volume = enclosed_volume_mm3(tumor);
+  INCISE_REQUIRE(volume > 0.0, fmt::format("expected a tumour surface that encloses a volume, found {} mm³", volume));
+  const Vec3& approach = settings.approach;
+  const SurfaceQuery tumor_query(tumor);
+  const SurfaceQuery kerf_query(body.surface);
+  const Box3 tumor_box = bounding_box(tumor.vertices);
+  const Box3 kerf_box = bounding_box(body.surface.vertices);
+  Nearest nearest(approach);
+  for (const Vec3& p : body.surface.vertices) {
+    const Vec3 from_tumor = p - tumor_query.nearest(p).position_mm;
+    const bool is_inside = is_within(p, tumor_query, tumor_box, approach);
+    nearest.add(is_inside ? Vec3(-from_tumor) : from_tumor, is_inside);
+  }
+  // The corners of the one against the faces of the other, both ways: a small tumour may face the middle of a wall.
+  for (const Vec3& t : tumor.vertices) {
+    if (is_within(t, kerf_query, kerf_box, approach)) continue;  // the kerf's corners have said so
+    nearest.add(kerf_query.nearest(t).position_mm - t, false);
+  }
+  DeepMargin margin{nearest.nearest, nearest.beside, nearest.beneath, {}};
+  double tumor_bottom = -std::numeric_limits<double>::infinity();
+  for (const Vec3& t : tumor.vertices) tumor_bottom = std::max(tumor_bottom, t.dot(approach));
+  std::vector<double> floors;
+  for (std::size_t i = 0; i < depth.profile.depth_mm.size(); ++i) {
+    floors.push_back(depth.profile.course.points[i].dot(approach) + depth.profile.depth_mm[i] - tumor_bottom);
+  }
+  margin.floor_below_mm = spread_of(floors);
+  return margin;
+}
+
+}  // namespace incise

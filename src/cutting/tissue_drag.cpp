@@ -1,0 +1,114 @@
+#include "kerf.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr int kHalvings = 60;  // of the time in which a phase's end is searched: to rounding
+
+/// The tool's course as lag and drift see it: how far the tip has gone along the path, and which way it goes.
+class Course {
+ public:
+  Course(const ToolPath& path, const IncisionSettings& settings)
+      : program_(path, settings.cut, settings.tool),
+        least_span_s_(0.5 * settings.cut.step_s()),
+        begin_s_(last_moment([](ToolProgram::Phase phase) { return phase == ToolProgram::Phase::Plunge; })),
+        end_s_(last_moment([](ToolProgram::Phase phase) { return phase != ToolProgram::Phase::Dwell; })) {
+    // Outwards on a ring, whichever way round it runs; to the left of an open cut.
+    const bool is_outside_right = path.is_closed && signed_area_mm2(entry_contour(path), settings.approach) > 0.0;
+    to_the_right_ = is_outside_right ? 1.0 : -1.0;
+  }
+
+  [[nodiscard]] double arclength_mm(double time_s) const {
+    return program_.way_mm_at(on_path(time_s)) - program_.way_mm_at(begin_s_);
+  }
+
+  /// Unit direction of the tip's motion at a time: while it plunges, that in which it sets out; once it stands, that in
+  /// which it came. nullopt if the tip does not move.
+  [[nodiscard]] std::optional<Vec3> direction(double time_s) const {
+    for (double span = least_span_s_; span < 2.0 * (end_s_ - begin_s_); span *= 2.0) {
+      const Vec3 moved =
+          program_.pose_at(on_path(time_s + span)).tip_mm - program_.pose_at(on_path(time_s - span)).tip_mm;
+      if (moved.norm() > 1e-9) return moved.normalized();
+    }
+    return std::nullopt;
+  }
+  /// Unit vector across the course in the picture plane, the way in which drift counts positive.
+  [[nodiscard]] Vec3 across(const Vec3& direction, const Vec3& approach) const {
+    return to_the_right_ * approach.cross(direction).stableNormalized();
+  }
+
+ private:
+  [[nodiscard]] double on_path(double time_s) const { return std::clamp(time_s, begin_s_, end_s_); }
+
+  template <class Holds>
+  [[nodiscard]] double last_moment(Holds holds) const {
+    double low = 0.0;
+    double high = program_.duration_s();
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (low + high);
+      (holds(program_.phase_at(middle)) ? low : high) = middle;
+    }
+    return low;
+  }
+
+  ToolProgram program_;
+  double least_span_s_;
+  double begin_s_;  // the tip leaves the first waypoint
+  double end_s_;    // and stands
+  double to_the_right_ = 1.0;
+};
+
+/// Sum of what went in one step, weighted by rest volume.
+struct StepSum {
+  double volume_mm3 = 0.0;
+  Vec3 moment = Vec3::Zero();  // displacement · volume
+};
+
+Spread weighted_spread(std::span<const double> values, std::span<const double> weights) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  double sum = 0.0;
+  double weight = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    sum += weights[i] * values[i];
+    weight += weights[i];
+  }
+  return {sum / weight, *low, *high};
+}
+
+}  // namespace
+
+std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path,
+                                      const IncisionSettings& settings, const CutRecord& record) {
+  const Course course(path, settings);
+  TissueDrag drag;
+  std::vector<double> volumes;
+  const std::vector<Removal>& removals = record.removals;
+  for (std::size_t i = 0, end = 0; i < removals.size(); i = end) {
+    StepSum step;
+    for (; end < removals.size() && removals[end].step == removals[i].step; ++end) {
+      if (removals[end].cause == RemovalCause::LooseFragment)
+        continue;  // it went with its surroundings, not with the tool
+      Vec3 place = Vec3::Zero();
+      for (const VertexId v : model.mesh.tets[removals[end].tet.index()]) place += 0.25 * stretched[v.index()];
+      step.volume_mm3 += removals[end].rest_volume_mm3;
+      step.moment += removals[end].rest_volume_mm3 * (removals[end].centroid_mm - place);
+    }
+    const std::optional<Vec3> direction = course.direction(removals[i].time_s);
+    if (!direction || step.volume_mm3 == 0.0) continue;
+    const Vec3 displacement = step.moment / step.volume_mm3;
+    drag.time_s.push_back(removals[i].time_s);
+    drag.arclength_mm.push_back(course.arclength_mm(removals[i].time_s));
+    drag.lag_mm.push_back(displacement.dot(*direction));
+    drag.drift_mm.push_back(displacement.dot(course.across(*direction, settings.approach)));
+    volumes.push_back(step.volume_mm3);
+  }
+  if (volumes.empty()) return std::nullopt;
+  drag.lag = weighted_spread(drag.lag_mm, volumes);
+  drag.drift = weighted_spread(drag.drift_mm, volumes);
+  return drag;
+}
+
+}  // namespace incise

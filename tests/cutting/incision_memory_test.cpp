@@ -1,0 +1,68 @@
+#include "cutting/ring_in_a_block.hpp"
+
+#include <incise/core/memory.hpp>
+#include <incise/cutting/incision_memory.hpp>
+
+#include <malloc.h>
+
+#include <fstream>
+
+namespace incise {
+namespace {
+
+/// Lets the peak of this process begin anew from what it holds now. @returns whether the system can.
+bool reset_peak() {
+  malloc_trim(0);
+  std::ofstream reset("/proc/self/clear_refs");
+  reset << "5";
+  reset.close();
+  return reset.good() && peak_memory_bytes().has_value();
+}
+
+/// Asks to stop once the first steps are done: by then all is held that a cut holds, but for frames.
+class StopSoon : public Monitor {
+ public:
+  void progress(std::string_view, double) override { ++steps_; }
+  [[nodiscard]] bool is_cancelled() const override { return steps_ >= 3; }
+
+ private:
+  int steps_ = 0;
+};
+
+class IncisionMemory : public testing::RingInABlock {
+ protected:
+  /// What a cut of a block of 32 x 32 x 8 mm was expected to take, over what it took.
+  [[nodiscard]] double expected_over_measured(const std::array<int, 3>& cells, VolumeTreatment volume) const {
+    TetMesh mesh = make_block({32, 32, 8}, cells);
+    const double expected =
+        static_cast<double>(expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), volume, 0));
+    Material material;
+    material.volume = volume;
+    const std::uint64_t before = *peak_memory_bytes();
+    const TissueModel model = make_tissue_model(
+        std::move(mesh), material, {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
+    const TissueState stretched = rest_state(model);
+    Workers workers(1);
+    StopSoon monitor;
+    EXPECT_EQ(simulate_incision(model, stretched, ring(4.0), settings_, workers, monitor).outcome, Outcome::Cancelled);
+    return expected / static_cast<double>(*peak_memory_bytes() - before);
+  }
+};
+
+TEST_F(IncisionMemory, OfTheDemosSizeIsWithinThirtyPercentOfWhatWasExpected) {
+  if (!reset_peak()) GTEST_SKIP() << "this system does not tell the peak of a process";
+  EXPECT_NEAR(expected_over_measured({32, 32, 7}, VolumeTreatment::PerTet), 1.0, 0.3);
+}
+
+TEST_F(IncisionMemory, WithAveragedVolumeIsWithinThirtyPercentOfWhatWasExpected) {
+  if (!reset_peak()) GTEST_SKIP() << "this system does not tell the peak of a process";
+  EXPECT_NEAR(expected_over_measured({22, 22, 6}, VolumeTreatment::Averaged), 1.0, 0.3);
+}
+
+TEST(ExpectedMemory, GrowsByWhatTheFramesHold) {
+  const auto without = expected_memory_bytes(1000, 5000, VolumeTreatment::PerTet, 0);
+  EXPECT_EQ(expected_memory_bytes(1000, 5000, VolumeTreatment::PerTet, 10) - without, 10U * (24 * 1000 + 5000));
+}
+
+}  // namespace
+}  // namespace incise
