@@ -161,7 +161,8 @@ int main(int argc, char** argv) {
     say(fmt::format("incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message()));
     return kBadData;
   } catch (const std::system_error& error) {  // fmt, where standard output takes no more
-    say(fmt::format("incise: standard output: found {}, expected one that takes all that is printed\n", error.code().message()));
+    say(fmt::format("incise: standard output: found {}, expected one that accepts all that is printed\n",
+                    error.code().message()));
     return kBadData;
   } catch (const nlohmann::json::exception& error) {
     say(fmt::format("incise: a JSON file that was read: found {}, expected what incise writes\n", error.what()));

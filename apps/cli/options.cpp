@@ -48,7 +48,7 @@ void refuse_input_as_output(const std::string& option, const std::filesystem::pa
       refuse(fmt::format(", which holds the input {}", input.string()), "another place: the input would be lost");
     if (std::filesystem::is_directory(input, absent) && is_same_or_within(output, input))
       refuse(fmt::format(", in the input {}", input.string()),
-             "another place: the input would no longer be what it was");
+             "another place: the input would be changed");
   }
 }
 
@@ -116,7 +116,8 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   verb->add_flag("--quiet", options->quiet, "Warnings only");
   verb->add_flag("--verbose", options->verbose, "More detail");
   verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
-  verb->add_option("--seed", options->seed, "Seed of everything random")->check(whole_between("--seed", 0, kGreatestSeed));
+  verb->add_option("--seed", options->seed, "Seed of all random numbers")
+      ->check(whole_between("--seed", 0, kGreatestSeed));
   verb->add_option("--isa", options->isa,
                    "Instruction set of the vectorised kernels; by default the best that this machine has")
       ->check(name_of_any<Isa>());

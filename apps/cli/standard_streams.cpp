@@ -34,7 +34,8 @@ void finish_standard_output() {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return;
   if (errno == 0 && ::write(STDOUT_FILENO, "\n", 1) == 1) errno = 0;  // it failed earlier: asked for its reason once more
-  throw DataError("standard output", "", errno != 0 ? std::strerror(errno) : "a failed write", "one that takes all that is printed",
+  throw DataError("standard output", "", errno != 0 ? std::strerror(errno) : "a failed write",
+                  "one that accepts all that is printed",
                   "Files that were named as output are complete");
 }
 

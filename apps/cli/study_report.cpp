@@ -237,7 +237,7 @@ void add_evaluation(const fs::path& root, ReportData& data) {
       {"Kerf to the tumour's surface, least distance", "mm", "/deep_margin_mm/nearest"},
       {"… beside it", "mm", "/deep_margin_mm/beside"},
       {"… beneath it (none: the kerf does not run there)", "mm", "/deep_margin_mm/beneath"},
-      {"Floor of the kerf below the tumour's deepest point, least", "mm", "/deep_margin_mm/floor_below/min"},
+      {"Bottom of the kerf below the tumour's deepest point, least", "mm", "/deep_margin_mm/floor_below/min"},
       {"Volume of the kerf, stretched", "mm³", "/kerf/volume_mm3"},
       {"Edges at which sheets of the kerf's surface touch", "", "/kerf/nonmanifold_edges"},
       {"Edges at which sheets of the live skin touch", "", "/live_skin/nonmanifold_edges"},
@@ -270,7 +270,7 @@ void add_series(const fs::path& file, const char* x, const char* y, const std::s
 
 /// Depth, lag and drift along the path, for both cuts.
 void add_kerf_plots(const fs::path& root, ReportData& data) {
-  constexpr const char* kAlong = "way of the tool along its path, mm";
+  constexpr const char* kAlong = "distance of the tool along its path, mm";
   LinePlot depth{.title = "Depth of the kerf (simulated)", .x_label = kAlong, .y_label = "depth below the skin, mm", .series = {}};
   LinePlot lag{.title = "Lag: tissue dragged ahead when cut (simulated)", .x_label = kAlong, .y_label = "lag, mm", .series = {}};
   LinePlot drift{.title = "Drift: tissue pushed outwards when cut (simulated)", .x_label = kAlong, .y_label = "drift, mm", .series = {}};
@@ -378,7 +378,9 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
   if (fs::exists(root / "manifest.json")) {
     const Manifest manifest = read_manifest(root);
     if (nlohmann::ordered_json::parse(manifest.settings_json) != nlohmann::ordered_json::parse(settings_json(file))) {
-      data.notices.push_back({Severity::Warning, "The case file was changed since these results were made: the settings shown are of today, the results are older."});
+      data.notices.push_back({Severity::Warning, "The case file has changed since these results were made: the "
+                                                 "settings "
+                                                 "shown are the present ones, not theirs."});
     }
     data.provenance = {{"incise", manifest.version, ""},       {"commit", manifest.commit, ""},
                        {"command", manifest.command, ""},      {"seed", std::to_string(manifest.seed), ""},
@@ -398,7 +400,7 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
       {"correction/errors.csv", "errors along the path, pass by pass"},
       {"corrected/frames.pvd", "the corrected cut over time (ParaView)"},
       {"program/program.script", "robot program (URScript)"},
-      {"program/true_path.csv", "the tip's path as the player ran the program"},
+      {"program/true_path.csv", "the tip's path in the replay of the program"},
   }};
   for (const auto& [path, meaning] : kFiles) {
     if (fs::exists(root / path)) data.files.push_back({path, meaning});

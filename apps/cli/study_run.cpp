@@ -24,7 +24,8 @@ void add_cut_options(CLI::App& verb, CutOptions& options) {
   verb.add_option("--frames", options.frames, "Moments of the cut to keep for pictures, in place of the case's cut.frames")
       ->check(CLI::Range(1, kMostFrames));
   verb.add_flag("--resume", options.must_resume,
-                "Go on from the checkpoint of an interrupted cut, or refuse. Without it the cut goes on, too, where there is one that fits");
+                "Continue from the checkpoint of an interrupted cut, or refuse. Without --resume it continues "
+                "if its checkpoint fits, and else starts again");
   verb.add_option("--checkpoint-s", options.checkpoint_s, "Seconds between two checkpoints of a cut; Ctrl-C always writes one")
       ->check(CLI::Range(0.0, kLongestCheckpointS));
 }

@@ -55,7 +55,7 @@ constexpr std::array<StudyLine, 13> kStudyLines{{{"outcome", "/outcome"},
                                                  {"lag when cut: mean, mm", "/lag_mm/mean"},
                                                  {"kerf to tumour surface: least, mm", "/deep_margin_mm/nearest"},
                                                  {"greatest tool force, mN", "/peak_tool_force_mn"},
-                                                 {"vertex moves cut to max_step_mm", "/held_back_vertices"},
+                                                 {"vertex moves limited to max_step_mm", "/held_back_vertices"},
                                                  {"time of the cut, s", "/wall_s"}}};
 
 std::string shown_at(const nlohmann::ordered_json& result, const char* part, const char* pointer) {
@@ -73,7 +73,7 @@ void print_passes(const nlohmann::ordered_json& result) {
   for (const auto& pass : correction.at("history")) line += (line.empty() ? "" : ", ") + shown(pass.at("mean_abs_error_mm"));
   fmt::print("{:<36} {} ({}, pass {} kept)\n", "mean |error| pass by pass, mm", line, shown(correction.at("compensation_outcome")),
              shown(correction.at("best_pass")));
-  fmt::print("{:<36} {}\n", "floor of the mesh, mm", shown(correction.at("floor_mm")));
+  fmt::print("{:<36} {}\n", "mesh-resolution limit, mm", shown(correction.at("floor_mm")));
 }
 
 /// What is to be expected of each path over a calibration's posterior.

@@ -64,7 +64,7 @@ std::string tip_against_path(const Json& replay) {
   const double most_mm = number("max_cut_deviation_mm"), mean_mm = number("mean_deviation_mm");
   std::string text = replay.value("outcome", "") == to_string(ReplayOutcome::Completed)
                          ? ""
-                         : "The program does not run to a good end. ";
+                         : "The program does not run to completion. ";
   if (most_mm >= 0.0 && mean_mm >= 0.0)
     text += fmt::format("Tip against path, in the cut: at most {:.2f} mm, mean {:.2f} mm. ", most_mm, mean_mm);
   return text + "As the player ran it, with incise's own kinematics and a model of the controller; not on an arm.";
@@ -79,13 +79,13 @@ void add_on_tissue(const std::filesystem::path& registration, const std::filesys
        {"rmse_mm", "residual, root mean square", "mm"},
        {"inlier_fraction", "share of points that fit", ""},
        {"fit_fraction", "share of the points above the tissue that fit", ""},
-       {"settled_max_mm", "settling that was found, greatest", "mm"},
+       {"settled_max_mm", "settling found, greatest", "mm"},
        {"rotation_deg", "turned by", "°"}}};
   static constexpr std::array<Shown, 6> kReplay{
       {{"outcome", "outcome", ""},
-       {"max_cut_deviation_mm", "tip off the wanted path in the cut, greatest", "mm"},
-       {"mean_deviation_mm", "tip off the wanted path, mean", "mm"},
-       {"max_deviation_mm", "with the ways in and out, greatest", "mm"},
+       {"max_cut_deviation_mm", "deviation from the intended path in the cut, greatest", "mm"},
+       {"mean_deviation_mm", "deviation from the intended path, mean", "mm"},
+       {"max_deviation_mm", "the same with the ways in and out, greatest", "mm"},
        {"duration_s", "duration", "s"},
        {"model", "model", ""}}};
   // What a reader wants to know first: where the tip goes.

@@ -53,7 +53,8 @@ void add_assess(Application& application) {
       application.add_verb("assess",
                            "Should this specimen be cut along the corrected path? compensate, cut_as_planned (both "
                            "exit status 0) or do_not_use (4): what the "
-                           "correction is expected to win over a calibration's posterior, how sure that is, and how "
+                           "correction is expected to gain over a calibration's posterior, how certain that is, "
+                           "and how "
                            "far the specimen lies from those that were "
                            "calibrated on",
                            "incise assess specimen --calibration calibration/calibration.json --registration "

@@ -106,7 +106,7 @@ int run(const AuditArguments& given, const CommonOptions& options) {
 
 void add_audit(Application& application) {
   auto [verb, a] = application.add_verb<AuditArguments>(
-      "audit", "Tell which rows of a published table cannot be; exit status 4 if there are any",
+      "audit", "Find the rows of a published table that no data can produce; exit status 4 if there are any",
       "incise audit data/published_tables/table_1.csv", run);
   verb->add_option("table", a.table,
                    "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "

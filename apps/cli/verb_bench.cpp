@@ -40,27 +40,28 @@ int floor_of(const CommonOptions& options, laboratory::KnownPhysicsRequest reque
 
 void add_bench(Application& application) {
   CLI::App* bench =
-      application.add_group("bench", "The virtual laboratory: make a specimen's readings, cut it by a robot program",
+      application.add_group("bench", "The virtual laboratory: make a specimen's readings, cut it with a robot program",
                             "incise bench make --seed 7 -o specimen7 --truth hidden7");
   auto made = std::make_shared<laboratory::MakeSpecimenRequest>();
   CLI::App* verb = application.add_verb_to(
-      *bench, "make", "Make what a laboratory would have of a specimen: CT, cloud, RGB-D frame, pull force",
+      *bench, "make", "Make the readings that a laboratory would have: CT, cloud, RGB-D frame, pull force",
       "incise bench make --seed 7 -o specimen7 --truth hidden7",
       [made](const CommonOptions& options) { return make(options, *made); });
-  verb->add_option("specimen", made->specimen, "Specimen file (incise schema bench); without it the seed draws one");
+  verb->add_option("specimen", made->specimen,
+                   "Specimen file (incise schema bench); without it one is drawn from the seed");
   verb->add_option("--truth", made->truth,
                    "Folder for the hidden truth; it holds the specimen.json that `bench cut` needs");
   verb->add_flag("--elasticity", made->has_elasticity, "Also a noisy elasticity map");
 
   auto run = std::make_shared<laboratory::CutSpecimenRequest>();
-  verb = application.add_verb_to(*bench, "cut", "Cut a specimen by a robot program and photograph it",
+  verb = application.add_verb_to(*bench, "cut", "Cut a specimen with a robot program and photograph it",
                                  "incise bench cut hidden7/specimen.json cut.script -o cut7",
                                  [run](const CommonOptions& options) { return cut(options, *run); });
   verb->add_option("specimen", run->specimen, "The hidden specimen.json")->required();
   verb->add_option("program", run->program, "A program that `incise export` wrote: URScript, .csv or .json")
       ->required();
-  verb->add_option("--power-w", run->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
-  verb->add_option("--mm-per-pixel", run->mm_per_pixel, "Of the photograph")->check(CLI::Range(0.01, 0.2));
+  verb->add_option("--power-w", run->power_w, "Power of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
+  verb->add_option("--mm-per-pixel", run->mm_per_pixel, "Scale of the photograph")->check(CLI::Range(0.01, 0.2));
   verb->add_option("--truth", run->truth, "Folder for what really happened, for tests");
 
   auto floor = std::make_shared<laboratory::KnownPhysicsRequest>();
@@ -69,8 +70,9 @@ void add_bench(Application& application) {
       "incise bench floor hidden7/specimen.json -o floor7.json",
       [floor](const CommonOptions& options) { return floor_of(options, *floor); });
   verb->add_option("specimen", floor->specimen, "The hidden specimen.json")->required();
-  verb->add_option("--power-w", floor->power_w, "Of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
-  verb->add_option("--simulations", floor->simulations, "Cuts of the bench that the path is corrected by")
+  verb->add_option("--power-w", floor->power_w, "Power of the electrosurgical generator")
+      ->check(CLI::Range(1.0, 120.0));
+  verb->add_option("--simulations", floor->simulations, "Bench cuts by which the path is corrected")
       ->check(CLI::Range(2, 8));
 }
 

@@ -64,10 +64,9 @@ void add_calibrate(Application& application) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* verb = application.add_verb(
       "calibrate",
-      "Find the simulated speed and dullness with which cuts come out as the photographed ones. fit: the signed error "
-      "round the "
-      "ring, few simulations, a posterior, and what the data can tell apart. paper: 25 pairs, scored as in the paper. "
-      "Interrupted, it keeps every finished simulation, and the same command goes on",
+      "Find the simulated speed and dullness that reproduce photographed cuts. fit: from the signed error round the "
+      "ring, with few simulations; gives a posterior, and states which parameters the data identify. paper: 25 pairs, "
+      "scored as in the paper. If interrupted, it keeps every finished simulation, and the same command continues",
       "incise calibrate s1 s2 --observed s1/cut.json s2/cut.json -o calibration",
       [arguments](const CommonOptions& options) { return calibrate_cases(*arguments, options); });
   verb->add_option("case", arguments->request.cases,
@@ -79,7 +78,7 @@ void add_calibrate(Application& application) {
       ->required();
   verb->add_option("--method", arguments->method, "fit or paper")->check(CLI::IsMember({"fit", "paper"}));
   verb->add_option("--stretch-force-n", arguments->request.forces_n,
-                   "Measured pull of each specimen at its stretch: makes its stiffness known to 5 %")
+                   "Measured pull of each specimen at its stretch: determines its stiffness to 5 %")
       ->check(above_zero("--stretch-force-n"));
   verb->add_option("--registration", arguments->request.registrations,
                    "Files of `incise register`, one for each case: kept, so that `incise assess` can tell how a "

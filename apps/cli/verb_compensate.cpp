@@ -47,9 +47,9 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
 void add_compensation_method(CLI::App& verb, CutOptions& options) {
   verb.add_option_function<std::string>(
           "--method", [&options](const std::string& name) { options.method = value_named<CompensationMethod>(name); },
-          "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 where something is "
-          "held against the nearest); paper: each waypoint moves once by the error "
-          "measured there. In place of the case's compensation.method")
+          "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 if there is an "
+          "objection to the nearest one); paper: each waypoint moves once by the error "
+          "measured there. Overrides the case's compensation.method")
       ->check(name_of_any<CompensationMethod>());
 }
 
@@ -65,10 +65,10 @@ void add_compensate(Application& application) {
   verb->add_flag(
       "--robust", chosen->is_robust,
       "Also choose the path of least expected error over the calibration's posterior, with a probability of a close "
-      "margin anywhere of at most --max-probability: OUT/robust/path.json. Status 4 where there is none");
+      "margin anywhere of at most --max-probability: OUT/robust/path.json. Exit status 4 if there is none");
   add_calibrated_options(*verb, chosen->calibrated);
   verb->add_option("--max-probability", chosen->max_probability,
-                   "Of less tissue than the close margin anywhere, with --robust")
+                   "Greatest probability of less tissue than the close margin anywhere, with --robust")
       ->check(between("--max-probability", 1e-4, 0.9999));
 }
 

@@ -71,7 +71,7 @@ void require_one_source(const EvaluateArguments& arguments) {
   if (!request.photo.empty()) {
     if (request.is_open)
       refuse("--open", "an open cut in a photograph",
-             "a ring round the tumour; what was cut of one is measured as it is");
+             "a ring round the tumour; an unfinished one is measured as it is");
     if (!arguments.approach.empty())
       refuse("--approach", "a direction for a photograph", "none: a photograph is seen from above");
     if (!request.figure.empty() && request.figure.extension() != ".png")
@@ -83,7 +83,7 @@ void require_one_source(const EvaluateArguments& arguments) {
     refuse("PHOTO", has_line && !request.tumor.empty() ? "--line and --tumor" : "no input",
            "a photograph, or --incision with either --tumor or --line");
   if (has_line && arguments.target_mm > 0.0)
-    refuse("--target-mm", "a distance", "none: a cut along a line is to lie on the line");
+    refuse("--target-mm", "a distance", "none: a cut along a line should lie on the line");
   if (has_line && !arguments.twelve.empty()) refuse("--twelve-o-clock", "a direction", "none: there is no ring");
   if (has_line && !request.figure.empty())
     refuse("--figure", "a file", "none: the figure shows an incision round a tumour");
@@ -114,7 +114,7 @@ void add_evaluate(Application& application) {
       "evaluate", "", "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json", run);
   verb->add_option("photo", a.request.photo, "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
   verb->add_option("--specimen-id", a.request.specimen_id,
-                   "Whose cut it is, as its case says: calibrate refuses another specimen's")
+                   "Id of the specimen that was cut, as in its case: calibrate refuses any other")
       ->check(CLI::Validator(
           [](const std::string& text) { return is_specimen_id(text) ? std::string() : std::string(kSpecimenIdForm); },
           "ID"));
@@ -130,11 +130,11 @@ void add_evaluate(Application& application) {
       ->check(name_of_any<RedLine>());
   add_scale_options(*verb, a.request.scale, a.ruler);
   verb->add_option("--max-gap-mm", a.request.max_gap_mm,
-                   "A red or green ring with a gap clearly longer (0.18 mm and 2 pixels) is open; of a red one "
-                   "slightly longer, the "
+                   "A red or green ring with a clearly longer gap (by 0.18 mm and 2 pixels) is open; if that of a "
+                   "red one is slightly longer, the "
                    "verdict says so")
       ->check(between("--max-gap-mm", 0.0, 10.0));
-  verb->add_option("--target-mm", a.target_mm, "Distance aimed at; default: 5.0 for a mid-line, 4.5 for an inner edge")
+  verb->add_option("--target-mm", a.target_mm, "Target distance; default: 5.0 for a mid-line, 4.5 for an inner edge")
       ->check(above_zero("--target-mm"));
   verb->add_option("--close-margin-mm", a.request.settings.close_margin_mm, "Clinical cut-off");
   verb->add_option("--approach", a.approach, "Direction in which the camera looks")->expected(3);
@@ -143,7 +143,7 @@ void add_evaluate(Application& application) {
   verb->add_option(
       "--figure", a.request.figure,
       "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
-  verb->add_option("--colors", a.colors, "Of the figure: told apart with any colour vision, or as in the paper")
+  verb->add_option("--colors", a.colors, "Colours of the figure: safe for any colour vision, or as in the paper")
       ->check(name_of_any<ErrorColors>());
   verb->add_flag("--open", a.request.is_open, "The incision round the tumour is an open curve");
 }

@@ -101,28 +101,28 @@ void add_experiment(Application& application) {
                                         "The paper's whole experiment on the virtual bench: specimens are cut as "
                                         "planned, the simulation is calibrated to their photographs, further "
                                         "specimens are cut as planned and corrected, and all is measured. Everything "
-                                        "that it yields is virtual. Run again, it goes on where it was",
+                                        "in it is virtual. Run it again to continue where it stopped",
                                         "incise experiment --quick -o experiment",
                                         [settings](const CommonOptions& options) { return study(*settings, options); });
   verb->alias("study");
   verb->add_option("--specimens", settings->specimens,
-                   "2 to 200, even: half to calibrate on, half to test; 4: the paper's, and one outside the calibrated "
-                   "range. Their seeds count up from --seed: "
-                   "of several runs each has to start beyond the last one's")
+                   "2 to 200, even: half to calibrate on, half to test; 4: as in the paper, and one outside the "
+                   "calibrated range. Their seeds count up from --seed, so start another experiment beyond the last "
+                   "seed of this one")
       ->check(whole_between("--specimens", 2, 200));
   verb->add_flag("--quick", settings->is_quick, "Without the grid of 25 pairs of speed and dullness (Table I)");
   verb->add_option("--outside", settings->outside,
                    "Further specimens unlike those calibrated on (stiff, oedematous, scarred, oedematous, soft in "
-                   "turn), to hold the advice of `assess` against what happens; "
+                   "turn), to compare the advice of `assess` with what happens; "
                    "by default one with four specimens, else none")
       ->check(whole_between("--outside", 0, 200));
   verb->add_flag("--paper-pass", settings->with_paper_pass,
                  "Also cut every test specimen along the paper's single radial correction");
   verb->add_flag("--known-physics", settings->with_known_physics,
-                 "Also cut every test specimen as a planner would that knows the bench's physics: the floor");
+                 "Also cut every test specimen as a planner that knows the bench's physics would");
   verb->add_flag("--withheld-force", settings->with_withheld_force,
-                 "Ask `assess` once more as if the pull had not been measured");
-  verb->add_option("--tets", settings->tets, "Of the planner's meshes")->check(CLI::Range(5000, 500000));
+                 "Also run `assess` as if the pull had not been measured");
+  verb->add_option("--tets", settings->tets, "Tetrahedra of the planner's meshes")->check(CLI::Range(5000, 500000));
   verb->add_option("--truth", settings->truth, "Folder for the hidden specimens; by default truth/ in the output");
 }
 

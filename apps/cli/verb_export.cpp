@@ -102,15 +102,16 @@ void add_export(Application& application) {
       run_export);
   verb->add_option("path", a.request.path, "path.json, frame robot")->required();
   verb->add_option("--robot", a.robot, "The arm")->check(CLI::IsMember({"ur10e"}));
-  verb->add_option("--format", a.format, "Of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1")
+  verb->add_option("--format", a.format, "Format of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1")
       ->check(CLI::IsMember({"urscript", "joint-csv", "ros-trajectory", "json"}));
   a.motion_option =
-      verb->add_option("--motion", a.motion, "Of URScript: movep (blends, constant speed) or servoj (timed joints)")
+      verb->add_option("--motion", a.motion,
+                       "Moves of URScript: movep (blends, constant speed) or servoj (timed joints)")
           ->check(name_of_any<ScriptMotion>());
-  verb->add_option("--kind", a.kind, "Which checks hold, in place of the path's own kind")
+  verb->add_option("--kind", a.kind, "Which checks apply, in place of those of the path's own kind")
       ->check(CLI::IsMember({"mark", "incise"}));
   verb->add_option("--override", a.request.overrides,
-                   "Write the program although this check fails; once for each, noted in the program")
+                   "Write the program although this check fails. Repeat for each check; the program lists them")
       ->expected(1)
       ->take_all();
   add_accept(*verb, a.request.accepted);
@@ -128,20 +129,21 @@ void add_export(Application& application) {
                    "Tool centre point in the flange as on the pendant: x y z (mm) rx ry rz (rad); z along the needle. "
                    "By default 0 0 150 0 0 0")
       ->expected(6);
-  verb->add_option("--near-joints-deg", a.near_deg, "Joints that the arm stands near")
+  verb->add_option("--near-joints-deg", a.near_deg, "Joint angles that the arm is near before it starts")
       ->expected(6)
       ->check(between("--near-joints-deg", -360.0, 360.0));
   verb->add_option("--table-z-mm", a.request.setup.table_z_mm, "Height of the table's plane in the base frame")
       ->check(between("--table-z-mm", -kFarthestTableMm, kFarthestTableMm));
-  verb->add_option("--needle-length-mm", a.request.checks.needle_length_mm, "Of the needle; behind it comes the shaft")
+  verb->add_option("--needle-length-mm", a.request.checks.needle_length_mm,
+                   "Length of the needle; behind it comes the shaft")
       ->check(between("--needle-length-mm", kLeastToolMm, kLargestLengthMm));
-  verb->add_option("--shaft-diameter-mm", a.shaft_diameter_mm, "Of the instrument's shaft")
+  verb->add_option("--shaft-diameter-mm", a.shaft_diameter_mm, "Diameter of the instrument's shaft")
       ->check(between("--shaft-diameter-mm", kLeastToolMm, kLargestLengthMm));
   verb->add_option("--depth-mm", a.request.checks.planned_depth_mm, "Planned depth")->check(above_zero("--depth-mm"));
   verb->add_option("--close-margin-mm", a.request.checks.close_margin_mm, "Least distance from the tumour edge")
       ->check(above_zero("--close-margin-mm"));
   verb->add_option("--overlap-mm", a.request.overlap_mm,
-                   "How far a ring runs on beyond its start; by default 8, a mark 0")
+                   "How far a ring continues beyond its start; by default 8, for a mark 0")
       ->check(CLI::Range(0.0, kLargestLengthMm))
       ->default_str("");
   verb->add_flag("--open", a.request.is_open, "The path is an open cut: closed, gap and encloses are not checked");

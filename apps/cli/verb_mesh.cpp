@@ -37,13 +37,14 @@ void add_mesh(Application& application) {
       ->required();
   verb->add_option("--around", a.around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
   verb->add_option("--fine-mm", a.fine_mm,
-                   "Edge length around the cut; by default 0.8, in proportion for a body shorter than 40 mm")
+                   "Edge length around the cut; by default 0.8, proportionally less for a body shorter than 40 mm")
       ->check(CLI::Range(0.05, 50.0));
   verb->add_option("--coarse-mm", a.coarse_mm,
-                   "Longest edge length; by default 4, in proportion for a body shorter than 40 mm")
+                   "Longest edge length; by default 4, proportionally less for a body shorter than 40 mm")
       ->check(CLI::Range(0.05, 100.0));
   verb->add_option("--depth-mm", a.depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
-  verb->add_option("--tets", a.tets, "Count to aim for; 0: as the lengths give")->check(CLI::Range(0, 5000000));
+  verb->add_option("--tets", a.tets, "Number of tets to aim for; 0: what the lengths give")
+      ->check(CLI::Range(0, 5000000));
 }
 
 }  // namespace incise::cli

@@ -15,7 +15,7 @@ void add_phantom(Application& application) {
         print_result(options, made);
         return kDone;
       });
-  verb->add_option("--format", *format, "Of the CT")->check(CLI::IsMember({"dicom", "nrrd", "nifti"}));
+  verb->add_option("--format", *format, "Format of the CT")->check(CLI::IsMember({"dicom", "nrrd", "nifti"}));
 }
 
 }  // namespace incise::cli

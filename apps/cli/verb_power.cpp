@@ -110,7 +110,7 @@ int find_power(PowerArguments arguments, const CommonOptions& options) {
 void add_limits(CLI::App& verb, PowerRequest& request) {
   add_options_of(verb, request.limits, "bulge_limit_mm", "damage_limit_mm");
   verb.add_option("--fine-mm", request.resolution.fine_mm,
-                  "Tets round the cut; coarser ones are quicker, and their numbers others")
+                  "Edge length of the tets round the cut; coarser ones are quicker, and change the results")
       ->check(between("--fine-mm", 0.8, request.resolution.coarse_mm));
 }
 
@@ -121,19 +121,19 @@ void add_power(Application& application) {
   CLI::App* verb = application.add_verb(
       "power",
       "Find the lowest power that cuts virtual specimens without bulging and without thermal damage, as the paper did "
-      "on "
-      "four tongues; bulge against speed; a surgeon's speed from timed cuts. Virtual. Interrupted, it keeps every "
-      "finished cut, and the same command goes on",
+      "on four tongues; bulge against speed; a surgeon's speed from timed cuts. Virtual. If interrupted, it keeps "
+      "every finished cut, and the same command continues",
       "incise power --specimens 4 --speeds-mm-s 3,5,7,9,11 -o power",
       [arguments](const CommonOptions& options) { return find_power(*arguments, options); });
-  verb->add_option("specimen", arguments->files, "Specimen files (incise schema bench); without them seeds draw some");
+  verb->add_option("specimen", arguments->files,
+                   "Specimen files (incise schema bench); without them specimens are drawn from seeds");
   verb->add_option("--specimens", arguments->specimens, "How many to draw, from --seed on; 4 if not given")
       ->check(whole_between("--specimens", 1, 200));
   verb->add_option("--power-w", arguments->request.powers_w, "Powers of the generator, W")
       ->delimiter(',')
       ->check(between("--power-w", 1.0, 120.0));
   verb->add_option("--speed-mm-s", arguments->speed_mm_s,
-                   "Of the series; if not given that of the timed cuts, or 7 without them")
+                   "Speed of the series; by default that of the timed cuts, or 7 without them")
       ->check(between("--speed-mm-s", kSlowestCutMmS, kFastestCutMmS));
   verb->add_option("--speeds-mm-s,--speeds", arguments->request.speeds_mm_s,
                    "Also cut at these speeds, with the chosen power")
@@ -141,7 +141,7 @@ void add_power(Application& application) {
       ->check(between("--speeds-mm-s", kSlowestCutMmS, kFastestCutMmS));
   verb->add_option("--timed-cuts", arguments->timed_cuts,
                    "Timed straight cuts of a surgeon: a CSV with the columns length_mm, time_s");
-  verb->add_flag("--only-speed", arguments->only_speed, "Tell the speed of the timed cuts, and cut nothing");
+  verb->add_flag("--only-speed", arguments->only_speed, "Only report the speed of the timed cuts; cut nothing");
   add_limits(*verb, arguments->request);
 }
 

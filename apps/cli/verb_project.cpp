@@ -41,7 +41,7 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   request.output.extension() == ".json" ? require_writable(request.output) : require_replaceable(request.output);
   request.takes_camera_size = arguments.metric == "camera";
   if (request.takes_camera_size && !arguments.scale_center.empty()) {
-    throw CaseError("command line", "--scale-center", "--metric camera", "--metric ct: else nothing is scaled");
+    throw CaseError("command line", "--scale-center", "--metric camera", "--metric ct: otherwise nothing is scaled");
   }
   if (!arguments.scale_center.empty()) request.scale_center_mm = Vec3(arguments.scale_center.data());
   request.settings = settings_of(arguments);
@@ -70,7 +70,7 @@ void add_project(Application& application) {
       "--camera", a.camera,
       "JSON with T_robot_camera, where the surface is given in a camera's frame; without it: in the robot's");
   verb->add_option("--metric", a.metric,
-                   "Whose lengths are true. ct: the scale that register fitted is taken out of the cloud, so that the "
+                   "Whose lengths to trust. ct: the scale that register fitted is removed from the cloud, so that the "
                    "simulation keeps its size; camera: the simulation takes the cloud's size")
       ->check(CLI::IsMember({"ct", "camera"}));
   verb->add_option(
@@ -81,11 +81,11 @@ void add_project(Application& application) {
   verb->add_option("--kind", a.kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s")
       ->check(name_of_any<PathKind>());
   verb->add_option("--axis", a.axis,
-                   "Tool axis: as the path has it, or against the measured surface's normal (a mark's: the mean axis)")
+                   "Tool axis: as in the path, or against the measured surface's normal (a mark's: the mean axis)")
       ->check(CLI::IsMember({"path", "normal"}));
-  verb->add_option("--depth-mm", a.depth_mm, "Below the surface; 0: 1 mm for a mark, as the path says for an incision")
+  verb->add_option("--depth-mm", a.depth_mm, "Below the surface; 0: 1 mm for a mark, that of the path for an incision")
       ->check(zero_or_more("--depth-mm"));
-  verb->add_option("--speed-mm-s", a.speed_mm_s, "Of the tip; 0: 2 mm/s for a mark, as the path says for an incision")
+  verb->add_option("--speed-mm-s", a.speed_mm_s, "Of the tip; 0: 2 mm/s for a mark, that of the path for an incision")
       ->check(zero_or_more("--speed-mm-s"));
   add_options_of(*verb, a.settings, "max_gap_mm", "smoothing_mm", "max_shift_mm");
   verb->add_option("--waypoints", a.settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 2000));

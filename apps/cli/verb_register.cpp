@@ -58,8 +58,8 @@ int run_register(const RegisterArguments& arguments, const CommonOptions& option
 void add_register(Application& application) {
   auto [verb, a] = application.add_verb<RegisterArguments>(
       "register",
-      "Find the similarity that lays one cloud on another, and how far it can be relied upon. Exit status 4 when it "
-      "cannot",
+      "Find the similarity transform from one cloud to another, and whether to trust it. Exit status 4 if it is not "
+      "to be trusted",
       "incise register --source simulated.ply --target tissue.ply --scale fixed --settling-mm 1 -o registration",
       run_register);
   verb->add_option("--source", a.request.source, "Cloud or surface to be moved (.ply, .vtp, .stl, .obj)")->required();

@@ -79,7 +79,7 @@ int run_replay(const ReplayArguments& arguments, const CommonOptions& options) {
   if (audit.digest == ProgramDigest::Absent)
     console.message(
         Severity::Warning,
-        "not checked: the program carries no digest, so nobody knows whether it is the one that was checked");
+        "not checked: the program has no digest, so it may not be the one that was checked");
   nlohmann::ordered_json result = to_json(replay);
   result["program_audit"] = audit_json(audit, program.header);
   result["model"] = "incise's own kinematics and interpolation; not the maker's controller";
@@ -100,13 +100,13 @@ void add_replay(Application& application) {
       "Play a program: what the tip of the tool would do. Exit status 4 when it cannot be run, or leaves its path",
       "incise replay cut.script --speed-slider 50 -o replay", run_replay);
   verb->add_option("program", a.program, "A program that `incise export` wrote: URScript, .csv or .json")->required();
-  verb->add_option("--speed-slider", a.slider_percent, "Where the controller's speed slider stands, percent")
+  verb->add_option("--speed-slider", a.slider_percent, "Setting of the controller's speed slider, percent")
       ->check(CLI::Range(1.0, 100.0));
   verb->add_option("--max-deviation-mm", a.max_deviation_mm,
-                   "Most that the tip may leave the path by in the cut; beyond it the exit status is 4")
+                   "Greatest allowed deviation of the tip from the path in the cut; beyond it the exit status is 4")
       ->check(above_zero("--max-deviation-mm"));
   verb->add_option("--path", a.path,
-                   "path.json, frame robot, to hold the tip against; by default the one in the program");
+                   "path.json, frame robot, to compare the tip with; by default the one in the program");
 }
 
 }  // namespace incise::cli

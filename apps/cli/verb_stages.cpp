@@ -36,15 +36,15 @@ void add_cutting_stage(Application& application, const char* name, const char* w
 
 void add_stages(Application& application) {
   add_stage(application, "deform",
-            "Clamp and stretch the tissue: static equilibrium under the case's constraints. Interrupted, it keeps "
+            "Clamp and stretch the tissue: static equilibrium under the case's constraints. If interrupted, it keeps "
             "nothing of the stretch: "
             "run again, it starts over and ends in the same bits",
             "incise deform specimen -o out", Stage::Stretch);
   add_stage(application, "plan", "", "incise plan specimen -o out", Stage::Plan);
   add_cutting_stage(application, "simulate",
-                    "Cut along the planned path (or the case's own) and measure what comes out. Interrupted, it leaves "
+                    "Cut along the planned path (or the case's own) and measure the result. If interrupted, it leaves "
                     "a checkpoint, from "
-                    "which it goes on and ends in the same bits",
+                    "which it continues and ends in the same bits",
                     "incise simulate specimen -o out", Stage::Simulate);
 }
 

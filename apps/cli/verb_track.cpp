@@ -62,14 +62,14 @@ void add_track(Application& application) {
       ->check(zero_or_more("--max-hole-mm"));
   verb->add_flag("--open", a.is_open, "The mark is an open line");
   verb->add_flag("--plan", a.has_plan, "Plan an incision: path.json in the robot's frame");
-  verb->add_option("--margin-mm", a.margin_mm, "From the mark to the incision; 0: along the mark")
+  verb->add_option("--margin-mm", a.margin_mm, "Distance from the mark to the incision; 0: along the mark")
       ->check(between("--margin-mm", 0.0, kLargestMarginMm));
-  verb->add_option("--depth-mm", a.plan.depth_mm, "Of the incision")->check(above_zero("--depth-mm"));
-  verb->add_option("--speed-mm-s", a.plan.speed_mm_s, "Of the tip")->check(above_zero("--speed-mm-s"));
-  verb->add_option("--waypoints", a.plan.waypoints, "Of the path")->check(CLI::Range(8, 100000));
+  verb->add_option("--depth-mm", a.plan.depth_mm, "Depth of the incision")->check(above_zero("--depth-mm"));
+  verb->add_option("--speed-mm-s", a.plan.speed_mm_s, "Speed of the tip")->check(above_zero("--speed-mm-s"));
+  verb->add_option("--waypoints", a.plan.waypoints, "Waypoints of the path")->check(CLI::Range(8, 100000));
   verb->add_option("--axis", a.axis, "Tool axis: along the camera's view, or against the surface's normal")
       ->check(CLI::IsMember({"approach", "normal"}));
-  verb->add_option("--ply-width", a.ply_width, "Columns of an organised cloud whose header does not tell")
+  verb->add_option("--ply-width", a.ply_width, "Columns of an organised cloud whose header does not state them")
       ->check(above_zero("--ply-width"));
   verb->add_option("--ply-unit-mm", a.ply_unit_mm, "Its unit: 1000 for metres")->check(above_zero("--ply-unit-mm"));
 }

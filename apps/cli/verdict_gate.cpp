@@ -11,8 +11,8 @@ namespace incise::cli {
 
 void add_accept(CLI::App& verb, std::vector<std::string>& accepted) {
   verb.add_option("--accept", accepted,
-                  "Write the program although the verdict has a caution of this id, such as depth; once for each, noted in the program. What "
-                  "the verdict refuses cannot be accepted")
+                  "Write the program although the verdict has the caution of this id, such as depth. Repeat for each "
+                  "caution; the program lists them. A refusal cannot be accepted")
       ->expected(1)
       ->take_all();
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a laboratory needs from a case to the program of its robot, and to measure what the robot cut. Link
-// incise::laboratory. Every other header is a part of one of these rooms: see README.md, "How it is built".
+// All that a laboratory needs: it turns a case into a robot program, and measures what the robot cut. Link
+// incise::laboratory. For single parts include the headers of one module: see README.md, "How it is built".
 #include <incise/evaluation/comparison.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/imaging/photo_contours.hpp>

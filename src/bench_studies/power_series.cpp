@@ -99,7 +99,7 @@ class PowerSeriesRunner {
       bodies[s].expect_one_more();
     }
     if (cuts.empty()) return;
-    monitor_.message(Severity::Notice, fmt::format("{}: {} virtual cuts, {} of them are there already", what,
+    monitor_.message(Severity::Notice, fmt::format("{}: {} virtual cuts, {} of them finished already", what,
                                                    cuts.size(), cuts.size() - missing.size()));
     make_missing(missing, bodies, what, cuts);
   }

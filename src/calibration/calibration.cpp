@@ -97,7 +97,7 @@ void describe_fit(Visitor& v, DragFit& fit, Identifiability& told) {
   std::optional<std::vector<SpecimenFit>> fitted = fit.specimens;
   v("fitted", fitted, "Specimen by specimen.");
   if (v.sets()) fit.specimens = fitted.value_or(std::vector<SpecimenFit>{});
-  v.derived("identifiability", told.sentences, "What the data tell apart.");
+  v.derived("identifiability", told.sentences, "What the data identify.");
 }
 /// A reader's fitted specimens are those of the calibration, with errors that a photograph can have.
 void require_fitted_specimens(const Visitor& v, const Calibration& calibration) {
@@ -149,7 +149,7 @@ void describe(Visitor& v, Calibration& c) {
   const bool has_chosen = v.optional({"chosen"}, c.chosen.has_value());
   if (v.sets()) c.chosen = has_chosen ? std::optional(RunSetting{}) : std::nullopt;
   if (has_chosen) {
-    v.begin({"chosen", "With which a simulated ring comes out as photographed."});
+    v.begin({"chosen", "With which a simulated ring matches the photographed one."});
     describe(v, *c.chosen);
     v.derived("drag_length_mm", c.chosen->speed_mm_s * c.chosen->dullness * c.reference_step_s,
               "How far held tissue is drawn along.");
@@ -157,11 +157,11 @@ void describe(Visitor& v, Calibration& c) {
   }
   v("score_percent", c.score_percent, "Of the chosen setting.");
   v({"baseline_mm", "0.75 mean + 0.25 max of the photographed errors.", "mm"}, c.table.baseline_mm, kAnatomyMm);
-  v({"reference_step_s", "The time that one unit of dullness stands for.", "s"}, c.reference_step_s, {1e-6, 1.0});
+  v({"reference_step_s", "The time that one unit of dullness represents.", "s"}, c.reference_step_s, {1e-6, 1.0});
   v.derived("simulations", c.simulations, "In all.");
   v.derived("verdict", c.verdict, "On the photographs.");
   v("specimens", c.specimens, "Calibrated to.");
-  v.derived("left_out", c.left_out, "Of which the fit could make nothing.");
+  v.derived("left_out", c.left_out, "That the fit could not use.");
   const bool has_fit = v.optional({"posterior"}, c.fit.has_value());
   if (v.sets()) {
     c.fit = has_fit ? std::optional(DragFit{}) : std::nullopt;

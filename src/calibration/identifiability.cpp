@@ -31,11 +31,11 @@ int partner_of(const Mat3& correlation, int parameter) {
 std::string sentence_of(const ParameterVerdict& verdict, std::size_t parameter) {
   std::string name = kSpoken[parameter];
   name[0] = 'T';
-  const char* told = verdict.told == Told::Apart    ? "is told by the data"
-                     : verdict.told == Told::Partly ? "is told in part"
-                                                    : "is not told by the data: what stands here is what was assumed";
+  const char* told = verdict.told == Told::Apart    ? "is identified by the data"
+                     : verdict.told == Told::Partly ? "is identified in part"
+                                                    : "is not identified by the data: its value is what was assumed";
   std::string text =
-      fmt::format("{} {} (its sd is {:.0f} % of that before the data", name, told, 100.0 * verdict.share_of_prior_sd);
+      fmt::format("{} {} (its sd is {:.0f} % of the prior sd", name, told, 100.0 * verdict.share_of_prior_sd);
   for (std::size_t other = 0; other < 3; ++other) {
     if (verdict.tied_to == kNames[other])
       text += fmt::format("; correlation {:.2f} with {}", verdict.correlation, kSpoken[other]);

@@ -29,7 +29,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"lateral_margin", kRefused, kCloseMarginMm, ">", "mm",
      "Least tissue that the simulated cut leaves beside the tumour's edge."},
     {"open_layer", kRefused, {}, "", "mm", "A layer within the planned depth in which the simulated ring stayed open."},
-    {"contour_surface", kRefused, 5.0, "<=", "mm", "Farthest that the tumour's edge lies from the tumour's surface."},
+    {"contour_surface", kRefused, 5.0, "<=", "mm", "Greatest distance from the tumour's edge to the tumour's surface."},
     {"contour_flipped",
      kRefused,
      {},
@@ -42,7 +42,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"photo_oblique", kRefused, 0.03, "<=", "",
      "Change of scale along the ruler of a photograph: the camera does not look straight down."},
     {"photo_lens", kRefused, 0.02, "<=", "",
-     "Bending or uneven spacing of the ruler in a photograph: the lens's distortion was left in."},
+     "Bending or uneven spacing of the ruler in a photograph: lens distortion was not corrected."},
     {"depth", kCaution, 0.9, ">=", "",
      "Least depth of the simulated kerf anywhere along the path, as a share of the planned depth there."},
     {"heat", kCaution, 0.0, ">=", "mm", "Tissue left unheated between the simulated cut and the tumour's edge."},
@@ -52,24 +52,24 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "",
      "",
      "The specimen's place was typed (T_robot_sim of the case, or a transform that `incise register` did not write): "
-     "no registration says where it lies. Not of a case with `specimen_is: virtual`."},
+     "no registration confirms where it lies. Does not apply to a case with `specimen_is: virtual`."},
     {"not_simulated",
      kCaution,
      {},
      "",
      "",
-     "No simulated cut is known for the path: nothing says where the cut will land."},
+     "No simulated cut is known for the path: nothing predicts where the cut will land."},
     {"not_corrected",
      kCaution,
      {},
      "",
      "",
-     "The correction that was asked for is not accepted; the path is the uncorrected one, or that correction."},
+     "The requested correction is not accepted; the path is the uncorrected one, or the rejected one."},
     {"eligibility", kCaution, {}, "", "", "The assessment of this specimen advises against the path."},
     {"registration", kCaution, {}, "", "", "The registration's own figures argue against trusting it."},
     // Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
     {"mesh_resolution", kCaution, 1.5, "<=", "mm", "Mean edge length of the mesh along the path."},
-    {"locking", kCaution, 0.49, "<=", "", "Poisson's ratio of tetrahedra that each keep their own volume."},
+    {"locking", kCaution, 0.49, "<=", "", "Poisson's ratio, where each tetrahedron keeps its own volume."},
     {"convergence",
      kCaution,
      {},
@@ -78,21 +78,21 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "The simulation of the cut was not solved, not at rest, or held back by its own limits."},
     {"photo_scale", kCaution, 1.0, "<=", "%", "Standard error of the scale that the ruler in a photograph gives."},
     {"photo_specimen", kCaution, 0.3, "<=", "mm",
-     "Distance of a photographed tumour edge from the simulated one, or a turn beyond 10 degrees; a greater one may "
-     "mean another specimen."},
+     "Distance of a photographed tumour edge from the simulated one, or a turn beyond 10 degrees; it may be another "
+     "specimen."},
     {"photo_ring",
      kCaution,
      {},
      "",
      "mm",
-     "Stretch of a closed red ring that may be an opening: unlike the rest of it, as blood is, or unseen and slightly "
-     "longer than allowed."},
+     "Length of a closed red ring that may be an opening: it looks unlike the rest, as blood does, or is unseen and "
+     "slightly longer than allowed."},
     {"scan",
      kCaution,
      {},
      "",
      "",
-     "The scan argues against the tissue that was found in it, or another body in it may be the specimen."},
+     "The scan casts doubt on the tissue that was found in it, or another body in it may be the specimen."},
 });
 
 /// Place in the table: reasons of one severity are listed in its order.
@@ -133,7 +133,7 @@ void describe(Visitor& v, VerdictReason& reason) {
     v.refuse({"severity"}, std::string(to_string(reason.severity)), std::string(to_string(rule->severity)));
   }
   v("value", reason.value, "What was found.");
-  v("limit", reason.limit, "What it was held against.");
+  v("limit", reason.limit, "The limit that it was compared with.");
   v("unit", reason.unit, "Of both.");
   v("at", reason.at, "Where.");
   v("message", reason.message, "One sentence for a person.");

@@ -109,7 +109,7 @@ Workers::Workers(int threads) {
     const std::size_t started = shared_->threads.size() + 1;  // the caller's is one of them
     const std::string reason = problem.what();
     shared_->stop();
-    throw Error(fmt::format("expected to start {} threads, found that only {} could be started ({}); ask for fewer",
+    throw Error(fmt::format("expected to start {} threads, found that only {} could be started ({}); use fewer",
                             wanted, started, reason));
   }
 }

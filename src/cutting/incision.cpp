@@ -20,7 +20,7 @@ constexpr double kUnsolvedShare = 0.01;     // of the steps: with more, the cut 
 constexpr double kTimeRoundingS = 1e-9;     // the program counts as over when less than this is left of it
 constexpr double kLeastStepShare = 0.01;  // of a step: less than this at the program's end goes with the step before it
 constexpr int kMaxRelaxationSteps = 60;   // after the tool is out
-constexpr int kStepsToTellFrom = 20;      // a run's duration is told after these
+constexpr int kStepsToTellFrom = 20;      // a run's duration is estimated from these
 
 void require_valid(const IncisionSettings& settings) {
   std::vector<Problem> violations = validate(settings.cut, 2.0 * radius_mm(settings.tool));

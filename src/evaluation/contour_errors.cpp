@@ -18,7 +18,7 @@ Contour resample_by_step(const Contour& contour, double step_mm) {
   INCISE_REQUIRE(std::isfinite(step_mm) && step_mm > 0.0, fmt::format("expected a step above 0 mm, found {}", step_mm));
   const double steps = std::round(length_mm(contour) / step_mm);
   INCISE_REQUIRE(steps <= kMostPoints,
-                 fmt::format("a step of {} mm asks for {} points, expected at most 1e6", step_mm, steps));
+                 fmt::format("a step of {} mm requires {} points, expected at most 1e6", step_mm, steps));
   const double least = contour.is_closed ? 3.0 : 1.0;
   const auto intervals = static_cast<std::size_t>(std::max(least, steps));
   return resample(contour, contour.is_closed ? intervals : intervals + 1);

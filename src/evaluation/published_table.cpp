@@ -33,7 +33,7 @@ void find_baseline(const std::vector<PrintedRow>& rows, Audit& audit) {
     audit.baseline_mm = common;
   }
   if (audit.scored_rows > 1 &&
-      2 * audit.rows_on_baseline <= audit.scored_rows) {  // which of them is wrong cannot be told
+      2 * audit.rows_on_baseline <= audit.scored_rows) {  // which of them is wrong is not known
     audit.baseline_mm.reset();
     audit.rows_on_baseline = 0;
   }
@@ -78,7 +78,7 @@ std::string to_text(const Finding& finding) {
     case AuditRule::MeanTooSmall:
       return say("mean {found:g} is less than the greatest value alone makes, {bound:.4g}");
     case AuditRule::MeanNotOnGrain:
-      return say("mean {found:g} is no mean of n such values; the nearest that is: {bound:.6g}");
+      return say("mean {found:g} cannot be the mean of n such values; the nearest possible: {bound:.6g}");
     case AuditRule::PooledMeanOutside:
       return say("pooled mean {found:g} lies outside its parts, whose nearest reaches {bound:.4g}");
     case AuditRule::PooledMeanOff:

@@ -13,7 +13,7 @@
 namespace incise {
 namespace {
 
-/// Skin that is pictured around the kerf, so that the plug and the skin outside can be told apart.
+/// Skin that is pictured around the kerf, so that the plug and the skin outside are separate.
 constexpr double kSkinBorderMm = 2.0;
 
 /// Reach of the plane that is fitted to the plug's skin where a height is read, mm.

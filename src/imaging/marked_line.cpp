@@ -179,7 +179,7 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
   if (!map.is_present) {
     refuse(
         name,
-        fmt::format("{} (the strongest {} stands {:.3f} above its surroundings)", none, to_string(color), map.contrast),
+        fmt::format("{} (the strongest {} is {:.3f} above its surroundings)", none, to_string(color), map.contrast),
         expected,
         fmt::format("Brown, black or faint lines are not seen: draw it {}, and thicker.",
                     color == InkColor::Red ? "bright red" : "bright green"));

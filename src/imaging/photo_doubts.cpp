@@ -63,7 +63,7 @@ void add_ruler_doubts(const Ruler& ruler, Verdict& verdict) {
       {{{shape.end_stretch, fmt::format("the ruler's spacing at its ends differs by {:.1f} % from that of its middle",
                                         100.0 * std::abs(shape.end_stretch.value))},
         {shape.bow, fmt::format("the ruler is bent by {:.2f} % of its length", 100.0 * std::abs(shape.bow.value))}}},
-      "photo_lens", "the lens's distortion was left in the picture", verdict);
+      "photo_lens", "the picture still contains the lens's distortion", verdict);
 }
 
 void add_ring_doubts(const PhotoContours& contours, double max_gap_mm, Verdict& verdict) {
@@ -72,7 +72,7 @@ void add_ring_doubts(const PhotoContours& contours, double max_gap_mm, Verdict& 
     verdict.add(
         "photo_ring", gap_mm,
         fmt::format("the red ring is taken as closed although it is not seen for {:.2f} mm, more than {:g}: such "
-                    "a gap cannot be told from one of {:g}",
+                    "a gap cannot be distinguished from one of {:g}",
                     gap_mm, max_gap_mm, max_gap_mm));
   }
   if (!contours.odd_stretch) return;

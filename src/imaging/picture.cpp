@@ -88,7 +88,7 @@ ColorPicture decode_picture(std::string_view bytes, const std::filesystem::path&
   cv::Mat pixels = decoded(bytes, is_jpeg ? cv::IMREAD_COLOR : cv::IMREAD_UNCHANGED, name);
   if (pixels.channels() < 3) {
     throw DataError(name, "", "a greyscale picture", "a colour picture",
-                    "Red and green lines cannot be told apart in grey.");
+                    "Red and green lines cannot be distinguished in grey.");
   }
   if (pixels.depth() == CV_16U) pixels.convertTo(pixels, CV_8U, 1.0 / 257.0);
   if (pixels.depth() != CV_8U) throw DataError(name, "", "channels of another type", "8 or 16 bits a channel");

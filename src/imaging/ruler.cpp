@@ -57,7 +57,7 @@ std::vector<Stroke> bars_in(const ColorPicture& picture, const cv::Mat& grey) {
 }
 
 /// An instrument's shaft, a label or the next piece of a chequered bar passes for a bar, too: which one has the length
-/// that was given cannot be told.
+/// that was given is not known.
 void require_one_bar(const std::vector<Stroke>& bars, const std::filesystem::path& name) {
   constexpr double kOfLongest = 0.25;  // strokes of a label's letters are shorter
   if (bars.size() < 2 || bars[1].length < kOfLongest * bars[0].length) return;

@@ -94,7 +94,8 @@ Verdict check_scan(const CtVolume& ct) {
     if (std::abs(odd.step_hu) > kSliceStepTolerance) {
       const double height_mm = ct.grid.world_from_index(Vec3(0, 0, odd.slice)).z();
       verdict.add("scan", odd.step_hu,
-                  fmt::format("slice {} of the scan (z {:.1f} mm) lies {:+.0f} HU from its neighbours: it has an intercept of its own, or is of another scan",
+                  fmt::format("slice {} of the scan (z {:.1f} mm) differs by {:+.0f} HU from its neighbours: it has "
+                              "its own intercept, or is of another scan",
                               odd.slice, height_mm, odd.step_hu),
                   VerdictPlace{{}, ct.grid.world_from_index(Vec3(0.5 * ct.grid.size[0], 0.5 * ct.grid.size[1], odd.slice)), fmt::format("slice {}", odd.slice)},
                   kSliceStepTolerance);

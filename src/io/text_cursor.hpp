@@ -14,7 +14,7 @@ namespace incise::io_detail {
 [[nodiscard]] std::string shown_word(std::string_view word);
 
 /// Walks through the text of a file word by word or line by line and knows the line it is at, so that whatever is wrong
-/// is told with its place. Does not own the text.
+/// is reported with its place. Does not own the text.
 class TextCursor {
  public:
   /// @param comment  from this character to the end of the line everything is skipped; 0 = no comments.

@@ -70,7 +70,7 @@ LinePlot convergence(const Json& record) {
   plot.series = {mean, smooth};
   if (record.at("floor_mm").is_number()) {
     const double floor = record.at("floor_mm");
-    plot.series.push_back({"floor of the mesh", {0.0, static_cast<double>(history.size() - 1)}, {floor, floor}, true});
+    plot.series.push_back({"mesh resolution", {0.0, static_cast<double>(history.size() - 1)}, {floor, floor}, true});
   }
   return plot;
 }
@@ -125,7 +125,7 @@ ReportTable compensation_table(const std::filesystem::path& root) {
                           record.at("best_pass").get<std::size_t>() == k ? "kept" : ""});
   }
   if (record.at("floor_mm").is_number()) {
-    table.rows.push_back({"floor: tissue that cannot move", cell_of(record.at("floor_mm")), "", "", "", "", ""});
+    table.rows.push_back({"mesh-resolution limit: fixed tissue", cell_of(record.at("floor_mm")), "", "", "", "", ""});
   }
   return table;
 }

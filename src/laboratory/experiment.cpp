@@ -45,7 +45,7 @@ bool has_path(const ExperimentJson& compensation) {
 /// A step of all specimens together cannot be done without.
 void require_done(const StepAnswer& answer, const char* step, const ExperimentSteps& runner) {
   if (answer.end != StepEnd::Done)
-    throw DataError(runner.folder() / "log.txt", step, refusal_of(step, answer), "a step that can be gone on with");
+    throw DataError(runner.folder() / "log.txt", step, refusal_of(step, answer), "a step whose result can be used");
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -224,7 +224,7 @@ void Experiment::claim_folder() const {
   const ExperimentJson seed = kept.is_object() ? kept.value("seed", ExperimentJson()) : ExperimentJson();
   if (seed != ExperimentJson(context_.seed)) {
     throw DataError(file, "seed", seed.dump(), fmt::format("{}, that of this command", context_.seed),
-                    "Its specimens are others: choose another place for the output");
+                    "Its specimens differ: choose another place for the output");
   }
 }
 

@@ -58,7 +58,7 @@ bool is_advice(const AdviceJson& assessment) {
   return assessment.is_object() && assessment.contains("advice");
 }
 
-/// One of the probabilities of `assess`. Where nothing could be foretold either cut may be the worse one, and the
+/// One of the probabilities of `assess`. Where nothing could be predicted, either cut may be the worse one, and the
 /// calibration says nothing.
 double stated(const AdviceJson& assessment, const char* key) {
   constexpr double kNothingKnown = 0.5;

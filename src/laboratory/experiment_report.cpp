@@ -88,14 +88,14 @@ void add_gain(ReportTable& table, const char* name, const ReportJson& summary) {
 /// The figures that the experiment was made for.
 ReportTable outcome_table(const ReportJson& result) {
   ReportTable table{
-      "What came of it (virtual): specimens cut twice, mean over specimens of the photographs' mean absolute error",
+      "Result (virtual): specimens cut twice, mean over specimens of the photographs' mean absolute error",
       {"cut", "specimens", "as_planned_mm", "after_mm", "gain_percent", "worse", "most_worse_mm"},
       {}};
   add_gain(table, "corrected", result);
   if (result.contains("paper_pass")) add_gain(table, "the paper's single pass", result.at("paper_pass"));
   if (result.contains("known_physics")) {
     const ReportJson& floor = result.at("known_physics");
-    table.rows.push_back({"floor: physics known, the arm's errors not (from the truth)", cell(floor.at("specimens")),
+    table.rows.push_back({"known-physics limit (the arm's errors not known)", cell(floor.at("specimens")),
                           "", cell(floor.at("mean_after_mm")), "", "", ""});
   }
   return table;
@@ -103,8 +103,8 @@ ReportTable outcome_table(const ReportJson& result) {
 
 /// What the cuts of the calibration's specimens say of the simulated tool.
 ReportTable fit_table(const ReportJson& result) {
-  ReportTable table{"Calibration (virtual): what the photographs say of the simulated tool",
-                    {"parameter", "mean", "sd", "told by the data", "at the end of what was simulated"},
+  ReportTable table{"Calibration (virtual): what the photographs say about the simulated tool",
+                    {"parameter", "mean", "sd", "identified by the data", "at the end of the simulated range"},
                     {}};
   const ReportJson& fit = result.at("fit");
   for (const char* parameter : {"drag_length_mm", "ln_stiffness_factor", "bias_mm"}) {

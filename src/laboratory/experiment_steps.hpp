@@ -15,7 +15,7 @@ namespace incise::laboratory {
 struct ExperimentStep {
   std::string name;                             ///< letters, digits, _
   std::vector<std::string> arguments;           ///< of the command that does the same, its verb first
-  std::vector<std::filesystem::path> inputs;    ///< files and folders whose content decides what comes out
+  std::vector<std::filesystem::path> inputs;    ///< files and folders whose content determines the result
   std::vector<std::filesystem::path> products;  ///< files and folders that it makes and no other step adds to
   std::function<StepResult(const StepContext&)> work;
 };

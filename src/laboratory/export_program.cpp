@@ -158,7 +158,7 @@ void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monit
     } else if (reason.severity == VerdictStatus::Refused) {
       monitor.message(Severity::Warning, fmt::format("no program: refused: {}: {}", reason.id, reason.message));
     } else {
-      monitor.message(Severity::Warning, fmt::format("no program: caution: {}: {}. --accept {} takes it on you",
+      monitor.message(Severity::Warning, fmt::format("no program: caution: {}: {}. --accept {} accepts it",
                                                      reason.id, reason.message, reason.id));
     }
   }
@@ -173,7 +173,7 @@ StepResult export_program(const ExportRequest& given, const StepContext& context
   if (path.kind == PathKind::Mark) require_a_mark(request.overrides);
   if (request.is_open && path.is_closed) {
     throw CaseError("command line", "--open", fmt::format("{}, a closed path", request.path.string()), "an open path",
-                    "Leave --open out: a ring is held to closed, gap and encloses.");
+                    "Leave --open out: a ring must pass closed, gap and encloses.");
   }
   complete(request, path);
   CheckInputs inputs;

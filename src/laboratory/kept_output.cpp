@@ -26,7 +26,7 @@ void require_own_or_empty(const std::filesystem::path& folder, const std::vector
       std::ranges::any_of(signs, [&folder](const std::string& sign) { return std::filesystem::exists(folder / sign); });
   if (is_own || std::filesystem::is_empty(folder)) return;
   throw DataError(folder, "", fmt::format("a folder with files of another origin (no {})", fmt::join(signs, ", no ")),
-                  fmt::format("a free name, an empty folder, or {} to go on with", what),
+                  fmt::format("a free name, an empty folder, or {} to continue", what),
                   "Choose another place for the output");
 }
 

@@ -92,14 +92,14 @@ void take_true_size(Placement& placement, const ToolPath& path, const Registrati
                     fmt::format("{:.4f}, which is {:.2f} mm at {:.0f} mm from where lengths are right",
                                 *registration.scale_sd, sd_mm, arm_mm),
                     fmt::format("at most {} mm", largest_sd_mm),
-                    "Hold the scale by a known length (register --scale K,K), or name a place near the tissue whose "
+                    "Fix the scale by a known length (register --scale K,K), or name a place near the tissue whose "
                     "position the robot has confirmed (--scale-center)");
   }
   if (sd_mm > kTipMm) {
     monitor.message(
         Severity::Warning,
         fmt::format("the scale of {:.4f} is uncertain by {:.4f}, which is {:.2f} mm at {:.0f} mm from where "
-                    "lengths are right: hold it by a known length (register --scale K,K), or name a place "
+                    "lengths are right: fix it by a known length (register --scale K,K), or name a place "
                     "near the tissue whose position the robot has confirmed (--scale-center)",
                     registration.scale, *registration.scale_sd, sd_mm, arm_mm));
   }
@@ -129,7 +129,7 @@ ToolPath simulated_path(const std::filesystem::path& file, const std::filesystem
     require_same_specimen(other, path.specimen_id, "the path's");
   if (path.frame != PathFrame::SimStretched) {
     throw DataError(file, "frame", std::string(to_string(path.frame)), "sim_stretched",
-                    "The camera sees the stretched tissue: only a path on it can be laid down.");
+                    "The camera sees the stretched tissue: only a path on it can be projected.");
   }
   require_tumor_size(path, file);
   if (kind == PathKind::Mark && path.tumor_edge.points.size() < 3) {

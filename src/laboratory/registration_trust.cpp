@@ -10,7 +10,7 @@ Verdict verdict_of(const RegistrationRecord& registration, const std::filesystem
   Verdict verdict;
   if (!registration.is_sealed) {
     verdict.add("typed_transform", {},
-                fmt::format("{} does not carry the digest of `incise register`: nobody knows how its transform was "
+                fmt::format("{} does not carry the digest of `incise register`: it is not known how its transform was "
                             "found, nor how well it fits",
                             file.string()));
   }
@@ -25,7 +25,7 @@ void require_clouds_unchanged(const RegistrationRecord& registration, const std:
     if (!std::filesystem::exists(cloud.path, absent)) {
       monitor.message(
           Severity::Warning,
-          fmt::format("not checked: whether {}, which {} was made from, is still what it was; it is not there",
+          fmt::format("not checked: whether {}, from which {} was made, is unchanged; it is missing",
                       cloud.path, file.string()));
     } else if (sha256_of_input(cloud.path) != cloud.sha256) {
       throw DataError(file, cloud.key, fmt::format("that of another {}", cloud.path),

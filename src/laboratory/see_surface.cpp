@@ -179,7 +179,7 @@ StepResult see_surface(const SurfaceRequest& request, const StepContext& context
   StepResult result{cloud_of_input(request, context, cloud, specimen_id)};
   if (cloud.points.size() < kFewestPoints) {
     throw DataError(request.input, "surface", fmt::format("{} points left", cloud.points.size()),
-                    fmt::format("at least {}", kFewestPoints), "Look at the approach, the box and the planes");
+                    fmt::format("at least {}", kFewestPoints), "Check the approach, the box and the planes");
   }
   require_surface(cloud.points, request.input);
   if (request.output.extension() == ".vtp") {

@@ -186,9 +186,9 @@ ToolPath planned(const Tracked& tracked, const TrackRequest& request, const std:
 
 /// Why the mark is not what was asked for.
 std::string complaint_about(const MarkedLine& line, const ColorPicture& picture, const TrackRequest& request) {
-  if (request.is_open) return "the mark is a closed ring, an open line was asked for";
+  if (request.is_open) return "the mark is a closed ring, an open line was requested";
   if (const std::optional<Vec2> end = end_at_rim_px(line, picture.width, picture.height)) {
-    return fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: whether it is closed is not to be seen",
+    return fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: it is not known whether it is closed",
                        end->x(), end->y());
   }
   return fmt::format("the mark is not closed: a gap of {:.2f} mm, at most {} mm is bridged", line.longest_unseen_mm,

@@ -79,7 +79,7 @@ class ConstraintApplier {
               kWhere, field("where"),
               fmt::format("vertex {} at {} mm to be moved by {:g} mm along {}", v.value,
                           text_of(model_.mesh.vertices[v.index()]), displacement[axis], kAxisNames[i]),
-              fmt::format("{:g} mm, which specimen.constraints[{}] asks for", prescribed, model_.holder[v.index()][i]),
+              fmt::format("{:g} mm, which specimen.constraints[{}] requires", prescribed, model_.holder[v.index()][i]),
               "Two constraints that overlap must agree; make one region smaller");
         }
       }

@@ -17,7 +17,7 @@ namespace {
 /// Specimens, less one, that the usual spread counts as.
 constexpr double kUsualWeight = 4.0;
 
-/// What speaks against believing the simulation of this specimen, wherever it lies.
+/// Reasons not to trust the simulation of this specimen, apart from its distance to the calibrated ones.
 std::vector<std::string> failings(const EligibilityEvidence& e, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
   if (!e.is_registered) reasons.emplace_back("the registration was refused: where the specimen lies is not known");
@@ -30,9 +30,9 @@ std::vector<std::string> failings(const EligibilityEvidence& e, const Eligibilit
         "along the corrected path the ring stays open in {:.0f} % of the calibration's tissues, above {:.0f} %",
         100.0 * e.corrected.unmeasured_weight, 100.0 * rules.most_unmeasured));
   }
-  if (!e.gain) reasons.push_back(fmt::format("nothing can be foretold: {}", e.no_gain_because));
+  if (!e.gain) reasons.push_back(fmt::format("the gain cannot be predicted: {}", e.no_gain_because));
   if (e.gain && !(std::isfinite(e.gain->mean_mm) && std::isfinite(e.gain->sd_mm)))
-    reasons.emplace_back("the expected gain is no number");
+    reasons.emplace_back("the expected gain is not a number");
   return reasons;
 }
 
@@ -58,19 +58,18 @@ double likeness(double t, double degrees) {
 /// What p_worse leaves out of a corrected path; empty: nothing, its ring closed in all tissues.
 std::string open_rings(const EligibilityEvidence& e) {
   if (!(e.corrected.unmeasured_weight > 0.0)) return {};
-  return fmt::format("; besides, its ring stays open in {:.0f} % of the calibration's tissues",
+  return fmt::format("; also, its ring stays open in {:.0f} % of the calibration's tissues",
                      100.0 * e.corrected.unmeasured_weight);
 }
 
-/// What speaks against the correction, where the simulation is believed.
+/// Reasons against the correction, if the simulation may be trusted.
 std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
   const CutGain& gain = *e.gain;
   if (!e.is_accepted)
     reasons.emplace_back(
-        "the correction is not accepted: its own simulated cut fails, is no nearer, or errs by the electrode's radius "
-        "or "
-        "more in the mean");
+        "the correction is not accepted: its own simulated cut fails, is no nearer, or has a mean error of the "
+        "electrode's radius or more");
   if (!(gain.mean_mm > rules.least_gain_sds * gain.sd_mm)) {
     reasons.push_back(
         fmt::format("the expected gain of {:.2f} mm is not above {} of its standard deviation of {:.2f} mm",

@@ -6,7 +6,7 @@
 
 namespace incise {
 
-/// A closed path as a ruler: places beside it are told by the arc length of the path's nearest point.
+/// A closed path as a ruler: a place beside it has the arc length of the path's nearest point.
 class PathCourse {
  public:
   explicit PathCourse(const ToolPath& path);

@@ -84,7 +84,7 @@ class LayDown {
       throw DataError(name_, fmt::format("{} at {} mm", names_[k], in_words(before_[k])),
                       fmt::format("a surface {:.2f} mm beside that around it, measured from the simulated one", aside),
                       fmt::format("at most {} mm", kMostAsideMm),
-                      "Is this the same tissue? --smoothing-mm 0 lays every point down by itself.");
+                      "Is this the same tissue? --smoothing-mm 0 projects every point by itself.");
     }
     result.shift_noise_mm += aside * aside;
     return before_[k] - average * surface_.approach();

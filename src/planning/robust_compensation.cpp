@@ -112,7 +112,7 @@ class RobustChoice {
       if (chosen.scenarios.empty()) break;
       if (is_better(chosen.risk, result_.robust)) keep(chosen);
       if (chosen.risk.p_close_margin <= settings_.max_probability) break;
-      // What the cuts themselves say is worse than what was foretold: aim lower by as much, from here.
+      // The cuts themselves give more than was predicted: aim lower by as much, from here.
       aim *= 0.5 * settings_.max_probability / chosen.risk.p_close_margin;
       base = std::move(chosen);
     }
@@ -120,7 +120,7 @@ class RobustChoice {
     result_.outcome = is_met ? RobustOutcome::Met : RobustOutcome::NotMet;
   }
 
-  /// The cheapest path that is foretold to keep the probability; the dearest where none does.
+  /// The cheapest path that is predicted to keep the probability; the dearest where none is.
   [[nodiscard]] std::optional<MovablePath::Moved> choose(const Cut& base, const Eigen::VectorXd& corrected,
                                                          double aim) const {
     const PricedMove priced(base.scenarios, cuts_.risk());

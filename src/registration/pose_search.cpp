@@ -197,7 +197,7 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
       pose.score = overlap_score(source, asked, target, pose.transform, 3.0 * settings.score_width);
     });
   }
-  // Rough poses are told apart only roughly. Many of them, brought closer with few points, show which are worth more.
+  // Rough poses can be compared only roughly. Many of them, brought closer with few points, show which are worth more.
   poses = distinct(std::move(poses), source.cloud.points, settings.followed);
   const Refinement few{settings.scale, 2.0 * kLastSigma, kFollowSteps, kFollowPoints, 2.0 * settings.score_width};
   refine(poses, source, target, few, workers);

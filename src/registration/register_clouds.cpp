@@ -332,10 +332,10 @@ class Registering {
     result.scale_at_limit =
         !settings_.scale.is_fixed() && (scale <= settings_.scale.low + tiny || scale >= settings_.scale.high - tiny);
     fail(result.scale_at_limit, RegistrationOutcome::ScaleAtLimit,
-         fmt::format("the scale stands at the end of its range, {:.4g}: the clouds ask for one beyond it", scale));
+         fmt::format("the scale is at the end of its range, {:.4g}: the clouds fit one beyond it better", scale));
     if (!is_mirrored_ && !result.is_handedness_determined) {
       result.reasons.push_back(fmt::format(
-          "the source's mirror image fits about as well ({}): the shapes do not tell whether one is reflected",
+          "the source's mirror image fits about as well ({}): the shapes do not show whether one is reflected",
           both_residuals));
     }
     result.is_scale_suspicious = std::abs(scale - 1.0) > kUsualScale;
@@ -381,11 +381,11 @@ class Registering {
 
 void describe(Visitor& v, RegistrationSettings& s) {
   v("scale", s.scale, "What the scale may be; low = high fixes it.");
-  v("outlier_weight", s.outlier_weight, "Share of the target that belongs to nothing in the source.", {0.001, 0.95});
+  v("outlier_weight", s.outlier_weight, "Share of the target that has no counterpart in the source.", {0.001, 0.95});
   v.internal("start", s.start, "One start; absent: a search over rotations.");
   v("rotations", s.rotations, "Starts of the search, spread evenly over all rotations.", {8.0, 2000.0});
   v("finish_with_icp", s.finish_with_icp, "Whether point to plane follows the drift.");
-  v("max_iterations", s.max_iterations, "Of the drift and of the finish.", {1.0, 100000.0});
+  v("max_iterations", s.max_iterations, "Iterations of the drift, and of the refinement after it.", {1.0, 100000.0});
   v("drift_points", s.drift_points, "A larger cloud takes part in the drift as about so many clusters.", {100.0});
   v({"settling_mm",
      "How far the tissue may have settled along the source's mean normal (up or down) since it was simulated: pose and "

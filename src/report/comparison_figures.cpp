@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kBefore = ink::kSeries[0];
 constexpr std::string_view kAfter = ink::kSeries[1];
-/// Of the incisions of one side, told apart by lightness within the side's hue.
+/// Of the incisions of one side: the side's hue, in different lightness.
 constexpr std::array<std::string_view, 4> kBeforeShades{"#6b6b6b", "#a3a39c", "#3d3d3d", "#8a7f6d"};
 constexpr std::array<std::string_view, 4> kAfterShades{"#0072b2", "#56b4e9", "#013f66", "#009e73"};
 

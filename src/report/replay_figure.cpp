@@ -64,7 +64,7 @@ void draw_paths(SvgWriter& svg, const ReplayPicture& picture) {
   const double bar = kScaleBarMm / side * kPicture;
   svg.line({24.0, 384.0}, {24.0 + bar, 384.0}, "stroke=\"#111\" stroke-width=\"3\"");
   svg.text({30.0 + bar, 388.0}, fmt::format("{} mm", number_text(kScaleBarMm)));
-  if (picture.intended_mm.empty()) return svg.text({20.0, 30.0}, "tip; no intended path to hold it against");
+  if (picture.intended_mm.empty()) return svg.text({20.0, 30.0}, "tip; no intended path to compare it with");
   const std::size_t worst = worst_of(picture);
   svg.circle(at(picture.tip_mm[worst]), 8.0, kWorstMark);
   svg.text({20.0, 20.0}, "tip (colour) over the intended path (black)");
@@ -112,7 +112,7 @@ std::string replay_figure_svg(const ReplayPicture& picture) {
   draw_paths(svg, picture);
   draw_curve(svg, {"time, s", picture.time_s}, picture.tip_speed_mm_s, {420.0, 44.0}, 110.0, "tip speed, mm/s");
   if (picture.intended_mm.empty()) return svg.finish();
-  draw_curve(svg, {"way of the tip, mm", along(picture.tip_mm)}, picture.deviation_mm, {420.0, 226.0}, 110.0,
+  draw_curve(svg, {"path of the tip, mm", along(picture.tip_mm)}, picture.deviation_mm, {420.0, 226.0}, 110.0,
              "deviation, mm", worst_of(picture));
   return svg.finish();
 }

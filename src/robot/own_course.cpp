@@ -203,7 +203,7 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
   if (conduct.deviation_mm.value > settings.max_deviation_mm) {
     end(replay, ReplayOutcome::OffCourse,
         fmt::format(
-            "at {:.2f} s the tip is {:.2f} mm off the course that the header tells of, at most {} mm are allowed",
+            "at {:.2f} s the tip is {:.2f} mm off the course in its header, at most {} mm are allowed",
             conduct.deviation_mm.time_s, conduct.deviation_mm.value, settings.max_deviation_mm));
   } else if (conduct.lean_deg.value > settings.max_lean_deg) {
     end(replay, ReplayOutcome::WrongAxis,

@@ -112,7 +112,7 @@ class Auditor {
       else if (!claims_.emplace(*claim).second)
         contradict(fmt::format("{} is listed twice", claim->first));
       else if (!claim->second.is_passed)
-        contradict(fmt::format("{} has failed, and nobody took it on them", claim->first));
+        contradict(fmt::format("{} has failed, and nobody accepted it", claim->first));
     }
     for (const std::string& listed : program_.listed_checks) {
       const std::string name = listed.substr(0, listed.find(' '));

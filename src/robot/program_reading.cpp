@@ -268,7 +268,7 @@ WrittenProgram program_from_text(std::string_view text, const std::filesystem::p
     throw DataError(
         name, fmt::format("line {}", line),
         fmt::format("byte 0x{:02X}, of a character that is not shown", static_cast<unsigned char>(text[hidden])),
-        "what `incise export` writes", "Behind it may stand what another reader runs.");
+        "what `incise export` writes", "Another reader might run what follows it.");
   }
   WrittenProgram program = ending == ".csv"    ? robot_detail::read_joint_csv(text, name)
                            : ending == ".json" ? robot_detail::read_program_json(text, name)

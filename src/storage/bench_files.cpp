@@ -62,7 +62,7 @@ std::string bench_schema_json() {
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = kSpecimenSchema;
   schema["description"] =
-      "A virtual specimen: all that is hidden from whoever plans. Parameters that are not given are drawn from the "
+      "A virtual specimen: all that is hidden from the planner. Parameters that are not given are drawn from the "
       "seed.";
   schema["type"] = "object";
   Json& properties = schema["properties"];

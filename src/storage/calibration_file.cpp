@@ -31,7 +31,7 @@ Calibration read_calibration(const std::filesystem::path& path) {
 
 CalibratedBelief belief_of(const Calibration& calibration, const std::filesystem::path& path) {
   if (calibration.method != CalibrationMethod::Fit)
-    throw DataError(path, "method", "paper", "fit: a grid of scores says nothing of how sure it is", kCalibrationHint);
+    throw DataError(path, "method", "paper", "fit: a grid of scores does not state its uncertainty", kCalibrationHint);
   if (!calibration.chosen) throw DataError(path, "chosen", "null", "a setting with which a simulated ring closed");
   CalibratedBelief belief;
   belief.samples = calibration.fit->samples;

@@ -12,7 +12,7 @@ void describe(Visitor& v, CaseFile& file) {
   static constexpr std::array<std::string_view, 2> kOrigins{"real", "virtual"};
   std::size_t origin = c.is_virtual ? 1 : 0;
   v.choice(
-      {"specimen_is", "Whether the scan is of real tissue; a virtual one is said to be virtual wherever it appears."},
+      {"specimen_is", "Whether the scan is of real tissue; a virtual one is labelled virtual wherever it appears."},
       origin, kOrigins);
   if (v.sets()) c.is_virtual = origin == 1;
 

@@ -53,7 +53,7 @@ Json fields() {
                          {"pattern", "^[A-Za-z0-9._][A-Za-z0-9._-]{0,63}$"},
                          {"description", "Specimen that the path was planned on"}};
   json["specimen_is"] = choice(std::array<std::string_view, 2>{"real", "virtual"},
-                               "Virtual: a synthetic body, said in every program made from the path");
+                               "Virtual: a synthetic body, stated in every program made from the path");
   json["source_sha256"] = {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}, {"description", "SHA-256 of what the path was made from"}};
   return json;
 }

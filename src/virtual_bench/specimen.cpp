@@ -41,7 +41,7 @@ constexpr std::array kSpecs{
     ParameterSpec{"inclusion_ratio", &S::inclusion_ratio, DrawnAs::LogNormal, 3.0, 0.3, 0.5, 15.0,
                   "stiffness inside the tumour over that outside",
                   "[TongueStrain2022]: strain ratio of tongue cancer 9.7 +- 9.8 (n = 62), skewed; lower here, since "
-                  "specimens hold no cancer but what stands for it: chosen",
+                  "specimens contain a stand-in for cancer: chosen",
                   kMap},
     ParameterSpec{"fibre_ratio", &S::fibre_ratio, DrawnAs::Uniform, 0.2, 0.6, 0.0, 3.0,
                   "stiffness added along the fibres over Young's modulus",

@@ -26,7 +26,7 @@ class RangeCheck {
   void compare(const char* name, double value, const std::vector<double>& calibrated, const UsualSpread& usual) {
     if (calibrated.empty()) {
       assessment_.notes.push_back(
-          fmt::format("{}: the calibration does not say it of any specimen, so its distance is not known", name));
+          fmt::format("{}: the calibration has it for no specimen, so its distance is not known", name));
       return;
     }
     assessment_.evidence.distances.push_back(distance_from(name, value, calibrated, usual));
@@ -49,9 +49,8 @@ void compare_stiffness(const AssessmentRequest& request, const ScenarioSet& scen
   RangeCheck range(assessment);
   if (!request.scenarios.stretch_force_n) {
     assessment.notes.push_back(
-        fmt::format("the pull was not measured: the case's modulus of {:.3g} kPa is believed, its logarithm give or "
-                    "take {:.2g}; whether "
-                    "it lies in the calibrated range is not known",
+        fmt::format("the pull was not measured: the case's modulus of {:.3g} kPa is assumed, with an uncertainty of "
+                    "{:.2g} in its logarithm; whether it lies in the calibrated range is not known",
                     scenarios.reference_kpa, scenarios.own_stiffness_sd));
     return;
   }
@@ -130,8 +129,8 @@ Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Stud
   evidence.calibrated_error_mm = request.calibrated.signed_error_mm;
   if (evidence.calibrated_error_mm.empty()) {
     assessment.notes.emplace_back(
-        "the calibration does not say how its cuts erred in the mean: of a specimen unlike its own either cut is taken "
-        "to be as likely the worse one");
+        "the calibration does not state the mean errors of its cuts: for a specimen unlike its own, either cut is "
+        "assumed equally likely to be the worse one");
   }
   evidence.registration_rmse_mm = request.registration.rmse_mm;
   compare_registration(request, assessment);

@@ -137,7 +137,7 @@ class CalibrationRunner {
     }
     const std::size_t asked = subjects_.size() * knots.size();
     calibration_.simulations += asked;
-    monitor_.message(Severity::Notice, fmt::format("calibration: {} simulations, {} of them are there already", asked,
+    monitor_.message(Severity::Notice, fmt::format("calibration: {} simulations, {} of them finished already", asked,
                                                    asked - missing.size()));
     std::vector<IncisionTask> tasks;
     std::vector<Missing> simulated;
@@ -341,7 +341,7 @@ class CalibrationRunner {
         std::any_of(runs.begin(), runs.end(), [](const CalibrationRun& run) { return run.closed_loop; });
     const bool is_any_at_skin =
         std::any_of(runs.begin(), runs.end(), [](const CalibrationRun& run) { return run.inner_edge.has_value(); });
-    if (is_any_closed && !is_any_at_skin) return "simulated cuts of which none parts the skin all round";
+    if (is_any_closed && !is_any_at_skin) return "no simulated cut that parts the skin all round";
     return "simulated cuts that leave no closed ring at two drag lengths before the first that opens";
   }
 
@@ -363,7 +363,7 @@ class CalibrationRunner {
             .in_file(subject.case_file);
       }
       monitor_.message(Severity::Warning,
-                       fmt::format("{}: {}: the fit does without this specimen", subject.case_file, why));
+                       fmt::format("{}: {}: this specimen is left out of the fit", subject.case_file, why));
       calibration_.left_out.push_back({subject.photographed.name, why});
       const auto place = static_cast<std::ptrdiff_t>(s);
       subjects_.erase(subjects_.begin() + place);

@@ -28,7 +28,7 @@ std::vector<JudgedLayer> judged_layers(const SimulatedCut& cut) {
 std::optional<std::string> why_no_deep_margin(const SimulatedCut& cut) {
   if (cut.incision.kerf.deep_margin) return std::nullopt;
   if (cut.incision.record.removals.empty()) return "nothing was cut";
-  return "the case names no tumor.surface: an edge does not tell how deep the tumour goes";
+  return "the case names no tumor.surface: an edge does not show how deep the tumour is";
 }
 
 EvaluationSettings evaluation_settings(const Case& settings, ContourKind contour) {
@@ -166,7 +166,7 @@ void describe(Visitor& v, SimulatedCut& cut) {
   v({"thermal_half_width_mm", "How far beside the electrode heat damages tissue.", "mm"}, cut.thermal_half_width_mm);
   v({"thermal_margin_mm", "Tissue left unheated beside the tumour edge.", "mm"}, cut.thermal_margin_mm);
   v({"line_to_edge_mm", "Least distance of an open cut from the tumour's edge.", "mm"}, cut.line_to_edge_mm);
-  v("verdict", cut.verdict, "What is held against the path that was cut.");
+  v("verdict", cut.verdict, "Objections to the path that was cut.");
 }
 
 }  // namespace incise

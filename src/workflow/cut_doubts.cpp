@@ -85,7 +85,7 @@ void require_no_locking(const TissueModel& model) {
   throw CaseError("case", "specimen.material.volume",
                   fmt::format("per_tet with a Poisson's ratio of {:.6g} (tet {})", greatest.ratio, greatest.tet),
                   fmt::format("averaged, or a Poisson's ratio of at most {}, to cut", kLockedFrom),
-                  "Tets that keep their volume one by one lock: the cut would come out too good");
+                  "Tets that each keep their own volume lock: the cut would look too good");
 }
 
 std::optional<double> edge_along_mm(const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path,
@@ -121,16 +121,19 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::
   const double ratio = greatest_ratio(model).ratio;
   if (model.material.volume == VolumeTreatment::PerTet && ratio > *verdict_rule("locking").limit + kRatioRounding) {
     verdict.add("locking", ratio,
-                fmt::format("a Poisson's ratio of {:.6g} with specimen.material.volume: per_tet makes tetrahedra lock: the cut's errors come "
-                            "out too small. volume: averaged is free of that",
+                fmt::format("a Poisson's ratio of {:.6g} with specimen.material.volume: per_tet makes tetrahedra "
+                            "lock: the cut's errors "
+                            "are too small. volume: averaged avoids this",
                             ratio));
   }
   const double coarsest_mm = *verdict_rule("mesh_resolution").limit;
   const std::optional<double> edge_mm = edge_along_mm(model, stretched, path, settings.plan.approach);
   if (edge_mm && *edge_mm > coarsest_mm) {
     verdict.add("mesh_resolution", *edge_mm,
-                fmt::format("the mesh is coarse for a tool of {:.2g} mm: its edges along the path measure {:.2f} mm on average, and from {} mm "
-                            "on the cut's error is that of the mesh as much as of the tissue. meshing.tets or meshing.fine_mm make it finer",
+                fmt::format("the mesh is coarse for a tool of {:.2g} mm: its edges along the path measure {:.2f} mm "
+                            "on average, and above {} mm "
+                            "the mesh affects the cut's error as much as the tissue does. Refine it: meshing.tets or "
+                            "meshing.fine_mm",
                             2.0 * radius_mm(settings.tool), *edge_mm, coarsest_mm));
   }
   const std::optional<PlatformClearance> platform = platform_clearance(model, path);

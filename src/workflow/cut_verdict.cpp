@@ -92,7 +92,8 @@ void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdic
   if (least.left_mm > settings.close_margin_mm) return;
   if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
   verdict.add("lateral_margin", least.left_mm,
-              fmt::format("the simulated cut's {} leaves {:.2f} mm of tissue beside the tumour's edge, and not more than {} mm", least.of,
+              fmt::format("the simulated cut's {} leaves {:.2f} mm of tissue beside the tumour's edge; more than {} "
+                          "mm is required", least.of,
                           least.left_mm, settings.close_margin_mm),
               least.at, settings.close_margin_mm);
 }
@@ -117,7 +118,7 @@ void judge_heat(const SimulatedCut& cut, Verdict& verdict) {
   if (!left_mm || *left_mm >= 0.0) return;
   verdict.add("heat", *left_mm,
               fmt::format("heat reaches the tumour: it damages tissue {:.2f} mm beside the electrode, {:.2f} mm more than the cut keeps away "
-                          "(a closed form, not calibrated, an upper bound unless thermal.absorbed_fraction says less)",
+                          "(a closed form, not calibrated, an upper bound unless thermal.absorbed_fraction is below 1)",
                           cut.thermal_half_width_mm, -*left_mm));
 }
 
@@ -134,7 +135,8 @@ void judge_convergence(const SimulatedCut& cut, Verdict& verdict) {
   const double held_back = static_cast<double>(incision.held_back_vertices) / std::max(1.0, static_cast<double>(incision.steps.size() * cut.tets));
   if (held_back > kHeldBackShare) {
     verdict.add("convergence", held_back,
-                fmt::format("vertices were held back to cut.max_step_mm {} times in {} steps: the body lags for no reason in its law",
+                fmt::format("vertices were held back to cut.max_step_mm {} times in {} steps: the body lags for "
+                            "numerical reasons only",
                             incision.held_back_vertices, incision.steps.size()));
   }
 }
@@ -243,7 +245,8 @@ Verdict verdict_of_contour(const Contour& edge, const TriMesh& surface, const Ve
                 place, limit_mm);
   } else {
     verdict.add("contour_surface", fit.apart_mm,
-                fmt::format("the tumour's edge and its surface lie up to {:.1f} mm apart, seen along the approach: one of the two is of "
+                fmt::format("the tumour's edge and its surface lie up to {:.1f} mm apart, seen along the approach: "
+                            "one of the two has "
                             "another place, frame or unit",
                             fit.apart_mm),
                 place);
@@ -264,7 +267,8 @@ Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const 
   }
   if (settings.T_robot_sim && !settings.is_virtual) {
     verdict.add("typed_transform", {},
-                "robot.T_robot_sim was typed into the case: no registration says that the specimen lies there (register, project and export "
+                "robot.T_robot_sim was typed into the case: no registration confirms that the specimen lies there "
+                "(register, project and export "
                 "find and check it)");
   }
   return verdict;

@@ -53,7 +53,7 @@ std::optional<double> mesh_floor_mm(const Case& settings, const TissueModel& mod
   frozen.plan.power_w = frozen.cut.reference_power_w;
   frozen.frames = 0;
   const SimulatedCut cut = cut_and_judge(frozen, held, rest_state(held), path, path, workers, monitor);
-  if (cut.outcome == Outcome::Cancelled) throw Cancelled("the cut that finds the mesh's floor was interrupted");
+  if (cut.outcome == Outcome::Cancelled) throw Cancelled("the cut for the mesh-resolution limit was interrupted");
   const bool is_centerline = settings.compensation.observable == ContourKind::Centerline;
   const Evaluation& seen = is_centerline ? cut.centerline : cut.inner_edge;
   if (!seen.abs_error_mm) return std::nullopt;

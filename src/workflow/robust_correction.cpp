@@ -140,7 +140,7 @@ class TissueCuts {
       made.push_back(kept ? std::move(*kept) : ScenarioRun{.setting = setting});
     }
     monitor_.message(Severity::Notice,
-                     fmt::format("tissues of the calibration: {} cuts along a path, {} of them are there already",
+                     fmt::format("tissues of the calibration: {} cuts along a path, {} of them finished already",
                                  made.size(), made.size() - missing.size()));
     simulate(path, missing, made);
     for (const ScenarioRun& run : made) {

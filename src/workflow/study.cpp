@@ -250,10 +250,11 @@ class Runner {
     const std::optional<std::uint64_t> held = held_memory_bytes();
     monitor_.message(Severity::Notice,
                      fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB{}", mesh.tets.size(), mesh.vertices.size(),
-                                 megabytes(needed), held ? fmt::format(" beside the {:.0f} MB that the program holds now", megabytes(*held)) : ""));
+                                 megabytes(needed),
+                                 held ? fmt::format(" beyond the {:.0f} MB in use", megabytes(*held)) : ""));
     const std::optional<std::uint64_t> available = available_memory_bytes();
     if (!available || needed <= *available) return;
-    throw DataError("this machine", "memory", fmt::format("{:.0f} MB that can be taken", megabytes(*available)),
+    throw DataError("this machine", "memory", fmt::format("{:.0f} MB available", megabytes(*available)),
                     fmt::format("about {:.0f} MB for {} tets", megabytes(needed), mesh.tets.size()),
                     "A coarser mesh needs less: meshing.fine_mm, meshing.coarse_mm, meshing.tets");
   }
@@ -362,7 +363,7 @@ class Runner {
     if (must_resume_ && !from) refuse_to_resume(fmt::format("no checkpoint of the cut {} that fits", name));
     must_resume_ = false;
     if (from) {
-      monitor_.message(Severity::Notice, fmt::format("{}: goes on after step {}", what, from->state.step));
+      monitor_.message(Severity::Notice, fmt::format("{}: continues after step {}", what, from->state.step));
     } else if (cache_.holds(slot)) {
       monitor_.message(
           Severity::Notice,
@@ -378,7 +379,7 @@ class Runner {
         last_kept = std::chrono::steady_clock::now();
       } catch (const DataError& error) {
         if (is_interrupted) throw;  // nothing of the cut would be left
-        monitor_.message(Severity::Warning, fmt::format("{}. The cut goes on without a checkpoint", error.what()));
+        monitor_.message(Severity::Warning, fmt::format("{}. The cut continues without a checkpoint", error.what()));
       }
     };
     const IncisionSettings incision = incision_settings_for(settings_, path, placed_tumor());
@@ -495,8 +496,9 @@ class Runner {
 
   Correction correct_pass_by_pass(const SurfaceQuery& surface) {
     const std::optional<double> floor = mesh_floor_mm(settings_, *study_.model, study_.stretched->state, *study_.plan, workers_, monitor_);
-    if (!floor) monitor_.message(Severity::Warning, "compensate: the mesh is too coarse for a floor: a cut into tissue that cannot move leaves nothing to measure");
-    if (floor) monitor_.message(Severity::Notice, fmt::format("compensate: floor of the mesh {:.3f} mm", *floor));
+    if (!floor) monitor_.message(Severity::Warning, "compensate: no mesh-resolution limit: on this mesh, a cut into "
+                                                    "tissue that cannot move leaves nothing to measure");
+    if (floor) monitor_.message(Severity::Notice, fmt::format("compensate: mesh-resolution limit {:.3f} mm", *floor));
     const auto cut_of_pass = [&](int pass, const ToolPath& path) {
       return pass == 0 ? *study_.as_planned : pass_cut(pass, path);
     };

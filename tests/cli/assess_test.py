@@ -56,7 +56,7 @@ class AssessTest(CommandTest):
 
         # What was cut for it serves the robust path, and the other way round.
         done = self.incise("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, "--stretch-force-n", PULL_N)
-        self.assertIn("5 cuts along a path, 5 of them are there already", done.stderr)
+        self.assertIn("5 cuts along a path, 5 of them finished already", done.stderr)
 
         # A correction that the tissue does not need: the bias undoes what was foreseen.
         small_calibration.write(self.calibration, lambda c: c["posterior"].update(samples=small_calibration.samples(bias_mm=(3.4, 3.8))))
@@ -116,7 +116,7 @@ class AssessTest(CommandTest):
         small_calibration.write(self.calibration, lambda c: [s.pop("photographed_mean_signed_mm") for s in c["specimens"]])
         older = self.assessed("--stretch-force-n", PULL_N)
         self.assertEqual(older["p_worse_if_unlike"], 0.5)
-        self.assertTrue(any("erred in the mean" in note for note in older["notes"]), older["notes"])
+        self.assertTrue(any("does not state the mean errors" in note for note in older["notes"]), older["notes"])
 
     def test_a_virtual_calibration_never_advises_to_correct_a_real_specimen(self):
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}, "specimen_is": "real"})

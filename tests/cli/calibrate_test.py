@@ -57,7 +57,7 @@ class CalibrateTest(CommandTest):
         before = (self.out / "calibration.json").read_bytes()
         again = self.calibrate(*FEW)
         self.assertEqual(again.returncode, DONE, again.stderr)
-        self.assertIn("4 simulations, 4 of them are there already", again.stderr)
+        self.assertIn("4 simulations, 4 of them finished already", again.stderr)
         self.assertEqual((self.out / "calibration.json").read_bytes(), before)
 
         # A run that was damaged is told and made anew, to the same bits.

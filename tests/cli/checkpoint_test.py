@@ -72,7 +72,7 @@ class CheckpointTest(CommandTest):
 
         resumed = self.incise("simulate", "case", "-o", self.out, "--resume", "--threads", "2")
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
-        self.assertRegex(resumed.stderr, r"simulate: goes on after step \d+")
+        self.assertRegex(resumed.stderr, r"simulate: continues after step \d+")
         self.assertFalse(self.checkpoint.exists(), "a cut that is finished needs none")
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
 
@@ -93,7 +93,7 @@ class CheckpointTest(CommandTest):
         alive.write_bytes(b"of a process that runs")
         resumed = self.incise("simulate", "case", "-o", self.out)  # by itself
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
-        self.assertIn("simulate: goes on after step", resumed.stderr)
+        self.assertIn("simulate: continues after step", resumed.stderr)
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
         self.assertEqual([path for folder in (self.out, self.cache) for path in folder.iterdir() if path.name.startswith(".")], [alive])
 

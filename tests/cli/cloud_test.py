@@ -60,7 +60,7 @@ class RegisterTest(CommandTest):
     def test_a_scale_at_the_end_of_its_range_is_not_acceptable(self):
         result = self.json_of(*self.register("--scale", "0.99,1.2"), status=NOT_ACCEPTABLE)
         self.assertEqual((result["outcome"], result["converged"], result["scale_at_limit"]), ("scale_at_limit", False, True))
-        self.assertTrue(any("stands at the end of its range, 0.99" in reason for reason in result["reasons"]), result["reasons"])
+        self.assertTrue(any("is at the end of its range, 0.99" in reason for reason in result["reasons"]), result["reasons"])
         self.assert_chain_ends("/converged", "false")
 
     def test_an_input_is_never_the_output(self):

@@ -6,7 +6,7 @@ import unittest
 
 from command import BAD_CASE, DONE, CommandTest
 
-GROUPS = ["Start here:", "Plan and cut:", "Robot:", "Measure:", "Study:", "Tools:"]
+GROUPS = ["Start here:", "Plan and cut:", "Robot:", "Measure:", "Virtual experiments:", "Tools:"]
 
 
 class HelpTest(CommandTest):

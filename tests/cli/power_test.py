@@ -134,7 +134,7 @@ class SeriesTest(CommandTest):
         limits = ("--bulge-limit-mm", 20, "--damage-limit-mm", 1.5)
         self.power("--power-w", 40, *limits)
         before = (self.out / "power.json").read_bytes()
-        stopped = self.interrupted("power", "-o", self.out, *COARSE, "--power-w", "34,37,40", *limits, after="3 virtual cuts, 1 of them are there already")
+        stopped = self.interrupted("power", "-o", self.out, *COARSE, "--power-w", "34,37,40", *limits, after="3 virtual cuts, 1 of them finished already")
         self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
         self.assertIn("run the same command to go on", stopped.stderr)
         self.assertIn("is of an earlier run", stopped.stderr)
@@ -144,7 +144,7 @@ class SeriesTest(CommandTest):
         self.assertEqual(len(went_on["rows"]), 3)
 
     def test_interrupted_before_the_first_cut_it_leaves_nothing(self):
-        stopped = self.interrupted("power", "-o", self.out, *COARSE, after="0 of them are there already")
+        stopped = self.interrupted("power", "-o", self.out, *COARSE, after="0 of them finished already")
         self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
         self.assertIn("nothing was written", stopped.stderr)
         self.assert_nothing_written()

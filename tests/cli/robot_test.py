@@ -371,7 +371,7 @@ class ReplayTest(RobotTest):
         (self.folder / "foreign.script").write_text("".join(line for line in lines if "incise.digest" not in line))
         done = self.incise("replay", "foreign.script", "--json")
         self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertIn("carries no digest", done.stderr)
+        self.assertIn("has no digest", done.stderr)
         self.assertEqual((json.loads(done.stdout)["program_audit"]["checked"], json.loads(done.stdout)["program_audit"]["digest_matches"]), (False, None))
 
     def test_the_digest_is_that_of_the_file_with_zeros_in_its_place(self):

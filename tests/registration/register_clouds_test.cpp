@@ -247,7 +247,7 @@ TEST_F(RegisterClouds, AScaleAtTheEndOfItsRangeIsNoSuccess) {
     const Registration found = run(source, moved_cloud(truth, hill(1500, random_, 0.1)), above);
     EXPECT_NEAR(found.T_target_source.scale, 1.01, 1e-9);
     EXPECT_EQ(found.outcome, RegistrationOutcome::ScaleAtLimit) << to_string(found.outcome);
-    EXPECT_THAT(found.reasons, Contains(HasSubstr("stands at the end of its range, 1.01")));
+    EXPECT_THAT(found.reasons, Contains(HasSubstr("is at the end of its range, 1.01")));
   }
 }
 

@@ -257,7 +257,7 @@ ReplayPicture circle_picture() {
 TEST(ReplayFigure, ShowsPathSpeedAndDeviationWithUnits) {
   const std::string svg = replay_figure_svg(circle_picture());
   expect_whole_svg(svg);
-  for (const char* text : {"5 mm", "tip speed, mm/s", "time, s", "deviation, mm", "way of the tip, mm"})
+  for (const char* text : {"5 mm", "tip speed, mm/s", "time, s", "deviation, mm", "path of the tip, mm"})
     EXPECT_THAT(svg, HasSubstr(std::string(">") + text + "<"));
   EXPECT_THAT(svg, HasSubstr("at most 0.01 mm off in the cut"));
   EXPECT_LT(svg.size(), 200000U);  // thinned out to what can be seen

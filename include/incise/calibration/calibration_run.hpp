@@ -54,7 +54,7 @@ struct CalibrationRun {
 };
 inline void describe(Visitor& v, CalibrationRun& r) {
   v("setting", r.setting, "What it was made with, beside its case.");
-  v("reference_step_s", r.reference_step_s, "The time that one unit of dullness stands for.", kPositive);
+  v("reference_step_s", r.reference_step_s, "The time that one unit of dullness represents.", kPositive);
   v("outcome", r.outcome, "How the cut ended.");
   v("problem", r.problem, "Why it could not be carried out; empty: it was.");
   v("closed_loop", r.closed_loop, "Whether the ring closed.");

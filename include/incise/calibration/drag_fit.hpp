@@ -19,7 +19,7 @@ struct FitSpecimen {
   double own_stiffness_sd = 0.0;        ///< of ln(Young's modulus), by which this specimen's reference may be off, >= 0
 };
 
-/// What is believed before the photographs are looked at. The drag length is uniform where all specimens were
+/// The prior, assumed before the photographs are considered. The drag length is uniform where all specimens were
 /// simulated.
 struct DragFitSettings {
   double stiffness_sd = 0.5;
@@ -122,7 +122,7 @@ struct DragFit {
 ///   y_s(θ) = m_s(θ; L, κ) + b + δ_s + u_s cos θ + v_s sin θ + r_s(θ),
 /// δ_s from specimen to specimen, (u_s, v_s) by where arm and projection placed the cut, r_s correlated along the ring.
 /// The sizes of δ, (u, v) and r and the correlation of r are integrated over, not chosen. Everything is on grids: no
-/// random number is drawn. Of the simulation's waves of more than four to the round nothing is believed: they are its
+/// random number is drawn. The simulation's waves of more than four per turn are ignored: they are its
 /// mesh's grain, and tell how much of that is in the slower ones. See docs/models/calibration.md.
 /// @throws InvalidArgument without specimens, for settings or profiles that do not fit, or where the ranges of drag
 /// length of the specimens do not overlap.

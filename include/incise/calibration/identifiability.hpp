@@ -31,7 +31,7 @@ struct ParameterVerdict {
 };
 inline void describe(Visitor& v, ParameterVerdict& p) {
   v.bulk("name", p.name, "Of the parameter.");
-  v("told", p.told, "How much the data say of it.");
+  v("told", p.told, "How far the data identify it.");
   v("share_of_prior_sd", p.share_of_prior_sd, "Posterior sd over that of the prior.");
   std::optional<std::string> tied_to = p.tied_to.empty() ? std::nullopt : std::optional(p.tied_to);
   v("tied_to", tied_to, "The other parameter with which it is correlated.");

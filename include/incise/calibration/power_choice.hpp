@@ -28,7 +28,7 @@ inline void describe(Visitor& v, PowerCut& c) {
   v("outcome", c.outcome, "success: the ring is closed.");
   v("problem", c.problem, "Why there is no cut at all; empty: there is one.");
   v.derived("closed_loop", c.outcome == Outcome::Success, "Whether the ring is closed.");
-  v("bulge_mm", c.bulge_mm, "How high skin ahead of the tool stands above the uncut surface.", kNotNegative);
+  v("bulge_mm", c.bulge_mm, "Height of the skin ahead of the tool above the uncut surface.", kNotNegative);
   v("thermal_width_mm", c.thermal_width_mm, "How far beside the tool's axis heat damaged tissue.", kNotNegative);
   v("mean_abs_error_mm", c.mean_abs_error_mm, "Of the inner edge; absent: the ring is open.", kNotNegative);
 }
@@ -40,18 +40,18 @@ struct PowerLimits {
 };
 inline void describe(Visitor& v, PowerLimits& l) {
   v({"bulge_limit_mm",
-     "Skin ahead of the tool may not stand higher than this, in the mean over a cut. Chosen so that the bench's series "
-     "comes out as the paper's eye judged its own.",
+     "Greatest height of the skin ahead of the tool, averaged over a cut. Chosen so that the bench's series agrees with "
+     "what the paper judged by eye.",
      "mm"},
     l.bulge_limit_mm, kPositive);
   v({"damage_limit_mm",
-     "Heat may not damage tissue farther beside the tool's axis than this: the electrode's diameter, beyond which the "
-     "rim is seen to be discoloured.",
+     "Greatest distance beside the tool's axis at which heat may damage tissue: the electrode's diameter, beyond which "
+     "the rim is visibly discoloured.",
      "mm"},
     l.damage_limit_mm, kPositive);
 }
 
-/// What speaks against one power.
+/// The reasons against one power.
 struct PowerVerdict {
   double power_w = 0.0;
   std::optional<double> greatest_bulge_mm;  ///< over the specimens; absent: measured on none

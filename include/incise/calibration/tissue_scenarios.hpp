@@ -21,7 +21,7 @@ inline void describe(Visitor& v, TissueScenario& t) {
   v({"bias_mm", "Expected, given the two; to be added to simulated signed errors.", "mm"}, t.bias_mm);
 }
 
-/// What is believed of the next specimen: a few tissues to simulate, and what needs no simulation.
+/// What is assumed about the next specimen: a few tissues to simulate, and what needs no simulation.
 struct TissueScenarios {
   std::vector<TissueScenario> points;  ///< the first: the middle
   double drag_length_sd_mm = 0.0;
@@ -34,7 +34,7 @@ struct TissueScenarios {
 /// the middle (1/3) and two on either side along the axes of its Cholesky factor (1/6 each), √3 standard deviations
 /// out. Of the bias, which needs no simulation, each holds what is expected there; the rest is common_sd_mm. A drag
 /// length beyond those of the samples is drawn to the last one: where the posterior ends because no ring closed there
-/// is none to simulate, and the spread told is a little too large.
+/// is none to simulate, and the reported spread is a little too large.
 /// @param own_stiffness_sd  of ln(stiffness factor), by which this specimen may differ from its reference, >= 0.
 /// @throws InvalidArgument without samples, for weights that are not above 0, or a spread below 0.
 [[nodiscard]] TissueScenarios tissue_scenarios(const std::vector<PosteriorSample>& samples,

@@ -14,7 +14,7 @@ namespace incise {
 /// object tells the outer monitor, as a Monitor is promised. The outer monitor has to outlive it.
 class BatchProgress {
  public:
-  /// @param stage  what the outer monitor is told: "cutting".
+  /// @param stage  the stage that the outer monitor is given: "cutting".
   BatchProgress(std::size_t jobs, std::string stage, Monitor& outer);
 
   /// @param fraction  of this job, in [0, 1], never less than before.

@@ -14,29 +14,29 @@
 
 namespace incise {
 
-/// The line that an entry begins with.
+/// The first line of every entry.
 inline constexpr std::string_view kCacheMagic = "incise.cache/1\n";
 
 /// Where a cache keeps its entries: bytes under a name.
 class EntryStore {
  public:
   virtual ~EntryStore() = default;
-  /// The bytes kept under that name, whole; nothing where there are none. @throws DataError for bytes that are damaged.
+  /// All bytes kept under that name; nullopt if there are none. @throws DataError if they are damaged.
   virtual std::optional<std::string> load(const std::string& name) = 0;
-  /// All or nothing. @throws DataError where they cannot be kept.
+  /// Keeps all of the bytes or none. @throws DataError if they cannot be kept.
   virtual void save(const std::string& name, const std::string& bytes) = 0;
   virtual void remove(const std::string& name) = 0;
   [[nodiscard]] virtual bool holds(const std::string& name) = 0;
-  /// What messages call the entry.
+  /// How messages name the entry.
   [[nodiscard]] virtual std::filesystem::path place_of(const std::string& name) const { return name; }
 };
 
-/// What determines a result: hash of the stage, of this build (version, commit, instruction set: kernels of two of them
-/// round differently), and of all that was added: settings as they are described, and the contents of inputs. Names and
-/// places of files are no part of it.
+/// Identifies a result by everything that determines it: a hash of the stage, of this build (version, commit and
+/// instruction set, because two instruction sets round differently), and of all that was added: described settings and
+/// the contents of inputs. Names and places of files do not enter the key.
 class CacheKey {
  public:
-  /// @param stage  names the result.
+  /// @param stage  the name of the result.
   explicit CacheKey(std::string_view stage);
   template <class T>
   CacheKey& add(const T& described) {
@@ -53,19 +53,19 @@ class CacheKey {
   mutable std::string digest_;
 };
 
-/// A slot of its own for each key, for results of which many are kept side by side.
+/// A slot that is unique to the key, for results of which several are kept side by side.
 [[nodiscard]] std::string slot_of(const CacheKey& key);
 
-/// Results by what determines them: one that is kept is not made again. What is loaded equals what was computed, in
-/// every field that its type describes. Kept in memory, or wherever an EntryStore keeps it.
+/// Keeps results under their keys, so that none is computed twice. A loaded result equals the computed one in every
+/// field that its type describes. Results are kept in memory, or wherever the EntryStore keeps them.
 class Cache {
  public:
   Cache();
   explicit Cache(std::unique_ptr<EntryStore> store) : store_(std::move(store)) {}
 
   /// The result of that key. A damaged entry is reported as a warning and treated as absent. @param slot  the entry's
-  /// name; an entry of another key under the same name gives way. @param fits  whether a value that was read may be
-  /// used: an entry whose digest is right may still have been written by someone else.
+  /// name; an entry of another key under the same name counts as absent. @param fits  whether a value that was read
+  /// may be used: even an entry with the right digest may not be one of ours.
   template <class T, class Fits>
   [[nodiscard]] std::optional<T> find(const std::string& slot, const CacheKey& key, Monitor& monitor,
                                       const Fits& fits) {
@@ -88,7 +88,7 @@ class Cache {
   void keep(const std::string& slot, const CacheKey& key, const T& value) {
     keep_payload(slot, key, bytes_of(value));
   }
-  /// Finds the result or makes and keeps it.
+  /// Finds the result, or makes it and keeps it.
   template <class T, class Fits, class Make>
   [[nodiscard]] T get_or_make(const std::string& slot, const CacheKey& key, Monitor& monitor, const Fits& fits,
                               const Make& make) {
@@ -97,10 +97,10 @@ class Cache {
     keep(slot, key, made);
     return made;
   }
-  /// Whether the slot holds anything, of whatever key.
+  /// Whether the slot holds an entry of any key.
   [[nodiscard]] bool holds(const std::string& slot) { return store_->holds(slot); }
   void remove(const std::string& slot) { store_->remove(slot); }
-  /// What messages call the slot.
+  /// How messages name the slot.
   [[nodiscard]] std::filesystem::path place_of(const std::string& slot) const { return store_->place_of(slot); }
 
  private:

@@ -46,7 +46,7 @@ inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity()
   return is_large ? static_cast<double>(static_cast<std::uint64_t>(value)) : static_cast<double>(value);
 }
 
-/// What a value is called in files and on the command line, its unit, and what it means in one line.
+/// A value's name in files and on the command line, its unit, and its meaning in one line.
 struct Field {
   std::string_view name;
   std::string_view meaning = {};
@@ -55,14 +55,14 @@ struct Field {
   bool is_omitted = false;        ///< a summary leaves it out where it is absent
 };
 
-/// Many numbers of one kind that lie side by side in memory: `columns` of them belong together.
+/// Numbers of one kind, side by side in memory: a table with `columns` numbers in each row.
 struct Block {
   enum class Kind : std::uint8_t { Double, Float, Int32, Int16, UInt8 };
   Kind kind = Kind::Double;
   void* data = nullptr;
   std::size_t count = 0;
   std::size_t columns = 1;
-  Range range = kAny;         ///< of each number that people write; bytes keep any
+  Range range = kAny;         ///< of each number that people write; binary files may hold any
   bool is_direction = false;  ///< three numbers whose length does not matter, as long as it is not 0
 };
 
@@ -75,28 +75,28 @@ class Visitor;
 ///       v({"offset_mm", "Of the tet's centroid from the tool's tip when first touched.", "mm"}, b.offset_mm);
 ///     }
 ///
-/// Files, keys, comparison, schema and reports are visitors of that description, so that none of them can miss a field.
-/// A visitor that only shows leaves every value as it is: it may be given a constant.
+/// Files, keys, comparison, schema and reports are visitors of this description, so none of them can miss a field.
+/// A visitor either sets values or only shows them; one that only shows may be given a constant.
 class Visitor {
  public:
-  /// Answers of a visitor in place of a size or a place.
+  /// What a visitor may return instead of a size or a place.
   static constexpr std::size_t kUnchanged = std::numeric_limits<std::size_t>::max();  ///< a list stays as it is
-  static constexpr std::size_t kEveryKind = kUnchanged - 1;  ///< show what there may be: one item or value of each kind
+  static constexpr std::size_t kEveryKind = kUnchanged - 1;  ///< show one item or value of each possible kind
 
   virtual ~Visitor() = default;
 
   /// Whether values are set, not shown.
   [[nodiscard]] virtual bool sets() const = 0;
-  /// Whether it is a summary for people and programs, such as a JSON file: see bulk and derived.
+  /// Whether the visitor makes a summary for people and programs, such as a JSON file: see bulk and derived.
   [[nodiscard]] virtual bool is_summary() const { return false; }
-  virtual void begin(const Field& field) = 0;  ///< of a described value inside another one
+  virtual void begin(const Field& field) = 0;  ///< a described value inside another one begins
   virtual void end() = 0;
-  /// Items follow, then end_list. @param size  that is shown. @param item_bytes  least size of an item in memory.
+  /// The items follow, then end_list. @param size  number shown. @param item_bytes  least size of an item in memory.
   /// @returns how many there are, or kUnchanged, or kEveryKind
   virtual std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) = 0;
   virtual void end_list() = 0;
-  /// Before a value that may be absent. @returns whether it is there; a visitor that only shows may say so of an absent
-  /// value, and is shown one that was just made
+  /// Comes before a value that may be absent. @returns whether it is present. A visitor that only shows may return true
+  /// for an absent value; it is then shown a default one
   virtual bool optional(const Field& field, bool is_there) = 0;
   virtual void number(const Field& field, double& value, const Range& range) = 0;
   virtual void integer(const Field& field, std::int64_t& value, const Range& range) = 0;
@@ -105,8 +105,8 @@ class Visitor {
   /// One of `names`; `value` is its place among them.
   virtual void choice(const Field& field, std::size_t& value, Names names) = 0;
   virtual void block(const Field& field, const Block& block) = 0;
-  /// Which of these fields is in the group: just one has to be, and is visited next. @param place  set to that of the
-  /// first one that is there; or kEveryKind: visit them all; or kUnchanged: none. @returns how many are there
+  /// Which of these fields the group has: it must have exactly one, which is visited next. @param place  set to the
+  /// first field present; or kEveryKind: visit all; or kUnchanged: none. @returns how many are present
   virtual std::size_t key(std::size_t& place, std::span<const Field> keys);
   /// A field that is only shown, while values are set: what is read may hold it.
   virtual void pass_over(const Field& /*field*/) {}
@@ -114,7 +114,7 @@ class Visitor {
   /// hold, and lacks what only code may choose.
   [[nodiscard]] virtual bool is_complete() const { return true; }
   /// Refuses what was read. @throws DataError, or CaseError where a case is read, naming the place.
-  /// One that only shows blames the description: InvalidArgument.
+  /// A visitor that only shows throws InvalidArgument: the description is wrong.
   [[noreturn]] virtual void refuse(const Field& field, const std::string& found, const std::string& expected) const;
 
   template <class T>
@@ -130,7 +130,7 @@ class Visitor {
   void internal(std::string_view name, T& value, std::string_view meaning = {}, const Range& range = kAny) {
     if (is_complete()) visit(Field{name, meaning}, value, range);
   }
-  /// A vector that counts for where it points.
+  /// A vector of which only the direction matters.
   void direction(std::string_view name, Eigen::Vector3d& value, std::string_view meaning = {}) {
     block(Field{name, meaning}, {Block::Kind::Double, value.data(), 3, 3, kAny, true});
   }
@@ -147,12 +147,12 @@ class Visitor {
     std::size_t i = 0;
     ((i++ == place ? static_cast<void>(value = T{}) : static_cast<void>(0)), ...);
   }
-  /// A field that no summary holds: it is large, and has a file of its own where people need it.
+  /// A field that summaries omit: it is large, and has its own file if people need it.
   template <class T>
   void bulk(std::string_view name, T& value, std::string_view meaning) {
     if (!is_summary()) visit(Field{name, meaning, {}}, value, kAny);
   }
-  /// What follows from other fields: a summary shows it, and nobody reads it back.
+  /// A value that follows from other fields: a summary shows it, and it is not read back.
   template <class T>
   void derived(std::string_view name, T value, std::string_view meaning) {
     if (!is_summary()) return;
@@ -204,7 +204,7 @@ inline constexpr bool kIsShared = false;
 template <class T>
 inline constexpr bool kIsShared<std::shared_ptr<const T>> = true;
 
-/// What a list of these is in memory: nothing, or numbers side by side.
+/// How a list of these lies in memory: as numbers side by side, or (nullopt) not.
 template <class T>
 constexpr std::optional<std::pair<Block::Kind, std::size_t>> layout_of() {
   if constexpr (std::is_same_v<T, double>) return std::pair{Block::Kind::Double, std::size_t{1}};
@@ -324,7 +324,7 @@ void Visitor::visit_list(const Field& field, std::vector<T>& values, const Range
   end_list();
 }
 
-/// One of several types, told apart by the key `kind`; a variant may have another description of its own.
+/// One of several types; the key `kind` says which. A variant may have another description of its own.
 template <class... T>
 void describe(Visitor& v, std::variant<T...>& value) {
   v.kind(Field{"kind", "Which it is."}, value);

@@ -12,7 +12,7 @@
 
 namespace incise {
 
-/// What the software says of a cut, a run or a measurement. Ordered: the greater, the worse.
+/// The judgement of a cut, a run or a measurement. Ordered: the greater, the worse.
 enum class VerdictStatus {
   Ok,       ///< nothing is known against it
   Caution,  ///< something is; a robot program is written only if a person accepts each reason by its name
@@ -23,7 +23,7 @@ inline constexpr std::array<std::string_view, 3> kVerdictStatusNames{"ok", "caut
   return kVerdictStatusNames;
 }
 
-/// One row of the table of limits: a reason that may be held against a cut, and the limit beyond which it is.
+/// One row of the table of limits: a possible objection to a cut, and the limit beyond which it is raised.
 struct VerdictRule {
   std::string_view id;             ///< as users write it: `--accept depth`
   VerdictStatus severity;          ///< Caution or Refused
@@ -52,19 +52,19 @@ inline void describe(Visitor& v, VerdictPlace& p) {
   v("text", p.text, "For a person.");
 }
 
-/// One thing that is held against a cut.
+/// One objection to a cut.
 struct VerdictReason {
   std::string id;                                  ///< of its rule
   VerdictStatus severity = VerdictStatus::Caution;
   std::optional<double> value;                     ///< found, in `unit`
-  std::optional<double> limit;                     ///< that it was held against
+  std::optional<double> limit;                     ///< that it was compared with
   std::string unit;
   std::optional<VerdictPlace> at;
   std::string message;                             ///< one sentence for a person, with the numbers in it
 };
 void describe(Visitor& v, VerdictReason& reason);
 
-/// The verdict and its reasons, worst first. Every face (terminal, JSON, report, manifest, gate of the robot program) shows this object.
+/// The verdict and its reasons, worst first. Terminal, JSON, report, manifest and the program gate show it.
 class Verdict {
  public:
   Verdict() = default;
@@ -104,7 +104,7 @@ inline void describe(Visitor& v, VerdictGate& g) {
   v("refused", g.refused, "Ids of the reasons that nobody can accept.");
 }
 
-/// @param accepted_ids  as given with `--accept`; ids of reasons that the verdict does not have are passed over.
+/// @param accepted_ids  as given with `--accept`; ids of reasons that the verdict does not have are ignored.
 [[nodiscard]] VerdictGate gate_of(const Verdict& verdict, std::span<const std::string> accepted_ids);
 
 }  // namespace incise

@@ -38,9 +38,9 @@ struct CutSettings {
 /// What decides when tissue is cut; a case file puts the tissue's toughness behind it.
 inline void describe_effect(Visitor& v, CutSettings& s) {
   v({"speed_mm_s", "Of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
-  v({"dullness", "Contact needed before a tetrahedron goes, in reference steps.", "steps"}, s.dullness,
+  v({"dullness", "Contact needed before a tetrahedron is removed, in reference steps.", "steps"}, s.dullness,
     {0.0, 1000.0, true});
-  v({"reference_step_s", "The time that one unit of dullness stands for.", "s"}, s.reference_step_s, {0.0, 1.0, true});
+  v({"reference_step_s", "The time that one unit of dullness represents.", "s"}, s.reference_step_s, {0.0, 1.0, true});
   v.internal("power_w", s.power_w, "Of the electrode.", {0.0, 120.0, true});
   v({"reference_power_w", "Power for which dullness holds.", "W"}, s.reference_power_w, {0.0, 120.0, true});
   v("power_exponent", s.power_exponent,

@@ -36,7 +36,7 @@ struct BootstrapSettings {
   double level = 0.95;
 };
 inline void describe(Visitor& v, BootstrapSettings& s) {
-  v("replicates", s.replicates, "Of the block bootstrap.", {99.0, 1e6});
+  v("replicates", s.replicates, "Replicates of the block bootstrap.", {99.0, 1e6});
   v("seed", s.seed, "Same seed: same result, bit for bit.");
   v("level", s.level, "Of the interval.", {0.0, 1.0, true, true});
 }

@@ -38,7 +38,7 @@ inline void describe(Visitor& v, ComparisonSettings& s) {
   v("paired", s.is_paired,
     "Whether before[i] and after[i] are the same specimen; otherwise the specimens are strangers to each other.");
   v("alpha", s.alpha, "Level of significance; intervals are at 1 - alpha.", {0.0, 1.0, true, true});
-  v("power", s.power, "Wanted of the next experiment: chance of finding this effect; more than alpha.",
+  v("power", s.power, "Power that the next experiment should have: the probability of detecting the effect; more than alpha.",
     {0.0, 1.0, true, true});
   describe(v, s.bootstrap);
 }

@@ -41,7 +41,7 @@ struct AuditSettings {
   std::optional<double> grain;
 };
 inline void describe(Visitor& v, AuditSettings& s) {
-  v("least", s.least, "No value can be smaller: 0 for absolute errors.");
+  v("least", s.least, "Least possible value: 0 for absolute errors.");
   v("n_at_least", s.n_at_least,
     "Where the table gives no n: how few values there may be. Few values may stray more, so this is what the benefit "
     "of "

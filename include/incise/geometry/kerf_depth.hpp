@@ -34,7 +34,7 @@ inline void describe(Visitor& v, DepthProfile& p) {
 /// @param course  the tool's entry points, mm; at least 2.
 /// @throws InvalidArgument for settings out of range, points that are not finite, a course of no length.
 /// @note Counted along the approach: a tool held obliquely reaches less deep than its own depth. The kerf may undercut;
-/// that is not told from depth. As rough as the mesh: tets that are touched at a corner go whole. O(tets + points ·
+/// that is not separated from depth. As rough as the mesh: tets that are touched at a corner go whole. O(tets + points ·
 /// reach / pixel).
 [[nodiscard]] DepthProfile depth_along(const KerfInput& kerf, const Contour& course,
                                        const KerfDepthSettings& settings = {});

@@ -19,7 +19,7 @@ namespace incise {
 /// from metres say, is the caller's matter.
 ///
 /// Some programs number the corners the other way round: when *every* tet of the file has a negative volume, all are
-/// turned over, by exchanging their last two corners; the monitor is told with a Notice. A mixture is damage, and is
+/// turned over, by exchanging their last two corners; a Notice says so. A mixture is damage, and is
 /// refused, as is a tet without volume.
 ///
 /// Point and cell data come along as doubles under their names. TetGen's unnamed columns become `attribute_0`… and

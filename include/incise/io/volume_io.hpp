@@ -14,7 +14,7 @@ namespace incise {
 
 /// What to do with slices that do not stack straight (gantry tilt) or not at even steps.
 enum class IrregularSlices {
-  Resample,  ///< linear interpolation onto an orthogonal grid, told as a notice
+  Resample,  ///< linear interpolation onto an orthogonal grid, reported as a notice
   Refuse,    ///< DataError
 };
 inline constexpr std::array<std::string_view, 2> kIrregularSlicesNames{"resample", "refuse"};

@@ -31,7 +31,7 @@ struct StaticResult {
   std::vector<double> residual_history;
   std::vector<Vec3> reactions_mn;  ///< one per entry of model.constraints: the force of the constraint on the tissue
   double max_displacement_mm = 0.0;
-  double penetration_mm = 0.0;  ///< deepest vertex behind a support; more than 0.05 is told as a warning
+  double penetration_mm = 0.0;  ///< deepest vertex behind a support; more than 0.05 is reported as a warning
   std::size_t inverted_tets = 0;
   double wall_s = 0.0;
   std::string solver;  ///< what was chosen and why, for a person

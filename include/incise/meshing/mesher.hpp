@@ -47,7 +47,7 @@ inline void describe(Visitor& v, MeshingPhase& p) {
   v("wall_s", p.wall_s, "Time that it took.");
 }
 
-/// A mesh and what is needed to believe it.
+/// A mesh and what is needed to trust it.
 struct [[nodiscard]] MeshingResult {
   TetMesh mesh;  ///< mm, LPS; positively oriented, one face-connected component, every vertex used, vertices in Morton
                  ///< order
@@ -80,8 +80,8 @@ inline void describe(Visitor& v, MeshingResult& m) {
   v("label_volume_mm3", m.label_volume_mm3, "Of the body that was meshed.");
   v("relative_volume_error", m.relative_volume_error, "Mesh less label, over label.");
   v("iso", m.iso, "Occupancy on the mesh's surface.");
-  v("fine_mm", m.fine_mm, "Edge length asked for near the cut.");
-  v("coarse_mm", m.coarse_mm, "Edge length asked for far from it.");
+  v("fine_mm", m.fine_mm, "Edge length requested near the cut.");
+  v("coarse_mm", m.coarse_mm, "Edge length requested far from it.");
   v("predicted_tets", m.predicted_tets, "Before the first refinement.");
   v("refinements", m.refinements, "Tried to meet count and volume.");
   v("improvements", m.improvements, "Tried to meet the angle.");

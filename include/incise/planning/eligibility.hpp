@@ -15,9 +15,9 @@ namespace incise {
 
 /// What to do with a specimen before the robot moves.
 enum class Advice {
-  Compensate,    ///< the corrected path is expected to win more than is uncertain about it
-  CutAsPlanned,  ///< the simulation may be believed, but the correction wins too little, or costs margin
-  DoNotUse,      ///< the simulation is not to be believed of this specimen
+  Compensate,    ///< the expected gain of the corrected path exceeds its uncertainty
+  CutAsPlanned,  ///< the simulation may be trusted, but the correction gains too little, or costs margin
+  DoNotUse,      ///< do not trust the simulation of this specimen
 };
 inline constexpr std::array<std::string_view, 3> kAdviceNames{"compensate", "cut_as_planned", "do_not_use"};
 [[nodiscard]] constexpr Names names_of(Advice) {
@@ -30,7 +30,7 @@ struct SpecimenDistance {
   double value = 0.0;
   double mean = 0.0;   ///< of the calibration's specimens; for a logarithmic quantity the geometric one
   double in_sd = 0.0;  ///< how many standard deviations of what a next specimen would show `value` lies above the mean
-  bool is_better_below = false;  ///< a value below the mean speaks for the specimen, however far
+  bool is_better_below = false;  ///< a value below the mean is good for the specimen, however far
   double degrees = 4.0;          ///< degrees of freedom of that standard deviation: n + 3, >= 4
 };
 inline void describe(Visitor& v, SpecimenDistance& d) {
@@ -49,14 +49,14 @@ struct UsualSpread {
   bool is_better_below = false;  ///< see SpecimenDistance
 };
 
-/// The distance of a quantity from the calibration's specimens. Few specimens hardly tell their spread, so it is
+/// The distance of a quantity from the calibration's specimens. Few specimens hardly determine their spread, so it is
 /// blended with the usual one, which counts as much as five specimens would: sd² = (4 usual² + Σ (x − mean)²) / (4 + n
 /// − 1) · (1 + 1/n).
 /// @throws InvalidArgument without specimens, or for numbers not above 0 of a logarithmic quantity.
 [[nodiscard]] SpecimenDistance distance_from(std::string name, double value, std::span<const double> calibrated,
                                              const UsualSpread& usual);
 
-/// How probable it is that the calibration says nothing of a specimen, by the quantity that is most unlike: before
+/// How probable it is that the calibration says nothing about a specimen, by the quantity that is most unlike: before
 /// anything is known kPriorUnlike; specimens that are alike have distances of Student's t (the spread is estimated,
 /// too), others of one that is kUnlikeSpread times as wide. 0.005, 0.03, 0.21, 0.73 and 0.97 at distances of 0, 2, 3, 4
 /// and 5 from twenty specimens, 0.10 and 0.26 at 3 and 4 from two. Quantities for which below is better count above the
@@ -69,26 +69,26 @@ inline constexpr double kUnlikeSpread = 10.0;  ///< how many times as widely the
 
 /// That a correction makes the cut of a specimen worse of which the calibration says nothing: it errs as planned as
 /// others did, e ~ N(mean of errors_mm, kUnlikeErrorSdMm²) in the mean along the ring, whatever the simulation
-/// foretells of it, and e + move_mm lies farther from 0 than e: farther moves are the riskier ones.
+/// predicts for it, and e + move_mm lies farther from 0 than e: farther moves are the riskier ones.
 /// @param errors_mm  mean signed errors of the calibration's cuts, as photographed. @return one half without any.
 [[nodiscard]] double probability_worse_if_unlike(double move_mm, std::span<const double> errors_mm);
 
 inline constexpr double kUnlikeErrorSdMm = 0.7;  ///< half of what a cut errs as planned. Chosen.
 
-/// What an advice is made of.
+/// What the advice is based on.
 struct EligibilityEvidence {
   PathRisk intended, corrected;
   std::optional<CutGain> gain;              ///< absent: nothing could be simulated along both paths …
   std::string no_gain_because;              ///< … and why
   bool is_accepted = true;                  ///< the correction, by its own simulation
-  bool is_registered = true;                ///< a transform was found, and nothing spoke against it
+  bool is_registered = true;                ///< a transform was found, and nothing argued against it
   double registration_rmse_mm = 0.0;        ///< of the simulated surface against the measured one
   std::vector<SpecimenDistance> distances;  ///< of everything that is known of both
   bool is_stiffness_compared = true;        ///< one of them is of its stiffness
   std::vector<double> calibrated_error_mm;  ///< mean signed errors of the calibration's cuts
 };
 
-/// When which advice is given. Every number is a choice; see docs/models/eligibility.md.
+/// Which advice is given when. Every number is a choice; see docs/models/eligibility.md.
 struct EligibilityRules {
   double least_gain_sds = 1.0;
   double most_p_worse = 0.15;
@@ -112,9 +112,9 @@ struct Eligibility {
   Advice advice = Advice::DoNotUse;
   std::vector<std::string> reasons;  ///< each with its numbers; of the advice alone, at least one
   /// probability_unlike of its distances, but at least kPriorUnlike where its stiffness is not among them, and 1 where
-  /// something else than a distance speaks against the simulation.
+  /// something other than a distance argues against the simulation.
   double p_unlike = 0.0;
-  /// probability_worse_if_unlike of the gain's move; one half where something else than a distance speaks against the
+  /// probability_worse_if_unlike of the gain's move; one half where something other than a distance argues against the
   /// simulation. Absent without a gain, or where that is no number.
   std::optional<double> p_worse_if_unlike;
   /// That the corrected cut is the worse one: the gain's p_worse as far as the calibration says something of this
@@ -122,8 +122,8 @@ struct Eligibility {
   std::optional<double> p_worse;
 };
 
-/// Holds the evidence against the rules. Whatever speaks against the simulation is named before any gain is looked at.
-/// A number that is none speaks against it.
+/// Compares the evidence with the rules. All reasons against the simulation are named before any gain is considered.
+/// A value that is not a number is such a reason.
 /// @throws InvalidArgument with every violation of the rules.
 [[nodiscard]] Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules = {});
 

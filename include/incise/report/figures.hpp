@@ -10,7 +10,7 @@ namespace incise {
 
 /// How an error in mm becomes a colour.
 enum class ErrorColors {
-  Safe,  ///< blue - grey - rust: can be told apart with any colour vision
+  Safe,  ///< blue - grey - rust: can be distinguished with any colour vision
   Jet,   ///< blue - cyan - yellow - red, as in the paper's Fig. 6
 };
 inline constexpr std::array<std::string_view, 2> kErrorColorsNames{"safe", "jet"};

@@ -13,9 +13,9 @@ struct [[nodiscard]] ProgramAudit {
   ProgramDigest digest = ProgramDigest::Absent;
   std::vector<std::string> contradictions;  ///< lines of the header that are not so, one sentence each
   std::vector<std::string> recomputed;      ///< names of the checks that were made again
-  std::vector<std::string> not_recomputed;  ///< of those that only the header tells of, or why none was made again
+  std::vector<std::string> not_recomputed;  ///< of those that only the header names, or why none was made again
   std::vector<std::string> moved_limits;    ///< "close_margin_mm 1, by default 2.2": what options moved
-  /// It is the program that was written, to the byte, and its checks come out as it says.
+  /// It is the program that was written, to the byte, and its checks give what it states.
   [[nodiscard]] bool is_checked() const { return digest == ProgramDigest::Matches && contradictions.empty(); }
 };
 inline void describe(Visitor& v, ProgramAudit& a) {

@@ -55,7 +55,7 @@ void require_plan_inputs(const CaseFile& file);
 /// @throws DataError naming the first file that is missing and the field that asks for it.
 void require_input_files(const CaseFile& file);
 
-/// The tetrahedra that a case names, sound and in one piece; the monitor is told where all had to be turned over.
+/// The tetrahedra that a case names, sound and in one piece; a Notice says so where all had to be turned over.
 /// @pre a mesh is named.
 /// @throws DataError naming the file and its first problem: an inverted, flat or duplicate tet, more than one body, and the like.
 [[nodiscard]] TetMesh read_specimen_mesh(const CaseFile& file, Monitor& monitor);

@@ -22,7 +22,7 @@ class StagesKept : public Cancelled {
 /// A case, and the files that it names looked for, before anything is written. @throws CaseError, DataError
 [[nodiscard]] CaseFile read_case_with_inputs(const std::filesystem::path& file_or_folder);
 
-/// Where the results of a case go unless told otherwise: `out/` beside the case file.
+/// Where the results of a case go by default: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_beside(const std::filesystem::path& file_or_folder);
 
 /// One way through the loop on a folder, which no other run may write into meanwhile: the stages up to

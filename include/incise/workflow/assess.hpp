@@ -24,7 +24,7 @@ struct AssessmentRequest {
   EligibilityRules rules;
   CalibratedRange calibrated;
   RegistrationQuality registration;  ///< of this specimen
-  bool is_registered = true;         ///< nothing spoke against its transform
+  bool is_registered = true;         ///< nothing argued against its transform
   bool is_calibration_virtual = false;  ///< a specimen of the calibration is a synthetic body
 };
 

@@ -48,8 +48,8 @@ struct CalibrationRequest {
 };
 inline void describe(Visitor& v, CalibrationRequest& r) {
   v("method", r.method, "A fit of drag and stiffness, or the paper's grid of speed and dullness.");
-  v({"speeds_mm_s", "Of the paper's grid.", "mm/s"}, r.speeds_mm_s, kPositive);
-  v("dullnesses", r.dullnesses, "Of the paper's grid.", kPositive);
+  v({"speeds_mm_s", "Speeds of the paper's grid.", "mm/s"}, r.speeds_mm_s, kPositive);
+  v("dullnesses", r.dullnesses, "Dullnesses of the paper's grid.", kPositive);
   v({"fit_speed_mm_s", "Of all cuts of a fit.", "mm/s"}, r.fit_speed_mm_s, kPositive);
   v({"drag_lengths_mm", "Speed x dwell of the fit's simulations, at the reference stiffness; at least 2.", "mm"},
     r.drag_lengths_mm, kPositive);
@@ -64,7 +64,7 @@ inline void describe(Visitor& v, CalibrationRequest& r) {
 /// Every violation; empty: valid.
 [[nodiscard]] std::vector<Problem> validate(const CalibrationRequest& request);
 
-/// Finds the settings with which simulated cuts come out as the photographed ones. Simulations run side by side, one
+/// Finds the settings with which simulated cuts match the photographed ones. Simulations run side by side, one
 /// thread each; those that the cache has are not made again. A simulation that fails is a row.
 /// @throws CaseError for a case that cannot be held, stretched or planned (the file is named); DataError for a
 /// photograph

@@ -22,7 +22,7 @@ namespace incise {
 
 /// The errors of a cut that its path is corrected by: those of the line that the case observes, in the stretched tissue
 /// before the cut. A ring without a closed mid-line near the skin is measured by its shallowest closed layer, seen
-/// along the approach (`monitor` is told). nullopt: there is none.
+/// along the approach (reported to `monitor`). nullopt: there is none.
 [[nodiscard]] std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut,
                                                     const Contour& tumor_edge, Monitor& monitor);
 

@@ -29,7 +29,7 @@ struct CalibratedBelief {
 /// What is known of this specimen's stiffness, and what is asked of the path.
 struct ScenarioRequest {
   std::optional<double>
-      stretch_force_n;     ///< measured pull at the case's stretch; absent: the case's modulus is believed …
+      stretch_force_n;     ///< measured pull at the case's stretch; absent: the case's modulus is used …
   double force_sd = 0.05;  ///< of a measured force, relative, > 0
   double unknown_stiffness_sd =
       0.5;  ///< … to this, of its logarithm, where the calibration specimens' pull is known, > 0

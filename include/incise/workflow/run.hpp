@@ -13,38 +13,38 @@
 
 namespace incise {
 
-/// The robot program for the path that a run ended with, and what its checks found.
+/// The robot program for the final path of a run, and what its checks found.
 struct CheckedProgram {
   ToolPath path;         ///< in the robot's frame
   RobotProgram program;  ///< along it
   ProgramChecks checks;
-  ProgramHeader header;          ///< what the written program says of itself, its verdict included
-  std::optional<Replay> replay;  ///< what the arm does with the script; absent where the gate was closed before it
+  ProgramHeader header;          ///< of the written program, with its verdict
+  std::optional<Replay> replay;  ///< how the arm executes the script; absent if the gate was closed before it
 };
 
-/// The whole loop on one specimen.
+/// Results of the whole loop on one specimen.
 struct Run {
   Study study;
-  Verdict verdict;  ///< of the study, of earlier advice against the path, and of the program's checks
+  Verdict verdict;  ///< from the study, earlier advice against the path, and the program's checks
   std::optional<CheckedProgram> program;
-  VerdictGate gate;                 ///< whether the program may be written; closed where there is none
-  std::string why_without_program;  ///< empty where there is one
+  VerdictGate gate;                 ///< whether the program may be written; closed if there is none
+  std::string why_without_program;  ///< empty if there is one
 };
 
-/// Runs the whole loop as run_study does, up to the cut along the corrected path, then makes and checks the robot
-/// program: along the corrected path where the correction is accepted, else along the path that was cut first. Failed
-/// checks, and a replay that does not complete, join the verdict; the gate is open if the verdict allows the program.
+/// Runs the whole loop as run_study does, up to the cut along the corrected path. Then makes and checks the robot
+/// program: along the corrected path if the correction is accepted, otherwise along the path that was cut first. Failed
+/// checks and an incomplete replay are added to the verdict; the gate is open if the verdict allows the program.
 /// @param options  `until` is not read: all stages run.
-/// @param accepted  ids of the cautions that a person takes on them.
-/// @throws as run_study; CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place that no arm works at; DataError
-/// naming the path (Inputs::path_name) where no tool can follow it.
+/// @param accepted  ids of the cautions that a person accepts.
+/// @throws as run_study; CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place beyond the arm's reach;
+/// DataError naming the path (Inputs::path_name) if no tool can follow it.
 [[nodiscard]] Run run(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options,
                       std::span<const std::string> accepted, Workers& workers, Monitor& monitor, ProductSink& sink);
-/// The same on every thread of the machine, without messages and files.
+/// The same on all threads of the machine, without messages or files.
 [[nodiscard]] Run run(const Case& settings, Inputs& inputs, Cache& cache, std::span<const std::string> accepted = {});
 
-/// What a case that asks for a program has to hold.
-/// @throws CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place that no arm works at.
+/// Checks that a case that requests a program states a place for the arm.
+/// @throws CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place that the arm cannot reach.
 void require_place_for_arm(const Case& settings);
 
 }  // namespace incise
