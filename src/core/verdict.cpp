@@ -25,7 +25,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "",
      "The simulated cut ended in anything but success, or nothing of it could be measured."},
     {"tumor_distance", kRefused, kCloseMarginMm, ">", "mm",
-     "Nearest distance of the simulated kerf to the tumour's surface, in any direction."},
+     "Smallest distance from the simulated kerf to the tumour's surface, in any direction."},
     {"lateral_margin", kRefused, kCloseMarginMm, ">", "mm",
      "Least tissue that the simulated cut leaves beside the tumour's edge."},
     {"open_layer", kRefused, {}, "", "mm", "A layer within the planned depth in which the simulated ring stayed open."},

@@ -139,11 +139,10 @@ class IncisionRun {
  private:
   [[nodiscard]] CutState& state() { return progress_.state; }
   Outcome broken_off() {
-    monitor_.message(
-        Severity::Warning,
-        fmt::format("the cut breaks off at {:.3f} s, in step {}: positions are no longer finite. What was cut "
-                    "until then is no result",
-                    state().time_s, progress_.steps.size()));
+    monitor_.message(Severity::Warning,
+                     fmt::format("the cut ends at {:.3f} s, in step {}: positions are no longer finite. What was cut "
+                                 "until then is no result",
+                                 state().time_s, progress_.steps.size()));
     return Outcome::NotConverged;
   }
   [[nodiscard]] bool is_tool_in() const {

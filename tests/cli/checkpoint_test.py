@@ -102,7 +102,7 @@ class CheckpointTest(CommandTest):
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         resumed = self.incise("run", "case", "-o", self.out)
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
-        self.assertIn("pass 1: goes on after step", resumed.stderr)
+        self.assertIn("pass 1: continues after step", resumed.stderr)
         for product in ("as_planned", "corrected"):
             self.assert_same_cut(self.out / product, self.straight / product)
         for name in ("path.json", "history.csv", "errors.csv"):
@@ -116,8 +116,8 @@ class CheckpointTest(CommandTest):
         self.assertFalse((self.out / "correction").exists())
         resumed = self.incise("run", "case", "-o", self.out, "--resume")
         self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
-        self.assertIn("pass 2: goes on after step", resumed.stderr)
-        self.assertNotIn("pass 1: goes on", resumed.stderr)
+        self.assertIn("pass 2: continues after step", resumed.stderr)
+        self.assertNotIn("pass 1: continues", resumed.stderr)
         self.assert_same_cut(self.out / "corrected", self.straight / "corrected")
 
     def test_resume_without_a_checkpoint_is_refused(self):

@@ -308,7 +308,7 @@ class ExportTest(RobotTest):
         done = self.incise("export", self.write(path), "-o", "cut.script")
         self.assert_refused(done, BAD_DATA, "path.json: waypoints: expected places within 1e+05 mm of the base, found 1e+200 mm at waypoint 6")
         tiny = ring(radius=1.2, edge=1.0)
-        self.assert_refused(self.incise("export", self.write(tiny), "-o", "cut.script"), BAD_DATA, "found 8 mm, expected an overlap below the path's 7.54")
+        self.assert_refused(self.incise("export", self.write(tiny), "-o", "cut.script"), BAD_DATA, "expected an overlap below the path's 7.54 mm, found 8 mm")
         self.assert_nothing_written(self.folder / "cut.script")
 
 
