@@ -48,7 +48,7 @@ constexpr double kHitShare = 0.95;
 struct CostCase {
   PointCloud source;
   PointCloud target;
-  Drift drift;
+  CoherentPointDrift drift;
 };
 
 /// Tells the time of the drift on `count` points each, all of them from one start.
@@ -92,7 +92,7 @@ bool compare_with_dense(const Options& options, const CostCase& drawn_case, std:
   Workers workers(options.threads);
   const auto& [source, target, drift] = drawn_case;
   const double wall = wall_seconds();
-  const auto dense_from = [&, &source = source, &target = target](const Drift* start) {
+  const auto dense_from = [&, &source = source, &target = target](const CoherentPointDrift* start) {
     return dense_drift(source.points, target.points, DriftSettings{}.outlier_weight, kStillMm, workers, start);
   };
   const DenseDrift dense = dense_from(nullptr);

@@ -61,10 +61,12 @@ endfunction()
 # hangs in the command is found by its watch (tests/cli/command.py).
 set(INCISE_TEST_STOP_S 21600)
 
-# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end|long] [IN_GROUPS])
-# One test program per folder under tests/; each TEST in it is one ctest entry.
+# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end|long] [IN_GROUPS] [SHARDS n])
+# One test program per folder under tests/; each TEST in it is one ctest entry. With SHARDS there are n entries, each with its share of the TESTs:
+# for rooms that link imaging, whose libraries take longer to load (0.2 s) than most of their tests take to run. There a skipped TEST is shown
+# in the output alone.
 function(incise_test name)
-  cmake_parse_arguments(ARG "IN_GROUPS" "LABEL" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "IN_GROUPS" "LABEL;SHARDS" "SOURCES;USES;LINK" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -79,6 +81,16 @@ function(incise_test name)
   endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${target} PRIVATE ${ARG_USES} ${ARG_LINK} incise_test_support GTest::gtest_main GTest::gmock incise_warnings)
+  if(ARG_SHARDS)
+    math(EXPR last "${ARG_SHARDS} - 1")
+    foreach(shard RANGE ${last})
+      math(EXPR number "${shard} + 1")
+      add_test(NAME ${name}.${number}_of_${ARG_SHARDS} COMMAND ${target} --gtest_brief=1)
+      set_tests_properties(${name}.${number}_of_${ARG_SHARDS} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${INCISE_TEST_STOP_S}
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${shard}")
+    endforeach()
+    return()
+  endif()
   gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. 
     PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${INCISE_TEST_STOP_S} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
 endfunction()

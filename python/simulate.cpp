@@ -1,7 +1,7 @@
 #include "simulate.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/storage/run_folder.hpp>
 #include <incise/workflow/study.hpp>

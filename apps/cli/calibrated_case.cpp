@@ -4,7 +4,7 @@
 
 namespace incise::cli {
 
-CLI::Option* add_calibrated_options(CLI::App& verb, laboratory::CalibratedRequest& options) {
+CLI::Option* add_calibrated_options(CLI::App& verb, steps::CalibratedRequest& options) {
   verb.add_option("--stretch-force-n", options.stretch_force_n,
                   "Measured pull of this specimen at its stretch: determines its stiffness to 5 %. Without it the "
                   "case's modulus is used, with much more uncertainty")

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/laboratory/case_steps.hpp>
+#include <incise/steps/case_steps.hpp>
 
 #include <filesystem>
 

@@ -2,6 +2,7 @@
 
 #include "described_options.hpp"
 
+#include <incise/core/direction.hpp>
 #include <incise/core/error.hpp>
 
 #include <fmt/format.h>
@@ -79,7 +80,10 @@ void require_valid(const std::vector<Problem>& violations) {
 
 Vec3 direction_of(const std::vector<double>& numbers, const char* option) {
   const Vec3 direction(numbers.data());
-  if (!(direction.norm() > 0.0)) throw CaseError("command line", option, "0 0 0", "a direction");
+  if (!is_direction(std::span<const double, 3>(numbers.data(), 3))) {
+    throw CaseError("command line", option, fmt::format("{:g} {:g} {:g}", numbers[0], numbers[1], numbers[2]),
+                    kDirectionText);
+  }
   return direction;
 }
 

@@ -115,7 +115,7 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   verb->add_flag("--json", options->json, "One JSON object on standard output");
   verb->add_flag("--quiet", options->quiet, "Warnings only");
   verb->add_flag("--verbose", options->verbose, "More detail");
-  verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(CLI::Range(0, 1024));
+  verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(whole_between("--threads", 0, 1024));
   verb->add_option("--seed", options->seed, "Seed of all random numbers")
       ->check(whole_between("--seed", 0, kGreatestSeed));
   verb->add_option("--isa", options->isa,
@@ -130,19 +130,13 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   return verb;
 }
 
-int run_step(const CommonOptions& options,
-             const std::function<laboratory::StepResult(const laboratory::StepContext&)>& step,
+int run_step(const CommonOptions& options, const std::function<steps::StepResult(const steps::StepContext&)>& step,
              const std::function<void(const CommonOptions&, const nlohmann::ordered_json&)>& print) {
   Console console(options.level());
   Workers workers(options.threads);
-  const laboratory::StepResult found = step({options.context(), workers, console, options.start});
+  const steps::StepResult found = step({options.context(), workers, console, options.start});
   if (!found.json.is_null()) print(options, found.json);
   return found.is_acceptable ? kDone : kNotAcceptable;
-}
-
-int status_of(Outcome outcome) {
-  if (outcome == Outcome::Success) return kDone;
-  return outcome == Outcome::Cancelled ? kInterrupted : kNotAcceptable;
 }
 
 }  // namespace incise::cli

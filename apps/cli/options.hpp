@@ -3,7 +3,7 @@
 #include "console.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/laboratory/step.hpp>
+#include <incise/steps/step.hpp>
 #include <incise/storage/case_run.hpp>
 
 #include <CLI/CLI.hpp>
@@ -117,14 +117,10 @@ class Application {
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result);
 /// Runs a step of the library with the command's console and threads, and prints what it found.
 /// @param print  print_result, or what a person wants of it instead. @returns the exit status.
-int run_step(const CommonOptions& options,
-             const std::function<laboratory::StepResult(const laboratory::StepContext&)>& step,
+int run_step(const CommonOptions& options, const std::function<steps::StepResult(const steps::StepContext&)>& step,
              const std::function<void(const CommonOptions&, const nlohmann::ordered_json&)>& print = print_result);
 /// The same for a whole loop: for a person, the measures that matter of the two cuts side by side.
 void print_study(const CommonOptions& options, const nlohmann::ordered_json& result);
-
-/// 0 for Success, 130 for Cancelled, 4 for every other outcome.
-[[nodiscard]] int status_of(Outcome outcome);
 
 void add_assess(Application& application);
 void add_bench(Application& application);  ///< bench make, bench cut

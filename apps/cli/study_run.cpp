@@ -1,11 +1,6 @@
 #include "study_run.hpp"
 
-#include "replay_files.hpp"
-#include "study_report.hpp"
-
-#include <incise/laboratory/compensation_figures.hpp>
-#include <incise/laboratory/robot_steps.hpp>
-#include <incise/storage/run_files.hpp>
+#include "option_checks.hpp"
 
 namespace incise::cli {
 namespace {
@@ -21,8 +16,9 @@ std::filesystem::path output_of(const std::filesystem::path& case_path, const Co
 }
 
 void add_cut_options(CLI::App& verb, CutOptions& options) {
-  verb.add_option("--frames", options.frames, "Moments of the cut to keep for pictures, in place of the case's cut.frames")
-      ->check(CLI::Range(1, kMostFrames));
+  verb.add_option("--frames", options.frames,
+                  "Moments of the cut to keep for pictures, in place of the case's cut.frames")
+      ->check(whole_between("--frames", 1, kMostFrames));
   verb.add_flag("--resume", options.must_resume,
                 "Continue from the checkpoint of an interrupted cut, or refuse. Without --resume it continues "
                 "if its checkpoint fits, and else starts again");
@@ -37,35 +33,17 @@ CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions&
   return file;
 }
 
-laboratory::CaseRequest case_request(const std::filesystem::path& case_path, Stage until, const CommonOptions& options,
-                                     const CutOptions& cut) {
+steps::CaseRequest case_request(const std::filesystem::path& case_path, Stage until, const CommonOptions& options,
+                                const CutOptions& cut) {
   return {case_as_asked(case_path, cut), output_of(case_path, options), {until, cut.must_resume, cut.checkpoint_s}};
 }
 
 int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,
-                   const CommonOptions& options, const CutOptions& cut, Console& console) {
-  const laboratory::CaseRequest asked = case_request(case_path, Stage::Verify, options, cut);
-  CaseRun study(asked.file, output, asked.options, options.context());
-  Workers workers(options.threads);
-  const Run done = study.run(cut.accepted, workers, console);
-  if (done.program) laboratory::report_gate(done.verdict, done.gate, console);
-  nlohmann::ordered_json result = write_run(study.folder, done, options.wall_s(),
-                                            [](const std::filesystem::path& folder, const CheckedProgram& made) {
-                                              write_replay_figure(folder, *made.replay);
-                                            });
-  console.message(Severity::Notice, "report: drawing");
-  try {
-    write_report_and_figures(study_report(output, console), output / "report.html");
-    laboratory::write_compensation_figures(output, output / "figures");
-  } catch (const Cancelled& error) {
-    throw StagesKept(error.what());
-  }
-  result["report"] = (output / "report.html").string();
-  result["wall_s"] = options.wall_s();
-  print_study(options, result);
-  const bool lacks_program = done.study.plan && asked.file.settings.T_robot_sim && !done.gate.is_open;
-  const bool is_refused = done.verdict.status() == VerdictStatus::Refused;
-  return lacks_program || is_refused ? kNotAcceptable : status_of(done.study.outcome);
+                   const CommonOptions& options, const CutOptions& cut) {
+  steps::CaseRequest request = case_request(case_path, Stage::Verify, options, cut);
+  request.output = output;
+  return run_step(
+      options, [&](const auto& context) { return steps::run_loop(request, cut.accepted, context); }, print_study);
 }
 
 }  // namespace incise::cli

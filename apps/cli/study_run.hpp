@@ -2,7 +2,7 @@
 
 #include "options.hpp"
 
-#include <incise/laboratory/case_steps.hpp>
+#include <incise/steps/case_steps.hpp>
 
 #include <optional>
 #include <string>
@@ -27,14 +27,14 @@ void add_compensation_method(CLI::App& verb, CutOptions& options);
 [[nodiscard]] CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut);
 
 /// The case as asked, its output, and how far it is run.
-[[nodiscard]] laboratory::CaseRequest case_request(const std::filesystem::path& case_path, Stage until,
-                                                   const CommonOptions& options, const CutOptions& cut);
+[[nodiscard]] steps::CaseRequest case_request(const std::filesystem::path& case_path, Stage until,
+                                              const CommonOptions& options, const CutOptions& cut);
 
 /// Where the results of a case go when -o is not given: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
 
 /// The whole loop with program and report: what `run` and `demo` do. @returns the exit status.
 int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,
-                   const CommonOptions& options, const CutOptions& cut, Console& console);
+                   const CommonOptions& options, const CutOptions& cut);
 
 }  // namespace incise::cli

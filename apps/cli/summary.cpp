@@ -1,7 +1,7 @@
 #include "options.hpp"
 #include "verdict_gate.hpp"
 
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@ namespace {
 struct AssessOptions {
   std::filesystem::path case_path, registration;
   CutOptions cut;
-  laboratory::CalibratedRequest calibrated;
+  steps::CalibratedRequest calibrated;
 };
 
 void print_assessment(const nlohmann::ordered_json& result) {
@@ -33,12 +33,12 @@ void print_assessment(const nlohmann::ordered_json& result) {
 }
 
 int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
-  const laboratory::CalibrationInput calibration = laboratory::read_calibration_input(chosen.calibrated);
+  const steps::CalibrationInput calibration = steps::read_calibration_input(chosen.calibrated);
   return run_step(
       options,
       [&](const auto& context) {
-        return laboratory::assess_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), calibration,
-                                       chosen.registration, context);
+        return steps::assess_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), calibration,
+                                  chosen.registration, context);
       },
       [](const CommonOptions& common, const nlohmann::ordered_json& json) {
         common.json ? print_result(common, json) : print_assessment(json);

@@ -2,9 +2,9 @@
 #include "option_checks.hpp"
 #include "options.hpp"
 
-#include <incise/core/error.hpp>
+#include <incise/core/described_json.hpp>
 #include <incise/core/expect.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/storage/published_table_file.hpp>
 
 #include <fmt/format.h>
@@ -24,45 +24,14 @@ struct AuditArguments {
   double grain = 0.0;
 };
 
-Json finding_json(const Finding& finding) {
-  return {{"rule", to_string(finding.rule)},
-          {"of", finding.group.empty() ? Json(nullptr) : Json(finding.group)},
-          {"printed", finding.printed},
-          {"bound", finding.bound},
-          {"text", to_text(finding)}};
-}
-
 Json audit_json(const Audit& audit, const PublishedTable& table) {
-  Json json;
-  json["impossible_rows"] = audit.impossible_rows;
-  json["checked_rows"] = audit.rows.size();
+  Json json = to_json(audit);
   json["columns"] = {{"read", table.number_columns}, {"names", table.name_columns}};
   std::map<std::string, std::size_t> rules;
-  json["rows"] = Json::array();
   for (const AuditedRow& row : audit.rows) {
-    Json findings = Json::array();
-    for (const Finding& finding : row.findings) {
-      findings.push_back(finding_json(finding));
-      ++rules[std::string(to_string(finding.rule))];
-    }
-    Json unchecked = Json::array();
-    for (const Unchecked& rule : row.not_checkable) {
-      unchecked.push_back({{"rule", to_string(rule.rule)},
-                           {"of", rule.group.empty() ? Json(nullptr) : Json(rule.group)},
-                           {"needs", rule.needs}});
-    }
-    json["rows"].push_back({{"name", row.name},
-                            {"possible", row.findings.empty()},
-                            {"findings", std::move(findings)},
-                            {"not_checkable", std::move(unchecked)}});
+    for (const Finding& finding : row.findings) ++rules[std::string(to_string(finding.rule))];
   }
-  json["findings_by_rule"] = Json::object();
-  for (const auto& [rule, count] : rules) json["findings_by_rule"][rule] = count;
-  json["score_baseline_mm"] = audit.baseline_mm ? Json{{"low", audit.baseline_mm->low_mm},
-                                                       {"high", audit.baseline_mm->high_mm},
-                                                       {"rows", audit.rows_on_baseline},
-                                                       {"of", audit.scored_rows}}
-                                                : Json(nullptr);
+  json["findings_by_rule"] = rules;
   return json;
 }
 

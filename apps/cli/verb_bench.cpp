@@ -1,3 +1,4 @@
+#include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
@@ -73,7 +74,7 @@ void add_bench(Application& application) {
   verb->add_option("--power-w", floor->power_w, "Power of the electrosurgical generator")
       ->check(CLI::Range(1.0, 120.0));
   verb->add_option("--simulations", floor->simulations, "Bench cuts by which the path is corrected")
-      ->check(CLI::Range(2, 8));
+      ->check(whole_between("--simulations", 2, 8));
 }
 
 }  // namespace incise::cli

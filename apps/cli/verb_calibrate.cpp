@@ -14,7 +14,7 @@ namespace incise::cli {
 namespace {
 
 struct CalibrateArguments {
-  laboratory::CalibrateRequest request;
+  steps::CalibrateRequest request;
   std::string method = "fit";
 };
 
@@ -34,7 +34,7 @@ void require_different_values(const char* option, std::vector<double> values) {
 }
 
 int calibrate_cases(const CalibrateArguments& arguments, const CommonOptions& options) {
-  laboratory::CalibrateRequest request = arguments.request;
+  steps::CalibrateRequest request = arguments.request;
   CalibrationRequest& asked = request.request;
   asked.method = value_named<CalibrationMethod>(arguments.method);
   require_valid(validate(asked));
@@ -51,8 +51,8 @@ int calibrate_cases(const CalibrateArguments& arguments, const CommonOptions& op
   Console console(options.level());
   Workers workers(options.threads);
   OlderOutput older(request.output / "calibration.json", console);
-  const laboratory::CalibrateResult done =
-      laboratory::calibrate_on_cuts(request, {options.context(), workers, console, options.start});
+  const steps::CalibrateResult done =
+      steps::calibrate_on_cuts(request, {options.context(), workers, console, options.start});
   older.replaced();
   options.json ? print_result(options, done.step.json) : print_calibration(done.calibration, request.output);
   return done.step.is_acceptable ? kDone : kNotAcceptable;

@@ -3,8 +3,8 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/laboratory/comparison_tables.hpp>
-#include <incise/laboratory/cut_steps.hpp>
+#include <incise/steps/comparison_tables.hpp>
+#include <incise/steps/cut_steps.hpp>
 
 #include <fmt/format.h>
 
@@ -13,12 +13,12 @@
 namespace incise::cli {
 namespace {
 
-struct CompareArguments : laboratory::CompareRequest {
+struct CompareArguments : steps::CompareRequest {
   std::string measure = "absolute";
 };
 
 /// A file that stands for two specimens would make two of one.
-void require_different(const laboratory::CompareRequest& arguments) {
+void require_different(const steps::CompareRequest& arguments) {
   std::set<std::filesystem::path> seen;
   for (const auto* side : {&arguments.before, &arguments.after}) {
     for (const auto& path : *side) {
@@ -31,31 +31,27 @@ void require_different(const laboratory::CompareRequest& arguments) {
 }
 
 /// For a person: the two means and the tests, one a line.
-void print_tests(const nlohmann::ordered_json& json) {
-  const auto mean = [&](const char* key) {
-    return json[key].is_number() ? fmt::format("{:.3f} mm", json[key].get<double>()) : std::string("-");
+void print_tests(const steps::CutComparison& found) {
+  const auto mean = [&](const SampleMoments PooledTests::*side) {
+    return found.points ? fmt::format("{:.3f} mm", ((*found.points).*side).mean) : std::string("-");
   };
-  fmt::print("mean {} error by point: before {}, after {}\n\n", json["measure"].get<std::string>(),
-             mean("mean_before_mm"), mean("mean_after_mm"));
-  const TextTable tests = laboratory::test_table(json);
+  fmt::print("mean {} error by point: before {}, after {}\n\n", to_string(found.measure), mean(&PooledTests::before),
+             mean(&PooledTests::after));
+  const TextTable tests = steps::test_table(found);
   constexpr const char* kLine = "{:<36} {:>8} {:>9} {:>8} {:>14} {:>24}  {}\n";
   const auto print = [&](const std::vector<std::string>& r) {
     fmt::print(kLine, r[0], r[1], r[2], r[3], r[4], r[5], r[6]);
   };
   print(tests.header);
   for (const auto& row : tests.rows) print(row);
-  for (const auto& left_out : json["left_out"]) {
-    fmt::print("left out, no incision was found: {}\n", left_out["name"].get<std::string>());
-  }
-  if (const auto& specimens = json["specimens"]; specimens.is_object() && specimens["fewest_specimens"].is_number()) {
-    fmt::print("\nspecimens in each group (or pairs) that would show this effect: {}\n",
-               specimens["fewest_specimens"].get<long>());
-  }
+  for (const steps::LeftOut& one : found.left_out) fmt::print("left out, no incision was found: {}\n", one.name);
+  if (found.specimens && found.specimens->fewest)
+    fmt::print("\nspecimens in each group (or pairs) that would show this effect: {}\n", *found.specimens->fewest);
   fmt::print("every figure: --json, or compare.json in the folder that -o names\n");
 }
 
 int run(const CompareArguments& arguments, const CommonOptions& options) {
-  laboratory::CompareRequest request = arguments;
+  steps::CompareRequest request = arguments;
   request.output = options.output;
   request.settings.measure = value_named<ErrorMeasure>(arguments.measure);
   request.settings.bootstrap.seed = options.seed;
@@ -69,10 +65,16 @@ int run(const CompareArguments& arguments, const CommonOptions& options) {
   std::vector<std::filesystem::path> inputs = request.before;
   inputs.insert(inputs.end(), request.after.begin(), request.after.end());
   refuse_input_as_output("-o", options.output, inputs);
+  steps::CutComparison found;
   return run_step(
-      options, [&](const auto& context) { return laboratory::compare_cuts(request, context); },
-      [](const CommonOptions& common, const nlohmann::ordered_json& json) {
-        common.json ? print_result(common, json) : print_tests(json);
+      options,
+      [&](const auto& context) {
+        steps::CompareResult done = steps::compare_cuts(request, context);
+        found = std::move(done.found);
+        return std::move(done.step);
+      },
+      [&](const CommonOptions& common, const nlohmann::ordered_json& json) {
+        common.json ? print_result(common, json) : print_tests(found);
       });
 }
 

@@ -12,7 +12,7 @@ struct CompensateOptions {
   std::filesystem::path case_path;
   CutOptions cut;
   bool is_robust = false;
-  laboratory::CalibratedRequest calibrated;
+  steps::CalibratedRequest calibrated;
   double max_probability = ScenarioRequest{}.max_probability;
 };
 
@@ -31,13 +31,13 @@ void require_robust_options(const CompensateOptions& chosen) {
 
 int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
   require_robust_options(chosen);
-  std::optional<laboratory::RobustRequest> robust;
-  if (chosen.is_robust) robust = {laboratory::read_calibration_input(chosen.calibrated), chosen.max_probability};
+  std::optional<steps::RobustRequest> robust;
+  if (chosen.is_robust) robust = {steps::read_calibration_input(chosen.calibrated), chosen.max_probability};
   return run_step(
       options,
       [&](const auto& context) {
-        return laboratory::compensate_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), robust,
-                                           context);
+        return steps::compensate_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), robust,
+                                      context);
       },
       print_study);
 }

@@ -1,9 +1,9 @@
-#include "phantom_case.hpp"
 #include "study_run.hpp"
 #include "verdict_gate.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
+#include <incise/laboratory/bench_steps.hpp>
 
 #include <fmt/format.h>
 
@@ -12,15 +12,16 @@
 namespace incise::cli {
 namespace {
 
-constexpr const char* kFormat = "dicom";
-
 /// The virtual specimen of this seed, made unless a complete one is there.
-std::filesystem::path specimen_for(const std::filesystem::path& folder, std::uint64_t seed, Monitor& monitor) {
+std::filesystem::path specimen_for(const std::filesystem::path& folder, const CommonOptions& options) {
   const std::filesystem::path truth = folder / "truth.json";
   if (!std::filesystem::exists(truth)) {
-    write_phantom_case(folder, seed, kFormat, monitor);
-  } else if (const auto found = read_json(truth).value("seed", std::uint64_t{0}); found != seed) {
-    throw CaseError("command line", "--seed", fmt::format("{}", seed), fmt::format("{}, the specimen that is in {}", found, folder.string()),
+    Console console(options.level());
+    Workers one(1);
+    laboratory::make_phantom_case({.output = folder}, {options.context(), one, console});
+  } else if (const auto found = read_json(truth).value("seed", std::uint64_t{0}); found != options.seed) {
+    throw CaseError("command line", "--seed", fmt::format("{}", options.seed),
+                    fmt::format("{}, the specimen that is in {}", found, folder.string()),
                     "Choose another folder with -o for another specimen");
   }
   return folder;
@@ -31,12 +32,11 @@ std::filesystem::path specimen_for(const std::filesystem::path& folder, std::uin
 void add_demo(Application& application) {
   auto cut = std::make_shared<CutOptions>();
   CLI::App* verb = application.add_verb("demo", "", "incise demo -o demo", [cut](const CommonOptions& options) {
-    Console console(options.level());
     require_accepted_ids(cut->accepted);
     const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
-    const std::filesystem::path specimen = specimen_for(root / "specimen", options.seed, console);
+    const std::filesystem::path specimen = specimen_for(root / "specimen", options);
     try {
-      return run_whole_loop(specimen, root, options, *cut, console);
+      return run_whole_loop(specimen, root, options, *cut);
     } catch (const StagesKept&) {
       throw;
     } catch (const Cancelled& error) {

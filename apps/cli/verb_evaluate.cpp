@@ -1,18 +1,14 @@
 #include "option_checks.hpp"
 #include "options.hpp"
 
-#include <incise/core/error.hpp>
-#include <incise/io/atomic_file.hpp>
 #include <incise/io/specimen_id.hpp>
-#include <incise/laboratory/cut_steps.hpp>
-
-#include <fmt/format.h>
+#include <incise/steps/cut_steps.hpp>
 
 namespace incise::cli {
 namespace {
 
 struct EvaluateArguments {
-  laboratory::EvaluateRequest request;
+  steps::EvaluateRequest request;
   std::string contour;
   std::string red = "annotation";
   std::string ruler;
@@ -22,7 +18,7 @@ struct EvaluateArguments {
   std::string colors = "safe";
 };
 
-void add_scale_options(CLI::App& verb, laboratory::ScaleRequest& options, std::string& ruler) {
+void add_scale_options(CLI::App& verb, steps::ScaleRequest& options, std::string& ruler) {
   verb.add_option("--mm-per-pixel", options.mm_per_pixel, "Scale of the photograph")
       ->check(above_zero("--mm-per-pixel"));
   verb.add_option("--ruler", ruler, "Find the scale in the photograph: a ruler's ticks, or a solid scale bar")
@@ -39,72 +35,28 @@ void add_scale_options(CLI::App& verb, laboratory::ScaleRequest& options, std::s
   verb.add_option("--rectangle-mm", options.rectangle_mm, "Its width and height")->expected(2);
 }
 
-/// Refuses, before anything is computed, a figure that is neither .svg nor .png, or cannot be written.
-void require_figure_file(const std::filesystem::path& path, const char* option) {
-  const std::string ending = path.extension().string();
-  if (ending != ".svg" && ending != ".png") {
-    throw CaseError("command line", option, fmt::format("'{}'", path.string()), "a name that ends in .svg or .png");
-  }
-  require_writable(path);
-}
-
-/// A photograph shows the inner edge unless told otherwise, contour files hold the mid-line.
-EvaluationSettings settings_of(const EvaluateArguments& arguments) {
-  EvaluationSettings settings = arguments.request.settings;
-  settings.contour = !arguments.contour.empty()        ? value_named<ContourKind>(arguments.contour)
-                     : arguments.request.photo.empty() ? ContourKind::Centerline
-                                                       : ContourKind::InnerEdge;
-  if (arguments.target_mm > 0.0) settings.target_mm = arguments.target_mm;
-  if (!arguments.approach.empty()) settings.approach = Vec3(arguments.approach.data());
-  if (!arguments.twelve.empty()) settings.twelve_o_clock = Vec3(arguments.twelve.data());
-  require_valid(validate(settings));
-  return settings;
-}
-
-void require_one_source(const EvaluateArguments& arguments) {
-  const laboratory::EvaluateRequest& request = arguments.request;
-  const bool has_files = !request.incision.empty() || !request.tumor.empty() || !request.line.empty();
-  const auto refuse = [](const char* field, const char* found, const char* expected) {
-    throw CaseError("command line", field, found, expected);
-  };
-  if (!request.photo.empty() && has_files) refuse("PHOTO", "a photograph and contour files", "one of the two");
-  if (!request.photo.empty()) {
-    if (request.is_open)
-      refuse("--open", "an open cut in a photograph",
-             "a ring round the tumour; an unfinished one is measured as it is");
-    if (!arguments.approach.empty())
-      refuse("--approach", "a direction for a photograph", "none: a photograph is seen from above");
-    if (!request.figure.empty() && request.figure.extension() != ".png")
-      refuse("--figure", "another kind of file", "a name that ends in .png: the photograph is drawn over");
-    return;
-  }
-  const bool has_line = !request.line.empty();
-  if (request.incision.empty() || request.tumor.empty() != has_line)
-    refuse("PHOTO", has_line && !request.tumor.empty() ? "--line and --tumor" : "no input",
-           "a photograph, or --incision with either --tumor or --line");
-  if (has_line && arguments.target_mm > 0.0)
-    refuse("--target-mm", "a distance", "none: a cut along a line should lie on the line");
-  if (has_line && !arguments.twelve.empty()) refuse("--twelve-o-clock", "a direction", "none: there is no ring");
-  if (has_line && !request.figure.empty())
-    refuse("--figure", "a file", "none: the figure shows an incision round a tumour");
-  if (request.scale.ways() > 0 || !arguments.ruler.empty())
-    refuse("scale", "a scale for contour files", "none: they are in mm");
-  if (!request.figure.empty()) require_figure_file(request.figure, "--figure");
+/// What the options say, as the library has it.
+steps::EvaluateRequest request_of(const EvaluateArguments& arguments) {
+  steps::EvaluateRequest request = arguments.request;
+  if (!arguments.contour.empty()) request.contour = value_named<ContourKind>(arguments.contour);
+  if (arguments.target_mm > 0.0) request.settings.target_mm = arguments.target_mm;
+  if (!arguments.approach.empty()) request.approach = direction_of(arguments.approach, "--approach");
+  if (!arguments.twelve.empty()) request.settings.twelve_o_clock = Vec3(arguments.twelve.data());
+  request.red = value_named<RedLine>(arguments.red);
+  request.colors = value_named<ErrorColors>(arguments.colors);
+  if (!arguments.ruler.empty()) request.scale.ruler = value_named<RulerKind>(arguments.ruler);
+  return request;
 }
 
 int run(const EvaluateArguments& arguments, const CommonOptions& options) {
-  require_one_source(arguments);
-  laboratory::EvaluateRequest request = arguments.request;
+  steps::EvaluateRequest request = request_of(arguments);
   request.output = options.output;
   const std::vector<std::filesystem::path> inputs{request.photo, request.incision, request.tumor, request.line};
   refuse_input_as_output("-o", request.output, inputs);
   refuse_input_as_output("--figure", request.figure, inputs);
   refuse_same_output("-o", request.output, "--figure", request.figure);
-  request.settings = settings_of(arguments);
-  request.red = value_named<RedLine>(arguments.red);
-  request.colors = value_named<ErrorColors>(arguments.colors);
-  if (!arguments.ruler.empty()) request.scale.ruler = value_named<RulerKind>(arguments.ruler);
-  return run_step(options, [&](const auto& context) { return laboratory::evaluate_cut(request, context); });
+  require_valid(validate(request.settings));
+  return run_step(options, [&](const auto& context) { return steps::evaluate_cut(request, context); });
 }
 
 }  // namespace

@@ -122,7 +122,8 @@ void add_experiment(Application& application) {
                  "Also cut every test specimen as a planner that knows the bench's physics would");
   verb->add_flag("--withheld-force", settings->with_withheld_force,
                  "Also run `assess` as if the pull had not been measured");
-  verb->add_option("--tets", settings->tets, "Tetrahedra of the planner's meshes")->check(CLI::Range(5000, 500000));
+  verb->add_option("--tets", settings->tets, "Tetrahedra of the planner's meshes")
+      ->check(whole_between("--tets", 5000, 500000));
   verb->add_option("--truth", settings->truth, "Folder for the hidden specimens; by default truth/ in the output");
 }
 

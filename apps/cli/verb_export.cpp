@@ -5,7 +5,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/nearest_name.hpp>
 #include <incise/core/units.hpp>
-#include <incise/laboratory/robot_steps.hpp>
+#include <incise/steps/robot_steps.hpp>
 #include <incise/storage/own_files.hpp>
 
 #include <fmt/format.h>
@@ -19,46 +19,18 @@ constexpr double kLeastToolMm = 0.1;         // thinner or shorter is no instrum
 constexpr double kMostPowerW = 400.0;        // no electrosurgical generator gives more (IEC 60601-2-2)
 
 struct ExportArguments {
-  laboratory::ExportRequest request;
-  std::string robot = "ur10e", format = "urscript", motion = "movep", kind;
+  steps::ExportRequest request;
+  std::string robot = "ur10e", format = "urscript", motion, kind;
   double shaft_diameter_mm = 2.0 * CheckSettings{}.shaft_radius_mm;
   double power_w = 0.0;  // not given
   std::vector<double> tcp, near_deg;
-  const CLI::Option* motion_option = nullptr;
 };
 
-void require_override_names(const std::vector<std::string>& names) {
-  std::vector<std::string> possible;
-  std::ranges::copy_if(check_names(), std::back_inserter(possible), can_be_overridden);
-  for (const std::string& name : names) {
-    if (can_be_overridden(name)) continue;
-    const bool is_check = std::ranges::find(check_names(), name) != check_names().end();
-    throw CaseError("command line", "--override", fmt::format("'{}'", name),
-                    is_check ? std::string("a check that can be overridden; this one cannot")
-                             : fmt::format("one of {}", fmt::join(possible, ", ")),
-                    is_check ? "" : fmt::format("Did you mean '{}'?", nearest_name(name, possible)));
-  }
-}
-
-void require_ending(const std::filesystem::path& output, const std::string& format) {
-  const std::string ending = output.extension().string();
-  const auto refuse = [&](const char* expected) {
-    throw CaseError("command line", "-o", output.string(),
-                    fmt::format("a name that ends in {} for --format {}", expected, format));
-  };
-  if (format == "joint-csv" && ending != ".csv") refuse(".csv");
-  if (format == "json" && ending != ".json") refuse(".json");
-  if (format == "ros-trajectory" && ending != ".yaml" && ending != ".bag") refuse(".yaml (ROS 2) or .bag (ROS 1)");
-  if (format == "urscript" &&
-      (ending.empty() || ending == ".csv" || ending == ".json" || ending == ".yaml" || ending == ".bag"))
-    refuse(".script");
-}
-
 /// What the options say, as the library has it.
-laboratory::ExportRequest request_of(const ExportArguments& arguments) {
-  laboratory::ExportRequest request = arguments.request;
-  request.form = value_named<laboratory::ProgramForm>(arguments.format);
-  request.motion = value_named<ScriptMotion>(arguments.motion);
+steps::ExportRequest request_of(const ExportArguments& arguments) {
+  steps::ExportRequest request = arguments.request;
+  request.form = value_named<steps::ProgramForm>(arguments.format);
+  if (!arguments.motion.empty()) request.motion = value_named<ScriptMotion>(arguments.motion);
   if (!arguments.kind.empty()) request.kind = value_named<PathKind>(arguments.kind);
   if (arguments.power_w > 0.0) request.power_w = arguments.power_w;
   request.checks.shaft_radius_mm = 0.5 * arguments.shaft_diameter_mm;
@@ -70,21 +42,14 @@ laboratory::ExportRequest request_of(const ExportArguments& arguments) {
 }
 
 int run_export(const ExportArguments& arguments, const CommonOptions& options) {
-  laboratory::ExportRequest request = request_of(arguments);
+  steps::ExportRequest request = request_of(arguments);
   request.output = options.required_output("cut.script");
   refuse_input_as_output("-o", request.output, {request.path, request.intended, request.surface, request.registration});
   Console console(options.level());
   OlderOutput older(request.output, console);
-  require_override_names(request.overrides);
   require_accepted_ids(request.accepted);
-  require_ending(request.output, arguments.format);
-  require_own_program(request.output);
-  if (request.form != laboratory::ProgramForm::UrScript && arguments.motion_option->count() > 0) {
-    throw CaseError("command line", "--motion", fmt::format("{} for --format {}", arguments.motion, arguments.format),
-                    "no --motion: only URScript has two kinds");
-  }
   return run_step(options, [&](const auto& context) {
-    laboratory::StepResult done = laboratory::export_program(request, context);
+    steps::StepResult done = steps::export_program(request, context);
     if (done.is_acceptable) older.replaced();
     return done;
   });
@@ -104,10 +69,9 @@ void add_export(Application& application) {
   verb->add_option("--robot", a.robot, "The arm")->check(CLI::IsMember({"ur10e"}));
   verb->add_option("--format", a.format, "Format of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1")
       ->check(CLI::IsMember({"urscript", "joint-csv", "ros-trajectory", "json"}));
-  a.motion_option =
-      verb->add_option("--motion", a.motion,
-                       "Moves of URScript: movep (blends, constant speed) or servoj (timed joints)")
-          ->check(name_of_any<ScriptMotion>());
+  verb->add_option("--motion", a.motion,
+                   "Moves of URScript: movep (blends, constant speed; the default) or servoj (timed joints)")
+      ->check(name_of_any<ScriptMotion>());
   verb->add_option("--kind", a.kind, "Which checks apply, in place of those of the path's own kind")
       ->check(CLI::IsMember({"mark", "incise"}));
   verb->add_option("--override", a.request.overrides,

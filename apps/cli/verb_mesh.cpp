@@ -2,16 +2,16 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/laboratory/tissue_steps.hpp>
 #include <incise/meshing/mesher.hpp>
+#include <incise/steps/tissue_steps.hpp>
 
 #include <fmt/format.h>
 
 namespace incise::cli {
 namespace {
 
-int run(const laboratory::MeshRequest& arguments, const CommonOptions& options) {
-  laboratory::MeshRequest request = arguments;
+int run(const steps::MeshRequest& arguments, const CommonOptions& options) {
+  steps::MeshRequest request = arguments;
   request.output = options.required_output("tongue.vtu");
   refuse_input_as_output("-o", request.output, {request.input, request.around});
   if (request.tets > 0 && request.tets < kFewestTets) {
@@ -25,13 +25,13 @@ int run(const laboratory::MeshRequest& arguments, const CommonOptions& options) 
   if (request.output.extension() != ".vtu") {
     throw CaseError("command line", "-o", request.output.string(), "a file that ends in .vtu");
   }
-  return run_step(options, [&](const auto& context) { return laboratory::mesh_body(request, context); });
+  return run_step(options, [&](const auto& context) { return steps::mesh_body(request, context); });
 }
 
 }  // namespace
 
 void add_mesh(Application& application) {
-  auto [verb, a] = application.add_verb<laboratory::MeshRequest>(
+  auto [verb, a] = application.add_verb<steps::MeshRequest>(
       "mesh", "", "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu", run);
   verb->add_option("input", a.input, "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
       ->required();
@@ -44,7 +44,7 @@ void add_mesh(Application& application) {
       ->check(CLI::Range(0.05, 100.0));
   verb->add_option("--depth-mm", a.depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
   verb->add_option("--tets", a.tets, "Number of tets to aim for; 0: what the lengths give")
-      ->check(CLI::Range(0, 5000000));
+      ->check(whole_between("--tets", 0, 5000000));
 }
 
 }  // namespace incise::cli

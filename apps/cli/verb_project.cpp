@@ -4,12 +4,12 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/laboratory/camera_steps.hpp>
+#include <incise/steps/camera_steps.hpp>
 
 namespace incise::cli {
 namespace {
 
-struct ProjectArguments : laboratory::ProjectRequest {
+struct ProjectArguments : steps::ProjectRequest {
   std::string kind = "incise";
   std::string axis = "path";
   std::string metric = "ct";
@@ -33,7 +33,7 @@ ProjectSettings settings_of(const ProjectArguments& arguments) {
 }
 
 int run(const ProjectArguments& arguments, const CommonOptions& options) {
-  laboratory::ProjectRequest request = arguments;
+  steps::ProjectRequest request = arguments;
   request.output = options.required_output("projected");
   refuse_input_as_output("-o", request.output, {request.path, request.transform, request.surface, request.camera});
   Console console(options.level());
@@ -46,7 +46,7 @@ int run(const ProjectArguments& arguments, const CommonOptions& options) {
   if (!arguments.scale_center.empty()) request.scale_center_mm = Vec3(arguments.scale_center.data());
   request.settings = settings_of(arguments);
   return run_step(options, [&](const auto& context) {
-    laboratory::StepResult done = laboratory::project_onto_tissue(request, context);
+    steps::StepResult done = steps::project_onto_tissue(request, context);
     older.replaced();
     return done;
   });
@@ -84,11 +84,11 @@ void add_project(Application& application) {
                    "Tool axis: as in the path, or against the measured surface's normal (a mark's: the mean axis)")
       ->check(CLI::IsMember({"path", "normal"}));
   verb->add_option("--depth-mm", a.depth_mm, "Below the surface; 0: 1 mm for a mark, that of the path for an incision")
-      ->check(zero_or_more("--depth-mm"));
+      ->check(between("--depth-mm", 0.0, kLaidDepthMm.most));
   verb->add_option("--speed-mm-s", a.speed_mm_s, "Of the tip; 0: 2 mm/s for a mark, that of the path for an incision")
-      ->check(zero_or_more("--speed-mm-s"));
+      ->check(between("--speed-mm-s", 0.0, kLaidSpeedMmS.most));
   add_options_of(*verb, a.settings, "max_gap_mm", "smoothing_mm", "max_shift_mm");
-  verb->add_option("--waypoints", a.settings.mark_waypoints, "Of a mark")->check(CLI::Range(8, 2000));
+  verb->add_option("--waypoints", a.settings.mark_waypoints, "Of a mark")->check(whole_between("--waypoints", 8, 2000));
 }
 
 }  // namespace incise::cli

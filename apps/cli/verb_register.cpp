@@ -4,7 +4,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/laboratory/camera_steps.hpp>
+#include <incise/steps/camera_steps.hpp>
 
 #include <algorithm>
 #include <sstream>
@@ -13,7 +13,7 @@ namespace incise::cli {
 namespace {
 
 struct RegisterArguments {
-  laboratory::RegisterRequest request;
+  steps::RegisterRequest request;
   std::string scale = "0.9,1.1";
   std::string method = "rigid";
   std::vector<double> approach{0.0, 0.0, -1.0};
@@ -39,7 +39,7 @@ ScaleRange scale_of(const std::string& text) {
 }
 
 int run_register(const RegisterArguments& arguments, const CommonOptions& options) {
-  laboratory::RegisterRequest request = arguments.request;
+  steps::RegisterRequest request = arguments.request;
   request.output = options.required_output("registration");
   refuse_input_as_output("-o", request.output, {request.source, request.target});
   require_replaceable(request.output);
@@ -50,7 +50,7 @@ int run_register(const RegisterArguments& arguments, const CommonOptions& option
   request.approach = direction_of(arguments.approach, "--approach");
   require_valid(validate(settings));
   if (arguments.method == "nonrigid") request.nonrigid = arguments.nonrigid;
-  return run_step(options, [&](const auto& context) { return laboratory::lay_clouds(request, context); });
+  return run_step(options, [&](const auto& context) { return steps::lay_clouds(request, context); });
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
 #include "options.hpp"
-#include "study_report.hpp"
-#include "tissue_report.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/folder_lock.hpp>
+#include <incise/steps/run_report.hpp>
 #include <incise/storage/own_files.hpp>
 
 #include <optional>
@@ -31,13 +30,13 @@ void add_report(Application& application) {
         std::optional<FolderLock> lock;  // a run that goes on in that folder would mix older and newer results
         if (is_of_a_study) {
           if (std::filesystem::is_directory(arguments.folder)) lock.emplace(arguments.folder);
-          data = study_report(arguments.folder, console);
+          data = steps::run_report(arguments.folder, console);
         } else {
           data.title = "Program on measured tissue";
           data.is_of_a_study = false;
         }
-        add_on_tissue(arguments.registration, arguments.replay, data);
-        write_report_and_figures(data, output);
+        steps::add_on_tissue(arguments.registration, arguments.replay, data);
+        steps::write_report_and_figures(data, output);
         print_result(options, {{"report", output.string()}});
         return kDone;
       });

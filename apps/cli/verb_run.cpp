@@ -11,9 +11,8 @@ void add_run(Application& application) {
   CLI::App* verb = application.add_verb(
       "run", "The whole loop on your case: CT, mesh, stretch, plan, cut, correct, cut again, program, report. Resumes",
       "incise run my_patient -o my_patient/out", [case_path, cut](const CommonOptions& options) {
-        Console console(options.level());
         require_accepted_ids(cut->accepted);
-        return run_whole_loop(*case_path, output_of(*case_path, options), options, *cut, console);
+        return run_whole_loop(*case_path, output_of(*case_path, options), options, *cut);
       });
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, *cut);

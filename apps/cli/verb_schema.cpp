@@ -2,8 +2,8 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
-#include <incise/storage/bench_files.hpp>
+#include <incise/io/json_file.hpp>
+#include <incise/laboratory/bench_files.hpp>
 #include <incise/storage/path_schema.hpp>
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/laboratory/tissue_steps.hpp>
+#include <incise/steps/tissue_steps.hpp>
 
 #include <optional>
 
@@ -21,7 +21,7 @@ void add_segment(Application& application) {
   auto [verb, a] = application.add_verb<Arguments>(
       "segment", "", "incise segment specimen/ct --window-hu -20 180 -o labels.nrrd",
       [](const Arguments& arguments, const CommonOptions& options) {
-        laboratory::SegmentRequest request{.ct = arguments.ct, .output = options.required_output("labels.nrrd")};
+        steps::SegmentRequest request{.ct = arguments.ct, .output = options.required_output("labels.nrrd")};
         refuse_input_as_output("-o", request.output, {request.ct});
         if (!arguments.spacing.empty()) request.reading.spacing_mm = Vec3(arguments.spacing.data());
         if (!arguments.hu.empty()) request.reading.hu = GrayToHu{arguments.hu[0], arguments.hu[1]};
@@ -38,7 +38,7 @@ void add_segment(Application& application) {
           }
         }
         if (!arguments.seed.empty()) settings.seeds_mm.emplace_back(arguments.seed.data());
-        return run_step(options, [&](const auto& context) { return laboratory::segment_scan(request, context); });
+        return run_step(options, [&](const auto& context) { return steps::segment_scan(request, context); });
       });
   verb->add_option("ct", a.ct, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
   verb->add_option("--window-hu", a.window, "Least and greatest HU of tissue")->expected(2);

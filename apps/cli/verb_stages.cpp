@@ -10,7 +10,7 @@ constexpr const char* kCaseHelp = "Case file, or a folder with case.yaml";
 int run_stage(Stage stage, const std::filesystem::path& case_path, const CommonOptions& options,
               const CutOptions& cut = {}) {
   return run_step(options, [&](const auto& context) {
-    return laboratory::run_stages(case_request(case_path, stage, options, cut), context);
+    return steps::run_stages(case_request(case_path, stage, options, cut), context);
   });
 }
 

@@ -4,18 +4,18 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/laboratory/tissue_steps.hpp>
+#include <incise/steps/tissue_steps.hpp>
 
 namespace incise::cli {
 namespace {
 
-struct SurfaceArguments : laboratory::SurfaceRequest {
+struct SurfaceArguments : steps::SurfaceRequest {
   std::vector<double> sight;
   std::vector<double> box;
 };
 
 int make_surface(const SurfaceArguments& arguments, const CommonOptions& options) {
-  laboratory::SurfaceRequest request = arguments;
+  steps::SurfaceRequest request = arguments;
   request.output = options.required_output("surface.ply");
   if (request.plane_z_mm.has_value() != !request.camera.empty()) {
     throw CaseError("command line", request.plane_z_mm ? "--camera" : "--plane-z-mm", "nothing",
@@ -35,7 +35,7 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
   if (!arguments.sight.empty()) request.approach = direction_of(arguments.sight, "--approach");
   if (!arguments.box.empty()) request.cleaning.box = Box3(Vec3(arguments.box.data()), Vec3(arguments.box.data() + 3));
   require_valid(validate(request.cleaning));
-  return run_step(options, [&](const auto& context) { return laboratory::see_surface(request, context); });
+  return run_step(options, [&](const auto& context) { return steps::see_surface(request, context); });
 }
 
 }  // namespace

@@ -1,8 +1,9 @@
+#include "described_options.hpp"
 #include "option_checks.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/laboratory/camera_steps.hpp>
+#include <incise/steps/camera_steps.hpp>
 
 #include <fmt/format.h>
 
@@ -11,14 +12,14 @@ namespace {
 
 constexpr double kLargestMarginMm = 50.0;  // a wider ring leaves the organ
 
-struct TrackArguments : laboratory::TrackRequest {
+struct TrackArguments : steps::TrackRequest {
   std::string mark_name = "green";
   std::string edge_name = "middle";
   std::string axis = "approach";
 };
 
 int run(const TrackArguments& arguments, const CommonOptions& options) {
-  laboratory::TrackRequest request = arguments;
+  steps::TrackRequest request = arguments;
   request.output = options.required_output("tracked");
   refuse_input_as_output("-o", request.output, {request.color, request.depth, request.intrinsics, request.camera});
   if (request.has_plan && request.camera.empty()) {
@@ -32,7 +33,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   request.mark = value_named<InkColor>(arguments.mark_name);
   request.edge = value_named<LineEdge>(arguments.edge_name);
   request.plan.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
-  return run_step(options, [&](const auto& context) { return laboratory::track_mark(request, context); });
+  return run_step(options, [&](const auto& context) { return steps::track_mark(request, context); });
 }
 
 }  // namespace
@@ -64,9 +65,7 @@ void add_track(Application& application) {
   verb->add_flag("--plan", a.has_plan, "Plan an incision: path.json in the robot's frame");
   verb->add_option("--margin-mm", a.margin_mm, "Distance from the mark to the incision; 0: along the mark")
       ->check(between("--margin-mm", 0.0, kLargestMarginMm));
-  verb->add_option("--depth-mm", a.plan.depth_mm, "Depth of the incision")->check(above_zero("--depth-mm"));
-  verb->add_option("--speed-mm-s", a.plan.speed_mm_s, "Speed of the tip")->check(above_zero("--speed-mm-s"));
-  verb->add_option("--waypoints", a.plan.waypoints, "Waypoints of the path")->check(CLI::Range(8, 100000));
+  add_options_of(*verb, a.plan, "depth_mm", "speed_mm_s", "waypoints");
   verb->add_option("--axis", a.axis, "Tool axis: along the camera's view, or against the surface's normal")
       ->check(CLI::IsMember({"approach", "normal"}));
   verb->add_option("--ply-width", a.ply_width, "Columns of an organised cloud whose header does not state them")

@@ -1,10 +1,11 @@
 #include "option_checks.hpp"
 #include "options.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/nearest_name.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/report/line_plot.hpp>
 #include <incise/verification/verification.hpp>
 
@@ -12,8 +13,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <ostream>
 
 namespace incise::cli {
 namespace {
@@ -29,22 +28,6 @@ void require_a_check(const std::string& only) {
   throw CaseError("command line", "--only", fmt::format("'{}'", only),
                   fmt::format("the start of one of {}", fmt::join(names, ", ")),
                   fmt::format("Did you mean '{}'?", nearest_name(only, names)));
-}
-
-nlohmann::ordered_json json_of(const VerificationCheck& check) {
-  nlohmann::ordered_json json;
-  json["name"] = check.name;
-  json["passed"] = check.passed;
-  json["expected"] = check.expected;
-  json["found"] = std::isfinite(check.found) ? nlohmann::ordered_json(check.found) : nlohmann::ordered_json(nullptr);
-  json["tolerance"] = check.tolerance;
-  json["criterion"] = to_string(check.criterion);
-  json["unit"] = check.unit;
-  json["what"] = check.what;
-  json["source"] = check.source;
-  json["note"] = check.note;
-  json["wall_s"] = check.wall_s;
-  return json;
 }
 
 void print_table(const std::vector<VerificationCheck>& checks) {
@@ -85,7 +68,7 @@ int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
   double wall_s = 0.0;
   for (const VerificationCheck& check : checks) wall_s += check.wall_s;
   nlohmann::ordered_json result{{"passed", is_passed}, {"wall_s", wall_s}};
-  for (const VerificationCheck& check : checks) result["checks"].push_back(json_of(check));
+  result["checks"] = to_json(checks);
   if (!options.output.empty()) write_json(options.output, result);
   if (options.json) {
     print_result(options, result);

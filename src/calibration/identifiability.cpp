@@ -13,8 +13,8 @@ constexpr double kTied = 0.7;
 constexpr std::array<const char*, 3> kNames{"drag_length", "stiffness", "bias"};
 constexpr std::array<const char*, 3> kSpoken{"the drag length", "the stiffness", "the bias"};
 
-Told told_by(double share) {
-  return share <= kApartShare ? Told::Apart : share <= kNotShare ? Told::Partly : Told::Not;
+Identified told_by(double share) {
+  return share <= kApartShare ? Identified::Apart : share <= kNotShare ? Identified::Partly : Identified::Not;
 }
 
 /// The parameter that goes with this one; −1: none.
@@ -31,9 +31,10 @@ int partner_of(const Mat3& correlation, int parameter) {
 std::string sentence_of(const ParameterVerdict& verdict, std::size_t parameter) {
   std::string name = kSpoken[parameter];
   name[0] = 'T';
-  const char* told = verdict.told == Told::Apart    ? "is identified by the data"
-                     : verdict.told == Told::Partly ? "is identified in part"
-                                                    : "is not identified by the data: its value is what was assumed";
+  const char* told = verdict.told == Identified::Apart ? "is identified by the data"
+                     : verdict.told == Identified::Partly
+                         ? "is identified in part"
+                         : "is not identified by the data: its value is what was assumed";
   std::string text =
       fmt::format("{} {} (its sd is {:.0f} % of the prior sd", name, told, 100.0 * verdict.share_of_prior_sd);
   for (std::size_t other = 0; other < 3; ++other) {

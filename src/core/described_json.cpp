@@ -1,6 +1,7 @@
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/nearest_name.hpp>
+#include <incise/core/utf8.hpp>
 
 #include <fmt/format.h>
 
@@ -17,7 +18,7 @@ constexpr std::size_t kShownCharacters = 60;
 /// What is there, short, for a message.
 std::string shown(const Json& value) {
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (text.size() > kShownCharacters) text = text.substr(0, kShownCharacters - 3) + "...";
+  if (text.size() > kShownCharacters) text = std::string(utf8_prefix(text, kShownCharacters - 3)) + "...";
   return text;
 }
 

@@ -1,3 +1,4 @@
+#include <incise/core/direction.hpp>
 #include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
@@ -40,14 +41,13 @@ void DescriptionCheck::block(const Field& field, const Block& block) {
   const std::string place = is_list ? path_.back().path : place_of(field);
   if (block.kind != Block::Kind::Double) return;
   const std::span<const double> values(static_cast<const double*>(block.data), block.count);
-  double length = 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    length = std::hypot(length, values[i]);
     if (contains(block.range, values[i])) continue;
     problems_.push_back({fmt::format("{}[{}]", place, i), fmt::format("{}", values[i]), describe(block.range)});
     return;  // one for each list: it may be long
   }
-  if (block.is_direction && !(length > 0.0)) problems_.push_back({place, "0 0 0", "a direction"});
+  if (block.is_direction && !is_direction(values.first<3>()))
+    problems_.push_back({place, fmt::format("{:g} {:g} {:g}", values[0], values[1], values[2]), kDirectionText});
 }
 
 }  // namespace incise

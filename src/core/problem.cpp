@@ -1,5 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/core/problem.hpp>
+#include <incise/core/utf8.hpp>
 
 #include <fmt/format.h>
 
@@ -11,9 +12,10 @@ constexpr std::size_t kLongestFound = 1000;
 /// Fit to be shown: what a file holds may be long, and not text.
 std::string shown(const std::string& found) {
   std::string text;
-  for (const char c : found.substr(0, kLongestFound)) {
+  const bool is_text = !first_not_utf8(found);
+  for (const char c : utf8_prefix(found, kLongestFound)) {
     const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F) {
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F || (byte > 0x7F && !is_text)) {
       text += fmt::format("\\x{:02x}", byte);
     } else {
       text += c;

@@ -169,7 +169,10 @@ BootstrapTest block_bootstrap_test(std::span<const ContourValues> before, std::s
   }
   const Side first(before);
   const Side second(after);
-  BootstrapTest test{.verdict = TestVerdict::NoSpread, .difference = second.mean - first.mean};
+  BootstrapTest test{.verdict = TestVerdict::NoSpread,
+                     .difference = second.mean - first.mean,
+                     .replicates = settings.replicates,
+                     .seed = settings.seed};
   if (is_constant(before) && is_constant(after)) return test;
 
   Random random(settings.seed);

@@ -69,10 +69,7 @@ std::int32_t largest(const Pieces& pieces) {
 // The piece whose ball of the opening's radius covers the voxel, the nearest if there are several; 0: none.
 std::int32_t piece_at(const Pieces& pieces, std::size_t offset, double radius_mm) {
   const VolumeGrid& grid = pieces.number.grid;
-  const auto nx = static_cast<std::size_t>(grid.size[0]);
-  const auto ny = static_cast<std::size_t>(grid.size[1]);
-  const std::array<int, 3> at{static_cast<int>(offset % nx), static_cast<int>(offset / nx % ny),
-                              static_cast<int>(offset / (nx * ny))};
+  const std::array<int, 3> at = grid.voxel_at(offset);
   const Eigen::Array3i reach = (radius_mm / grid.spacing_mm.array()).ceil().cast<int>();
   std::int32_t piece = 0;
   double nearest_mm = std::numeric_limits<double>::infinity();
@@ -311,7 +308,11 @@ int Segmentation::cut_faces() const {
   return static_cast<int>(std::count_if(cut_voxels.begin(), cut_voxels.end(), [](std::size_t n) { return n > 0; }));
 }
 
-Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor) {
+namespace {
+
+enum class Source { Scan, Labels };
+
+Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Monitor& monitor) {
   const std::vector<Problem> problems = validate(settings);
   if (!problems.empty())
     throw CaseError("segmentation", "settings",
@@ -335,7 +336,7 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   if (settings.fill_holes) fill_holes(body, result);
   result.cut_voxels = count_cut_voxels(body, whole.region);
   note_cut_faces(result);
-  result.verdict.add(check_scan(ct));
+  if (source == Source::Scan) result.verdict.add(check_scan(ct));
 
   const IndexBox around = grown(box_of(body), pad);
   const CtVolume hu = crop(whole.hu, around);
@@ -345,7 +346,7 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   GrayVolume occupancy = smoothed(sharp, result.smoothing_mm);
   report(0.9);
   const Mask label = make_one_piece(occupancy, settings.fill_holes, result.smoothing_mm);
-  result.tissue_hu = median_hu(hu, label, settings, result.smoothing_mm);
+  if (source == Source::Scan) result.tissue_hu = median_hu(hu, label, settings, result.smoothing_mm);
 
   const IndexBox kept = grown(box_of(label), settings.margin_voxels);
   result.labels = crop(label, kept);
@@ -356,6 +357,44 @@ Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, M
   note_lost_volume(iso_volume_mm3(sharp, 0.5), result);
   report(1.0);
   return result;
+}
+
+/// @throws CaseError where the region, or a seed, has no label.
+void require_labels(const LabelVolume& labels, const SegmentationSettings& settings) {
+  const VolumeGrid& grid = labels.grid;
+  bool is_labelled = false;
+  for (std::size_t v = 0; v < labels.voxels.size() && !is_labelled; ++v) {
+    if (labels.voxels[v] == 0) continue;
+    const auto [i, j, k] = grid.voxel_at(v);
+    is_labelled = !settings.roi_box_mm || settings.roi_box_mm->contains(grid.world_from_index(Vec3(i, j, k)));
+  }
+  if (!is_labelled) throw CaseError("segmentation", "labels", "0 in every voxel of the region", "labelled tissue");
+  for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s) {
+    const Eigen::Array3i at = grid.index_from_world(settings.seeds_mm[s]).array().round().cast<int>();
+    if (!grid.contains(at[0], at[1], at[2]) || labels.at(at[0], at[1], at[2]) != 0) continue;
+    throw CaseError("segmentation", fmt::format("seed_mm[{}]", s), "a point where the label is 0",
+                    "a point inside the labelled tissue");
+  }
+}
+
+}  // namespace
+
+Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor) {
+  return found_in(ct, Source::Scan, settings, monitor);
+}
+
+Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings, Monitor& monitor) {
+  INCISE_REQUIRE(
+      labels.voxels.size() == labels.grid.voxel_count(),
+      fmt::format("expected {} voxels for the grid, found {}", labels.grid.voxel_count(), labels.voxels.size()));
+  require_labels(labels, settings);
+  CtVolume two_valued{labels.grid, std::vector<std::int16_t>(labels.voxels.size())};
+  std::ranges::transform(labels.voxels, two_valued.voxels.begin(),
+                         [](std::uint8_t label) { return static_cast<std::int16_t>(label != 0); });
+  SegmentationSettings between = settings;
+  between.window_low_hu = 0.5;
+  between.window_high_hu = 1.5;
+  return found_in(two_valued, Source::Labels, between, monitor);
 }
 
 }  // namespace incise

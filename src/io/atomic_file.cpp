@@ -4,7 +4,7 @@
 #include <incise/io/abandoned_files.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>

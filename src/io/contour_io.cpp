@@ -5,7 +5,7 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/table_io.hpp>
 

@@ -70,7 +70,11 @@ std::vector<std::string> numbered(const std::string& value) {
   const auto first = io_detail::to_integer(words[1]), last = io_detail::to_integer(words[2]);
   const auto step = words.size() > 3 ? io_detail::to_integer(words[3]) : std::optional<long long>(1);
   const auto width = width_text.empty() ? std::optional<long long>(0) : io_detail::to_integer(width_text);
-  if (!first || !last || !step || !width || *step < 1 || *width < 0 || *width > 20 || (*last - *first) / *step > kMostSlices) return names;
+  constexpr long long kGreatest = 1'000'000'000;  // so that no sum or difference overflows
+  const auto is_small = [](const std::optional<long long>& n) { return n && *n >= -kGreatest && *n <= kGreatest; };
+  if (!is_small(first) || !is_small(last) || !is_small(step) || !width || *step < 1 || *width < 0 || *width > 20 ||
+      (*last - *first) / *step > kMostSlices)
+    return names;
   for (long long number = *first; number <= *last; number += *step) {
     const bool is_padded = !width_text.empty() && width_text[0] == '0';
     const std::string digits = is_padded ? fmt::format("{:0{}}", number, *width) : fmt::format("{:{}}", number, *width);

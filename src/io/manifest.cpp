@@ -2,7 +2,7 @@
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
 
 #include <fmt/format.h>

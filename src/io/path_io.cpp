@@ -2,7 +2,7 @@
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>

@@ -1,7 +1,7 @@
 #include "io/number_text.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/specimen_id.hpp>
 

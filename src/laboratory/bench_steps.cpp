@@ -2,9 +2,9 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
+#include <incise/laboratory/bench_files.hpp>
 #include <incise/laboratory/bench_steps.hpp>
-#include <incise/storage/bench_files.hpp>
 #include <incise/virtual_bench/course.hpp>
 
 #include <fmt/format.h>
@@ -15,22 +15,13 @@ namespace incise::laboratory {
 namespace {
 
 /// The seed stays out of the laboratory's folder: who knows it can draw the specimen.
-void write_run(const std::filesystem::path& folder, const StepContext& context, const std::string& command,
+void write_run(const std::filesystem::path& folder, const steps::StepContext& context, const std::string& command,
                const std::vector<std::filesystem::path>& inputs) {
-  Manifest manifest = manifest_of(context.run, "{}", inputs, context.wall_s());
+  Manifest manifest = steps::manifest_of(context.run, "{}", inputs, context.wall_s());
   manifest.command = command;
   manifest.seed = 0;
   manifest.specimen_id.clear();
   write_manifest(folder, manifest);
-}
-
-void make_parent(const std::filesystem::path& folder) {
-  if (folder.empty()) return;
-  const auto parent = std::filesystem::absolute(folder).parent_path();
-  std::error_code error;
-  std::filesystem::create_directories(parent, error);
-  if (error) throw DataError(folder, "", error.message(), "a folder that can be made");
-  require_replaceable(folder);
 }
 
 /// A specimen that cannot be held and stretched is a result. The monitor gets a warning; nothing is read or cut.
@@ -64,10 +55,10 @@ nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut) {
 
 }  // namespace
 
-StepResult make_specimen(const MakeSpecimenRequest& request, const StepContext& context) {
+steps::StepResult make_specimen(const MakeSpecimenRequest& request, const steps::StepContext& context) {
   const Specimen specimen =
       request.specimen.empty() ? draw_specimen(context.run.seed) : read_specimen(request.specimen);
-  for (const auto& folder : {request.output, request.truth}) make_parent(folder);
+  for (const auto& folder : {request.output, request.truth}) steps::make_parent(folder);
   const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
   if (!is_held(body, context.monitor)) return {nullptr, false};
   const Readings readings = take_readings(body, request.has_elasticity, context.monitor);
@@ -82,7 +73,7 @@ StepResult make_specimen(const MakeSpecimenRequest& request, const StepContext& 
     truth.commit();
   }
   folder.commit();
-  StepResult done;
+  steps::StepResult done;
   nlohmann::ordered_json& result = done.json;
   result["specimen"] = name;
   result["folder"] = request.output.string();
@@ -96,7 +87,7 @@ StepResult make_specimen(const MakeSpecimenRequest& request, const StepContext& 
   return done;
 }
 
-StepResult cut_specimen_by(const CutSpecimenRequest& request, const StepContext& context) {
+steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps::StepContext& context) {
   const Specimen specimen = read_specimen(request.specimen);
   const WrittenProgram program = program_from_text(read_text(request.program), request.program);
   const Replay replay = play(program);
@@ -106,7 +97,7 @@ StepResult cut_specimen_by(const CutSpecimenRequest& request, const StepContext&
                     "a program that the arm can run to its end, and that ends outside the tissue",
                     "`incise replay` shows how far it gets.");
   }
-  for (const auto& folder : {request.output, request.truth}) make_parent(folder);
+  for (const auto& folder : {request.output, request.truth}) steps::make_parent(folder);
   const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
   if (!is_held(body, context.monitor)) return {nullptr, false};
   const std::vector<TipPose> course =
@@ -136,7 +127,7 @@ StepResult cut_specimen_by(const CutSpecimenRequest& request, const StepContext&
     truth.commit();
   }
   folder.commit();
-  StepResult done;
+  steps::StepResult done;
   nlohmann::ordered_json& result = done.json;
   result["photo"] = (request.output / "photo.png").string();
   result["mm_per_pixel"] = settings.mm_per_pixel;
@@ -145,7 +136,7 @@ StepResult cut_specimen_by(const CutSpecimenRequest& request, const StepContext&
   return done;
 }
 
-StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const StepContext& context) {
+steps::StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const steps::StepContext& context) {
   const Specimen specimen = read_specimen(request.specimen);
   if (std::filesystem::is_directory(request.output))
     throw DataError(request.output, "", "a folder", "the name of a file to write");
@@ -156,7 +147,7 @@ StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const StepCo
   PlanSettings plan;
   plan.power_w = request.power_w;
   const KnownPhysicsCut made = cut_knowing_physics(body, plan, request.simulations, context.workers, context.monitor);
-  StepResult result_of;
+  steps::StepResult result_of;
   nlohmann::ordered_json& result = result_of.json;
   result["note"] = "From the truth about a virtual specimen: nothing of this may reach a planner.";
   result["virtual"] = true;

@@ -9,12 +9,12 @@
 #include <incise/core/version.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/folder_lock.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
-#include <incise/laboratory/case_steps.hpp>
-#include <incise/laboratory/cut_steps.hpp>
 #include <incise/laboratory/experiment.hpp>
 #include <incise/report/html_report.hpp>
+#include <incise/steps/case_steps.hpp>
+#include <incise/steps/cut_steps.hpp>
 
 #include <fmt/format.h>
 
@@ -160,7 +160,8 @@ ExperimentJson Experiment::run() {
   if (!advice.is_null()) {
     AtomicFolder folder(root_ / "advice");
     write_advice(folder.path(), advice);
-    write_manifest(folder.path(), manifest_of(context_, settings_json(settings_).dump(), {}, seconds_since(start)));
+    write_manifest(folder.path(),
+                   steps::manifest_of(context_, settings_json(settings_).dump(), {}, seconds_since(start)));
     folder.commit();
   }
   write_commands();
@@ -206,7 +207,8 @@ ExperimentJson Experiment::run() {
   write_report(page, root_ / "report.html");
   result["report"] = (root_ / "report.html").string();
   result["wall_s"] = seconds_since(start);
-  write_manifest(root_, manifest_of(context_, settings_json(settings_).dump(), {}, result["wall_s"].get<double>()));
+  write_manifest(root_,
+                 steps::manifest_of(context_, settings_json(settings_).dump(), {}, result["wall_s"].get<double>()));
   write_json(root_ / "study.json", result);
   return result;
 }
@@ -216,7 +218,7 @@ ExperimentJson Experiment::run() {
 void Experiment::claim_folder() const {
   const std::filesystem::path file = root_ / "experiment.json";
   if (!std::filesystem::exists(file)) {
-    require_own_or_empty(root_, {file.filename().string()}, "an experiment");
+    steps::require_own_or_empty(root_, {file.filename().string()}, "an experiment");
     write_json(file, {{"schema", "incise.experiment/1"}, {"specimen_is", "virtual"}, {"seed", context_.seed}});
     return;
   }
@@ -349,7 +351,7 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
                                      const std::filesystem::path& file, const std::filesystem::path& folder,
                                      std::optional<double> force_n) const {
   const std::filesystem::path registration = specimen.registration();
-  const CalibratedRequest known{root_ / "calibration/calibration.json", force_n};
+  const steps::CalibratedRequest known{root_ / "calibration/calibration.json", force_n};
   std::vector<std::string> words{"assess",         file.string(),        "--calibration", known.calibration.string(),
                                  "--registration", registration.string()};
   if (force_n) words.insert(words.end(), {"--stretch-force-n", fmt::format("{}", *force_n)});
@@ -359,9 +361,9 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
             words,
             {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), known.calibration, registration},
             {folder / "assessment/assess.json"},
-            [=](const StepContext& context) {
-              const CalibrationInput calibration = read_calibration_input(known);
-              return assess_case({read_case_with_inputs(file), folder, {}}, calibration, registration, context);
+            [=](const steps::StepContext& context) {
+              const steps::CalibrationInput calibration = steps::read_calibration_input(known);
+              return steps::assess_case({read_case_with_inputs(file), folder, {}}, calibration, registration, context);
             }})
       .result;
 }
@@ -383,8 +385,8 @@ SecondCut Experiment::cut_again(SpecimenTrial& specimen, const std::filesystem::
                     {"compensate", file.string(), "-o", folder.string()},
                     {file, specimen.at("tumor.csv"), specimen.at("lab/ct")},
                     {path},
-                    [=](const StepContext& context) {
-                      return compensate_case({read_case_with_inputs(file), folder, {}}, std::nullopt, context);
+                    [=](const steps::StepContext& context) {
+                      return steps::compensate_case({read_case_with_inputs(file), folder, {}}, std::nullopt, context);
                     }});
   if (corrected.end == StepEnd::Done || (corrected.end == StepEnd::NotAcceptable && has_path(corrected.result)))
     return {corrected.result, specimen.cut(path, tag)};
@@ -401,7 +403,7 @@ void Experiment::correct(SpecimenTrial& specimen, Trial& trial) {
 }
 
 void Experiment::calibrate() {
-  CalibrateRequest asked;
+  steps::CalibrateRequest asked;
   std::vector<std::filesystem::path> inputs;
   for (const Trial& trial : trials_) {
     if (trial.role != TrialRole::Calibrate || !trial.planned.measured) continue;
@@ -418,7 +420,7 @@ void Experiment::calibrate() {
     throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
   ExperimentSteps steps(root_, workers_, monitor_);
   const auto calibrated = [&](const char* step, CalibrationMethod method, const char* folder, const char* product) {
-    CalibrateRequest request = asked;
+    steps::CalibrateRequest request = asked;
     request.request.method = method;
     request.output = root_ / folder;
     std::vector<std::string> words{"calibrate"};
@@ -431,8 +433,8 @@ void Experiment::calibrate() {
     for (const auto& file : request.registrations) words.push_back(file.string());
     words.insert(words.end(), {"--method", std::string(to_string(method)), "-o", request.output.string()});
     const StepAnswer answer =
-        steps.run({step, words, inputs, {request.output / product}, [=](const StepContext& context) {
-                     return calibrate_on_cuts(request, context).step;
+        steps.run({step, words, inputs, {request.output / product}, [=](const steps::StepContext& context) {
+                     return steps::calibrate_on_cuts(request, context).step;
                    }});
     require_done(answer, step, steps);
     return answer.result;
@@ -448,7 +450,7 @@ void Experiment::calibrate() {
 }
 
 void Experiment::compare() {
-  CompareRequest request{.output = root_ / "comparison"};
+  steps::CompareRequest request{.output = root_ / "comparison"};
   for (const Trial& trial : trials_) {
     if (trial.role != TrialRole::Test || !trial.planned.measured || !trial.corrected.measured) continue;
     request.before.push_back(trial.planned.measured->evaluation);
@@ -465,10 +467,10 @@ void Experiment::compare() {
   inputs.insert(inputs.end(), request.after.begin(), request.after.end());
   ExperimentSteps steps(root_, workers_, monitor_);
   const StepAnswer compared =
-      steps.run({"compare", words, inputs, {request.output / "compare.json"}, [=](const StepContext& context) {
-                   CompareRequest seeded = request;
+      steps.run({"compare", words, inputs, {request.output / "compare.json"}, [=](const steps::StepContext& context) {
+                   steps::CompareRequest seeded = request;
                    seeded.settings.bootstrap.seed = context.run.seed;
-                   return compare_cuts(seeded, context);
+                   return steps::compare_cuts(seeded, context).step;
                  }});
   require_done(compared, "compare", steps);
   comparison_ = compared.result;

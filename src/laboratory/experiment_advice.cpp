@@ -4,7 +4,7 @@
 #include <incise/evaluation/forecast_skill.hpp>
 #include <incise/imaging/photo_contours.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/report/line_plot.hpp>
 #include <incise/workflow/case.hpp>
 

@@ -1,7 +1,7 @@
 #include "laboratory/experiment_report.hpp"
 
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/report/figures.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>

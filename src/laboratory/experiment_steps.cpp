@@ -4,7 +4,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/entry_folder.hpp>
 #include <incise/io/input_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 
 #include <fmt/format.h>
 
@@ -176,7 +176,7 @@ StepAnswer ExperimentSteps::made_now(const ExperimentStep& step, LogFile& log) {
     return StepAnswer{StepEnd::Unusable, {{"outcome", end_of("incise: " + why)}}};
   };
   try {
-    const StepResult made = step.work({{lines_.back(), 1, workers_.thread_count()}, workers_, log});
+    const steps::StepResult made = step.work({{lines_.back(), 1, workers_.thread_count()}, workers_, log});
     return {made.is_acceptable ? StepEnd::Done : StepEnd::NotAcceptable, made.json};
   } catch (const CaseError& error) {  // ends this specimen, not the experiment
     return unusable(error.what());

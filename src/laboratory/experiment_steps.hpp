@@ -2,7 +2,7 @@
 
 #include <incise/core/cache.hpp>
 #include <incise/laboratory/laboratory.hpp>
-#include <incise/laboratory/step.hpp>
+#include <incise/steps/step.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -17,7 +17,7 @@ struct ExperimentStep {
   std::vector<std::string> arguments;           ///< of the command that does the same, its verb first
   std::vector<std::filesystem::path> inputs;    ///< files and folders whose content determines the result
   std::vector<std::filesystem::path> products;  ///< files and folders that it makes and no other step adds to
-  std::function<StepResult(const StepContext&)> work;
+  std::function<steps::StepResult(const steps::StepContext&)> work;
 };
 
 /// Which step refused, with its own words.

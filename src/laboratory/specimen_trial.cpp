@@ -4,13 +4,13 @@
 #include <incise/core/verdict.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/transform_json.hpp>
-#include <incise/laboratory/camera_steps.hpp>
-#include <incise/laboratory/case_steps.hpp>
-#include <incise/laboratory/cut_steps.hpp>
-#include <incise/laboratory/robot_steps.hpp>
-#include <incise/laboratory/tissue_steps.hpp>
+#include <incise/steps/camera_steps.hpp>
+#include <incise/steps/case_steps.hpp>
+#include <incise/steps/cut_steps.hpp>
+#include <incise/steps/robot_steps.hpp>
+#include <incise/steps/tissue_steps.hpp>
 
 #include <fmt/format.h>
 
@@ -60,8 +60,8 @@ bool SpecimenTrial::prepare(const std::optional<ChosenTool>& tool) {
               {"plan", file.string(), "-o", output.string()},
               {file, at("tumor.csv"), at("lab/ct")},
               {planned_path()},
-              [=](const StepContext& context) {
-                return run_stages({read_case_with_inputs(file), output, {.until = Stage::Plan}}, context);
+              [=](const steps::StepContext& context) {
+                return steps::run_stages({read_case_with_inputs(file), output, {.until = Stage::Plan}}, context);
               }})
       .has_value();
 }
@@ -79,17 +79,20 @@ bool SpecimenTrial::read() {
 bool SpecimenTrial::find_shape() {
   const std::filesystem::path ct = at("lab/ct"), labels = at("labels.nrrd"), mesh = at("survey.vtu"),
                               survey = at("survey.yaml");
-  if (!run(
-          {"segment", {"segment", ct.string(), "-o", labels.string()}, {ct}, {labels}, [=](const StepContext& context) {
-             return segment_scan({.ct = ct, .output = labels}, context);
-           }}))
+  if (!run({"segment",
+            {"segment", ct.string(), "-o", labels.string()},
+            {ct},
+            {labels},
+            [=](const steps::StepContext& context) {
+              return steps::segment_scan({.ct = ct, .output = labels}, context);
+            }}))
     return false;
-  const MeshRequest meshing{.input = labels, .coarse_mm = kSurveyEdgeMm, .output = mesh};
+  const steps::MeshRequest meshing{.input = labels, .coarse_mm = kSurveyEdgeMm, .output = mesh};
   if (!run({"survey_mesh",
             {"mesh", labels.string(), "--coarse-mm", text(kSurveyEdgeMm), "-o", mesh.string()},
             {labels},
             {mesh},
-            [=](const StepContext& context) { return mesh_body(meshing, context); }}))
+            [=](const steps::StepContext& context) { return steps::mesh_body(meshing, context); }}))
     return false;
   write_atomically(survey, fmt::format("schema: incise.case/1\nspecimen_is: virtual\nspecimen:\n  mesh: survey.vtu\n  "
                                        "material: {{youngs_modulus_kpa: {}}}\n",
@@ -100,25 +103,25 @@ bool SpecimenTrial::find_shape() {
            {"deform", survey.string(), "-o", output.string()},
            {survey, mesh},
            {at("survey/stretched")},
-           [=](const StepContext& context) {
-             return run_stages({read_case_with_inputs(survey), output, {.until = Stage::Stretch}}, context);
+           [=](const steps::StepContext& context) {
+             return steps::run_stages({read_case_with_inputs(survey), output, {.until = Stage::Stretch}}, context);
            }});
   if (!stretched) return false;
   youngs_modulus_kpa_ = kReferenceKpa * stretch_force_n_ / pull_n(*stretched);
-  SurfaceRequest seen{.input = survey, .output = simulated};
+  steps::SurfaceRequest seen{.input = survey, .output = simulated};
   seen.view.spacing_mm = kSurfaceSpacingMm;
   return run({"simulated_surface",
               {"surface", survey.string(), "--spacing-mm", text(kSurfaceSpacingMm), "-o", simulated.string()},
               {survey, mesh},
               {simulated},
-              [=](const StepContext& context) { return see_surface(seen, context); }})
+              [=](const steps::StepContext& context) { return steps::see_surface(seen, context); }})
       .has_value();
 }
 
 bool SpecimenTrial::find_place() {
   const std::filesystem::path camera = at("lab/camera.json"), cloud = at("tracked/cloud.ply"),
                               tissue = at("tissue.ply");
-  TrackRequest tracking{.color = at("lab/rgb.png"), .depth = at("lab/depth.png"), .intrinsics = camera};
+  steps::TrackRequest tracking{.color = at("lab/rgb.png"), .depth = at("lab/depth.png"), .intrinsics = camera};
   tracking.lift.max_hole_mm = kMostHoleMm;
   tracking.output = at("tracked");
   if (!run({"track",
@@ -126,9 +129,9 @@ bool SpecimenTrial::find_place() {
              "--max-hole-mm", text(kMostHoleMm), "-o", tracking.output.string()},
             {tracking.color, tracking.depth, camera},
             {at("tracked/contour.csv"), cloud},
-            [=](const StepContext& context) { return track_mark(tracking, context); }}))
+            [=](const steps::StepContext& context) { return steps::track_mark(tracking, context); }}))
     return false;
-  SurfaceRequest cleaning{
+  steps::SurfaceRequest cleaning{
       .input = cloud, .approach = Vec3(Vec3::UnitZ()), .camera = camera, .plane_z_mm = kPlatformZMm, .output = tissue};
   cleaning.cleaning.planes = 1;
   cleaning.cleaning.voxel_mm = kSurfaceSpacingMm;
@@ -138,17 +141,17 @@ bool SpecimenTrial::find_place() {
             "1", "--camera", camera.string(), "--plane-z-mm", text(kPlatformZMm), "-o", tissue.string()},
            {cloud, camera},
            {tissue},
-           [=](const StepContext& context) { return see_surface(cleaning, context); }});
+           [=](const steps::StepContext& context) { return steps::see_surface(cleaning, context); }});
   if (!cleaned) return false;
   camera_scale_ = cleaned->at("camera_scale").get<double>();
-  RegisterRequest laying{.source = at("simulated.ply"), .target = tissue, .output = at("registration")};
+  steps::RegisterRequest laying{.source = at("simulated.ply"), .target = tissue, .output = at("registration")};
   laying.settings.scale = ScaleRange::fixed();
   const auto laid = run({"register",
                          {"register", "--source", laying.source.string(), "--target", tissue.string(), "--scale",
                           "fixed", "-o", laying.output.string()},
                          {laying.source, tissue},
                          {registration()},
-                         [=](const StepContext& context) { return lay_clouds(laying, context); }});
+                         [=](const steps::StepContext& context) { return steps::lay_clouds(laying, context); }});
   if (!laid) return false;
   registration_rmse_mm_ = laid->at("rmse_mm").get<double>();
   write_edge(*laid);
@@ -184,16 +187,16 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
   const auto named = [&](const std::string& name) { return at(tag + "_" + name); };
   const std::filesystem::path camera = at("lab/camera.json"), registration = this->registration(), photo = named("cut"),
                               found = at(fmt::format("{}_{}.json", setup_.name, tag));
-  ProjectRequest projecting{.path = path,
-                            .transform = registration,
-                            .surface = at("tissue.ply"),
-                            .camera = camera,
-                            .output = named("on_tissue")};
-  ExportRequest exporting{.path = projecting.output / "path.json",
-                          .surface = projecting.output / "surface.ply",
-                          .registration = registration,
-                          .power_w = setup_.power_w,
-                          .output = named("cut.script")};
+  steps::ProjectRequest projecting{.path = path,
+                                   .transform = registration,
+                                   .surface = at("tissue.ply"),
+                                   .camera = camera,
+                                   .output = named("on_tissue")};
+  steps::ExportRequest exporting{.path = projecting.output / "path.json",
+                                 .surface = projecting.output / "surface.ply",
+                                 .registration = registration,
+                                 .power_w = setup_.power_w,
+                                 .output = named("cut.script")};
   std::vector<std::string> exported{"export",
                                     exporting.path.string(),
                                     "--surface",
@@ -211,8 +214,7 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
     exporting.accepted.emplace_back(rule.id);
     exported.insert(exported.end(), {"--accept", std::string(rule.id)});
   }
-  EvaluateRequest evaluating{.photo = photo / "photo.png", .figure = named("found.png"), .output = found};
-  evaluating.settings.contour = ContourKind::InnerEdge;
+  steps::EvaluateRequest evaluating{.photo = photo / "photo.png", .figure = named("found.png"), .output = found};
   evaluating.scale.mm_per_pixel = kMmPerPixel;
   const ExperimentStep project{
       tag + "_project",
@@ -220,18 +222,20 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
        "--camera", camera.string(), "-o", projecting.output.string()},
       {path, registration, projecting.surface, camera},
       {projecting.output},
-      [=](const StepContext& context) { return project_onto_tissue(projecting, context); }};
-  const ExperimentStep make_program{tag + "_export",
-                                    exported,
-                                    {exporting.path, exporting.surface, registration},
-                                    {exporting.output},
-                                    [=](const StepContext& context) { return export_program(exporting, context); }};
-  const ExperimentStep evaluate{tag + "_evaluate",
-                                {"evaluate", evaluating.photo.string(), "--mm-per-pixel", text(kMmPerPixel), "--figure",
-                                 evaluating.figure.string(), "-o", found.string()},
-                                {evaluating.photo},
-                                {found},
-                                [=](const StepContext& context) { return evaluate_cut(evaluating, context); }};
+      [=](const steps::StepContext& context) { return steps::project_onto_tissue(projecting, context); }};
+  const ExperimentStep make_program{
+      tag + "_export",
+      exported,
+      {exporting.path, exporting.surface, registration},
+      {exporting.output},
+      [=](const steps::StepContext& context) { return steps::export_program(exporting, context); }};
+  const ExperimentStep evaluate{
+      tag + "_evaluate",
+      {"evaluate", evaluating.photo.string(), "--mm-per-pixel", text(kMmPerPixel), "--figure",
+       evaluating.figure.string(), "-o", found.string()},
+      {evaluating.photo},
+      {found},
+      [=](const steps::StepContext& context) { return steps::evaluate_cut(evaluating, context); }};
   TrialCut result;
   const auto goes_on = [&result](const std::string& step, const StepAnswer& answer) {
     if (answer.end == StepEnd::Done) return true;

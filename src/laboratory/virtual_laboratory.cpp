@@ -1,6 +1,6 @@
 #include "laboratory/virtual_laboratory.hpp"
 
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/laboratory/bench_steps.hpp>
 
 #include <fmt/format.h>
@@ -23,8 +23,8 @@ StepAnswer VirtualLaboratory::take_readings(const std::filesystem::path& folder)
   arguments.insert(arguments.end(),
                    {"--seed", std::to_string(hidden_.seed), "-o", folder.string(), "--truth", hidden_.truth.string()});
   const std::uint64_t seed = hidden_.seed;
-  return steps_.run({"bench_make", arguments, inputs, {folder, hidden_.truth}, [=](const StepContext& context) {
-                       StepContext of_seed = context;
+  return steps_.run({"bench_make", arguments, inputs, {folder, hidden_.truth}, [=](const steps::StepContext& context) {
+                       steps::StepContext of_seed = context;
                        of_seed.run.seed = seed;
                        return make_specimen(request, of_seed);
                      }});
@@ -42,7 +42,7 @@ StepAnswer VirtualLaboratory::cut(const std::filesystem::path& program, double p
                       fmt::format("{}", power_w), "-o", folder.string(), "--truth", request.truth.string()},
                      {request.specimen, program},
                      {folder / "photo.png", request.truth / "cut_truth.json"},
-                     [=](const StepContext& context) { return cut_specimen_by(request, context); }});
+                     [=](const steps::StepContext& context) { return cut_specimen_by(request, context); }});
 }
 
 StepAnswer VirtualLaboratory::known_physics() {
@@ -51,7 +51,7 @@ StepAnswer VirtualLaboratory::known_physics() {
                      {"bench", "floor", request.specimen.string(), "-o", request.output.string()},
                      {request.specimen},
                      {request.output},
-                     [=](const StepContext& context) { return cut_by_known_physics(request, context); }});
+                     [=](const steps::StepContext& context) { return cut_by_known_physics(request, context); }});
 }
 
 }  // namespace incise::laboratory

@@ -116,7 +116,7 @@ class Expectation {
     for (const Vec3& p : source) scatter_ += p * p.transpose() / static_cast<double>(source.size());
   }
 
-  void run(Drift& drift, Monitor& monitor) {
+  void run(CoherentPointDrift& drift, Monitor& monitor) {
     Similarity& t = drift.T_target_source;
     double sigma = settings_.first_sigma
                        ? *settings_.first_sigma
@@ -189,7 +189,7 @@ class Expectation {
   }
   [[nodiscard]] double target_count() const { return static_cast<double>(target_.back().points.size()); }
 
-  static void finish(Drift& drift, double sigma, DriftOutcome outcome) {
+  static void finish(CoherentPointDrift& drift, double sigma, DriftOutcome outcome) {
     drift.sigma_mm = sigma;
     drift.outcome = outcome;
   }
@@ -271,13 +271,13 @@ MatchedTransform best_transform(const MatchSums& sums, const DriftSettings& sett
   return best;
 }
 
-Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start,
-                  const DriftSettings& settings, Workers& workers, Monitor& monitor) {
+CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start,
+                               const DriftSettings& settings, Workers& workers, Monitor& monitor) {
   require_usable(source, "source");
   require_usable(target, "target");
   require_none(validate(settings));
   INCISE_REQUIRE(start.scale > 0.0, "expected a start with a scale above 0");
-  Drift drift;
+  CoherentPointDrift drift;
   drift.T_target_source = start;
   const Measure source_measure = measure_of(source);
   const Measure target_measure = measure_of(target);

@@ -1,7 +1,7 @@
-#include "registration/certificate.hpp"
 #include "registration/icp.hpp"
 #include "registration/levels.hpp"
 #include "registration/mirror_image.hpp"
+#include "registration/observability.hpp"
 #include "registration/pose_search.hpp"
 #include "registration/settling.hpp"
 #include "registration/shape_residual.hpp"
@@ -168,7 +168,7 @@ class Registering {
     if (!settings_.start) drift.first_sigma = kFinalSigma;
     // Where the finish has the last word the drift need not be followed to its end.
     if (settings_.finish_with_icp) drift.max_iterations = std::min(drift.max_iterations, kDriftSteps);
-    const Drift done =
+    const CoherentPointDrift done =
         rigid_drift(thinned(source_.cloud.points, settings_.drift_points),
                     thinned(target_.cloud.points, settings_.drift_points), start, drift, workers_, monitor_);
     if (done.outcome == DriftOutcome::Cancelled) throw_if_cancelled(monitor_, "registering");
@@ -208,7 +208,7 @@ class Registering {
     measure_residuals(result, best);
     find_rival(result, best, candidates, poses);
     result.certificate =
-        certificate_of(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
+        pose_observability(source_, target_, best.transform, best.width, !settings_.scale.is_fixed(), workers_);
     if (settled) take_over(result, *settled);
     const ShapeResidual shape =
         shape_residual(source_, target_, best.transform, settings_.scale, settings_.settling_mm / frame_.length, workers_);
@@ -288,7 +288,7 @@ class Registering {
 
   /// The outcome, the gravest reason first.
   void judge(Registration& result, const Candidate& best) const {
-    const Certificate& c = result.certificate;
+    const PoseObservability& c = result.certificate;
     result.outcome = RegistrationOutcome::Converged;
     const auto fail = [&result](bool has_failed, RegistrationOutcome outcome, std::string reason) {
       if (!has_failed) return;
@@ -354,7 +354,7 @@ class Registering {
                     frame_.length * shape.settled_rms, frame_.length * shape.settled_largest));
   }
 
-  void to_millimetres(Certificate& c) const {
+  void to_millimetres(PoseObservability& c) const {
     const double length = frame_.length;
     c.sd_mm *= length;
     c.weakest_sd_mm *= length;
@@ -400,7 +400,7 @@ void describe(Visitor& v, RegistrationSettings& s) {
   v("largest_sd", s.largest_sd, "Of the pose along its weakest direction, for a success.", kPositive);
   v("largest_settled_sd", s.largest_settled_sd,
     "The same where settling was looked for, which leaves more open than noise.", kPositive);
-  v("least_sharpness", s.least_sharpness, "See Certificate::sharpness.", kNotNegative);
+  v("least_sharpness", s.least_sharpness, "See PoseObservability::sharpness.", kNotNegative);
   v("largest_rival", s.largest_rival, "Score of the runner-up over that of the best, for a success.", {0.0, 1.0, true});
 }
 

@@ -21,7 +21,8 @@ struct SettledPose {
   double settled_rms = 0.0;      ///< over the source's points
   double settled_largest = 0.0;
   double noise = 0.0;            ///< robust standard deviation of what is left
-  Eigen::Matrix<double, 7, 7> covariance = Eigen::Matrix<double, 7, 7>::Zero();  ///< as in Certificate, about `center`
+  Eigen::Matrix<double, 7, 7> covariance =
+      Eigen::Matrix<double, 7, 7>::Zero();  ///< as in PoseObservability, about `center`
   Vec3 center = Vec3::Zero();
   double length = 0.0;  ///< rms distance of the points from the centre
   bool has_converged = false;

@@ -1,4 +1,4 @@
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/storage/calibration_file.hpp>
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <incise/core/utf8.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
@@ -129,12 +129,11 @@ void require_consistent(const CaseFile& file, const std::string& name) {
 
 void require_inputs(const CaseFile& file, const std::string& name) {
   const CaseInputs& in = file.inputs;
-  if (in.ct_volume.empty() && in.specimen_mesh.empty()) {
-    throw CaseError(name, "ct.volume", "neither a CT nor a mesh", "ct.volume or specimen.mesh");
-  }
-  if (!in.ct_volume.empty() && !in.specimen_mesh.empty()) {
-    throw CaseError(name, "specimen.mesh", "a CT and a mesh", "only one of ct.volume and specimen.mesh");
-  }
+  const bool has_scan = !in.ct_volume.empty() || !in.ct_labels.empty();
+  if (!has_scan && in.specimen_mesh.empty())
+    throw CaseError(name, "ct.volume", "neither a CT nor labels nor a mesh", "ct.volume, ct.labels or specimen.mesh");
+  if (has_scan && !in.specimen_mesh.empty())
+    throw CaseError(name, "specimen.mesh", "a CT or labels and a mesh", "either a mesh or ct.volume and ct.labels");
 }
 
 /// @param field  the list of the case that names labels.
@@ -200,9 +199,9 @@ CaseFile read_case(const std::filesystem::path& file_or_folder) {
   YamlReader reader(root, name);
   describe(reader, file);
   reader.finish();
-  for (std::filesystem::path* path : {&file.inputs.ct_volume, &file.inputs.specimen_mesh, &file.inputs.tumor_contour,
-                                      &file.inputs.tumor_surface,
-                                      &file.inputs.line_contour, &file.inputs.tool_path}) {
+  for (std::filesystem::path* path :
+       {&file.inputs.ct_volume, &file.inputs.ct_labels, &file.inputs.specimen_mesh, &file.inputs.tumor_contour,
+        &file.inputs.tumor_surface, &file.inputs.line_contour, &file.inputs.tool_path}) {
     if (!path->empty()) *path = (file.folder / *path).lexically_normal();
   }
   require_consistent(file, name);
@@ -239,11 +238,12 @@ TetMesh read_specimen_mesh(const CaseFile& file, Monitor& monitor) {
 void require_input_files(const CaseFile& file) {
   const CaseInputs& in = file.inputs;
   const std::pair<const char*, const std::filesystem::path&> inputs[] = {{"ct.volume", in.ct_volume},
-                                                                        {"specimen.mesh", in.specimen_mesh},
-                                                                        {"tumor.contour", in.tumor_contour},
-                                                                        {"tumor.surface", in.tumor_surface},
-                                                                        {"plan.line", in.line_contour},
-                                                                        {"path", in.tool_path}};
+                                                                         {"ct.labels", in.ct_labels},
+                                                                         {"specimen.mesh", in.specimen_mesh},
+                                                                         {"tumor.contour", in.tumor_contour},
+                                                                         {"tumor.surface", in.tumor_surface},
+                                                                         {"plan.line", in.line_contour},
+                                                                         {"path", in.tool_path}};
   for (const auto& [field, path] : inputs) {
     if (path.empty() || std::filesystem::exists(path)) continue;
     throw DataError(path, "", "no such file or folder", fmt::format("what {} names as {}", file.file.string(), field));

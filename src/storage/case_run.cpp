@@ -1,5 +1,5 @@
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/storage/case_run.hpp>
 #include <incise/storage/own_files.hpp>
 #include <incise/storage/run_files.hpp>

@@ -18,6 +18,9 @@ void describe(Visitor& v, CaseFile& file) {
 
   v.begin({"ct", "The scan of the specimen and which part of it is tissue."});
   v("volume", in.ct_volume, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha or a folder of PNG slices.");
+  v("labels", in.ct_labels,
+    "A label volume (.nrrd, .nii[.gz], .mhd/.mha) in place of thresholds: every label but 0 is tissue. With it the "
+    "volume is used for pictures only, and may be left out; absent: window_hu finds the tissue.");
   describe(v, c.segmentation);
   describe(v, file.ct_reading);
   v.end();

@@ -1,7 +1,8 @@
 #include <incise/core/described_json.hpp>
+#include <incise/core/direction.hpp>
 #include <incise/core/error.hpp>
 #include <incise/geometry/contour_checks.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/storage/evaluation_file.hpp>
 
@@ -15,7 +16,6 @@ namespace {
 constexpr Range kPlaceMm{-1e5, 1e5};  // from a scan's or a robot's origin
 constexpr Range kDistanceMm{-kLargestBodyMm, kLargestBodyMm};
 constexpr double kMostPoints = 1e5;  // at 0.25 mm: 25 m of contour; whoever compares them draws them over and over
-constexpr double kLongestDirection = 1e6;  // and its inverse the shortest
 constexpr const char* kEvaluationHint = "Write the file with `incise evaluate … -o FILE.json`";
 
 void require_all(const Visitor& v, std::string_view name, const std::vector<double>& values, const Range& range) {
@@ -90,9 +90,8 @@ void describe(Visitor& v, PhotographedContours& c) {
   v("points", c.points, "The incision.");
   v("tumor_edge", c.tumor_edge, "That it was to keep clear of.");
   v("approach", c.approach, "In which the camera looked.");
-  const double length = c.approach.norm();
-  if (v.sets() && !(length >= 1.0 / kLongestDirection && length <= kLongestDirection))
-    v.refuse({"approach"}, fmt::format("a vector of length {:.4g}", length), "a direction");
+  if (v.sets() && !is_direction(std::span<const double, 3>(c.approach.data(), 3)))
+    v.refuse({"approach"}, fmt::format("a vector of length {:.4g}", c.approach.norm()), kDirectionText);
 }
 
 /// What a photograph of a cut cannot show is no measurement of one.
@@ -141,6 +140,10 @@ void describe(Visitor& v, EvaluationFile& f) {
   std::size_t count = f.specimen.signed_error_mm.size();
   v("n_points", count, "At which errors were taken.", {0.0, kMostPoints});
   v("verdict", f.verdict, "On the measurement.");
+  if (count == 0 && f.outcome == Outcome::Success && v.sets())
+    v.refuse({"n_points"}, "0 beside the outcome success", "the points of the incision");
+  if (f.outcome == Outcome::Success && closed_loop == false && v.sets())
+    v.refuse({"closed_loop"}, "false beside the outcome success", "true, or null for an open cut");
   if (count == 0) return;  // no incision was found: a result, without errors
   PointErrors points{f.specimen.signed_error_mm, f.clock_h};
   v("points", points, "Point by point.");

@@ -1,6 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/storage/own_files.hpp>

@@ -1,5 +1,5 @@
 #include <incise/geometry/tool_path.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/storage/path_schema.hpp>
 
 #include <nlohmann/json.hpp>

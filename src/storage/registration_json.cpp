@@ -2,7 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/io/camera_scale.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/transform_json.hpp>
 #include <incise/storage/registration_json.hpp>
 

@@ -1,7 +1,7 @@
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/table_io.hpp>
 #include <incise/robot/program_text.hpp>

@@ -7,7 +7,7 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/entry_folder.hpp>
 #include <incise/io/input_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/specimen_id.hpp>
@@ -76,6 +76,23 @@ bool is_written(const std::filesystem::path& folder, const std::string& key) {
   return true;
 }
 
+/// @throws DataError where a labelled voxel lies more than one voxel of the scan outside it.
+void require_inside(const LabelVolume& labels, const std::filesystem::path& file, const VolumeGrid& scan,
+                    const std::filesystem::path& scan_file) {
+  const Vec3 last(scan.size[0], scan.size[1], scan.size[2]);
+  const VolumeGrid& grid = labels.grid;
+  for (std::size_t v = 0; v < labels.voxels.size(); ++v) {
+    if (labels.voxels[v] == 0) continue;
+    const auto [i, j, k] = grid.voxel_at(v);
+    const Vec3 world = grid.world_from_index(Vec3(i, j, k));
+    const Vec3 at = scan.index_from_world(world);
+    if ((at.array() >= -1.0).all() && (at.array() <= last.array()).all()) continue;
+    throw DataError(file, "labels", fmt::format("tissue at {:.1f}, {:.1f}, {:.1f} mm", world.x(), world.y(), world.z()),
+                    fmt::format("tissue inside the volume {}", scan_file.string()),
+                    "Labels and volume have to be of one scan, in one frame");
+  }
+}
+
 }  // namespace
 
 RunFolder::RunFolder(CaseFile file, std::filesystem::path root, RunContext context)
@@ -107,8 +124,8 @@ std::string RunFolder::input_hash(const std::filesystem::path& path) {
 std::string RunFolder::specimen_id() {
   if (!file_.settings.specimen_id.empty()) return file_.settings.specimen_id;
   const std::filesystem::path& mesh = file_.inputs.specimen_mesh;
-  if (mesh.empty())
-    return file_.inputs.ct_volume.empty() ? "" : specimen_id_of_scan(input_hash(file_.inputs.ct_volume));
+  const std::filesystem::path& scan = file_.inputs.ct_volume.empty() ? file_.inputs.ct_labels : file_.inputs.ct_volume;
+  if (mesh.empty()) return scan.empty() ? "" : specimen_id_of_scan(input_hash(scan));
   const std::string stated = specimen_id_of(mesh);
   return stated.empty() ? specimen_id_of_mesh(input_hash(mesh)) : stated;
 }
@@ -132,8 +149,8 @@ Manifest RunFolder::manifest_now(double wall_s) {
   manifest.wall_s = wall_s;
   manifest.machine = machine_description();
   const CaseInputs& in = file_.inputs;
-  std::vector<std::filesystem::path> inputs{file_.file,       in.ct_volume,    in.specimen_mesh, in.tumor_contour,
-                                            in.tumor_surface, in.line_contour, in.tool_path};
+  std::vector<std::filesystem::path> inputs{file_.file,       in.ct_volume,     in.ct_labels,    in.specimen_mesh,
+                                            in.tumor_contour, in.tumor_surface, in.line_contour, in.tool_path};
   inputs.insert(inputs.end(), in.holders.begin(), in.holders.end());
   for (const std::filesystem::path& path : inputs) {
     if (!path.empty())
@@ -247,6 +264,14 @@ CtVolume RunFolder::read_ct(Monitor& monitor) {
   return incise::read_ct(file_.inputs.ct_volume, file_.ct_reading, monitor).volume;
 }
 
+std::optional<LabelVolume> RunFolder::read_labels(Monitor& monitor) {
+  const CaseInputs& in = file_.inputs;
+  if (in.ct_labels.empty()) return std::nullopt;
+  LabelVolume labels = incise::read_labels(in.ct_labels);
+  if (!in.ct_volume.empty()) require_inside(labels, in.ct_labels, read_ct(monitor).grid, in.ct_volume);
+  return labels;
+}
+
 std::optional<TetMesh> RunFolder::read_specimen_mesh(Monitor& monitor) {
   if (file_.inputs.specimen_mesh.empty()) return std::nullopt;
   return incise::read_specimen_mesh(file_, monitor);
@@ -282,8 +307,10 @@ std::optional<ToolPath> RunFolder::read_given_path() {
   return path;
 }
 
-std::string RunFolder::ct_digest(Monitor&) {
-  return sha256_of_text(input_hash(file_.inputs.ct_volume) + bytes_of(file_.ct_reading));
+std::string RunFolder::scan_digest(Monitor&) {
+  const CaseInputs& in = file_.inputs;
+  const std::string scan = sha256_of_text(input_hash(in.ct_volume) + bytes_of(file_.ct_reading));
+  return in.ct_labels.empty() ? scan : sha256_of_text(scan + input_hash(in.ct_labels));
 }
 
 void RunFolder::labels(const ProductNote& note, const Segmentation& segmentation) {

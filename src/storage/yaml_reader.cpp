@@ -1,5 +1,6 @@
 #include "yaml_reader.hpp"
 
+#include <incise/core/direction.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/nearest_name.hpp>
 
@@ -235,7 +236,7 @@ void YamlReader::block(const Field& field, const Block& block) {
   read_numbers(node, path, block);
   if (!block.is_direction) return;
   Eigen::Map<Eigen::Vector3d> direction(values);
-  if (direction.norm() < 1e-9) refuse(node, path, "a vector of length 0", "a direction");
+  if (!is_direction(std::span<const double, 3>(values, 3))) refuse(node, path, shown(node), kDirectionText);
   direction.normalize();
 }
 

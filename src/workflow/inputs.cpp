@@ -4,7 +4,8 @@
 
 namespace incise {
 
-std::string Inputs::ct_digest(Monitor& monitor) {
+std::string Inputs::scan_digest(Monitor& monitor) {
+  if (const std::optional<LabelVolume> labels = read_labels(monitor)) return sha256_of_text(bytes_of(*labels));
   return sha256_of_text(bytes_of(read_ct(monitor)));
 }
 

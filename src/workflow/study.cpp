@@ -212,9 +212,11 @@ class Runner {
       return true;
     }
     CacheKey key("labels");
-    key.add(settings_.segmentation).add_text(inputs_.ct_digest(monitor_));
+    key.add(settings_.segmentation).add_text(inputs_.scan_digest(monitor_));
     ProductNote note{"labels", {}, 0.0};
     study_.segmentation = product<Segmentation>(Stage::Segment, note, key, [&] {
+      if (const auto labels = inputs_.read_labels(monitor_))
+        return segment_labels(*labels, settings_.segmentation, monitor_);
       return incise::segment(inputs_.read_ct(monitor_), settings_.segmentation, monitor_);
     });
     sink_.labels(note, *study_.segmentation);

@@ -9,6 +9,7 @@ ROOT = pathlib.Path(sys.argv[1])
 LEFT_OUT = {
     ("CaseFile", "file"): "where it was read from is no setting",
     ("CaseFile", "folder"): "where it was read from is no setting",
+    ("VerificationCheck", "plot"): "it is drawn, and no file holds it",
 }
 BY_A_TABLE = {"Specimen"}  # described by the table of its parameters
 

@@ -176,10 +176,10 @@ TEST(Identifiability, FlipsWithWhatTheDataCanTell) {
   Random random(9);
   // Stiffness with a shape of its own is identified; one that only scales the drag is tied to the drag length.
   const Identifiability told = identifiability(fit_drag(photographed({2.0, 0.2, 0.0}, random, 0.2, 1.0)));
-  EXPECT_EQ(told.parameters[0].told, Told::Apart);
-  EXPECT_EQ(told.parameters[1].told, Told::Apart);
+  EXPECT_EQ(told.parameters[0].told, Identified::Apart);
+  EXPECT_EQ(told.parameters[1].told, Identified::Apart);
   const Identifiability tied = identifiability(fit_drag(photographed({2.0, 0.2, 0.0}, random, 0.2, 0.0)));
-  EXPECT_NE(tied.parameters[1].told, Told::Apart);
+  EXPECT_NE(tied.parameters[1].told, Identified::Apart);
   EXPECT_EQ(tied.parameters[1].tied_to, "drag_length");
   EXPECT_GT(tied.parameters[1].correlation, 0.7);
   EXPECT_THAT(tied.sentences[1], ::testing::HasSubstr("with the drag length"));

@@ -590,6 +590,10 @@ class EvaluateTest(CommandTest):
         small_case.write_contour(self.folder / "good.csv", small_case.ring())
         done = self.incise("evaluate", "--incision", "good.csv", "--tumor", "good.csv", "--approach", "0", "0", "0")
         self.assert_refused(done, BAD_CASE, "--approach")
+        # Lengths whose square is 0 or infinite.
+        for length in ("1e-300", "1e300"):
+            done = self.incise("evaluate", "--incision", "good.csv", "--tumor", "good.csv", "--approach", "0", "0", length)
+            self.assert_refused(done, BAD_CASE, f"--approach: found 0 0 {float(length):g}", "a direction")
 
     def test_numbers_of_options_are_refused_in_the_words_of_all_errors(self):
         small_case.write_contour(self.folder / "good.csv", small_case.ring())
@@ -684,10 +688,10 @@ class CommandLineTest(CommandTest):
 
     def test_whatever_is_wrong_is_told_in_the_words_of_all_errors(self):
         for words, says in (
-            ("plan case --threads -3", "--threads: found -3, expected a whole number from 0 to 1024"),
+            ("plan case --threads -3", "--threads: found -3, expected a whole number from 0 to 1024, in digits"),
             ("run case --isa sse", "--isa: found 'sse', expected one of portable, avx2, avx512"),
-            ("run case --frames 0", "--frames: found 0, expected a whole number from 1 to 500"),
-            ("run case --frames many", "--frames: found 'many', expected a whole number from 1 to 500"),
+            ("run case --frames 0", "--frames: found 0, expected a whole number from 1 to 500, in digits"),
+            ("run case --frames many", "--frames: found 'many', expected a whole number from 1 to 500, in digits"),
             ("run case --frames", "--frames: found no value, expected 1 value"),
             ("simulate case --checkpoint-s -1", "--checkpoint-s: found -1, expected a number from 0 to 86400"),
             ("export p.json --tcp 1 2", "--tcp: found 2 values, expected 6 values"),
@@ -698,7 +702,9 @@ class CommandLineTest(CommandTest):
         ):
             with self.subTest(words=words):
                 done = self.incise(*words.split())
-                self.assert_refused(done, BAD_CASE, "incise: command line: " + says, "--help` explains it")
+                # What a range or a number's form says needs no further help.
+                further = () if says.endswith("in digits") else ("--help` explains it",)
+                self.assert_refused(done, BAD_CASE, "incise: command line: " + says, *further)
                 self.assertEqual(done.stderr.count("expected"), 1, done.stderr)
 
     def test_a_seed_is_a_whole_number_and_never_cut_down(self):

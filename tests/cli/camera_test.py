@@ -412,6 +412,8 @@ class ProjectTest(CommandTest):
 
     def test_a_mark_of_a_hundred_thousand_waypoints_is_refused(self):
         self.assert_refused(self.incise(*self.ARGUMENTS, "--kind", "mark", "--waypoints", 100000), BAD_CASE, "--waypoints")
+        self.assert_refused(self.incise(*self.ARGUMENTS, "--kind", "mark", "--waypoints", "010"), BAD_CASE, "--waypoints: found 010")
+        self.assert_refused(self.incise(*self.ARGUMENTS, "--depth-mm", "1e300"), BAD_CASE, "--depth-mm")
 
     def test_what_export_would_refuse_is_told(self):
         path = json.loads((self.folder / "path.json").read_text())

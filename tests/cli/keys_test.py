@@ -1,6 +1,7 @@
 """Results are those of the data: a byte that differs in any file that was opened, and the stage that reads it runs again, or refuses."""
 
 import ctypes
+import json
 import os
 import pathlib
 import shutil
@@ -93,6 +94,14 @@ def nifti():
     return bytes(header) + voxels()
 
 
+def write_labels(case):
+    """Tissue as label 2, and one voxel of it, the tumour, as label 5."""
+    columns, rows, slices = SIZE
+    labels = bytearray(2 * is_tissue(i, j, k) for k in range(slices) for j in range(rows) for i in range(columns))
+    labels[columns * (rows * (slices // 2) + rows // 2) + columns // 2] = 5
+    (case / "labels.nrrd").write_bytes(NRRD.replace("short", "uchar").encode() + b"\n" + bytes(labels))
+
+
 def write_dicom(case):
     small_dicom.ROWS, small_dicom.COLUMNS = SIZE[1], SIZE[0]
     series = case / "series"
@@ -173,8 +182,6 @@ class KeysTest(CommandTest):
 
     def run_case(self, verb, out):
         """@returns status, and the states of the stages"""
-        import json
-
         done = self.incise(verb, "case", "-o", out, "--json")
         self.assertNotIn("internal error", done.stderr)
         stages = json.loads(done.stdout)["stages"] if done.stdout else []
@@ -204,17 +211,33 @@ class KeysTest(CommandTest):
 
 
 class ScanTest(KeysTest):
-    def check(self, name, *parts):
+    def write_scan(self, ct):
         case = small_case.write_case(self.folder / "case", {
-            "specimen": {"mesh": None}, "meshing": {"fine_mm": 4, "coarse_mm": 8, "survey_mm": 8},
-            "ct": {"volume": name, **({"spacing_mm": SPACING, "hu": [1, -100]} if name == "slices" else {})}})
+            "specimen": {"mesh": None}, "meshing": {"fine_mm": 4, "coarse_mm": 8, "survey_mm": 8}, "ct": ct})
         small_case.write_contour(case / "tumor.csv", small_case.ring(center=(26.0, 26.0), z=TOP_MM))
         (case / "block.msh").unlink()
+        return case
+
+    def check(self, name, *parts):
+        case = self.write_scan({"volume": name, **({"spacing_mm": SPACING, "hu": [1, -100]} if name == "slices" else {})})
         CT_FORMATS[name](case)
         self.assertEqual(set(self.assert_every_file_counts(case, "deform")), {"tumor.csv", *parts})
 
     def test_nrrd(self):
         self.check("ct.nrrd", "ct.nrrd")
+
+    def test_labels_in_place_of_thresholds(self):
+        case = self.write_scan({"labels": "labels.nrrd", "volume": "ct.nrrd", "window_hu": [1000, 2000]})
+        write_labels(case)
+        CT_FORMATS["ct.nrrd"](case)
+        self.assertEqual(set(self.assert_every_file_counts(case, "deform")), {"tumor.csv", "labels.nrrd", "ct.nrrd"})
+        found = json.loads((self.folder / "first" / "labels" / "segment.json").read_text())
+        self.assertIsNone(found["tissue_hu"])
+        self.assertEqual(found["components"], 1)
+        case = self.write_scan({"labels": "labels.nrrd"})
+        done = self.incise("deform", "case", "-o", self.folder / "alone")
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.assertEqual(json.loads((self.folder / "alone" / "labels" / "segment.json").read_text())["voxels"], found["voxels"])
 
     def test_detached_nrrd(self):
         self.check("ct.nhdr", "ct.nhdr", "there.raw")
@@ -263,8 +286,6 @@ class MeshTest(KeysTest):
 
 class TumorTest(KeysTest):
     def test_edge_in_each_form(self):
-        import json
-
         points = small_case.ring()
         case = small_case.write_case(self.folder / "case")
         MESHES["block.msh"](case)

@@ -2,7 +2,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/outcome.hpp>
 #include <incise/geometry/types.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 
 #include <gmock/gmock.h>
 

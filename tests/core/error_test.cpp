@@ -1,5 +1,7 @@
 #include <incise/core/error.hpp>
+#include <incise/core/utf8.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace incise {
@@ -37,6 +39,15 @@ TEST(DataError, NamesPathPlaceFoundAndExpected) {
   const DataError error("ct/slice.dcm", "byte 128", "'ABCD'", "'DICM'");
   EXPECT_STREQ(error.what(), "ct/slice.dcm: byte 128: found 'ABCD', expected 'DICM'");
   EXPECT_EQ(error.path(), std::filesystem::path("ct/slice.dcm"));
+}
+
+TEST(DataError, IsUtf8WhateverWasFound) {
+  const auto text = [](const std::string& found) { return std::string(DataError("a.json", "", found, "text").what()); };
+  EXPECT_THAT(text("caf\xC3"), ::testing::HasSubstr("found caf\\xc3, expected text"));
+  EXPECT_THAT(text("café"), ::testing::HasSubstr("found café, expected text"));
+  std::string lengthy = "x";
+  for (int i = 0; i < 600; ++i) lengthy += "é";
+  EXPECT_FALSE(first_not_utf8(text(lengthy)));
 }
 
 TEST(Require, ThrowsInvalidArgumentThatNamesTheFunction) {

@@ -51,7 +51,8 @@ TEST(ProblemsOf, NamesEachNumberThatTheDescriptionDoesNotAllow) {
                   .count = 0};
   EXPECT_THAT(sentences(problems_of(bad)),
               ::testing::ElementsAre(
-                  "first.share: found nan, expected a number in [0, 1]", "first.way: found 0 0 0, expected a direction",
+                  "first.share: found nan, expected a number in [0, 1]",
+                  "first.way: found 0 0 0, expected a direction, of a length in [1e-6, 1e6]",
                   "others[1].share: found 1.5, expected a number in [0, 1]",
                   "others[1].way[1]: found nan, expected a number", "depths_mm[1]: found 0, expected a number above 0",
                   "limit: found -2, expected a number above 0", "count: found 0, expected a number of 1 or more"));

@@ -18,5 +18,12 @@ TEST(FirstNotUtf8, FindsTheFirstByteThatIsNone) {
   }
 }
 
+TEST(Utf8Prefix, CutsNoCharacterInTwo) {
+  EXPECT_EQ(utf8_prefix("ab€d", 100), "ab€d");
+  EXPECT_EQ(utf8_prefix("ab€d", 5), "ab€");
+  for (const std::size_t bytes : {2u, 3u, 4u}) EXPECT_EQ(utf8_prefix("ab€d", bytes), "ab") << bytes;
+  EXPECT_EQ(utf8_prefix("€", 1), "");
+}
+
 }  // namespace
 }  // namespace incise

@@ -66,7 +66,7 @@ TEST_F(HeadCt, YieldsOneConnectedBodyOfATonguesSize) {
   EXPECT_NEAR(size[2] - margin, 36, 1);
   EXPECT_NEAR(result_.volume_mm3, 71500.0, 1500.0);
   EXPECT_NEAR(result_.occupancy_volume_mm3 / result_.volume_mm3, 1.0, 0.01);
-  EXPECT_NEAR(result_.tissue_hu, 48.0, 16.0);
+  EXPECT_NEAR(result_.tissue_hu.value(), 48.0, 16.0);
 
   Monitor monitor;
   CtVolume of_label{result_.labels.grid, {}};

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -73,7 +74,47 @@ TEST(Segmentation, FindsTheVolumeOfABallWithinAPercent) {
   EXPECT_EQ(result.components, 1U);
   EXPECT_EQ(result.holes_filled, 0U);
   EXPECT_EQ(result.cut_faces(), 0);
-  EXPECT_DOUBLE_EQ(result.tissue_hu, 50.0);
+  EXPECT_DOUBLE_EQ(result.tissue_hu.value(), 50.0);
+}
+
+LabelVolume labels_of(const CtVolume& ct, std::int16_t least_hu, std::uint8_t label) {
+  LabelVolume labels{ct.grid, std::vector<std::uint8_t>(ct.voxels.size())};
+  std::ranges::transform(ct.voxels, labels.voxels.begin(),
+                         [=](std::int16_t hu) { return hu >= least_hu ? label : std::uint8_t{0}; });
+  return labels;
+}
+
+TEST(Segmentation, TakesEveryLabelButZeroInPlaceOfThresholds) {
+  Monitor monitor;
+  LabelVolume labels = labels_of(ball_of_tissue(), -475, 3);
+  labels.at(15, 15, 15) = 7;  // a tumour's label is tissue as well
+  const Segmentation result = segment_labels(labels, {}, monitor);
+  EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.02);
+  EXPECT_EQ(
+      result.labels.at(result.labels.grid.size[0] / 2, result.labels.grid.size[1] / 2, result.labels.grid.size[2] / 2),
+      1);
+  EXPECT_FALSE(result.tissue_hu.has_value());
+  EXPECT_TRUE(result.verdict.reasons().empty()) << "labels have no HU that could be odd";
+}
+
+TEST(Segmentation, RefusesARegionOrASeedWithoutALabel) {
+  Monitor monitor;
+  const LabelVolume labels = labels_of(ball_of_tissue(), -475, 1);
+  const auto refusal = [&](const LabelVolume& of, const SegmentationSettings& settings) -> std::string {
+    try {
+      static_cast<void>(segment_labels(of, settings, monitor));
+    } catch (const CaseError& error) {
+      return error.what();
+    }
+    return "no CaseError";
+  };
+  EXPECT_THAT(refusal(labels_of(ball_of_tissue(), 1000, 1), {}), HasSubstr("0 in every voxel of the region"));
+  SegmentationSettings corner;
+  corner.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(3, 3, 3));
+  EXPECT_THAT(refusal(labels, corner), HasSubstr("0 in every voxel of the region"));
+  SegmentationSettings seed;
+  seed.seeds_mm = {Vec3(1, 1, 1)};
+  EXPECT_THAT(refusal(labels, seed), HasSubstr("seed_mm[0]: found a point where the label is 0"));
 }
 
 TEST(Segmentation, ShrinksABallLessThanHalfAsMuchAsAGaussianWould) {

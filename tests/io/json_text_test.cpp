@@ -1,7 +1,7 @@
 #include "io/io_test_support.hpp"
 
 #include <incise/core/nearest_name.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 
 #include <nlohmann/json.hpp>
 

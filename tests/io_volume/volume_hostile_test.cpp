@@ -156,6 +156,15 @@ TEST_F(HostileVolume, APipeHangsNobody) {
               AllOf(HasSubstr("a.mhd"), HasSubstr("found a device ('/dev/zero')")));
 }
 
+TEST_F(HostileVolume, ASeriesWhoseNumbersOverflowIsNoSeries) {
+  for (const char* numbers :
+       {"-9223372036854775807 9223372036854775807 1", "1 9223372036854775807 9223372036854775806"}) {
+    const std::string header =
+        "ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementSpacing = 1 1 1\nElementType = MET_SHORT\n";
+    EXPECT_THAT(says("a.mhd", header + "ElementDataFile = s%d.raw " + numbers + "\n"), HasSubstr("a.mhd")) << numbers;
+  }
+}
+
 TEST_F(HostileVolume, AHeaderWhoseDataAreAFolderIsTheFileThatIsNamed) {
   const std::string said = says("ct.nhdr",
                                 "NRRD0004\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 2 2 "

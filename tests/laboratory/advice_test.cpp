@@ -3,7 +3,7 @@
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

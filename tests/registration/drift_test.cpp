@@ -62,7 +62,7 @@ TEST_F(Fixtures, AFishTurnedBy20DegreesComesBack) {
   const Mat3 turn = rotation_of({0.0, 0.0, units::rad_from_deg(20.0)});
   DriftSettings settings;
   settings.dimensions = 2;
-  const Drift drift = rigid_drift(moved({1.0, turn}, fish), fish, {}, settings, workers_, silent);
+  const CoherentPointDrift drift = rigid_drift(moved({1.0, turn}, fish), fish, {}, settings, workers_, silent);
   EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
   EXPECT_LT((drift.T_target_source.rotation - turn.transpose()).norm(), 1e-4);
 }
@@ -71,13 +71,13 @@ TEST_F(Fixtures, AFishTenTimesTheSizeHasScaleTen) {
   const Points fish = read_rows(gadomski_ / "fish.csv");
   DriftSettings settings;
   settings.dimensions = 2;
-  const Drift drift = rigid_drift(fish, scaled(fish, 10.0), {}, settings, workers_, silent);
+  const CoherentPointDrift drift = rigid_drift(fish, scaled(fish, 10.0), {}, settings, workers_, silent);
   EXPECT_NEAR(drift.T_target_source.scale, 10.0, 1e-3);
 }
 
 TEST_F(Fixtures, TheBunnyIsShiftedByOneOnEveryAxis) {
-  const Drift drift = rigid_drift(read_rows(pycpd_ / "bunny_source.txt"), read_rows(pycpd_ / "bunny_target.txt"), {},
-                                  {}, workers_, silent);
+  const CoherentPointDrift drift = rigid_drift(read_rows(pycpd_ / "bunny_source.txt"),
+                                               read_rows(pycpd_ / "bunny_target.txt"), {}, {}, workers_, silent);
   EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
   EXPECT_NEAR(drift.T_target_source.scale, 1.0, 1e-6);
   EXPECT_LT((drift.T_target_source.rotation - Mat3::Identity()).norm(), 1e-6);
@@ -98,8 +98,8 @@ TEST_F(HillDrift, ClustersTruncationAndAccelerationLeaveTheFixedPointAlone) {
   plain.coarse_to_fine = false;
   plain.max_iterations = 3000;
   plain.tolerance = 1e-5;
-  const Drift all = rigid_drift(source_, target_, {}, plain, workers_, silent);
-  const Drift fast = rigid_drift(source_, target_, {}, {}, workers_, silent);
+  const CoherentPointDrift all = rigid_drift(source_, target_, {}, plain, workers_, silent);
+  const CoherentPointDrift fast = rigid_drift(source_, target_, {}, {}, workers_, silent);
   ASSERT_EQ(all.outcome, DriftOutcome::Converged);
   ASSERT_EQ(fast.outcome, DriftOutcome::Converged);
   EXPECT_LT(rms_difference_mm(all.T_target_source, fast.T_target_source, source_), 0.01);
@@ -108,10 +108,10 @@ TEST_F(HillDrift, ClustersTruncationAndAccelerationLeaveTheFixedPointAlone) {
 }
 
 TEST_F(HillDrift, NeitherUnitsNorOriginMatter) {
-  const Drift drift = rigid_drift(source_, target_, {}, {}, workers_, silent);
+  const CoherentPointDrift drift = rigid_drift(source_, target_, {}, {}, workers_, silent);
   const Similarity to_metres{0.001, Mat3::Identity(), {500.0, -200.0, 1e3}};
-  const Drift other = rigid_drift(moved(to_metres, source_), moved(to_metres, target_),
-                                  {1.0, Mat3::Identity(), Vec3::Zero()}, {}, workers_, silent);
+  const CoherentPointDrift other = rigid_drift(moved(to_metres, source_), moved(to_metres, target_),
+                                               {1.0, Mat3::Identity(), Vec3::Zero()}, {}, workers_, silent);
   EXPECT_EQ(other.outcome, DriftOutcome::Converged);
   // 1 m of offset in 1e-5 m of noise leaves eleven digits.
   const Similarity back = inverse(to_metres) * other.T_target_source * to_metres;
@@ -120,8 +120,8 @@ TEST_F(HillDrift, NeitherUnitsNorOriginMatter) {
 
 TEST_F(HillDrift, AnyNumberOfThreadsGivesTheSameBits) {
   Workers one(1);
-  const Drift a = rigid_drift(source_, target_, {}, {}, one, silent);
-  const Drift b = rigid_drift(source_, target_, {}, {}, workers_, silent);
+  const CoherentPointDrift a = rigid_drift(source_, target_, {}, {}, one, silent);
+  const CoherentPointDrift b = rigid_drift(source_, target_, {}, {}, workers_, silent);
   EXPECT_EQ(matrix_of(a.T_target_source), matrix_of(b.T_target_source));
   EXPECT_EQ(a.iterations, b.iterations);
 }
@@ -131,7 +131,7 @@ TEST_F(HillDrift, ABoundedScaleStaysInItsRange) {
   settings.scale = {0.98, 1.02};
   EXPECT_DOUBLE_EQ(rigid_drift(source_, target_, {}, settings, workers_, silent).T_target_source.scale, 1.02);
   settings.scale = ScaleRange::fixed(1.05);
-  const Drift fixed = rigid_drift(source_, target_, {1.05}, settings, workers_, silent);
+  const CoherentPointDrift fixed = rigid_drift(source_, target_, {1.05}, settings, workers_, silent);
   EXPECT_DOUBLE_EQ(fixed.T_target_source.scale, 1.05);
   EXPECT_LT(rms_difference_mm(fixed.T_target_source, truth_, source_), kPullOfSinglePoints);
 }
@@ -139,7 +139,7 @@ TEST_F(HillDrift, ABoundedScaleStaysInItsRange) {
 TEST_F(HillDrift, RunningOutOfStepsIsTold) {
   DriftSettings settings;
   settings.max_iterations = 3;
-  const Drift drift = rigid_drift(source_, target_, {}, settings, workers_, silent);
+  const CoherentPointDrift drift = rigid_drift(source_, target_, {}, settings, workers_, silent);
   EXPECT_EQ(drift.outcome, DriftOutcome::IterationLimit);
   EXPECT_EQ(drift.iterations, 3);
 }
@@ -147,7 +147,7 @@ TEST_F(HillDrift, RunningOutOfStepsIsTold) {
 TEST_F(HillDrift, AMirrorImageIsAnsweredByARotation) {
   Points mirrored = source_;
   for (Vec3& p : mirrored) p.x() = -p.x();
-  const Drift drift = rigid_drift(source_, mirrored, {}, {}, workers_, silent);
+  const CoherentPointDrift drift = rigid_drift(source_, mirrored, {}, {}, workers_, silent);
   EXPECT_NEAR(drift.T_target_source.rotation.determinant(), 1.0, 1e-9);
   EXPECT_GT(drift.sigma_mm, 0.5);
 }

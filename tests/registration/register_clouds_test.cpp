@@ -355,7 +355,7 @@ TEST(Settling, WhatItLeavesOpenIsInTheWeakestMotionToo) {
   for (const double settling_mm : {1.0, 3.0, 8.0}) {
     settings.settling_mm = settling_mm;
     const Registration found = register_clouds(source, target, settings, workers, silent);
-    const Certificate& c = found.certificate;
+    const PoseObservability& c = found.certificate;
     EXPECT_GT(c.weakest_sd_mm, before_mm) << settling_mm;
     EXPECT_LE(c.weakest_sd_mm, c.sd_mm) << settling_mm;
     EXPECT_GE(std::sqrt(6.0) * c.weakest_sd_mm, c.sd_mm) << settling_mm;  // the largest of six

@@ -2,7 +2,7 @@
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
 #include <incise/storage/result_json.hpp>

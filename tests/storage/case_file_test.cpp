@@ -287,8 +287,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadValue{"robot: {T_flange_tool: [[1,0,0,0],[0,1,0,0],[0,0,2,150],[0,0,0,1]]}", "robot.T_flange_tool"}));
 
 TEST_F(CaseFileTest, ACtAndAMeshTogetherAreRefusedAndSoIsNeither) {
-  EXPECT_THAT(refusal_with("ct: {volume: ct}\n"), AllOf(HasSubstr("specimen.mesh"), HasSubstr("only one of")));
-  EXPECT_THAT(refusal("schema: incise.case/1\ntumor: {contour: tumor.csv}\n"), HasSubstr("neither a CT nor a mesh"));
+  EXPECT_THAT(refusal_with("ct: {volume: ct}\n"), AllOf(HasSubstr("specimen.mesh"), HasSubstr("either a mesh or")));
+  EXPECT_THAT(refusal("schema: incise.case/1\ntumor: {contour: tumor.csv}\n"),
+              HasSubstr("neither a CT nor labels nor a mesh"));
 }
 
 TEST_F(CaseFileTest, AnIncisionNeedsATumorEdgeOrACurveAndADeformationDoesNot) {

@@ -8,6 +8,7 @@
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/volume_io.hpp>
 #include <incise/storage/path_schema.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/storage/run_folder.hpp>
@@ -169,13 +170,43 @@ TEST_F(RunFolderTest, AScanIsKnownByItsContentAndHowItIsRead) {
     std::ofstream(folder_ / "case.yaml") << "schema: incise.case/1\nct: {volume: ct" << more
                                          << "}\ntumor: {contour: tumor.csv}\n";
     Monitor quiet;
-    return RunFolder(read_case(folder_.path()), folder_ / "out", {}).ct_digest(quiet);
+    return RunFolder(read_case(folder_.path()), folder_ / "out", {}).scan_digest(quiet);
   };
   const std::string first = digest("");
   EXPECT_EQ(digest(", opening_radius_mm: 2"), first) << "what is made of it does not count";
   EXPECT_NE(digest(", spacing_mm: [1, 1, 2]"), first);
   std::ofstream(folder_ / "ct" / "1.png") << "two";
   EXPECT_NE(digest(""), first);
+}
+
+TEST_F(RunFolderTest, LabelsTakeThePlaceOfThresholdsAndHaveToLieInTheirScan) {
+  LabelVolume labels{{.size = {4, 4, 4}}, std::vector<std::uint8_t>(64, 0)};
+  labels.at(1, 1, 1) = 2;
+  write_labels(folder_ / "labels.nrrd", labels);
+  CtVolume ct{labels.grid, std::vector<std::int16_t>(64, 40)};
+  ct.grid.origin_mm = Vec3(0, 0, 10);
+  write_ct(folder_ / "ct.nrrd", ct);
+  Monitor quiet;
+  const auto opened = [this](const std::string& of_ct) {
+    std::ofstream(folder_ / "case.yaml") << "schema: incise.case/1\nct: {labels: labels.nrrd" << of_ct
+                                         << "}\ntumor: {contour: tumor.csv}\n";
+    return RunFolder(read_case(folder_.path()), folder_ / "out", {});
+  };
+  RunFolder alone = opened("");
+  ASSERT_TRUE(alone.read_labels(quiet));
+  EXPECT_EQ(alone.read_labels(quiet)->voxels, labels.voxels);
+  EXPECT_TRUE(alone.specimen_id().starts_with("ct-")) << alone.specimen_id();
+  const std::string digest = alone.scan_digest(quiet);
+  labels.at(2, 2, 2) = 1;
+  write_labels(folder_ / "labels.nrrd", labels);
+  EXPECT_NE(opened("").scan_digest(quiet), digest);
+  try {
+    static_cast<void>(opened(", volume: ct.nrrd").read_labels(quiet));
+    FAIL() << "expected DataError";
+  } catch (const DataError& error) {
+    EXPECT_EQ(error.path().filename(), "labels.nrrd");
+    EXPECT_NE(std::string(error.what()).find("tissue inside the volume"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(RunFolderTest, ALayerIsHeldAgainstTheLateralMargin) {

@@ -1,6 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/virtual_bench/course.hpp>
-#include <incise/virtual_bench/laboratory.hpp>
+#include <incise/virtual_bench/readings.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "virtual_bench/small_bench.hpp"
 
-#include <incise/virtual_bench/laboratory.hpp>
+#include <incise/virtual_bench/readings.hpp>
 
 #include <gtest/gtest.h>
 

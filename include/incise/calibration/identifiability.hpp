@@ -11,19 +11,19 @@
 namespace incise {
 
 /// How much the data say of a parameter.
-enum class Told {
+enum class Identified {
   Apart,   ///< its posterior sd is at most half that of the prior
   Partly,  ///< at most nine tenths
   Not,     ///< more: what one has is the prior
 };
-inline constexpr std::array<std::string_view, 3> kToldNames{"apart", "partly", "not"};
-[[nodiscard]] constexpr Names names_of(Told) {
-  return kToldNames;
+inline constexpr std::array<std::string_view, 3> kIdentifiedNames{"apart", "partly", "not"};
+[[nodiscard]] constexpr Names names_of(Identified) {
+  return kIdentifiedNames;
 }
 
 struct ParameterVerdict {
   std::string name;  ///< drag_length, stiffness, bias
-  Told told = Told::Not;
+  Identified told = Identified::Not;
   double share_of_prior_sd = 1.0;
   std::string tied_to;  ///< the other parameter with which it is correlated by at least 0.7 either way; empty: none
   double correlation = 0.0;  ///< with that one; 0: with none

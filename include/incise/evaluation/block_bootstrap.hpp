@@ -51,7 +51,18 @@ struct BootstrapTest {
   std::optional<double>
       p;  ///< (1 + replicates that stray from the difference as far as it is from 0) / (1 + replicates)
   std::optional<Interval> confidence;  ///< percentiles of the replicates
+  int replicates = 0;                  ///< as it was asked for
+  std::uint64_t seed = 0;
 };
+inline void describe(Visitor& v, BootstrapTest& t) {
+  v("p", t.p, "Two-tailed; absent without spread.");
+  v({"difference_mm", "Of the means over all points, after minus before.", "mm"}, t.difference);
+  v({"standard_error_mm", "Of the difference.", "mm"}, t.standard_error);
+  describe_interval(v, {"confidence_mm", "Percentiles of the replicates.", "mm"}, t.confidence);
+  v("verdict", t.verdict, "Whether the test could say anything.");
+  v("replicates", t.replicates, "Draws.");
+  v("seed", t.seed, "Of the draws.");
+}
 
 /// Draws each contour anew from its own blocks, which wrap round. One random engine, contours in order: serial.
 /// @pre at least one contour on each side, 3 values on each, all finite. O(replicates · points / block).

@@ -65,6 +65,18 @@ struct PooledTests {
   double n_effective_after = 0.0;
 };
 
+inline void describe(Visitor& v, PooledTests& t) {
+  v.derived("test", std::string("student, pooled by point"), "Which one.");
+  describe(v, t.student);
+  v.derived("n_before", t.before.n, "Points.");
+  v.derived("n_after", t.after.n, "Points.");
+  v("welch", t.welch, "With a variance for each side.");
+  v("effect", t.effect, "Absent where it cannot be computed.");
+  v("n_effective_before", t.n_effective_before, "Independent values that the points are worth.");
+  v("n_effective_after", t.n_effective_after, "Independent values that the points are worth.");
+  v("block_bootstrap", t.bootstrap, "The same question, but neighbours on a contour count as such.");
+}
+
 /// By specimen: one value each, its mean error.
 struct SpecimenTests {
   SampleMoments before, after;
@@ -76,6 +88,24 @@ struct SpecimenTests {
   std::optional<std::size_t> fewest;
   [[nodiscard]] const TTest& main() const { return paired ? *paired : welch; }
 };
+
+inline void describe(Visitor& v, SpecimenTests& t) {
+  v.derived("test", std::string(t.paired ? "paired, by specimen" : "welch, by specimen"),
+            "Which one is the main test.");
+  if (!v.sets()) {
+    TTest main = t.main();
+    describe(v, main);
+  }
+  v.derived("n_before", t.before.n, "Specimens.");
+  v.derived("n_after", t.after.n, "Specimens.");
+  v.derived("mean_before_mm", t.before.mean, "Mean of the specimens' mean errors.");
+  v.derived("mean_after_mm", t.after.mean, "Mean of the specimens' mean errors.");
+  v("student", t.student, "With one variance.");
+  v("welch", t.welch, "With a variance for each side.");
+  v("paired", t.paired, "Absent where the specimens are no pairs.");
+  v("effect", t.effect, "Absent where it cannot be computed.");
+  v("fewest_specimens", t.fewest, "In each group, or pairs, with which this effect would show.");
+}
 
 /// Whether incisions after a change miss by less than those before it.
 struct Comparison {

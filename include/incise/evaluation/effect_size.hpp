@@ -14,6 +14,14 @@ struct EffectSize {
   Interval confidence;    ///< of g, at the level asked for, from the noncentral t distribution
 };
 
+inline void describe(Visitor& v, EffectSize& e) {
+  v("hedges_g", e.hedges_g, "Difference over standard deviation, without bias.");
+  v("cohens_d", e.cohens_d, "The same with the bias of few values.");
+  std::optional<Interval> confidence = e.confidence;
+  describe_interval(v, {"confidence", "Interval of g."}, confidence);
+  if (v.sets()) e.confidence = confidence.value_or(Interval{});
+}
+
 /// Of two samples: difference over their common standard deviation, times Γ(f/2) / (√(f/2) Γ((f−1)/2)) with
 /// f = n_before + n_after − 2. Absent for f < 2, without spread, and for |t| > 300, where
 /// the interval cannot be computed. Source: [Hedges1981].

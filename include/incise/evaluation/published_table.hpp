@@ -75,6 +75,14 @@ inline constexpr std::array<std::string_view, 14> kAuditRuleNames{
   return kAuditRuleNames;
 }
 
+/// Whose numbers; absent: the row's own columns.
+inline void describe_group(Visitor& v, std::string& group) {
+  std::optional<std::string> named;
+  if (!group.empty()) named = group;
+  v("of", named, "Whose numbers; absent: the row's own.");
+  if (v.sets()) group = named.value_or("");
+}
+
 struct Finding {
   AuditRule rule = AuditRule::SdTooLarge;
   std::string group;     ///< whose; empty: the row's own columns
@@ -84,6 +92,13 @@ struct Finding {
 
 /// One sentence for a person: rule, numbers, bound.
 [[nodiscard]] std::string to_text(const Finding& finding);
+inline void describe(Visitor& v, Finding& f) {
+  v("rule", f.rule, "That is broken.");
+  describe_group(v, f.group);
+  v("printed", f.printed, "The number that cannot be.");
+  v("bound", f.bound, "What it would have to keep to.");
+  v.derived("text", to_text(f), "The same as a sentence.");
+}
 
 /// A rule that needs a number which the table does not print.
 struct Unchecked {
@@ -92,11 +107,24 @@ struct Unchecked {
   std::string needs;
 };
 
+inline void describe(Visitor& v, Unchecked& u) {
+  v("rule", u.rule, "That could not be checked.");
+  describe_group(v, u.group);
+  v("needs", u.needs, "What the table does not print.");
+}
+
 struct AuditedRow {
   std::string name;
   std::vector<Finding> findings;         ///< empty: nothing impossible
   std::vector<Unchecked> not_checkable;  ///< what "nothing impossible" does not cover
 };
+
+inline void describe(Visitor& v, AuditedRow& r) {
+  v("name", r.name, "Of the row.");
+  v.derived("possible", r.findings.empty(), "Whether nothing impossible was found.");
+  v("findings", r.findings, "What no set of numbers can do.");
+  v("not_checkable", r.not_checkable, "What \"possible\" does not cover.");
+}
 
 struct Audit {
   std::vector<AuditedRow> rows;  ///< as given
@@ -106,6 +134,23 @@ struct Audit {
   std::size_t rows_on_baseline = 0;
   std::size_t scored_rows = 0;  ///< rows with a per cent above 0, mean and max
 };
+
+inline void describe(Visitor& v, Audit& a) {
+  v("impossible_rows", a.impossible_rows, "How many no data can produce.");
+  v.derived("checked_rows", a.rows.size(), "How many there are.");
+  v("rows", a.rows, "As given.");
+  const Field baseline{"score_baseline_mm",
+                       "Baselines that explain the per cents of most rows; absent: no row has one."};
+  if (!v.optional(baseline, a.baseline_mm.has_value())) return;
+  BaselineRange range = a.baseline_mm.value_or(BaselineRange{});
+  v.begin(baseline);
+  v({"low", "The least of them.", "mm"}, range.low_mm);
+  v({"high", "The greatest.", "mm"}, range.high_mm);
+  v("rows", a.rows_on_baseline, "That they explain.");
+  v("of", a.scored_rows, "Rows with a per cent above 0, mean and max.");
+  v.end();
+  if (v.sets()) a.baseline_mm = range;
+}
 
 /// Tells which rows of a published table cannot be. A row that passes is possible, which is less than right.
 /// @throws InvalidArgument with every violation of the settings; for a number that is not finite.

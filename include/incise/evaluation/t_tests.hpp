@@ -1,7 +1,9 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -24,6 +26,16 @@ struct Interval {
   double high = 0.0;
 };
 
+/// An interval as a list of its two ends.
+inline void describe_interval(Visitor& v, const Field& field, std::optional<Interval>& interval) {
+  std::optional<std::array<double, 2>> ends;
+  if (interval) ends = {interval->low, interval->high};
+  v(field, ends);
+  if (!v.sets()) return;
+  interval.reset();
+  if (ends) interval = Interval{(*ends)[0], (*ends)[1]};
+}
+
 /// Whether a test could say anything.
 enum class TestVerdict {
   Tested,
@@ -45,6 +57,16 @@ struct TTest {
   std::optional<double> p;             ///< (0, 1]; absent unless tested
   std::optional<Interval> confidence;  ///< of the difference, at the level asked for; absent unless tested
 };
+
+inline void describe(Visitor& v, TTest& t) {
+  v("t", t.t, "Difference over its standard error; absent unless tested.");
+  v("df", t.df, "Degrees of freedom; absent where there are too few values.");
+  v("p", t.p, "Two-tailed; absent unless tested.");
+  v({"difference_mm", "Of the means, after minus before.", "mm"}, t.difference);
+  v({"standard_error_mm", "Of the difference.", "mm"}, t.standard_error);
+  describe_interval(v, {"confidence_mm", "Interval of the difference.", "mm"}, t.confidence);
+  v("verdict", t.verdict, "Whether the test could say anything.");
+}
 
 /// Two samples that share one variance. Source: [Student1908]; needs n_before + n_after >= 3.
 /// @pre n >= 1, sd >= 0, all finite; level in (0, 1).

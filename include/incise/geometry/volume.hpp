@@ -27,6 +27,11 @@ struct VolumeGrid {
            static_cast<std::size_t>(size[0]) *
                (static_cast<std::size_t>(j) + static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k));
   }
+  /// The voxel (i, j, k) at a position in the array: the inverse of `offset`.
+  [[nodiscard]] std::array<int, 3> voxel_at(std::size_t offset) const {
+    const auto nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]);
+    return {static_cast<int>(offset % nx), static_cast<int>(offset / nx % ny), static_cast<int>(offset / (nx * ny))};
+  }
   [[nodiscard]] bool contains(int i, int j, int k) const {
     return i >= 0 && j >= 0 && k >= 0 && i < size[0] && j < size[1] && k < size[2];
   }

@@ -15,7 +15,7 @@
 
 namespace incise {
 
-/// Which part of a CT is the specimen. Lengths mm, LPS world coordinates.
+/// Which part of a CT, or of a label volume, is the specimen. Lengths mm, LPS world coordinates. Labels need no window.
 struct SegmentationSettings {
   double window_low_hu = -20.0;    ///< the tissue's least HU (inclusive)
   double window_high_hu = 180.0;   ///< and greatest (inclusive)
@@ -53,7 +53,7 @@ struct Segmentation {
   std::size_t voxels = 0;             ///< labelled
   double volume_mm3 = 0.0;            ///< of the labelled voxels
   double occupancy_volume_mm3 = 0.0;  ///< inside the 0.5 iso-surface of the trilinear occupancy: what a mesher sees
-  double tissue_hu = 0.0;             ///< median over the labelled voxels that lie in the window
+  std::optional<double> tissue_hu;    ///< median over the labelled voxels that lie in the window; absent: from labels
   std::size_t components = 0;    ///< separate pieces in the window (after the opening's erosion), before one was chosen
   std::size_t holes_filled = 0;  ///< cavities
   std::size_t hole_voxels = 0;   ///< and their voxels
@@ -69,7 +69,8 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("voxels", s.voxels, "That are tissue.");
   v("volume_mm3", s.volume_mm3, "Of these voxels.");
   v("occupancy_volume_mm3", s.occupancy_volume_mm3, "Inside the 0.5 iso-surface of the occupancy.");
-  v("tissue_hu", s.tissue_hu, "Median over the voxels that are tissue and lie in the window.");
+  v("tissue_hu", s.tissue_hu,
+    "Median over the voxels that are tissue and lie in the window; absent: the tissue was given as labels.");
   v("components", s.components, "Separate pieces in the window, before one was chosen.");
   v("holes_filled", s.holes_filled, "Cavities.");
   v("hole_voxels", s.hole_voxels, "Voxels of the cavities.");
@@ -97,5 +98,11 @@ inline void describe(Visitor& v, Segmentation& s) {
 /// @throws Cancelled.
 /// @note O(voxels of the region); about a second for 150 x 160 x 100.
 [[nodiscard]] Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor);
+
+/// The same from labels that somebody drew: every label but 0 is tissue. The occupancy is 0 or 1 before it is smoothed,
+/// so the skin is as accurate as the voxels are small. The window is not used, and the verdict says nothing of HU.
+/// @throws as `segment`; CaseError where no voxel of the region has a label, or a seed lies where the label is 0.
+[[nodiscard]] Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings,
+                                          Monitor& monitor);
 
 }  // namespace incise

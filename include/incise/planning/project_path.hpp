@@ -25,14 +25,16 @@ struct ProjectSettings {
   double max_shift_mm = 5.0;
   AxisMode axis_mode = AxisMode::Approach;
 };
+inline constexpr Range kLaidDepthMm{0.0, 50.0, true};
+inline constexpr Range kLaidSpeedMmS{0.0, 50.0, true};
 inline void describe(Visitor& v, ProjectSettings& s) {
   v("kind", s.kind, "A mark along the tumour edge, or the incision.");
   v({"mark_depth_mm", "Of a marking path below the surface (the paper's inferior offset).", "mm"}, s.mark_depth_mm,
-    kPositive);
-  v({"mark_speed_mm_s", "Of a marking path.", "mm/s"}, s.mark_speed_mm_s, kPositive);
-  v("mark_waypoints", s.mark_waypoints, "Along the tumour edge.", {8.0});
-  v({"incise_depth_mm", "Of an incision; absent: as the path says.", "mm"}, s.incise_depth_mm, kPositive);
-  v({"incise_speed_mm_s", "Of an incision; absent: as the path says.", "mm/s"}, s.incise_speed_mm_s, kPositive);
+    kLaidDepthMm);
+  v({"mark_speed_mm_s", "Of a marking path.", "mm/s"}, s.mark_speed_mm_s, kLaidSpeedMmS);
+  v("mark_waypoints", s.mark_waypoints, "Along the tumour edge.", {8.0, 2000.0});
+  v({"incise_depth_mm", "Of an incision; absent: as the path says.", "mm"}, s.incise_depth_mm, kLaidDepthMm);
+  v({"incise_speed_mm_s", "Of an incision; absent: as the path says.", "mm/s"}, s.incise_speed_mm_s, kLaidSpeedMmS);
   v({"max_gap_mm", "Farthest from a waypoint to the nearest measured point, in the picture.", "mm"}, s.max_gap_mm,
     kNotNegative);
   v({"smoothing_mm", "Radius over which the shift onto the surface is averaged; 0: every point by itself.", "mm"},

@@ -70,7 +70,7 @@ inline constexpr std::array<std::string_view, 4> kDriftOutcomeNames{"converged",
   return kDriftOutcomeNames;
 }
 
-struct Drift {
+struct CoherentPointDrift {
   Similarity T_target_source;
   DriftOutcome outcome = DriftOutcome::IterationLimit;
   double sigma_mm = 0.0;       ///< width of the Gaussians at the end
@@ -87,7 +87,8 @@ struct Drift {
 /// Without `first_sigma` only the start's rotation counts: middles and sizes are made alike first, as published.
 /// @param source, target  M x 3 and N x 3, any unit.  @param start  where the source is to begin.
 /// @pre finite points, at least one each.  @throws InvalidArgument.  Source: [Myronenko2010], Fig. 2.
-[[nodiscard]] Drift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target, const Similarity& start,
-                                const DriftSettings& settings, Workers& workers, Monitor& monitor);
+[[nodiscard]] CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target,
+                                             const Similarity& start, const DriftSettings& settings, Workers& workers,
+                                             Monitor& monitor);
 
 }  // namespace incise

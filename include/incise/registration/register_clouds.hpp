@@ -65,7 +65,7 @@ inline constexpr std::array<std::string_view, 10> kRegistrationOutcomeNames{
 /// along the normals see least to best, each measured by how far it moves the overlap (rms). A plane leaves three of
 /// them (four with scale) at 0, a sphere three, a cylinder two. Sources: [Gelfand2003] for the slippage, [Censi2007]
 /// for the covariance.
-struct Certificate {
+struct PoseObservability {
   int motions = 0;                  ///< 7, or 6 with the scale fixed
   std::array<double, 7> visible{};  ///< share of each motion that appears in the distances, ascending: eigenvalues of
                                     ///< the Gauss-Newton matrix
@@ -83,7 +83,7 @@ struct Certificate {
   Vec3 center_mm = Vec3::Zero();            ///< middle of the overlap, target frame
   std::string weakest;                      ///< for a person: what kind of motion is least visible
 };
-inline void describe(Visitor& v, Certificate& c) {
+inline void describe(Visitor& v, PoseObservability& c) {
   v("motions", c.motions, "7, or 6 with the scale fixed.");
   std::vector<std::optional<double>> visible;
   for (int k = 0; k < c.motions; ++k) visible.push_back(if_finite(c.visible[static_cast<std::size_t>(k)]));
@@ -133,7 +133,7 @@ struct Registration {
   double settled_max_mm = 0.0;
   bool scale_at_limit = false;       ///< the scale stands at an end of its range
   bool is_scale_suspicious = false;  ///< outside 0.95 to 1.05: both sensors are metric
-  Certificate certificate;
+  PoseObservability certificate;
 };
 void describe(Visitor& v, Registration& r);
 

@@ -12,6 +12,7 @@ namespace incise {
 /// The files that a case names, as absolute paths; empty: not named.
 struct CaseInputs {
   std::filesystem::path ct_volume;
+  std::filesystem::path ct_labels;  ///< in place of thresholds
   std::filesystem::path specimen_mesh;
   std::filesystem::path tumor_contour;
   std::filesystem::path tumor_surface;    ///< closed, in the configuration of the contour

@@ -54,7 +54,9 @@ class RunFolder : public Inputs, public ProductSink {
   [[nodiscard]] bool has_products() const;
 
   CtVolume read_ct(Monitor& monitor) override;
-  std::string ct_digest(Monitor& monitor) override;
+  /// @throws DataError also where the CT that is given beside them does not hold the labelled tissue.
+  std::optional<LabelVolume> read_labels(Monitor& monitor) override;
+  std::string scan_digest(Monitor& monitor) override;
   std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) override;
   std::optional<Contour> read_tumor_edge() override;
   std::optional<TriMesh> read_tumor_surface() override;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/names.hpp>
 #include <incise/core/workers.hpp>
@@ -53,6 +54,22 @@ struct VerificationCheck {
   std::string note;  ///< further figures worth a look, or why it failed; may be empty
   CheckPlot plot;
 };
+
+inline void describe(Visitor& v, VerificationCheck& c) {
+  v("name", c.name, "Lower case, stable.");
+  v("passed", c.passed, "Whether the criterion is met.");
+  v("expected", c.expected, "What is known.");
+  std::optional<double> found = if_finite(c.found);
+  v("found", found, "What the solver gave; absent where it did not get that far.");
+  if (v.sets()) c.found = found.value_or(std::numeric_limits<double>::quiet_NaN());
+  v("tolerance", c.tolerance, "Of the criterion.");
+  v("criterion", c.criterion, "When the check counts as passed.");
+  v("unit", c.unit, "Of expected, found and tolerance.");
+  v("what", c.what, "One sentence.");
+  v("source", c.source, "Of the expected value.");
+  v("note", c.note, "Further figures, or why it failed.");
+  v({"wall_s", "That it took.", "s"}, c.wall_s);
+}
 
 struct VerificationSettings {
   std::string only;              ///< runs the checks whose name starts with this; empty: all

@@ -13,14 +13,16 @@
 
 namespace incise {
 
-/// What a run is given, wherever it comes from. A specimen is a CT, or a mesh.
+/// What a run is given, wherever it comes from. A specimen is a CT, a label volume, or a mesh.
 class Inputs {
  public:
   virtual ~Inputs() = default;
 
   virtual CtVolume read_ct(Monitor& monitor) = 0;
-  /// Hash of all that read_ct depends on; by default of what it gives.
-  virtual std::string ct_digest(Monitor& monitor);
+  /// The specimen's labels, where somebody drew them; nothing: thresholds find it in the CT.
+  virtual std::optional<LabelVolume> read_labels(Monitor&) { return std::nullopt; }
+  /// Hash of all that read_ct or, where there are labels, read_labels depends on; by default of what it gives.
+  virtual std::string scan_digest(Monitor& monitor);
   virtual std::optional<TetMesh> read_specimen_mesh(Monitor&) {
     return std::nullopt;
   }  ///< nothing: the mesh is made from the CT

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Kills `incise run` (SIGKILL, the whole process group) again and again, then runs it to its end and compares with a run that nothing disturbed.
+"""Kills `incise run` or `incise experiment` (SIGKILL, the whole process group) again and again, then runs it to its end and compares with a run that nothing disturbed.
 
 Where a kill falls is drawn from the seed: after a share of the time that a whole run takes, or at the n-th change of what the output folder
 lists, which meets the moments at which results change places. Time decides where a kill falls, never whether the test passes.
 Every fourth folder starts from a CT, the others from a mesh. After each kill: every result folder that is there is whole. At the end: same files and bytes (but for times), nothing left over, and a foreign
-file in the output folder as it was.
+file in the output folder as it was. An experiment is compared as tests/bits/outputs.py does.
 """
 
 import argparse
@@ -21,6 +21,8 @@ import tempfile
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "cli"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "bits"))
+import outputs  # noqa: E402
 import small_case  # noqa: E402
 
 MOST_KILLS_IN_A_ROW = 8  # of one folder, before it is run to its end
@@ -132,8 +134,8 @@ class Harness:
         was_running = running.poll() is None
         os.killpg(running.pid, signal.SIGKILL) if was_running else None
         _, said = running.communicate()
-        require(running.returncode in (0, -signal.SIGKILL), f"status {running.returncode}: {said}")
-        return running.returncode != 0
+        require(running.returncode in (0, 4, -signal.SIGKILL), f"status {running.returncode}: {said}")
+        return running.returncode == -signal.SIGKILL
 
     def look_at(self, out):
         """Results that are there are whole."""
@@ -164,9 +166,43 @@ class Harness:
         return done
 
 
+class ExperimentHarness(Harness):
+    """Runs of one small experiment. A kill falls within a share of the whole time, so that many are met on the way."""
+
+    SHARE = 0.25
+
+    def __init__(self, command, generator, root):
+        super().__init__(command, lambda *_: None, generator, root)
+
+    def start(self, out):
+        words = [self.command, "experiment", "--quick", "--specimens", "2", "--tets", "6000", "--seed", "511", "-o", "out", "--json", "--quiet", "--threads", "1"]
+        return subprocess.Popen(words, cwd=out.parent, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
+
+    def fresh(self, name):
+        out = self.root / name / "out"
+        out.parent.mkdir(parents=True)
+        return out
+
+    def finished(self, out):
+        running = self.start(out)
+        _, said = running.communicate()
+        require(running.returncode in (0, 4), f"status {running.returncode}: {said}")
+        return {name: value for files in outputs.files_of(out).values() for name, value in files.items()}
+
+    def wait_for_the_moment(self, running, out):
+        moment = time.monotonic() + self.random.random() * self.SHARE * self.whole_s
+        while running.poll() is None and time.monotonic() < moment:
+            time.sleep(0.001)
+
+    def look_at(self, out):
+        done = sorted(entry.stem for entry in out.rglob("cache/*.bin")) if out.exists() else []
+        self.killed_at[f"with {len(done):2d} entries of the cache"] += 1
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("--command", default=os.environ.get("INCISE_COMMAND"), help="the incise command")
+    parser.add_argument("--of", choices=["run", "experiment"], default="run", help="what is killed")
     parser.add_argument("--count", type=int, default=500, help="kills in all")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--end-at", type=float, default=None, help="begin no further folder after this many seconds")
@@ -175,14 +211,17 @@ def main():
     with tempfile.TemporaryDirectory(prefix="incise_kills_") as root:
         command, generator = str(pathlib.Path(options.command).resolve()), random.Random(options.seed)
         harnesses = {}
-        for name, write_case in (("CT", ct_case), ("mesh", mesh_case)):
-            (pathlib.Path(root) / name).mkdir()
-            harnesses[name] = Harness(command, write_case, generator, pathlib.Path(root) / name)
+        for name in ("CT", "mesh") if options.of == "run" else ("experiment",):
+            folder = pathlib.Path(root) / name
+            folder.mkdir()
+            kinds = {"CT": lambda at: Harness(command, ct_case, generator, at), "mesh": lambda at: Harness(command, mesh_case, generator, at),
+                     "experiment": lambda at: ExperimentHarness(command, generator, at)}
+            harnesses[name] = kinds[name](folder)
         most_in_a_row = min(MOST_KILLS_IN_A_ROW, (options.count + 1) // 2)  # so that both kinds are met
         kills = chains = 0
         while kills < options.count and (options.end_at is None or time.monotonic() - begun < options.end_at):
             chains += 1
-            harness = harnesses["CT" if chains % CT_EVERY == 1 else "mesh"]
+            harness = harnesses.get("experiment") or harnesses["CT" if chains % CT_EVERY == 1 else "mesh"]
             try:
                 kills += harness.chain(chains, min(generator.randint(1, most_in_a_row), options.count - kills))
             except Finding as finding:

@@ -9,7 +9,7 @@
 #include <incise/core/monitor.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/input_file.hpp>
-#include <incise/io/json_text.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/pvd_io.hpp>

@@ -5,12 +5,12 @@
 #include <incise/core/described_bytes.hpp>
 #include <incise/cutting/incision_progress.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_text.hpp>
-#include <incise/storage/bench_files.hpp>
+#include <incise/io/json_file.hpp>
+#include <incise/laboratory/bench_files.hpp>
+#include <incise/laboratory/power_file.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/case_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
-#include <incise/storage/power_file.hpp>
 #include <incise/storage/published_table_file.hpp>
 #include <incise/storage/registration_json.hpp>
 #include <incise/storage/result_json.hpp>

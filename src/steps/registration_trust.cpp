@@ -1,0 +1,36 @@
+#include <incise/core/error.hpp>
+#include <incise/io/input_file.hpp>
+#include <incise/steps/registration_trust.hpp>
+
+#include <fmt/format.h>
+
+namespace incise::steps {
+
+Verdict verdict_of(const RegistrationRecord& registration, const std::filesystem::path& file) {
+  Verdict verdict;
+  if (!registration.is_sealed) {
+    verdict.add("typed_transform", {},
+                fmt::format("{} does not carry the digest of `incise register`: it is not known how its transform was "
+                            "found, nor how well it fits",
+                            file.string()));
+  }
+  for (const std::string& doubt : registration.doubts) verdict.add("registration", {}, doubt);
+  return verdict;
+}
+
+void require_clouds_unchanged(const RegistrationRecord& registration, const std::filesystem::path& file,
+                              Monitor& monitor) {
+  for (const RegistrationInput& cloud : registration.inputs) {
+    std::error_code absent;
+    if (!std::filesystem::exists(cloud.path, absent)) {
+      monitor.message(Severity::Warning,
+                      fmt::format("not checked: whether {}, from which {} was made, is unchanged; it is missing",
+                                  cloud.path, file.string()));
+    } else if (sha256_of_input(cloud.path) != cloud.sha256) {
+      throw DataError(file, cloud.key, fmt::format("that of another {}", cloud.path),
+                      "the digest of the cloud as it is now", "It was changed since: register again");
+    }
+  }
+}
+
+}  // namespace incise::steps

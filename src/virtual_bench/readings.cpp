@@ -1,0 +1,96 @@
+#include <incise/core/random.hpp>
+#include <incise/core/units.hpp>
+#include <incise/virtual_bench/readings.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr std::uint64_t kReadingStream = 0xc2b2ae35ULL;
+constexpr double kForceNoise = 0.05;       // standard deviation, relative
+constexpr double kElasticityNoise = 0.20;  // likewise
+constexpr double kElasticityVoxelMm = 2.0;
+const Vec3 kHolderMm(600.0, 0.0, 150.0);   // the middle of the holder's platform in the base frame
+constexpr double kCameraHeightMm = 230.0;  // above the platform
+constexpr int kCloudStride = 3;            // every third pixel of the depth picture becomes a point
+
+Points cloud_of(const FrameShot& frame) {
+  Points cloud;
+  for (int v = 0; v < frame.camera.height; v += kCloudStride) {
+    for (int u = 0; u < frame.camera.width; u += kCloudStride) {
+      const std::size_t n =
+          static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.camera.width) + static_cast<std::size_t>(u);
+      if (frame.is_specimen[n] == 0 || frame.depth.counts[n] == 0) continue;
+      const double z = frame.depth_unit_mm * frame.depth.counts[n];
+      cloud.emplace_back((u - frame.camera.cx) / frame.camera.focal_px * z,
+                         (v - frame.camera.cy) / frame.camera.focal_px * z, z);
+    }
+  }
+  return cloud;
+}
+
+GrayVolume elasticity_of(const BenchBody& body, Random& random) {
+  const TissueModel& model = *body.tissue;
+  const Box3 box = bounding_box(model.mesh.vertices);
+  GrayVolume map;
+  map.grid.spacing_mm = Vec3::Constant(kElasticityVoxelMm);
+  map.grid.origin_mm = box.min();
+  for (int axis = 0; axis < 3; ++axis)
+    map.grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(box.sizes()[axis] / kElasticityVoxelMm) + 1;
+  map.voxels.assign(map.grid.voxel_count(), 0.0F);
+  const TetLocator locator(model.mesh, model.mesh.vertices);
+  for (int k = 0; k < map.grid.size[2]; ++k) {
+    for (int j = 0; j < map.grid.size[1]; ++j) {
+      for (int i = 0; i < map.grid.size[0]; ++i) {
+        const auto point = locator.locate(map.grid.world_from_index(Vec3(i, j, k)), 0.0);
+        if (!point) continue;
+        const LameParameters& lame = model.lame[point->tet.index()];
+        const double e = lame.mu_kpa * (3.0 * lame.lambda_kpa + 2.0 * lame.mu_kpa) / (lame.lambda_kpa + lame.mu_kpa);
+        map.at(i, j, k) = static_cast<float>(e * std::max(0.1, 1.0 + kElasticityNoise * random.normal()));
+      }
+    }
+  }
+  return map;
+}
+
+}  // namespace
+
+Mat4 T_robot_specimen(const Specimen& specimen) {
+  // The tip of the tongue (-y) points back to the base, its back up.
+  Mat3 laid;
+  laid << 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  const Mat3 turn =
+      Eigen::AngleAxisd(units::rad_from_deg(specimen.placement_turn_deg), Vec3::UnitZ()).toRotationMatrix();
+  Mat4 T = Mat4::Identity();
+  T.topLeftCorner<3, 3>() = turn * laid;
+  T.topRightCorner<3, 1>() = kHolderMm + Vec3(specimen.placement_x_mm, specimen.placement_y_mm, 0.0);
+  return T;
+}
+
+Mat4 T_robot_camera(const Specimen& specimen) {
+  Mat3 down;
+  down << 0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
+  const double tilt = units::rad_from_deg(specimen.camera_tilt_deg);
+  Mat4 T = Mat4::Identity();
+  T.topLeftCorner<3, 3>() = Eigen::AngleAxisd(tilt, Vec3::UnitY()).toRotationMatrix() * down;
+  // The tilted camera keeps the holder in the middle of its picture.
+  T.topRightCorner<3, 1>() = kHolderMm - kCameraHeightMm * T.block<3, 1>(0, 2);
+  return T;
+}
+
+Readings take_readings(const BenchBody& body, bool has_elasticity, Monitor& monitor) {
+  Random random(body.specimen.seed ^ kReadingStream);
+  Readings readings;
+  readings.stretch_force_n = body.stretch_force_n * (1.0 + kForceNoise * random.normal());
+  readings.ct = make_phantom(phantom_settings(body.specimen), monitor).ct;
+  readings.T_robot_camera = T_robot_camera(body.specimen);
+  const Mat4 T_camera_specimen = readings.T_robot_camera.inverse() * T_robot_specimen(body.specimen);
+  readings.frame = shoot_frame(body, T_camera_specimen);
+  readings.cloud_mm = cloud_of(readings.frame);
+  if (has_elasticity) readings.elasticity_kpa = elasticity_of(body, random);
+  return readings;
+}
+
+}  // namespace incise
