@@ -61,12 +61,12 @@ endfunction()
 # hangs in the command is found by its watch (tests/cli/command.py).
 set(INCISE_TEST_STOP_S 21600)
 
-# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end|long] [IN_GROUPS] [SHARDS n])
+# incise_test(<module> SOURCES … [USES <incise modules>] [LINK <targets>] [LABEL unit|verification|end_to_end|long] [IN_GROUPS] [SHARDS n [SKIPPABLE <filter>]])
 # One test program per folder under tests/; each TEST in it is one ctest entry. With SHARDS there are n entries, each with its share of the TESTs:
-# for rooms that link imaging, whose libraries take longer to load (0.2 s) than most of their tests take to run. There a skipped TEST is shown
-# in the output alone.
+# for rooms that link imaging, whose libraries take longer to load (0.2 s) than most of their tests take to run. A TEST that
+# may be skipped is an entry of its own all the same (SKIPPABLE, a filter as googletest has it), or its shard fails: no skip goes unseen.
 function(incise_test name)
-  cmake_parse_arguments(ARG "IN_GROUPS" "LABEL;SHARDS" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "IN_GROUPS" "LABEL;SHARDS;SKIPPABLE" "SOURCES;USES;LINK" ${ARGN})
   if(NOT ARG_LABEL)
     set(ARG_LABEL unit)
   endif()
@@ -81,16 +81,20 @@ function(incise_test name)
   endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${target} PRIVATE ${ARG_USES} ${ARG_LINK} incise_test_support GTest::gtest_main GTest::gmock incise_warnings)
+  set(discovered)
   if(ARG_SHARDS)
     math(EXPR last "${ARG_SHARDS} - 1")
     foreach(shard RANGE ${last})
       math(EXPR number "${shard} + 1")
-      add_test(NAME ${name}.${number}_of_${ARG_SHARDS} COMMAND ${target} --gtest_brief=1)
+      add_test(NAME ${name}.${number}_of_${ARG_SHARDS} COMMAND ${target} --gtest_brief=1 --gtest_filter=-${ARG_SKIPPABLE})
       set_tests_properties(${name}.${number}_of_${ARG_SHARDS} PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${INCISE_TEST_STOP_S}
-        ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${shard}")
+        FAIL_REGULAR_EXPRESSION "SKIPPED" ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${shard}")
     endforeach()
-    return()
+    if(NOT ARG_SKIPPABLE)
+      return()
+    endif()
+    set(discovered TEST_FILTER ${ARG_SKIPPABLE})
   endif()
-  gtest_discover_tests(${target} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. 
+  gtest_discover_tests(${target} ${discovered} DISCOVERY_MODE PRE_TEST TEST_PREFIX ${name}. 
     PROPERTIES LABELS ${ARG_LABEL} TIMEOUT ${INCISE_TEST_STOP_S} SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
 endfunction()

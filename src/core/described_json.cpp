@@ -148,7 +148,12 @@ std::size_t JsonReader::begin_list(const Field& field, std::size_t, std::size_t)
 
 bool JsonReader::optional(const Field& field, bool) {
   const Json* value = find(field);
-  if (value == nullptr || value->is_null()) return false;
+  if (value == nullptr) return false;
+  if (value->is_null()) {
+    // Who writes such a field leaves it out: a null was put in its place by hand, and may have been meant to say more.
+    if (field.is_omitted) refuse(field, "null", "a value, or no such key");
+    return false;
+  }
   waiting_ = value;
   return true;
 }

@@ -53,7 +53,8 @@ bool is_hash(const std::string& text) {
 
 void describe(Visitor& v, PathFile& file) {
   ToolPath& p = file.path;
-  if (v.optional({"schema"}, true)) constant(v, {"schema", "Format and version of this file."}, kSchema);
+  const Field schema{.name = "schema", .meaning = "Format and version of this file.", .is_omitted = true};
+  if (v.optional(schema, true)) constant(v, schema, kSchema);
   v("frame", p.frame, "Whose coordinates the path has.");
   v("kind", p.kind, "What the tool does along it.");
   v("closed", p.is_closed, "Whether the last waypoint leads back to the first.");
@@ -63,7 +64,8 @@ void describe(Visitor& v, PathFile& file) {
   const std::size_t least = p.is_closed ? 3 : 2;
   if (waypoints.size() < least)
     v.refuse({"waypoints"}, fmt::format("{} items", waypoints.size()), fmt::format("at least {}", least));
-  if (v.optional({"tumor_edge"}, true)) v({"tumor_edge", "In the same frame.", "mm"}, p.tumor_edge.points);
+  const Field edge{.name = "tumor_edge", .meaning = "In the same frame.", .unit = "mm", .is_omitted = true};
+  if (v.optional(edge, true)) v(edge, p.tumor_edge.points);
   const Field edge_closed{.name = "tumor_edge_closed", .meaning = "By default it is.", .is_omitted = true};
   if (v.optional(edge_closed, !p.tumor_edge.is_closed)) v(edge_closed, p.tumor_edge.is_closed);
   const Field transform{.name = "T_robot_sim", .meaning = "Rows; p_robot = T p_sim, mm.", .is_omitted = true};

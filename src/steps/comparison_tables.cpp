@@ -51,7 +51,12 @@ TextTable test_table(const CutComparison& comparison) {
     add_test(table, points->student, "Student, pooled by point");
     add_test(table, points->welch, "Welch, pooled by point");
     const BootstrapTest& b = points->bootstrap;
-    add_test(table, {b.verdict, b.difference, b.standard_error, {}, {}, b.p, b.confidence},
+    add_test(table,
+             {.verdict = b.verdict,
+              .difference = b.difference,
+              .standard_error = b.standard_error,
+              .p = b.p,
+              .confidence = b.confidence},
              "block bootstrap along the contours");
   }
   if (const auto& specimens = comparison.specimens) {

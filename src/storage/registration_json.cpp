@@ -107,8 +107,10 @@ RegistrationRecord read_registration(const std::filesystem::path& file) {
   record.rmse_mm = number_of(document, "rmse_mm", file, 0.0, kNoLimit);
   record.inlier_fraction = number_of(document, "inlier_fraction", file, 0.0, 1.0);
   record.camera_scale = number_of(document, "camera_scale", file, kLeastCameraScale, kMostCameraScale).value_or(1.0);
-  if (const auto found = document.find("certificate"); found != document.end() && found->is_object())
+  if (const auto found = document.find("certificate"); found != document.end() && !found->is_null()) {
+    if (!found->is_object()) throw DataError(file, "/certificate", fmt::format("{:.60}", found->dump()), "an object");
     record.scale_sd = number_of(*found, "scale_sd", file, 0.0, kNoLimit, "/certificate");
+  }
   if (const auto found = document.find("target_sha256"); found != document.end()) {
     if (!found->is_string()) throw DataError(file, "/target_sha256", found->dump(), "64 hex digits");
     record.target_sha256 = found->get<std::string>();

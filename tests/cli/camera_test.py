@@ -510,6 +510,9 @@ class ProjectTest(CommandTest):
         self.write_transform(scale=1.02, certificate={"scale_sd": 0.03})
         self.assert_refused(self.incise(*self.ARGUMENTS, "--camera", "camera.json"), BAD_DATA, "registration.json: /certificate/scale_sd: found 0.0300, which is 1", "at most 2.2 mm")
         self.assert_nothing_written(self.folder / "robot.json")
+        for lost in ("NaN", -1, []):  # its scale_sd would be, too, and with it this refusal
+            self.write_transform(scale=1.02, certificate=lost)
+            self.assert_refused(self.incise(*self.ARGUMENTS, "--camera", "camera.json"), BAD_DATA, "registration.json: /certificate: found")
 
     def take_away(self):
         for name in ("robot.json", "robot.json.manifest.json"):

@@ -94,6 +94,11 @@ TEST(ToolPathFile, NamesThePlaceOfWhatIsMissingOrOfTheWrongType) {
                 d["waypoints"][0]["position_mm"] = {1, 2};
               }),
               HasSubstr("/waypoints/0/position_mm: found [1,2], expected a list of 3 numbers"));
+  for (const char* key :
+       {"schema", "tumor_edge", "tumor_edge_closed", "T_robot_sim", "source_sha256", "specimen_id", "specimen_is"}) {
+    EXPECT_THAT(message_after([key](json& d) { d[key] = nullptr; }),
+                HasSubstr(std::string("/") + key + ": found null, expected a value, or no such key"));
+  }
   EXPECT_THAT(message_after([](json& d) { d["waypoints"][0]["position_mm"][1] = nullptr; }),
               HasSubstr("/waypoints/0/position_mm/1: found null, expected a number"));
   EXPECT_THAT(message_after([](json& d) { d["waypoints"].erase(0); }), HasSubstr("found 2 items, expected at least 3"));

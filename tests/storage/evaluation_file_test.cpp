@@ -73,6 +73,15 @@ TEST_F(EvaluationFileTest, WithoutAnIncisionHasNoErrors) {
   EXPECT_FALSE(file.too_close_at_mm.has_value());
 }
 
+TEST_F(EvaluationFileTest, ASuccessHasPointsAndNoOpenRing) {
+  nlohmann::ordered_json json = file_json(shifted_ring());
+  json["n_points"] = 0;
+  expect_refused(json, "/n_points", "0 beside the outcome success");
+  json = file_json(shifted_ring());
+  json["closed_loop"] = false;
+  expect_refused(json, "/closed_loop", "false beside the outcome success");
+}
+
 TEST_F(EvaluationFileTest, HoldsDistancesOfSpecimensOnlyAndAnOutcomeByName) {
   nlohmann::ordered_json json = file_json(shifted_ring());
   json["points"]["signed_error_mm"][3] = 1e200;  // its square is no number

@@ -52,7 +52,7 @@ struct Field {
   std::string_view meaning = {};
   std::string_view unit = {};
   std::string_view pattern = {};  ///< regular expression that a text matches
-  bool is_omitted = false;        ///< a summary leaves it out where it is absent
+  bool is_omitted = false;        ///< a summary leaves it out where it is absent, and holds no null for it
 };
 
 /// Numbers of one kind, side by side in memory: a table with `columns` numbers in each row.
@@ -63,7 +63,7 @@ struct Block {
   std::size_t count = 0;
   std::size_t columns = 1;
   Range range = kAny;         ///< of each number that people write; binary files may hold any
-  bool is_direction = false;  ///< three numbers whose length does not matter, as long as it is not 0
+  bool is_direction = false;  ///< three numbers whose length does not matter: see core/direction.hpp
 };
 
 class Visitor;
