@@ -10,7 +10,7 @@
 #include <incise/core/workers.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/imaging/photo_contours.hpp>
-#include <incise/imaging/picture.hpp>
+#include <incise/io/picture_io.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
 #include <incise/virtual_bench/pictures.hpp>
 

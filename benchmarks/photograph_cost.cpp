@@ -3,11 +3,13 @@
 #include "cost_table.hpp"
 #include "process_cost.hpp"
 #include "support/contour_shapes.hpp"
+#include "support/encode_jpeg.hpp"
 #include "support/photo_painter.hpp"
 
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/evaluation/level_loop.hpp>
 #include <incise/imaging/photo_contours.hpp>
+#include <incise/io/picture_io.hpp>
 
 #include <fmt/format.h>
 
@@ -58,7 +60,7 @@ Scene scene(const Kind& kind, int pixels) {
                          .width_mm = kind.width_px * kMmPerPixel,
                          .color = {205, 20, 35},
                          .is_outside = kind.red == RedLine::Kerf});
-  s.jpeg = encode_jpeg(testing::paint_photo(photo), 70);
+  s.jpeg = testing::encode_jpeg(testing::paint_photo(photo), 70);
   return s;
 }
 

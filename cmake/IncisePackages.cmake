@@ -20,17 +20,19 @@ if(NOT TARGET incise_cholmod)
   target_link_libraries(incise_cholmod INTERFACE ${OPENBLAS_LIBRARY} ${CHOLMOD_LIBRARY} OpenMP::OpenMP_CXX)
 endif()
 
-# OpenCV's CMake file comes with its whole development package only; three of its modules are all that photographs need, in imaging.
+# OpenCV's CMake file comes with its whole development package only; two of its modules are all that photographs need, in imaging.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
 find_library(OPENCV_CORE_LIBRARY opencv_core REQUIRED)
 find_library(OPENCV_IMGPROC_LIBRARY opencv_imgproc REQUIRED)
-find_library(OPENCV_IMGCODECS_LIBRARY opencv_imgcodecs REQUIRED)
 if(NOT TARGET incise_opencv)
   add_library(incise_opencv INTERFACE IMPORTED GLOBAL)
   target_include_directories(incise_opencv SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
-  target_link_libraries(incise_opencv INTERFACE ${OPENCV_IMGCODECS_LIBRARY} ${OPENCV_IMGPROC_LIBRARY} ${OPENCV_CORE_LIBRARY})
+  target_link_libraries(incise_opencv INTERFACE ${OPENCV_IMGPROC_LIBRARY} ${OPENCV_CORE_LIBRARY})
 endif()
-find_package(JPEG REQUIRED)           # tells whether a photograph is damaged, which OpenCV passes over, in imaging
+# Photographs and depth pictures, in io. OpenCV's own module for them brings GDAL and 85 libraries more, and paints over what is damaged.
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(TIFF REQUIRED)
 find_package(Boost 1.74 REQUIRED)     # headers of Boost.Math only: distributions, in evaluation
 
 # librsvg has a pkg-config file only. It turns figures into PNG, in report.

@@ -16,7 +16,7 @@
 namespace incise {
 namespace {
 
-constexpr const char* kStage = "making the phantom";
+constexpr const char* kPhantomStage = "making the phantom";
 constexpr double kScannerAirHu = -1000.0;
 constexpr double kGreatestHu = 3071.0;  // 12 bits from kAirHu
 constexpr double kAirAroundMm = 10.0;   // beside and above the specimen, and below the board
@@ -61,8 +61,8 @@ GrayVolume tissue_share(const TongueShape& shape, const VolumeGrid& grid, Monito
   const double low_z = grid.origin_mm.z() - 0.5 * h.z();
   std::vector<double> column(static_cast<std::size_t>(grid.size[2]));
   for (int j = 0; j < grid.size[1]; ++j) {
-    throw_if_cancelled(monitor, kStage);
-    monitor.progress(kStage, 0.5 * j / grid.size[1]);
+    throw_if_cancelled(monitor, kPhantomStage);
+    monitor.progress(kPhantomStage, 0.5 * j / grid.size[1]);
     for (int i = 0; i < grid.size[0]; ++i) {
       std::fill(column.begin(), column.end(), 0.0);
       for (int s = 0; s < kColumns * kColumns; ++s) {
@@ -213,11 +213,11 @@ Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor) {
   const Box3 board = board_of(phantom, settings);
   const VolumeGrid grid = scan_grid(board, phantom.bounds_mm, settings, random);
   GrayVolume ideal = mix(tissue_share(phantom.shape, grid, monitor), board, texture, settings);
-  monitor.progress(kStage, 0.7);
-  throw_if_cancelled(monitor, kStage);
+  monitor.progress(kPhantomStage, 0.7);
+  throw_if_cancelled(monitor, kPhantomStage);
   ideal = gaussian(std::move(ideal), settings.blur_mm);
   phantom.ct = scan(ideal, settings, random);
-  monitor.progress(kStage, 1.0);
+  monitor.progress(kPhantomStage, 1.0);
   return phantom;
 }
 

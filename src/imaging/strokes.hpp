@@ -2,8 +2,8 @@
 
 #include "imaging/opencv.hpp"
 
+#include <incise/geometry/picture.hpp>
 #include <incise/geometry/types.hpp>
-#include <incise/imaging/picture.hpp>
 
 #include <vector>
 

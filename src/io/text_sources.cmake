@@ -10,13 +10,16 @@ set(text_sources
   folder_lock.cpp
   gmsh_reader.cpp
   input_file.cpp
+  jpeg_file.cpp
   json_text.cpp
   manifest.cpp
   mesh_io.cpp
   number_text.cpp
   obj_reader.cpp
   path_io.cpp
+  picture_io.cpp
   ply_format.cpp
+  png_file.cpp
   pvd_io.cpp
   sha256.cpp
   stl_reader.cpp
@@ -27,10 +30,11 @@ set(text_sources
   text_cursor.cpp
   text_encoding.cpp
   text_table.cpp
+  tiff_file.cpp
   transform_json.cpp
   vtk_bytes.cpp
   vtk_legacy_reader.cpp
   vtk_xml_reader.cpp
   vtk_xml_writer.cpp
   specimen_id.cpp)
-set(text_libraries pugixml::pugixml ZLIB::ZLIB)
+set(text_libraries pugixml::pugixml ZLIB::ZLIB PNG::PNG JPEG::JPEG TIFF::TIFF)

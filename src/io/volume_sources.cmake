@@ -7,9 +7,8 @@
 # Debian: libinsighttoolkit5-dev, and libgdcm-tools (GDCM's own CMake files look for its programs).
 set(INCISE_IO_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIONIFTI ITKIOMeta ITKGDCM)
 find_package(ITK 5.2 REQUIRED COMPONENTS ${INCISE_IO_ITK_COMPONENTS} GLOBAL)
-find_package(PNG REQUIRED)    # slices as pictures
 find_package(ZLIB REQUIRED)   # to count what is packed in a file; ITK needs it as well
-list(APPEND ITK_LIBRARIES ZLIB::ZLIB PNG::PNG)
+list(APPEND ITK_LIBRARIES ZLIB::ZLIB)
 set_property(GLOBAL PROPERTY INCISE_IO_ITK_COMPONENTS ${INCISE_IO_ITK_COMPONENTS})
 
 # ITK's imported targets carry no include folders; added once incise_io exists.

@@ -1,10 +1,10 @@
 #include <incise/core/error.hpp>
 #include <incise/core/nearest_name.hpp>
-#include <incise/imaging/picture.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
+#include <incise/io/picture_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/laboratory/bench_files.hpp>

@@ -1,5 +1,4 @@
 #include "report/line_kinds.hpp"
-#include "report/png.hpp"
 #include "report/snapshot.hpp"
 #include "report/svg.hpp"
 

@@ -1,7 +1,6 @@
 #include "report/sections.hpp"
 
 #include "report/page_files.hpp"
-#include "report/png.hpp"
 #include "report/svg.hpp"
 #include "report/tables.hpp"
 

@@ -2,10 +2,10 @@
 
 #include "report/outline.hpp"
 #include "report/plot.hpp"
-#include "report/png.hpp"
 #include "report/svg.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/picture_io.hpp>
 
 #include <fmt/format.h>
 
@@ -115,7 +115,7 @@ class Slicer {
     Slice slice;
     const Vec3 middle = picture_.ct.grid.world_from_index(index_of(columns_ / 2, rows_ / 2, normal_index));
     slice.position_mm = middle[layout_.normal];
-    slice.image_uri = png_data_uri(encoded_png(pixels, columns_, rows_, 1));
+    slice.image_uri = png_data_uri(encode_png(pixels, columns_, rows_, 1));
     if (has_outline)
       slice.outline = outline_path(tissue, columns_, rows_, 0.5, width_mm_ / columns_, height_mm_ / rows_);
     return slice;

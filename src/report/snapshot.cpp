@@ -1,8 +1,9 @@
 #include "report/line_kinds.hpp"
-#include "report/png.hpp"
+
 #include "report/snapshot.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/picture_io.hpp>
 #include <incise/report/html_report.hpp>
 
 #include <fmt/format.h>
@@ -90,7 +91,7 @@ class Canvas {
         for (int c = 0; c < 3; ++c) pixels.push_back(static_cast<std::uint8_t>(std::lround(sum[c])));
       }
     }
-    return encoded_png(pixels, width_ / kSupersampling, height_ / kSupersampling, 3);
+    return encode_png(pixels, width_ / kSupersampling, height_ / kSupersampling, 3);
   }
 
  private:

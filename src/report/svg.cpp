@@ -24,6 +24,10 @@ std::string coordinate(double value) {
 
 }  // namespace
 
+std::string png_data_uri(std::string_view png) {
+  return "data:image/png;base64," + base64(png);
+}
+
 std::string number_text(double value) {
   INCISE_REQUIRE(std::isfinite(value), "expected a finite number");
   const double magnitude = std::abs(value);

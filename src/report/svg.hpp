@@ -11,6 +11,9 @@ namespace incise {
 /// A number as a person writes it: four significant digits, whole numbers in full, a true minus sign.
 [[nodiscard]] std::string number_text(double value);
 
+/// A PNG file as an address that a page or an SVG holds within itself.
+[[nodiscard]] std::string png_data_uri(std::string_view png);
+
 /// #rrggbb of components in [0, 1].
 [[nodiscard]] std::string hex_color(const Vec3& rgb);
 

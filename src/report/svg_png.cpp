@@ -1,6 +1,5 @@
-#include "report/png.hpp"
-
 #include <incise/core/error.hpp>
+#include <incise/io/picture_io.hpp>
 #include <incise/report/svg_png.hpp>
 
 #include <fmt/format.h>
@@ -70,7 +69,7 @@ std::string png_of_svg(std::string_view svg, double scale) {
     throw Error(std::string("a figure could not be drawn as PNG: ") +
                 cairo_status_to_string(cairo_status(context.get())));
   }
-  return encoded_png(rgb_of(surface.get(), width, height), width, height, 3);
+  return encode_png(rgb_of(surface.get(), width, height), width, height, 3);
 }
 
 }  // namespace incise

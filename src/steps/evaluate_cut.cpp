@@ -6,6 +6,7 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
+#include <incise/io/picture_io.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/report/svg_png.hpp>
 #include <incise/steps/cut_steps.hpp>

@@ -8,6 +8,7 @@
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/picture_io.hpp>
 #include <incise/io/specimen_id.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/transform_json.hpp>

@@ -2,8 +2,8 @@
 
 #include "virtual_bench/smooth_field.hpp"
 
+#include <incise/geometry/picture.hpp>
 #include <incise/geometry/types.hpp>
-#include <incise/imaging/picture.hpp>
 
 #include <algorithm>
 #include <array>

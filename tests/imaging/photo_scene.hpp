@@ -1,12 +1,14 @@
 #pragma once
 
 #include "support/contour_shapes.hpp"
+#include "support/encode_jpeg.hpp"
 #include "support/photo_painter.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/evaluation/evaluation.hpp>
 #include <incise/evaluation/level_loop.hpp>
 #include <incise/imaging/photo_contours.hpp>
+#include <incise/io/picture_io.hpp>
 
 #include <gtest/gtest.h>
 
@@ -52,7 +54,7 @@ inline Scene scene(double width_px, bool is_kerf, std::uint64_t seed = 1) {
 
 /// Through JPEG at quality 70, as a camera would deliver it.
 inline ColorPicture photographed(const Scene& s) {
-  return decode_picture(encode_jpeg(testing::paint_photo(s.photo), 70), kName);
+  return decode_picture(testing::encode_jpeg(testing::paint_photo(s.photo), 70), kName);
 }
 
 inline PhotoContours found_in(const ColorPicture& picture, RedLine red = RedLine::Annotation) {

@@ -119,7 +119,7 @@ ColorPicture photographed(const Drawn& drawn) {
 }
 
 ColorPicture through_jpeg(const ColorPicture& picture) {
-  return decode_picture(encode_jpeg(picture, 80), "ruler.jpg");
+  return decode_picture(testing::encode_jpeg(picture, 80), "ruler.jpg");
 }
 
 /// What is said of a picture: "ok", "refused", or the worst reason's id.

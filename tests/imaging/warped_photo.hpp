@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/imaging/picture.hpp>
+#include <incise/geometry/picture.hpp>
 
 #include <algorithm>
 #include <cmath>

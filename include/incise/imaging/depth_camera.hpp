@@ -1,7 +1,7 @@
 #pragma once
 
 #include <incise/geometry/contour.hpp>
-#include <incise/imaging/picture.hpp>
+#include <incise/geometry/picture.hpp>
 
 #include <array>
 #include <cstdint>

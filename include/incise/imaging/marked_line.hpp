@@ -1,8 +1,8 @@
 #pragma once
 
 #include <incise/core/names.hpp>
+#include <incise/geometry/picture.hpp>
 #include <incise/geometry/types.hpp>
-#include <incise/imaging/picture.hpp>
 
 #include <filesystem>
 #include <optional>

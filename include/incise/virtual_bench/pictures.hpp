@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/imaging/picture.hpp>
+#include <incise/geometry/picture.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
 #include <incise/virtual_bench/body.hpp>
 

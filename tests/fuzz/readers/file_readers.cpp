@@ -7,11 +7,13 @@
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/monitor.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
+#include <incise/io/picture_io.hpp>
 #include <incise/io/pvd_io.hpp>
 #include <incise/io/surface_io.hpp>
 #include <incise/io/table_io.hpp>
@@ -99,6 +101,14 @@ std::vector<Reader> all_readers() {
       {"nrrd_header", "nrrd", {"a.nhdr"}, named_files},
       {"meta_header", "meta", {"a.mhd"}, named_files},
       {"png", "png", {"a.png"}, [](const fs::path& file) { static_cast<void>(read_gray_png(file)); }},
+      {"picture",
+       "picture",
+       {"a.png"},
+       [](const fs::path& file) { static_cast<void>(decode_picture(read_text(file), file)); }},
+      {"depth",
+       "picture",
+       {"a.png"},
+       [](const fs::path& file) { static_cast<void>(decode_depth(read_text(file), file)); }},
       {"dicom_header", "dicom", {"a.dcm"}, dicom_header},
       {"dicom", "dicom", {"a.dcm", "b.dcm"}, dicom_folder, kWithAProcess},
       {"nrrd", "nrrd", {"a.nrrd"}, volume, kWithAProcess},

@@ -143,7 +143,8 @@ def png(color_type=0, bits=8, interlace=0, packed=None, width=3, height=2):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    rows = b"".join(b"\0" + bytes(range(width * bits // 8)) for _ in range(height))
+    channels = {0: 1, 2: 3, 6: 4}[color_type]
+    rows = b"".join(b"\0" + bytes(37 * i % 256 for i in range(width * channels * bits // 8)) for _ in range(height))
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, color_type, 0, 0, interlace))
             + chunk(b"IDAT", packed or zlib.compress(rows)) + chunk(b"IEND", b""))
 
@@ -153,6 +154,39 @@ NRRD = ("NRRD0004\n# a\ntype: short\ndimension: 3\nspace: left-posterior-superio
 META = ("ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = {packed}\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n"
         "Offset = 0 0 0\nElementSpacing = 1 1 2\nDimSize = 3 2 2\nElementType = MET_SHORT\n")
 VOXELS = struct.pack("<12h", *range(-6, 6))
+
+
+def jpeg():
+    """8 x 8 pixels of one colour, turned by its camera: tables of a few codes, no coefficients but one."""
+    def segment(marker, data):
+        return struct.pack(">BBH", 0xFF, marker, len(data) + 2) + data
+
+    exif = b"Exif\0\0II*\0" + struct.pack("<IHHHIII", 8, 1, 0x112, 3, 1, 6, 0)
+    frame = struct.pack(">BHHB", 8, 8, 8, 3) + b"".join(bytes([c, 0x11, 0]) for c in (1, 2, 3))
+    direct = b"\0" + bytes([1, 1]) + bytes(14) + bytes([0, 7])  # code 0: no difference, 10: one of 7 bits
+    others = b"\x10" + bytes([1]) + bytes(15) + bytes([0])  # code 0: no further coefficient
+    scan = bytes([3, 1, 0, 2, 0, 3, 0, 0, 63, 0])
+    bits = "00" + "00" + "10" + "1000000" + "0" + "11"
+    return (b"\xFF\xD8" + segment(0xE0, b"JFIF\0\1\1\1\0\x48\0\x48\0\0") + segment(0xE1, exif) + segment(0xDB, bytes(1) + b"\x01" * 64) + segment(0xC0, frame)
+            + segment(0xC4, direct) + segment(0xC4, others) + segment(0xDA, scan) + int(bits, 2).to_bytes(len(bits) // 8, "big") + b"\xFF\xD9")
+
+
+def tiff(channels, bits):
+    """2 x 2 pixels in one strip."""
+    pixels = bytes(37 * i % 256 for i in range(4 * channels * bits // 8))
+    fields = [(256, 4, 1, 2), (257, 4, 1, 2), (258, 3, channels, bits if channels == 1 else 122), (259, 3, 1, 1), (262, 3, 1, 1 if channels == 1 else 2),
+              (273, 4, 1, 130), (277, 3, 1, channels), (278, 4, 1, 2), (279, 4, 1, len(pixels))]
+    return (b"II*\0" + struct.pack("<IH", 8, len(fields)) + b"".join(struct.pack("<HHII", *f) for f in fields) + bytes(4)
+            + struct.pack("<4H", *[bits] * 4) + pixels)
+
+
+def pictures():
+    put("picture", "colour", png(color_type=2))
+    put("picture", "transparent", png(color_type=6))
+    put("picture", "jpeg", jpeg())
+    put("picture", "tiff", tiff(3, 8))
+    put("depth", "png", png(bits=16))
+    put("depth", "tiff", tiff(1, 16))
 
 
 def volumes():
@@ -224,4 +258,5 @@ if __name__ == "__main__":
     lists()
     programs(pathlib.Path(sys.argv[1]).resolve())
     volumes()
+    pictures()
     results()
