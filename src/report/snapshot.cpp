@@ -1,6 +1,6 @@
-#include "report/line_kinds.hpp"
-
 #include "report/snapshot.hpp"
+
+#include "report/line_kinds.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/picture_io.hpp>
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace incise {
@@ -38,78 +39,128 @@ Mat3 oblique_view(const Vec3& approach) {
   return rows;
 }
 
-/// A picture with a depth for each element.
+struct DrawnTriangle {
+  Vec3 a, b, c;  ///< corners in elements, and the depth towards the observer
+  std::uint32_t ink = 0;
+};
+
+struct DrawnStroke {
+  Vec3 a, b;
+  double radius = 0.0, lift = 0.0;
+  std::uint32_t ink = 0;
+};
+
+/// Some rows of a picture, with a depth for each element.
+class Band {
+ public:
+  Band(int width, int first_row, int end_row)
+      : width_(width),
+        first_(first_row),
+        end_(end_row),
+        inks_(count(), 0),
+        depths_(count(), -std::numeric_limits<double>::infinity()) {}
+
+  void draw(const DrawnTriangle& t) {
+    const Vec3 &a = t.a, &b = t.b, &c = t.c;
+    const Vec3 low = a.cwiseMin(b).cwiseMin(c);
+    const Vec3 high = a.cwiseMax(b).cwiseMax(c);
+    const int top = std::max(first_, static_cast<int>(low.y())),
+              bottom = std::min(end_ - 1, static_cast<int>(high.y()));
+    const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+    if (std::abs(area) < 1e-12) return;
+    for (int y = top; y <= bottom; ++y) {
+      for (int x = std::max(0, static_cast<int>(low.x())); x <= std::min(width_ - 1, static_cast<int>(high.x())); ++x) {
+        const Vec2 p(x + 0.5, y + 0.5);
+        const double u_area = (p.x() - a.x()) * (c.y() - a.y()) - (p.y() - a.y()) * (c.x() - a.x());
+        const double v_area = (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
+        if (area > 0.0 ? u_area < 0.0 || v_area < 0.0 : u_area > 0.0 || v_area > 0.0) continue;
+        const double u = u_area / area, v = v_area / area;
+        if (u + v <= 1.0) put(x, y, a.z() + u * (b.z() - a.z()) + v * (c.z() - a.z()), t.ink);
+      }
+    }
+  }
+
+  void draw(const DrawnStroke& s) {
+    const int steps = std::max(1, static_cast<int>(std::ceil((s.b - s.a).head<2>().norm())));
+    for (int k = 0; k <= steps; ++k) {
+      const Vec3 p = s.a + (s.b - s.a) * (static_cast<double>(k) / steps);
+      const int top = std::max(first_, static_cast<int>(p.y() - s.radius));
+      const int bottom = std::min(end_ - 1, static_cast<int>(p.y() + s.radius));
+      for (int y = top; y <= bottom; ++y) {
+        for (int x = static_cast<int>(p.x() - s.radius); x <= static_cast<int>(p.x() + s.radius); ++x) {
+          const bool is_inside = std::hypot(x + 0.5 - p.x(), y + 0.5 - p.y()) <= s.radius;
+          if (is_inside && x >= 0 && x < width_) put(x, y, p.z() + s.lift, s.ink);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::uint32_t ink(int x, int y) const { return inks_[at(x, y)]; }
+
+ private:
+  [[nodiscard]] std::size_t count() const {
+    return static_cast<std::size_t>(end_ - first_) * static_cast<std::size_t>(width_);
+  }
+  [[nodiscard]] std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y - first_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
+  void put(int x, int y, double depth, std::uint32_t ink) {
+    if (depth <= depths_[at(x, y)]) return;
+    depths_[at(x, y)] = depth;
+    inks_[at(x, y)] = ink;
+  }
+
+  int width_, first_, end_;
+  std::vector<std::uint32_t> inks_;  ///< 0: background
+  std::vector<double> depths_;
+};
+
+/// A picture that is drawn once everything is known: in bands, each small enough for the processor's cache.
 class Canvas {
  public:
-  Canvas(int width, int height)
-      : width_(width),
-        height_(height),
-        color_(count(), kBackground),
-        depth_(count(), -std::numeric_limits<double>::infinity()) {}
+  Canvas(int width, int height) : width_(width), height_(height) {}
 
   /// Corners in elements and depth towards the observer.
   void triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& color) {
-    const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-    if (std::abs(area) < 1e-12) return;
-    const Vec3 low = a.cwiseMin(b).cwiseMin(c);
-    const Vec3 high = a.cwiseMax(b).cwiseMax(c);
-    for (int y = std::max(0, static_cast<int>(low.y())); y <= std::min(height_ - 1, static_cast<int>(high.y())); ++y) {
-      for (int x = std::max(0, static_cast<int>(low.x())); x <= std::min(width_ - 1, static_cast<int>(high.x())); ++x) {
-        const Vec2 p(x + 0.5, y + 0.5);
-        const double u = ((p.x() - a.x()) * (c.y() - a.y()) - (p.y() - a.y()) * (c.x() - a.x())) / area;
-        const double v = ((b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x())) / area;
-        if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
-        put(x, y, a.z() + u * (b.z() - a.z()) + v * (c.z() - a.z()), color);
-      }
-    }
+    triangles_.push_back({a, b, c, ink_of(color)});
   }
 
   /// A round stroke, drawn a little towards the observer so that it lies on a surface and not in it.
   void stroke(const Vec3& a, const Vec3& b, double radius, double lift, const Vec3& color) {
-    const int steps = std::max(1, static_cast<int>(std::ceil((b - a).head<2>().norm())));
-    for (int k = 0; k <= steps; ++k) {
-      const Vec3 p = a + (b - a) * (static_cast<double>(k) / steps);
-      for (int y = static_cast<int>(p.y() - radius); y <= static_cast<int>(p.y() + radius); ++y) {
-        for (int x = static_cast<int>(p.x() - radius); x <= static_cast<int>(p.x() + radius); ++x) {
-          const bool is_inside = std::hypot(x + 0.5 - p.x(), y + 0.5 - p.y()) <= radius;
-          if (is_inside && x >= 0 && y >= 0 && x < width_ && y < height_) put(x, y, p.z() + lift, color);
-        }
-      }
-    }
+    strokes_.push_back({a, b, radius, lift, ink_of(color)});
   }
 
   /// Averaged over blocks of kSupersampling elements.
   [[nodiscard]] std::string png() const {
+    constexpr int kBandRows = 32 * kSupersampling;
     std::vector<std::uint8_t> pixels;
-    for (int y = 0; y < height_; y += kSupersampling) {
-      for (int x = 0; x < width_; x += kSupersampling) {
-        Vec3 sum = Vec3::Zero();
-        for (int k = 0; k < kSupersampling * kSupersampling; ++k) {
-          sum += color_[at(x + k % kSupersampling, y + k / kSupersampling)];
+    for (int first = 0; first < height_; first += kBandRows) {
+      Band band(width_, first, std::min(height_, first + kBandRows));
+      for (const DrawnTriangle& t : triangles_) band.draw(t);
+      for (const DrawnStroke& s : strokes_) band.draw(s);
+      for (int y = first; y < std::min(height_, first + kBandRows); y += kSupersampling) {
+        for (int x = 0; x < width_; x += kSupersampling) {
+          Vec3 sum = Vec3::Zero();
+          for (int k = 0; k < kSupersampling * kSupersampling; ++k)
+            sum += colors_[band.ink(x + k % kSupersampling, y + k / kSupersampling)];
+          sum *= 255.0 / (kSupersampling * kSupersampling);
+          for (int c = 0; c < 3; ++c) pixels.push_back(static_cast<std::uint8_t>(std::lround(sum[c])));
         }
-        sum *= 255.0 / (kSupersampling * kSupersampling);
-        for (int c = 0; c < 3; ++c) pixels.push_back(static_cast<std::uint8_t>(std::lround(sum[c])));
       }
     }
     return encode_png(pixels, width_ / kSupersampling, height_ / kSupersampling, 3);
   }
 
  private:
-  [[nodiscard]] std::size_t count() const {
-    return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-  }
-  [[nodiscard]] std::size_t at(int x, int y) const {
-    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
-  }
-  void put(int x, int y, double depth, const Vec3& color) {
-    if (depth <= depth_[at(x, y)]) return;
-    depth_[at(x, y)] = depth;
-    color_[at(x, y)] = color;
+  std::uint32_t ink_of(const Vec3& color) {
+    colors_.push_back(color);
+    return static_cast<std::uint32_t>(colors_.size() - 1);
   }
 
   int width_, height_;
-  std::vector<Vec3> color_;
-  std::vector<double> depth_;
+  std::vector<Vec3> colors_{kBackground};
+  std::vector<DrawnTriangle> triangles_;
+  std::vector<DrawnStroke> strokes_;
 };
 
 /// How a frame lies in its picture.
