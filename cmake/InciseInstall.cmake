@@ -31,5 +31,5 @@ if(INCISE_BUILD_TESTS)
       -DWORK=${PROJECT_BINARY_DIR}/consumer_test -DGENERATOR=${CMAKE_GENERATOR} -DCXX=${CMAKE_CXX_COMPILER}
       -DBUILD_TYPE=${CMAKE_BUILD_TYPE} "-DFLAGS=${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}}"
       -P ${PROJECT_SOURCE_DIR}/tests/consumer/run.cmake)
-  set_tests_properties(consumer.builds_against_the_installed_package PROPERTIES LABELS end_to_end TIMEOUT ${INCISE_TEST_STOP_S})
+  set_tests_properties(consumer.builds_against_the_installed_package PROPERTIES LABELS long TIMEOUT ${INCISE_TEST_STOP_S})
 endif()

@@ -128,7 +128,7 @@ class CtTest(CommandTest):
         )
         self.assert_refused(self.incise("deform", "case", "-o", self.out), BAD_DATA, "ge_head_dicom", "18.5 deg")
         self.assert_nothing_written()
-        done = self.segment(series)
+        done = self.incise("segment", series, "--roi-box-mm", *(-30,) * 3, *(30,) * 3, "-o", self.folder / "out.nrrd")
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertIn("resampling", done.stderr)
 

@@ -1,6 +1,9 @@
 """One verdict wherever a cut is shown, and no robot program against it."""
 
 import json
+import pathlib
+import shutil
+import tempfile
 import unittest
 
 import small_case
@@ -17,6 +20,23 @@ class VerdictTest(CommandTest):
         small_case.write_tumor_surface(case / "tumor.stl")
         return case
 
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        temporary = tempfile.TemporaryDirectory(prefix="incise_cli_")
+        cls.addClassCleanup(temporary.cleanup)
+        cls.made, cls.printed = pathlib.Path(temporary.name) / "made", None
+
+    def begin_with_a_run(self):
+        """The sound case and a run of it whose cautions are accepted: made once, then copied, as any folder may be. Returns what it printed."""
+        if self.printed is None:
+            self.write()
+            type(self).printed = self.run_case(*small_case.ACCEPTED, status=DONE)
+            shutil.copytree(self.folder, self.made)
+        else:
+            shutil.copytree(self.made, self.folder, dirs_exist_ok=True)
+        return self.printed
+
     def read(self, name):
         return json.loads((self.out / name).read_text())
 
@@ -27,9 +47,7 @@ class VerdictTest(CommandTest):
         self.assertFalse((self.out / "program").exists())
 
     def test_every_face_shows_the_same_verdict(self):
-        self.write()
-        found = self.run_case(*small_case.ACCEPTED, status=DONE)
-        verdict = found["verdict"]
+        verdict = self.begin_with_a_run()["verdict"]
         self.assertEqual(verdict["status"], "caution")
         self.assertEqual(self.read("study.json")["verdict"], verdict)
         self.assertEqual(self.read("manifest.json")["verdict"], verdict)
@@ -50,7 +68,7 @@ class VerdictTest(CommandTest):
             self.assertIn(f"# incise.accepted: {caution}\n", script)
 
     def test_each_caution_needs_its_own_accept(self):
-        self.write()
+        self.begin_with_a_run()
         found = self.run_case(*small_case.ACCEPTED[:-2], status=NOT_ACCEPTABLE)
         self.assertEqual(found["program"]["gate"]["missing"], ["convergence"])
         self.assert_no_program()
@@ -86,14 +104,14 @@ class VerdictTest(CommandTest):
         self.assert_refused(done, BAD_CASE, "tumor.surface", "2 to 100 mm", "Lengths are mm")
 
     def test_a_typed_transform_of_a_real_body_is_a_caution(self):
+        self.begin_with_a_run()
         self.write({**small_case.SOUND, "specimen_is": "real"})
         found = self.run_case(*small_case.ACCEPTED, status=NOT_ACCEPTABLE)
         self.assertEqual(found["program"]["gate"]["missing"], ["typed_transform"])
         self.run_case(*small_case.ACCEPTED, "--accept", "typed_transform", status=DONE)
 
     def test_export_goes_by_the_verdict_of_the_path_and_notices_a_changed_one(self):
-        self.write()
-        self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.begin_with_a_run()
         path = self.out / "program" / "path.json"
         script = self.folder / "cut.script"
         refused = self.json_of("export", path, "-o", script, status=NOT_ACCEPTABLE)
@@ -129,8 +147,7 @@ class VerdictTest(CommandTest):
         self.assertEqual({stage["state"] for stage in again["stages"]} - {"skipped"}, {"reused"})
 
     def test_what_was_changed_in_a_stored_result_is_refused(self):
-        self.write()
-        self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.begin_with_a_run()
 
         def moved(text):
             path = json.loads(text)
@@ -174,8 +191,7 @@ class VerdictTest(CommandTest):
         self.assert_refused(self.incise("simulate", "case", "-o", self.out), BAD_DATA, "plan/path.json", "changed since")
 
     def test_a_mark_is_no_simulated_cut(self):
-        self.write()
-        self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.begin_with_a_run()
         path = self.read("program/path.json")
         path.pop("verdict")
         path["kind"] = "mark"
@@ -196,15 +212,12 @@ class VerdictTest(CommandTest):
         self.assertIn("tumor_distance", found["gate"]["refused"])
 
     def test_a_rejected_correction_is_known_in_both_paths(self):
-        self.write()
-        found = self.run_case(*small_case.ACCEPTED, status=DONE)
-        self.assertFalse(found["accepted"])
+        self.assertFalse(self.begin_with_a_run()["accepted"])
         for name in ("plan", "correction"):
             self.assertIn("not_corrected", ids(self.read(f"{name}/path.json")["verdict"]), name)
 
     def test_a_program_of_other_settings_goes(self):
-        self.write()
-        self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.begin_with_a_run()
         self.assertTrue((self.out / "program" / "program.script").is_file())
         self.write(small_case.merged(small_case.SOUND, {"plan": {"close_margin_mm": 2.2}}))
         done = self.incise("simulate", "case", "-o", self.out)
@@ -214,6 +227,7 @@ class VerdictTest(CommandTest):
         self.assertFalse((self.out / "correction").exists(), "it was judged by another margin")
 
     def test_a_verdict_of_other_limits_does_not_stay_beside_a_path(self):
+        self.begin_with_a_run()
         strict = small_case.merged(small_case.SOUND, {"plan": {"lateral_margin_mm": 9, "close_margin_mm": 2.2}})
         for changes in (strict, small_case.SOUND):
             self.write(changes)
@@ -235,8 +249,7 @@ class VerdictTest(CommandTest):
         self.assert_no_program()
 
     def test_an_advice_against_the_simulation_stands_against_the_path_as_planned(self):
-        self.write()
-        self.run_case(*small_case.ACCEPTED, status=DONE)
+        self.begin_with_a_run()
         (self.out / "assessment").mkdir()
         (self.out / "assessment" / "assess.json").write_text(json.dumps({"advice": "do_not_use", "reasons": ["unlike the calibration's"]}))
         found = self.run_case(*small_case.ACCEPTED, status=NOT_ACCEPTABLE)

@@ -25,6 +25,7 @@ struct ProjectSettings {
   double max_shift_mm = 5.0;
   AxisMode axis_mode = AxisMode::Approach;
 };
+/// Depth and speed of a path that is laid onto a surface: above 0, and far beyond what an incision of tissue needs.
 inline constexpr Range kLaidDepthMm{0.0, 50.0, true};
 inline constexpr Range kLaidSpeedMmS{0.0, 50.0, true};
 inline void describe(Visitor& v, ProjectSettings& s) {
