@@ -32,7 +32,7 @@ endif()
 # Photographs and depth pictures, in io. OpenCV's own module for them brings GDAL and 85 libraries more, and paints over what is damaged.
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
-find_package(TIFF REQUIRED)
+find_package(TIFF 4.5 REQUIRED)
 find_package(Boost 1.74 REQUIRED)     # headers of Boost.Math only: distributions, in evaluation
 
 # librsvg has a pkg-config file only. It turns figures into PNG, in report.

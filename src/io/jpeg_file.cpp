@@ -107,7 +107,8 @@ int orientation_in(std::string_view exif) {
     }
     return value;
   };
-  constexpr std::uint32_t kOrientation = 0x0112;
+  constexpr std::uint32_t kOrientation = 0x0112, kTiff = 42;
+  if (number(2, 2) != kTiff) return 1;
   const std::size_t directory = number(4, 4);
   const std::uint32_t entries = number(directory, 2);
   for (std::uint32_t i = 0; i < entries; ++i) {
@@ -128,45 +129,24 @@ int orientation_of(const jpeg_decompress_struct& info) {
   return 1;
 }
 
-/// Turned so that its first row is the top of what the camera saw.
-StoredPixels upright(StoredPixels from, int orientation) {
-  if (orientation == 1) return from;
-  const bool flips_x = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
-  const bool flips_y = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
-  const bool is_on_its_side = orientation >= 5;
-  StoredPixels to = from;
-  if (is_on_its_side) std::swap(to.width, to.height);
-  const auto channels = static_cast<std::size_t>(from.channels);
-  for (int v = 0; v < to.height; ++v) {
-    for (int u = 0; u < to.width; ++u) {
-      int x = is_on_its_side ? v : u, y = is_on_its_side ? u : v;
-      if (flips_x) x = from.width - 1 - x;
-      if (flips_y) y = from.height - 1 - y;
-      const auto pixel = [channels](int column, int row, int width) {
-        return channels *
-               (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column));
-      };
-      from.bytes.copy(to.bytes.data() + pixel(u, v, to.width), channels, pixel(x, y, from.width));
-    }
-  }
-  return to;
-}
-
 }  // namespace
 
 StoredPixels read_jpeg(std::string_view bytes, const fs::path& name) {
   const auto reading = std::make_unique<JpegReading>(bytes);
-  if (!reading->reads_header()) refuse_damage(name, "", reading->words(), "JPEG");
+  if (!reading->reads_header()) refuse_picture(name, "", reading->words(), "JPEG");
   const jpeg_decompress_struct& info = reading->info();
   if (info.num_components == 4) refuse_cmyk(name);
   require_possible_size(name, info.image_width, info.image_height, kMostPhotoPixels, kMostJpegPixelsPerByte,
                         bytes.size());
-  if (info.saw_JFIF_marker) require_square_pixels(name, info.X_density, info.Y_density);
   StoredPixels pixels{
       static_cast<int>(info.image_width), static_cast<int>(info.image_height), info.num_components == 1 ? 1 : 3, 8, {}};
   pixels.bytes.resize(static_cast<std::size_t>(pixels.channels) * info.image_width * info.image_height);
+  if (info.saw_JFIF_marker) {
+    pixels.per_width = info.X_density;
+    pixels.per_height = info.Y_density;
+  }
   const int orientation = orientation_of(info);  // libjpeg drops it with the last row
-  if (!reading->reads_rows(pixels.bytes.data(), pixels.channels)) refuse_damage(name, "", reading->words(), "JPEG");
+  if (!reading->reads_rows(pixels.bytes.data(), pixels.channels)) refuse_picture(name, "", reading->words(), "JPEG");
   return upright(std::move(pixels), orientation);
 }
 

@@ -14,7 +14,12 @@ struct StoredPixels {
   int channels = 0;  ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha
   int bits = 0;      ///< of a channel; pixels of fewer than 8 are packed
   std::string bytes;
+  double per_width = 0.0, per_height = 0.0;  ///< pixels in one length, as the file states them; 0: it does not
 };
+
+/// Turned so that its first row is the top of what the camera saw. @pre 8 or 16 bits.
+/// @param orientation  1 to 8, as EXIF and TIFF number them (EXIF 2.32, 4.6.4; TIFF 6.0, section 8); others: as it is.
+[[nodiscard]] StoredPixels upright(StoredPixels from, int orientation);
 
 /// What the first chunk of a PNG file states.
 struct PngHeader {
@@ -26,8 +31,8 @@ struct PngHeader {
 
 inline constexpr double kMostPhotoPixels = 2e8;
 
-/// @throws DataError for anything but a PNG file, for damage, for pixels stated not to be square, and for more pixels
-/// than `most_pixels` or than the file can hold.
+/// @throws DataError for anything but a PNG file, for damage, and for more pixels than `most_pixels` or than the file
+/// can hold.
 [[nodiscard]] PngHeader read_png_header(std::string_view bytes, const std::filesystem::path& name, double most_pixels);
 
 /// The whole picture, every checksum compared; palettes and transparent colours are expanded, nothing else is changed:
@@ -44,12 +49,12 @@ enum class PngPacking {
 [[nodiscard]] std::string write_png(const StoredPixels& pixels, PngPacking packing);
 
 /// RGB, or grey as it is; the camera's orientation applied. What libjpeg would paint over in grey is refused.
-/// @throws DataError for damage, CMYK, pixels stated not to be square, more pixels than kMostPhotoPixels or than the
-/// file can hold.  Sources: ITU-T T.81; EXIF 2.32, 4.6.4 (orientation).
+/// @throws DataError for damage, CMYK, more pixels than kMostPhotoPixels or than the file can hold.
+/// Sources: ITU-T T.81; EXIF 2.32.
 [[nodiscard]] StoredPixels read_jpeg(std::string_view bytes, const std::filesystem::path& name);
 
-/// RGB of 8 bits, laid on white where it is transparent, or one channel as it is.
-/// @throws DataError as read_jpeg, and for one channel in tiles.  Source: TIFF 6.0.
+/// RGB of 8 bits, laid on white where it is transparent; of a grey picture the kind, and the pixels of one channel of
+/// 16 bits. The orientation applied.  @throws DataError as read_jpeg.  Source: TIFF 6.0.
 [[nodiscard]] StoredPixels read_tiff(std::string_view bytes, const std::filesystem::path& name);
 
 /// @param most_pixels_per_byte  that the format's compression can reach: a file that claims more would fill the memory
@@ -57,12 +62,8 @@ enum class PngPacking {
 void require_possible_size(const std::filesystem::path& name, double width, double height, double most_pixels,
                            double most_pixels_per_byte, std::size_t bytes);
 
-/// Measures are taken along rows and columns alike. @param x, y  pixels in one length as the file states them; 0 where
-/// it does not.  @throws DataError where they differ by more than one per cent.
-void require_square_pixels(const std::filesystem::path& name, double x, double y);
-
 [[noreturn]] void refuse_cmyk(const std::filesystem::path& name);
-[[noreturn]] void refuse_damage(const std::filesystem::path& name, const std::string& place, const char* words,
-                                const char* format);
+[[noreturn]] void refuse_picture(const std::filesystem::path& name, const std::string& place, const char* words,
+                                 const char* format);
 
 }  // namespace incise

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // decoders count bytes in 31 bits
 
-StoredPixels decoded(std::string_view bytes, const fs::path& name) {
+StoredPixels stored(std::string_view bytes, const fs::path& name) {
   if (bytes.size() > kMostBytes) {
     throw DataError(name, "", fmt::format("{} bytes", bytes.size()), fmt::format("at most {} bytes", kMostBytes));
   }
@@ -26,6 +26,18 @@ StoredPixels decoded(std::string_view bytes, const fs::path& name) {
   if (bytes.starts_with(std::string_view("II*\0", 4)) || bytes.starts_with(std::string_view("MM\0*", 4)))
     return read_tiff(bytes, name);
   throw DataError(name, "", bytes.empty() ? "an empty file" : "another kind of file", "a picture: PNG, JPEG or TIFF");
+}
+
+/// Measures are taken along rows and columns alike.
+StoredPixels decoded(std::string_view bytes, const fs::path& name) {
+  constexpr double kSquare = 0.01;
+  StoredPixels pixels = stored(bytes, name);
+  const double x = pixels.per_width, y = pixels.per_height;
+  if (x > 0.0 && y > 0.0 && std::abs(x / y - 1.0) > kSquare) {
+    throw DataError(name, "", fmt::format("pixels that are not square ({:g} in a width, {:g} in a height)", x, y),
+                    "square pixels", "Scale the picture so that its pixels are square, or take the entry out.");
+  }
+  return pixels;
 }
 
 std::uint16_t sixteen_bits(const StoredPixels& from, std::size_t i) {
@@ -83,21 +95,39 @@ void require_possible_size(const fs::path& name, double width, double height, do
   }
 }
 
-void require_square_pixels(const fs::path& name, double x, double y) {
-  constexpr double kSquare = 0.01;
-  if (!(x > 0.0 && y > 0.0) || std::abs(x / y - 1.0) <= kSquare) return;
-  throw DataError(name, "", fmt::format("pixels that are not square ({:g} in a width, {:g} in a height)", x, y),
-                  "square pixels", "Scale the picture so that its pixels are square, or take the entry out.");
-}
-
 void refuse_cmyk(const fs::path& name) {
   throw DataError(name, "", "a CMYK picture (made for printing)", "an RGB picture",
                   "Save it again as RGB; the colours of the lines must be those that the camera saw.");
 }
 
-void refuse_damage(const fs::path& name, const std::string& place, const char* words, const char* format) {
-  throw DataError(name, place, fmt::format("a damaged picture ({})", words), fmt::format("a sound {} file", format),
-                  "Was it cut short or changed when it was copied?");
+void refuse_picture(const fs::path& name, const std::string& place, const char* words, const char* format) {
+  throw DataError(name, place, fmt::format("a picture that cannot be read ({})", words),
+                  fmt::format("a sound {} file", format), "Was it cut short or changed when it was copied?");
+}
+
+StoredPixels upright(StoredPixels from, int orientation) {
+  if (orientation <= 1 || orientation > 8) return from;
+  const bool flips_x = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
+  const bool flips_y = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+  const bool is_on_its_side = orientation >= 5;
+  StoredPixels to = from;
+  if (is_on_its_side) {
+    std::swap(to.width, to.height);
+    std::swap(to.per_width, to.per_height);
+  }
+  const auto size = static_cast<std::size_t>(from.channels * from.bits / 8);
+  const auto place = [size](int column, int row, int width) {
+    return size * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column));
+  };
+  for (int v = 0; v < to.height; ++v) {
+    for (int u = 0; u < to.width; ++u) {
+      int x = is_on_its_side ? v : u, y = is_on_its_side ? u : v;
+      if (flips_x) x = from.width - 1 - x;
+      if (flips_y) y = from.height - 1 - y;
+      from.bytes.copy(to.bytes.data() + place(u, v, to.width), size, place(x, y, from.width));
+    }
+  }
+  return to;
 }
 
 ColorPicture decode_picture(std::string_view bytes, const fs::path& name) {

@@ -74,9 +74,6 @@ class PngReading {
     const double pixel_bits = header.bits * png_get_channels(png_, info_);
     require_possible_size(name_, header.width, header.height, most_pixels, kMostPngBits / pixel_bits,
                           transfer_.in.size());
-    png_uint_32 x = 0, y = 0;
-    int unit = 0;
-    if (png_get_pHYs(png_, info_, &x, &y, &unit) != 0) require_square_pixels(name_, x, y);
     return header;
   }
 
@@ -88,6 +85,12 @@ class PngReading {
                         png_get_channels(png_, info_),
                         png_get_bit_depth(png_, info_),
                         {}};
+    png_uint_32 x = 0, y = 0;
+    int unit = 0;
+    if (png_get_pHYs(png_, info_, &x, &y, &unit) != 0) {
+      pixels.per_width = x;
+      pixels.per_height = y;
+    }
     pixels.bytes.resize(png_get_rowbytes(png_, info_) * static_cast<std::size_t>(pixels.height));
     if (!reads_rows(pixels.bytes.data())) refuse();
     return pixels;
@@ -99,6 +102,7 @@ class PngReading {
     png_set_read_fn(png_, &transfer_, read_png_bytes);
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_user_limits(png_, 0x7fffffff, 0x7fffffff);
+    png_set_chunk_cache_max(png_, 1);  // texts are not unpacked: a thousand of them would fill 8 GB
     png_read_info(png_, info_);
     return true;
   }
@@ -125,7 +129,7 @@ class PngReading {
   }
 
   [[noreturn]] void refuse() const {
-    refuse_damage(name_, fmt::format("byte {}", transfer_.at), transfer_.words, "PNG");
+    refuse_picture(name_, fmt::format("byte {}", transfer_.at), transfer_.words, "PNG");
   }
 
   const fs::path& name_;

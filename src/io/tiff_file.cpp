@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 
+#include <fmt/format.h>
 #include <tiffio.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace incise {
@@ -24,6 +26,7 @@ constexpr tmsize_t kMostTiffAtOnce = tmsize_t{1} << 30;
 struct TiffSource {
   std::string_view bytes;
   std::uint64_t at = 0;
+  bool reads_pixels = false;
   char words[256] = {};
 };
 
@@ -57,15 +60,26 @@ toff_t size_of_tiff(thandle_t handle) {
   return tiff_source_of(handle).bytes.size();
 }
 
+int map_tiff(thandle_t handle, void** bytes, toff_t* size) {
+  const std::string_view all = tiff_source_of(handle).bytes;
+  *bytes = const_cast<char*>(all.data());  // libtiff has no read-only kind; opened for reading, it writes nothing
+  *size = all.size();
+  return 1;
+}
+
+void unmap_tiff(thandle_t /*handle*/, void* /*bytes*/, toff_t /*size*/) {}
+
 int keep_tiff_words(TIFF* /*tiff*/, void* source, const char* /*module*/, const char* format, va_list values) {
   auto& words = static_cast<TiffSource*>(source)->words;
   if (words[0] == '\0') std::vsnprintf(words, sizeof words, format, values);
   return 1;
 }
 
-int pass_over_tiff(TIFF* /*tiff*/, void* /*source*/, const char* /*module*/, const char* /*format*/,
-                   va_list /*values*/) {
-  return 1;
+/// A warning of a JPEG within is damage that would be painted over; others are about odd entries.
+int warn_tiff(TIFF* tiff, void* source, const char* module, const char* format, va_list values) {
+  const bool is_damage =
+      static_cast<TiffSource*>(source)->reads_pixels && module != nullptr && std::string_view(module) == "JPEGLib";
+  return is_damage ? keep_tiff_words(tiff, source, module, format, values) : 1;
 }
 
 using TiffFile = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
@@ -76,10 +90,9 @@ TiffFile opened_tiff(TiffSource& source) {
   if (options == nullptr) throw std::bad_alloc();
   TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kMostTiffAtOnce);
   TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_tiff_words, &source);
-  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), pass_over_tiff, &source);
-  // "m": no mapping into memory; the bytes are there already.
-  return {TIFFClientOpenExt("picture", "rm", &source, read_tiff_bytes, write_tiff_bytes, seek_tiff, close_tiff,
-                            size_of_tiff, nullptr, nullptr, options.get()),
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), warn_tiff, &source);
+  return {TIFFClientOpenExt("picture", "r", &source, read_tiff_bytes, write_tiff_bytes, seek_tiff, close_tiff,
+                            size_of_tiff, map_tiff, unmap_tiff, options.get()),
           &TIFFClose};
 }
 
@@ -90,24 +103,40 @@ Value tiff_field(TIFF* tiff, ttag_t tag) {
   return value;
 }
 
-/// One channel, as it is.
-bool reads_tiff_rows(TIFF* tiff, StoredPixels& pixels) {
-  const auto row_bytes = static_cast<std::size_t>(TIFFScanlineSize(tiff));
-  pixels.bytes.resize(row_bytes * static_cast<std::size_t>(pixels.height));
-  for (int row = 0; row < pixels.height; ++row) {
-    char* to = pixels.bytes.data() + static_cast<std::size_t>(row) * row_bytes;
-    if (TIFFReadScanline(tiff, to, static_cast<std::uint32_t>(row)) != 1) return false;
+/// One channel of 16 bits.
+bool reads_tiff_counts(TIFF* tiff, StoredPixels& pixels) {
+  const auto width = static_cast<std::size_t>(pixels.width), height = static_cast<std::size_t>(pixels.height);
+  pixels.bytes.resize(2 * width * height);
+  if (TIFFIsTiled(tiff) == 0) {
+    for (std::size_t row = 0; row < height; ++row) {
+      if (TIFFReadScanline(tiff, pixels.bytes.data() + 2 * width * row, static_cast<std::uint32_t>(row)) != 1)
+        return false;
+    }
+    return true;
+  }
+  const std::size_t tile_width = tiff_field<std::uint32_t>(tiff, TIFFTAG_TILEWIDTH);
+  const std::size_t tile_height = tiff_field<std::uint32_t>(tiff, TIFFTAG_TILELENGTH);
+  std::string tile(static_cast<std::size_t>(TIFFTileSize(tiff)), '\0');
+  if (tile_width == 0 || tile_height == 0 || tile.size() < 2 * tile_width * tile_height) return false;
+  for (std::size_t y = 0; y < height; y += tile_height) {
+    for (std::size_t x = 0; x < width; x += tile_width) {
+      if (TIFFReadTile(tiff, tile.data(), static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0) < 0)
+        return false;
+      for (std::size_t row = 0; row < std::min(tile_height, height - y); ++row)
+        tile.copy(pixels.bytes.data() + 2 * (width * (y + row) + x), 2 * std::min(tile_width, width - x),
+                  2 * tile_width * row);
+    }
   }
   return true;
 }
 
-/// Through libtiff's own way from any kind of colour, whose transparent pixels are darkened already.
-bool reads_tiff_colors(TIFF* tiff, StoredPixels& pixels) {
+/// Through libtiff's own way from any kind of colour, whose transparent pixels are darkened already. Not turned: it
+/// asks for the orientation that the file has.
+bool reads_tiff_colors(TIFF* tiff, StoredPixels& pixels, int orientation) {
   const std::size_t count = static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height);
   std::vector<std::uint32_t> abgr(count);
-  const int is_read =
-      TIFFReadRGBAImageOriented(tiff, static_cast<std::uint32_t>(pixels.width),
-                                static_cast<std::uint32_t>(pixels.height), abgr.data(), ORIENTATION_TOPLEFT, 1);
+  const int is_read = TIFFReadRGBAImageOriented(tiff, static_cast<std::uint32_t>(pixels.width),
+                                                static_cast<std::uint32_t>(pixels.height), abgr.data(), orientation, 1);
   if (is_read != 1) return false;
   pixels.channels = 3;
   pixels.bits = 8;
@@ -120,12 +149,21 @@ bool reads_tiff_colors(TIFF* tiff, StoredPixels& pixels) {
   return true;
 }
 
+/// Tiles may be larger than their picture, and share their bytes.
+void require_possible_tiles(TIFF* tiff, const fs::path& name, std::size_t bytes) {
+  if (TIFFIsTiled(tiff) == 0) return;
+  const double tiles = TIFFNumberOfTiles(tiff), size = static_cast<double>(TIFFTileSize(tiff));
+  if (tiles * size <= kMostTiffBits / 8.0 * static_cast<double>(bytes)) return;
+  throw DataError(name, "", fmt::format("{:.0f} tiles of {:.0f} bytes in {} bytes", tiles, size, bytes),
+                  "tiles that its file can hold", "Is it damaged?");
+}
+
 }  // namespace
 
 StoredPixels read_tiff(std::string_view bytes, const fs::path& name) {
   TiffSource source{bytes};
   const TiffFile file = opened_tiff(source);
-  if (file == nullptr) refuse_damage(name, "", source.words, "TIFF");
+  if (file == nullptr) refuse_picture(name, "", source.words, "TIFF");
   TIFF* tiff = file.get();
   const auto width = tiff_field<std::uint32_t>(tiff, TIFFTAG_IMAGEWIDTH),
              height = tiff_field<std::uint32_t>(tiff, TIFFTAG_IMAGELENGTH);
@@ -133,21 +171,26 @@ StoredPixels read_tiff(std::string_view bytes, const fs::path& name) {
   const auto colours = tiff_field<std::uint16_t>(tiff, TIFFTAG_PHOTOMETRIC);
   if (colours == PHOTOMETRIC_SEPARATED) refuse_cmyk(name);
   const auto bits = tiff_field<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE);
-  require_possible_size(name, width, height, kMostPhotoPixels, kMostTiffBits / std::max(1, bits * channels),
-                        bytes.size());
-  require_square_pixels(name, tiff_field<float>(tiff, TIFFTAG_XRESOLUTION),
-                        tiff_field<float>(tiff, TIFFTAG_YRESOLUTION));
   if (tiff_field<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT) != SAMPLEFORMAT_UINT || bits > 16) {
     throw DataError(name, "", "channels of another type", "whole numbers of 8 or 16 bits a channel");
   }
+  require_possible_size(name, width, height, kMostPhotoPixels,
+                        kMostTiffBits / std::max(1.0, static_cast<double>(bits) * channels), bytes.size());
+  require_possible_tiles(tiff, name, bytes.size());
   StoredPixels pixels{static_cast<int>(width), static_cast<int>(height), channels, bits, {}};
-  const bool is_grey = channels == 1 && (colours == PHOTOMETRIC_MINISBLACK || colours == PHOTOMETRIC_MINISWHITE);
-  if (is_grey && TIFFIsTiled(tiff) != 0) {
-    throw DataError(name, "", "one channel in tiles", "one channel in strips", "Save it again without tiles.");
+  pixels.per_width = static_cast<double>(tiff_field<float>(tiff, TIFFTAG_XRESOLUTION));
+  pixels.per_height = static_cast<double>(tiff_field<float>(tiff, TIFFTAG_YRESOLUTION));
+  const auto orientation = tiff_field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION);
+  const bool is_grey = colours == PHOTOMETRIC_MINISBLACK || colours == PHOTOMETRIC_MINISWHITE;
+  if (is_grey && (channels > 1 || bits != 16)) {  // a kind that nobody takes
+    pixels.channels = std::min(2, pixels.channels);
+    return pixels;
   }
-  if (!(is_grey ? reads_tiff_rows(tiff, pixels) : reads_tiff_colors(tiff, pixels)))
-    refuse_damage(name, "", source.words, "TIFF");
-  return pixels;
+  source.reads_pixels = true;
+  source.words[0] = '\0';
+  const bool is_read = is_grey ? reads_tiff_counts(tiff, pixels) : reads_tiff_colors(tiff, pixels, orientation);
+  if (!is_read || source.words[0] != '\0') refuse_picture(name, "", source.words, "TIFF");
+  return upright(std::move(pixels), orientation);
 }
 
 }  // namespace incise

@@ -91,7 +91,7 @@ class PhotoTest(CommandTest):
             with self.subTest(place=place):
                 broken.write_bytes(whole[:place] + bytes([whole[place] ^ 0xFF]) + whole[place + 1 :])
                 done = self.incise("evaluate", broken, "--mm-per-pixel", SCALE, "-o", "out")
-                self.assert_refused(done, BAD_DATA, "broken.png", "a damaged picture (")
+                self.assert_refused(done, BAD_DATA, "broken.png", "a picture that cannot be read (")
                 self.assert_nothing_written()
         broken.write_bytes(b"")
         self.refused(broken, BAD_DATA, "an empty file")

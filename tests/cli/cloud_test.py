@@ -12,7 +12,7 @@ from small_cloud import RegisterCase, hill, turned, write_ply
 
 class RegisterTest(RegisterCase):
     def test_a_turned_cloud_is_found_and_the_folder_is_complete(self):
-        result = self.json_of(*self.register())
+        result = self.json_of(*self.register(starts=()))
         self.assertTrue(result["converged"], result["reasons"])
         self.assertAlmostEqual(result["scale"], 0.98, delta=0.005)
         self.assertAlmostEqual(result["rotation_deg"], 170.0, delta=0.5)
@@ -57,6 +57,7 @@ class RegisterTest(RegisterCase):
         self.assertFalse(result["converged"])
         self.assertTrue(any("hardly changes the residual" in reason for reason in result["reasons"]), result["reasons"])
         self.assertTrue((self.out / "registration.json").is_file())
+        self.json_of(*self.register(source="flat.ply"), status=NOT_ACCEPTABLE)
         self.assert_chain_ends("/converged", "false")
 
     def test_a_line_has_no_transform(self):
@@ -142,7 +143,7 @@ class RegisterTest(RegisterCase):
                 self.assert_nothing_written()
 
     def test_ctrl_c_leaves_nothing(self):
-        done = self.interrupted(*self.register("--rotations", "2000"), after="searching poses")
+        done = self.interrupted(*self.register(starts=("--rotations", "2000")), after="searching poses")
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         self.assert_nothing_written()
 

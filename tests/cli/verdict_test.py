@@ -68,7 +68,7 @@ class VerdictTest(CommandTest):
             self.assertIn(f"# incise.accepted: {caution}\n", script)
 
     def test_each_caution_needs_its_own_accept(self):
-        self.begin_with_a_run()
+        self.write()
         found = self.run_case(*small_case.ACCEPTED[:-2], status=NOT_ACCEPTABLE)
         self.assertEqual(found["program"]["gate"]["missing"], ["convergence"])
         self.assert_no_program()

@@ -48,7 +48,7 @@ TEST(DecodePicture, RefusesFilesThatAreCutShortAtAnyByte) {
       EXPECT_NE(refusal(whole.substr(0, length)), "") << length;
   }
   EXPECT_THAT(refusal(encode_jpeg(small_picture(), 90).substr(0, 400)),
-              HasSubstr("a damaged picture (Premature end of JPEG file)"));
+              HasSubstr("a picture that cannot be read (Premature end of JPEG file)"));
 }
 
 TEST(DecodePicture, RefusesDamageThatDecodersPaintOver) {
@@ -57,10 +57,10 @@ TEST(DecodePicture, RefusesDamageThatDecodersPaintOver) {
   std::string jpeg = encode_jpeg(picture, 70);
   EXPECT_EQ(refusal(jpeg), "");
   for (std::size_t i = jpeg.size() / 2; i < jpeg.size() / 2 + 60; ++i) jpeg[i] = 0;
-  EXPECT_THAT(refusal(jpeg), HasSubstr("a damaged picture"));
+  EXPECT_THAT(refusal(jpeg), HasSubstr("a picture that cannot be read"));
   std::string png = encode_png(picture);
   png[png.size() / 2] = static_cast<char>(png[png.size() / 2] ^ 0x10);
-  EXPECT_THAT(refusal(png), HasSubstr("a damaged picture ("));
+  EXPECT_THAT(refusal(png), HasSubstr("a picture that cannot be read ("));
 }
 
 TEST(DecodePicture, RefusesOtherFiles) {
@@ -84,11 +84,13 @@ TEST(DecodePicture, RefusesAJpegThatClaimsMoreThanItHolds) {
   EXPECT_THAT(refusal(jpeg), HasSubstr("11776 x 11776 pixels in "));
 }
 
-/// A TIFF file of one strip, big endian. @param fields  more of them: tag, kind (3 short, 4 long, 5 ratio), value.
+/// A TIFF file of one strip, or of one tile where `fields` begin with 322, big endian. @param fields  more of them:
+/// tag, kind (3 short, 4 long, 5 ratio), value.
 std::string tiff_of(int width, int height, int channels, int bits, const std::string& pixels,
                     std::vector<std::array<std::uint32_t, 3>> fields = {}) {
   const auto number = [](int value) { return static_cast<std::uint32_t>(value); };
   const std::uint32_t colours = channels == 1 ? 1 : 2, count = static_cast<std::uint32_t>(pixels.size());
+  const bool is_tiled = !fields.empty() && fields.front()[0] == 322;
   for (const std::array<std::uint32_t, 3>& field : std::vector<std::array<std::uint32_t, 3>>{{256, 4, number(width)},
                                                                                              {257, 4, number(height)},
                                                                                              {259, 3, 1},
@@ -96,12 +98,14 @@ std::string tiff_of(int width, int height, int channels, int bits, const std::st
                                                                                              {277, 3, number(channels)},
                                                                                              {278, 4, number(height)},
                                                                                              {279, 4, count}}) {
-    if (std::none_of(fields.begin(), fields.end(), [&](const auto& given) { return given[0] == field[0]; }))
+    const bool is_of_strips = field[0] == 278 || field[0] == 279;
+    if (!(is_tiled && is_of_strips) &&
+        std::none_of(fields.begin(), fields.end(), [&](const auto& given) { return given[0] == field[0]; }))
       fields.push_back(field);
   }
   const std::size_t ratios = 8 + 2 + 12 * (fields.size() + 2) + 4, bits_at = ratios + 16, strip = bits_at + 8;
   fields.push_back({258, 3, channels == 1 ? number(bits) : 0});
-  fields.push_back({273, 4, static_cast<std::uint32_t>(strip)});
+  fields.push_back({is_tiled ? 324U : 273U, 4, static_cast<std::uint32_t>(strip)});
   std::sort(fields.begin(), fields.end());
   std::string tiff("MM\0*\0\0\0\x08", 8);
   tiff += {'\0', static_cast<char>(fields.size())};
@@ -144,6 +148,10 @@ TEST(DecodePicture, ReadsTiffOfEightAndSixteenBitsAndLaysItOnWhite) {
   }
   EXPECT_EQ(decode_picture(tiff_of(5, 4, 3, 16, wide), "p.tif").rgb, small_picture().rgb);
   EXPECT_THAT(refusal(tiff_of(5, 4, 4, 8, with_alpha, {{338, 3, 2}})), HasSubstr("without colour"));  // all of it white
+  for (std::size_t i = 3; i < with_alpha.size(); i += 4) with_alpha[i] = '\x80';
+  const ColorPicture half = decode_picture(tiff_of(5, 4, 4, 8, with_alpha, {{338, 3, 2}}), "p.tif");
+  for (std::size_t i = 0; i < half.rgb.size(); ++i)
+    EXPECT_NEAR(half.rgb[i], 255 - (255 - small_picture().rgb[i]) * 128 / 255, 1) << i;
 }
 
 TEST(DecodePicture, RefusesATiffThatIsCutShortAtAnyByte) {
@@ -155,11 +163,15 @@ TEST(DecodePicture, RefusesATiffThatIsCutShortAtAnyByte) {
 
 TEST(DecodePicture, RefusesATiffThatClaimsMoreThanItHolds) {
   EXPECT_THAT(refusal(tiff_of(14000, 14000, 3, 8, of_small_picture())), HasSubstr("14000 x 14000 pixels in "));
-  EXPECT_NE(refusal(tiff_of(0, 14000, 3, 8, of_small_picture())), "");
+  EXPECT_THAT(refusal(tiff_of(0, 14000, 3, 8, of_small_picture())), HasSubstr("size is zero"));
+  const std::string tiles = tiff_of(5, 4, 3, 8, of_small_picture(), {{322, 4, 4096}, {323, 4, 4096}, {325, 4, 60}});
+  EXPECT_THAT(refusal(tiles), HasSubstr("1 tiles of 50331648 bytes in "));
+  EXPECT_NE(refusal(tiff_of(5, 4, 65535, 65535, of_small_picture())), "");
 }
 
-TEST(DecodePicture, TurnsAJpegAsItsCameraSaysEightWays) {
-  ColorPicture picture{48, 32, {}};  // the corners in four colours
+/// A picture whose four corners have four colours.
+ColorPicture four_corners() {
+  ColorPicture picture{48, 32, {}};
   for (int v = 0; v < 32; ++v) {
     for (int u = 0; u < 48; ++u) {
       picture.rgb.push_back(u < 24 ? 220 : 30);
@@ -167,31 +179,53 @@ TEST(DecodePicture, TurnsAJpegAsItsCameraSaysEightWays) {
       picture.rgb.push_back(90);
     }
   }
-  const std::string jpeg = encode_jpeg(picture, 95);
-  const auto corner = [](const ColorPicture& of, bool right, bool low) {
-    const int u = right ? of.width - 4 : 3, v = low ? of.height - 4 : 3;
-    const std::size_t at = 3 * static_cast<std::size_t>(v * of.width + u);
-    return std::string{of.rgb[at] > 128 ? 'W' : 'E', of.rgb[at + 1] > 128 ? 'N' : 'S'};  // where it was in the file
-  };
-  const char* expected[] = {"WNENWSES", "ENWNESWS", "ESWSENWN", "WSESWNEN",
-                            "WNWSENES", "WSWNESEN", "ESENWSWN", "ENESWNWS"};
+  return picture;
+}
+
+/// Where the corners of the file lie in the picture, read along its rows: N, S, W, E.
+std::string corners_of(const ColorPicture& of) {
+  std::string found;
+  for (const int v : {3, of.height - 4}) {
+    for (const int u : {3, of.width - 4}) {
+      const std::size_t at = 3 * static_cast<std::size_t>(v * of.width + u);
+      found += {of.rgb[at] > 128 ? 'W' : 'E', of.rgb[at + 1] > 128 ? 'N' : 'S'};
+    }
+  }
+  return found;
+}
+
+/// Of orientation 1, 2 ... 8 (EXIF 2.32, 4.6.4).
+constexpr std::array<const char*, 8> kTurned{"WNENWSES", "ENWNESWS", "ESWSENWN", "WSESWNEN",
+                                             "WNWSENES", "WSWNESEN", "ESENWSWN", "ENESWNWS"};
+
+TEST(DecodePicture, TurnsAJpegAsItsCameraSaysEightWays) {
+  const std::string jpeg = testing::encode_jpeg(four_corners(), 95);
   for (int orientation = 1; orientation <= 8; ++orientation) {
     for (const bool is_big : {false, true}) {
       std::string exif = is_big ? std::string("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0\0\0\0\0\0\0\0", 26)
                                 : std::string("II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\0\0\0\0\0\0\0\0", 26);
       exif[is_big ? 19 : 18] = static_cast<char>(orientation);
-      const std::string block = std::string(
+      const std::string other("\xFF\xE1\0\x06http", 8);  // of another kind, before it
+      const std::string block = other +
+                                std::string(
                                     "\xFF\xE1\0\x22"
                                     "Exif\0\0",
                                     10) +
                                 exif;
       const ColorPicture seen = decode_picture(jpeg.substr(0, 2) + block + jpeg.substr(2), "p.jpg");
       EXPECT_EQ(seen.width, orientation < 5 ? 48 : 32);
-      EXPECT_EQ(
-          corner(seen, false, false) + corner(seen, true, false) + corner(seen, false, true) + corner(seen, true, true),
-          expected[orientation - 1])
-          << orientation;
+      EXPECT_EQ(corners_of(seen), kTurned[static_cast<std::size_t>(orientation - 1)]) << orientation;
     }
+  }
+}
+
+TEST(DecodePicture, TurnsATiffAsItsCameraSaysEightWays) {
+  const ColorPicture whole = four_corners();
+  const std::string pixels(whole.rgb.begin(), whole.rgb.end());
+  for (std::uint32_t orientation = 1; orientation <= 8; ++orientation) {
+    const ColorPicture seen = decode_picture(tiff_of(48, 32, 3, 8, pixels, {{274, 3, orientation}}), "p.tif");
+    EXPECT_EQ(seen.width, orientation < 5 ? 48 : 32);
+    EXPECT_EQ(corners_of(seen), kTurned[orientation - 1]) << orientation;
   }
 }
 
@@ -257,6 +291,13 @@ TEST(DecodeDepth, GivesBackCountsAndRefusesColor) {
   EXPECT_THROW(static_cast<void>(decode_depth(encode_png(small_picture()), "d.png")), DataError);
   const std::string big_endian("\0\0\0\1\x01\xF4\xFF\xFF\0\x07\0\x08", 12);
   EXPECT_EQ(decode_depth(tiff_of(3, 2, 1, 16, big_endian), "d.tif").counts, depth.counts);
+  const DepthPicture turned = decode_depth(tiff_of(3, 2, 1, 16, big_endian, {{274, 3, 6}}), "d.tif");
+  EXPECT_EQ(turned.width, 2);
+  EXPECT_EQ(turned.counts, (std::vector<std::uint16_t>{65535, 0, 7, 1, 8, 500}));
+  std::string tile(16 * 16 * 2, '\0');
+  for (std::size_t i = 0; i < 6; ++i) tile.replace(32 * (i / 3) + 2 * (i % 3), 2, big_endian.substr(2 * i, 2));
+  const std::string tiled = tiff_of(3, 2, 1, 16, tile, {{322, 3, 16}, {323, 3, 16}, {325, 4, 512}});
+  EXPECT_EQ(decode_depth(tiled, "d.tif").counts, depth.counts);
   EXPECT_THROW(static_cast<void>(decode_depth(encode_png(DepthPicture{2, 1, {0, 0}}), "d.png")), DataError);
 }
 

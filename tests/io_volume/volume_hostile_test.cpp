@@ -55,10 +55,10 @@ std::string png_header(std::uint32_t width, std::uint32_t height, int interlace 
 }
 
 TEST_F(HostileVolume, APictureWithoutPixelsWithoutWidthOrWithABadInterlaceByteEndsNoProcess) {
-  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(3, 2)}, {"IEND", ""}})), AllOf(HasSubstr("1.png"), HasSubstr("a damaged picture (IEND")));
-  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(0, 2)}, {"IDAT", "x"}, {"IEND", ""}})), HasSubstr("a damaged picture (Invalid IHDR data)"));
-  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(3, 2, 77)}, {"IDAT", "x"}, {"IEND", ""}})), HasSubstr("a damaged picture (Invalid IHDR data)"));
-  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(3, 2)}, {"IDAT", "not packed"}, {"IEND", ""}})), HasSubstr("a damaged picture (IDAT: "));
+  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(3, 2)}, {"IEND", ""}})), AllOf(HasSubstr("1.png"), HasSubstr("a picture that cannot be read (IEND")));
+  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(0, 2)}, {"IDAT", "x"}, {"IEND", ""}})), HasSubstr("a picture that cannot be read (Invalid IHDR data)"));
+  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(3, 2, 77)}, {"IDAT", "x"}, {"IEND", ""}})), HasSubstr("a picture that cannot be read (Invalid IHDR data)"));
+  EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(3, 2)}, {"IDAT", "not packed"}, {"IEND", ""}})), HasSubstr("a picture that cannot be read (IDAT: "));
   EXPECT_THAT(stack_says(png_of({{"IHDR", png_header(40000, 30000)}, {"IDAT", "x"}, {"IEND", ""}})), HasSubstr("40000 x 30000 pixels"));
 }
 

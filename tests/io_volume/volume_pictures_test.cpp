@@ -129,7 +129,7 @@ TEST_F(PictureFolder, RefusesDamagedPictures) {
   std::string flipped = whole;
   flipped[flipped.size() - 20] ^= 1;
   write_bytes(folder / "1.png", flipped);
-  EXPECT_THAT(failure(), AllOf(HasSubstr("1.png"), HasSubstr("a damaged picture (IDAT: ")));
+  EXPECT_THAT(failure(), AllOf(HasSubstr("1.png"), HasSubstr("a picture that cannot be read (IDAT: ")));
   write_bytes(folder / "1.png", "a letter");
   EXPECT_THAT(failure(), HasSubstr("1.png"));
 }
