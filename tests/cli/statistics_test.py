@@ -131,6 +131,9 @@ class CompareTest(ContourTest):
         result = self.json_of("compare", *self.four(), "--paired")
         self.assertEqual(result["specimens"]["df"], 1.0)
         self.assertEqual(result["specimens"]["test"], "paired, by specimen")
+        self.assertEqual({name: result["specimens"][name]["test"] for name in ("student", "welch", "paired")},
+                         {name: f"{name}, by specimen" for name in ("student", "welch", "paired")})
+        self.assertEqual(result["points"]["welch"]["test"], "welch, pooled by point")
         self.assert_refused(self.incise("compare", "--before", "s1.json", "s2.json", "--after", "s3.json", "--paired"), BAD_CASE,
                             "--paired", "2 before and 1 after")
 

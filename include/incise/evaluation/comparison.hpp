@@ -54,6 +54,23 @@ struct SpecimenRow {
   ContourCorrelation correlation;
 };
 
+/// A test among others, with which one it is.
+struct NamedTest {
+  std::string name;
+  TTest test;
+};
+
+inline void describe(Visitor& v, NamedTest& t) {
+  v.derived("test", t.name, "Which one.");
+  describe(v, t.test);
+}
+
+inline void describe_test(Visitor& v, const Field& field, const char* name, TTest& test) {
+  NamedTest named{name, test};
+  v(field, named);
+  test = named.test;
+}
+
 /// By contour point, as the paper tests: all points of all specimens in one pool, as if each were a specimen.
 struct PooledTests {
   SampleMoments before, after;
@@ -70,7 +87,7 @@ inline void describe(Visitor& v, PooledTests& t) {
   describe(v, t.student);
   v.derived("n_before", t.before.n, "Points.");
   v.derived("n_after", t.after.n, "Points.");
-  v("welch", t.welch, "With a variance for each side.");
+  describe_test(v, {"welch", "With a variance for each side."}, "welch, pooled by point", t.welch);
   v("effect", t.effect, "Absent where it cannot be computed.");
   v("n_effective_before", t.n_effective_before, "Independent values that the points are worth.");
   v("n_effective_after", t.n_effective_after, "Independent values that the points are worth.");
@@ -100,9 +117,12 @@ inline void describe(Visitor& v, SpecimenTests& t) {
   v.derived("n_after", t.after.n, "Specimens.");
   v.derived("mean_before_mm", t.before.mean, "Mean of the specimens' mean errors.");
   v.derived("mean_after_mm", t.after.mean, "Mean of the specimens' mean errors.");
-  v("student", t.student, "With one variance.");
-  v("welch", t.welch, "With a variance for each side.");
-  v("paired", t.paired, "Absent where the specimens are no pairs.");
+  describe_test(v, {"student", "With one variance."}, "student, by specimen", t.student);
+  describe_test(v, {"welch", "With a variance for each side."}, "welch, by specimen", t.welch);
+  std::optional<NamedTest> paired;
+  if (t.paired) paired = NamedTest{"paired, by specimen", *t.paired};
+  v("paired", paired, "Absent where the specimens are no pairs.");
+  t.paired = paired ? std::optional(paired->test) : std::nullopt;
   v("effect", t.effect, "Absent where it cannot be computed.");
   v("fewest_specimens", t.fewest, "In each group, or pairs, with which this effect would show.");
 }
