@@ -53,8 +53,9 @@ enum class PngPacking {
 /// Sources: ITU-T T.81; EXIF 2.32.
 [[nodiscard]] StoredPixels read_jpeg(std::string_view bytes, const std::filesystem::path& name);
 
-/// RGB of 8 bits, laid on white where it is transparent; of a grey picture the kind, and the pixels of one channel of
-/// 16 bits. The orientation applied.  @throws DataError as read_jpeg.  Source: TIFF 6.0.
+/// Colour as RGB of 8 bits, laid on white where it is transparent. Grey pixels are read only if they have one channel of
+/// 16 bits; of other grey pictures only size, channels and bits are returned. The stored orientation is applied.
+/// @throws DataError as read_jpeg.  Source: TIFF 6.0.
 [[nodiscard]] StoredPixels read_tiff(std::string_view bytes, const std::filesystem::path& name);
 
 /// @param most_pixels_per_byte  that the format's compression can reach: a file that claims more would fill the memory

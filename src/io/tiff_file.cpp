@@ -182,7 +182,7 @@ StoredPixels read_tiff(std::string_view bytes, const fs::path& name) {
   pixels.per_height = static_cast<double>(tiff_field<float>(tiff, TIFFTAG_YRESOLUTION));
   const auto orientation = tiff_field<std::uint16_t>(tiff, TIFFTAG_ORIENTATION);
   const bool is_grey = colours == PHOTOMETRIC_MINISBLACK || colours == PHOTOMETRIC_MINISWHITE;
-  if (is_grey && (channels > 1 || bits != 16)) {  // a kind that nobody takes
+  if (is_grey && (channels > 1 || bits != 16)) {  // neither caller accepts these
     pixels.channels = std::min(2, pixels.channels);
     return pixels;
   }

@@ -1,4 +1,4 @@
-"""`incise register` at length: the same clouds otherwise ordered, and tissue that settled."""
+"""`incise register`, the slow tests: points in another order, and tissue that has settled."""
 
 import math
 import random
@@ -19,7 +19,7 @@ class LongRegisterTest(RegisterCase):
         for row, other in zip(ordered["T_target_source"][:3], shuffled["T_target_source"][:3]):
             self.assertAlmostEqual(row[3], other[3], delta=0.1)
 
-    def test_settling_is_told_and_not_taken_for_a_shift(self):
+    def test_settling_is_reported_and_not_mistaken_for_a_shift(self):
         settled = [(x, y, z - 1.0 * math.exp(-((x - 6) ** 2 + y * y) / 200)) for x, y, z in hill(2500, 4)]
         write_ply(self.folder / "settled.ply", settled)
         write_ply(self.folder / "a.ply", hill(2500, 1))
@@ -28,7 +28,7 @@ class LongRegisterTest(RegisterCase):
         self.assertEqual(rigid["settled_max_mm"], 0)
         self.assertAlmostEqual(found["settled_max_mm"], 1.0, delta=0.4)
 
-        # Another centre of the turn would hide the shift: it is told at the hill's middle.
+        # A different centre of rotation would hide the shift, so the shift is measured at the middle of the hill.
         def shift(result):
             return math.hypot(*(row[2] * 14.0 + row[3] for row in result["T_target_source"][:2]))
 

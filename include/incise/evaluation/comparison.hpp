@@ -54,7 +54,7 @@ struct SpecimenRow {
   ContourCorrelation correlation;
 };
 
-/// A test among others, with which one it is.
+/// A t-test with its name, as results in JSON show it.
 struct NamedTest {
   std::string name;
   TTest test;
@@ -65,6 +65,7 @@ inline void describe(Visitor& v, NamedTest& t) {
   describe(v, t.test);
 }
 
+/// Shows `test` under `field`, together with its name; nothing but the test is read back.
 inline void describe_test(Visitor& v, const Field& field, const char* name, TTest& test) {
   NamedTest named{name, test};
   v(field, named);

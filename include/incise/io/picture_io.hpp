@@ -11,15 +11,15 @@
 namespace incise {
 
 /// Decodes a `.png`, `.jpg` or `.tif` held in memory. 16-bit channels are rounded to 8; a transparent pixel is laid on
-/// white; the orientation that a camera wrote into a JPEG is applied; gamma and colour profiles are not.
+/// white; the orientation stored in a JPEG or TIFF is applied; gamma and colour profiles are not.
 /// @param bytes  the whole file.  @param name  stands for the file in messages.
 /// @throws DataError for another format, a file that is cut short or damaged, pixels that it states not to be square,
 /// grey or CMYK pictures, a picture whose channels are all equal (no colour to see), more than 200 million pixels, or
 /// more than its bytes can hold.
 [[nodiscard]] ColorPicture decode_picture(std::string_view bytes, const std::filesystem::path& name);
 
-/// Decodes a depth picture: one channel of 16 bits (`.png`, `.tif` in strips). @throws DataError as decode_picture, for
-/// another depth or number of channels, and where every pixel is 0.
+/// Decodes a depth picture: one channel of 16 bits (`.png`, `.tif`), turned as a TIFF states. @throws DataError as
+/// decode_picture, for another depth or number of channels, and where every pixel is 0.
 [[nodiscard]] DepthPicture decode_depth(std::string_view bytes, const std::filesystem::path& name);
 
 /// A PNG file in memory. @pre as many pixels as width times height, both > 0.
