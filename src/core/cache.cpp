@@ -33,7 +33,7 @@ std::string header_of(const CacheKey& key, std::string_view payload) {
 
 CacheKey::CacheKey(std::string_view stage)
     : stage_(stage),
-      parts_(fmt::format("{}\n{} {} {}\n", stage, version(), source_commit(), to_string(active_isa()))) {}
+      parts_(fmt::format("{}\n{} {}\n", stage, source_digest(), to_string(active_isa()))) {}
 
 CacheKey& CacheKey::add_text(std::string_view text) {
   parts_ += fmt::format("{} {}\n", text.size(),
