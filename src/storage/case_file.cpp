@@ -65,10 +65,9 @@ class BoundedYaml : public YAML::EventHandler {
   int depth_ = 0;
 };
 
-YAML::Node parse(const std::filesystem::path& file) {
+/// @param text  of the file.
+YAML::Node parse(const std::string& text, const std::filesystem::path& file) {
   try {
-    require_regular_file(file, kLargestCaseBytes);
-    const std::string text = read_text(file);
     if (const auto at = first_not_utf8(text)) {
       throw DataError(file, fmt::format("line {}", 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(*at), '\n')),
                       fmt::format("a byte 0x{:02X}", static_cast<unsigned char>(text[*at])), "UTF-8 text", "Save the file as UTF-8");
@@ -185,14 +184,22 @@ Writer walk(const CaseFile& file) {
 }  // namespace
 
 CaseFile read_case(const std::filesystem::path& file_or_folder) {
-  CaseFile file;
-  file.file = std::filesystem::is_directory(file_or_folder) ? file_or_folder / "case.yaml" : file_or_folder;
-  if (!std::filesystem::exists(file.file)) {
-    throw DataError(file.file, "", "no such file", "a case file", "`incise schema case --defaults` prints one to start from");
+  const bool is_folder = std::filesystem::is_directory(file_or_folder);
+  const std::filesystem::path path = is_folder ? file_or_folder / "case.yaml" : file_or_folder;
+  if (!std::filesystem::exists(path)) {
+    throw DataError(path, "", "no such file", "a case file",
+                    "`incise schema case --defaults` prints one to start from");
   }
+  require_regular_file(path, kLargestCaseBytes);
+  return parse_case(read_text(path), path);
+}
+
+CaseFile parse_case(const std::string& text, const std::filesystem::path& case_path) {
+  CaseFile file;
+  file.file = case_path;
   file.folder = std::filesystem::absolute(file.file).parent_path();
   const std::string name = file.file.string();
-  const YAML::Node root = parse(file.file);
+  const YAML::Node root = parse(text, file.file);
   if (root.IsMap() && !root["schema"].IsDefined()) {
     throw CaseError(name, "schema", "nothing", fmt::format("schema: {}", kCaseSchemaName));
   }

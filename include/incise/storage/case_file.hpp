@@ -48,6 +48,10 @@ void describe(Visitor& v, CaseFile& file);
 ///         surface of a holder cannot be read.
 [[nodiscard]] CaseFile read_case(const std::filesystem::path& file_or_folder);
 
+/// The same from a text that is, or is to be, that file's. @param case_path  of the file: names in it are
+/// relative to its folder.
+[[nodiscard]] CaseFile parse_case(const std::string& text, const std::filesystem::path& case_path);
+
 /// What laying a path needs, and so what meshing around it does; a mere deformation of a given mesh goes without.
 /// @throws CaseError when neither a tumour edge (ring) nor a curve (line) is named.
 void require_plan_inputs(const CaseFile& file);
