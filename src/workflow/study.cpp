@@ -375,6 +375,7 @@ class Runner {
     }
     auto last_kept = start;
     const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
+      if (options_.watch) options_.watch(name, *study_.model, progress);
       if (!is_interrupted && seconds_since(last_kept) < options_.checkpoint_s) return;
       try {
         cache_.keep(slot, key, progress);

@@ -10,6 +10,7 @@
 #include <incise/workflow/product_sink.hpp>
 #include <incise/workflow/products.hpp>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,6 +89,10 @@ class CutInterrupted : public Cancelled {
   std::string slot_;
 };
 
+/// Is shown a cut under way at each step at which it may be put by (ProgressKeeper). @param cut  as_planned, pass_1 …
+using CutWatch =
+    std::function<void(const std::string& cut, const TissueModel& model, const IncisionProgress& progress)>;
+
 /// How far a run goes, and what it does with cuts that were interrupted.
 struct RunOptions {
   Stage until = Stage::Verify;
@@ -95,6 +100,7 @@ struct RunOptions {
       false;  ///< go on from the checkpoint of the cut that comes next, or refuse before anything is computed
   double checkpoint_s =
       30.0;  ///< least time between two checkpoints of a cut; one that is interrupted always leaves one
+  CutWatch watch = {};  ///< empty: nobody looks
 };
 
 /// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch,
