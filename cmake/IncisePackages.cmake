@@ -33,7 +33,7 @@ endif()
 find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(TIFF 4.5 REQUIRED)
-find_package(Boost 1.74 REQUIRED)     # headers of Boost.Math only: distributions, in evaluation
+find_package(Boost 1.74 REQUIRED)     # headers only: Boost.Math in evaluation (distributions), Boost.Beast in studio (HTTP)
 
 # librsvg has a pkg-config file only. It turns figures into PNG, in report.
 find_package(PkgConfig REQUIRED)

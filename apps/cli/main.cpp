@@ -123,6 +123,7 @@ int run(int argc, char** argv) {
   add_verify(application);
   add_schema(application);
   add_experiment(application);
+  add_studio(application);
   if (argc > 1 && argv[1][0] != '-') refuse_unknown_verb(app, argv[1]);
   refuse_numbers_that_are_not_finite(argc, argv);
   try {

@@ -146,6 +146,7 @@ void add_audit(Application& application);
 void add_report(Application& application);
 void add_verify(Application& application);
 void add_schema(Application& application);
+void add_studio(Application& application);
 void add_experiment(Application& application);
 
 }  // namespace incise::cli

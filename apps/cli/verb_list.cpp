@@ -22,6 +22,7 @@ const std::vector<VerbGroup>& groups() {
   static const std::vector<VerbGroup> all{
       {"Start here",
        {{"demo", "Make a virtual specimen and carry out everything that `run` does on it"},
+        {"studio", "See the specimen, draw the tumour's edge, plan and watch the cut, in a browser"},
         {"run", "Plan, cut, correct and cut again on your case; write the robot program and a report"},
         {"report", "Draw the report of a run's folder again, or of a program on measured tissue"}}},
       {"Plan and cut",

@@ -1,0 +1,387 @@
+#include "calls.hpp"
+
+#include "views.hpp"
+
+#include <incise/core/described_json.hpp>
+#include <incise/core/error.hpp>
+#include <incise/geometry/iso_surface.hpp>
+#include <incise/imaging/segmentation.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/laboratory/bench_steps.hpp>
+#include <incise/steps/case_steps.hpp>
+#include <incise/storage/case_edit.hpp>
+#include <incise/storage/case_run.hpp>
+#include <incise/workflow/cut_doubts.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace incise::studio {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = Calls::Json;
+
+constexpr double kEdgeStepMm = 1.0;            // of a drawn edge
+constexpr double kMomentS = 1.0;               // between two pictures of a cut under way
+constexpr std::size_t kMostEdgePoints = 2000;  // that a person draws
+constexpr std::string_view kDrawnEdge = "tumor_edge";
+
+/// An argument of a call. @throws CaseError where it is missing or of another type.
+template <class Value>
+Value argument(const Json& arguments, const char* name, const char* expected) {
+  const auto found = arguments.find(name);
+  try {
+    if (found != arguments.end()) return found->get<Value>();
+  } catch (const Json::exception&) {
+  }
+  throw CaseError("request", name, found == arguments.end() ? "nothing" : found->dump().substr(0, 80), expected);
+}
+
+std::string text_argument(const Json& arguments, const char* name) {
+  return argument<std::string>(arguments, name, "a text");
+}
+
+Points points_argument(const Json& arguments, const char* name) {
+  Points points;
+  for (const auto& p : argument<std::vector<std::array<double, 3>>>(arguments, name, "a list of [x, y, z]"))
+    points.emplace_back(p[0], p[1], p[2]);
+  return points;
+}
+
+/// A plain name for a new folder.
+std::string folder_name(const Json& arguments) {
+  std::string name = text_argument(arguments, "name");
+  const bool is_plain = !name.empty() && name.size() <= 100 && !name.starts_with('.') &&
+                        name.find_first_of(std::string("/\\\0", 3)) == std::string::npos &&
+                        std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 32; });
+  if (!is_plain)
+    throw CaseError("request", "name", "'" + name.substr(0, 100) + "'",
+                    "a name for a folder: no '/', no '.' at its start");
+  return name;
+}
+
+/// A folder that is not there yet.
+fs::path new_folder(const fs::path& parent, const std::string& name) {
+  fs::path folder = parent / name;
+  if (fs::exists(fs::symlink_status(folder)))
+    throw CaseError("request", "name", "'" + name + "', which is there already", "a new name");
+  return folder;
+}
+
+CaseChanges changes_of(const Json& arguments, const char* name) {
+  CaseChanges changes;
+  const Json values = arguments.value(name, Json::object());
+  if (!values.is_object())
+    throw CaseError("request", name, values.dump().substr(0, 80), "an object of keys and values");
+  for (const auto& [key, value] : values.items()) changes[key] = value;
+  return changes;
+}
+
+Json inputs_json(const CaseFile& file) {
+  const CaseInputs& in = file.inputs;
+  Json json = Json::object();
+  for (const auto& [key, path] :
+       {std::pair{"ct.volume", &in.ct_volume}, std::pair{"ct.labels", &in.ct_labels},
+        std::pair{"specimen.mesh", &in.specimen_mesh}, std::pair{"tumor.contour", &in.tumor_contour},
+        std::pair{"tumor.surface", &in.tumor_surface}, std::pair{"plan.line", &in.line_contour},
+        std::pair{"path", &in.tool_path}}) {
+    json[key] = path->empty() ? Json(nullptr) : Json(path->lexically_proximate(file.folder).string());
+  }
+  return json;
+}
+
+std::string joined(const std::string& group, const std::string& name) {
+  return group.empty() ? name : group + "." + name;
+}
+
+/// Settings as they have types, without what a person cannot set. @param known  the keys of the case file.
+Json settings_json(const Json& all, const std::set<std::string>& known, const std::string& group) {
+  Json kept = Json::object();
+  for (const auto& [name, value] : all.items()) {
+    const std::string key = joined(group, name);
+    if (known.contains(key)) {
+      kept[name] = value;
+    } else if (value.is_object()) {
+      Json inner = settings_json(value, known, key);
+      if (!inner.empty()) kept[name] = std::move(inner);
+    }
+  }
+  return kept;
+}
+
+/// The words of each field that takes one of a list, by its key.
+void add_choices(const Json& properties, const std::string& group, Json& choices) {
+  for (const auto& [name, field] : properties.items()) {
+    const std::string key = joined(group, name);
+    if (field.contains("enum")) choices[key] = field.at("enum");
+    if (field.contains("properties")) add_choices(field.at("properties"), key, choices);
+  }
+}
+
+Json choices_json() {
+  Json choices = Json::object();
+  add_choices(Json::parse(case_schema_json()).at("properties"), "", choices);
+  return choices;
+}
+
+/// The edge that the case names; null where there is none, or none that can be read: what wants it says why.
+Json edge_json(const CaseFile& file) {
+  if (file.inputs.tumor_contour.empty()) return nullptr;
+  try {
+    return {{"points_mm", points_json(read_contour(file.inputs.tumor_contour).points)},
+            {"configuration", to_string(file.settings.tumor_configuration)}};
+  } catch (const DataError&) {
+    return nullptr;
+  }
+}
+
+Json case_json(const CaseFile& file) {
+  std::set<std::string> known;
+  Json units = Json::object();
+  for (const SettingLine& line : settings_of(file)) {
+    known.insert(line.key);
+    if (!line.unit.empty()) units[line.key] = line.unit;
+  }
+  Json json;
+  json["title"] = file.settings.title;
+  json["file"] = file.file.string();
+  json["is_virtual"] = file.settings.is_virtual;
+  json["revision"] = case_revision(file.file);
+  json["settings"] = settings_json(to_json(file), known, "");
+  json["inputs"] = inputs_json(file);
+  json["units"] = std::move(units);
+  json["choices"] = choices_json();
+  json["edge"] = edge_json(file);
+  return json;
+}
+
+Segmentation segmentation_of(const CaseFile& file, const CtVolume* ct, Monitor& monitor) {
+  if (!file.inputs.ct_labels.empty())
+    return segment_labels(read_labels(file.inputs.ct_labels), file.settings.segmentation, monitor);
+  return segment(*ct, file.settings.segmentation, monitor);
+}
+
+/// Where a drawn edge goes: a file that the studio made for this case, or a name that is free.
+fs::path file_for_edge(const CaseFile& file) {
+  const fs::path& now = file.inputs.tumor_contour;
+  if (!now.empty() && now.parent_path() == file.folder && now.filename().string().starts_with(kDrawnEdge)) return now;
+  for (int k = 1;; ++k) {
+    fs::path name =
+        file.folder / (k == 1 ? fmt::format("{}.csv", kDrawnEdge) : fmt::format("{}_{}.csv", kDrawnEdge, k));
+    if (!fs::exists(fs::symlink_status(name))) return name;
+  }
+}
+
+RunContext context_of(const Workers& workers) {
+  return {"incise studio", 1, workers.thread_count()};
+}
+
+}  // namespace
+
+Calls::Calls(const fs::path& blobs, Monitor& monitor, std::function<void(const Json&)> on_moment)
+    : blobs_(blobs), monitor_(monitor), on_moment_(std::move(on_moment)) {}
+
+Json Calls::make(const std::string& name, const fs::path& file, const Json& arguments) {
+  using Call = Json (Calls::*)(const Json&);
+  static const std::map<std::string, Call> without_case{
+      {"open", &Calls::open}, {"create", &Calls::create}, {"demo", &Calls::demo}};
+  static const std::map<std::string, Call> of_case{
+      {"case", &Calls::show_case},  {"change", &Calls::change}, {"scan", &Calls::scan},
+      {"tissue", &Calls::tissue},   {"edge", &Calls::edge},     {"body", &Calls::body},
+      {"stretch", &Calls::stretch}, {"plan", &Calls::plan},     {"run", &Calls::run}};
+  file_ = file;
+  if (!arguments.is_object()) throw CaseError("request", "", "no object", "the arguments as an object");
+  if (const auto call = without_case.find(name); call != without_case.end()) return (this->*call->second)(arguments);
+  const auto call = of_case.find(name);
+  if (call == of_case.end()) throw CaseError("request", "call", "'" + name.substr(0, 40) + "'", "a call of the studio");
+  if (file.empty()) throw CaseError("request", "case", "nothing", "a case that is open");
+  return (this->*call->second)(arguments);
+}
+
+Json Calls::open(const Json& arguments) {
+  return case_json(read_case(text_argument(arguments, "file")));
+}
+
+Json Calls::create(const Json& arguments) {
+  const fs::path scan = text_argument(arguments, "scan");
+  const std::string name = folder_name(arguments);
+  const fs::path folder = new_folder(text_argument(arguments, "folder"), name);
+  CaseChanges changes = changes_of(arguments, "settings");
+  changes["title"] = name;
+  changes["ct.volume"] = scan.lexically_proximate(folder).string();
+  const std::string text = changed_case(fmt::format("schema: {}\n", kCaseSchemaName), changes);
+  const CaseFile made = parse_case(text, folder / "case.yaml");
+  static_cast<void>(ct_of(made));  // a case of a scan that cannot be read is of no use
+  fs::create_directory(folder);
+  write_atomically(made.file, text);
+  return case_json(made);
+}
+
+Json Calls::demo(const Json& arguments) {
+  const auto seed = argument<std::uint64_t>(arguments, "seed", "a whole number of at least 0");
+  const fs::path folder = new_folder(text_argument(arguments, "folder"), fmt::format("virtual_tongue_{}", seed));
+  RunContext context = context_of(workers_);
+  context.seed = seed;
+  static_cast<void>(laboratory::make_phantom_case({.output = folder}, {context, workers_, monitor_}));
+  return case_json(read_case(folder));
+}
+
+Json Calls::show_case(const Json&) {
+  return case_json(read_case(file_));
+}
+
+Json Calls::change(const Json& arguments) {
+  return case_json(change_case(file_, text_argument(arguments, "revision"), changes_of(arguments, "set")));
+}
+
+const CtVolume& Calls::ct_of(const CaseFile& file) {
+  const fs::path& path = file.inputs.ct_volume;
+  if (path.empty()) throw CaseError(file.file.string(), "ct.volume", "nothing", "a CT to look at");
+  std::error_code ignored;
+  const std::string key =
+      fmt::format("{} {} {}", path.string(), to_json(const_cast<CtReadSettings&>(file.ct_reading)).dump(),
+                  fs::last_write_time(path, ignored).time_since_epoch().count());
+  if (key != ct_key_) {
+    ct_key_.clear();
+    ct_ = read_ct(path, file.ct_reading, monitor_).volume;
+    ct_key_ = key;
+  }
+  return ct_;
+}
+
+Json Calls::scan(const Json&) {
+  const CaseFile file = read_case(file_);
+  const CtVolume& ct = ct_of(file);
+  const auto [least, greatest] = std::minmax_element(ct.voxels.begin(), ct.voxels.end());
+  return {{"grid", grid_json(ct.grid)},
+          {"least_hu", *least},
+          {"greatest_hu", *greatest},
+          {"voxels", blobs_.put("scan.voxels", std::span<const std::int16_t>(ct.voxels))}};
+}
+
+Json Calls::tissue(const Json&) {
+  const CaseFile file = read_case(file_);
+  const Segmentation found = segmentation_of(file, file.inputs.ct_labels.empty() ? &ct_of(file) : nullptr, monitor_);
+  const TriMesh skin = iso_surface(found.occupancy, 0.5);
+  Json summary = to_json(found);
+  summary.erase("verdict");
+  return {{"grid", grid_json(found.labels.grid)},
+          {"labels", blobs_.put("tissue.labels", std::span<const std::uint8_t>(found.labels.voxels))},
+          {"skin", surface_json(blobs_, "tissue.skin", skin.vertices, skin.triangles)},
+          {"summary", std::move(summary)},
+          {"verdict", to_json(found.verdict)}};
+}
+
+Json Calls::edge(const Json& arguments) {
+  const CaseFile file = read_case(file_);
+  Contour drawn{points_argument(arguments, "points_mm"), true};
+  if (drawn.points.size() < 3 || drawn.points.size() > kMostEdgePoints)
+    throw CaseError("request", "points_mm", fmt::format("{} points", drawn.points.size()),
+                    fmt::format("3 to {} points", kMostEdgePoints));
+  const double length = length_mm(drawn);
+  if (!(length > 1.0 && length < 1000.0))
+    throw CaseError("request", "points_mm", fmt::format("an edge of {:.1f} mm", length),
+                    "a closed edge of 1 to 1000 mm");
+  const std::string revision = text_argument(arguments, "revision");
+  if (revision != case_revision(file_))
+    throw CaseError(file_.string(), "revision", "a file that was changed meanwhile", "the one that was shown",
+                    "Look at the case again");
+  const auto count = static_cast<std::size_t>(std::ceil(length / kEdgeStepMm));
+  const fs::path target = file_for_edge(file);
+  const CaseChanges changes{{"tumor.contour", target.lexically_proximate(file.folder).string()},
+                            {"tumor.configuration", text_argument(arguments, "configuration")}};
+  static_cast<void>(parse_case(changed_case(read_text(file_), changes), file_));  // before anything is written
+  write_contour_csv(target, resample(drawn, std::max<std::size_t>(count, drawn.points.size())));
+  return case_json(change_case(file_, revision, changes));
+}
+
+Study Calls::study_until(Stage until) {
+  CaseFile file = read_case_with_inputs(file_);
+  RunOptions options;
+  options.until = until;
+  CaseRun run(std::move(file), output_beside(file_), options, context_of(workers_));
+  return run.study(workers_, monitor_);
+}
+
+Json Calls::body(const Json&) {
+  const Study study = study_until(Stage::Mesh);
+  const TissueModel& model = *study.model;
+  const Skin skin = skin_of(model.mesh);
+  const std::vector<std::uint8_t> held = held_by(skin, model);
+  return {{"tets", model.mesh.tets.size()},
+          {"skin", surface_json(blobs_, "body.skin", positions_on(skin, model.mesh.vertices), skin.triangles)},
+          {"held", blobs_.put("body.held", std::span<const std::uint8_t>(held))},
+          {"constraints", constraints_json(model)}};
+}
+
+Json Calls::stretch(const Json&) {
+  const Study study = study_until(Stage::Stretch);
+  const StaticResult& stretched = *study.stretched;
+  const Skin skin = skin_of(study.model->mesh);
+  return {
+      {"outcome", to_string(stretched.outcome)},
+      {"note", explain_stretch(stretched)},
+      {"greatest_mm", stretched.max_displacement_mm},
+      {"rest", blobs_.put("stretch.rest", positions_on(skin, study.model->mesh.vertices))},
+      {"skin", surface_json(blobs_, "stretch.skin", positions_on(skin, stretched.state.positions), skin.triangles)}};
+}
+
+Json Calls::plan(const Json&) {
+  const CaseFile file = read_case(file_);
+  const Study study = study_until(Stage::Plan);
+  if (!study.plan)
+    throw CaseError(file_.string(), "specimen.constraints", explain_stretch(*study.stretched),
+                    "a stretch that comes to rest");
+  Verdict verdict = study.about_inputs;
+  verdict.add(verdict_before_cut(file.settings, *study.model, study.stretched->state.positions, *study.plan));
+  return {{"path", path_json(*study.plan)},
+          {"edge", points_json(study.plan->tumor_edge.points)},
+          {"verdict", to_json(verdict)}};
+}
+
+void Calls::show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress) {
+  const auto now = std::chrono::steady_clock::now();
+  if (std::chrono::duration<double>(now - last_moment_).count() < kMomentS) return;
+  last_moment_ = now;
+  const CutState& state = progress.state;
+  const Skin skin = skin_of(model.mesh, state.tissue.is_live);
+  on_moment_(
+      {{"cut", cut},
+       {"time_s", state.time_s},
+       {"tip", points_json(std::array{state.tool.tip_mm}).front()},
+       {"removed_tets", state.record.removals.size()},
+       {"skin", surface_json(blobs_, "moment.skin", positions_on(skin, state.tissue.positions), skin.triangles)}});
+}
+
+Json Calls::run(const Json& arguments) {
+  const auto accepted = arguments.contains("accept")
+                            ? argument<std::vector<std::string>>(arguments, "accept", "a list of ids")
+                            : std::vector<std::string>{};
+  for (const std::string& id : accepted) static_cast<void>(verdict_rule(id));
+  const fs::path output = output_beside(file_);
+  steps::CaseRequest request{read_case_with_inputs(file_), output, {}};
+  request.options.watch = [this](const auto& cut, const auto& model, const auto& progress) {
+    show_moment(cut, model, progress);
+  };
+  const Json done = steps::run_loop(request, accepted, {context_of(workers_), workers_, monitor_}).json;
+  const Study study = study_until(Stage::Verify);  // all of it is in the cache
+  Json json;
+  for (const char* key : {"verdict", "outcome", "accepted", "report"}) json[key] = done.at(key);
+  const Json program = done.value("program", Json(nullptr));
+  const bool is_written = program.is_object() && program.at("written").get<bool>();
+  json["gate"] = program.is_object() && program.contains("gate") ? program.at("gate") : Json(nullptr);
+  json["checks"] = program.is_object() && program.contains("checks") ? program.at("checks") : Json(nullptr);
+  json["program"] = is_written ? Json(read_text(output / "program" / "program.script")) : Json(nullptr);
+  json["why_without_program"] =
+      program.is_object() ? program.value("reason", std::string()) : std::string("nothing was planned");
+  json["as_planned"] = study.as_planned ? cut_json(*study.as_planned, *study.followed) : Json(nullptr);
+  json["corrected"] = study.corrected ? cut_json(*study.corrected, study.correction->moves.path) : Json(nullptr);
+  return json;
+}
+
+}  // namespace incise::studio

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "blob_folder.hpp"
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/geometry/volume.hpp>
+#include <incise/storage/case_file.hpp>
+#include <incise/workflow/study.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace incise::studio {
+
+/// What a browser asks for, each a few calls of the library: see docs/decisions/0009-studio.md. The state is in the
+/// case folder; only the CT that was read last is kept.
+class Calls {
+ public:
+  using Json = nlohmann::ordered_json;
+  /// @param on_moment  is handed what a page shows of a cut under way.
+  Calls(const std::filesystem::path& blobs, Monitor& monitor, std::function<void(const Json&)> on_moment);
+
+  /// Makes the call of that name. @param file  the case; empty: none is open.
+  /// @throws CaseError for an unknown call or arguments that it cannot use; whatever the library throws.
+  [[nodiscard]] Json make(const std::string& name, const std::filesystem::path& file, const Json& arguments);
+
+ private:
+  Json open(const Json& arguments);
+  Json create(const Json& arguments);
+  Json demo(const Json& arguments);
+  Json show_case(const Json& arguments);
+  Json change(const Json& arguments);
+  Json scan(const Json& arguments);
+  Json tissue(const Json& arguments);
+  Json edge(const Json& arguments);
+  Json body(const Json& arguments);
+  Json stretch(const Json& arguments);
+  Json plan(const Json& arguments);
+  Json run(const Json& arguments);
+
+  [[nodiscard]] const CtVolume& ct_of(const CaseFile& file);
+  /// Runs the case up to a stage, in its own output folder.
+  [[nodiscard]] Study study_until(Stage until);
+  void show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress);
+
+  BlobFolder blobs_;
+  Monitor& monitor_;
+  std::function<void(const Json&)> on_moment_;
+  Workers workers_{0};
+  std::filesystem::path file_;  ///< of the case
+  std::string ct_key_;          ///< which CT is kept: its place, how it was read, and when it was changed
+  CtVolume ct_;
+  std::chrono::steady_clock::time_point last_moment_{};
+};
+
+}  // namespace incise::studio

@@ -1,0 +1,15 @@
+# cmake -DOUTPUT=x.cpp "-DFILES=name=path;…" -P embed.cmake
+# Writes a C++ source with the page's files as string literals, so that the program needs none of them when it runs.
+set(text "#include \"studio/page_files.hpp\"\n\nnamespace incise::studio {\n\nstd::span<const PageFile> page_files() {\n  static const PageFile files[] = {\n")
+foreach(entry IN LISTS FILES)
+  string(REGEX MATCH "^([^=]+)=(.*)$" ignored "${entry}")
+  set(name ${CMAKE_MATCH_1})
+  file(READ "${CMAKE_MATCH_2}" content)
+  string(FIND "${content}" ")incise_page\"" clash)
+  if(NOT clash EQUAL -1)
+    message(FATAL_ERROR "${CMAKE_MATCH_2} holds the text that ends our string literals")
+  endif()
+  string(APPEND text "{\"${name}\", R\"incise_page(${content})incise_page\"},\n")
+endforeach()
+string(APPEND text "  };\n  return files;\n}\n\n}  // namespace incise::studio\n")
+file(WRITE "${OUTPUT}" "${text}")

@@ -1,0 +1,247 @@
+// What the page asks of the server, and how answers reach the state.
+
+import {call, load} from "./api.js";
+import {state, update, isFresh, setting} from "./store.js";
+import {middleOf, minus, plus, voxelAt} from "./geometry.js";
+
+const kDerived = ["tissue", "body", "stretch", "plan"];
+const kPlanned = ["body", "stretch", "plan"];
+const kNeeds = {see: ["tissue"], edge: ["tissue"], hold: ["body"], plan: kPlanned, run: kPlanned, compare: kPlanned};
+
+/** One call with its marks in the state: busy while it runs, its problem if it fails. @returns the result, or null. */
+export async function ask(name, args = {}, isWanted = () => true) {
+  mark(name, (state.busy[name] || 0) + 1);
+  setProblem(name, null);
+  try {
+    const result = await call(name, args);
+    return isWanted() ? await load(result) : null;
+  } catch (error) {
+    await takeFailure(name, error, isWanted);
+    return null;
+  } finally {
+    mark(name, state.busy[name] - 1);
+  }
+}
+
+function mark(name, count) {
+  update({busy: {...state.busy, [name]: count}});
+}
+
+function setProblem(name, problem) {
+  if (problem || state.problems[name]) update({problems: {...state.problems, [name]: problem}});
+}
+
+async function takeFailure(name, error, isWanted) {
+  if (error.kind === "stopped" || !isWanted()) return;
+  if (error.kind === "lost") return update({link: "lost"});
+  if (error.kind === "denied") return update({link: "denied"});
+  if (error.kind === "changed") await reload();
+  const revision = state.case ? state.case.revision : null;
+  setProblem(name, {...error.problem, kind: error.kind || "crashed", message: error.message, revision});
+}
+
+async function reload() {
+  const found = await ask("case");
+  if (found) update({case: found, drafts: {}});
+}
+
+/** Takes a case that the server gave; `isOther`: it is not the one that was open. */
+export function takeCase(found, isOther) {
+  update({case: found, problems: {}, accept: isOther ? [] : state.accept});
+  if (!isOther) return;
+  update({
+    scan: null,
+    tissue: null,
+    body: null,
+    stretch: null,
+    plan: null,
+    run: null,
+    moment: null,
+    cross: null,
+    edge: {...state.edge, points: [], curve: [], isClosed: false, selected: -1, isSaved: true, mode: "look"},
+  });
+  loadScan(); // before the tissue: the picture comes first
+  goTo("see");
+}
+
+async function loadScan() {
+  const file = state.case.file;
+  const scan = await ask("scan");
+  if (scan && state.case && state.case.file === file) update({scan, cross: state.cross || firstPlace(scan.grid)});
+}
+
+// What a person wants to see first: the seed, else the middle of the region box, else that of the scan.
+function firstPlace(grid) {
+  const seed = setting("ct.seed_mm"),
+    box = setting("ct.roi_box_mm");
+  const place = seed || (box && plus(box[0], minus(box[1], box[0]), 0.5));
+  return place && voxelAt(grid, place) >= 0 ? place : middleOf(grid);
+}
+
+/** Opens, makes or virtually makes a case: the calls `open`, `create` and `demo`. */
+export async function begin(name, args) {
+  const found = await ask(name, args);
+  if (found) takeCase(found, true);
+}
+
+/** Lists a folder of the server. */
+export async function list(folder) {
+  const files = await ask("files", folder ? {folder} : {});
+  if (files) update({files});
+}
+
+/** Shows a step, and computes what it shows. */
+export function goTo(step) {
+  update({step, placing: null, focus: null, notice: ""});
+  refreshStep();
+}
+
+const tickets = {};
+
+/** Asks for a derived result; an answer that a newer question has overtaken is dropped. */
+export async function refresh(name, args = {}) {
+  const ticket = (tickets[name] || 0) + 1;
+  tickets[name] = ticket;
+  const isLast = () => tickets[name] === ticket;
+  const revision = state.case.revision;
+  const result = await ask(name, args, isLast);
+  if (result && isLast()) update({[name]: {...withTriangles(result), revision}});
+  return isLast() ? result : null;
+}
+
+// A stretched skin has the triangles of the one at rest.
+function withTriangles(result) {
+  if (!result.skin || result.skin.triangles || !state.body) return result;
+  return {...result, skin: {...result.skin, triangles: state.body.skin.triangles}};
+}
+
+/** Computes what the step shows and what is not there yet for these settings. */
+export async function refreshStep() {
+  const step = state.step;
+  for (const name of needsOf(step)) {
+    if (!state.case || state.step !== step) return;
+    if (isFresh(name) || isFailed(name)) continue;
+    const revision = state.case.revision;
+    if (!(await refresh(name)) && state.case.revision === revision) break;
+  }
+  if (step === "edge" && state.step === step && isFailed("tissue") && !state.body && !isFailed("body")) refresh("body");
+}
+
+// A body that is no part of a scan has no tissue to find: its mesh is drawn on instead.
+function needsOf(step) {
+  if (step === "edge" && isFailed("tissue")) return ["body"];
+  return kNeeds[step] || [];
+}
+
+// Asked again before a change, the server would give the same answer.
+function isFailed(name) {
+  const problem = state.problems[name];
+  return Boolean(problem && state.case && problem.kind === "problem" && problem.revision === state.case.revision);
+}
+
+/** Stops a call; the server answers that call with "stopped". */
+export async function stop(name) {
+  await call("stop", {call: name}).catch(() => null);
+}
+
+let pending = {};
+let timer = 0;
+let isSending = false;
+
+/** Sets settings {key: value}: shown at once, sent after a moment without further changes. */
+export function change(set) {
+  Object.assign(pending, set);
+  update({drafts: {...state.drafts, ...set}});
+  clearTimeout(timer);
+  timer = setTimeout(send, 160);
+}
+
+async function send() {
+  if (isSending) return;
+  isSending = true;
+  while (Object.keys(pending).length) {
+    const set = pending;
+    pending = {};
+    await overtake();
+    const found = await ask("change", {revision: state.case.revision, set});
+    update({drafts: withoutSent(state.drafts, set), refused: found ? {} : {...state.refused, ...set}});
+    if (found) takeCase(found, false);
+  }
+  isSending = false;
+  refreshStep();
+}
+
+// What is computed from the settings as they were is of no use any more.
+async function overtake() {
+  const busy = kDerived.filter((name) => state.busy[name]);
+  for (const name of busy) tickets[name] += 1;
+  if (busy.length) await stop(busy[0]);
+}
+
+// A key that was set again meanwhile stays: its newer value waits in `pending`.
+function withoutSent(drafts, set) {
+  return Object.fromEntries(Object.entries(drafts).filter(([key]) => !(key in set) || key in pending));
+}
+
+/** Stores the tumour's edge, mm. */
+export async function saveEdge(points, where) {
+  const found = await ask("edge", {revision: state.case.revision, points_mm: points, configuration: where});
+  if (!found) return;
+  takeCase(found, false);
+  update({edge: {...state.edge, isSaved: true, mode: "look"}, notice: "The tumour's edge is stored in the case."});
+  refreshStep();
+}
+
+/** Runs the case: cut as planned, correction, cut along the corrected path. */
+export async function run() {
+  update({messages: [], moment: null, progress: {...state.progress, run: null}});
+  const result = await refresh("run", {accept: state.accept});
+  if (result) goTo("compare");
+}
+
+/** Takes an event of the server. */
+export function takeEvent(name, data) {
+  if (name === "progress") update({progress: {...state.progress, [data.call]: data}});
+  if (name === "message") update({messages: [...state.messages.slice(-199), {...data, key: nextKey()}]});
+  if (name === "moment") takeMoment(data);
+  if (name === "state") takeState(data);
+}
+
+let lastKey = 0;
+function nextKey() {
+  lastKey += 1;
+  return lastKey;
+}
+
+let isMomentLoading = false;
+
+// While one moment's arrays are on their way, others are skipped: a newer one comes soon.
+async function takeMoment(data) {
+  if (isMomentLoading) return;
+  isMomentLoading = true;
+  const moment = await load(data).catch(() => null);
+  isMomentLoading = false;
+  if (moment) update({moment});
+}
+
+/** Takes the state as the call or the event `state` gives it. */
+export function takeState(data) {
+  const wasRunning = state.running.some((job) => job.call === "run");
+  update({version: data.version, running: data.running || []});
+  setProblem("state", data.case_problem ? {kind: "problem", ...data.case_problem} : null);
+  if (data.case && !isBusySetting()) takeStored(data.case);
+  const isRunning = state.running.some((job) => job.call === "run");
+  if (wasRunning && !isRunning && !state.busy.run) refresh("run", {accept: state.accept});
+}
+
+// An answer that will bring the same case is on its way.
+function isBusySetting() {
+  return isSending || ["open", "create", "demo", "edge", "change"].some((name) => state.busy[name]);
+}
+
+function takeStored(found) {
+  if (!state.case || state.case.file !== found.file) return takeCase(found, true);
+  if (found.revision === state.case.revision) return undefined;
+  takeCase(found, false);
+  return refreshStep();
+}

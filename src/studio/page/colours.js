@@ -1,0 +1,37 @@
+// The colours of what has one meaning everywhere, as in the report; safe for colour-blind people (Okabe and Ito).
+
+/** CSS colours by meaning. On the black ground of a slice the lighter ones of `onBlack` are used. */
+export const ink = {
+  tissue: "#db9a8f",
+  kerf: "#e69f00",
+  tumour: "#009e73",
+  corrected: "#0072b2",
+  reached: "#b3123f",
+  tool: "#8d979f",
+};
+export const onBlack = {
+  tissue: "#56b4e9",
+  box: "#f0a818",
+  seed: "#f0e442",
+  tumour: "#2fd6a3",
+  cross: "#b8c4cc",
+  words: "#d7dde2",
+};
+
+/** Colours of a case's constraints, by their place in the list; they start again after the last. */
+export const holds = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00"];
+
+/** @returns whether the person asked for a dark page. */
+export function isDark() {
+  return window.matchMedia("(prefers-color-scheme: dark)").matches;
+}
+
+/** The colour of the intended path: black, or nearly white on a dark page. */
+export function intended() {
+  return isDark() ? "#f2f4f5" : "#111111";
+}
+
+/** Red, green and blue of "#rrggbb", each in 0..255. */
+export function rgbOf(colour) {
+  return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+}

@@ -1,0 +1,200 @@
+// Which things each step shows in the 3D view.
+
+import {balls, boxLines, depthLines, heldColours, needle, plate, skinMesh, tubes, ballAbout} from "./things.js";
+import {directionOf, pointsOf} from "./geometry.js";
+import {ink, intended, onBlack} from "./colours.js";
+import {setting} from "./store.js";
+
+const kTube = 0.28; // mm
+const kWideTube = 0.36;
+
+/** The layers of the state: {name, label, colour, isArea, parts, build}; a layer is built anew when one of its `parts`
+ *  is another object. @param edge  {points, isClosed} */
+export function layersOf(state, edge) {
+  const make = {see: seen, edge: drawn, hold: held, plan: planned, run: running, compare: compared}[state.step] || seen;
+  return make(state, edge).filter(Boolean);
+}
+
+function skinLayer(skin, name = "tissue", opacity = 1) {
+  if (!skin) return null;
+  return {
+    name,
+    label: "tissue",
+    colour: ink.tissue,
+    isArea: true,
+    parts: [skin, opacity],
+    build: () => [skinMesh(skin, {colour: ink.tissue, opacity})],
+  };
+}
+
+function curveLayer(name, label, colour, points, isClosed, parts, radius = kTube) {
+  if (!points || points.length < 2) return null;
+  return {name, label, colour, parts, build: () => tubes(points, isClosed, colour, radius)};
+}
+
+function ballLayer(name, label, colour, points, radius, parts) {
+  if (!points.length) return null;
+  return {name, label, colour, isArea: true, parts, build: () => balls(points, colour, radius)};
+}
+
+function edgeLayer(edge) {
+  return curveLayer("tumour", "tumour's edge", ink.tumour, edge.points, edge.isClosed, [edge.points, edge.isClosed]);
+}
+
+function focusLayer(state) {
+  return ballLayer("focus", "chosen place", ink.reached, state.focus ? [state.focus] : [], 0.9, [state.focus]);
+}
+
+// --- The steps. ---
+
+function seen(state, edge) {
+  const box = setting("ct.roi_box_mm"),
+    seed = setting("ct.seed_mm");
+  return [
+    skinLayer(state.tissue ? state.tissue.skin : state.body && state.body.skin),
+    box && {
+      name: "box",
+      label: "region box",
+      colour: onBlack.box,
+      parts: [String(box)],
+      build: () => boxLines(box, onBlack.box),
+    },
+    seed && ballLayer("seed", "seed", "#8a7f00", [seed], 1.1, [String(seed)]),
+    edge.isRest ? edgeLayer(edge) : null,
+    focusLayer(state),
+  ];
+}
+
+function drawn(state, edge) {
+  const {edge: own, tissue, body, stretch} = state;
+  const skin = own.where === "stretched" ? stretch && stretch.skin : (tissue && tissue.skin) || (body && body.skin);
+  const others = own.points.filter((_, k) => k !== own.selected);
+  const chosen = own.points.filter((_, k) => k === own.selected);
+  return [
+    skinLayer(skin),
+    edgeLayer(edge),
+    own.mode === "look" ? null : ballLayer("points", "points", ink.tumour, others, 0.7, [own.points, own.selected]),
+    own.mode === "look"
+      ? null
+      : ballLayer("chosen", "chosen point", ink.kerf, chosen, 0.95, [own.points, own.selected]),
+  ];
+}
+
+function held(state, edge) {
+  const {body, stretch, scrub} = state;
+  if (!body) return [skinLayer(state.tissue && state.tissue.skin)];
+  const isPulled = stretch && scrub > 0.995,
+    isRest = !stretch || scrub < 0.005;
+  const pulledEdge = isPulled ? pointsOf(stretch.edge) : [];
+  return [
+    {
+      name: "body",
+      label: "tissue, held parts coloured",
+      colour: ink.tissue,
+      isArea: true,
+      parts: [body, stretch],
+      build: () => [skinMesh(body.skin, {colours: heldColours(body.held)})],
+    },
+    ...plateLayers(body.skin),
+    isPulled ? curveLayer("tumour", "tumour's edge", ink.tumour, pulledEdge, true, [stretch]) : null,
+    isRest && edge.isRest ? edgeLayer(edge) : null,
+  ];
+}
+
+function plateLayers(skin) {
+  const list = setting("specimen.constraints") || [];
+  return list.map((one, k) => {
+    if (!one.plane || !Array.isArray(one.plane.point_mm)) return null;
+    const normal = directionOf(one.plane.normal, [0, 0, 1]),
+      about = ballAbout(skin.vertices);
+    return {
+      name: `plate${k}`,
+      label: "support, 10 mm grid",
+      colour: "#9fb2c2",
+      isArea: true,
+      parts: [JSON.stringify(one), skin],
+      build: () => plate(one.plane.point_mm, normal, about.centre, about.radius),
+    };
+  });
+}
+
+function planned(state) {
+  const {plan, stretch, body} = state;
+  return [
+    skinLayer((stretch && stretch.skin) || (body && body.skin)),
+    ...pathLayers(plan),
+    plan ? markerLayer(plan.verdict, plan) : null,
+    focusLayer(state),
+  ];
+}
+
+function pathLayers(plan) {
+  if (!plan || !plan.path) return [];
+  const {path} = plan,
+    points = pointsOf(path),
+    colour = intended();
+  const hasTips = Array.isArray(path.axes) && path.axes.length && path.depth_mm;
+  return [
+    curveLayer("path", "planned path", colour, points, path.closed, [plan, colour]),
+    hasTips
+      ? {
+          name: "depth",
+          label: "planned depth",
+          colour,
+          parts: [plan, colour],
+          build: () => depthLines(points, path.axes, path.depth_mm, colour),
+        }
+      : null,
+    ballLayer("start", "start", "#56b4e9", points.slice(0, 1), 0.7, [plan]),
+    curveLayer("tumour", "tumour's edge", ink.tumour, pointsOf(plan.edge), true, [plan]),
+  ];
+}
+
+/** The places of a verdict's reasons. */
+function markerLayer(verdict, part) {
+  const places = ((verdict && verdict.reasons) || [])
+    .map((reason) => reason.at && reason.at.position_mm)
+    .filter(Boolean);
+  return ballLayer("reasons", "reasons of the verdict", ink.reached, places, 0.8, [part]);
+}
+
+function running(state) {
+  const {moment, plan} = state;
+  const skin = moment && moment.skin;
+  if (!skin && !moment) return planned(state);
+  return [
+    skinLayer(skin || (state.stretch && state.stretch.skin), skin ? "cut-skin" : "tissue"),
+    moment.tip || moment.path ? toolLayer(moment) : null,
+    curveLayer("line", "mid-line", ink.kerf, pointsOf(moment.line), false, [moment], kWideTube),
+    ...pathLayers(plan),
+  ];
+}
+
+function toolLayer(moment) {
+  const axis = moment.axis || directionOf(setting("plan.approach"), [0, 0, -1]),
+    diameter = setting("tool.diameter_mm") || 1;
+  return {
+    name: "tool",
+    label: "needle",
+    colour: ink.tool,
+    isArea: true,
+    parts: [moment],
+    build: () => needle(moment.tip || moment.path, axis, diameter, 25),
+  };
+}
+
+function compared(state) {
+  const {run, plan, stretch, body} = state;
+  if (!run) return planned(state);
+  const isClosed = !(plan && plan.path) || plan.path.closed !== false;
+  const line = (name, label, colour, cut) =>
+    curveLayer(name, label, colour, cut && pointsOf(cut.centerline), isClosed, [run, isClosed], kWideTube);
+  return [
+    skinLayer((stretch && stretch.skin) || (body && body.skin)),
+    ...pathLayers(plan).filter((layer) => layer && layer.name !== "depth"),
+    line("before", "mid-line as planned", ink.kerf, run.as_planned),
+    line("after", "mid-line corrected", ink.corrected, run.corrected),
+    markerLayer(run.verdict, run),
+    focusLayer(state),
+  ];
+}

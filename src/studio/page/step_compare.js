@@ -1,0 +1,297 @@
+// Step 7: the cut as planned and the corrected one, side by side, and the gate before the robot's program.
+
+import {h} from "preact";
+import {state, update, isFresh} from "./store.js";
+import {run} from "./actions.js";
+import {approach, showPlace} from "./views.js";
+import {isRunning} from "./step_run.js";
+import {Button, Check, Problems, Reasons, Section, Status} from "./widgets.js";
+import {ContourView, boundsOf} from "./contour_view.js";
+import {Plot} from "./plots.js";
+import {pointsOf} from "./geometry.js";
+import {ink, intended, isDark} from "./colours.js";
+import {fixed, isNumber, mm, spoken} from "./words.js";
+
+const kNumbers = [
+  ["nearest_to_tumour_mm", "Closest approach to the tumour"],
+  ["least_depth_mm", "Least depth"],
+  ["greatest_error_mm", "Greatest error"],
+  ["mean_error_mm", "Mean error"],
+];
+
+/** The panel. */
+export function StepCompare() {
+  const result = state.run;
+  if (!result)
+    return h(
+      "div",
+      null,
+      h("p", {class: "soft"}, "This case has not been run in this session. A result in the cache comes at once."),
+      h(Button, {isMain: true, disabled: isRunning(), onClick: run, "data-do": "run"}, "Run"),
+      h(Problems, {calls: ["run"]}),
+    );
+  return h(
+    "div",
+    {"data-run": result.outcome},
+    isFresh("run") ? null : h("p", {class: "warning"}, "The settings have changed since this run."),
+    h(
+      Section,
+      {title: "Verdict", id: "verdict"},
+      h("p", {class: "verdict"}, h(Status, {status: result.verdict.status}), ` ${sentence(result)}`),
+      h(Reasons, {verdict: result.verdict, onPlace: showPlace}),
+    ),
+    h(Section, {title: "Numbers", id: "numbers"}, h(Table, {result})),
+    h(Gate, {result}),
+  );
+}
+
+function sentence(result) {
+  const count = (result.verdict.reasons || []).length;
+  const reasons = count
+    ? `${count} ${count === 1 ? "reason" : "reasons"}, worst first.`
+    : "No reason against the cut is known.";
+  const path =
+    result.corrected && result.accepted !== undefined
+      ? ` The correction is ${result.accepted ? "accepted" : "not accepted"}.`
+      : "";
+  return `Outcome: ${spoken(result.outcome).toLowerCase()}. ${reasons}${path}`;
+}
+
+function Table({result}) {
+  const of = (cut, key) => mm(cut && cut.numbers ? cut.numbers[key] : null);
+  return h(
+    "table",
+    {class: "numbers-table"},
+    h(
+      "thead",
+      null,
+      h(
+        "tr",
+        null,
+        h("th", {scope: "col"}, "Simulated"),
+        h("th", {scope: "col", class: "number"}, "As planned"),
+        h("th", {scope: "col", class: "number"}, "Corrected"),
+      ),
+    ),
+    h(
+      "tbody",
+      null,
+      kNumbers.map(([key, name]) =>
+        h(
+          "tr",
+          {key, "data-number": key},
+          h("th", {scope: "row"}, name),
+          h("td", {class: "number"}, of(result.as_planned, key)),
+          h("td", {class: "number"}, of(result.corrected, key)),
+        ),
+      ),
+    ),
+  );
+}
+
+// --- The gate. ---
+
+function Gate({result}) {
+  const gate = result.gate || {},
+    open = [...(gate.missing || []), ...(gate.accepted || [])];
+  return h(
+    Section,
+    {title: "Robot program", id: "gate"},
+    (gate.refused || []).length
+      ? h("p", null, `Refused: ${gate.refused.map(spoken).join(", ")}. Nobody can accept this.`)
+      : null,
+    open.length
+      ? h(
+          "fieldset",
+          {class: "gate"},
+          h("legend", null, "Cautions that a person has to accept, each by itself"),
+          open.map((id) =>
+            h(Check, {
+              key: id,
+              label: cautionText(result, id),
+              isOn: state.accept.includes(id),
+              onChange: (isOn) => accept(id, isOn),
+            }),
+          ),
+        )
+      : null,
+    open.length
+      ? h(
+          Button,
+          {disabled: isRunning() || !isOtherChoice(gate), onClick: run, "data-do": "accept"},
+          "Run again with these accepted",
+        )
+      : null,
+    h(Problems, {calls: ["run"]}),
+    result.program
+      ? h(Program, {text: result.program})
+      : h("p", {class: "warning", "data-program": "none"}, result.why_without_program || "There is no program."),
+    h(Checks, {checks: result.checks}),
+    result.report ? h("p", {class: "soft path"}, `Report: ${result.report}`) : null,
+  );
+}
+
+function Checks({checks}) {
+  if (!Array.isArray(checks) || !checks.length) return null;
+  const failed = checks.filter((check) => !check.passed).length;
+  const title = failed ? `${failed} of ${checks.length} checks failed` : `All ${checks.length} checks passed`;
+  return h(
+    "details",
+    {open: failed > 0},
+    h("summary", null, title),
+    h(
+      "ul",
+      {class: "facts"},
+      checks.map((check, k) => h("li", {key: k}, h(OneCheck, {check}))),
+    ),
+  );
+}
+
+function OneCheck({check}) {
+  const number = (value) => (isNumber(value) ? fixed(value, 2) : String(value));
+  const has = Boolean(check.relation) && check.value !== null && check.value !== undefined;
+  const found = has ? `: ${number(check.value)} ${check.unit || ""}` : "";
+  return [h(Status, {status: check.passed ? "ok" : "refused"}), ` ${check.text}${found}`];
+}
+
+function accept(id, isOn) {
+  update({accept: isOn ? [...state.accept, id] : state.accept.filter((other) => other !== id)});
+}
+
+function isOtherChoice(gate) {
+  return [...state.accept].sort().join() !== [...(gate.accepted || [])].sort().join();
+}
+
+function cautionText(result, id) {
+  const reason = (result.verdict.reasons || []).find((one) => one.id === id);
+  return `${spoken(id)}${reason ? `: ${reason.message}` : ""}`;
+}
+
+function Program({text}) {
+  const save = () => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([text], {type: "text/plain"}));
+    link.download = "incise.script";
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  };
+  return h(
+    "div",
+    {"data-program": "there"},
+    h(Button, {isMain: true, onClick: save, "data-do": "download"}, "Download the program"),
+    h("pre", {tabIndex: 0, role: "region", "aria-label": "The robot's program"}, text),
+  );
+}
+
+// --- The pictures. ---
+
+let memo = {run: null};
+
+/** Curves and plots of a result; the same objects for as long as the result and the colours are the same. */
+function picturesOf(run, plan) {
+  if (memo.run !== run || memo.plan !== plan || memo.isDark !== isDark()) {
+    memo = {run, plan, isDark: isDark(), ...makePictures(run, plan)};
+  }
+  return memo;
+}
+
+function makePictures(run, plan) {
+  const before = contoursOf(run.as_planned, ink.kerf, plan),
+    after = contoursOf(run.corrected, afterColour(), plan);
+  return {
+    before,
+    after,
+    bounds: boundsOf([...before, ...after], approach()),
+    errors: errorsOf(run),
+    depths: depthsOf(run),
+  };
+}
+
+function afterColour() {
+  return isDark() ? "#5db4e8" : ink.corrected;
+}
+
+function contoursOf(cut, colour, plan) {
+  if (!cut) return [];
+  const isClosed = !(plan && plan.path) || plan.path.closed !== false;
+  return [
+    {label: "planned path", colour: intended(), width: 1.5, points: plan && plan.path, isClosed},
+    {
+      label: "path of the tool",
+      colour: isDark() ? "#9aa3ab" : "#6b6b6b",
+      width: 1.3,
+      dash: [4, 3],
+      points: cut.path,
+      isClosed,
+    },
+    {label: "mid-line of the cut", colour, width: 2.4, points: cut.centerline, isClosed},
+    {label: "inner edge", colour, width: 1.2, dash: [1, 2], points: cut.inner_edge, isClosed},
+    {
+      label: "tumour's edge",
+      colour: isDark() ? "#2fd6a3" : ink.tumour,
+      width: 2,
+      points: plan && plan.edge,
+      isClosed: true,
+    },
+  ];
+}
+
+function errorsOf({as_planned: before, corrected: after}) {
+  const curve = (cut, label, colour) =>
+    cut && cut.errors && {label, colour, x: cut.errors.arclength_mm, y: cut.errors.signed_mm};
+  return [curve(before, "as planned", ink.kerf), curve(after, "corrected", afterColour())].filter(Boolean);
+}
+
+function depthsOf({as_planned: before, corrected: after}) {
+  const reached = (cut, label, colour) =>
+    cut && cut.depth && {label, colour, x: cut.depth.arclength_mm, y: cut.depth.reached_mm};
+  const first = (before && before.depth) || (after && after.depth);
+  const planned = first && {
+    label: "planned",
+    colour: intended(),
+    dash: [5, 3],
+    x: first.arclength_mm,
+    y: first.planned_mm,
+  };
+  return [planned, reached(before, "as planned", ink.kerf), reached(after, "corrected", afterColour())].filter(Boolean);
+}
+
+/** Contours and plots for the large part of the page. */
+export function ComparePictures() {
+  const {run, plan, focus} = state;
+  if (!run) return null;
+  const {before, after, bounds, errors, depths} = picturesOf(run, plan);
+  const view = (id, title, curves, cut) =>
+    h(ContourView, {
+      key: id,
+      id,
+      direction: approach(),
+      bounds,
+      mark: focus,
+      curves,
+      title: [title, cut && cut.verdict ? `: ${spoken(cut.verdict.status)}` : ""].join(""),
+    });
+  return [
+    run.as_planned && pointsOf(run.as_planned.centerline) ? view("before", "As planned", before, run.as_planned) : null,
+    run.corrected
+      ? view("after", "Corrected", after, run.corrected)
+      : h(
+          "figure",
+          {class: "contours", key: "after"},
+          h("figcaption", null, "Corrected"),
+          h("p", {class: "soft"}, "There is no corrected cut."),
+        ),
+    errors.length
+      ? h(Plot, {
+          key: "errors",
+          id: "errors",
+          title: "Error of the mid-line; above 0: farther from the tumour",
+          unit: "error, mm",
+          curves: errors,
+        })
+      : null,
+    depths.length
+      ? h(Plot, {key: "depths", id: "depths", title: "Depth reached", unit: "depth, mm", curves: depths})
+      : null,
+  ];
+}

@@ -1,0 +1,362 @@
+// Step 4: how the specimen is held, and what the pull does to it.
+
+import {h} from "preact";
+import {state, update, setting, isFresh, unitOf} from "./store.js";
+import {change, refresh} from "./actions.js";
+import {
+  Button,
+  Choice,
+  Facts,
+  NumberInput,
+  Numbers,
+  Problems,
+  Section,
+  TextInput,
+  Working,
+  complaint,
+  problemAt,
+  useId,
+} from "./widgets.js";
+import {kDirections} from "./geometry.js";
+import {holds} from "./colours.js";
+import {mm, spoken} from "./words.js";
+
+const kPath = "specimen.constraints";
+const kAxes = ["x", "y", "z"];
+const kWords = Object.keys(kDirections);
+
+// What a new one starts with; the numbers are there to be changed.
+const kNew = {
+  fixed: {kind: "fixed", where: {end: {direction: "posterior", within_mm: 10}}},
+  displaced: {kind: "displaced", where: {end: {direction: "anterior", within_mm: 10}}, displacement_mm: [0, -5, 0]},
+  support: {kind: "support", plane: {point_mm: [0, 0, 0], normal: "superior"}},
+};
+const kNewRegions = {
+  end: () => ({end: {direction: "posterior", within_mm: 10}}),
+  box_mm: (at) => ({box_mm: [at.map((value) => value - 5), at.map((value) => value + 5)]}),
+  sphere: (at) => ({sphere: {center_mm: at, radius_mm: 5}}),
+  plane: (at) => ({plane: {point_mm: at, normal: "posterior"}}),
+};
+
+/** The panel. */
+export function StepHold() {
+  const list = setting(kPath);
+  return h(
+    "div",
+    null,
+    h(
+      Section,
+      {title: "Held by", id: "constraints"},
+      list
+        ? h(
+            "ul",
+            {class: "holds"},
+            list.map((one, k) => h("li", {key: k}, h(Constraint, {one, k}))),
+          )
+        : h(ByDefault),
+      h(
+        "div",
+        {class: "row"},
+        Object.keys(kNew).map((kind) =>
+          h(Button, {key: kind, onClick: () => put([...(list || []), fresh(kind)])}, `Add ${kind}`),
+        ),
+      ),
+      list ? h(Button, {onClick: () => change({[kPath]: null})}, "Back to the default") : null,
+      h(Problems, {calls: ["change", "body"], shown: (list || []).map((_, k) => `${kPath}[${k}]`)}),
+      h(Working, {call: "body", text: "Meshing the body"}),
+    ),
+    h(Body),
+    h(Stretch),
+  );
+}
+
+function put(list) {
+  change({[kPath]: list});
+}
+
+function place() {
+  return (state.cross || [0, 0, 0]).map((value) => Number(value.toFixed(1)));
+}
+
+function fresh(kind) {
+  const one = structuredClone(kNew[kind]);
+  if (one.plane) one.plane.point_mm = place();
+  return one;
+}
+
+function ByDefault() {
+  const found = (state.body && state.body.constraints) || [];
+  return h(
+    "div",
+    null,
+    h(
+      "p",
+      {class: "soft"},
+      "The case says nothing, so the body is held by the default. The first one that you add replaces the default.",
+    ),
+    h(
+      "ul",
+      {class: "facts"},
+      found.map((one, k) => h("li", {key: k}, h(Dot, {k}), `${spoken(one.kind)}: ${one.vertices} vertices`)),
+    ),
+  );
+}
+
+function Dot({k}) {
+  return h(
+    "svg",
+    {class: "dot", viewBox: "0 0 10 10", "aria-hidden": "true"},
+    h("circle", {cx: 5, cy: 5, r: 5, fill: holds[k % holds.length]}),
+  );
+}
+
+function Constraint({one, k}) {
+  const set = (patch) => put(setting(kPath).with(k, {...one, ...patch}));
+  const found = state.body && isFresh("body") && state.body.constraints && state.body.constraints[k];
+  const problem = problemAt(`${kPath}[${k}]`);
+  return h(
+    "fieldset",
+    {class: "hold"},
+    h(
+      "legend",
+      null,
+      h(Dot, {k}),
+      spoken(one.kind),
+      found ? h("span", {class: "soft"}, ` ${found.vertices} vertices`) : null,
+    ),
+    one.where ? h(Region, {where: one.where, onChange: (where) => set({where})}) : null,
+    h(Own, {one, set}),
+    problem ? h("p", {class: "problem", role: "alert"}, complaint(problem)) : null,
+    h(
+      Button,
+      {onClick: () => put(setting(kPath).toSpliced(k, 1)), "aria-label": `Remove constraint ${k + 1}, ${one.kind}`},
+      "Remove",
+    ),
+  );
+}
+
+function Own({one, set}) {
+  if (one.kind === "displaced") {
+    return h(Numbers, {
+      label: "Displacement",
+      unit: "mm",
+      names: kAxes,
+      value: one.displacement_mm,
+      step: 1,
+      onChange: (displacement_mm) => set({displacement_mm}),
+    });
+  }
+  if (one.kind === "traction") {
+    return h(Numbers, {
+      label: "Traction",
+      unit: "kPa",
+      names: kAxes,
+      value: one.traction_kpa,
+      step: 0.1,
+      onChange: (traction_kpa) => set({traction_kpa}),
+    });
+  }
+  if (one.plane) return h(PlaneInputs, {plane: one.plane, onChange: (plane) => set({plane})});
+  if (one.surface)
+    return h("p", {class: "soft"}, `Surface: ${typeof one.surface === "string" ? one.surface : one.surface.name}`);
+  return null;
+}
+
+function PlaneInputs({plane, onChange}) {
+  return h(
+    "div",
+    null,
+    h(Numbers, {
+      label: "Point",
+      unit: "mm",
+      names: kAxes,
+      value: plane.point_mm,
+      step: 1,
+      onChange: (point_mm) => onChange({...plane, point_mm}),
+    }),
+    h(Direction, {label: "Normal", value: plane.normal, onChange: (normal) => onChange({...plane, normal})}),
+  );
+}
+
+function Direction({label, value, onChange}) {
+  const isOther = Array.isArray(value);
+  const choose = (word) => onChange(word === "other" ? kDirections[value] || [0, 0, 1] : word);
+  return h(
+    "div",
+    null,
+    h(Choice, {
+      label,
+      value: isOther ? "other" : value,
+      onChange: choose,
+      options: [...kWords.map((word) => [word, spoken(word)]), ["other", "Three numbers"]],
+    }),
+    isOther ? h(Numbers, {label: `${label}, x y z`, names: kAxes, value, step: 0.1, onChange}) : null,
+  );
+}
+
+function Region({where, onChange}) {
+  const kind = Object.keys(where)[0];
+  const kinds = [
+    ["end", "End"],
+    ["box_mm", "Box"],
+    ["sphere", "Sphere"],
+    ["plane", "Plane"],
+  ];
+  const known = kinds.some(([name]) => name === kind);
+  return h(
+    "div",
+    null,
+    h(Choice, {
+      label: "Where",
+      value: kind,
+      options: known ? kinds : [...kinds, [kind, spoken(kind)]],
+      onChange: (name) => kNewRegions[name] && onChange(kNewRegions[name](place())),
+    }),
+    h(RegionInputs, {kind, value: where[kind], onChange: (value) => onChange({[kind]: value})}),
+  );
+}
+
+function RegionInputs({kind, value, onChange}) {
+  const set = (patch) => onChange({...value, ...patch});
+  if (kind === "end") {
+    return h(
+      "div",
+      {class: "pair"},
+      h(Direction, {label: "Direction", value: value.direction, onChange: (direction) => set({direction})}),
+      h(NumberInput, {
+        label: "Within",
+        unit: "mm",
+        value: value.within_mm,
+        step: 1,
+        min: 0,
+        onChange: (within_mm) => set({within_mm}),
+      }),
+    );
+  }
+  if (kind === "box_mm") {
+    return h(
+      "div",
+      null,
+      ["Low corner", "High corner"].map((label, side) =>
+        h(Numbers, {
+          key: label,
+          label,
+          unit: "mm",
+          names: kAxes,
+          value: value[side],
+          step: 1,
+          onChange: (corner) => onChange(value.with(side, corner)),
+        }),
+      ),
+    );
+  }
+  if (kind === "sphere") {
+    return h(
+      "div",
+      null,
+      h(Numbers, {
+        label: "Centre",
+        unit: "mm",
+        names: kAxes,
+        value: value.center_mm,
+        step: 1,
+        onChange: (center_mm) => set({center_mm}),
+      }),
+      h(NumberInput, {
+        label: "Radius",
+        unit: "mm",
+        value: value.radius_mm,
+        step: 1,
+        min: 0,
+        onChange: (radius_mm) => set({radius_mm}),
+      }),
+    );
+  }
+  if (kind === "plane") {
+    return h(
+      "div",
+      null,
+      h(PlaneInputs, {plane: value, onChange: set}),
+      h(NumberInput, {
+        label: "Within",
+        unit: "mm",
+        value: value.within_mm,
+        step: 1,
+        min: 0,
+        isOptional: true,
+        onChange: (within_mm) => set({within_mm}),
+        hint: "Empty: everything on the normal's side.",
+      }),
+    );
+  }
+  return h(TextInput, {label: "Array and value, NAME=VALUE", value: String(value), onChange});
+}
+
+function Body() {
+  const {body} = state;
+  if (!body) return null;
+  return h(
+    Section,
+    {title: "Body", id: "body"},
+    h(
+      "div",
+      {class: isFresh("body") ? null : "stale"},
+      h(Facts, {facts: {tets: body.tets, vertices_of_the_skin: body.skin.vertices.length / 3}}),
+    ),
+    setting("meshing.tets") !== null
+      ? h(NumberInput, {
+          label: "Tets of the mesh, about",
+          unit: unitOf("meshing.tets"),
+          value: setting("meshing.tets"),
+          step: 5000,
+          min: 1,
+          problem: problemAt("meshing.tets"),
+          onChange: (tets) => change({"meshing.tets": tets}),
+        })
+      : null,
+  );
+}
+
+function Stretch() {
+  const {stretch, scrub, busy} = state,
+    id = useId("scrub");
+  const isStale = stretch && !isFresh("stretch");
+  return h(
+    Section,
+    {title: "Stretch", id: "stretch"},
+    h(
+      Button,
+      {
+        isMain: !stretch || isStale,
+        disabled: Boolean(busy.stretch),
+        "data-do": "stretch",
+        onClick: async () => {
+          if (await refresh("stretch")) update({scrub: 1});
+        },
+      },
+      stretch ? "Stretch again" : "Stretch",
+    ),
+    h(Working, {call: "stretch", text: "Stretching"}),
+    h(Problems, {calls: ["stretch"]}),
+    stretch && stretch.note ? h("p", {class: "warning"}, stretch.note) : null,
+    isStale ? h("p", {class: "warning"}, "The settings have changed since this stretch.") : null,
+    stretch
+      ? h(
+          "div",
+          {class: "slider"},
+          h("label", {for: id}, "Rest to stretched"),
+          h("input", {
+            id,
+            type: "range",
+            min: 0,
+            max: 1,
+            step: 0.01,
+            value: scrub,
+            "aria-valuetext": `${Math.round(100 * scrub)} %`,
+            onInput: (event) => update({scrub: Number(event.target.value)}),
+          }),
+        )
+      : null,
+    stretch ? h("p", null, `Greatest displacement: ${mm(stretch.greatest_mm)}`) : null,
+  );
+}

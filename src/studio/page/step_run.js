@@ -1,0 +1,130 @@
+// Step 6: run, and watch it.
+
+import {h} from "preact";
+import {useEffect, useRef, useState} from "preact/hooks";
+import {state, isFresh} from "./store.js";
+import {goTo, run, stop} from "./actions.js";
+import {Button, Problems, Section} from "./widgets.js";
+import {duration, isNumber, place, spoken} from "./words.js";
+
+const kQuiet = 5000; // ms between announcements
+
+/** Whether a run is under way, ours or one that was started before this page was. */
+export function isRunning() {
+  return Boolean(state.busy.run) || state.running.some((job) => job.call === "run");
+}
+
+/** The panel. */
+export function StepRun() {
+  const isOn = isRunning();
+  return h(
+    "div",
+    null,
+    h(
+      Section,
+      {title: "Run", id: "run"},
+      h(
+        "p",
+        {class: "soft"},
+        "The path is cut as planned in the simulation, corrected by the errors found, and cut again.",
+      ),
+      h(
+        "div",
+        {class: "row"},
+        h(Button, {isMain: true, disabled: isOn, onClick: run, "data-do": "run"}, state.run ? "Run again" : "Run"),
+        h(Button, {disabled: !isOn, onClick: () => stop("run"), "data-do": "stop"}, "Stop"),
+      ),
+      isOn ? h(Progress) : null,
+      h(Problems, {calls: ["run"]}),
+      h(Last, {isOn}),
+      h(Moment),
+    ),
+    h(Messages),
+  );
+}
+
+function progressOfRun() {
+  return state.progress.run || state.running.find((job) => job.call === "run") || {};
+}
+
+function Progress() {
+  const {stage, fraction, left_s: left} = progressOfRun();
+  const share = isNumber(fraction) ? fraction : undefined;
+  const text = [
+    spoken(stage) || "Starting",
+    share === undefined ? "" : `${Math.round(100 * share)} %`,
+    isNumber(left) ? `about ${duration(left)} left` : "",
+  ]
+    .filter(Boolean)
+    .join(", ");
+  return h(
+    "div",
+    {class: "progress", "data-progress": share === undefined ? "" : share.toFixed(3)},
+    h("p", null, text),
+    h("progress", {max: 1, value: share, "aria-label": "Progress of the run"}),
+    h(Announcer, {text}),
+  );
+}
+
+/** Tells a screen reader what goes on, at most every few seconds. */
+function Announcer({text}) {
+  const [said, setSaid] = useState(""),
+    last = useRef(0);
+  useEffect(() => {
+    const wait = Math.max(0, last.current + kQuiet - Date.now());
+    const timer = setTimeout(() => {
+      last.current = Date.now();
+      setSaid(text);
+    }, wait);
+    return () => clearTimeout(timer);
+  }, [text]);
+  return h("span", {class: "unseen", "aria-live": "polite"}, said);
+}
+
+function Last({isOn}) {
+  if (!state.run || isOn) return null;
+  return h(
+    "p",
+    {class: isFresh("run") ? "notice" : "warning"},
+    isFresh("run") ? "There is a result for these settings. " : "The settings have changed since the last run. ",
+    h(Button, {onClick: () => goTo("compare")}, "Show the result"),
+  );
+}
+
+function Moment() {
+  const {moment} = state;
+  if (!moment || !isNumber(moment.time_s)) return null;
+  const tip = moment.tip || moment.path;
+  const at = Array.isArray(tip) ? `, tip at ${tip.map(place).join(", ")} mm` : "";
+  return h(
+    "p",
+    {"data-moment": moment.time_s},
+    `${spoken(moment.cut) || "Cut"}: ${moment.time_s.toFixed(2)} s${at}`,
+    isNumber(moment.removed_tets) ? `, ${moment.removed_tets} tets removed` : "",
+  );
+}
+
+const kSigns = {error: "✕", warning: "!", notice: "·", info: "·"};
+
+function Messages() {
+  const list = [...state.messages].reverse();
+  return h(
+    Section,
+    {title: "Messages", id: "messages"},
+    list.length
+      ? h(
+          "ol",
+          {class: "messages"},
+          list.map((one) =>
+            h(
+              "li",
+              {key: one.key, "data-severity": one.severity},
+              h("span", {class: "sign", "aria-hidden": "true"}, kSigns[one.severity] || "·"),
+              h("span", {class: "soft"}, `${spoken(one.severity)}: `),
+              one.text,
+            ),
+          ),
+        )
+      : h("p", {class: "soft"}, "None yet."),
+  );
+}

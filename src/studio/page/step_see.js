@@ -1,0 +1,228 @@
+// Step 2: look at the scan, and say which part of it is the specimen.
+
+import {h} from "preact";
+import {state, update, setting, isFresh} from "./store.js";
+import {change} from "./actions.js";
+import {fitBox, showPlace} from "./views.js";
+import {
+  Button,
+  Facts,
+  NumberInput,
+  Numbers,
+  Problems,
+  Reasons,
+  Section,
+  Setting,
+  Status,
+  Working,
+  problemAt,
+  useId,
+} from "./widgets.js";
+import {middleOf, plus, voxelAt} from "./geometry.js";
+
+const kKeys = ["ct.window_hu", "ct.roi_box_mm", "ct.seed_mm", "ct.opening_radius_mm", "ct.smoothing_mm"];
+const kAxes = ["x", "y", "z"];
+
+/** The panel. */
+export function StepSee() {
+  return h(
+    "div",
+    null,
+    h(Problems, {calls: ["scan"]}),
+    h(Working, {call: "scan", text: "Reading the scan"}),
+    h(Picture),
+    h(
+      Section,
+      {title: "Which values are tissue", id: "window"},
+      h(Setting, {path: "ct.window_hu", label: "Tissue", names: ["least", "greatest"], step: 5}),
+    ),
+    h(Box),
+    h(Seed),
+    h(
+      Section,
+      {title: "Surface", id: "surface"},
+      h(
+        "div",
+        {class: "pair"},
+        h(Setting, {path: "ct.opening_radius_mm", label: "Opening radius", step: 0.5}),
+        h(Setting, {path: "ct.smoothing_mm", label: "Smoothing", step: 0.1, isOptional: true}),
+      ),
+    ),
+    h(Found),
+  );
+}
+
+function Picture() {
+  const {window: grey, cross, scan} = state;
+  const put = (patch) => update({window: {...grey, ...patch}});
+  const at = cross && scan ? voxelAt(scan.grid, cross) : -1;
+  const here = cross || (scan ? middleOf(scan.grid) : null);
+  return h(
+    Section,
+    {title: "Picture", id: "picture"},
+    h(
+      "div",
+      {class: "pair"},
+      h(NumberInput, {
+        label: "Window width",
+        unit: "HU",
+        value: Math.round(grey.width),
+        step: 10,
+        min: 1,
+        onChange: (width) => put({width}),
+      }),
+      h(NumberInput, {
+        label: "Level",
+        unit: "HU",
+        value: Math.round(grey.level),
+        step: 10,
+        onChange: (level) => put({level}),
+      }),
+    ),
+    h(
+      "div",
+      {class: "row"},
+      h(Button, {onClick: () => put({width: 400, level: 40})}, "Soft tissue"),
+      h(Button, {onClick: () => put({width: 2000, level: 400})}, "Bone"),
+      scan ? h(Button, {onClick: () => put(rangeOf(scan))}, "All values") : null,
+    ),
+    h(Overlay),
+    here
+      ? h(Numbers, {
+          label: "Crosshair",
+          unit: "mm",
+          names: kAxes,
+          value: here.map((value) => Number(value.toFixed(1))),
+          step: 1,
+          onChange: (point) => showPlace(point),
+          hint: at >= 0 ? `${scan.voxels[at]} HU here` : null,
+        })
+      : null,
+  );
+}
+
+function rangeOf(scan) {
+  return {width: scan.greatest_hu - scan.least_hu, level: 0.5 * (scan.greatest_hu + scan.least_hu)};
+}
+
+function Overlay() {
+  const id = useId("overlay");
+  return h(
+    "div",
+    {class: "slider"},
+    h("label", {for: id}, "Tissue overlay"),
+    h("input", {
+      id,
+      type: "range",
+      min: 0,
+      max: 0.8,
+      step: 0.05,
+      value: state.overlay,
+      "aria-valuetext": `${Math.round(100 * state.overlay)} %`,
+      onInput: (event) => update({overlay: Number(event.target.value)}),
+    }),
+  );
+}
+
+function Box() {
+  const box = setting("ct.roi_box_mm"),
+    path = "ct.roi_box_mm";
+  const put = (side) => (corner) => change({[path]: side ? [box[0], corner] : [corner, box[1]]});
+  const scan = state.scan || state.tissue;
+  if (!box) {
+    return h(
+      Section,
+      {title: "Region box", id: "box"},
+      h("p", {class: "soft"}, "There is no box: the whole scan is searched."),
+      h(
+        Button,
+        {disabled: !scan, onClick: () => change({[path]: boxAbout(scan.grid)}), "data-do": "box"},
+        "Add a box about the crosshair",
+      ),
+    );
+  }
+  return h(
+    Section,
+    {title: "Region box", id: "box"},
+    h(Numbers, {label: "Low corner", unit: "mm", names: kAxes, value: box[0], step: 1, onChange: put(0)}),
+    h(Numbers, {
+      label: "High corner",
+      unit: "mm",
+      names: kAxes,
+      value: box[1],
+      step: 1,
+      onChange: put(1),
+      problem: problemAt(path),
+    }),
+    h(
+      "div",
+      {class: "row"},
+      h(Button, {onClick: () => fitBox(box)}, "Zoom to the box"),
+      h(Button, {onClick: () => change({[path]: null})}, "Remove the box"),
+    ),
+  );
+}
+
+// A quarter of the scan in each direction, about the crosshair; to be dragged to where it should be.
+function boxAbout(grid) {
+  const middle = state.cross || middleOf(grid);
+  const half = grid.size.map((count, k) => 0.125 * count * grid.spacing_mm[k]);
+  const reach = kAxes.map((_, world) => grid.axes.reduce((sum, axis, k) => sum + Math.abs(axis[world]) * half[k], 0));
+  return [plus(middle, reach, -1), plus(middle, reach)].map((corner) => corner.map((value) => Math.round(value)));
+}
+
+function Seed() {
+  const seed = setting("ct.seed_mm"),
+    isPlacing = state.placing === "seed";
+  const here = state.cross || (state.scan && middleOf(state.scan.grid));
+  return h(
+    Section,
+    {title: "Seed", id: "seed"},
+    seed
+      ? h(Numbers, {
+          label: "Point inside the tissue",
+          unit: "mm",
+          names: kAxes,
+          value: seed,
+          step: 1,
+          problem: problemAt("ct.seed_mm"),
+          onChange: (point) => change({"ct.seed_mm": point}),
+        })
+      : h("p", {class: "soft"}, "There is no seed: the largest piece is taken."),
+    h(
+      "div",
+      {class: "row"},
+      h(
+        Button,
+        {isPressed: isPlacing, onClick: () => update({placing: isPlacing ? null : "seed"}), "data-do": "place-seed"},
+        isPlacing ? "Click in a slice…" : "Click to place",
+      ),
+      h(
+        Button,
+        {disabled: !here, onClick: () => change({"ct.seed_mm": here.map((value) => Number(value.toFixed(1)))})},
+        "At the crosshair",
+      ),
+      seed ? h(Button, {onClick: () => change({"ct.seed_mm": null})}, "Remove") : null,
+    ),
+  );
+}
+
+function Found() {
+  const {tissue} = state;
+  return h(
+    Section,
+    {title: "Tissue found", id: "found"},
+    h(Working, {call: "tissue", text: "Finding the tissue"}),
+    h(Problems, {calls: ["change", "tissue"], shown: kKeys}),
+    tissue
+      ? h(
+          "div",
+          {class: isFresh("tissue") ? null : "stale"},
+          tissue.verdict ? h("p", null, h(Status, {status: tissue.verdict.status})) : null,
+          h(Reasons, {verdict: tissue.verdict, onPlace: showPlace}),
+          h(Facts, {facts: tissue.summary}),
+        )
+      : null,
+    tissue || state.busy.tissue ? null : h("p", {class: "soft"}, "Nothing yet."),
+  );
+}

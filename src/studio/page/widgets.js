@@ -1,0 +1,343 @@
+// The parts of the panels: inputs for settings, problems, verdicts, numbers.
+
+import {h} from "preact";
+import {useState} from "preact/hooks";
+import {state, setting, unitOf} from "./store.js";
+import {change} from "./actions.js";
+import {fixed, isNumber, nameOf, plain, spoken} from "./words.js";
+
+let lastId = 0;
+
+/** An id for an element, the same for as long as its component lives. */
+export function useId(stem) {
+  return useState(() => `${stem}-${++lastId}`)[0];
+}
+
+/** A number with label and unit. It is handed on when the input is left, with Enter, or by the arrow keys.
+ *  Emptied, it gives null if `isOptional`. */
+export function NumberInput({
+  label,
+  unit,
+  value,
+  step = "any",
+  min,
+  max,
+  isOptional,
+  problem,
+  onChange,
+  isShort,
+  hint,
+}) {
+  const id = useId("number"),
+    [draft, setDraft] = useState(null);
+  const commit = (event) => {
+    const text = event.target.value.trim(),
+      number = text === "" ? null : Number(text);
+    setDraft(null);
+    if (number === null ? isOptional : Number.isFinite(number)) onChange(number);
+  };
+  return h(
+    "div",
+    {class: isShort ? "number short" : "number"},
+    h("label", {for: id}, label),
+    h(
+      "span",
+      {class: "entry"},
+      h("input", {
+        id,
+        type: "number",
+        step,
+        min,
+        max,
+        value: draft === null ? plain(value) : draft,
+        "aria-invalid": problem ? "true" : undefined,
+        "aria-describedby": `${id}-about`,
+        onInput: (event) => setDraft(event.target.value),
+        onChange: commit,
+      }),
+      unit ? h("span", {class: "unit"}, unit) : null,
+    ),
+    h("span", {id: `${id}-about`, class: "about"}, hint, h(ProblemText, {problem})),
+  );
+}
+
+/** Some text with a label. */
+export function TextInput({label, value, onChange, problem, placeholder}) {
+  const id = useId("text"),
+    [draft, setDraft] = useState(null);
+  return h(
+    "div",
+    {class: "number"},
+    h("label", {for: id}, label),
+    h("input", {
+      id,
+      type: "text",
+      value: draft === null ? value || "" : draft,
+      placeholder,
+      spellcheck: false,
+      "aria-invalid": problem ? "true" : undefined,
+      "aria-describedby": `${id}-about`,
+      onInput: (event) => setDraft(event.target.value),
+      onChange: (event) => {
+        setDraft(null);
+        onChange(event.target.value.trim());
+      },
+    }),
+    h("span", {id: `${id}-about`, class: "about"}, h(ProblemText, {problem})),
+  );
+}
+
+/** A choice among [value, label]. */
+export function Choice({label, value, options, onChange, problem}) {
+  const id = useId("choice");
+  return h(
+    "div",
+    {class: "number"},
+    h("label", {for: id}, label),
+    h(
+      "select",
+      {id, value, "aria-invalid": problem ? "true" : undefined, onChange: (event) => onChange(event.target.value)},
+      options.map(([option, text]) => h("option", {key: option, value: option, selected: option === value}, text)),
+    ),
+    h("span", {class: "about"}, h(ProblemText, {problem})),
+  );
+}
+
+/** A yes or no with its label. */
+export function Check({label, isOn, onChange}) {
+  return h(
+    "label",
+    {class: "check"},
+    h("input", {type: "checkbox", checked: isOn, onChange: (event) => onChange(event.target.checked)}),
+    h("span", null, label),
+  );
+}
+
+/** A button; `isMain` for the one that goes on. */
+export function Button({onClick, isMain, isPressed, disabled, title, children, ...rest}) {
+  return h(
+    "button",
+    {
+      type: "button",
+      class: isMain ? "main" : undefined,
+      disabled,
+      title,
+      "aria-pressed": isPressed === undefined ? undefined : String(isPressed),
+      onClick,
+      ...rest,
+    },
+    children,
+  );
+}
+
+/** Numbers side by side: a point, a direction, a window. `names`: one label for each. */
+export function Numbers({label, names, unit, value, step, onChange, problem, hint}) {
+  const id = useId("numbers");
+  const put = (k, number) => {
+    const next = names.map((_, i) => (value && isNumber(value[i]) ? value[i] : 0));
+    next[k] = number;
+    onChange(next);
+  };
+  return h(
+    "fieldset",
+    {class: "numbers", "aria-describedby": id},
+    h("legend", null, unit ? `${label}, ${unit}` : label),
+    h(
+      "div",
+      {class: "row"},
+      names.map((name, k) =>
+        h(NumberInput, {
+          key: name,
+          label: name,
+          isShort: true,
+          step,
+          value: value ? value[k] : null,
+          problem: problem ? {} : null,
+          onChange: (number) => put(k, number),
+        }),
+      ),
+    ),
+    h("span", {id, class: "about"}, hint, h(ProblemText, {problem})),
+  );
+}
+
+// --- Settings of the case. ---
+
+/** The problem of the last change or call that concerns a setting, or null. */
+export function problemAt(key) {
+  const concerns = (problem) =>
+    problem &&
+    problem.path &&
+    (problem.path === key || problem.path.startsWith(`${key}[`) || problem.path.startsWith(`${key}.`));
+  return Object.values(state.problems).find(concerns) || null;
+}
+
+// What the input shows: also a value that was refused, until another one is accepted.
+function shownValue(key) {
+  return key in state.refused && !(key in state.drafts) ? state.refused[key] : setting(key);
+}
+
+/** An input for any setting: number, words, yes or no, numbers in a row. Others are not shown. */
+export function Setting({path, label, step, names, isOptional, hint}) {
+  const value = shownValue(path),
+    unit = unitOf(path),
+    problem = problemAt(path);
+  const text = label || nameOf(path),
+    onChange = (next) => change({[path]: next});
+  const about = {label: text, unit, problem, onChange, hint};
+  if (names || isRow(value)) return h(Numbers, {...about, value, step, names: names || letters(value.length)});
+  if (typeof value === "boolean") return h(Check, {label: text, isOn: value, onChange});
+  const choices = state.case.choices && state.case.choices[path];
+  if (choices) return h(Choice, {...about, value, options: choices.map((word) => [word, spoken(word)])});
+  if (typeof value === "string") return h(TextInput, {...about, value, onChange: (words) => onChange(words || null)});
+  if (value === null || isNumber(value))
+    return h(NumberInput, {...about, value, step, isOptional: isOptional || value === null});
+  return null;
+}
+
+function isRow(value) {
+  return Array.isArray(value) && value.length > 0 && value.every(isNumber);
+}
+
+function letters(count) {
+  return ["x", "y", "z", "w"].slice(0, count);
+}
+
+// --- Problems. ---
+
+/** What is wrong with an input's value, without the file and the key that the whole message names. */
+export function complaint({found, expected, hint, message}) {
+  if (!found || !expected) return message;
+  return `Found ${found}; expected ${expected}.${hint ? ` ${hint}` : ""}`;
+}
+
+function ProblemText({problem}) {
+  if (!problem || !problem.message) return null;
+  return h("span", {class: "problem", role: "alert"}, complaint(problem));
+}
+
+/** What went wrong in calls, unless it stands beside an input of this panel (`shown`: their keys). */
+export function Problems({calls, shown = []}) {
+  const isShown = (problem) =>
+    shown.some(
+      (key) =>
+        problem.path &&
+        (problem.path === key || problem.path.startsWith(`${key}[`) || problem.path.startsWith(`${key}.`)),
+    );
+  const found = calls.map((name) => [name, state.problems[name]]).filter(([, problem]) => problem && !isShown(problem));
+  return found.map(([name, problem]) =>
+    h(
+      "div",
+      {key: name, class: "problem block", role: "alert", "data-problem": name},
+      problem.path && !problem.message.includes(problem.path) ? h("strong", null, `${problem.path}: `) : null,
+      problem.message,
+      problem.hint && !problem.message.includes(problem.hint) ? h("p", null, problem.hint) : null,
+      problem.kind === "crashed"
+        ? h("p", null, "The calculation ended without an answer. The case is unharmed.")
+        : null,
+    ),
+  );
+}
+
+// --- Verdicts. ---
+
+const kStatus = {ok: ["✓", "Ok"], caution: ["!", "Caution"], refused: ["✕", "Refused"]};
+
+/** A verdict's status in a word, with a sign. */
+export function Status({status}) {
+  const [sign, word] = kStatus[status] || ["?", spoken(status)];
+  return h(
+    "span",
+    {class: `status ${status}`, "data-status": status},
+    h("span", {class: "sign", "aria-hidden": "true"}, sign),
+    word,
+  );
+}
+
+/** A verdict's reasons, worst first, as the server orders them. One with a place is a button that goes there. */
+export function Reasons({verdict, onPlace}) {
+  const reasons = (verdict && verdict.reasons) || [];
+  return h(
+    "ul",
+    {class: "reasons"},
+    reasons.map((reason, k) => h("li", {key: k}, h(Reason, {reason, onPlace}))),
+  );
+}
+
+function Reason({reason, onPlace}) {
+  const at = reason.at || {},
+    text = [
+      h(Status, {status: reason.severity}),
+      " ",
+      reason.message,
+      at.text ? h("span", {class: "soft"}, ` (${at.text})`) : null,
+    ];
+  if (!at.position_mm || !onPlace) return h("div", {class: "reason"}, text);
+  return h(
+    "button",
+    {type: "button", class: "reason", title: "Show the place", onClick: () => onPlace(at.position_mm)},
+    text,
+    h(Target),
+  );
+}
+
+function Target() {
+  return h(
+    "svg",
+    {class: "go", viewBox: "0 0 16 16", "aria-hidden": "true"},
+    h("circle", {cx: 8, cy: 8, r: 4.5, fill: "none", stroke: "currentColor", "stroke-width": 1.5}),
+    h("path", {d: "M8 0v5M8 11v5M0 8h5M11 8h5", stroke: "currentColor", "stroke-width": 1.5}),
+  );
+}
+
+// --- Numbers that were found. ---
+
+/** Whatever a summary holds, as names and values. */
+export function Facts({facts}) {
+  if (!facts) return null;
+  if (typeof facts === "string") return h("p", {class: "soft"}, facts);
+  if (Array.isArray(facts))
+    return h(
+      "ul",
+      {class: "facts"},
+      facts.map((fact, k) => h("li", {key: k}, String(fact))),
+    );
+  const shown = Object.entries(facts).filter(([, value]) => value !== null && typeof value !== "object");
+  return h(
+    "dl",
+    {class: "facts"},
+    shown.map(([key, value]) => [h("dt", null, nameOf(key)), h("dd", null, factText(key, value))]),
+  );
+}
+
+const kUnits = {mm3: "mm³", mm2: "mm²", mm: "mm", hu: "HU", s: "s", kpa: "kPa"};
+
+function factText(key, value) {
+  if (!isNumber(value)) return typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
+  const unit = kUnits[key.split("_").pop()] || "";
+  const number =
+    Number.isInteger(value) || Math.abs(value) >= 1000
+      ? Math.round(value).toLocaleString("en").replaceAll(",", "\u202f")
+      : fixed(value, unit === "HU" ? 0 : 2);
+  return unit ? `${number} ${unit}` : number;
+}
+
+/** A section of a panel with its heading. */
+export function Section({title, children, id}) {
+  return h("section", {"data-section": id}, h("h3", null, title), children);
+}
+
+/** What a call is doing, while it is: a bar where the share is known. */
+export function Working({call, text}) {
+  if (!state.busy[call]) return null;
+  const progress = state.progress[call];
+  return h(
+    "p",
+    {class: "working", role: "status", "data-busy": call},
+    h("span", {class: "spinner", "aria-hidden": "true"}),
+    progress && progress.stage ? spoken(progress.stage) : text,
+    progress && isNumber(progress.fraction)
+      ? h("progress", {max: 1, value: progress.fraction, "aria-label": text})
+      : null,
+  );
+}

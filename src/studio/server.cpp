@@ -1,0 +1,478 @@
+#include "page_files.hpp"
+#include "worker_process.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/sha256.hpp>
+#include <incise/core/version.hpp>
+#include <incise/io/text_encoding.hpp>
+#include <incise/studio/access.hpp>
+#include <incise/studio/file_ids.hpp>
+#include <incise/studio/server.hpp>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <deque>
+#include <list>
+
+namespace incise::studio {
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace fs = std::filesystem;
+using Tcp = asio::ip::tcp;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr std::uint64_t kLargestBody = 4U << 20;
+constexpr std::uint32_t kLargestHeader = 8U << 10;
+constexpr int kMostConnections = 64;
+constexpr std::chrono::seconds kSilence{30};    // of a connection, after which it is closed
+constexpr std::chrono::seconds kHeartbeat{15};  // of the stream of events
+constexpr std::size_t kMostEvents = 1000;       // that wait for a reader; older ones are dropped
+
+using Request = http::request<http::string_body>;
+using Response = http::response<http::string_body>;
+
+constexpr std::string_view kTemporaryName = "incise-studio-";
+
+/// Folders that servers left which were killed: `incise-studio-PID-…` of a process that is no more.
+void remove_abandoned_folders(const fs::path& where) {
+  std::error_code failed;
+  for (fs::directory_iterator entry(where, failed), end; !failed && entry != end; entry.increment(failed)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(kTemporaryName)) continue;
+    const int pid = std::atoi(name.c_str() + kTemporaryName.size());
+    std::error_code ignored;
+    if (pid > 0 && ::kill(pid, 0) != 0 && errno == ESRCH) fs::remove_all(entry->path(), ignored);
+  }
+}
+
+/// The folder for the arrays of results: made for this process alone, and gone with it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    const fs::path where = fs::temp_directory_path();
+    remove_abandoned_folders(where);
+    std::string pattern = (where / fmt::format("{}{}-XXXXXX", kTemporaryName, ::getpid())).string();
+    if (::mkdtemp(pattern.data()) == nullptr) throw DataError(pattern, "", "no new folder", "room for temporary files");
+    path_ = pattern;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+std::string_view media_type(std::string_view name) {
+  if (name.ends_with(".html")) return "text/html; charset=utf-8";
+  if (name.ends_with(".css")) return "text/css; charset=utf-8";
+  return "text/javascript; charset=utf-8";
+}
+
+const PageFile* page_file(std::string_view name) {
+  for (const PageFile& file : page_files()) {
+    if (file.name == name) return &file;
+  }
+  return nullptr;
+}
+
+std::string bytes_from_hex(const std::string& digits) {
+  std::string bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
+  return bytes;
+}
+
+/// What the page may do: run its own modules, the one import map in it, and ask this server.
+std::string content_policy() {
+  const PageFile* page = page_file("index.html");
+  INCISE_REQUIRE(page != nullptr, "expected the page");
+  constexpr std::string_view begin = "<script type=\"importmap\">";
+  const std::size_t at = page->content.find(begin) + begin.size();
+  const std::string_view map = page->content.substr(at, page->content.find("</script>", at) - at);
+  return fmt::format(
+      "default-src 'none'; script-src 'self' 'sha256-{}'; style-src 'self'; img-src 'self' blob: data:; "
+      "connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+      base64(bytes_from_hex(sha256_of_text(map))));
+}
+
+template <class Body>
+void protect(http::response<Body>& response, const std::string& policy) {
+  response.set(http::field::server, "incise");
+  response.set("Content-Security-Policy", policy);
+  response.set("X-Content-Type-Options", "nosniff");
+  response.set("Referrer-Policy", "no-referrer");
+  response.set("Cross-Origin-Opener-Policy", "same-origin");
+  response.set("Cross-Origin-Resource-Policy", "same-origin");
+  response.set(http::field::cache_control, "no-store");
+}
+
+std::string_view text_of(boost::string_view text) {
+  return {text.data(), text.size()};
+}
+
+bool is_blob_name(std::string_view name) {
+  return name.size() == 32 && name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+std::string json_line(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// One browser window that follows what happens.
+struct Listener {
+  explicit Listener(asio::io_context& io) : has_event(io) {}
+  std::deque<std::string> events;
+  asio::steady_timer has_event;
+};
+
+class Server {
+ public:
+  Server(asio::io_context& io, const ServerSettings& settings)
+      : io_(io),
+        token_(new_token()),
+        files_(settings.roots, new_token()),
+        policy_(content_policy()),
+        desk_(io, worker_command(settings), [this](const auto& kind, auto content) { tell(kind, content); }),
+        runner_(io, worker_command(settings), [this](const auto& kind, auto content) { tell(kind, content); }),
+        acceptor_(io) {
+    if (!settings.case_file.empty()) case_file_ = files_.path_of(files_.id_of(settings.case_file), "case").string();
+    boost::system::error_code failed;
+    const Tcp::endpoint here(asio::ip::address_v4::loopback(), settings.port);
+    acceptor_.open(here.protocol());
+    acceptor_.set_option(Tcp::acceptor::reuse_address(true));
+    acceptor_.bind(here, failed);
+    if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
+    if (failed)
+      throw CaseError("command line", "--port", fmt::format("{} ({})", settings.port, failed.message()), "a free port");
+    asio::co_spawn(io_, accept(), asio::detached);
+  }
+
+  [[nodiscard]] std::string address() const {
+    return fmt::format("http://127.0.0.1:{}/#token={}", acceptor_.local_endpoint().port(), token_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::string> worker_command(const ServerSettings& settings) const {
+    std::vector<std::string> command = settings.worker;
+    command.push_back(blobs_.path().string());
+    return command;
+  }
+
+  asio::awaitable<void> accept() {
+    for (;;) {
+      boost::system::error_code failed;
+      Tcp::socket socket = co_await acceptor_.async_accept(asio::redirect_error(asio::use_awaitable, failed));
+      if (failed == asio::error::operation_aborted) co_return;
+      if (failed) {  // no file descriptors left, say: later there may be
+        asio::steady_timer pause(io_, std::chrono::milliseconds(100));
+        co_await pause.async_wait(asio::use_awaitable);
+        continue;
+      }
+      if (connections_ >= kMostConnections) continue;  // closes it
+      ++connections_;
+      asio::co_spawn(io_, converse(beast::tcp_stream(std::move(socket))),
+                     [this](std::exception_ptr) { --connections_; });
+    }
+  }
+
+  /// Answers the requests of a connection, one after the other. Whatever breaks it ends it.
+  asio::awaitable<void> converse(beast::tcp_stream stream) {
+    beast::flat_buffer buffer;
+    for (bool is_kept = true; is_kept;) {
+      http::request_parser<http::string_body> parser;
+      parser.body_limit(kLargestBody);
+      parser.header_limit(kLargestHeader);
+      stream.expires_after(kSilence);
+      boost::system::error_code failed;
+      co_await http::async_read_header(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
+      if (failed == http::error::end_of_stream || failed == beast::error::timeout) co_return;
+      if (failed) {
+        Response answered = failed == http::error::body_limit
+                                ? too_large()
+                                : plain(400, "This is no request that the studio understands.", false);
+        co_await send(stream, std::move(answered));
+        co_return;
+      }
+      if (const auto refusal = refusal_of(asked(parser.get()), token_)) {  // before its body is read
+        Response answered = plain(refusal->status, refusal->why, false);
+        co_await send(stream, std::move(answered));
+        co_return;
+      }
+      co_await http::async_read(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
+      if (failed == http::error::body_limit) {
+        Response answered = too_large();
+        co_await send(stream, std::move(answered));
+        co_return;
+      }
+      if (failed) co_return;
+      stream.expires_never();  // a run may take an hour
+      const Request request = parser.release();
+      is_kept = request.keep_alive();
+      co_await answer(stream, request);
+    }
+  }
+
+  static Asked asked(const Request& request) {
+    return {text_of(request.method_string()),
+            text_of(request.target()),
+            text_of(request[http::field::host]),
+            text_of(request["X-Incise-Token"]),
+            text_of(request[http::field::content_type]),
+            text_of(request[http::field::origin]),
+            text_of(request["Sec-Fetch-Site"])};
+  }
+
+  asio::awaitable<void> answer(beast::tcp_stream& stream, const Request& request) {
+    const std::string_view target = text_of(request.target());
+    const bool is_kept = request.keep_alive();
+    // g++ 12 destroys some temporaries of an expression with co_await twice: each has a name here.
+    if (target.starts_with("/api/call/") && request.method() == http::verb::post) {
+      std::string name(target.substr(10));
+      Response answered = co_await call(std::move(name), request.body(), is_kept);
+      co_await send(stream, std::move(answered));
+    } else if (target.starts_with("/api/blob/") && request.method() == http::verb::get) {
+      std::string name(target.substr(10));
+      co_await send_blob(stream, std::move(name), is_kept);
+    } else if (target == "/api/events" && request.method() == http::verb::get) {
+      co_await send_events(stream);
+    } else {
+      Response answered = page(target, is_kept);
+      co_await send(stream, std::move(answered));
+    }
+  }
+
+  template <class Body>
+  asio::awaitable<void> send(beast::tcp_stream& stream, http::response<Body> response) {
+    protect(response, policy_);
+    http::serializer<false, Body> serializer(response);
+    boost::system::error_code failed;
+    stream.expires_after(std::chrono::minutes(2));  // of silence of the reader, or of a large array
+    co_await http::async_write(stream, serializer, asio::redirect_error(asio::use_awaitable, failed));
+    if (failed || !response.keep_alive()) {
+      boost::system::error_code ignored;
+      stream.socket().shutdown(Tcp::socket::shutdown_send, ignored);
+    }
+  }
+
+  static Response made(unsigned status, std::string_view type, std::string content, bool is_kept) {
+    Response response(static_cast<http::status>(status), 11);
+    response.set(http::field::content_type, boost::string_view(type.data(), type.size()));
+    response.keep_alive(is_kept);
+    response.body() = std::move(content);
+    response.prepare_payload();
+    return response;
+  }
+  static Response json(unsigned status, const Json& content, bool is_kept) {
+    return made(status, "application/json", json_line(content), is_kept);
+  }
+  static Response too_large() {
+    return plain(413, fmt::format("A request is at most {} MB.", kLargestBody >> 20), false);
+  }
+  static Response plain(unsigned status, const std::string& message, bool is_kept) {
+    return json(status, {{"message", message}}, is_kept);
+  }
+
+  static Response page(std::string_view target, bool is_kept) {
+    const std::string_view path = target.substr(0, target.find('?'));
+    const std::string_view name = path == "/" ? "index.html" : path.starts_with("/page/") ? path.substr(6) : "";
+    const PageFile* file = page_file(name);
+    if (file == nullptr) return plain(404, "There is no such page.", is_kept);
+    return made(200, media_type(name), std::string(file->content), is_kept);
+  }
+
+  asio::awaitable<void> send_blob(beast::tcp_stream& stream, std::string name, bool is_kept) {
+    http::response<http::file_body> response;
+    boost::system::error_code failed;
+    if (is_blob_name(name)) {
+      http::file_body::value_type file;
+      file.open((blobs_.path() / name).c_str(), beast::file_mode::scan, failed);
+      if (!failed) response.body() = std::move(file);
+    }
+    if (!response.body().is_open()) {
+      Response missing = plain(404, "There is no such array, or a newer one has taken its place.", is_kept);
+      co_await send(stream, std::move(missing));
+      co_return;
+    }
+    response.result(http::status::ok);
+    response.version(11);
+    response.set(http::field::content_type, "application/octet-stream");
+    response.keep_alive(is_kept);
+    response.prepare_payload();
+    co_await send(stream, std::move(response));
+  }
+
+  asio::awaitable<void> send_events(beast::tcp_stream& stream) {
+    http::response<http::empty_body> response(http::status::ok, 11);
+    response.set(http::field::content_type, "text/event-stream");
+    response.keep_alive(false);
+    protect(response, policy_);
+    http::response_serializer<http::empty_body> serializer(response);
+    boost::system::error_code failed;
+    co_await http::async_write_header(stream, serializer, asio::redirect_error(asio::use_awaitable, failed));
+    const auto listener = listeners_.emplace(listeners_.end(), io_);
+    const Json now = co_await state();
+    listener->events.push_back(event_text("state", now));
+    while (!failed) {
+      std::string text;
+      while (!listener->events.empty()) {
+        text += listener->events.front();
+        listener->events.pop_front();
+      }
+      if (text.empty()) text = ": here\n\n";
+      stream.expires_after(kSilence);
+      co_await asio::async_write(stream, asio::buffer(text), asio::redirect_error(asio::use_awaitable, failed));
+      if (failed || !listener->events.empty()) continue;
+      listener->has_event.expires_after(kHeartbeat);
+      boost::system::error_code woken;
+      co_await listener->has_event.async_wait(asio::redirect_error(asio::use_awaitable, woken));
+    }
+    listeners_.erase(listener);
+  }
+
+  static std::string event_text(const std::string& kind, const Json& content) {
+    return fmt::format("event: {}\ndata: {}\n\n", kind, json_line(content));
+  }
+
+  void tell(const std::string& kind, const Json& content) {
+    for (Listener& listener : listeners_) {
+      listener.events.push_back(event_text(kind, content));
+      if (listener.events.size() > kMostEvents) listener.events.pop_front();
+      listener.has_event.cancel();
+    }
+  }
+
+  [[nodiscard]] Json running_json() const {
+    Json list = Json::array();
+    for (const WorkerProcess* worker : {&desk_, &runner_}) {
+      for (const RunningCall& one : worker->running())
+        list.push_back({{"call", one.call}, {"stage", one.stage}, {"fraction", one.fraction}, {"left_s", one.left_s}});
+    }
+    return list;
+  }
+
+  asio::awaitable<Json> state() {
+    Json json{{"version", fmt::format("{} ({})", version(), source_commit())}, {"case", nullptr}};
+    const Json running = running_json();
+    if (!case_file_.empty()) {
+      std::string name = "case", file = case_file_;
+      Json nothing = Json::object();
+      CallOutcome shown = co_await desk_.call(std::move(name), std::move(file), std::move(nothing));
+      if (shown.kind == CallOutcome::Kind::Result)
+        json["case"] = std::move(shown.content);
+      else
+        json["case_problem"] = std::move(shown.content);
+    }
+    json["running"] = running;
+    co_return json;
+  }
+
+  /// Files that a call names by their ids, as paths.
+  void translate_files(Json& arguments) const {
+    for (const char* name : {"file", "folder", "scan"}) {
+      if (!arguments.contains(name)) continue;
+      if (!arguments.at(name).is_string()) throw CaseError("request", name, "no text", "the id of a file");
+      arguments[name] = files_.path_of(arguments.at(name).get<std::string>(), name).string();
+    }
+  }
+
+  asio::awaitable<Response> call(std::string name, std::string body, bool is_kept) {
+    Json arguments = Json::parse(body.empty() ? "{}" : body, nullptr, false);
+    if (!arguments.is_object()) co_return plain(400, "The arguments of a call have to be a JSON object.", is_kept);
+    Json problem;
+    try {
+      if (name == "files") co_return json(200, files_.list(arguments.value("folder", std::string())), is_kept);
+      if (name == "stop") co_return json(200, stop(arguments), is_kept);
+      translate_files(arguments);
+    } catch (const CaseError& error) {
+      problem = {{"path", error.field()},
+                 {"found", error.problem().found},
+                 {"expected", error.problem().expected},
+                 {"hint", error.problem().hint},
+                 {"message", error.what()}};
+    } catch (const std::exception& error) {
+      problem = {{"path", ""}, {"found", ""}, {"expected", ""}, {"hint", ""}, {"message", error.what()}};
+    }
+    if (!problem.is_null()) co_return json(422, {{"problem", problem}}, is_kept);
+    if (name == "state") {
+      const Json now = co_await state();
+      co_return json(200, now, is_kept);
+    }
+    co_return co_await call_worker(name, std::move(arguments), is_kept);
+  }
+
+  Json stop(const Json& arguments) {
+    (arguments.value("call", std::string()) == "run" ? runner_ : desk_).stop();
+    return Json::object();
+  }
+
+  asio::awaitable<Response> call_worker(std::string name, Json arguments, bool is_kept) {
+    WorkerProcess& worker = name == "run" ? runner_ : desk_;
+    std::string file = case_file_;
+    CallOutcome outcome = co_await worker.call(std::move(name), std::move(file), std::move(arguments));
+    switch (outcome.kind) {
+      case CallOutcome::Kind::Problem: {
+        const bool is_stale = outcome.content.value("path", "") == "revision";
+        co_return json(is_stale ? 409 : 422, {{"problem", std::move(outcome.content)}}, is_kept);
+      }
+      case CallOutcome::Kind::Stopped:
+        co_return plain(499, outcome.content.get<std::string>(), is_kept);
+      case CallOutcome::Kind::Crashed:
+        co_return plain(500, outcome.content.get<std::string>(), is_kept);
+      case CallOutcome::Kind::Result:
+        break;
+    }
+    const bool shows_case = outcome.content.contains("revision");
+    if (shows_case) case_file_ = outcome.content.at("file").get<std::string>();
+    if (shows_case) asio::co_spawn(io_, tell_state(), asio::detached);
+    co_return json(200, outcome.content, is_kept);
+  }
+
+  asio::awaitable<void> tell_state() {
+    const Json now = co_await state();
+    tell("state", now);
+  }
+
+  asio::io_context& io_;
+  const std::string token_;
+  TemporaryFolder blobs_;
+  FileIds files_;
+  const std::string policy_;
+  std::string case_file_;
+  std::list<Listener> listeners_;
+  WorkerProcess desk_, runner_;
+  Tcp::acceptor acceptor_;
+  int connections_ = 0;
+};
+
+}  // namespace
+
+void serve(const ServerSettings& settings, const std::function<void(const std::string& address)>& on_ready) {
+  asio::io_context io(1);
+  Server server(io, settings);
+  asio::signal_set ends(io, SIGINT, SIGTERM);
+  ends.async_wait([&io](const boost::system::error_code&, int) { io.stop(); });
+  on_ready(server.address());
+  io.run();
+}
+
+}  // namespace incise::studio

@@ -1,0 +1,157 @@
+#include "views.hpp"
+
+#include <incise/core/described_json.hpp>
+
+#include <algorithm>
+#include <optional>
+
+namespace incise::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector_json(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json contour_json(const std::optional<Contour>& contour) {
+  return contour ? points_json(contour->points) : Json(nullptr);
+}
+
+template <class Value>
+Json or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+/// Arc length of each point from the first.
+std::vector<double> arclengths(const Points& points) {
+  std::vector<double> at;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    at.push_back(i == 0 ? 0.0 : at.back() + (points[i] - points[i - 1]).norm());
+  return at;
+}
+
+/// In any direction where the tumour's surface is known, else beside its edge.
+std::optional<double> nearest_to_tumor_mm(const SimulatedCut& cut) {
+  if (cut.incision.kerf.deep_margin) return cut.incision.kerf.deep_margin->nearest_mm;
+  const std::vector<double>& distances = cut.inner_edge.errors.signed_distance_mm;
+  if (distances.empty()) return std::nullopt;
+  return *std::min_element(distances.begin(), distances.end());
+}
+
+Json numbers_json(const SimulatedCut& cut) {
+  const auto& error = cut.centerline.abs_error_mm;
+  Json json;
+  json["nearest_to_tumour_mm"] = or_null(nearest_to_tumor_mm(cut));
+  json["least_depth_mm"] = cut.incision.kerf.depth.depth_mm.min;
+  json["greatest_error_mm"] = error ? Json(error->max) : Json(nullptr);
+  json["mean_error_mm"] = error ? Json(error->mean) : Json(nullptr);
+  return json;
+}
+
+}  // namespace
+
+Skin skin_of(const TetMesh& mesh, std::span<const std::uint8_t> is_live) {
+  std::vector<std::int32_t> place(mesh.vertices.size(), -1);
+  const std::vector<BoundaryFace> faces = boundary_faces(mesh, is_live);
+  for (const BoundaryFace& face : faces) {
+    for (const VertexId v : face.corners) place[v.index()] = 0;
+  }
+  Skin skin;
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (place[v] < 0) continue;
+    place[v] = static_cast<std::int32_t>(skin.vertices.size());
+    skin.vertices.emplace_back(v);
+  }
+  const auto moved = [&](VertexId v) { return VertexId(static_cast<std::size_t>(place[v.index()])); };
+  for (const BoundaryFace& face : faces) {
+    const auto& [a, b, c] = face.corners;
+    skin.triangles.push_back({moved(a), moved(b), moved(c)});
+  }
+  return skin;
+}
+
+Points positions_on(const Skin& skin, std::span<const Vec3> positions) {
+  Points on;
+  on.reserve(skin.vertices.size());
+  for (const VertexId v : skin.vertices) on.push_back(positions[v.index()]);
+  return on;
+}
+
+std::vector<std::uint8_t> held_by(const Skin& skin, const TissueModel& model) {
+  std::vector<std::uint8_t> marks;
+  for (const VertexId v : skin.vertices) {
+    std::uint8_t mark = 0;
+    for (const std::int32_t c : model.holder[v.index()]) {
+      if (c >= 0 && c < 8) mark = static_cast<std::uint8_t>(mark | 1U << c);
+    }
+    marks.push_back(mark);
+  }
+  return marks;
+}
+
+Json constraints_json(const TissueModel& model) {
+  std::vector<std::size_t> counts(model.constraints.size(), 0);
+  for (const auto& holders : model.holder) {
+    for (std::size_t c = 0; c < counts.size(); ++c)
+      counts[c] += std::count(holders.begin(), holders.end(), static_cast<std::int32_t>(c)) > 0 ? 1 : 0;
+  }
+  Json list = Json::array();
+  for (std::size_t c = 0; c < counts.size(); ++c)
+    list.push_back({{"kind", names_of(model.constraints[c])[model.constraints[c].index()]},
+                    {"vertices", counts[c]},
+                    {"setting", to_json(model.constraints[c])}});
+  return list;
+}
+
+Json grid_json(const VolumeGrid& grid) {
+  Json axes = Json::array();
+  for (int a = 0; a < 3; ++a) axes.push_back(vector_json(grid.direction.col(a)));
+  return {{"size", grid.size},
+          {"spacing_mm", vector_json(grid.spacing_mm)},
+          {"origin_mm", vector_json(grid.origin_mm)},
+          {"axes", std::move(axes)}};
+}
+
+Json points_json(std::span<const Vec3> points) {
+  Json json = Json::array();
+  for (const Vec3& p : points) json.push_back(vector_json(p));
+  return json;
+}
+
+Json surface_json(BlobFolder& blobs, const std::string& slot, std::span<const Vec3> vertices,
+                  std::span<const Triangle> triangles) {
+  return {{"vertices", blobs.put(slot + ".vertices", vertices)},
+          {"triangles", blobs.put(slot + ".triangles", triangles)}};
+}
+
+Json path_json(const ToolPath& path) {
+  Json axes = Json::array(), depths = Json::array();
+  for (const Waypoint& w : path.waypoints) {
+    axes.push_back(vector_json(w.axis));
+    depths.push_back(w.depth_mm);
+  }
+  return {{"points_mm", points_json(entry_contour(path).points)},
+          {"axes", std::move(axes)},
+          {"depth_mm", std::move(depths)},
+          {"closed", path.is_closed}};
+}
+
+Json cut_json(const SimulatedCut& cut, const ToolPath& followed) {
+  const DepthReached& depth = cut.incision.kerf.depth;
+  const ContourErrors& errors = cut.centerline.errors;
+  Json json;
+  json["path"] = path_json(followed);
+  json["outcome"] = to_string(cut.outcome);
+  json["centerline"] = contour_json(cut.incision.centerline);
+  json["inner_edge"] = contour_json(cut.incision.inner_edge);
+  json["errors"] = {{"arclength_mm", arclengths(errors.points.points)}, {"signed_mm", errors.signed_error_mm}};
+  json["depth"] = {{"arclength_mm", depth.profile.arclength_mm},
+                   {"planned_mm", depth.planned_at_mm},
+                   {"reached_mm", depth.profile.depth_mm}};
+  json["numbers"] = numbers_json(cut);
+  json["verdict"] = to_json(cut.verdict);
+  return json;
+}
+
+}  // namespace incise::studio

@@ -1,0 +1,130 @@
+#include "calls.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/time_left.hpp>
+#include <incise/studio/worker.hpp>
+
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+namespace incise::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr double kProgressS = 0.1;  // between two lines of progress
+
+volatile std::sig_atomic_t g_must_stop = 0;
+void on_stop(int) {
+  g_must_stop = 1;
+}
+
+/// The way back to the server: standard output as it was when the worker began.
+class Answers {
+ public:
+  Answers() : out_(::dup(STDOUT_FILENO)) { ::dup2(STDERR_FILENO, STDOUT_FILENO); }
+  ~Answers() { ::close(out_); }
+  Answers(const Answers&) = delete;
+  Answers& operator=(const Answers&) = delete;
+
+  void of_call(const Json& id) { id_ = id; }
+  void say(const char* kind, Json content) {
+    const std::string line =
+        Json{{"id", id_}, {kind, std::move(content)}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    for (std::size_t done = 0; done < line.size();) {
+      const ssize_t written = ::write(out_, line.data() + done, line.size() - done);
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) {  // nobody is there any more: a cut leaves its checkpoint
+        g_must_stop = 1;
+        return;
+      }
+      done += static_cast<std::size_t>(written);
+    }
+  }
+
+ private:
+  int out_;
+  Json id_;
+};
+
+class WorkerMonitor : public Monitor {
+ public:
+  explicit WorkerMonitor(Answers& answers) : answers_(answers) {}
+
+  void message(Severity severity, std::string_view text) override {
+    if (severity == Severity::Detail) return;
+    answers_.say("message", {{"severity", severity == Severity::Warning ? "warning" : "notice"}, {"text", text}});
+  }
+  void progress(std::string_view stage, double fraction) override {
+    const auto now = std::chrono::steady_clock::now();
+    const auto since = [now](auto then) { return std::chrono::duration<double>(now - then).count(); };
+    if (stage != stage_) {
+      stage_ = stage;
+      stage_start_ = now;
+      time_left_ = TimeLeft{};
+    } else if (since(last_said_) < kProgressS) {
+      return;
+    }
+    time_left_.note(since(stage_start_), fraction);
+    last_said_ = now;
+    const std::optional<double> left = time_left_.seconds();
+    answers_.say("progress",
+                 {{"stage", stage}, {"fraction", fraction}, {"left_s", left ? Json(*left) : Json(nullptr)}});
+  }
+  [[nodiscard]] bool is_cancelled() const override { return g_must_stop != 0; }
+
+ private:
+  Answers& answers_;
+  std::string stage_;
+  std::chrono::steady_clock::time_point stage_start_, last_said_;
+  TimeLeft time_left_;
+};
+
+Json problem_json(const Problem& problem, const char* message) {
+  return {{"path", problem.path},
+          {"found", problem.found},
+          {"expected", problem.expected},
+          {"hint", problem.hint},
+          {"message", message}};
+}
+
+void answer(Calls& calls, Answers& answers, const std::string& line) {
+  try {
+    const Json asked = Json::parse(line);
+    answers.of_call(asked.at("id"));
+    answers.say("result", calls.make(asked.at("call"), asked.at("case").get<std::string>(), asked.at("with")));
+  } catch (const Cancelled& stopped) {
+    answers.say("stopped", stopped.what());
+  } catch (const CaseError& error) {
+    answers.say("problem", problem_json(error.problem(), error.what()));
+  } catch (const std::exception& error) {
+    answers.say("problem", problem_json({}, error.what()));
+  }
+}
+
+}  // namespace
+
+int run_worker(const std::filesystem::path& blobs) {
+  ::prctl(PR_SET_PDEATHSIG, SIGINT);
+  struct sigaction stop {};
+  stop.sa_handler = on_stop;
+  stop.sa_flags = SA_RESTART;
+  ::sigaction(SIGINT, &stop, nullptr);
+  ::sigaction(SIGTERM, &stop, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  Answers answers;
+  WorkerMonitor monitor(answers);
+  Calls calls(blobs, monitor, [&](const Json& moment) { answers.say("moment", moment); });
+  for (std::string line; std::getline(std::cin, line);) {
+    g_must_stop = 0;
+    answer(calls, answers, line);
+  }
+  return 0;
+}
+
+}  // namespace incise::studio

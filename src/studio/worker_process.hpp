@@ -1,0 +1,74 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/streambuf.hpp>
+#include <nlohmann/json.hpp>
+#include <sys/types.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace incise::studio {
+
+/// What came of a call: the last line of a worker, or that the worker has ended.
+struct CallOutcome {
+  enum class Kind { Result, Problem, Stopped, Crashed };
+  Kind kind = Kind::Crashed;
+  nlohmann::ordered_json content;  ///< Result, Problem: an object; else a sentence
+};
+
+/// A call that is being made, as the call `state` lists it.
+struct RunningCall {
+  std::string call;
+  std::string stage;
+  double fraction = 0.0;
+  nlohmann::ordered_json left_s;
+};
+
+/// A worker as a child process. It is started when it is first needed, and anew when it has ended.
+class WorkerProcess {
+ public:
+  /// @param command  the program and its arguments.  @param on_event  is handed the kind (progress, message, moment)
+  /// and content of each line that ends no call, with the name of its call.
+  WorkerProcess(boost::asio::io_context& io, std::vector<std::string> command,
+                std::function<void(const std::string& kind, nlohmann::ordered_json content)> on_event);
+  ~WorkerProcess();
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  /// Makes a call after those that were made before it. Suspends until it has ended.
+  boost::asio::awaitable<CallOutcome> call(std::string name, std::string case_file, nlohmann::ordered_json arguments);
+  /// Asks the call that is under way to stop.
+  void stop();
+  /// The calls that were made and have not ended, the one under way first.
+  [[nodiscard]] std::vector<RunningCall> running() const;
+
+ private:
+  struct Child;
+  struct Waiting {
+    RunningCall shown;
+    boost::asio::steady_timer done;
+    CallOutcome outcome;
+  };
+  void start();
+  void take_line(const std::string& line);
+  void end_all(const std::string& why);
+  static boost::asio::awaitable<void> read_lines(WorkerProcess* self, std::shared_ptr<Child> child);
+  static boost::asio::awaitable<void> write_lines(std::shared_ptr<Child> child);
+
+  boost::asio::io_context& io_;
+  std::vector<std::string> command_;
+  std::function<void(const std::string&, nlohmann::ordered_json)> on_event_;
+  std::shared_ptr<Child> child_;
+  std::map<std::uint64_t, std::shared_ptr<Waiting>> waiting_;
+  std::uint64_t next_id_ = 1;
+};
+
+}  // namespace incise::studio

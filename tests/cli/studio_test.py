@@ -1,0 +1,326 @@
+"""The studio's server as a browser and an attacker see it: calls, files, events, and what it refuses. The page itself: tests/browser."""
+
+import array
+import http.client
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import threading
+import time
+import unittest
+
+import small_case
+from command import BAD_CASE, BAD_DATA, COMMAND, DONE, CommandTest
+
+LONG_CUT = {"cut": {"advance_per_step_mm": 0.2}}  # long enough to be met on its way
+
+
+class Studio:
+    """A studio that runs: its own page's way of asking, and the parts to ask otherwise."""
+
+    def __init__(self, folder, *arguments):
+        self.process = subprocess.Popen([COMMAND, "studio", *arguments], cwd=folder, stdout=subprocess.PIPE, text=True)
+        address = re.search(r"http://127\.0\.0\.1:(\d+)/#token=(\w+)", self.process.stdout.readline())
+        self.port, self.token = int(address[1]), address[2]
+
+    def stop(self, with_signal=signal.SIGTERM):
+        self.process.send_signal(with_signal)
+        self.process.wait()
+        self.process.stdout.close()
+        return self.process.returncode
+
+    def ask(self, method, target, body=None, **headers):
+        """Status, header fields and body. A header given as None is left out."""
+        fields = {"Host": f"127.0.0.1:{self.port}", "X-Incise-Token": self.token, "Content-Type": "application/json"}
+        fields.update({name.replace("_", "-"): value for name, value in headers.items()})
+        connection = http.client.HTTPConnection("127.0.0.1", self.port)
+        try:
+            connection.putrequest(method, target, skip_host=True, skip_accept_encoding=True)
+            for name, value in fields.items():
+                if value is not None:
+                    connection.putheader(name, value)
+            if body is not None:
+                connection.putheader("Content-Length", str(len(body)))
+            connection.endheaders(body)
+            answer = connection.getresponse()
+            return answer.status, dict(answer.getheaders()), answer.read()
+        finally:
+            connection.close()
+
+    def call(self, name, arguments=None):
+        status, _, body = self.ask("POST", f"/api/call/{name}", json.dumps(arguments or {}).encode())
+        return status, json.loads(body)
+
+    def array(self, named):
+        status, _, body = self.ask("GET", f"/api/blob/{named['blob']}")
+        assert status == 200, body
+        values = array.array({"int16": "h", "uint8": "B", "uint32": "I", "float32": "f"}[named["type"]])
+        values.frombytes(body)
+        assert len(values) == named["count"]
+        return values
+
+
+def children_of(pid):
+    return [int(word) for word in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+class StudioTest(CommandTest):
+    def studio(self, *arguments, folder=None):
+        studio = Studio(folder or self.folder, *arguments)
+        self.addCleanup(lambda: studio.process.poll() is None and studio.stop(signal.SIGKILL))
+        return studio
+
+    def small(self, changes=None):
+        return small_case.write_case(self.folder / "case", changes or {})
+
+
+class Calls(StudioTest):
+    def test_goes_from_a_scan_to_tissue_an_edge_and_a_path_and_the_command_goes_on_from_there(self):
+        studio = self.studio()
+        here = studio.call("files")[1]
+        status, case = studio.call("demo", {"folder": here["folder"]["id"], "seed": 3})
+        self.assertEqual((status, case["is_virtual"]), (200, True))
+        scan = studio.call("scan")[1]
+        voxels = studio.array(scan["voxels"])
+        self.assertEqual(len(voxels), scan["grid"]["size"][0] * scan["grid"]["size"][1] * scan["grid"]["size"][2])
+        self.assertEqual((min(voxels), max(voxels)), (scan["least_hu"], scan["greatest_hu"]))
+        tissue = studio.call("tissue")[1]
+        self.assertEqual(sum(studio.array(tissue["labels"])), tissue["summary"]["voxels"])
+        vertices, triangles = studio.array(tissue["skin"]["vertices"]), studio.array(tissue["skin"]["triangles"])
+        self.assertLess(max(triangles), len(vertices) // 3)
+        inner = next(entry for entry in studio.call("files")[1]["entries"] if entry["kind"] == "case")
+        scans = [entry for entry in studio.call("files", {"folder": inner["id"]})[1]["entries"] if entry["kind"] == "scan"]
+        status, made = studio.call("create", {"scan": scans[0]["id"], "folder": here["folder"]["id"], "name": "drawn", "settings": {"ct.window_hu": [-20, 180]}})
+        self.assertEqual(status, 200, made)
+        top = max(range(0, len(vertices), 3), key=lambda at: vertices[at + 2])
+        x, y, z = vertices[top : top + 3]
+        square = [[x - 4, y - 4, z], [x + 4, y - 4, z], [x + 4, y + 4, z], [x - 4, y + 4, z]]
+        status, drawn = studio.call("edge", {"revision": made["revision"], "points_mm": square, "configuration": "rest"})
+        self.assertEqual((status, drawn["inputs"]["tumor.contour"]), (200, "tumor_edge.csv"), drawn)
+        self.assertEqual((drawn["edge"]["configuration"], drawn["edge"]["points_mm"][0]), ("rest", square[0]))
+        self.assertEqual((drawn["choices"]["tumor.configuration"], drawn["units"]["plan.depth_mm"]), (["stretched", "rest"], "mm"))
+        status, changed = studio.call("change", {"revision": drawn["revision"], "set": {"meshing.tets": 6000, "plan.depth_mm": 4}})
+        self.assertEqual((status, changed["settings"]["plan"]["depth_mm"]), (200, 4.0))
+        body = studio.call("body")[1]
+        self.assertEqual(body["constraints"][1]["setting"]["displacement_mm"], [0, -20, 0])
+        held = studio.array(body["held"])
+        self.assertEqual([constraint["kind"] for constraint in body["constraints"]], ["fixed", "displaced", "support"])
+        self.assertTrue(any(mark & 1 for mark in held) and any(mark & 2 for mark in held) and 0 in held)
+        settings = [constraint["setting"] for constraint in body["constraints"]]  # the default, written out, holds as the default does
+        changed = studio.call("change", {"revision": changed["revision"], "set": {"specimen.constraints": settings}})[1]
+        self.assertEqual([constraint["vertices"] for constraint in studio.call("body")[1]["constraints"]], [constraint["vertices"] for constraint in body["constraints"]])
+        stretched = studio.call("stretch")[1]
+        self.assertEqual(stretched["outcome"], "success")
+        self.assertEqual(len(studio.array(stretched["skin"]["vertices"])), len(studio.array(stretched["rest"])))
+        plan = studio.call("plan")[1]
+        self.assertEqual({round(depth, 9) for depth in plan["path"]["depth_mm"]}, {4.0})
+        self.assertEqual(studio.stop(), DONE)
+        again = self.json_of("plan", self.folder / "drawn")
+        self.assertEqual({stage["state"] for stage in again["stages"]} - {"reused", "skipped"}, set())
+
+    def test_runs_a_case_shows_the_cut_and_gives_what_the_command_gives(self):
+        case = self.small()
+        studio = self.studio(case)
+        events = []
+        follower = threading.Thread(target=self.follow, args=(studio, events), daemon=True)
+        follower.start()
+        status, run = studio.call("run")
+        self.assertEqual((status, run["verdict"]["status"], run["program"]), (200, "refused", None), run)
+        self.assertIsNotNone(run["as_planned"]["errors"]["signed_mm"])
+        self.assertEqual(studio.call("run", {"accept": ["nothing"]})[0], 422)
+        studio.stop()
+        follower.join()
+        kinds = {event for event, _ in events}
+        self.assertLessEqual({"state", "progress", "message", "moment"}, kinds)
+        moment = next(content for event, content in events if event == "moment")
+        self.assertEqual((moment["cut"], len(moment["tip"])), ("as_planned", 3))
+        other = self.folder / "other"
+        self.incise("run", case, "-o", other)
+        by_command = json.loads((other / "study.json").read_text())
+        self.assertEqual(run["verdict"], by_command["verdict"])
+        self.assertEqual(run["as_planned"]["numbers"]["mean_error_mm"], by_command["before"]["abs_error_mm"]["mean"])
+
+    @staticmethod
+    def follow(studio, events):
+        connection = http.client.HTTPConnection("127.0.0.1", studio.port)
+        connection.request("GET", "/api/events", headers={"X-Incise-Token": studio.token})
+        kind = None
+        try:
+            for line in connection.getresponse():
+                name, _, value = line.decode().rstrip("\n").partition(": ")
+                if name == "event":
+                    kind = value
+                elif name == "data":
+                    events.append((kind, json.loads(value)))
+        except (ConnectionError, http.client.HTTPException):
+            pass
+        finally:
+            connection.close()
+
+    def test_a_run_that_is_stopped_goes_on(self):
+        studio = self.studio(self.small(LONG_CUT))
+        answers = []
+        asking = threading.Thread(target=lambda: answers.append(studio.call("run")))
+        asking.start()
+        self.wait_until(lambda: any(one["stage"].startswith("cut") for one in studio.call("state")[1]["running"]))
+        studio.call("stop", {"call": "run"})
+        asking.join()
+        self.assertEqual(answers[0][0], 499, answers)
+        self.assertTrue(list((self.folder / "case" / "out" / "cache").glob("*.checkpoint.bin")))
+        self.assertEqual(studio.call("run")[0], 200)
+
+    def test_a_worker_that_is_killed_takes_nothing_with_it(self):
+        studio = self.studio(self.small(LONG_CUT))
+        answers = []
+        asking = threading.Thread(target=lambda: answers.append(studio.call("run")))
+        asking.start()
+        self.wait_until(lambda: any(one["stage"].startswith("cut") for one in studio.call("state")[1]["running"]))
+        for worker in children_of(studio.process.pid):
+            os.kill(worker, signal.SIGKILL)
+        asking.join()
+        self.assertEqual(answers[0][0], 500)
+        self.assertIn("signal 9", answers[0][1]["message"])
+        self.assertEqual(studio.call("state")[1]["case"]["title"], "Test block")
+
+    def test_a_killed_server_takes_its_workers_with_it_and_the_next_one_is_where_it_was(self):
+        case = self.small()
+        studio = self.studio(case)
+        before = studio.call("change", {"revision": studio.call("case")[1]["revision"], "set": {"plan.depth_mm": 4}})[1]
+        studio.call("body")
+        workers = children_of(studio.process.pid)
+        self.assertTrue(workers)
+        studio.stop(signal.SIGKILL)
+        self.wait_until(lambda: not any(pathlib.Path(f"/proc/{worker}").exists() for worker in workers))
+        again = self.studio(case)
+        self.assertEqual(again.call("case")[1], before)
+        folders = pathlib.Path(os.environ.get("TMPDIR", "/tmp")).glob("incise-studio-*")
+        self.assertFalse([folder for folder in folders if f"-{studio.process.pid}-" in folder.name])
+
+    def wait_until(self, holds):
+        while not holds():
+            time.sleep(0.05)
+
+
+class Refusals(StudioTest):
+    def test_bad_arguments_get_one_clear_message_and_change_nothing(self):
+        case = self.small()
+        text = (case / "case.yaml").read_text()
+        studio = self.studio(case)
+        revision = studio.call("case")[1]["revision"]
+        for call, arguments, path in (
+            ("change", {"revision": revision, "set": {"plan.depth_mm": -1}}, "plan.depth_mm"),
+            ("change", {"revision": revision, "set": {"plan.depht_mm": 1}}, "plan.depht_mm"),
+            ("change", {"revision": revision, "set": [1]}, "set"),
+            ("change", {"set": {}}, "revision"),
+            ("edge", {"revision": revision, "points_mm": [[0, 0, 0]], "configuration": "rest"}, "points_mm"),
+            ("edge", {"revision": revision, "points_mm": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]], "configuration": "rest"}, "points_mm"),
+            ("edge", {"revision": revision, "points_mm": "x", "configuration": "rest"}, "points_mm"),
+            ("edge", {"revision": revision, "points_mm": [[0, 0, 0], [9, 0, 0], [0, 9, 0]], "configuration": "upright"}, "tumor.configuration"),
+            ("open", {"file": "/etc/passwd"}, "file"),
+            ("open", {"file": 7}, "file"),
+            ("demo", {"folder": studio.call("files")[1]["folder"]["id"], "seed": "x"}, "seed"),
+            ("create", {"scan": studio.call("files")[1]["folder"]["id"], "folder": studio.call("files")[1]["folder"]["id"], "name": "../x"}, "name"),
+            ("files", {"folder": "nowhere"}, "folder"),
+            ("scan", {}, "ct.volume"),
+            ("undo", {}, "call"),
+        ):
+            status, answer = studio.call(call, arguments)
+            self.assertIn(status, (409, 422), (call, arguments, answer))
+            self.assertEqual(answer["problem"]["path"], path, answer)
+            self.assertTrue(answer["problem"]["message"])
+        self.assertEqual((case / "case.yaml").read_text(), text)
+        self.assertEqual(sorted(entry.name for entry in case.iterdir()), ["block.msh", "case.yaml", "tumor.csv"])
+
+    def test_a_case_that_somebody_else_changed_is_not_overwritten(self):
+        case = self.small()
+        studio = self.studio(case)
+        revision = studio.call("case")[1]["revision"]
+        with open(case / "case.yaml", "a") as file:
+            file.write("\n")
+        text = (case / "case.yaml").read_text()
+        self.assertEqual(studio.call("change", {"revision": revision, "set": {"plan.depth_mm": 4}})[0], 409)
+        self.assertEqual((case / "case.yaml").read_text(), text)
+
+    def test_the_command_refuses_what_it_cannot_serve(self):
+        self.assert_refused(self.incise("studio", "nowhere"), BAD_DATA, "no such file")
+        self.assert_refused(self.incise("studio", "--root", "nowhere"), BAD_DATA, "no such folder")
+        self.assert_refused(self.incise("studio", "--port", "99999"), BAD_CASE, "--port")
+        with socket.create_server(("127.0.0.1", 0)) as taken:
+            self.assert_refused(self.incise("studio", "--port", str(taken.getsockname()[1])), BAD_CASE, "a free port")
+
+
+class Attacks(StudioTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "root").mkdir()
+        (self.folder / "secret.csv").write_text("x_mm,y_mm,z_mm\n")
+        self.running = self.studio(folder=self.folder / "root")
+
+    def test_only_this_machine_the_own_page_and_the_token_get_an_answer(self):
+        ask = self.running.ask
+        for host in ("evil.example", "127.0.0.1.evil.example", ""):
+            self.assertEqual(ask("POST", "/api/call/state", b"{}", Host=host)[0], 403, host)
+            self.assertEqual(ask("GET", "/", Host=host)[0], 403, host)
+        self.assertEqual(ask("POST", "/api/call/state", b"{}", Host=None)[0], 403)
+        for token in (None, "", "0" * 32):
+            self.assertEqual(ask("POST", "/api/call/state", b"{}", X_Incise_Token=token)[0], 401)
+            self.assertEqual(ask("GET", "/api/events", X_Incise_Token=token)[0], 401)
+        self.assertEqual(ask("POST", "/api/call/state", b"{}", Origin="http://evil.example")[0], 403)
+        self.assertEqual(ask("POST", "/api/call/state", b"{}", Sec_Fetch_Site="cross-site")[0], 403)
+        self.assertEqual(ask("POST", "/api/call/state", b"{}", Content_Type="text/plain")[0], 415)
+        self.assertEqual(ask("OPTIONS", "/api/call/state")[0], 405)
+        status, fields, _ = ask("GET", "/", X_Incise_Token=None)
+        self.assertEqual(status, 200)
+        self.assertIn("frame-ancestors 'none'", fields["Content-Security-Policy"])
+        self.assertNotIn("unsafe", fields["Content-Security-Policy"])
+        self.assertFalse([name for name in fields if name.lower().startswith("access-control")])
+
+    def test_no_target_leads_out_of_the_page(self):
+        for target in ("/page/../server.cpp", "/page/%2e%2e/x", "/page//etc/passwd", "/page/", "//", "/etc/passwd", "/api/blob/../../secret.csv",
+                       "/api/blob/" + "0" * 32, "/api/blob/", "/api/nothing"):
+            self.assertEqual(self.running.ask("GET", target)[0], 404, target)
+
+    def test_links_do_not_lead_out_of_the_roots(self):
+        (self.folder / "root" / "out.csv").symlink_to(self.folder / "secret.csv")
+        (self.folder / "root" / "up").symlink_to(self.folder)
+        self.assertEqual(self.running.call("files")[1]["entries"], [])
+
+    def test_large_requests_are_refused_before_they_are_read(self):
+        status, _, _ = self.running.ask("POST", "/api/call/state", None, Content_Length=str(2 << 30))
+        self.assertEqual(status, 413)
+        status, _, _ = self.running.ask("GET", "/", X_Filler="x" * 9000)
+        self.assertEqual(status, 400)
+        self.assertEqual(self.running.call("state")[0], 200)
+
+    def test_no_json_and_no_http_get_one_clear_answer(self):
+        for body in (b"{", b"[]", b"7", b"\xff\xfe", b'{"a": ' * 5000):
+            self.assertIn(self.running.ask("POST", "/api/call/state", body)[0], (400, 200), body[:20])
+        with socket.create_connection(("127.0.0.1", self.running.port)) as connection:
+            connection.sendall(b"\x16\x03\x01 no http\r\n\r\n")
+            self.assertIn(b"400", connection.recv(100))
+        self.assertEqual(self.running.call("state")[0], 200)
+
+    def test_many_connections_that_say_nothing_do_not_end_it(self):
+        idle = [socket.create_connection(("127.0.0.1", self.running.port)) for _ in range(100)]
+        for connection in idle:
+            connection.close()
+        for _ in range(200):  # the places of those that were closed are free again soon
+            try:
+                status = self.running.call("state")[0]
+                break
+            except (ConnectionError, http.client.HTTPException):
+                time.sleep(0.05)
+        self.assertEqual(status, 200)
+
+    def test_a_title_is_a_text(self):
+        case = small_case.write_case(self.folder / "root" / "case", {"title": "<script>alert(1)</script>\r\n\r\nevent: x"})
+        studio = self.studio(case, folder=self.folder / "root")
+        self.assertEqual(studio.call("state")[1]["case"]["title"], "<script>alert(1)</script>\r\n\r\nevent: x")
+
+
+if __name__ == "__main__":
+    unittest.main()
