@@ -3,7 +3,7 @@
 #include <incise/core/image_library_turn.hpp>
 
 #include <itkConnectedComponentImageFilter.h>
-#include <itkDiscreteGaussianImageFilter.h>
+#include <itkGaussianOperator.h>
 #include <itkImage.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>
 
@@ -54,6 +54,59 @@ std::int32_t renumber(std::vector<std::int32_t>& numbers) {
   return count;
 }
 
+/// Weights of a Gaussian sampled as Lindeberg's discrete one (1990), from one end to the other: ITK's operator.
+std::vector<double> gaussian_kernel(double variance_voxels) {
+  itk::GaussianOperator<double, 3> kernel;
+  kernel.SetDirection(0);
+  kernel.SetVariance(variance_voxels);
+  kernel.SetMaximumError(1e-3);
+  kernel.SetMaximumKernelWidth(101);
+  kernel.CreateDirectional();
+  return {kernel.Begin(), kernel.End()};
+}
+
+/// Convolves along one axis. A voxel and its neighbours along it lie `stride` apart; `stride` lines run side by side, and
+/// there are `blocks` of such lines. Values repeat beyond the border. Sums run from end to end of the kernel in double,
+/// as ITK's filter has them.
+void convolve(std::vector<float>& values, std::size_t blocks, std::size_t count, std::size_t stride,
+              const std::vector<double>& kernel) {
+  const auto reach = static_cast<std::ptrdiff_t>(kernel.size() / 2), last = static_cast<std::ptrdiff_t>(count) - 1;
+  std::vector<float> source(count * stride);
+  std::vector<double> sums(stride);
+  for (std::size_t block = 0; block < blocks; ++block) {
+    float* const lines = values.data() + block * count * stride;
+    std::copy(lines, lines + count * stride, source.begin());
+    for (std::ptrdiff_t at = 0; at <= last; ++at) {
+      std::fill(sums.begin(), sums.end(), 0.0);
+      for (std::size_t k = 0; k < kernel.size(); ++k) {
+        const std::ptrdiff_t other = std::clamp(at + static_cast<std::ptrdiff_t>(k) - reach, std::ptrdiff_t{0}, last);
+        const float* const from = source.data() + static_cast<std::size_t>(other) * stride;
+        for (std::size_t i = 0; i < stride; ++i) sums[i] += kernel[k] * static_cast<double>(from[i]);
+      }
+      float* const target = lines + static_cast<std::size_t>(at) * stride;
+      for (std::size_t i = 0; i < stride; ++i) target[i] = static_cast<float>(sums[i]);
+    }
+  }
+}
+
+/// The same along x, where neighbours lie side by side: each row with its border repeated, shifted by each weight.
+void convolve_rows(std::vector<float>& values, std::size_t rows, std::size_t count, const std::vector<double>& kernel) {
+  const std::size_t reach = kernel.size() / 2;
+  std::vector<float> padded(count + 2 * reach);
+  std::vector<double> sums(count);
+  for (std::size_t row = 0; row < rows; ++row) {
+    float* const line = values.data() + row * count;
+    std::copy(line, line + count, padded.begin() + static_cast<std::ptrdiff_t>(reach));
+    std::fill_n(padded.begin(), reach, line[0]);
+    std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(reach), reach, line[count - 1]);
+    std::fill(sums.begin(), sums.end(), 0.0);
+    for (std::size_t k = 0; k < kernel.size(); ++k) {
+      for (std::size_t i = 0; i < count; ++i) sums[i] += kernel[k] * static_cast<double>(padded[i + k]);
+    }
+    for (std::size_t i = 0; i < count; ++i) line[i] = static_cast<float>(sums[i]);
+  }
+}
+
 }  // namespace
 
 Pieces find_pieces(const Mask& mask) {
@@ -84,16 +137,18 @@ GrayVolume distance_to(const Mask& mask) {
 }
 
 GrayVolume gaussian(GrayVolume volume, double sigma) {
-  if (sigma == 0.0) return volume;
-  const ImageLibraryTurn turn;
-  auto filter = itk::DiscreteGaussianImageFilter<Image<float>, Image<float>>::New();
-  filter->SetInput(image_from(volume));
-  filter->SetVariance(sigma * sigma);
-  filter->SetUseImageSpacing(true);
-  filter->SetMaximumError(1e-3);
-  filter->SetMaximumKernelWidth(101);
-  filter->Update();
-  return volume_from(*filter->GetOutput(), volume.grid);
+  if (sigma == 0.0 || volume.voxels.empty()) return volume;
+  const auto kernel = [&](int axis) {
+    const double spacing = volume.grid.spacing_mm[axis];
+    return gaussian_kernel(sigma * sigma / (spacing * spacing));
+  };
+  const auto nx = static_cast<std::size_t>(volume.grid.size[0]);
+  const auto ny = static_cast<std::size_t>(volume.grid.size[1]);
+  const auto nz = static_cast<std::size_t>(volume.grid.size[2]);
+  convolve(volume.voxels, 1, nz, nx * ny, kernel(2));
+  convolve(volume.voxels, nz, ny, nx, kernel(1));
+  convolve_rows(volume.voxels, ny * nz, nx, kernel(0));
+  return volume;
 }
 
 Mask complement(const Mask& mask) {
