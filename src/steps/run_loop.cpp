@@ -6,7 +6,8 @@
 
 namespace incise::steps {
 
-StepResult run_loop(const CaseRequest& request, const std::vector<std::string>& accepted, const StepContext& context) {
+StepResult run_loop(const CaseRequest& request, const std::vector<std::string>& accepted, const StepContext& context,
+                    const std::function<void(const Run&)>& on_run) {
   CaseRun run(request.file, request.output, request.options, context.run);
   const Run done = run.run(accepted, context.workers, context.monitor);
   if (done.program) report_gate(done.verdict, done.gate, context.monitor);
@@ -14,6 +15,7 @@ StepResult run_loop(const CaseRequest& request, const std::vector<std::string>& 
                               [](const std::filesystem::path& folder, const CheckedProgram& made) {
                                 write_replay_figure(folder, *made.replay);
                               })};
+  if (on_run) on_run(done);
   context.monitor.message(Severity::Notice, "report: drawing");
   const std::filesystem::path page = request.output / "report.html";
   try {

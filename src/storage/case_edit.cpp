@@ -1,6 +1,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/sha256.hpp>
 #include <incise/io/atomic_file.hpp>
+#include <incise/io/folder_lock.hpp>
 #include <incise/storage/case_edit.hpp>
 
 #include <fmt/format.h>
@@ -29,9 +30,11 @@ void emit(YAML::Emitter& out, const YAML::Node& node) {
   }
 }
 
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// The lines before the first key.
 std::string leading_comments(const std::string& text) {
-  std::size_t end = 0;
+  std::size_t end = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   while (end < text.size() && (text[end] == '#' || text[end] == '\n')) {
     const std::size_t line_end = text.find('\n', end);
     end = line_end == std::string::npos ? text.size() : line_end + 1;
@@ -45,6 +48,13 @@ bool has_inner_comments(const std::string& text) {
     if (at == 0 || body[at - 1] == ' ' || body[at - 1] == '\n' || body[at - 1] == '\t') return true;
   }
   return false;
+}
+
+std::filesystem::path free_name_beside(const std::filesystem::path& file) {
+  std::filesystem::path name = file.string() + ".orig";
+  for (int k = 2; std::filesystem::exists(std::filesystem::symlink_status(name)); ++k)
+    name = fmt::format("{}.orig.{}", file.string(), k);
+  return name;
 }
 
 void set(YAML::Node node, std::string_view key, const nlohmann::ordered_json& value, const std::string& whole_key) {
@@ -65,6 +75,10 @@ void set(YAML::Node node, std::string_view key, const nlohmann::ordered_json& va
 
 }  // namespace
 
+StaleRevision::StaleRevision(const std::filesystem::path& file)
+    : CaseError(file.string(), "revision", "a file that was changed meanwhile", "the one that was shown",
+                "Look at the case again") {}
+
 std::string case_revision(const std::filesystem::path& file) {
   return sha256_of_text(read_text(file));
 }
@@ -83,16 +97,20 @@ std::string changed_case(const std::string& text, const CaseChanges& changes) {
 }
 
 CaseFile change_case(const std::filesystem::path& file, const std::string& revision, const CaseChanges& changes) {
+  const FolderLock nobody_else(std::filesystem::absolute(file).parent_path());
+  CaseFile before = read_case(file);  // within its bounds
   const std::string old = read_text(file);
-  if (sha256_of_text(old) != revision)
-    throw CaseError(file.string(), "revision", "a file that was changed meanwhile", "the one that was shown",
-                    "Look at the case again");
+  if (sha256_of_text(old) != revision) throw StaleRevision(file);
   const std::string text = changed_case(old, changes);
+  if (text == old) return before;
   CaseFile changed = parse_case(text, file);
-  if (text == old) return changed;
-  const std::filesystem::path original = file.string() + ".orig";
-  if (has_inner_comments(old) && !std::filesystem::exists(original)) write_atomically(original, old);
-  write_atomically(file, text);
+  const auto permissions = std::filesystem::status(file).permissions();
+  const auto write = [&](const std::filesystem::path& to, const std::string& content) {
+    write_atomically(to, content);
+    std::filesystem::permissions(to, permissions);
+  };
+  if (has_inner_comments(old)) write(free_name_beside(file), old);
+  write(file, text);
   return changed;
 }
 

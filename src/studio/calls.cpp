@@ -1,7 +1,5 @@
 #include "calls.hpp"
 
-#include "views.hpp"
-
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/geometry/iso_surface.hpp>
@@ -166,15 +164,44 @@ Segmentation segmentation_of(const CaseFile& file, const CtVolume* ct, Monitor& 
   return segment(*ct, file.settings.segmentation, monitor);
 }
 
-/// Where a drawn edge goes: a file that the studio made for this case, or a name that is free.
+/// Where a drawn edge goes: a name that is free, so that no edge is ever lost.
 fs::path file_for_edge(const CaseFile& file) {
-  const fs::path& now = file.inputs.tumor_contour;
-  if (!now.empty() && now.parent_path() == file.folder && now.filename().string().starts_with(kDrawnEdge)) return now;
   for (int k = 1;; ++k) {
     fs::path name =
         file.folder / (k == 1 ? fmt::format("{}.csv", kDrawnEdge) : fmt::format("{}_{}.csv", kDrawnEdge, k));
     if (!fs::exists(fs::symlink_status(name))) return name;
   }
+}
+
+std::set<fs::path> files_of(const CaseFile& file) {
+  const CaseInputs& in = file.inputs;
+  std::set<fs::path> files{in.ct_volume,     in.ct_labels,    in.specimen_mesh, in.tumor_contour,
+                           in.tumor_surface, in.line_contour, in.tool_path};
+  files.insert(in.holders.begin(), in.holders.end());
+  return files;
+}
+
+/// A change may name a file that the case names already, one in the case's folder, or one that was chosen by its id.
+void require_known_files(const CaseFile& before, const CaseFile& after, const std::set<fs::path>& chosen) {
+  const std::set<fs::path> known = files_of(before);
+  const fs::path folder = fs::weakly_canonical(after.folder);
+  for (const fs::path& file : files_of(after)) {
+    const fs::path real = fs::weakly_canonical(file);
+    const bool is_in_folder =
+        std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first == folder.end();
+    if (file.empty() || known.contains(file) || is_in_folder || chosen.contains(real)) continue;
+    throw CaseError("request", "set", "'" + file.string() + "', a file outside the case's folder",
+                    "a file that was chosen from the list");
+  }
+}
+
+/// A cut of a run, for a person. @param cut  as_planned, pass_1 …, corrected.
+std::string part_of_run(const std::string& cut) {
+  for (int pass = 1; pass <= kMostPasses; ++pass) {
+    if (cut == name_of_pass(pass))
+      return fmt::format("pass {} of at most {}", pass, pass <= kUsualPasses ? kUsualPasses : kMostPasses);
+  }
+  return cut == name_of_pass(0) ? "as planned" : cut;
 }
 
 RunContext context_of(const Workers& workers) {
@@ -183,8 +210,8 @@ RunContext context_of(const Workers& workers) {
 
 }  // namespace
 
-Calls::Calls(const fs::path& blobs, Monitor& monitor, std::function<void(const Json&)> on_moment)
-    : blobs_(blobs), monitor_(monitor), on_moment_(std::move(on_moment)) {}
+Calls::Calls(const fs::path& blobs, Monitor& monitor, Watchers watchers)
+    : blobs_(blobs), monitor_(monitor), watchers_(std::move(watchers)) {}
 
 Json Calls::make(const std::string& name, const fs::path& file, const Json& arguments) {
   using Call = Json (Calls::*)(const Json&);
@@ -218,12 +245,21 @@ Json Calls::create(const Json& arguments) {
   const CaseFile made = parse_case(text, folder / "case.yaml");
   static_cast<void>(ct_of(made));  // a case of a scan that cannot be read is of no use
   fs::create_directory(folder);
-  write_atomically(made.file, text);
+  try {
+    write_atomically(made.file, text);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(folder, ignored);
+    throw;
+  }
   return case_json(made);
 }
 
 Json Calls::demo(const Json& arguments) {
-  const auto seed = argument<std::uint64_t>(arguments, "seed", "a whole number of at least 0");
+  const Json given = argument<Json>(arguments, "seed", "a whole number of at least 0");
+  if (!given.is_number_unsigned())
+    throw CaseError("request", "seed", given.dump().substr(0, 80), "a whole number of at least 0");
+  const auto seed = given.get<std::uint64_t>();
   const fs::path folder = new_folder(text_argument(arguments, "folder"), fmt::format("virtual_tongue_{}", seed));
   RunContext context = context_of(workers_);
   context.seed = seed;
@@ -236,7 +272,16 @@ Json Calls::show_case(const Json&) {
 }
 
 Json Calls::change(const Json& arguments) {
-  return case_json(change_case(file_, text_argument(arguments, "revision"), changes_of(arguments, "set")));
+  const std::string revision = text_argument(arguments, "revision");
+  CaseChanges changes = changes_of(arguments, "set");
+  const CaseFile before = read_case(file_);
+  std::set<fs::path> chosen;
+  for (const auto& [key, file] : changes_of(arguments, "files")) {
+    chosen.insert(file.get<std::string>());
+    changes[key] = fs::path(file.get<std::string>()).lexically_proximate(before.folder).string();
+  }
+  require_known_files(before, parse_case(changed_case(read_text(file_), changes), file_), chosen);
+  return case_json(change_case(file_, revision, changes));
 }
 
 const CtVolume& Calls::ct_of(const CaseFile& file) {
@@ -288,16 +333,20 @@ Json Calls::edge(const Json& arguments) {
     throw CaseError("request", "points_mm", fmt::format("an edge of {:.1f} mm", length),
                     "a closed edge of 1 to 1000 mm");
   const std::string revision = text_argument(arguments, "revision");
-  if (revision != case_revision(file_))
-    throw CaseError(file_.string(), "revision", "a file that was changed meanwhile", "the one that was shown",
-                    "Look at the case again");
+  if (revision != case_revision(file_)) throw StaleRevision(file_);
   const auto count = static_cast<std::size_t>(std::ceil(length / kEdgeStepMm));
   const fs::path target = file_for_edge(file);
   const CaseChanges changes{{"tumor.contour", target.lexically_proximate(file.folder).string()},
                             {"tumor.configuration", text_argument(arguments, "configuration")}};
   static_cast<void>(parse_case(changed_case(read_text(file_), changes), file_));  // before anything is written
   write_contour_csv(target, resample(drawn, std::max<std::size_t>(count, drawn.points.size())));
-  return case_json(change_case(file_, revision, changes));
+  try {
+    return case_json(change_case(file_, revision, changes));
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(target, ignored);
+    throw;
+  }
 }
 
 Study Calls::study_until(Stage until) {
@@ -345,12 +394,23 @@ Json Calls::plan(const Json&) {
 }
 
 void Calls::show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress) {
+  watchers_.on_part(part_of_run(cut));
   const auto now = std::chrono::steady_clock::now();
   if (std::chrono::duration<double>(now - last_moment_).count() < kMomentS) return;
   last_moment_ = now;
+  if (!shows_moments_) return;
   const CutState& state = progress.state;
   const Skin skin = skin_of(model.mesh, state.tissue.is_live);
-  on_moment_(
+  try {
+    send_moment(cut, state, skin);
+  } catch (const DataError& error) {  // no room for its arrays: a cut does not end for want of a picture
+    shows_moments_ = false;
+    monitor_.message(Severity::Warning, fmt::format("{}. The cut goes on without pictures", error.what()));
+  }
+}
+
+void Calls::send_moment(const std::string& cut, const CutState& state, const Skin& skin) {
+  watchers_.on_moment(
       {{"cut", cut},
        {"time_s", state.time_s},
        {"tip", points_json(std::array{state.tool.tip_mm}).front()},
@@ -359,6 +419,7 @@ void Calls::show_moment(const std::string& cut, const TissueModel& model, const 
 }
 
 Json Calls::run(const Json& arguments) {
+  shows_moments_ = true;
   const auto accepted = arguments.contains("accept")
                             ? argument<std::vector<std::string>>(arguments, "accept", "a list of ids")
                             : std::vector<std::string>{};
@@ -368,19 +429,21 @@ Json Calls::run(const Json& arguments) {
   request.options.watch = [this](const auto& cut, const auto& model, const auto& progress) {
     show_moment(cut, model, progress);
   };
-  const Json done = steps::run_loop(request, accepted, {context_of(workers_), workers_, monitor_}).json;
-  const Study study = study_until(Stage::Verify);  // all of it is in the cache
   Json json;
-  for (const char* key : {"verdict", "outcome", "accepted", "report"}) json[key] = done.at(key);
-  const Json program = done.value("program", Json(nullptr));
-  const bool is_written = program.is_object() && program.at("written").get<bool>();
-  json["gate"] = program.is_object() && program.contains("gate") ? program.at("gate") : Json(nullptr);
-  json["checks"] = program.is_object() && program.contains("checks") ? program.at("checks") : Json(nullptr);
-  json["program"] = is_written ? Json(read_text(output / "program" / "program.script")) : Json(nullptr);
-  json["why_without_program"] =
-      program.is_object() ? program.value("reason", std::string()) : std::string("nothing was planned");
-  json["as_planned"] = study.as_planned ? cut_json(*study.as_planned, *study.followed) : Json(nullptr);
-  json["corrected"] = study.corrected ? cut_json(*study.corrected, study.correction->moves.path) : Json(nullptr);
+  const auto take = [&](const Run& run) {  // while nobody else may write into the folder
+    const Study& study = run.study;
+    json["verdict"] = to_json(run.verdict);
+    json["outcome"] = to_string(study.outcome);
+    json["accepted"] = study.is_accepted;
+    json["gate"] = run.program ? to_json(run.gate) : Json(nullptr);
+    json["checks"] = run.program ? to_json(run.program->checks.checks) : Json(nullptr);
+    json["program"] = run.gate.is_open ? Json(read_text(output / "program" / "program.script")) : Json(nullptr);
+    json["why_without_program"] = run.why_without_program;
+    json["as_planned"] = study.as_planned ? cut_json(*study.as_planned, *study.followed) : Json(nullptr);
+    json["corrected"] = study.corrected ? cut_json(*study.corrected, study.correction->moves.path) : Json(nullptr);
+  };
+  const Json done = steps::run_loop(request, accepted, {context_of(workers_), workers_, monitor_}, take).json;
+  json["report"] = done.at("report");
   return json;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "blob_folder.hpp"
+#include "views.hpp"
 
 #include <incise/core/monitor.hpp>
 #include <incise/core/workers.hpp>
@@ -22,8 +23,12 @@ namespace incise::studio {
 class Calls {
  public:
   using Json = nlohmann::ordered_json;
-  /// @param on_moment  is handed what a page shows of a cut under way.
-  Calls(const std::filesystem::path& blobs, Monitor& monitor, std::function<void(const Json&)> on_moment);
+  /// What happens on the way to a result, beside what the monitor is told.
+  struct Watchers {
+    std::function<void(const std::string&)> on_part;  ///< which cut of a run is under way: "pass 2 of at most 3"
+    std::function<void(const Json&)> on_moment;       ///< what a page shows of it
+  };
+  Calls(const std::filesystem::path& blobs, Monitor& monitor, Watchers watchers);
 
   /// Makes the call of that name. @param file  the case; empty: none is open.
   /// @throws CaseError for an unknown call or arguments that it cannot use; whatever the library throws.
@@ -47,15 +52,17 @@ class Calls {
   /// Runs the case up to a stage, in its own output folder.
   [[nodiscard]] Study study_until(Stage until);
   void show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress);
+  void send_moment(const std::string& cut, const CutState& state, const Skin& skin);
 
   BlobFolder blobs_;
   Monitor& monitor_;
-  std::function<void(const Json&)> on_moment_;
+  Watchers watchers_;
   Workers workers_{0};
   std::filesystem::path file_;  ///< of the case
   std::string ct_key_;          ///< which CT is kept: its place, how it was read, and when it was changed
   CtVolume ct_;
   std::chrono::steady_clock::time_point last_moment_{};
+  bool shows_moments_ = true;
 };
 
 }  // namespace incise::studio

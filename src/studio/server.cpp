@@ -266,8 +266,10 @@ class Server {
     protect(response, policy_);
     http::serializer<false, Body> serializer(response);
     boost::system::error_code failed;
-    stream.expires_after(std::chrono::minutes(2));  // of silence of the reader, or of a large array
-    co_await http::async_write(stream, serializer, asio::redirect_error(asio::use_awaitable, failed));
+    while (!failed && !serializer.is_done()) {
+      stream.expires_after(kSilence);  // of the reader
+      co_await http::async_write_some(stream, serializer, asio::redirect_error(asio::use_awaitable, failed));
+    }
     if (failed || !response.keep_alive()) {
       boost::system::error_code ignored;
       stream.socket().shutdown(Tcp::socket::shutdown_send, ignored);
@@ -372,37 +374,69 @@ class Server {
 
   asio::awaitable<Json> state() {
     Json json{{"version", fmt::format("{} ({})", version(), source_commit())}, {"case", nullptr}};
-    const Json running = running_json();
-    if (!case_file_.empty()) {
-      std::string name = "case", file = case_file_;
+    if (!case_file_.empty() && shown_case_.is_null()) {
+      std::string name = "case";
       Json nothing = Json::object();
-      CallOutcome shown = co_await desk_.call(std::move(name), std::move(file), std::move(nothing));
+      CallOutcome shown = co_await outcome_of(std::move(name), std::move(nothing));
       if (shown.kind == CallOutcome::Kind::Result)
-        json["case"] = std::move(shown.content);
-      else
+        shown_case_ = std::move(shown.content);
+      else if (shown.content.is_object())
         json["case_problem"] = std::move(shown.content);
+      else
+        json["case_problem"]["message"] = std::move(shown.content);
     }
-    json["running"] = running;
+    json["case"] = shown_case_;  // as it was last: what is computed now may take long
+    json["running"] = running_json();
     co_return json;
+  }
+
+  [[nodiscard]] std::string path_of(const Json& id, const std::string& field) const {
+    if (!id.is_string()) throw CaseError("request", field, "no text", "the id of a file");
+    return files_.path_of(id.get<std::string>(), field).string();
+  }
+
+  /// The case file of a call `open`: within the roots, wherever links lead.
+  [[nodiscard]] std::string case_file_at(const Json& arguments) {
+    const fs::path named = arguments.value("file", std::string());
+    if (named.empty()) throw CaseError("request", "file", "nothing", "the id of a file");
+    const fs::path file = fs::is_directory(named) ? named / "case.yaml" : named;
+    return files_.path_of(files_.id_of(file), "file").string();
   }
 
   /// Files that a call names by their ids, as paths.
   void translate_files(Json& arguments) const {
     for (const char* name : {"file", "folder", "scan"}) {
-      if (!arguments.contains(name)) continue;
-      if (!arguments.at(name).is_string()) throw CaseError("request", name, "no text", "the id of a file");
-      arguments[name] = files_.path_of(arguments.at(name).get<std::string>(), name).string();
+      if (arguments.contains(name)) arguments[name] = path_of(arguments.at(name), name);
     }
+    if (!arguments.contains("files")) return;
+    if (!arguments.at("files").is_object()) throw CaseError("request", "files", "no object", "keys and ids of files");
+    for (auto& [key, id] : arguments.at("files").items()) id = path_of(id, key);
+  }
+
+  /// The arguments of a call; null: no JSON, or nested so deep that handling it would take the stack.
+  static Json parsed(const std::string& body) {
+    constexpr int kDeepest = 32;
+    bool is_too_deep = false;
+    const auto look = [&](int depth, Json::parse_event_t, Json&) {
+      is_too_deep = is_too_deep || depth > kDeepest;
+      return !is_too_deep;
+    };
+    Json json = Json::parse(body.empty() ? "{}" : body, look, false);
+    return is_too_deep ? Json() : json;
   }
 
   asio::awaitable<Response> call(std::string name, std::string body, bool is_kept) {
-    Json arguments = Json::parse(body.empty() ? "{}" : body, nullptr, false);
+    Json arguments = parsed(body);
     if (!arguments.is_object()) co_return plain(400, "The arguments of a call have to be a JSON object.", is_kept);
     Json problem;
     try {
-      if (name == "files") co_return json(200, files_.list(arguments.value("folder", std::string())), is_kept);
+      if (name == "files") {
+        if (arguments.contains("folder")) static_cast<void>(path_of(arguments.at("folder"), "folder"));
+        co_return json(200, files_.list(arguments.value("folder", std::string())), is_kept);
+      }
       if (name == "stop") co_return json(200, stop(arguments), is_kept);
       translate_files(arguments);
+      if (name == "open") arguments["file"] = case_file_at(arguments);
     } catch (const CaseError& error) {
       problem = {{"path", error.field()},
                  {"found", error.problem().found},
@@ -421,19 +455,54 @@ class Server {
   }
 
   Json stop(const Json& arguments) {
-    (arguments.value("call", std::string()) == "run" ? runner_ : desk_).stop();
+    (arguments.contains("call") && arguments.at("call") == "run" ? runner_ : desk_).stop();
     return Json::object();
   }
 
-  asio::awaitable<Response> call_worker(std::string name, Json arguments, bool is_kept) {
-    WorkerProcess& worker = name == "run" ? runner_ : desk_;
+  /// Calls of the desk that write into the case's output folder, which only one process may at a time.
+  static bool makes_output(const std::string& name) { return name == "body" || name == "stretch" || name == "plan"; }
+
+  static CallOutcome refused_during_a_run() {
+    CallOutcome outcome;
+    outcome.kind = CallOutcome::Kind::Problem;
+    for (const char* key : {"path", "found", "expected", "hint"}) outcome.content[key] = "";
+    outcome.content["message"] = "A run is under way. Wait for its end, or stop it.";
+    return outcome;
+  }
+
+  /// Makes a call; what goes wrong on the way to a worker is an outcome, too.
+  asio::awaitable<CallOutcome> outcome_of(std::string name, Json arguments) {
+    const bool is_run = name == "run", is_counted = makes_output(name);
+    if (is_counted && !runner_.running().empty()) co_return refused_during_a_run();
+    asio::steady_timer pause(io_);
+    while (is_run && desk_makes_output_ > 0) {
+      pause.expires_after(std::chrono::milliseconds(50));
+      co_await pause.async_wait(asio::use_awaitable);
+    }
+    WorkerProcess& worker = is_run ? runner_ : desk_;
+    CallOutcome outcome;
     std::string file = case_file_;
-    CallOutcome outcome = co_await worker.call(std::move(name), std::move(file), std::move(arguments));
+    if (is_counted) ++desk_makes_output_;
+    try {
+      outcome = co_await worker.call(std::move(name), std::move(file), std::move(arguments));
+    } catch (const std::exception& error) {
+      outcome.content = std::string("The call could not be made: ") + error.what();
+    }
+    if (is_counted) --desk_makes_output_;
+    co_return outcome;
+  }
+
+  asio::awaitable<Response> call_worker(std::string name, Json arguments, bool is_kept) {
+    const bool is_run = name == "run";
+    const bool opens = name == "open" || name == "create" || name == "demo";
+    if (is_run) asio::co_spawn(io_, tell_state(), asio::detached);
+    CallOutcome outcome = co_await outcome_of(std::move(name), std::move(arguments));
+    if (is_run) asio::co_spawn(io_, tell_state(), asio::detached);
     switch (outcome.kind) {
-      case CallOutcome::Kind::Problem: {
-        const bool is_stale = outcome.content.value("path", "") == "revision";
-        co_return json(is_stale ? 409 : 422, {{"problem", std::move(outcome.content)}}, is_kept);
-      }
+      case CallOutcome::Kind::Problem:
+        co_return json(422, {{"problem", std::move(outcome.content)}}, is_kept);
+      case CallOutcome::Kind::Stale:
+        co_return json(409, {{"problem", std::move(outcome.content)}}, is_kept);
       case CallOutcome::Kind::Stopped:
         co_return plain(499, outcome.content.get<std::string>(), is_kept);
       case CallOutcome::Kind::Crashed:
@@ -441,9 +510,11 @@ class Server {
       case CallOutcome::Kind::Result:
         break;
     }
-    const bool shows_case = outcome.content.contains("revision");
-    if (shows_case) case_file_ = outcome.content.at("file").get<std::string>();
-    if (shows_case) asio::co_spawn(io_, tell_state(), asio::detached);
+    if (opens) case_file_ = outcome.content.at("file").get<std::string>();
+    if (outcome.content.contains("revision") && outcome.content.at("file") == case_file_) {
+      shown_case_ = outcome.content;
+      asio::co_spawn(io_, tell_state(), asio::detached);
+    }
     co_return json(200, outcome.content, is_kept);
   }
 
@@ -458,6 +529,8 @@ class Server {
   FileIds files_;
   const std::string policy_;
   std::string case_file_;
+  Json shown_case_;            ///< as it was last read; null: not yet
+  int desk_makes_output_ = 0;  ///< calls of the desk that write into the output folder
   std::list<Listener> listeners_;
   WorkerProcess desk_, runner_;
   Tcp::acceptor acceptor_;
@@ -469,7 +542,7 @@ class Server {
 void serve(const ServerSettings& settings, const std::function<void(const std::string& address)>& on_ready) {
   asio::io_context io(1);
   Server server(io, settings);
-  asio::signal_set ends(io, SIGINT, SIGTERM);
+  asio::signal_set ends(io, SIGINT, SIGTERM, SIGHUP);
   ends.async_wait([&io](const boost::system::error_code&, int) { io.stop(); });
   on_ready(server.address());
   io.run();

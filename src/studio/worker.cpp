@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/core/time_left.hpp>
+#include <incise/storage/case_edit.hpp>
 #include <incise/studio/worker.hpp>
 
 #include <fmt/format.h>
@@ -62,24 +63,31 @@ class WorkerMonitor : public Monitor {
   void progress(std::string_view stage, double fraction) override {
     const auto now = std::chrono::steady_clock::now();
     const auto since = [now](auto then) { return std::chrono::duration<double>(now - then).count(); };
-    if (stage != stage_) {
+    if (stage != stage_) part_.clear();
+    if (stage != stage_ || fraction < fraction_) {  // the next stage, or the next cut
       stage_ = stage;
       stage_start_ = now;
       time_left_ = TimeLeft{};
     } else if (since(last_said_) < kProgressS) {
       return;
     }
+    fraction_ = fraction;
     time_left_.note(since(stage_start_), fraction);
     last_said_ = now;
     const std::optional<double> left = time_left_.seconds();
-    answers_.say("progress",
-                 {{"stage", stage}, {"fraction", fraction}, {"left_s", left ? Json(*left) : Json(nullptr)}});
+    answers_.say(
+        "progress",
+        {{"stage", stage}, {"part", part_}, {"fraction", fraction}, {"left_s", left ? Json(*left) : Json(nullptr)}});
   }
   [[nodiscard]] bool is_cancelled() const override { return g_must_stop != 0; }
+  /// Of a call that has several alike. @param part  empty: the call as a whole.
+  void set_part(const std::string& part) { part_ = part; }
 
  private:
   Answers& answers_;
+  std::string part_;
   std::string stage_;
+  double fraction_ = 0.0;
   std::chrono::steady_clock::time_point stage_start_, last_said_;
   TimeLeft time_left_;
 };
@@ -99,6 +107,8 @@ void answer(Calls& calls, Answers& answers, const std::string& line) {
     answers.say("result", calls.make(asked.at("call"), asked.at("case").get<std::string>(), asked.at("with")));
   } catch (const Cancelled& stopped) {
     answers.say("stopped", stopped.what());
+  } catch (const StaleRevision& error) {
+    answers.say("stale", problem_json(error.problem(), error.what()));
   } catch (const CaseError& error) {
     answers.say("problem", problem_json(error.problem(), error.what()));
   } catch (const std::exception& error) {
@@ -115,14 +125,21 @@ int run_worker(const std::filesystem::path& blobs) {
   stop.sa_flags = SA_RESTART;
   ::sigaction(SIGINT, &stop, nullptr);
   ::sigaction(SIGTERM, &stop, nullptr);
+  sigset_t listened;
+  ::sigemptyset(&listened);
+  ::sigaddset(&listened, SIGINT);
+  ::sigprocmask(SIG_UNBLOCK, &listened, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   Answers answers;
   WorkerMonitor monitor(answers);
-  Calls calls(blobs, monitor, [&](const Json& moment) { answers.say("moment", moment); });
+  Calls calls(blobs, monitor,
+              {[&](const std::string& part) { monitor.set_part(part); },
+               [&](const Json& moment) { answers.say("moment", moment); }});
   for (std::string line; std::getline(std::cin, line);) {
-    g_must_stop = 0;
+    monitor.set_part("");
     answer(calls, answers, line);
+    g_must_stop = 0;  // not before: a stop may come as early as its call
   }
   return 0;
 }

@@ -38,6 +38,18 @@ Pipe new_pipe() {
   return {ends[0], ends[1]};
 }
 
+/// An end of a pipe that only the child keeps.
+class End {
+ public:
+  explicit End(int file) : file_(file) {}
+  ~End() { ::close(file_); }
+  End(const End&) = delete;
+  End& operator=(const End&) = delete;
+
+ private:
+  int file_;
+};
+
 pid_t spawn(const std::vector<std::string>& command, int in, int out) {
   std::vector<char*> arguments;
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -46,10 +58,15 @@ pid_t spawn(const std::vector<std::string>& command, int in, int out) {
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawn_file_actions_adddup2(&files, in, STDIN_FILENO);
   ::posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
+  ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);  // sockets: Asio 1.74 leaves them open
   posix_spawnattr_t attributes;  // a process group of its own: Ctrl-C at the terminal is for the server
+  sigset_t until_it_listens;     // a stop that comes before the worker has its handler waits for it
+  ::sigemptyset(&until_it_listens);
+  ::sigaddset(&until_it_listens, SIGINT);
   ::posix_spawnattr_init(&attributes);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK);
   ::posix_spawnattr_setpgroup(&attributes, 0);
+  ::posix_spawnattr_setsigmask(&attributes, &until_it_listens);
   pid_t pid = -1;
   const int failed = ::posix_spawn(&pid, arguments[0], &files, &attributes, arguments.data(), environ);
   ::posix_spawnattr_destroy(&attributes);
@@ -93,13 +110,14 @@ WorkerProcess::~WorkerProcess() {
 }
 
 void WorkerProcess::start() {
-  const Pipe to = new_pipe(), from = new_pipe();
+  const Pipe to = new_pipe();
   auto child = std::make_shared<Child>(io_);
-  child->pid = spawn(command_, to.read, from.write);
-  ::close(to.read);
-  ::close(from.write);
   child->in.assign(to.write);
+  const End reads(to.read);
+  const Pipe from = new_pipe();
   child->out.assign(from.read);
+  const End writes(from.write);
+  child->pid = spawn(command_, to.read, from.write);
   child_ = child;
   asio::co_spawn(io_, read_lines(this, child), asio::detached);
   asio::co_spawn(io_, write_lines(child), asio::detached);
@@ -148,8 +166,8 @@ void WorkerProcess::take_line(const std::string& line) {
   if (found == waiting_.end()) return;
   Waiting& of = *found->second;
   using Kind = CallOutcome::Kind;
-  for (const auto& [name, kind] :
-       {std::pair{"result", Kind::Result}, std::pair{"problem", Kind::Problem}, std::pair{"stopped", Kind::Stopped}}) {
+  for (const auto& [name, kind] : {std::pair{"result", Kind::Result}, std::pair{"problem", Kind::Problem},
+                                   std::pair{"stale", Kind::Stale}, std::pair{"stopped", Kind::Stopped}}) {
     if (!said.contains(name)) continue;
     of.outcome = {kind, std::move(said.at(name))};
     of.done.cancel();
@@ -161,7 +179,8 @@ void WorkerProcess::take_line(const std::string& line) {
     Json content = std::move(said.at(name));
     if (name == std::string_view("progress")) {
       of.shown.stage = content.value("stage", "");
-      of.shown.fraction = content.value("fraction", 0.0);
+      const Json fraction = content.value("fraction", Json(nullptr));
+      of.shown.fraction = fraction.is_number() ? fraction.get<double>() : 0.0;
       of.shown.left_s = content.value("left_s", Json(nullptr));
     }
     content["call"] = of.shown.call;
@@ -178,13 +197,14 @@ void WorkerProcess::end_all(const std::string& why) {
 }
 
 asio::awaitable<CallOutcome> WorkerProcess::call(std::string name, std::string case_file, Json arguments) {
-  if (!child_) start();
   const std::uint64_t id = next_id_++;
+  const Json asked{{"id", id}, {"call", name}, {"case", case_file}, {"with", std::move(arguments)}};
+  std::string line = asked.dump() + "\n";
+  if (!child_) start();
   const auto of = std::make_shared<Waiting>(Waiting{{name, "", 0.0, nullptr}, asio::steady_timer(io_), {}});
   of->done.expires_at(asio::steady_timer::time_point::max());
   waiting_[id] = of;
-  child_->lines.push_back(Json{{"id", id}, {"call", name}, {"case", case_file}, {"with", std::move(arguments)}}.dump() +
-                          "\n");
+  child_->lines.push_back(std::move(line));
   child_->has_line.cancel();
   boost::system::error_code woken;
   while (waiting_.contains(id)) co_await of->done.async_wait(asio::redirect_error(asio::use_awaitable, woken));

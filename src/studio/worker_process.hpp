@@ -19,9 +19,9 @@ namespace incise::studio {
 
 /// What came of a call: the last line of a worker, or that the worker has ended.
 struct CallOutcome {
-  enum class Kind { Result, Problem, Stopped, Crashed };
+  enum class Kind { Result, Problem, Stale, Stopped, Crashed };
   Kind kind = Kind::Crashed;
-  nlohmann::ordered_json content;  ///< Result, Problem: an object; else a sentence
+  nlohmann::ordered_json content;  ///< Result, Problem, Stale (the case was changed): an object; else a sentence
 };
 
 /// A call that is being made, as the call `state` lists it.

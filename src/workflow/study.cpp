@@ -374,8 +374,7 @@ class Runner {
                       what));
     }
     auto last_kept = start;
-    const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
-      if (options_.watch) options_.watch(name, *study_.model, progress);
+    const auto keep_checkpoint = [&](const IncisionProgress& progress, bool is_interrupted) {
       if (!is_interrupted && seconds_since(last_kept) < options_.checkpoint_s) return;
       try {
         cache_.keep(slot, key, progress);
@@ -384,6 +383,10 @@ class Runner {
         if (is_interrupted) throw;  // nothing of the cut would be left
         monitor_.message(Severity::Warning, fmt::format("{}. The cut continues without a checkpoint", error.what()));
       }
+    };
+    const auto keep = [&](const IncisionProgress& progress, bool is_interrupted) {
+      keep_checkpoint(progress, is_interrupted);
+      if (options_.watch) options_.watch(name, *study_.model, progress);
     };
     const IncisionSettings incision = incision_settings_for(settings_, path, placed_tumor());
     const TissueState& stretched = study_.stretched->state;

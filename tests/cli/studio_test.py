@@ -161,6 +161,21 @@ class Calls(StudioTest):
         finally:
             connection.close()
 
+    def test_a_change_during_a_run_is_no_part_of_its_result(self):
+        case = self.small(LONG_CUT)
+        studio = self.studio(case)
+        answers = []
+        asking = threading.Thread(target=lambda: answers.append(studio.call("run")))
+        asking.start()
+        self.wait_until(lambda: any(one["stage"].startswith("cut") for one in studio.call("state")[1]["running"]))
+        status, _ = studio.call("change", {"revision": studio.call("case")[1]["revision"], "set": {"plan.depth_mm": 4}})
+        self.assertEqual(status, 200)
+        status, refused = studio.call("body")
+        self.assertEqual((status, refused["problem"]["message"]), (422, "A run is under way. Wait for its end, or stop it."))
+        asking.join()
+        status, run = answers[0]
+        self.assertEqual((status, {round(depth, 9) for depth in run["as_planned"]["depth"]["planned_mm"]}), (200, {5.0}))
+
     def test_a_run_that_is_stopped_goes_on(self):
         studio = self.studio(self.small(LONG_CUT))
         answers = []
@@ -216,6 +231,12 @@ class Refusals(StudioTest):
             ("change", {"revision": revision, "set": {"plan.depht_mm": 1}}, "plan.depht_mm"),
             ("change", {"revision": revision, "set": [1]}, "set"),
             ("change", {"set": {}}, "revision"),
+            ("files", {"folder": 7}, "folder"),
+            ("demo", {"folder": studio.call("files")[1]["folder"]["id"], "seed": -1.5}, "seed"),
+            ("change", {"revision": revision, "set": {"tumor.surface": "/etc/passwd"}}, "set"),
+            ("change", {"revision": revision, "set": {"tumor.contour": "../../secret.csv"}}, "set"),
+            ("change", {"revision": revision, "files": {"tumor.contour": "../secret.csv"}}, "tumor.contour"),
+            ("change", {"revision": revision, "files": ["x"]}, "files"),
             ("edge", {"revision": revision, "points_mm": [[0, 0, 0]], "configuration": "rest"}, "points_mm"),
             ("edge", {"revision": revision, "points_mm": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]], "configuration": "rest"}, "points_mm"),
             ("edge", {"revision": revision, "points_mm": "x", "configuration": "rest"}, "points_mm"),
@@ -229,11 +250,32 @@ class Refusals(StudioTest):
             ("undo", {}, "call"),
         ):
             status, answer = studio.call(call, arguments)
-            self.assertIn(status, (409, 422), (call, arguments, answer))
+            self.assertEqual(status, 422, (call, arguments, answer))
             self.assertEqual(answer["problem"]["path"], path, answer)
             self.assertTrue(answer["problem"]["message"])
         self.assertEqual((case / "case.yaml").read_text(), text)
         self.assertEqual(sorted(entry.name for entry in case.iterdir()), ["block.msh", "case.yaml", "tumor.csv"])
+
+    def test_a_file_is_chosen_by_its_id(self):
+        case = self.small()
+        (self.folder / "other.csv").write_text((case / "tumor.csv").read_text())
+        studio = self.studio(case)
+        revision = studio.call("case")[1]["revision"]
+        chosen = next(entry["id"] for entry in studio.call("files")[1]["entries"] if entry["name"] == "other.csv")
+        status, changed = studio.call("change", {"revision": revision, "files": {"tumor.contour": chosen}})
+        self.assertEqual((status, changed["inputs"]["tumor.contour"]), (200, "../other.csv"), changed)
+
+    def test_an_edge_of_somebody_is_never_overwritten(self):
+        case = self.small({"tumor": {"contour": "tumor_edge.csv"}})
+        (case / "tumor.csv").rename(case / "tumor_edge.csv")
+        before = (case / "tumor_edge.csv").read_text()
+        (case / "tumor_edge_2.csv").symlink_to(self.folder / "victim.csv")
+        studio = self.studio(case)
+        square = [[16, 16, 14], [24, 16, 14], [24, 24, 14], [16, 24, 14]]
+        status, drawn = studio.call("edge", {"revision": studio.call("case")[1]["revision"], "points_mm": square, "configuration": "rest"})
+        self.assertEqual((status, drawn["inputs"]["tumor.contour"]), (200, "tumor_edge_3.csv"), drawn)
+        self.assertEqual((case / "tumor_edge.csv").read_text(), before)
+        self.assertFalse((self.folder / "victim.csv").exists())
 
     def test_a_case_that_somebody_else_changed_is_not_overwritten(self):
         case = self.small()
@@ -297,8 +339,9 @@ class Attacks(StudioTest):
         self.assertEqual(self.running.call("state")[0], 200)
 
     def test_no_json_and_no_http_get_one_clear_answer(self):
-        for body in (b"{", b"[]", b"7", b"\xff\xfe", b'{"a": ' * 5000):
-            self.assertIn(self.running.ask("POST", "/api/call/state", body)[0], (400, 200), body[:20])
+        deep = b'{"revision": "x", "set": {"title": ' + b"[" * 100000 + b"]" * 100000 + b"}}"
+        for body in (b"{", b"[]", b"7", b"\xff\xfe", b'{"a": ' * 5000, deep):
+            self.assertEqual(self.running.ask("POST", "/api/call/change", body)[0], 400, body[:20])
         with socket.create_connection(("127.0.0.1", self.running.port)) as connection:
             connection.sendall(b"\x16\x03\x01 no http\r\n\r\n")
             self.assertIn(b"400", connection.recv(100))

@@ -80,11 +80,18 @@ TEST_F(CaseEditTest, RefusesWhatIsNoCaseAndLeavesTheFile) {
   EXPECT_EQ(read_text(file()), kText);
 }
 
+TEST_F(CaseEditTest, KeepsWhoMayReadTheFile) {
+  constexpr auto kMine = std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
+  std::filesystem::permissions(file(), kMine);
+  static_cast<void>(change({{"plan.depth_mm", 3}}));
+  EXPECT_EQ(std::filesystem::status(file()).permissions(), kMine);
+}
+
 TEST_F(CaseEditTest, RefusesAFileThatWasChangedMeanwhile) {
   const std::string revision = case_revision(file());
   std::ofstream(file(), std::ios::app) << "cut: {dullness: 5}\n";
   const std::string text = read_text(file());
-  EXPECT_THROW(change_case(file(), revision, {{"plan.depth_mm", 3}}), CaseError);
+  EXPECT_THROW(change_case(file(), revision, {{"plan.depth_mm", 3}}), StaleRevision);
   EXPECT_EQ(read_text(file()), text);
 }
 
@@ -97,8 +104,11 @@ TEST_F(CaseEditTest, KeepsTheFileAsItWasBeforeACommentIsLost) {
   std::ofstream(file(), std::ios::app) << "cut: {dullness: 5}  # as calibrated\n";
   const std::string commented = read_text(file());
   static_cast<void>(change({{"plan.depth_mm", 4}}));
-  static_cast<void>(change({{"plan.depth_mm", 5}}));
   EXPECT_EQ(read_text(folder_ / "case.yaml.orig"), commented);
+  std::ofstream(file(), std::ios::app) << "thermal: {body_c: 36}  # measured\n";
+  const std::string again = read_text(file());
+  static_cast<void>(change({{"plan.depth_mm", 5}}));
+  EXPECT_EQ(read_text(folder_ / "case.yaml.orig.2"), again);
 }
 
 }  // namespace

@@ -27,8 +27,9 @@ struct CaseRequest {
 /// @param accepted  ids of the cautions that a person takes on them.
 /// Not acceptable: an outcome other than success, a verdict that refuses the run, no program where the case says where
 /// the specimen lies. @throws as CaseRun::run.
+/// @param on_run  is shown the run once its files are written, before the report is drawn; empty: nobody looks.
 [[nodiscard]] StepResult run_loop(const CaseRequest& request, const std::vector<std::string>& accepted,
-                                  const StepContext& context);
+                                  const StepContext& context, const std::function<void(const Run&)>& on_run = {});
 
 /// The held specimen for another solver.
 enum class InterchangeFormat { Sofa, Febio };

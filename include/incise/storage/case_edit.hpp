@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/error.hpp>
 #include <incise/storage/case_file.hpp>
 
 #include <nlohmann/json.hpp>
@@ -14,6 +15,12 @@ namespace incise {
 /// has its default.
 using CaseChanges = std::map<std::string, nlohmann::ordered_json>;
 
+/// A case file is no longer the one that a change was made for (field "revision").
+class StaleRevision : public CaseError {
+ public:
+  explicit StaleRevision(const std::filesystem::path& file);
+};
+
 /// Digest of a case file's bytes, by which an editor knows whether somebody else has changed it. @throws DataError
 [[nodiscard]] std::string case_revision(const std::filesystem::path& file);
 
@@ -23,12 +30,12 @@ using CaseChanges = std::map<std::string, nlohmann::ordered_json>;
 /// through a value that is no group.
 [[nodiscard]] std::string changed_case(const std::string& text, const CaseChanges& changes);
 
-/// Changes a case file, all or nothing: what comes out has to be a sound case. Before the first comment of somebody's
-/// is lost, the file as it was is kept beside it as `NAME.orig`.
+/// Changes a case file, all or nothing: what comes out has to be a sound case. Before a comment is lost, the file as
+/// it was is kept beside it as `NAME.orig`, `NAME.orig.2`, …; its permissions stay.
 /// @param revision  the case_revision that the changes were made for.
 /// @returns the case as it is now.
-/// @throws CaseError (field "revision") when the file was changed since; as read_case for values that do not fit;
-/// DataError where it cannot be read or written.
+/// @throws StaleRevision when the file was changed since; as read_case for values that do not fit; DataError where it
+/// cannot be read or written, or another process is changing it.
 CaseFile change_case(const std::filesystem::path& file, const std::string& revision, const CaseChanges& changes);
 
 }  // namespace incise

@@ -153,7 +153,7 @@ export function change(set) {
   Object.assign(pending, set);
   update({drafts: {...state.drafts, ...set}});
   clearTimeout(timer);
-  timer = setTimeout(send, 160);
+  timer = setTimeout(send, 40);
 }
 
 async function send() {
@@ -231,7 +231,7 @@ export function takeState(data) {
   setProblem("state", data.case_problem ? {kind: "problem", ...data.case_problem} : null);
   if (data.case && !isBusySetting()) takeStored(data.case);
   const isRunning = state.running.some((job) => job.call === "run");
-  if (wasRunning && !isRunning && !state.busy.run) refresh("run", {accept: state.accept});
+  if (wasRunning && !isRunning && !state.busy.run) update({notice: "The run has ended. Run again to see what is there."});
 }
 
 // An answer that will bring the same case is on its way.

@@ -153,7 +153,7 @@ const kNames = {axial: "Axial", coronal: "Coronal", sagittal: "Sagittal", scene:
 
 function shownWhenNarrow() {
   if (!window.matchMedia("(max-width: 820px)").matches) return "";
-  return state.step === "see" ? "axial" : "scene";
+  return state.step === "see" || state.step === "open" ? "axial" : "scene";
 }
 
 // On a narrow page one view is shown at a time; on a wide one the buttons make one of them large.

@@ -18,10 +18,11 @@ export function boundsOf(curves, direction) {
 export function ContourView({title, curves, direction, bounds, mark, id}) {
   const host = useRef(null);
   useEffect(() => {
-    const canvas = host.current.querySelector("canvas");
-    const draw = () => drawAll(host.current, canvas, {curves, direction, bounds, mark});
+    const room = host.current, // a change of size may still be told when the page has let go of it
+      canvas = room.querySelector("canvas");
+    const draw = () => drawAll(room, canvas, {curves, direction, bounds, mark});
     const watch = new ResizeObserver(draw);
-    watch.observe(host.current);
+    watch.observe(room);
     draw();
     return () => watch.disconnect();
   }, [curves, bounds, mark, isDark()]);

@@ -3,7 +3,7 @@
 import {h} from "preact";
 import {state, update, setting} from "./store.js";
 import {refresh, saveEdge} from "./actions.js";
-import {approach, dropEllipse, shownEdge, shownSkin, skinQuery, views} from "./views.js";
+import {approach, dropEllipse, shownSkin, skinQuery, views} from "./views.js";
 import {Button, Choice, NumberInput, Numbers, Problems, Section, Working} from "./widgets.js";
 import {pointsOf, length, minus} from "./geometry.js";
 import {ballAbout} from "./things.js";
@@ -14,6 +14,8 @@ const kModes = {
   draw: "Click on the skin to add a point. Drag a point to move it, Delete removes it, Enter closes the edge.",
   ellipse: "Click the place on the skin that the ellipse is to surround.",
 };
+
+const kWhere = {rest: "the tissue as scanned", stretched: "the stretched tissue"};
 
 /** The panel. */
 export function StepEdge() {
@@ -48,10 +50,7 @@ function Where() {
       label: "Configuration",
       value: edge.where,
       onChange: choose,
-      options: [
-        ["rest", "the tissue as scanned"],
-        ["stretched", "the stretched tissue"],
-      ],
+      options: Object.entries(kWhere),
     }),
     h(Working, {call: "stretch", text: "Stretching"}),
     edge.where === "stretched" ? h(Problems, {calls: ["stretch"]}) : null,
@@ -66,7 +65,7 @@ function Stored() {
   return h(
     "p",
     {class: "soft"},
-    `The case has an edge: ${name}, drawn on the ${setting("tumor.configuration") || "stretched"} tissue.`,
+    `The case has an edge: ${name}, drawn on ${kWhere[setting("tumor.configuration")] || kWhere.stretched}.`,
     stored.length ? ` It has ${stored.length} points.` : "",
   );
 }
@@ -183,8 +182,7 @@ function around(points) {
 }
 
 function Keep() {
-  const {edge} = state,
-    shown = shownEdge();
+  const {edge} = state;
   return h(
     Section,
     {title: "Keep", id: "keep"},
@@ -193,7 +191,7 @@ function Keep() {
       : h(
           "p",
           {class: "soft"},
-          shown.points.length ? "An edge has to be closed before it can be stored." : "Nothing is drawn.",
+          edge.points.length ? "An edge has to be closed before it can be stored." : "Nothing is drawn.",
         ),
     h(
       Button,

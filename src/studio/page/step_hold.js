@@ -38,9 +38,41 @@ const kNewRegions = {
   plane: (at) => ({plane: {point_mm: at, normal: "posterior"}}),
 };
 
+// The server tells a constraint as it was understood, with the kind of each part; a case file takes it without these,
+// and a person reads a direction better than its numbers.
+function asWritten({kind, where, ...rest}) {
+  const one = {kind: kind === "plane" || kind === "surface" ? "support" : kind};
+  if (where) one.where = regionAsWritten(where);
+  if (rest.plane) rest.plane = withWords(rest.plane);
+  return {...one, ...rest};
+}
+
+function regionAsWritten(where) {
+  const kind = where.kind || Object.keys(where)[0],
+    value = where[kind];
+  return {[kind]: value && typeof value === "object" && !Array.isArray(value) ? withWords(value) : value};
+}
+
+function withWords(group) {
+  const given = Object.entries(group).filter(([, value]) => value !== null);
+  return Object.fromEntries(
+    given.map(([key, value]) => [key, key === "direction" || key === "normal" ? wordOf(value) : value]),
+  );
+}
+
+function wordOf(direction) {
+  const isSame = (word) => kDirections[word].every((value, k) => value === direction[k]);
+  return Array.isArray(direction) ? kWords.find(isSame) || direction : direction;
+}
+
+function constraints() {
+  const list = setting(kPath);
+  return list && list.map(asWritten);
+}
+
 /** The panel. */
 export function StepHold() {
-  const list = setting(kPath);
+  const list = constraints();
   return h(
     "div",
     null,
@@ -111,7 +143,7 @@ function Dot({k}) {
 }
 
 function Constraint({one, k}) {
-  const set = (patch) => put(setting(kPath).with(k, {...one, ...patch}));
+  const set = (patch) => put(constraints().with(k, {...one, ...patch}));
   const found = state.body && isFresh("body") && state.body.constraints && state.body.constraints[k];
   const problem = problemAt(`${kPath}[${k}]`);
   return h(
@@ -129,7 +161,7 @@ function Constraint({one, k}) {
     problem ? h("p", {class: "problem", role: "alert"}, complaint(problem)) : null,
     h(
       Button,
-      {onClick: () => put(setting(kPath).toSpliced(k, 1)), "aria-label": `Remove constraint ${k + 1}, ${one.kind}`},
+      {onClick: () => put(constraints().toSpliced(k, 1)), "aria-label": `Remove constraint ${k + 1}, ${one.kind}`},
       "Remove",
     ),
   );

@@ -103,16 +103,29 @@ function FileRow({file, isChosen, setScan}) {
   );
 }
 
+// Other roots hold what others keep: with them, a new case goes where the studio was started unless one chooses otherwise.
+function placesForCase({roots = [], folder}) {
+  const here = [folder.id, folder.name];
+  if (roots.length < 2) return [here];
+  const all = [...roots.map((root) => [root.id, root.name]), here];
+  return all.filter(([id], k) => all.findIndex(([other]) => other === id) === k);
+}
+
 function NewCase({scan}) {
   const [name, setName] = useState(scan.name.replace(/\.[^/]*$/, "") + "_case");
   const [spacing, setSpacing] = useState(null),
     [hu, setHu] = useState(null);
   const settings = {...(spacing ? {"ct.spacing_mm": spacing} : {}), ...(hu ? {"ct.hu": hu} : {})};
-  const make = () => begin("create", {scan: scan.id, folder: state.files.folder.id, name, settings});
+  const places = placesForCase(state.files),
+    [place, setPlace] = useState(places[0][0]);
+  const make = () => begin("create", {scan: scan.id, folder: place, name, settings});
   return h(
     Section,
     {title: `New case from ${scan.name}`, id: "create"},
     h(TextInput, {label: "Name of its folder", value: name, onChange: setName, problem: problemAt("name")}),
+    places.length > 1
+      ? h(Choice, {label: "Made in", value: place, options: places, onChange: setPlace, problem: problemAt("folder")})
+      : null,
     h(
       "p",
       {class: "soft"},
@@ -159,7 +172,7 @@ function NewCase({scan}) {
 
 function Demo() {
   const [seed, setSeed] = useState(1);
-  const folder = state.files && state.files.folder.id;
+  const folder = state.files && placesForCase(state.files)[0][0];
   return h(
     Section,
     {title: "Demo specimen", id: "demo"},

@@ -48,10 +48,11 @@ function progressOfRun() {
 }
 
 function Progress() {
-  const {stage, fraction, left_s: left} = progressOfRun();
+  const {stage, part, fraction, left_s: left} = progressOfRun();
   const share = isNumber(fraction) ? fraction : undefined;
   const text = [
     spoken(stage) || "Starting",
+    part || "",
     share === undefined ? "" : `${Math.round(100 * share)} %`,
     isNumber(left) ? `about ${duration(left)} left` : "",
   ]
@@ -114,7 +115,7 @@ function Messages() {
     list.length
       ? h(
           "ol",
-          {class: "messages"},
+          {class: "messages", tabIndex: 0, "aria-label": "Messages, the newest first"},
           list.map((one) =>
             h(
               "li",
