@@ -93,7 +93,9 @@ function Table({result}) {
 
 function Gate({result}) {
   const gate = result.gate || {},
-    open = [...(gate.missing || []), ...(gate.accepted || [])];
+    place = (id) => (result.verdict.reasons || []).findIndex((reason) => reason.id === id);
+  // In the order of the reasons: a caution that was accepted stays where it was.
+  const open = [...(gate.missing || []), ...(gate.accepted || [])].sort((a, b) => place(a) - place(b));
   return h(
     Section,
     {title: "Robot program", id: "gate"},

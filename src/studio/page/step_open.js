@@ -103,7 +103,7 @@ function FileRow({file, isChosen, setScan}) {
   );
 }
 
-// Other roots hold what others keep: with them, a new case goes where the studio was started unless one chooses otherwise.
+// Other roots hold what others keep: with them, a new case goes where the studio was started, or where one chooses.
 function placesForCase({roots = [], folder}) {
   const here = [folder.id, folder.name];
   if (roots.length < 2) return [here];
