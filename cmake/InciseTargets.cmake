@@ -57,6 +57,19 @@ function(incise_module name)
   set_property(GLOBAL APPEND PROPERTY INCISE_MODULE_TARGETS ${target})
 endfunction()
 
+# incise_embed(<output.cpp> HEADER <private header> NAMESPACE <a::b> FILES <name=path> …): see InciseEmbed.cmake.
+function(incise_embed output)
+  cmake_parse_arguments(ARG "" "HEADER;NAMESPACE" "FILES" ${ARGN})
+  list(TRANSFORM ARG_FILES REPLACE "^[^=]+=" "" OUTPUT_VARIABLE paths)
+  set(script ${PROJECT_SOURCE_DIR}/cmake/InciseEmbed.cmake)
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DHEADER=${ARG_HEADER} -DNAMESPACE=${ARG_NAMESPACE} "-DFILES=${ARG_FILES}" -P ${script}
+    DEPENDS ${paths} ${script}
+    COMMENT "Embedding the files of ${ARG_NAMESPACE}"
+    VERBATIM)
+endfunction()
+
 # When ctest ends a test on a machine that nobody watches. No verdict on speed: the slowest test takes minutes on a quiet machine, and one that
 # hangs in the command is found by its watch (tests/cli/command.py).
 set(INCISE_TEST_STOP_S 21600)

@@ -37,7 +37,9 @@ echo "$files" | while read -r from to; do
   [ -z "$from" ] || cp "node_modules/$from" "$here/lib/$to"
 done
 for package in $packages; do cp "node_modules/$package/LICENSE" "$here/licences/$package.txt"; done
+# Shortened, as three does not publish it; notices of copyright stay.
+for module in "$here"/lib/*.js; do
+  node_modules/.bin/terser "$module" --module --compress --mangle --comments '/copyright|@license/i' --output "$module"
+done
 cd "$here"
-# No source maps come along, so no module points to one.
-sed -i '/^\/\/# sourceMappingURL=/d' lib/*.js
 sha256sum lib/* licences/*

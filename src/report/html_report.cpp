@@ -86,18 +86,17 @@ std::string html_report(const ReportData& data) {
   const std::string body =
       page_header(data) + "<main>\n" + study + tissue_section(data) + record_section(data) + "</main>\n" + page_footer();
   std::string script;
-  for (const std::string_view part :
-       {page::decode_js, page::viewer_js, page::cut_view_js, page::mesh_view_js, page::main_js}) {
-    script += part;
+  for (const char* name : {"decode.js", "viewer.js", "cut_view.js", "mesh_view.js", "main.js"}) {
+    script += page::file(name);
     script += '\n';
   }
-  return filled(page::page_html, {{"title", escaped(data.title)},
-                                  {"style", std::string(page::page_css)},
-                                  {"body", body},
-                                  {"data", script_json(scene)},
-                                  {"licence", std::string(page::three_licence)},
-                                  {"three", std::string(page::three_js)},
-                                  {"script", script}});
+  return filled(page::file("page.html"), {{"title", escaped(data.title)},
+                                          {"style", std::string(page::file("page.css"))},
+                                          {"body", body},
+                                          {"data", script_json(scene)},
+                                          {"licence", std::string(page::file("three_licence.txt"))},
+                                          {"three", std::string(page::file("three.js"))},
+                                          {"script", script}});
 }
 
 void write_report(const ReportData& data, const std::filesystem::path& path) {

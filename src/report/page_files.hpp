@@ -1,18 +1,20 @@
 #pragma once
 
-#include <string_view>
+#include <incise/core/error.hpp>
+#include <incise/io/embedded_file.hpp>
 
-/// The files of src/report/page and three.js, written into the library by embed.cmake when it is built.
+#include <fmt/format.h>
+
 namespace incise::page {
 
-extern const std::string_view page_html;
-extern const std::string_view page_css;
-extern const std::string_view three_licence;
-extern const std::string_view three_js;
-extern const std::string_view decode_js;
-extern const std::string_view viewer_js;
-extern const std::string_view cut_view_js;
-extern const std::string_view mesh_view_js;
-extern const std::string_view main_js;
+/// The files of src/report/page, and three.js.
+[[nodiscard]] std::span<const EmbeddedFile> files();
+
+/// The content of one of them. @throws InvalidArgument for a name that none has.
+[[nodiscard]] inline std::string_view file(std::string_view name) {
+  const EmbeddedFile* found = find_embedded(files(), name);
+  INCISE_REQUIRE(found != nullptr, fmt::format("expected a file of the report's page, found {}", name));
+  return found->content;
+}
 
 }  // namespace incise::page

@@ -299,7 +299,7 @@ std::string record_section(const ReportData& data) {
 std::string page_footer() {
   return "<footer>\n<p>Made by incise. This page is complete in itself and loads nothing from a network.</p>\n"
          "<details><summary>Licence of the 3D library in this page</summary><pre>" +
-         escaped(page::three_licence) + "</pre></details>\n</footer>\n";
+         escaped(page::file("three_licence.txt")) + "</pre></details>\n</footer>\n";
 }
 
 }  // namespace incise

@@ -26,9 +26,9 @@ bool is_same(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-bool is_own_page(const Asked& asked) {
-  if (!asked.origin.empty() && asked.origin != "http://" + std::string(asked.host)) return false;
-  return asked.fetch_site.empty() || asked.fetch_site == "same-origin" || asked.fetch_site == "none";
+bool is_own_page(const RequestInfo& request) {
+  if (!request.origin.empty() && request.origin != "http://" + std::string(request.host)) return false;
+  return request.fetch_site.empty() || request.fetch_site == "same-origin" || request.fetch_site == "none";
 }
 
 bool is_json(std::string_view content_type) {
@@ -37,17 +37,18 @@ bool is_json(std::string_view content_type) {
 
 }  // namespace
 
-std::optional<Refusal> refusal_of(const Asked& asked, std::string_view token) {
+std::optional<Refusal> refusal_of(const RequestInfo& request, std::string_view token) {
   INCISE_REQUIRE(!token.empty(), "expected a token");
-  if (!is_this_machine(asked.host)) return Refusal{403, "The Host of a request has to be localhost or 127.0.0.1."};
-  const bool is_api = asked.target.starts_with("/api/");
-  if (asked.method != "GET" && !(is_api && asked.method == "POST"))
+  if (!is_this_machine(request.host)) return Refusal{403, "The Host of a request has to be localhost or 127.0.0.1."};
+  const bool is_api = request.target.starts_with("/api/");
+  if (request.method != "GET" && !(is_api && request.method == "POST"))
     return Refusal{405, "Only GET, and POST below /api/."};
   if (!is_api) return std::nullopt;
-  if (!is_own_page(asked)) return Refusal{403, "A request has to come from the studio's own page."};
-  if (!is_same(asked.token, token))
+  if (!is_own_page(request)) return Refusal{403, "A request has to come from the studio's own page."};
+  if (!is_same(request.token, token))
     return Refusal{401, "The token is missing or that of another start: open the address that incise studio printed."};
-  if (asked.method == "POST" && !is_json(asked.content_type)) return Refusal{415, "A POST has to be application/json."};
+  if (request.method == "POST" && !is_json(request.content_type))
+    return Refusal{415, "A POST has to be application/json."};
   return std::nullopt;
 }
 

@@ -127,7 +127,7 @@ Json choices_json() {
   return choices;
 }
 
-/// The edge that the case names; null where there is none, or none that can be read: what wants it says why.
+/// The edge that the case names; null where there is none or its file cannot be read (the call `plan` reports why).
 Json edge_json(const CaseFile& file) {
   if (file.inputs.tumor_contour.empty()) return nullptr;
   try {
@@ -288,9 +288,8 @@ const CtVolume& Calls::ct_of(const CaseFile& file) {
   const fs::path& path = file.inputs.ct_volume;
   if (path.empty()) throw CaseError(file.file.string(), "ct.volume", "nothing", "a CT to look at");
   std::error_code ignored;
-  const std::string key =
-      fmt::format("{} {} {}", path.string(), to_json(const_cast<CtReadSettings&>(file.ct_reading)).dump(),
-                  fs::last_write_time(path, ignored).time_since_epoch().count());
+  const std::string key = fmt::format("{} {} {}", path.string(), to_json(file.ct_reading).dump(),
+                                      fs::last_write_time(path, ignored).time_since_epoch().count());
   if (key != ct_key_) {
     ct_key_.clear();
     ct_ = read_ct(path, file.ct_reading, monitor_).volume;
@@ -405,7 +404,7 @@ void Calls::show_moment(const std::string& cut, const TissueModel& model, const 
     send_moment(cut, state, skin);
   } catch (const DataError& error) {  // no room for its arrays: a cut does not end for want of a picture
     shows_moments_ = false;
-    monitor_.message(Severity::Warning, fmt::format("{}. The cut goes on without pictures", error.what()));
+    monitor_.message(Severity::Warning, fmt::format("{}. The cut continues without pictures", error.what()));
   }
 }
 
@@ -430,7 +429,8 @@ Json Calls::run(const Json& arguments) {
     show_moment(cut, model, progress);
   };
   Json json;
-  const auto take = [&](const Run& run) {  // while nobody else may write into the folder
+  const Case& settings = request.file.settings;
+  const auto take = [&](const Run& run) {  // while the run still holds the lock on the folder
     const Study& study = run.study;
     json["verdict"] = to_json(run.verdict);
     json["outcome"] = to_string(study.outcome);
@@ -439,8 +439,9 @@ Json Calls::run(const Json& arguments) {
     json["checks"] = run.program ? to_json(run.program->checks.checks) : Json(nullptr);
     json["program"] = run.gate.is_open ? Json(read_text(output / "program" / "program.script")) : Json(nullptr);
     json["why_without_program"] = run.why_without_program;
-    json["as_planned"] = study.as_planned ? cut_json(*study.as_planned, *study.followed) : Json(nullptr);
-    json["corrected"] = study.corrected ? cut_json(*study.corrected, study.correction->moves.path) : Json(nullptr);
+    json["as_planned"] = study.as_planned ? cut_json(settings, *study.as_planned, *study.followed) : Json(nullptr);
+    json["corrected"] =
+        study.corrected ? cut_json(settings, *study.corrected, study.correction->moves.path) : Json(nullptr);
   };
   const Json done = steps::run_loop(request, accepted, {context_of(workers_), workers_, monitor_}, take).json;
   json["report"] = done.at("report");

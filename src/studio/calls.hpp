@@ -23,10 +23,10 @@ namespace incise::studio {
 class Calls {
  public:
   using Json = nlohmann::ordered_json;
-  /// What happens on the way to a result, beside what the monitor is told.
+  /// Callbacks for what a Monitor does not report.
   struct Watchers {
-    std::function<void(const std::string&)> on_part;  ///< which cut of a run is under way: "pass 2 of at most 3"
-    std::function<void(const Json&)> on_moment;       ///< what a page shows of it
+    std::function<void(const std::string&)> on_part;  ///< the cut of a run that is under way: "pass 2 of at most 3"
+    std::function<void(const Json&)> on_moment;       ///< the event `moment` of docs/decisions/0009-studio.md
   };
   Calls(const std::filesystem::path& blobs, Monitor& monitor, Watchers watchers);
 

@@ -1,15 +1,10 @@
 #pragma once
 
-#include <span>
-#include <string_view>
+#include <incise/io/embedded_file.hpp>
 
-namespace incise::studio {
+namespace incise::studio::page {
 
-/// A file of the page, embedded when this is built.
-struct PageFile {
-  std::string_view name;  ///< "index.html", "app.js", "lib/three.module.min.js"
-  std::string_view content;
-};
-[[nodiscard]] std::span<const PageFile> page_files();
+/// The files of src/studio/page, and those of web/lib as lib/NAME.
+[[nodiscard]] std::span<const EmbeddedFile> files();
 
-}  // namespace incise::studio
+}  // namespace incise::studio::page

@@ -1,4 +1,5 @@
 #include "page_files.hpp"
+#include "problem_json.hpp"
 #include "worker_process.hpp"
 
 #include <incise/core/error.hpp>
@@ -48,7 +49,7 @@ using Response = http::response<http::string_body>;
 
 constexpr std::string_view kTemporaryName = "incise-studio-";
 
-/// Folders that servers left which were killed: `incise-studio-PID-…` of a process that is no more.
+/// Folders `incise-studio-PID-…` left by servers that were killed: their process no longer exists.
 void remove_abandoned_folders(const fs::path& where) {
   std::error_code failed;
   for (fs::directory_iterator entry(where, failed), end; !failed && entry != end; entry.increment(failed)) {
@@ -88,13 +89,6 @@ std::string_view media_type(std::string_view name) {
   return "text/javascript; charset=utf-8";
 }
 
-const PageFile* page_file(std::string_view name) {
-  for (const PageFile& file : page_files()) {
-    if (file.name == name) return &file;
-  }
-  return nullptr;
-}
-
 std::string bytes_from_hex(const std::string& digits) {
   std::string bytes;
   for (std::size_t i = 0; i < digits.size(); i += 2)
@@ -104,7 +98,7 @@ std::string bytes_from_hex(const std::string& digits) {
 
 /// What the page may do: run its own modules, the one import map in it, and ask this server.
 std::string content_policy() {
-  const PageFile* page = page_file("index.html");
+  const EmbeddedFile* page = find_embedded(page::files(), "index.html");
   INCISE_REQUIRE(page != nullptr, "expected the page");
   constexpr std::string_view begin = "<script type=\"importmap\">";
   const std::size_t at = page->content.find(begin) + begin.size();
@@ -138,7 +132,7 @@ std::string json_line(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// One browser window that follows what happens.
+/// A browser window that listens to events.
 struct Listener {
   explicit Listener(asio::io_context& io) : has_event(io) {}
   std::deque<std::string> events;
@@ -152,8 +146,8 @@ class Server {
         token_(new_token()),
         files_(settings.roots, new_token()),
         policy_(content_policy()),
-        desk_(io, worker_command(settings), [this](const auto& kind, auto content) { tell(kind, content); }),
-        runner_(io, worker_command(settings), [this](const auto& kind, auto content) { tell(kind, content); }),
+        desk_(io, worker_command(settings), [this](const auto& kind, auto content) { notify(kind, content); }),
+        runner_(io, worker_command(settings), [this](const auto& kind, auto content) { notify(kind, content); }),
         acceptor_(io) {
     if (!settings.case_file.empty()) case_file_ = files_.path_of(files_.id_of(settings.case_file), "case").string();
     boost::system::error_code failed;
@@ -207,13 +201,11 @@ class Server {
       co_await http::async_read_header(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
       if (failed == http::error::end_of_stream || failed == beast::error::timeout) co_return;
       if (failed) {
-        Response answered = failed == http::error::body_limit
-                                ? too_large()
-                                : plain(400, "This is no request that the studio understands.", false);
+        Response answered = failed == http::error::body_limit ? too_large() : plain(400, "Malformed request.", false);
         co_await send(stream, std::move(answered));
         co_return;
       }
-      if (const auto refusal = refusal_of(asked(parser.get()), token_)) {  // before its body is read
+      if (const auto refusal = refusal_of(info_of(parser.get()), token_)) {  // before its body is read
         Response answered = plain(refusal->status, refusal->why, false);
         co_await send(stream, std::move(answered));
         co_return;
@@ -232,7 +224,7 @@ class Server {
     }
   }
 
-  static Asked asked(const Request& request) {
+  static RequestInfo info_of(const Request& request) {
     return {text_of(request.method_string()),
             text_of(request.target()),
             text_of(request[http::field::host]),
@@ -297,7 +289,7 @@ class Server {
   static Response page(std::string_view target, bool is_kept) {
     const std::string_view path = target.substr(0, target.find('?'));
     const std::string_view name = path == "/" ? "index.html" : path.starts_with("/page/") ? path.substr(6) : "";
-    const PageFile* file = page_file(name);
+    const EmbeddedFile* file = find_embedded(page::files(), name);
     if (file == nullptr) return plain(404, "There is no such page.", is_kept);
     return made(200, media_type(name), std::string(file->content), is_kept);
   }
@@ -355,7 +347,7 @@ class Server {
     return fmt::format("event: {}\ndata: {}\n\n", kind, json_line(content));
   }
 
-  void tell(const std::string& kind, const Json& content) {
+  void notify(const std::string& kind, const Json& content) {
     for (Listener& listener : listeners_) {
       listener.events.push_back(event_text(kind, content));
       if (listener.events.size() > kMostEvents) listener.events.pop_front();
@@ -438,13 +430,9 @@ class Server {
       translate_files(arguments);
       if (name == "open") arguments["file"] = case_file_at(arguments);
     } catch (const CaseError& error) {
-      problem = {{"path", error.field()},
-                 {"found", error.problem().found},
-                 {"expected", error.problem().expected},
-                 {"hint", error.problem().hint},
-                 {"message", error.what()}};
+      problem = problem_json(error.problem(), error.what());
     } catch (const std::exception& error) {
-      problem = {{"path", ""}, {"found", ""}, {"expected", ""}, {"hint", ""}, {"message", error.what()}};
+      problem = problem_json({}, error.what());
     }
     if (!problem.is_null()) co_return json(422, {{"problem", problem}}, is_kept);
     if (name == "state") {
@@ -463,11 +451,7 @@ class Server {
   static bool makes_output(const std::string& name) { return name == "body" || name == "stretch" || name == "plan"; }
 
   static CallOutcome refused_during_a_run() {
-    CallOutcome outcome;
-    outcome.kind = CallOutcome::Kind::Problem;
-    for (const char* key : {"path", "found", "expected", "hint"}) outcome.content[key] = "";
-    outcome.content["message"] = "A run is under way. Wait for its end, or stop it.";
-    return outcome;
+    return {CallOutcome::Kind::Problem, problem_json({}, "A run is under way. Wait for its end, or stop it.")};
   }
 
   /// Makes a call; what goes wrong on the way to a worker is an outcome, too.
@@ -495,9 +479,9 @@ class Server {
   asio::awaitable<Response> call_worker(std::string name, Json arguments, bool is_kept) {
     const bool is_run = name == "run";
     const bool opens = name == "open" || name == "create" || name == "demo";
-    if (is_run) asio::co_spawn(io_, tell_state(), asio::detached);
+    if (is_run) asio::co_spawn(io_, notify_of_state(), asio::detached);
     CallOutcome outcome = co_await outcome_of(std::move(name), std::move(arguments));
-    if (is_run) asio::co_spawn(io_, tell_state(), asio::detached);
+    if (is_run) asio::co_spawn(io_, notify_of_state(), asio::detached);
     switch (outcome.kind) {
       case CallOutcome::Kind::Problem:
         co_return json(422, {{"problem", std::move(outcome.content)}}, is_kept);
@@ -513,14 +497,14 @@ class Server {
     if (opens) case_file_ = outcome.content.at("file").get<std::string>();
     if (outcome.content.contains("revision") && outcome.content.at("file") == case_file_) {
       shown_case_ = outcome.content;
-      asio::co_spawn(io_, tell_state(), asio::detached);
+      asio::co_spawn(io_, notify_of_state(), asio::detached);
     }
     co_return json(200, outcome.content, is_kept);
   }
 
-  asio::awaitable<void> tell_state() {
+  asio::awaitable<void> notify_of_state() {
     const Json now = co_await state();
-    tell("state", now);
+    notify("state", now);
   }
 
   asio::io_context& io_;

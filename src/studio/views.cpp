@@ -1,6 +1,7 @@
 #include "views.hpp"
 
 #include <incise/core/described_json.hpp>
+#include <incise/workflow/cut_verdict.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -31,18 +32,10 @@ std::vector<double> arclengths(const Points& points) {
   return at;
 }
 
-/// In any direction where the tumour's surface is known, else beside its edge.
-std::optional<double> nearest_to_tumor_mm(const SimulatedCut& cut) {
-  if (cut.incision.kerf.deep_margin) return cut.incision.kerf.deep_margin->nearest_mm;
-  const std::vector<double>& distances = cut.inner_edge.errors.signed_distance_mm;
-  if (distances.empty()) return std::nullopt;
-  return *std::min_element(distances.begin(), distances.end());
-}
-
-Json numbers_json(const SimulatedCut& cut) {
+Json numbers_json(const Case& settings, const SimulatedCut& cut) {
   const auto& error = cut.centerline.abs_error_mm;
   Json json;
-  json["nearest_to_tumour_mm"] = or_null(nearest_to_tumor_mm(cut));
+  json["nearest_to_tumor_mm"] = or_null(nearest_to_tumor_mm(settings, cut));
   json["least_depth_mm"] = cut.incision.kerf.depth.depth_mm.min;
   json["greatest_error_mm"] = error ? Json(error->max) : Json(nullptr);
   json["mean_error_mm"] = error ? Json(error->mean) : Json(nullptr);
@@ -63,10 +56,10 @@ Skin skin_of(const TetMesh& mesh, std::span<const std::uint8_t> is_live) {
     place[v] = static_cast<std::int32_t>(skin.vertices.size());
     skin.vertices.emplace_back(v);
   }
-  const auto moved = [&](VertexId v) { return VertexId(static_cast<std::size_t>(place[v.index()])); };
+  const auto renumbered = [&](VertexId v) { return VertexId(static_cast<std::size_t>(place[v.index()])); };
   for (const BoundaryFace& face : faces) {
     const auto& [a, b, c] = face.corners;
-    skin.triangles.push_back({moved(a), moved(b), moved(c)});
+    skin.triangles.push_back({renumbered(a), renumbered(b), renumbered(c)});
   }
   return skin;
 }
@@ -137,7 +130,7 @@ Json path_json(const ToolPath& path) {
           {"closed", path.is_closed}};
 }
 
-Json cut_json(const SimulatedCut& cut, const ToolPath& followed) {
+Json cut_json(const Case& settings, const SimulatedCut& cut, const ToolPath& followed) {
   const DepthReached& depth = cut.incision.kerf.depth;
   const ContourErrors& errors = cut.centerline.errors;
   Json json;
@@ -149,7 +142,7 @@ Json cut_json(const SimulatedCut& cut, const ToolPath& followed) {
   json["depth"] = {{"arclength_mm", depth.profile.arclength_mm},
                    {"planned_mm", depth.planned_at_mm},
                    {"reached_mm", depth.profile.depth_mm}};
-  json["numbers"] = numbers_json(cut);
+  json["numbers"] = numbers_json(settings, cut);
   json["verdict"] = to_json(cut.verdict);
   return json;
 }

@@ -14,7 +14,7 @@
 
 namespace incise::studio {
 
-/// The skin of a mesh by itself: vertices that lie on it, numbered anew.
+/// The skin of a mesh by itself, with a numbering of its own.
 struct Skin {
   std::vector<VertexId> vertices;   ///< of the mesh, ascending
   std::vector<Triangle> triangles;  ///< of positions in `vertices`, counter-clockwise seen from outside
@@ -37,7 +37,7 @@ struct Skin {
 [[nodiscard]] nlohmann::ordered_json surface_json(BlobFolder& blobs, const std::string& slot,
                                                   std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 [[nodiscard]] nlohmann::ordered_json path_json(const ToolPath& path);
-/// A cut as the interface gives it. @param followed  by the tool.
-[[nodiscard]] nlohmann::ordered_json cut_json(const SimulatedCut& cut, const ToolPath& followed);
+/// A cut as the interface gives it (docs/decisions/0009-studio.md). @param followed  the path that the tool followed.
+[[nodiscard]] nlohmann::ordered_json cut_json(const Case& settings, const SimulatedCut& cut, const ToolPath& followed);
 
 }  // namespace incise::studio

@@ -1,4 +1,5 @@
 #include "calls.hpp"
+#include "problem_json.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/time_left.hpp>
@@ -33,13 +34,13 @@ class Answers {
   Answers& operator=(const Answers&) = delete;
 
   void of_call(const Json& id) { id_ = id; }
-  void say(const char* kind, Json content) {
+  void send(const char* kind, Json content) {
     const std::string line =
         Json{{"id", id_}, {kind, std::move(content)}}.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     for (std::size_t done = 0; done < line.size();) {
       const ssize_t written = ::write(out_, line.data() + done, line.size() - done);
       if (written < 0 && errno == EINTR) continue;
-      if (written <= 0) {  // nobody is there any more: a cut leaves its checkpoint
+      if (written <= 0) {  // the server has ended: a cut leaves its checkpoint
         g_must_stop = 1;
         return;
       }
@@ -58,7 +59,7 @@ class WorkerMonitor : public Monitor {
 
   void message(Severity severity, std::string_view text) override {
     if (severity == Severity::Detail) return;
-    answers_.say("message", {{"severity", severity == Severity::Warning ? "warning" : "notice"}, {"text", text}});
+    answers_.send("message", {{"severity", severity == Severity::Warning ? "warning" : "notice"}, {"text", text}});
   }
   void progress(std::string_view stage, double fraction) override {
     const auto now = std::chrono::steady_clock::now();
@@ -68,14 +69,14 @@ class WorkerMonitor : public Monitor {
       stage_ = stage;
       stage_start_ = now;
       time_left_ = TimeLeft{};
-    } else if (since(last_said_) < kProgressS) {
+    } else if (since(last_sent_) < kProgressS) {
       return;
     }
     fraction_ = fraction;
     time_left_.note(since(stage_start_), fraction);
-    last_said_ = now;
+    last_sent_ = now;
     const std::optional<double> left = time_left_.seconds();
-    answers_.say(
+    answers_.send(
         "progress",
         {{"stage", stage}, {"part", part_}, {"fraction", fraction}, {"left_s", left ? Json(*left) : Json(nullptr)}});
   }
@@ -88,31 +89,23 @@ class WorkerMonitor : public Monitor {
   std::string part_;
   std::string stage_;
   double fraction_ = 0.0;
-  std::chrono::steady_clock::time_point stage_start_, last_said_;
+  std::chrono::steady_clock::time_point stage_start_, last_sent_;
   TimeLeft time_left_;
 };
-
-Json problem_json(const Problem& problem, const char* message) {
-  return {{"path", problem.path},
-          {"found", problem.found},
-          {"expected", problem.expected},
-          {"hint", problem.hint},
-          {"message", message}};
-}
 
 void answer(Calls& calls, Answers& answers, const std::string& line) {
   try {
     const Json asked = Json::parse(line);
     answers.of_call(asked.at("id"));
-    answers.say("result", calls.make(asked.at("call"), asked.at("case").get<std::string>(), asked.at("with")));
+    answers.send("result", calls.make(asked.at("call"), asked.at("case").get<std::string>(), asked.at("with")));
   } catch (const Cancelled& stopped) {
-    answers.say("stopped", stopped.what());
+    answers.send("stopped", stopped.what());
   } catch (const StaleRevision& error) {
-    answers.say("stale", problem_json(error.problem(), error.what()));
+    answers.send("stale", problem_json(error.problem(), error.what()));
   } catch (const CaseError& error) {
-    answers.say("problem", problem_json(error.problem(), error.what()));
+    answers.send("problem", problem_json(error.problem(), error.what()));
   } catch (const std::exception& error) {
-    answers.say("problem", problem_json({}, error.what()));
+    answers.send("problem", problem_json({}, error.what()));
   }
 }
 
@@ -135,7 +128,7 @@ int run_worker(const std::filesystem::path& blobs) {
   WorkerMonitor monitor(answers);
   Calls calls(blobs, monitor,
               {[&](const std::string& part) { monitor.set_part(part); },
-               [&](const Json& moment) { answers.say("moment", moment); }});
+               [&](const Json& moment) { answers.send("moment", moment); }});
   for (std::string line; std::getline(std::cin, line);) {
     monitor.set_part("");
     answer(calls, answers, line);

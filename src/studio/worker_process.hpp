@@ -32,10 +32,10 @@ struct RunningCall {
   nlohmann::ordered_json left_s;
 };
 
-/// A worker as a child process. It is started when it is first needed, and anew when it has ended.
+/// A worker as a child process. It is started when first needed, and restarted after it has ended.
 class WorkerProcess {
  public:
-  /// @param command  the program and its arguments.  @param on_event  is handed the kind (progress, message, moment)
+  /// @param command  the program and its arguments.  @param on_event  called with the kind (progress, message, moment)
   /// and content of each line that ends no call, with the name of its call.
   WorkerProcess(boost::asio::io_context& io, std::vector<std::string> command,
                 std::function<void(const std::string& kind, nlohmann::ordered_json content)> on_event);

@@ -79,7 +79,7 @@ void note_layers(const Case& settings, const SimulatedCut& cut, Tissue& least) {
   }
 }
 
-void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
+Tissue least_tissue(const Case& settings, const SimulatedCut& cut) {
   Tissue least;
   if (settings.plan.kind == PlanKind::Line) {
     if (cut.line_to_edge_mm)
@@ -89,6 +89,11 @@ void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdic
     note_line(cut.inner_edge, 0.0, "inner edge, the tool out,", least);
     if (!cut.incision.kerf.deep_margin) note_layers(settings, cut, least);
   }
+  return least;
+}
+
+void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
+  const Tissue least = least_tissue(settings, cut);
   if (least.left_mm > settings.close_margin_mm) return;
   if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
   verdict.add("lateral_margin", least.left_mm,
@@ -177,6 +182,12 @@ void note_outside(const Contour& points, const Contour& polygon, EdgeFit& fit) {
 }
 
 }  // namespace
+
+std::optional<double> nearest_to_tumor_mm(const Case& settings, const SimulatedCut& cut) {
+  double nearest_mm = least_tissue(settings, cut).left_mm;
+  if (cut.incision.kerf.deep_margin) nearest_mm = std::min(nearest_mm, cut.incision.kerf.deep_margin->nearest_mm);
+  return std::isfinite(nearest_mm) ? std::optional(nearest_mm) : std::nullopt;
+}
 
 std::vector<double> depth_shares(const Case& settings, const DepthReached& depth) {
   std::vector<double> shares;

@@ -99,10 +99,10 @@ async function shownNumbers(page) {
 }
 
 function numbersOf(cut) {
-  const inner = cut.inner_edge;
+  const tooNear = cut.verdict.reasons.filter(({id}) => id === "lateral_margin" || id === "tumor_distance");
+  assert.ok(tooNear.length, "the close margin is set so that each cut comes too near");
   return {
-    // Without the tumour's surface: from the cut's inner edge to the tumour's.
-    nearest_to_tumour_mm: cut.deep_margin_mm ? cut.deep_margin_mm.nearest : inner.target_mm + inner.signed_error_mm.min,
+    nearest_to_tumor_mm: Math.min(...tooNear.map((reason) => reason.value)),
     least_depth_mm: cut.depth_reached_mm.min,
     greatest_error_mm: cut.abs_error_mm.max,
     mean_error_mm: cut.abs_error_mm.mean,

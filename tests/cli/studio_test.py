@@ -143,6 +143,8 @@ class Calls(StudioTest):
         by_command = json.loads((other / "study.json").read_text())
         self.assertEqual(run["verdict"], by_command["verdict"])
         self.assertEqual(run["as_planned"]["numbers"]["mean_error_mm"], by_command["before"]["abs_error_mm"]["mean"])
+        too_near = [reason["value"] for reason in by_command["before"]["verdict"]["reasons"] if reason["id"] == "lateral_margin"]
+        self.assertEqual([run["as_planned"]["numbers"]["nearest_to_tumor_mm"]], too_near)
 
     @staticmethod
     def follow(studio, events):

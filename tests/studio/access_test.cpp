@@ -10,13 +10,13 @@ namespace {
 constexpr std::string_view kToken = "0123456789abcdef0123456789abcdef";
 
 /// A call as the studio's own page makes it.
-Asked own_call() {
+RequestInfo own_call() {
   return {"POST",       "/api/call/state", "127.0.0.1:8123", kToken, "application/json", "http://127.0.0.1:8123",
           "same-origin"};
 }
 
-unsigned status_of(const Asked& asked) {
-  const auto refusal = refusal_of(asked, kToken);
+unsigned status_of(const RequestInfo& request) {
+  const auto refusal = refusal_of(request, kToken);
   if (!refusal) return 200;
   EXPECT_FALSE(refusal->why.empty());
   EXPECT_EQ(refusal->why.find(kToken), std::string::npos) << "a refusal gives the token away";
@@ -25,7 +25,7 @@ unsigned status_of(const Asked& asked) {
 
 TEST(Access, AnswersTheStudiosOwnPage) {
   EXPECT_EQ(status_of(own_call()), 200U);
-  Asked through_tunnel = own_call();
+  RequestInfo through_tunnel = own_call();
   through_tunnel.host = "localhost:9000";
   through_tunnel.origin = "http://localhost:9000";
   EXPECT_EQ(status_of(through_tunnel), 200U);
@@ -35,19 +35,19 @@ TEST(Access, AnswersTheStudiosOwnPage) {
 TEST(Access, RefusesAnotherHost) {
   for (const char* host : {"", "evil.example", "127.0.0.1.evil.example", "localhost.evil.example:80", "127.0.0.1:80:80",
                            "127.0.0.1:", "127.0.0.1:1x", "[::1]:80", "127.0.0.2", "LOCALHOST.", "user@127.0.0.1"}) {
-    Asked asked = own_call();
-    asked.host = host;
-    asked.origin = "";
-    EXPECT_EQ(status_of(asked), 403U) << host;
+    RequestInfo request = own_call();
+    request.host = host;
+    request.origin = "";
+    EXPECT_EQ(status_of(request), 403U) << host;
     EXPECT_EQ(status_of({"GET", "/", host, "", "", "", ""}), 403U) << host;
   }
 }
 
 TEST(Access, RefusesACallWithoutTheToken) {
   for (const char* token : {"", "0", "0123456789abcdef0123456789abcdee", "0123456789abcdef0123456789abcdef0"}) {
-    Asked asked = own_call();
-    asked.token = token;
-    EXPECT_EQ(status_of(asked), 401U) << token;
+    RequestInfo request = own_call();
+    request.token = token;
+    EXPECT_EQ(status_of(request), 401U) << token;
   }
   EXPECT_EQ(status_of({"GET", "/api/events", "localhost", "", "", "", ""}), 401U);
   EXPECT_EQ(status_of({"GET", "/api/blob/0", "localhost", "", "", "", ""}), 401U);
@@ -56,34 +56,34 @@ TEST(Access, RefusesACallWithoutTheToken) {
 TEST(Access, RefusesAForeignPageEvenWithTheToken) {
   for (const char* origin :
        {"http://evil.example", "null", "https://127.0.0.1:8123", "http://127.0.0.1:8124", "http://localhost:8123"}) {
-    Asked asked = own_call();
-    asked.origin = origin;
-    EXPECT_EQ(status_of(asked), 403U) << origin;
+    RequestInfo request = own_call();
+    request.origin = origin;
+    EXPECT_EQ(status_of(request), 403U) << origin;
   }
   for (const char* site : {"cross-site", "same-site"}) {
-    Asked asked = own_call();
-    asked.fetch_site = site;
-    EXPECT_EQ(status_of(asked), 403U) << site;
+    RequestInfo request = own_call();
+    request.fetch_site = site;
+    EXPECT_EQ(status_of(request), 403U) << site;
   }
 }
 
 TEST(Access, TakesOnlyJson) {
   for (const char* type :
        {"", "text/plain", "application/x-www-form-urlencoded", "multipart/form-data", "application/jsonp"}) {
-    Asked asked = own_call();
-    asked.content_type = type;
-    EXPECT_EQ(status_of(asked), 415U) << type;
+    RequestInfo request = own_call();
+    request.content_type = type;
+    EXPECT_EQ(status_of(request), 415U) << type;
   }
-  Asked with_charset = own_call();
+  RequestInfo with_charset = own_call();
   with_charset.content_type = "application/json; charset=utf-8";
   EXPECT_EQ(status_of(with_charset), 200U);
 }
 
 TEST(Access, KnowsTwoMethods) {
   for (const char* method : {"PUT", "DELETE", "OPTIONS", "HEAD", "TRACE", "CONNECT", "get", ""}) {
-    Asked asked = own_call();
-    asked.method = method;
-    EXPECT_EQ(status_of(asked), 405U) << method;
+    RequestInfo request = own_call();
+    request.method = method;
+    EXPECT_EQ(status_of(request), 405U) << method;
   }
   EXPECT_EQ(status_of({"POST", "/", "localhost", kToken, "application/json", "", ""}), 405U);
 }

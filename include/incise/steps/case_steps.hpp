@@ -27,7 +27,7 @@ struct CaseRequest {
 /// @param accepted  ids of the cautions that a person takes on them.
 /// Not acceptable: an outcome other than success, a verdict that refuses the run, no program where the case says where
 /// the specimen lies. @throws as CaseRun::run.
-/// @param on_run  is shown the run once its files are written, before the report is drawn; empty: nobody looks.
+/// @param on_run  called with the run once its files are written and before the report is drawn; may be empty.
 [[nodiscard]] StepResult run_loop(const CaseRequest& request, const std::vector<std::string>& accepted,
                                   const StepContext& context, const std::function<void(const Run&)>& on_run = {});
 

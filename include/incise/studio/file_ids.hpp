@@ -13,7 +13,7 @@ namespace incise::studio {
 /// id only of what lies within a root, whatever links and `..` there are.
 class FileIds {
  public:
-  /// @param roots  folders; at least one.  @param salt  that nobody else knows: ids cannot be guessed.
+  /// @param roots  folders; at least one.  @param salt  a secret, so that ids cannot be guessed.
   /// @throws DataError for a root that is no folder.
   FileIds(const std::vector<std::filesystem::path>& roots, std::string salt);
 
@@ -24,7 +24,7 @@ class FileIds {
   /// where it cannot be read.
   [[nodiscard]] nlohmann::ordered_json list(const std::string& id);
 
-  /// What an id stands for, looked at again: it is still there and still within a root.
+  /// The path of an id. It is checked again: it must still exist and lie within a root.
   /// @throws CaseError (field `field`) for an unknown id; DataError for one whose file has gone or leads out now.
   [[nodiscard]] std::filesystem::path path_of(const std::string& id, const std::string& field) const;
 

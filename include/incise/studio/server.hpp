@@ -16,7 +16,7 @@ struct ServerSettings {
 
 /// Serves the studio's page on 127.0.0.1 until SIGINT or SIGTERM: see docs/decisions/0009-studio.md. One thread; what
 /// is computed is computed by workers, which end with it.
-/// @param on_ready  is handed the address, token included, once it can be opened.
+/// @param on_ready  called with the address, token included, once it can be opened.
 /// @throws DataError for roots, a case or a temporary folder that cannot be used; CaseError for a port that is taken.
 void serve(const ServerSettings& settings, const std::function<void(const std::string& address)>& on_ready);
 

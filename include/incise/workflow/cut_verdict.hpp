@@ -15,6 +15,10 @@ namespace incise {
 /// Source: docs/models/verdict.md; the close margin: [Paper, III-A.1].
 [[nodiscard]] Verdict verdict_of_cut(const Case& settings, const SimulatedCut& cut);
 
+/// Least tissue that a cut leaves between its kerf and the tumour, mm; negative: the kerf enters it. The lesser of what
+/// `lateral_margin` and `tumor_distance` hold against the close margin. Absent: nothing was measured.
+[[nodiscard]] std::optional<double> nearest_to_tumor_mm(const Case& settings, const SimulatedCut& cut);
+
 /// Share of the planned depth that the kerf reaches at each place of its depth profile (N, >= 0). Planned is the tip's depth on the path, or
 /// the case's plan.depth_mm where that is more: a path that is too shallow does not excuse a shallow kerf.
 [[nodiscard]] std::vector<double> depth_shares(const Case& settings, const DepthReached& depth);

@@ -89,7 +89,8 @@ class CutInterrupted : public Cancelled {
   std::string slot_;
 };
 
-/// Is shown a cut under way at each step at which it may be put by (ProgressKeeper). @param cut  as_planned, pass_1 …
+/// Called during a cut, at each step from which it could be resumed (see ProgressKeeper). @param cut  as_planned,
+/// pass_1 …
 using CutWatch =
     std::function<void(const std::string& cut, const TissueModel& model, const IncisionProgress& progress)>;
 
@@ -100,7 +101,7 @@ struct RunOptions {
       false;  ///< go on from the checkpoint of the cut that comes next, or refuse before anything is computed
   double checkpoint_s =
       30.0;  ///< least time between two checkpoints of a cut; one that is interrupted always leaves one
-  CutWatch watch = {};  ///< empty: nobody looks
+  CutWatch watch = {};  ///< may be empty
 };
 
 /// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch,

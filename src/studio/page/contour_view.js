@@ -18,7 +18,7 @@ export function boundsOf(curves, direction) {
 export function ContourView({title, curves, direction, bounds, mark, id}) {
   const host = useRef(null);
   useEffect(() => {
-    const room = host.current, // a change of size may still be told when the page has let go of it
+    const room = host.current, // the observer may report once more after the component is gone
       canvas = room.querySelector("canvas");
     const draw = () => drawAll(room, canvas, {curves, direction, bounds, mark});
     const watch = new ResizeObserver(draw);

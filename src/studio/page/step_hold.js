@@ -38,7 +38,7 @@ const kNewRegions = {
   plane: (at) => ({plane: {point_mm: at, normal: "posterior"}}),
 };
 
-// The server tells a constraint as it was understood, with the kind of each part; a case file takes it without these,
+// The server returns a constraint in its normal form, with the kind of each part; a case file takes it without these,
 // and a person reads a direction better than its numbers.
 function asWritten({kind, where, ...rest}) {
   const one = {kind: kind === "plane" || kind === "surface" ? "support" : kind};
@@ -248,6 +248,11 @@ function Region({where, onChange}) {
   );
 }
 
+// A length of 0 mm or more.
+function Length(about) {
+  return h(NumberInput, {unit: "mm", step: 1, min: 0, ...about});
+}
+
 function RegionInputs({kind, value, onChange}) {
   const set = (patch) => onChange({...value, ...patch});
   if (kind === "end") {
@@ -255,14 +260,7 @@ function RegionInputs({kind, value, onChange}) {
       "div",
       {class: "pair"},
       h(Direction, {label: "Direction", value: value.direction, onChange: (direction) => set({direction})}),
-      h(NumberInput, {
-        label: "Within",
-        unit: "mm",
-        value: value.within_mm,
-        step: 1,
-        min: 0,
-        onChange: (within_mm) => set({within_mm}),
-      }),
+      h(Length, {label: "Within", value: value.within_mm, onChange: (within_mm) => set({within_mm})}),
     );
   }
   if (kind === "box_mm") {
@@ -294,14 +292,7 @@ function RegionInputs({kind, value, onChange}) {
         step: 1,
         onChange: (center_mm) => set({center_mm}),
       }),
-      h(NumberInput, {
-        label: "Radius",
-        unit: "mm",
-        value: value.radius_mm,
-        step: 1,
-        min: 0,
-        onChange: (radius_mm) => set({radius_mm}),
-      }),
+      h(Length, {label: "Radius", value: value.radius_mm, onChange: (radius_mm) => set({radius_mm})}),
     );
   }
   if (kind === "plane") {
@@ -309,12 +300,9 @@ function RegionInputs({kind, value, onChange}) {
       "div",
       null,
       h(PlaneInputs, {plane: value, onChange: set}),
-      h(NumberInput, {
+      h(Length, {
         label: "Within",
-        unit: "mm",
         value: value.within_mm,
-        step: 1,
-        min: 0,
         isOptional: true,
         onChange: (within_mm) => set({within_mm}),
         hint: "Empty: everything on the normal's side.",

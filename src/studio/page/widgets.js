@@ -62,7 +62,7 @@ export function NumberInput({
 }
 
 /** Some text with a label. */
-export function TextInput({label, value, onChange, problem, placeholder}) {
+export function TextInput({label, value, onChange, problem}) {
   const id = useId("text"),
     [draft, setDraft] = useState(null);
   return h(
@@ -73,7 +73,6 @@ export function TextInput({label, value, onChange, problem, placeholder}) {
       id,
       type: "text",
       value: draft === null ? value || "" : draft,
-      placeholder,
       spellcheck: false,
       "aria-invalid": problem ? "true" : undefined,
       "aria-describedby": `${id}-about`,
