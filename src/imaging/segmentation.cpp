@@ -276,6 +276,8 @@ void describe(Visitor& v, SegmentationSettings& s) {
      "less.",
      "mm"},
     s.smoothing_mm, {0.0, 5.0});
+  v("label_values", s.label_values, "Which values in `labels` are tissue; absent: all but 0.", {1.0, 255.0});
+  v({"edits", "Strokes of a brush for what the window gets wrong, in their order; absent: none.", "mm"}, s.edits);
   v.internal("margin_voxels", s.margin_voxels, "Of air around the body.", {3.0, 50.0});
   if (!v.sets()) return;
   s.window_low_hu = window[0];
@@ -289,6 +291,14 @@ std::vector<Problem> validate(const SegmentationSettings& settings) {
   const Expect expect(problems);
   expect(settings.window_low_hu < settings.window_high_hu, "window_hu[0]", settings.window_low_hu,
          fmt::format("below the second, {}", settings.window_high_hu));
+  for (std::size_t i = 0; settings.label_values && i < settings.label_values->size(); ++i) {
+    const std::int32_t value = (*settings.label_values)[i];
+    expect(value >= 1 && value <= 255, fmt::format("label_values[{}]", i), value, "1 to 255");
+  }
+  for (std::size_t e = 0; settings.edits && e < settings.edits->size(); ++e) {
+    const std::size_t points = (*settings.edits)[e].path_mm.size();
+    expect(points > 0, fmt::format("edits[{}].path_mm", e), static_cast<double>(points), "at least one point");
+  }
   if (!settings.roi_box_mm) return problems;
   const Vec3 low = settings.roi_box_mm->min(), high = settings.roi_box_mm->max();
   for (int axis = 0; axis < 3; ++axis) {
@@ -359,6 +369,20 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   return result;
 }
 
+/// 1 where the label is one of the tissue's.
+LabelVolume tissue_of(const LabelVolume& labels, const SegmentationSettings& settings) {
+  std::array<bool, 256> is_tissue{};
+  if (settings.label_values) {
+    for (const std::int32_t value : *settings.label_values) is_tissue.at(static_cast<std::size_t>(value)) = true;
+  } else {
+    std::fill(is_tissue.begin() + 1, is_tissue.end(), true);
+  }
+  LabelVolume tissue{labels.grid, std::vector<std::uint8_t>(labels.voxels.size())};
+  std::ranges::transform(labels.voxels, tissue.voxels.begin(),
+                         [&](std::uint8_t label) { return static_cast<std::uint8_t>(is_tissue[label]); });
+  return tissue;
+}
+
 /// @throws CaseError where the region, or a seed, has no label.
 void require_labels(const LabelVolume& labels, const SegmentationSettings& settings) {
   const VolumeGrid& grid = labels.grid;
@@ -387,10 +411,11 @@ Segmentation segment_labels(const LabelVolume& labels, const SegmentationSetting
   INCISE_REQUIRE(
       labels.voxels.size() == labels.grid.voxel_count(),
       fmt::format("expected {} voxels for the grid, found {}", labels.grid.voxel_count(), labels.voxels.size()));
-  require_labels(labels, settings);
-  CtVolume two_valued{labels.grid, std::vector<std::int16_t>(labels.voxels.size())};
-  std::ranges::transform(labels.voxels, two_valued.voxels.begin(),
-                         [](std::uint8_t label) { return static_cast<std::int16_t>(label != 0); });
+  const std::vector<Problem> problems = validate(settings);
+  if (!problems.empty()) throw CaseError("segmentation", problems.front());
+  const LabelVolume tissue = tissue_of(labels, settings);
+  require_labels(tissue, settings);
+  const CtVolume two_valued{labels.grid, {tissue.voxels.begin(), tissue.voxels.end()}};
   SegmentationSettings between = settings;
   between.window_low_hu = 0.5;
   between.window_high_hu = 1.5;

@@ -1,6 +1,7 @@
 #include "imaging/segmentation_region.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/geometry/contour.hpp>
 
 #include <fmt/format.h>
 
@@ -81,6 +82,38 @@ void fill_working_volume(const CtVolume& ct, const SegmentationSettings& setting
       }
 }
 
+/// A painted voxel gets a value that tissue may have; one that is taken away keeps its own, as one beyond the region's
+/// border does. @param piece  of the stroke's path: one point, or two.
+void paint(const Contour& piece, const TissueEdit& edit, const SegmentationSettings& settings, WorkingVolume& work) {
+  const VolumeGrid& grid = work.hu.grid;
+  const double middle_hu = 0.5 * (settings.window_low_hu + settings.window_high_hu);
+  Box3 around;
+  for (const Vec3& p : piece.points) around.extend(p);
+  around.min().array() -= edit.radius_mm;
+  around.max().array() += edit.radius_mm;
+  const IndexBox box = index_box(grid, around);
+  for (int k = box.low[2]; k < box.high[2]; ++k)
+    for (int j = box.low[1]; j < box.high[1]; ++j)
+      for (int i = box.low[0]; i < box.high[0]; ++i) {
+        const std::size_t v = grid.offset(i, j, k);
+        if (work.region.voxels[v] == 0) continue;
+        if (nearest_on(piece, grid.world_from_index(Vec3(i, j, k))).distance_mm > edit.radius_mm) continue;
+        work.in_window.voxels[v] = edit.is_tissue ? 1 : 0;
+        std::int16_t& hu = work.hu.voxels[v];
+        const bool is_odd = hu < settings.window_low_hu || hu > settings.window_high_hu;
+        if (edit.is_tissue && is_odd) hu = static_cast<std::int16_t>(std::lround(middle_hu));
+      }
+}
+
+void apply_edits(const SegmentationSettings& settings, WorkingVolume& work) {
+  if (!settings.edits) return;
+  for (const TissueEdit& edit : *settings.edits) {
+    const Points& path = edit.path_mm;
+    paint({{path.front()}, false}, edit, settings, work);
+    for (std::size_t i = 1; i < path.size(); ++i) paint({{path[i - 1], path[i]}, false}, edit, settings, work);
+  }
+}
+
 void require_tissue(const WorkingVolume& work, const SegmentationSettings& settings) {
   if (std::find(work.in_window.voxels.begin(), work.in_window.voxels.end(), 1) != work.in_window.voxels.end()) return;
   std::int16_t least = std::numeric_limits<std::int16_t>::max();
@@ -123,6 +156,7 @@ WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, 
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)}};
   fill_working_volume(ct, settings, box, low, work);
+  apply_edits(settings, work);
   require_tissue(work, settings);
   return work;
 }
@@ -143,9 +177,14 @@ std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& w
       throw CaseError(
           kWhere, field, text_of(seed),
           fmt::format("a point inside roi_box_mm {}", settings.roi_box_mm ? text_of(*settings.roi_box_mm) : ""));
-    if (work.in_window.at(at[0], at[1], at[2]) == 0)
-      throw CaseError(kWhere, field, fmt::format("{} with {} HU", text_of(seed), work.hu.at(at[0], at[1], at[2])),
-                      fmt::format("tissue in window_hu [{:g}, {:g}]", settings.window_low_hu, settings.window_high_hu));
+    if (work.in_window.at(at[0], at[1], at[2]) == 0) {
+      const std::int16_t hu = work.hu.at(at[0], at[1], at[2]);
+      const bool is_tissue = hu >= settings.window_low_hu && hu <= settings.window_high_hu;
+      throw CaseError(kWhere, field, fmt::format("{} with {} HU", text_of(seed), hu),
+                      is_tissue ? std::string("a point that no stroke of `edits` takes away")
+                                : fmt::format("tissue in window_hu [{:g}, {:g}]", settings.window_low_hu,
+                                              settings.window_high_hu));
+    }
     offsets.push_back(work.hu.grid.offset(at[0], at[1], at[2]));
   }
   return offsets;

@@ -12,15 +12,15 @@ namespace incise {
 struct WorkingVolume {
   CtVolume hu;     ///< air beyond the CT's own grid
   Mask region;     ///< inside the CT's grid and the region of interest
-  Mask in_window;  ///< in the region, with HU in the window
+  Mask in_window;  ///< in the region, with HU in the window or painted as tissue
 };
 
 /// A grid of `size` voxels whose first is voxel `low` (which may lie outside) of `grid`.
 [[nodiscard]] VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low,
                                   const std::array<int, 3>& size);
 
-/// Cuts the region of interest out of the CT, `pad` voxels larger on every side. @throws CaseError: region outside the
-/// volume, nothing in the window.
+/// Cuts the region of interest out of the CT, `pad` voxels larger on every side, and applies the edits to it. @throws
+/// CaseError: region outside the volume, nothing in the window.
 [[nodiscard]] WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad);
 
 /// The offsets, in the working volume, of the seeds' voxels. @throws CaseError: a seed outside volume, region or

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/geometry/contour.hpp>
 #include <incise/mechanics/constraints.hpp>
 
 #include <fmt/format.h>
@@ -12,14 +13,15 @@
 namespace incise {
 namespace {
 
-constexpr std::array<Field, 6> kRegionKeys{
+constexpr std::array<Field, 7> kRegionKeys{
     {{"box_mm", "low and high corner, rest positions, LPS"},
      {"sphere"},
      {"end", "vertices at most within_mm from the body's extreme point along direction"},
      {"plane",
       "vertices on the plane or on its normal's side; with within_mm: at most that far from the plane, on either side"},
      {"cell_array", "NAME=VALUE of a cell array of the mesh: the corners of those tets"},
-     {"point_array", "NAME=VALUE of a point array of the mesh"}}};
+     {"point_array", "NAME=VALUE of a point array of the mesh"},
+     {"patch", "vertices of the skin at most radius_mm from a line that was painted on it, rest positions, LPS"}}};
 constexpr std::array<Field, 2> kSupportKeys{
     {{"surface", "triangles of a holder, normals towards the tissue (mm, LPS)"}, {"plane"}}};
 
@@ -50,6 +52,14 @@ void describe_under(Visitor& v, const Field& key, PlaneRegion& r) {
   v("point_mm", r.point_mm);
   v.direction("normal", r.normal);
   v("within_mm", r.within_mm, {}, kNotNegative);
+  v.end();
+}
+
+void describe_under(Visitor& v, const Field& key, PatchRegion& r) {
+  v.begin(key);
+  v("path_mm", r.path_mm);
+  v("radius_mm", r.radius_mm, {}, {0.1, 50.0});
+  if (v.sets() && r.path_mm.empty()) v.refuse({"path_mm"}, "no point", "at least one point of the painted line");
   v.end();
 }
 
@@ -139,6 +149,19 @@ const std::vector<double>& named_values(const std::map<std::string, DataArray>& 
   return array->second.values;
 }
 
+std::vector<VertexId> select_region(const TetMesh& mesh, const PatchRegion& region) {
+  INCISE_REQUIRE(!region.path_mm.empty() && std::isfinite(region.radius_mm) && region.radius_mm > 0.0,
+                 "expected a painted line of at least one point and a radius above 0 mm");
+  std::vector<std::uint8_t> is_skin(mesh.vertices.size(), 0);
+  for (const BoundaryFace& face : boundary_faces(mesh)) {
+    for (const VertexId v : face.corners) is_skin[v.index()] = 1;
+  }
+  const Contour path{region.path_mm, false};
+  return vertices_where(mesh, [&](std::size_t v) {
+    return is_skin[v] != 0 && nearest_on(path, mesh.vertices[v]).distance_mm <= region.radius_mm;
+  });
+}
+
 std::vector<VertexId> select_region(const TetMesh& mesh, const PointArrayRegion& region) {
   const auto& values = named_values(mesh.point_data, region.name, mesh.vertices.size(), "point", "vertex");
   return vertices_where(mesh, [&](std::size_t v) { return values[v] == region.value; });
@@ -159,9 +182,9 @@ std::vector<VertexId> select_region(const TetMesh& mesh, const CellArrayRegion& 
 void describe(Visitor& v, Region& region) {
   std::size_t place = region.index();
   const std::size_t found = v.key(place, kRegionKeys);
-  if (found == 0) v.refuse({}, "an empty group", "box_mm, sphere, end, plane, point_array or cell_array");
+  if (found == 0) v.refuse({}, "an empty group", "box_mm, sphere, end, plane, point_array, cell_array or patch");
   if (found > 1)
-    v.refuse({}, fmt::format("{} regions", found), "one of box_mm, sphere, end, plane, point_array, cell_array");
+    v.refuse({}, fmt::format("{} regions", found), "one of box_mm, sphere, end, plane, point_array, cell_array, patch");
   if (place == Visitor::kUnchanged) return;
   const auto describe_own = [&v](Region& own) {
     std::visit([&](auto& r) { describe_under(v, kRegionKeys[own.index()], r); }, own);

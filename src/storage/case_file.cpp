@@ -76,6 +76,8 @@ YAML::Node parse(const std::string& text, const std::filesystem::path& file) {
     YAML::Parser parser(stream);
     BoundedYaml bounds(file);
     parser.HandleNextDocument(bounds);
+    if (parser.HandleNextDocument(bounds))
+      throw DataError(file, "", "several documents", "one: nothing after a second line '---'");
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw DataError(file, fmt::format("line {}", error.mark.line + 1), error.msg, "YAML or JSON");

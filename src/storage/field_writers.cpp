@@ -24,10 +24,15 @@ Json list_schema(const Json& item, std::size_t size) {
   return {{"type", "array"}, {"items", item}, {"minItems", size}, {"maxItems", size}};
 }
 
-/// The numbers of a block. A visitor of files of settings is shown doubles only.
-std::span<const double> numbers_of(const Block& block) {
+/// The numbers of a block. Files of settings hold doubles and whole numbers.
+std::vector<double> numbers_of(const Block& block) {
+  if (block.kind == Block::Kind::Int32) {
+    const std::span whole(static_cast<const std::int32_t*>(block.data), block.count);
+    return {whole.begin(), whole.end()};
+  }
   INCISE_REQUIRE(block.kind == Block::Kind::Double, "expected numbers of double precision in a file of settings");
-  return {static_cast<const double*>(block.data), block.count};
+  const std::span numbers(static_cast<const double*>(block.data), block.count);
+  return {numbers.begin(), numbers.end()};
 }
 
 /// Whether a block is lists in a list: a box as two corners, a transform as four rows.
@@ -154,14 +159,14 @@ void SchemaWriter::choice(const Field& field, std::size_t& value, Names names) {
 }
 
 void SchemaWriter::block(const Field& field, const Block& block) {
-  const std::span<const double> numbers = numbers_of(block);
-  const Json item = number_schema(block.range, "number");
+  const Json item = number_schema(block.range, block.kind == Block::Kind::Int32 ? "integer" : "number");
+  if (field.name.empty()) return add(field, block.columns > 1 ? list_schema(item, block.columns) : item);  // of a list
   Json schema = list_schema(item, block.count);
   if (has_rows(block)) schema = list_schema(list_schema(item, block.columns), block.count / block.columns);
   if (block.is_direction) {
     schema = {{"oneOf", {schema, {{"enum", {"anterior", "posterior", "left", "right", "superior", "inferior"}}}}}};
   }
-  add_with_default(field, std::move(schema), std::vector<double>(numbers.begin(), numbers.end()));
+  add_with_default(field, std::move(schema), numbers_of(block));
 }
 
 std::size_t SchemaWriter::key(std::size_t& place, std::span<const Field> keys) {
@@ -248,12 +253,19 @@ void SettingLister::choice(const Field& field, std::size_t& value, Names names) 
 }
 
 void SettingLister::block(const Field& field, const Block& block) {
-  const std::span<const double> numbers = numbers_of(block);
-  if (depth_ == 0 || !has_rows(block)) return add(field, fmt::format("[{}]", fmt::join(numbers, ", ")));
+  const std::vector<double> numbers = numbers_of(block);
+  const bool is_of_list = field.name.empty() && list_.ends_with('[');  // whose brackets stand already
+  if (block.columns == 1 && is_of_list) {
+    for (const double number : numbers) add(field, fmt::format("{}", number));
+    return;
+  }
+  if (!is_of_list && (depth_ == 0 || !has_rows(block)))
+    return add(field, fmt::format("[{}]", fmt::join(numbers, ", ")));
   std::vector<std::string> rows;
   for (std::size_t i = 0; i < block.count; i += block.columns)
-    rows.push_back(fmt::format("[{}]", fmt::join(numbers.subspan(i, block.columns), ", ")));
-  add(field, fmt::format("[{}]", fmt::join(rows, ", ")));
+    rows.push_back(fmt::format("[{}]", fmt::join(std::span(numbers).subspan(i, block.columns), ", ")));
+  if (!is_of_list) return add(field, fmt::format("[{}]", fmt::join(rows, ", ")));
+  for (const std::string& row : rows) add(field, row);
 }
 
 }  // namespace incise

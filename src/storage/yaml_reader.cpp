@@ -220,6 +220,7 @@ void YamlReader::choice(const Field& field, std::size_t& value, Names names) {
 }
 
 void YamlReader::block(const Field& field, const Block& block) {
+  if (block.kind == Block::Kind::Int32) return whole_numbers(field, block);
   INCISE_REQUIRE(block.kind == Block::Kind::Double, "expected numbers of double precision in a file of settings");
   const Level& level = levels_.back();
   const YAML::Node node = level.is_list ? level.node : take(field);
@@ -238,6 +239,22 @@ void YamlReader::block(const Field& field, const Block& block) {
   Eigen::Map<Eigen::Vector3d> direction(values);
   if (!is_direction(std::span<const double, 3>(values, 3))) refuse(node, path, shown(node), kDirectionText);
   direction.normalize();
+}
+
+void YamlReader::whole_numbers(const Field& field, const Block& block) {
+  const Level& level = levels_.back();
+  const std::string path = level.is_list ? level.name : path_of(field.name);
+  auto* const values = static_cast<std::int32_t*>(block.data);
+  std::vector<double> numbers(values, values + block.count);
+  Block same = block;
+  same.kind = Block::Kind::Double;
+  same.data = numbers.data();
+  this->block(field, same);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] != std::floor(numbers[i]))
+      refuse(level.node, fmt::format("{}[{}]", path, i), fmt::format("{}", numbers[i]), "a whole number");
+    values[i] = static_cast<std::int32_t>(numbers[i]);
+  }
 }
 
 std::size_t YamlReader::key(std::size_t& place, std::span<const Field> keys) {

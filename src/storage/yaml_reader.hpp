@@ -55,6 +55,7 @@ class YamlReader : public Visitor {
   [[noreturn]] void refuse(const YAML::Node& node, const std::string& path, const std::string& found,
                            const std::string& expected, const std::string& hint = "") const;
   [[nodiscard]] double read_number(const YAML::Node& node, const std::string& path, const Range& range) const;
+  void whole_numbers(const Field& field, const Block& block);
   void read_numbers(const YAML::Node& node, const std::string& path, const Block& block) const;
   void require_map(const YAML::Node& node, const std::string& path) const;
   void refuse_unknown_keys(const Level& level) const;

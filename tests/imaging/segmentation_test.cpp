@@ -97,6 +97,76 @@ TEST(Segmentation, TakesEveryLabelButZeroInPlaceOfThresholds) {
   EXPECT_TRUE(result.verdict.reasons().empty()) << "labels have no HU that could be odd";
 }
 
+TEST(Segmentation, TakesAStrokeOfTheBrushAsTissueOrAsNone) {
+  const VolumeGrid grid = grid_of(60, 40, 40);
+  const Vec3 left(15, 20, 20), right(43, 20, 20);
+  const CtVolume ct =
+      scan_of(grid, [&](const Vec3& p) { return -1000.0 + 1050.0 * std::max(ball(p, left, 10), ball(p, right, 10)); });
+  SegmentationSettings settings;
+  settings.seeds_mm = {left};
+  const Segmentation one = run(ct, settings);
+  EXPECT_NEAR(one.volume_mm3, 4189.0, 80.0);
+  settings.edits = {{true, 4.0, {left, right}}};  // a bridge: both balls are one piece
+  const Segmentation both = run(ct, settings);
+  EXPECT_NEAR(both.volume_mm3, 2 * 4189.0 + 50.0 * 9.5, 250.0);
+  EXPECT_EQ(both.components, 1U);
+  settings.edits->push_back({false, 6.0, {Vec3(29, 20, 20)}});  // and apart again
+  EXPECT_NEAR(run(ct, settings).volume_mm3, one.volume_mm3, 120.0);
+  const Vec3 above(15, 20, 52);
+  settings.edits = {{false, 30.0, {above}}};  // the upper part of the ball
+  const Segmentation lower = run(ct, settings);
+  double expected_mm3 = 0.0;
+  for (std::size_t v = 0; v < ct.voxels.size(); ++v) {
+    const auto [i, j, k] = grid.voxel_at(v);
+    const Vec3 p(i, j, k);
+    if ((p - left).norm() <= 10.0 && (p - above).norm() > 30.0) expected_mm3 += 1.0;
+  }
+  EXPECT_NEAR(lower.volume_mm3, expected_mm3, 0.04 * expected_mm3);
+  EXPECT_NEAR(lower.occupancy_volume_mm3, expected_mm3, 0.05 * expected_mm3);
+}
+
+TEST(Segmentation, RepeatsItsStrokesOnAnotherGrid) {
+  const Vec3 middle(20, 20, 20);
+  SegmentationSettings settings;
+  settings.edits = {{false, 3.0, {Vec3(20, 20, 34), Vec3(20, 20, 27)}}};
+  const auto volume = [&](const Vec3& spacing) {
+    VolumeGrid grid = grid_of(static_cast<int>(40 / spacing.x()), static_cast<int>(40 / spacing.y()),
+                              static_cast<int>(40 / spacing.z()), spacing);
+    return run(scan_of(grid, [&](const Vec3& p) { return -1000.0 + 1050.0 * ball(p, middle, 12); }), settings)
+        .volume_mm3;
+  };
+  EXPECT_NEAR(volume(Vec3::Ones()) / volume(Vec3(0.8, 1.0, 0.5)), 1.0, 0.02);
+}
+
+TEST(Segmentation, RefusesAStrokeWithoutPointsAndASeedThatIsTakenAway) {
+  const CtVolume ct =
+      scan_of(grid_of(40, 40, 40), [](const Vec3& p) { return -1000.0 + 1050.0 * ball(p, Vec3(20, 20, 20), 10); });
+  SegmentationSettings settings;
+  settings.edits = {{true, 2.0, {}}};
+  EXPECT_THAT(message_of(ct, settings), HasSubstr("edits[0].path_mm"));
+  settings.edits = {{false, 2.0, {Vec3(20, 20, 20)}}};
+  settings.seeds_mm = {Vec3(20, 20, 20)};
+  EXPECT_THAT(message_of(ct, settings), testing::AllOf(HasSubstr("seed_mm[0]"), HasSubstr("edits")));
+}
+
+TEST(Segmentation, TakesTheLabelsThatAreNamed) {
+  LabelVolume labels{grid_of(40, 30, 30), std::vector<std::uint8_t>(40 * 30 * 30, 0)};
+  for (std::size_t v = 0; v < labels.voxels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.voxel_at(v);
+    if (j > 5 && j < 25 && k > 5 && k < 25 && i > 5 && i < 35) labels.voxels[v] = i < 20 ? 3 : 7;
+  }
+  Monitor monitor;
+  SegmentationSettings settings;
+  const double both = segment_labels(labels, settings, monitor).volume_mm3;
+  settings.label_values = {7};
+  const double one = segment_labels(labels, settings, monitor).volume_mm3;
+  EXPECT_NEAR(one, 15.0 / 29.0 * both, 0.02 * both);
+  settings.label_values = {4};
+  EXPECT_THROW(static_cast<void>(segment_labels(labels, settings, monitor)), CaseError);
+  settings.label_values = {256};
+  EXPECT_THROW(static_cast<void>(segment_labels(labels, settings, monitor)), CaseError);
+}
+
 TEST(Segmentation, RefusesARegionOrASeedWithoutALabel) {
   Monitor monitor;
   const LabelVolume labels = labels_of(ball_of_tissue(), -475, 1);

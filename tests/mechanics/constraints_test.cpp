@@ -52,6 +52,15 @@ TEST(Select, PlaneWithoutADistanceTakesTheNormalsSide) {
               ElementsAre(VertexId{0}, VertexId{1}, VertexId{3}, VertexId{6}, VertexId{7}, VertexId{9}));
 }
 
+TEST(Select, PatchTakesTheSkinNearAPaintedLine) {
+  const TetMesh mesh = make_block(Vec3(20, 20, 20), {4, 4, 4});
+  const PatchRegion region{{Vec3(0, 10, 20), Vec3(10, 10, 20)}, 5.0};
+  const std::vector<VertexId> held = select(mesh, region);
+  EXPECT_EQ(held.size(), 11U);  // three along the line, as many on either side, one beyond each end
+  for (const VertexId v : held) EXPECT_GE(mesh.vertices[v.index()].z(), 15.0);
+  EXPECT_THAT(select(mesh, PatchRegion{{Vec3(10, 10, 10)}, 4.9}), IsEmpty());  // inside the body is no skin
+}
+
 TEST(Select, CellArrayTakesTheCornersOfItsTets) {
   TetMesh mesh = small_block();
   mesh.cell_data["label"] = {1, std::vector<double>(12, 1.0)};
@@ -74,7 +83,9 @@ TEST(Select, RegionsThatAreNotOneAreRefused) {
                         PlaneRegion{Vec3(nan, 0, 0), Vec3::UnitX(), {}},
                         PlaneRegion{Vec3::Zero(), Vec3::Zero(), {}},
                         PlaneRegion{Vec3::Zero(), Vec3::UnitX(), -1.0},
-                        PlaneRegion{Vec3::Zero(), Vec3::UnitX(), nan}};
+                        PlaneRegion{Vec3::Zero(), Vec3::UnitX(), nan},
+                        PatchRegion{{}, 1.0},
+                        PatchRegion{{Vec3::Zero()}, nan}};
   for (std::size_t i = 0; i < std::size(bad); ++i) {
     EXPECT_THROW(static_cast<void>(select(small_block(), bad[i])), InvalidArgument) << "region " << i;
   }
@@ -107,7 +118,8 @@ TEST(Constraint, IsTheSameAgainFromItsBytesWhateverItsRegion) {
                             EndRegion{Vec3::UnitZ(), 3.0},
                             PlaneRegion{Vec3(1, 2, 3), Vec3(0, 0, 2), 0.1},
                             CellArrayRegion{"part", 0.1},
-                            PointArrayRegion{"clamp", -2.0}};
+                            PointArrayRegion{"clamp", -2.0},
+                            PatchRegion{{Vec3(1, 2, 3), Vec3(4, 5, 6)}, 2.5}};
   std::vector<Constraint> all;
   for (const Region& region : regions) all.emplace_back(FixedConstraint{region, {true, false, true}});
   all.emplace_back(DisplacedConstraint{regions[0], Vec3(0, 20, 0)});

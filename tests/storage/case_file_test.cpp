@@ -73,6 +73,35 @@ TEST_F(CaseFileTest, ATextThatAnEscapeMakesOtherThanUtf8IsRefusedByLine) {
   EXPECT_EQ(read(std::string(kLeast) + "title: \"a\\u00e4b\"\n").settings.title, "a\u00e4b");
 }
 
+TEST_F(CaseFileTest, StrokesAndLabelsAreListsOfAnyLength) {
+  const CaseFile file = read(
+      "schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen: {mesh: block.msh}\nct:\n  label_values: [3, 5]\n"
+      "  edits:\n    - {tissue: false, radius_mm: 2, path_mm: [[1, 2, 3], [4, 5, 6]]}\n"
+      "    - {tissue: true, radius_mm: 1.5, path_mm: [[7, 8, 9]]}\n");
+  const SegmentationSettings& found = file.settings.segmentation;
+  EXPECT_EQ(found.label_values, (std::vector<std::int32_t>{3, 5}));
+  ASSERT_TRUE(found.edits && found.edits->size() == 2);
+  EXPECT_FALSE(found.edits->front().is_tissue);
+  EXPECT_EQ(found.edits->front().path_mm, (Points{Vec3(1, 2, 3), Vec3(4, 5, 6)}));
+  EXPECT_EQ(found.edits->back().path_mm, (Points{Vec3(7, 8, 9)}));
+  auto settings = settings_by_key(file);
+  EXPECT_EQ(settings["ct.label_values"], "[3, 5]");
+  EXPECT_EQ(settings["ct.edits"],
+            "[{tissue: false, radius_mm: 2, path_mm: [[1, 2, 3], [4, 5, 6]]}, {tissue: true, radius_mm: 1.5, path_mm: "
+            "[[7, 8, 9]]}]");
+  const auto schema = Json::parse(case_schema_json()).at("properties").at("ct").at("properties");
+  EXPECT_EQ(schema.at("label_values").at("items").at("type"), "integer");
+  EXPECT_EQ(schema.at("edits").at("items").at("properties").at("path_mm").at("items").at("maxItems"), 3);
+  EXPECT_THAT(refusal_with("ct: {label_values: [1.5]}\n"), HasSubstr("ct.label_values[0]"));
+  EXPECT_THAT(refusal_with("ct: {label_values: [256]}\n"), HasSubstr("ct.label_values[0]"));
+  EXPECT_THAT(refusal_with("ct: {edits: [{tissue: true, radius_mm: 1, path_mm: [[1, 2]]}]}\n"), HasSubstr("path_mm"));
+  EXPECT_THAT(refusal_with("ct: {edits: [{tissue: true, radius_mm: 1, path_mm: []}]}\n"), HasSubstr("path_mm"));
+}
+
+TEST_F(CaseFileTest, ASecondDocumentIsNotDropped) {
+  EXPECT_THAT(refusal<DataError>(kLeast + std::string("---\nplan: {depth_mm: 4}\n")), HasSubstr("several documents"));
+}
+
 TEST_F(CaseFileTest, InputsAreRelativeToTheCaseFile) {
   const CaseFile file = read("schema: incise.case/1\nct: {volume: scans/../ct}\ntumor: {contour: /data/tumor.csv}\n");
   EXPECT_EQ(file.inputs.ct_volume, folder_ / "ct");
@@ -411,10 +440,11 @@ TEST_F(ConstraintTest, EveryKindAndEveryRegionIsRead) {
     - {kind: displaced, where: {sphere: {center_mm: [1, 2, 3], radius_mm: 4}}, displacement_mm: [20, 0, 0]}
     - {kind: support, plane: {point_mm: [0, 0, -12], normal: superior}}
     - {kind: traction, where: {end: {direction: anterior, within_mm: 7}}, traction_kpa: [0, 0, 1]}
+    - {kind: fixed, where: {patch: {path_mm: [[1, 2, 3], [4, 5, 6]], radius_mm: 2.5}}}
 )"));
   ASSERT_TRUE(file.settings.constraints);
   const std::vector<Constraint>& all = *file.settings.constraints;
-  ASSERT_EQ(all.size(), 5U);
+  ASSERT_EQ(all.size(), 6U);
   const auto& clamp = std::get<FixedConstraint>(all[0]);
   EXPECT_EQ(std::get<BoxRegion>(clamp.where).box_mm.min(), Vec3(-5, -40, -30));
   EXPECT_EQ(std::get<BoxRegion>(clamp.where).box_mm.max(), Vec3(5, 40, 30));
@@ -434,6 +464,9 @@ TEST_F(ConstraintTest, EveryKindAndEveryRegionIsRead) {
   EXPECT_EQ(std::get<EndRegion>(push.where).direction, Vec3(0, -1, 0));
   EXPECT_EQ(std::get<EndRegion>(push.where).within_mm, 7.0);
   EXPECT_EQ(push.traction_kpa, Vec3(0, 0, 1));
+  const auto& painted = std::get<PatchRegion>(std::get<FixedConstraint>(all[5]).where);
+  EXPECT_EQ(painted.path_mm, (Points{Vec3(1, 2, 3), Vec3(4, 5, 6)}));
+  EXPECT_EQ(painted.radius_mm, 2.5);
 }
 
 TEST_F(ConstraintTest, PlanesAndCellArraysAreRegionsToo) {

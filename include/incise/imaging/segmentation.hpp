@@ -9,11 +9,25 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace incise {
+
+/// A stroke of a brush over a scan: the voxels whose centres lie within `radius_mm` of its path are tissue, or are not,
+/// whatever their value is. LPS world coordinates, so a stroke depends on no grid.
+struct TissueEdit {
+  bool is_tissue = true;
+  double radius_mm = 1.0;
+  Points path_mm;  ///< joined by straight lines; one point: a ball
+};
+inline void describe(Visitor& v, TissueEdit& e) {
+  v("tissue", e.is_tissue, "Whether the stroke makes tissue; else it takes tissue away.");
+  v({"radius_mm", "Of the brush.", "mm"}, e.radius_mm, {0.1, 50.0});
+  v({"path_mm", "Points (LPS) of the stroke's middle.", "mm"}, e.path_mm);
+}
 
 /// Which part of a CT, or of a label volume, is the specimen. Lengths mm, LPS world coordinates. Labels need no window.
 struct SegmentationSettings {
@@ -25,6 +39,8 @@ struct SegmentationSettings {
       0.0;                    ///< pieces joined only by bridges thinner than twice this are separated; 0: none; [0, 20]
   bool fill_holes = true;     ///< cavities without a way out through voxel faces become tissue, whatever their HU
   std::optional<double> smoothing_mm;  ///< length over which the occupancy is smoothed; 0: none; [0, 5]; absent: see smoothing_length_mm
+  std::optional<std::vector<std::int32_t>> label_values;  ///< labels that are tissue; absent: all but 0
+  std::optional<std::vector<TissueEdit>> edits;  ///< of what the window finds, in their order; before pieces are chosen
   int margin_voxels = 4;      ///< of air around the body, also where the region of interest cuts through it; [3, 50]
 };
 void describe(Visitor& v, SegmentationSettings& s);
@@ -81,7 +97,8 @@ inline void describe(Visitor& v, Segmentation& s) {
 }
 
 /// CT -> one clean tissue label and its sub-voxel occupancy.
-/// Steps: window and region -> pieces (face-connected; separated by erosion with a ball, grown back within the window)
+/// Steps: window and region -> edits by hand -> pieces (face-connected; separated by erosion with a ball, grown back
+/// within the window)
 /// -> the seed's or the largest piece -> 3D hole filling -> occupancy from the CT's own gray values -> smoothing ->
 /// label where >= 0.5. The occupancy of a voxel within two voxels of the body's border is (HU - outside)/(inside -
 /// outside), limited to [0, 1], where inside and outside are means of the pure tissue and the pure surroundings near by
@@ -99,8 +116,9 @@ inline void describe(Visitor& v, Segmentation& s) {
 /// @note O(voxels of the region); about a second for 150 x 160 x 100.
 [[nodiscard]] Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor);
 
-/// The same from labels that somebody drew: every label but 0 is tissue. The occupancy is 0 or 1 before it is smoothed,
-/// so the skin is as accurate as the voxels are small. The window is not used, and the verdict says nothing of HU.
+/// The same from labels that somebody drew: every label but 0 is tissue, or those of `label_values`. The occupancy is 0
+/// or 1 before it is smoothed, so the skin is as accurate as the voxels are small. The window is not used, and the
+/// verdict says nothing of HU.
 /// @throws as `segment`; CaseError where no voxel of the region has a label, or a seed lies where the label is 0.
 [[nodiscard]] Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings,
                                           Monitor& monitor);

@@ -43,7 +43,13 @@ struct CellArrayRegion {
   std::string name;
   double value = 1.0;
 };
-using Region = std::variant<BoxRegion, SphereRegion, EndRegion, PlaneRegion, CellArrayRegion, PointArrayRegion>;
+/// Vertices of the skin at most `radius_mm` from a line that was painted on it.
+struct PatchRegion {
+  Points path_mm;  ///< joined by straight lines; one point: a spot
+  double radius_mm = 3.0;
+};
+using Region =
+    std::variant<BoxRegion, SphereRegion, EndRegion, PlaneRegion, CellArrayRegion, PointArrayRegion, PatchRegion>;
 
 /// A group with one key, which names what it is: {end: {direction: posterior, within_mm: 12}}, {cell_array: clamp=1}.
 void describe(Visitor& v, Region& region);
