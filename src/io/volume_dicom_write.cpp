@@ -15,6 +15,7 @@
 #include <array>
 #include <charconv>
 #include <cstring>
+#include <sstream>
 
 namespace incise {
 namespace {
@@ -208,10 +209,11 @@ void write_dicom_series(const fs::path& folder, const CtVolume& volume, const Di
     describe_slice(data, series, volume.grid, k);
     set_pixels(data, volume, k);
     writer.GetFile().GetHeader().SetDataSetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
-    const fs::path file = target.path() / fmt::format("IM{:04}.dcm", k + 1);
-    writer.SetFileName(file.c_str());
-    if (!writer.Write())
-      throw DataError(folder / file.filename(), "", "a failed write", "a complete file", "Is the disk full?");
+    const std::string name = fmt::format("IM{:04}.dcm", k + 1);
+    std::ostringstream bytes;  // in memory: the library ends the program where a disk is full
+    writer.SetStream(bytes);
+    if (!writer.Write()) throw DataError(folder / name, "", "a failed write", "a complete file");
+    write_atomically(target.path() / name, bytes.view());
   }
   target.commit();
 }

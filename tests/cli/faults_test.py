@@ -47,6 +47,15 @@ class StreamsTest(CommandTest):
         self.assert_nothing_written()
 
 
+class FullDiskTest(CommandTest):
+    def test_a_specimen_that_finds_no_room_is_refused_whole(self):
+        for form in ("dicom", "nrrd", "nifti"):
+            line = 'trap "" XFSZ; ulimit -f 16; exec "$0" "$@"'  # 512-byte blocks: a slice is longer
+            done = subprocess.run(["sh", "-c", line, COMMAND, "phantom", "--format", form, "-o", "specimen"], cwd=self.folder, capture_output=True, text=True, check=False)
+            self.assert_refused(done, BAD_DATA)
+            self.assert_nothing_written(self.folder / "specimen")
+
+
 class NamesTest(CommandTest):
     def test_names_on_the_command_line(self):
         small_case.write_case(self.folder / "case")
