@@ -5,48 +5,11 @@
 #include <limits>
 #include <vector>
 
-namespace incise::robot_detail {
+namespace incise {
 namespace {
-
-// The upper arm swings beside the base and the forearm beside wrist 2, by the build of the arm.
-constexpr HullPair kBasePairs[]{
-    {Hull::Base, Hull::Elbow},      {Hull::Base, Hull::Forearm},     {Hull::Base, Hull::Wrist1},
-    {Hull::Base, Hull::Wrist2},     {Hull::Base, Hull::Wrist3},      {Hull::Base, Hull::Shaft},
-    {Hull::Base, Hull::Needle},     {Hull::Shoulder, Hull::Forearm}, {Hull::Shoulder, Hull::Wrist1},
-    {Hull::Shoulder, Hull::Wrist2}, {Hull::Shoulder, Hull::Wrist3},  {Hull::Shoulder, Hull::Shaft},
-    {Hull::Shoulder, Hull::Needle}};
-constexpr HullPair kSelfPairs[]{
-    {Hull::UpperArm, Hull::Wrist1}, {Hull::UpperArm, Hull::Wrist2}, {Hull::UpperArm, Hull::Wrist3},
-    {Hull::UpperArm, Hull::Shaft},  {Hull::UpperArm, Hull::Needle}, {Hull::Elbow, Hull::Wrist2},
-    {Hull::Elbow, Hull::Wrist3},    {Hull::Elbow, Hull::Shaft},     {Hull::Elbow, Hull::Needle},
-    {Hull::Forearm, Hull::Wrist3},  {Hull::Forearm, Hull::Shaft},   {Hull::Forearm, Hull::Needle},
-    {Hull::Wrist1, Hull::Shaft},    {Hull::Wrist1, Hull::Needle},   {Hull::Wrist2, Hull::Shaft},
-    {Hull::Wrist2, Hull::Needle}};
 
 Vec3 origin(const Mat4& frame) {
   return frame.topRightCorner<3, 1>();
-}
-
-/// Squared distance of two segments: the nearest places of the two lines, each drawn back onto its segment.
-double segments_squared_mm2(const Capsule& a, const Capsule& b) {
-  constexpr double kPointMm2 = 1e-12;  // shorter is a point
-  const Vec3 u = a.to_mm - a.from_mm, v = b.to_mm - b.from_mm, between = a.from_mm - b.from_mm;
-  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), ub = u.dot(between), vb = v.dot(between);
-  double s = 0.0, t = 0.0;
-  if (uu > kPointMm2 && vv > kPointMm2) {
-    const double across = uu * vv - uv * uv;
-    s = across > kPointMm2 * uu * vv ? std::clamp((uv * vb - ub * vv) / across, 0.0, 1.0) : 0.0;
-    t = (uv * s + vb) / vv;
-    if (t < 0.0 || t > 1.0) {
-      t = std::clamp(t, 0.0, 1.0);
-      s = std::clamp((uv * t - ub) / uu, 0.0, 1.0);
-    }
-  } else if (uu > kPointMm2) {
-    s = std::clamp(-ub / uu, 0.0, 1.0);
-  } else if (vv > kPointMm2) {
-    t = std::clamp(vb / vv, 0.0, 1.0);
-  }
-  return (between + s * u - t * v).squaredNorm();
 }
 
 }  // namespace
@@ -85,6 +48,48 @@ Hulls hulls_at(const ArmModel& arm, const Joints& q, const Instrument& instrumen
   set(Hull::Needle, tip, needle_end, instrument.needle_radius_mm);
   return hulls;
 }
+
+namespace robot_detail {
+namespace {
+
+// The upper arm swings beside the base and the forearm beside wrist 2, by the build of the arm.
+constexpr HullPair kBasePairs[]{
+    {Hull::Base, Hull::Elbow},      {Hull::Base, Hull::Forearm},     {Hull::Base, Hull::Wrist1},
+    {Hull::Base, Hull::Wrist2},     {Hull::Base, Hull::Wrist3},      {Hull::Base, Hull::Shaft},
+    {Hull::Base, Hull::Needle},     {Hull::Shoulder, Hull::Forearm}, {Hull::Shoulder, Hull::Wrist1},
+    {Hull::Shoulder, Hull::Wrist2}, {Hull::Shoulder, Hull::Wrist3},  {Hull::Shoulder, Hull::Shaft},
+    {Hull::Shoulder, Hull::Needle}};
+constexpr HullPair kSelfPairs[]{
+    {Hull::UpperArm, Hull::Wrist1}, {Hull::UpperArm, Hull::Wrist2}, {Hull::UpperArm, Hull::Wrist3},
+    {Hull::UpperArm, Hull::Shaft},  {Hull::UpperArm, Hull::Needle}, {Hull::Elbow, Hull::Wrist2},
+    {Hull::Elbow, Hull::Wrist3},    {Hull::Elbow, Hull::Shaft},     {Hull::Elbow, Hull::Needle},
+    {Hull::Forearm, Hull::Wrist3},  {Hull::Forearm, Hull::Shaft},   {Hull::Forearm, Hull::Needle},
+    {Hull::Wrist1, Hull::Shaft},    {Hull::Wrist1, Hull::Needle},   {Hull::Wrist2, Hull::Shaft},
+    {Hull::Wrist2, Hull::Needle}};
+
+/// Squared distance of two segments: the nearest places of the two lines, each drawn back onto its segment.
+double segments_squared_mm2(const Capsule& a, const Capsule& b) {
+  constexpr double kPointMm2 = 1e-12;  // shorter is a point
+  const Vec3 u = a.to_mm - a.from_mm, v = b.to_mm - b.from_mm, between = a.from_mm - b.from_mm;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), ub = u.dot(between), vb = v.dot(between);
+  double s = 0.0, t = 0.0;
+  if (uu > kPointMm2 && vv > kPointMm2) {
+    const double across = uu * vv - uv * uv;
+    s = across > kPointMm2 * uu * vv ? std::clamp((uv * vb - ub * vv) / across, 0.0, 1.0) : 0.0;
+    t = (uv * s + vb) / vv;
+    if (t < 0.0 || t > 1.0) {
+      t = std::clamp(t, 0.0, 1.0);
+      s = std::clamp((uv * t - ub) / uu, 0.0, 1.0);
+    }
+  } else if (uu > kPointMm2) {
+    s = std::clamp(-ub / uu, 0.0, 1.0);
+  } else if (vv > kPointMm2) {
+    t = std::clamp(vb / vv, 0.0, 1.0);
+  }
+  return (between + s * u - t * v).squaredNorm();
+}
+
+}  // namespace
 
 double distance_mm(const Capsule& a, const Capsule& b) {
   return std::sqrt(segments_squared_mm2(a, b)) - a.radius_mm - b.radius_mm;
@@ -143,4 +148,5 @@ DistanceRange segment_distance(const PointDistance& distance, const Vec3& from, 
   return {std::min(pieces.front().least_mm, nearest_mm), nearest_mm};
 }
 
-}  // namespace incise::robot_detail
+}  // namespace robot_detail
+}  // namespace incise

@@ -22,12 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct FoundScale {
-  PhotoScale scale;
-  nlohmann::ordered_json summary;
-  std::vector<Vec2> marks_px;
-  std::optional<Ruler> ruler;  ///< that the scale was read from
-};
 Json shape_json(const RulerShape& shape) {
   const auto figure = [](const RulerFigure& f) { return Json{{"value", f.value}, {"standard_error", f.error}}; };
   return {{"spacing_change", figure(shape.spacing_change)},
@@ -35,46 +29,6 @@ Json shape_json(const RulerShape& shape) {
           {"skew_deg", figure(shape.skew_deg)},
           {"end_stretch", figure(shape.end_stretch)},
           {"bow", figure(shape.bow)}};
-}
-
-FoundScale scale_of(const ScaleRequest& request, const ColorPicture& picture, const std::filesystem::path& name) {
-  const int ways = request.ways();
-  if (ways != 1) {
-    throw CaseError("command line", "scale", ways == 0 ? "no scale" : fmt::format("{} scales", ways),
-                    "one of --mm-per-pixel, --ruler, --two-points, --rectangle");
-  }
-  if (request.ruler == RulerKind::Bar && !request.ruler_mm)
-    throw CaseError("command line", "--ruler bar", "no length", "the bar's length: --ruler-mm");
-  FoundScale found;
-  try {
-    if (request.mm_per_pixel > 0.0) {
-      found.scale = scale_from_mm_per_pixel(request.mm_per_pixel, picture.height);
-      found.summary["source"] = "mm_per_pixel";
-    } else if (!request.two_points.empty()) {
-      const auto& p = request.two_points;
-      found.marks_px = {{p[0], p[1]}, {p[2], p[3]}};
-      found.scale = scale_from_two_points(found.marks_px[0], found.marks_px[1], p[4], picture.height);
-      found.summary["source"] = "two_points";
-    } else if (!request.rectangle.empty()) {
-      if (request.rectangle_mm.size() != 2)
-        throw CaseError("command line", "--rectangle-mm", "nothing", "the rectangle's width and height");
-      for (std::size_t i = 0; i < 4; ++i)
-        found.marks_px.emplace_back(request.rectangle[2 * i], request.rectangle[2 * i + 1]);
-      found.scale = scale_from_rectangle({found.marks_px[0], found.marks_px[1], found.marks_px[2], found.marks_px[3]},
-                                         request.rectangle_mm[0], request.rectangle_mm[1]);
-      found.summary["source"] = "rectangle";
-    }
-  } catch (const InvalidArgument& error) {
-    throw CaseError("command line", "scale", "points or lengths that give none", "ones that do", error.as_hint());
-  }
-  if (!request.ruler) return found;
-  const Ruler ruler = find_ruler(picture, *request.ruler, request.ruler_mm, name);
-  found.scale = scale_from_mm_per_pixel(ruler.mm_per_pixel, picture.height);
-  found.marks_px = ruler.marks_px;
-  found.summary = {{"source", "ruler"}, {"marks", ruler.marks_px.size()}, {"error_percent", ruler.error_percent}};
-  found.summary["shape"] = ruler.shape ? shape_json(*ruler.shape) : Json(nullptr);
-  found.ruler = ruler;
-  return found;
 }
 
 /// The contours of one evaluation with the signed error in colour, as in the paper's Fig. 6 c, d.
@@ -143,6 +97,7 @@ struct Measured {
   nlohmann::ordered_json json;
   std::vector<std::string> warnings;
   Verdict verdict;  ///< of the measurement: whether its numbers can be trusted
+  FoundPixels pixels;  ///< of a photograph
 };
 
 /// What `measure` finds, in JSON too. The settings are known to be valid here, so what it refuses is the fault of the
@@ -150,7 +105,7 @@ struct Measured {
 template <typename Measure>
 Measured measured(const std::filesystem::path& file, const Measure& measure) {
   try {
-    Measured result{measure(), {}, {}, {}};
+    Measured result{measure(), {}, {}, {}, {}};
     result.json = to_json(result.evaluation);
     result.json["points"] = points_json(result.evaluation);
     return result;
@@ -229,7 +184,7 @@ EvaluateRequest completed(EvaluateRequest request) {
 Measured from_photo(const EvaluateRequest& request) {
   const EvaluationSettings& settings = request.settings;
   const ColorPicture picture = decode_picture(read_text(request.photo), request.photo);
-  const FoundScale scale = scale_of(request.scale, picture, request.photo);
+  const FoundScale scale = find_scale(request.scale, picture, request.photo);
   // The mid-line of a painted band is the middle of a line.
   const bool wants_border = request.red == RedLine::Kerf && settings.contour == ContourKind::InnerEdge;
   const PhotoSettings photo{.red = wants_border ? RedLine::Kerf : RedLine::Annotation,
@@ -259,6 +214,7 @@ Measured from_photo(const EvaluateRequest& request) {
     write_atomically(request.figure, png);
     result.json["figure"] = request.figure.string();
   }
+  result.pixels = {scale.marks_px, found.red.points_px, found.red.is_closed, found.green.points_px};
   return result;
 }
 
@@ -303,7 +259,47 @@ int ScaleRequest::ways() const {
   return (mm_per_pixel > 0.0) + ruler.has_value() + !two_points.empty() + !rectangle.empty();
 }
 
-StepResult evaluate_cut(const EvaluateRequest& asked, const StepContext& context) {
+FoundScale find_scale(const ScaleRequest& request, const ColorPicture& picture, const std::filesystem::path& name) {
+  const int ways = request.ways();
+  if (ways != 1) {
+    throw CaseError("command line", "scale", ways == 0 ? "no scale" : fmt::format("{} scales", ways),
+                    "one of --mm-per-pixel, --ruler, --two-points, --rectangle");
+  }
+  if (request.ruler == RulerKind::Bar && !request.ruler_mm)
+    throw CaseError("command line", "--ruler bar", "no length", "the bar's length: --ruler-mm");
+  FoundScale found;
+  try {
+    if (request.mm_per_pixel > 0.0) {
+      found.scale = scale_from_mm_per_pixel(request.mm_per_pixel, picture.height);
+      found.summary["source"] = "mm_per_pixel";
+    } else if (!request.two_points.empty()) {
+      const auto& p = request.two_points;
+      found.marks_px = {{p[0], p[1]}, {p[2], p[3]}};
+      found.scale = scale_from_two_points(found.marks_px[0], found.marks_px[1], p[4], picture.height);
+      found.summary["source"] = "two_points";
+    } else if (!request.rectangle.empty()) {
+      if (request.rectangle_mm.size() != 2)
+        throw CaseError("command line", "--rectangle-mm", "nothing", "the rectangle's width and height");
+      for (std::size_t i = 0; i < 4; ++i)
+        found.marks_px.emplace_back(request.rectangle[2 * i], request.rectangle[2 * i + 1]);
+      found.scale = scale_from_rectangle({found.marks_px[0], found.marks_px[1], found.marks_px[2], found.marks_px[3]},
+                                         request.rectangle_mm[0], request.rectangle_mm[1]);
+      found.summary["source"] = "rectangle";
+    }
+  } catch (const InvalidArgument& error) {
+    throw CaseError("command line", "scale", "points or lengths that give none", "ones that do", error.as_hint());
+  }
+  if (!request.ruler) return found;
+  const Ruler ruler = find_ruler(picture, *request.ruler, request.ruler_mm, name);
+  found.scale = scale_from_mm_per_pixel(ruler.mm_per_pixel, picture.height);
+  found.marks_px = ruler.marks_px;
+  found.summary = {{"source", "ruler"}, {"marks", ruler.marks_px.size()}, {"error_percent", ruler.error_percent}};
+  found.summary["shape"] = ruler.shape ? shape_json(*ruler.shape) : Json(nullptr);
+  found.ruler = ruler;
+  return found;
+}
+
+PhotographedCut evaluate_photograph(const EvaluateRequest& asked, const StepContext& context) {
   const EvaluateRequest request = completed(asked);
   const std::vector<std::filesystem::path> inputs{request.photo, request.incision, request.tumor, request.line};
   const std::string specimen_id = specimen_of(request, inputs);
@@ -312,7 +308,12 @@ StepResult evaluate_cut(const EvaluateRequest& asked, const StepContext& context
   if (!request.output.empty()) write_json(request.output, found.json);
   for (const std::string& warning : found.warnings) context.monitor.message(Severity::Warning, warning);
   const bool is_refused = found.verdict.status() == VerdictStatus::Refused;
-  return {std::move(found.json), found.evaluation.outcome == Outcome::Success && !is_refused};
+  const bool is_acceptable = found.evaluation.outcome == Outcome::Success && !is_refused;
+  return {{std::move(found.json), is_acceptable}, std::move(found.pixels)};
+}
+
+StepResult evaluate_cut(const EvaluateRequest& request, const StepContext& context) {
+  return evaluate_photograph(request, context).step;
 }
 
 }  // namespace incise::steps

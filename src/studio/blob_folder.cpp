@@ -51,6 +51,9 @@ nlohmann::ordered_json BlobFolder::put(const std::string& slot, std::span<const 
 nlohmann::ordered_json BlobFolder::put(const std::string& slot, std::span<const std::uint32_t> values) {
   return write(slot, bytes_of(values), "uint32", values.size());
 }
+nlohmann::ordered_json BlobFolder::put(const std::string& slot, std::span<const float> values) {
+  return write(slot, bytes_of(values), "float32", values.size());
+}
 
 nlohmann::ordered_json BlobFolder::put(const std::string& slot, std::span<const Vec3> points) {
   std::vector<float> values;
@@ -58,7 +61,7 @@ nlohmann::ordered_json BlobFolder::put(const std::string& slot, std::span<const 
   for (const Vec3& p : points) {
     for (int a = 0; a < 3; ++a) values.push_back(static_cast<float>(p[a]));
   }
-  return write(slot, bytes_of(std::span<const float>(values)), "float32", values.size());
+  return put(slot, std::span<const float>(values));
 }
 
 nlohmann::ordered_json BlobFolder::put(const std::string& slot, std::span<const Triangle> triangles) {

@@ -21,6 +21,7 @@ class BlobFolder {
   nlohmann::ordered_json put(const std::string& slot, std::span<const std::int16_t> values);
   nlohmann::ordered_json put(const std::string& slot, std::span<const std::uint8_t> values);
   nlohmann::ordered_json put(const std::string& slot, std::span<const std::uint32_t> values);
+  nlohmann::ordered_json put(const std::string& slot, std::span<const float> values);
   /// Coordinates, x y z after each other, as float32.
   nlohmann::ordered_json put(const std::string& slot, std::span<const Vec3> points);
   /// Corners of triangles as uint32.

@@ -1,13 +1,17 @@
 #include "calls.hpp"
 
+#include "arguments.hpp"
+
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/geometry/iso_surface.hpp>
 #include <incise/imaging/segmentation.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/mesh_io.hpp>
 #include <incise/laboratory/bench_steps.hpp>
 #include <incise/steps/case_steps.hpp>
+#include <incise/steps/tissue_steps.hpp>
 #include <incise/storage/case_edit.hpp>
 #include <incise/storage/case_run.hpp>
 #include <incise/workflow/cut_doubts.hpp>
@@ -15,7 +19,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace incise::studio {
@@ -28,28 +34,6 @@ constexpr double kEdgeStepMm = 1.0;            // of a drawn edge
 constexpr double kMomentS = 1.0;               // between two pictures of a cut under way
 constexpr std::size_t kMostEdgePoints = 2000;  // that a person draws
 constexpr std::string_view kDrawnEdge = "tumor_edge";
-
-/// An argument of a call. @throws CaseError where it is missing or of another type.
-template <class Value>
-Value argument(const Json& arguments, const char* name, const char* expected) {
-  const auto found = arguments.find(name);
-  try {
-    if (found != arguments.end()) return found->get<Value>();
-  } catch (const Json::exception&) {
-  }
-  throw CaseError("request", name, found == arguments.end() ? "nothing" : found->dump().substr(0, 80), expected);
-}
-
-std::string text_argument(const Json& arguments, const char* name) {
-  return argument<std::string>(arguments, name, "a text");
-}
-
-Points points_argument(const Json& arguments, const char* name) {
-  Points points;
-  for (const auto& p : argument<std::vector<std::array<double, 3>>>(arguments, name, "a list of [x, y, z]"))
-    points.emplace_back(p[0], p[1], p[2]);
-  return points;
-}
 
 /// A plain name for a new folder.
 std::string folder_name(const Json& arguments) {
@@ -158,10 +142,15 @@ Json case_json(const CaseFile& file) {
   return json;
 }
 
-Segmentation segmentation_of(const CaseFile& file, const CtVolume* ct, Monitor& monitor) {
-  if (!file.inputs.ct_labels.empty())
-    return segment_labels(read_labels(file.inputs.ct_labels), file.settings.segmentation, monitor);
-  return segment(*ct, file.settings.segmentation, monitor);
+/// The values of a label volume but 0, and how many voxels have each.
+Json label_counts(const LabelVolume& labels) {
+  std::array<std::size_t, 256> counts{};
+  for (const std::uint8_t label : labels.voxels) ++counts[label];
+  Json json = Json::array();
+  for (std::size_t value = 1; value < counts.size(); ++value) {
+    if (counts[value] > 0) json.push_back({{"value", value}, {"voxels", counts[value]}});
+  }
+  return json;
 }
 
 /// Where a drawn edge goes: a name that is free, so that no edge is ever lost.
@@ -204,23 +193,35 @@ std::string part_of_run(const std::string& cut) {
   return cut == name_of_pass(0) ? "as planned" : cut;
 }
 
-RunContext context_of(const Workers& workers) {
-  return {"incise studio", 1, workers.thread_count()};
-}
-
 }  // namespace
 
 Calls::Calls(const fs::path& blobs, Monitor& monitor, Watchers watchers)
     : blobs_(blobs), monitor_(monitor), watchers_(std::move(watchers)) {}
 
+RunContext Calls::context(std::uint64_t seed) const {
+  return {"incise studio", seed, workers_.thread_count()};
+}
+
 Json Calls::make(const std::string& name, const fs::path& file, const Json& arguments) {
   using Call = Json (Calls::*)(const Json&);
   static const std::map<std::string, Call> without_case{
       {"open", &Calls::open}, {"create", &Calls::create}, {"demo", &Calls::demo}};
-  static const std::map<std::string, Call> of_case{
-      {"case", &Calls::show_case},  {"change", &Calls::change}, {"scan", &Calls::scan},
-      {"tissue", &Calls::tissue},   {"edge", &Calls::edge},     {"body", &Calls::body},
-      {"stretch", &Calls::stretch}, {"plan", &Calls::plan},     {"run", &Calls::run}};
+  static const std::map<std::string, Call> of_case{{"case", &Calls::show_case},
+                                                   {"change", &Calls::change},
+                                                   {"scan", &Calls::scan},
+                                                   {"tissue", &Calls::tissue},
+                                                   {"edge", &Calls::edge},
+                                                   {"body", &Calls::body},
+                                                   {"stretch", &Calls::stretch},
+                                                   {"plan", &Calls::plan},
+                                                   {"run", &Calls::run},
+                                                   {"picture", &Calls::picture},
+                                                   {"photograph", &Calls::photograph},
+                                                   {"virtual_cloud", &Calls::virtual_cloud},
+                                                   {"register", &Calls::register_cloud},
+                                                   {"lay", &Calls::lay},
+                                                   {"arm", &Calls::arm},
+                                                   {"report", &Calls::report}};
   file_ = file;
   if (!arguments.is_object()) throw CaseError("request", "", "no object", "the arguments as an object");
   if (const auto call = without_case.find(name); call != without_case.end()) return (this->*call->second)(arguments);
@@ -235,35 +236,41 @@ Json Calls::open(const Json& arguments) {
 }
 
 Json Calls::create(const Json& arguments) {
-  const fs::path scan = text_argument(arguments, "scan");
+  const auto is_given = [&](const char* name) { return arguments.contains(name); };
+  static constexpr std::array kSources{std::pair{"scan", "ct.volume"}, std::pair{"labels", "ct.labels"},
+                                       std::pair{"mesh", "specimen.mesh"}, std::pair{"surface", "specimen.mesh"}};
+  const auto source = std::ranges::find_if(kSources, [&](const auto& one) { return is_given(one.first); });
+  if (source == kSources.end())
+    throw CaseError("request", "scan", "nothing", "a scan, labels, a mesh or a surface to make a case of");
+  const fs::path given = text_argument(arguments, source->first);
   const std::string name = folder_name(arguments);
   const fs::path folder = new_folder(text_argument(arguments, "folder"), name);
+  const bool is_surface = source->first == std::string_view("surface");
+  const fs::path body = folder / "body.vtu";
   CaseChanges changes = changes_of(arguments, "settings");
   changes["title"] = name;
-  changes["ct.volume"] = scan.lexically_proximate(folder).string();
+  changes[source->second] = (is_surface ? body : given).lexically_proximate(folder).string();
   const std::string text = changed_case(fmt::format("schema: {}\n", kCaseSchemaName), changes);
   const CaseFile made = parse_case(text, folder / "case.yaml");
-  static_cast<void>(ct_of(made));  // a case of a scan that cannot be read is of no use
+  require_readable(made, is_surface);
   fs::create_directory(folder);
   try {
+    if (is_surface) {
+      static_cast<void>(steps::mesh_body({.input = given, .output = body}, {context(), workers_, monitor_}));
+    }
     write_atomically(made.file, text);
   } catch (...) {
     std::error_code ignored;
-    fs::remove(folder, ignored);
+    fs::remove_all(folder, ignored);  // it was made here, and holds nothing else
     throw;
   }
   return case_json(made);
 }
 
 Json Calls::demo(const Json& arguments) {
-  const Json given = argument<Json>(arguments, "seed", "a whole number of at least 0");
-  if (!given.is_number_unsigned())
-    throw CaseError("request", "seed", given.dump().substr(0, 80), "a whole number of at least 0");
-  const auto seed = given.get<std::uint64_t>();
+  const std::uint64_t seed = seed_argument(arguments, "seed");
   const fs::path folder = new_folder(text_argument(arguments, "folder"), fmt::format("virtual_tongue_{}", seed));
-  RunContext context = context_of(workers_);
-  context.seed = seed;
-  static_cast<void>(laboratory::make_phantom_case({.output = folder}, {context, workers_, monitor_}));
+  static_cast<void>(laboratory::make_phantom_case({.output = folder}, {context(seed), workers_, monitor_}));
   return case_json(read_case(folder));
 }
 
@@ -298,6 +305,13 @@ const CtVolume& Calls::ct_of(const CaseFile& file) {
   return ct_;
 }
 
+void Calls::require_readable(const CaseFile& made, bool is_made_later) {
+  if (!made.inputs.ct_volume.empty()) static_cast<void>(ct_of(made));
+  if (!made.inputs.ct_labels.empty()) static_cast<void>(read_labels(made.inputs.ct_labels));
+  if (!made.inputs.specimen_mesh.empty() && !is_made_later)
+    static_cast<void>(read_tet_mesh(made.inputs.specimen_mesh, monitor_));
+}
+
 Json Calls::scan(const Json&) {
   const CaseFile file = read_case(file_);
   const CtVolume& ct = ct_of(file);
@@ -310,13 +324,18 @@ Json Calls::scan(const Json&) {
 
 Json Calls::tissue(const Json&) {
   const CaseFile file = read_case(file_);
-  const Segmentation found = segmentation_of(file, file.inputs.ct_labels.empty() ? &ct_of(file) : nullptr, monitor_);
+  std::optional<LabelVolume> given;
+  if (!file.inputs.ct_labels.empty()) given = read_labels(file.inputs.ct_labels);
+  const SegmentationSettings& settings = file.settings.segmentation;
+  const Segmentation found =
+      given ? segment_labels(*given, settings, monitor_) : segment(ct_of(file), settings, monitor_);
   const TriMesh skin = iso_surface(found.occupancy, 0.5);
   Json summary = to_json(found);
   summary.erase("verdict");
   return {{"grid", grid_json(found.labels.grid)},
           {"labels", blobs_.put("tissue.labels", std::span<const std::uint8_t>(found.labels.voxels))},
           {"skin", surface_json(blobs_, "tissue.skin", skin.vertices, skin.triangles)},
+          {"given_labels", given ? label_counts(*given) : Json(nullptr)},
           {"summary", std::move(summary)},
           {"verdict", to_json(found.verdict)}};
 }
@@ -352,7 +371,7 @@ Study Calls::study_until(Stage until) {
   CaseFile file = read_case_with_inputs(file_);
   RunOptions options;
   options.until = until;
-  CaseRun run(std::move(file), output_beside(file_), options, context_of(workers_));
+  CaseRun run(std::move(file), output_beside(file_), options, context());
   return run.study(workers_, monitor_);
 }
 
@@ -387,7 +406,7 @@ Json Calls::plan(const Json&) {
                     "a stretch that comes to rest");
   Verdict verdict = study.about_inputs;
   verdict.add(verdict_before_cut(file.settings, *study.model, study.stretched->state.positions, *study.plan));
-  return {{"path", path_json(*study.plan)},
+  return {{"path", tool_path_json(*study.plan)},
           {"edge", points_json(study.plan->tumor_edge.points)},
           {"verdict", to_json(verdict)}};
 }
@@ -419,12 +438,10 @@ void Calls::send_moment(const std::string& cut, const CutState& state, const Ski
 
 Json Calls::run(const Json& arguments) {
   shows_moments_ = true;
-  const auto accepted = arguments.contains("accept")
-                            ? argument<std::vector<std::string>>(arguments, "accept", "a list of ids")
-                            : std::vector<std::string>{};
-  for (const std::string& id : accepted) static_cast<void>(verdict_rule(id));
+  const std::vector<std::string> accepted = accepted_argument(arguments);
   const fs::path output = output_beside(file_);
   steps::CaseRequest request{read_case_with_inputs(file_), output, {}};
+  remove_replaceable(laid_folder(request.file));  // of an earlier run
   request.options.watch = [this](const auto& cut, const auto& model, const auto& progress) {
     show_moment(cut, model, progress);
   };
@@ -443,7 +460,7 @@ Json Calls::run(const Json& arguments) {
     json["corrected"] =
         study.corrected ? cut_json(settings, *study.corrected, study.correction->moves.path) : Json(nullptr);
   };
-  const Json done = steps::run_loop(request, accepted, {context_of(workers_), workers_, monitor_}, take).json;
+  const Json done = steps::run_loop(request, accepted, {context(), workers_, monitor_}, take).json;
   json["report"] = done.at("report");
   return json;
 }

@@ -7,6 +7,7 @@
 #include <incise/core/workers.hpp>
 #include <incise/geometry/volume.hpp>
 #include <incise/storage/case_file.hpp>
+#include <incise/storage/run_folder.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <nlohmann/json.hpp>
@@ -17,6 +18,11 @@
 #include <string>
 
 namespace incise::studio {
+
+/// Where `lay` puts the path and the program on the measured tissue. It goes when the case is run or registered anew.
+[[nodiscard]] inline std::filesystem::path laid_folder(const CaseFile& file) {
+  return file.folder / "on_tissue";
+}
 
 /// What a browser asks for, each a few calls of the library: see docs/decisions/0009-studio.md. The state is in the
 /// case folder; only the CT that was read last is kept.
@@ -47,8 +53,19 @@ class Calls {
   Json stretch(const Json& arguments);
   Json plan(const Json& arguments);
   Json run(const Json& arguments);
+  // After the cut: after_cut_calls.cpp.
+  Json picture(const Json& arguments);
+  Json photograph(const Json& arguments);
+  Json virtual_cloud(const Json& arguments);
+  Json register_cloud(const Json& arguments);
+  Json lay(const Json& arguments);
+  Json arm(const Json& arguments);
+  Json report(const Json& arguments);
 
+  [[nodiscard]] RunContext context(std::uint64_t seed = 1) const;
   [[nodiscard]] const CtVolume& ct_of(const CaseFile& file);
+  /// A case of what cannot be read is of no use. @param is_made_later  its mesh. @throws DataError
+  void require_readable(const CaseFile& made, bool is_made_later);
   /// Runs the case up to a stage, in its own output folder.
   [[nodiscard]] Study study_until(Stage until);
   void show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress);

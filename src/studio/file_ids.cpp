@@ -28,6 +28,7 @@ std::string kind_by_name(std::string name) {
   if (ends_with_any(name, {".vtu", ".msh", ".ele"})) return "mesh";
   if (ends_with_any(name, {".mrk.json", ".csv"})) return "contour";
   if (ends_with_any(name, {".stl", ".ply", ".vtp", ".obj"})) return "surface";
+  if (ends_with_any(name, {".png", ".jpg", ".jpeg", ".tif", ".tiff"})) return "picture";
   if (ends_with_any(name, {".yaml", ".yml"})) return "case";
   return "other";
 }

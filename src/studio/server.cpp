@@ -26,6 +26,7 @@
 #include <cstdlib>
 #include <deque>
 #include <list>
+#include <set>
 
 namespace incise::studio {
 namespace asio = boost::asio;
@@ -41,6 +42,7 @@ constexpr std::uint64_t kLargestBody = 4U << 20;
 constexpr std::uint32_t kLargestHeader = 8U << 10;
 constexpr int kMostConnections = 64;
 constexpr std::chrono::seconds kSilence{30};    // of a connection, after which it is closed
+constexpr std::chrono::seconds kFirstSilence(5);  // of a connection that has not asked yet
 constexpr std::chrono::seconds kHeartbeat{15};  // of the stream of events
 constexpr std::size_t kMostEvents = 1000;       // that wait for a reader; older ones are dropped
 
@@ -192,28 +194,33 @@ class Server {
   /// Answers the requests of a connection, one after the other. Whatever breaks it ends it.
   asio::awaitable<void> converse(beast::tcp_stream stream) {
     beast::flat_buffer buffer;
+    bool is_first = true;
     for (bool is_kept = true; is_kept;) {
       http::request_parser<http::string_body> parser;
       parser.body_limit(kLargestBody);
       parser.header_limit(kLargestHeader);
-      stream.expires_after(kSilence);
+      stream.expires_after(is_first ? kFirstSilence : kSilence);
+      is_first = false;
       boost::system::error_code failed;
       co_await http::async_read_header(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
       if (failed == http::error::end_of_stream || failed == beast::error::timeout) co_return;
       if (failed) {
         Response answered = failed == http::error::body_limit ? too_large() : plain(400, "Malformed request.", false);
         co_await send(stream, std::move(answered));
+        co_await drain(stream);
         co_return;
       }
       if (const auto refusal = refusal_of(info_of(parser.get()), token_)) {  // before its body is read
         Response answered = plain(refusal->status, refusal->why, false);
         co_await send(stream, std::move(answered));
+        co_await drain(stream);
         co_return;
       }
       co_await http::async_read(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
       if (failed == http::error::body_limit) {
         Response answered = too_large();
         co_await send(stream, std::move(answered));
+        co_await drain(stream);
         co_return;
       }
       if (failed) co_return;
@@ -224,10 +231,20 @@ class Server {
     }
   }
 
+  /// Reads what is still on its way and drops it: a connection that is closed over unread bytes is reset, and its other
+  /// end may lose the answer.
+  asio::awaitable<void> drain(beast::tcp_stream& stream) {
+    std::string dropped(65536, '\0');
+    const asio::mutable_buffer room = asio::buffer(dropped);
+    boost::system::error_code failed;
+    stream.expires_after(kFirstSilence);
+    while (!failed) co_await stream.async_read_some(room, asio::redirect_error(asio::use_awaitable, failed));
+  }
+
   static RequestInfo info_of(const Request& request) {
     return {text_of(request.method_string()),
             text_of(request.target()),
-            text_of(request[http::field::host]),
+            request.count(http::field::host) == 1 ? text_of(request[http::field::host]) : std::string_view(),
             text_of(request["X-Incise-Token"]),
             text_of(request[http::field::content_type]),
             text_of(request[http::field::origin]),
@@ -397,8 +414,9 @@ class Server {
 
   /// Files that a call names by their ids, as paths.
   void translate_files(Json& arguments) const {
-    for (const char* name : {"file", "folder", "scan"}) {
-      if (arguments.contains(name)) arguments[name] = path_of(arguments.at(name), name);
+    for (const char* name : {"file", "folder", "scan", "labels", "mesh", "surface", "camera"}) {
+      if (arguments.contains(name) && !arguments.at(name).is_null())
+        arguments[name] = path_of(arguments.at(name), name);
     }
     if (!arguments.contains("files")) return;
     if (!arguments.at("files").is_object()) throw CaseError("request", "files", "no object", "keys and ids of files");
@@ -443,12 +461,19 @@ class Server {
   }
 
   Json stop(const Json& arguments) {
-    (arguments.contains("call") && arguments.at("call") == "run" ? runner_ : desk_).stop();
+    const bool is_run =
+        arguments.contains("call") && arguments.at("call").is_string() && is_of_a_run(arguments.at("call"));
+    (is_run ? runner_ : desk_).stop();
     return Json::object();
   }
 
   /// Calls of the desk that write into the case's output folder, which only one process may at a time.
-  static bool makes_output(const std::string& name) { return name == "body" || name == "stretch" || name == "plan"; }
+  static bool makes_output(const std::string& name) {
+    static const std::set<std::string> names{"body", "stretch", "plan", "virtual_cloud", "register"};
+    return names.contains(name);
+  }
+  /// Calls of the other worker: they compute what a run does, or take it up.
+  static bool is_of_a_run(const std::string& name) { return name == "run" || name == "lay"; }
 
   static CallOutcome refused_during_a_run() {
     return {CallOutcome::Kind::Problem, problem_json({}, "A run is under way. Wait for its end, or stop it.")};
@@ -456,8 +481,8 @@ class Server {
 
   /// Makes a call; what goes wrong on the way to a worker is an outcome, too.
   asio::awaitable<CallOutcome> outcome_of(std::string name, Json arguments) {
-    const bool is_run = name == "run", is_counted = makes_output(name);
-    if (is_counted && !runner_.running().empty()) co_return refused_during_a_run();
+    const bool is_run = is_of_a_run(name), is_counted = makes_output(name);
+    if ((is_counted || is_run) && !runner_.running().empty()) co_return refused_during_a_run();
     asio::steady_timer pause(io_);
     while (is_run && desk_makes_output_ > 0) {
       pause.expires_after(std::chrono::milliseconds(50));
@@ -477,7 +502,7 @@ class Server {
   }
 
   asio::awaitable<Response> call_worker(std::string name, Json arguments, bool is_kept) {
-    const bool is_run = name == "run";
+    const bool is_run = is_of_a_run(name);
     const bool opens = name == "open" || name == "create" || name == "demo";
     if (is_run) asio::co_spawn(io_, notify_of_state(), asio::detached);
     CallOutcome outcome = co_await outcome_of(std::move(name), std::move(arguments));
@@ -494,6 +519,8 @@ class Server {
       case CallOutcome::Kind::Result:
         break;
     }
+    if (outcome.content.contains("cloud"))
+      outcome.content["file"] = files_.id_of(outcome.content.at("cloud").get<std::string>());
     if (opens) case_file_ = outcome.content.at("file").get<std::string>();
     if (outcome.content.contains("revision") && outcome.content.at("file") == case_file_) {
       shown_case_ = outcome.content;

@@ -118,7 +118,7 @@ Json surface_json(BlobFolder& blobs, const std::string& slot, std::span<const Ve
           {"triangles", blobs.put(slot + ".triangles", triangles)}};
 }
 
-Json path_json(const ToolPath& path) {
+Json tool_path_json(const ToolPath& path) {
   Json axes = Json::array(), depths = Json::array();
   for (const Waypoint& w : path.waypoints) {
     axes.push_back(vector_json(w.axis));
@@ -134,7 +134,7 @@ Json cut_json(const Case& settings, const SimulatedCut& cut, const ToolPath& fol
   const DepthReached& depth = cut.incision.kerf.depth;
   const ContourErrors& errors = cut.centerline.errors;
   Json json;
-  json["path"] = path_json(followed);
+  json["path"] = tool_path_json(followed);
   json["outcome"] = to_string(cut.outcome);
   json["centerline"] = contour_json(cut.incision.centerline);
   json["inner_edge"] = contour_json(cut.incision.inner_edge);

@@ -36,7 +36,7 @@ struct Skin {
 /// {"vertices", "triangles"}. @param slot  begins the names of both arrays' slots.
 [[nodiscard]] nlohmann::ordered_json surface_json(BlobFolder& blobs, const std::string& slot,
                                                   std::span<const Vec3> vertices, std::span<const Triangle> triangles);
-[[nodiscard]] nlohmann::ordered_json path_json(const ToolPath& path);
+[[nodiscard]] nlohmann::ordered_json tool_path_json(const ToolPath& path);
 /// A cut as the interface gives it (docs/decisions/0009-studio.md). @param followed  the path that the tool followed.
 [[nodiscard]] nlohmann::ordered_json cut_json(const Case& settings, const SimulatedCut& cut, const ToolPath& followed);
 

@@ -63,7 +63,10 @@ function mm(value) {
 }
 
 /** How many of the four views can be seen in each step: on a wide page, and on a phone. */
-const kViews = {open: [4, 1], see: [4, 1], edge: [4, 1], hold: [4, 1], plan: [1, 1], run: [1, 1], compare: [1, 1]};
+const kViews = {
+  ...{open: [4, 1], see: [4, 1], edge: [4, 1], hold: [4, 1], plan: [1, 1], run: [1, 1], compare: [1, 1]},
+  ...{photograph: [1, 1], register: [1, 1], program: [1, 1]},
+};
 
 async function assertViews(page, step, isPhone) {
   const boxes = await Promise.all((await page.locator(".view").all()).map((view) => view.boundingBox()));
@@ -74,7 +77,7 @@ async function assertViews(page, step, isPhone) {
 /** Notes the progress and the moments that the page shows from now on. */
 function watchRun(page) {
   return page.evaluate(() => {
-    const seen = {progress: [], moments: [], needle: false};
+    const seen = {progress: [], moments: [], parts: [], needle: false};
     const note = (list, value) => value !== undefined && list.at(-1) !== Number(value) && list.push(Number(value));
     window.seenOfRun = seen;
     new MutationObserver(() => {
@@ -82,9 +85,22 @@ function watchRun(page) {
         moment = document.querySelector("[data-moment]");
       if (bar && bar.dataset.progress) note(seen.progress, bar.dataset.progress);
       if (moment) note(seen.moments, moment.dataset.moment);
+      const parts = [...document.querySelectorAll("[data-part]")].map((part) => `${part.dataset.part}: ${part.textContent}`).join("|");
+      if (parts && seen.parts.at(-1) !== parts) seen.parts.push(parts);
       seen.needle ||= window.incise.views.scene.layers.has("tool");
     }).observe(document.body, {subtree: true, childList: true, attributes: true, characterData: true});
   });
+}
+
+/** Fails unless the parts of a run were under way one at a time and in their order. @param seen  each with its state, divided by | */
+function assertParts(seen) {
+  const now = seen.map((parts) => parts.split("|").filter((part) => part.startsWith("now: ")));
+  assert.ok(now.every((parts) => parts.length === 1), seen.join("\n"));
+  const names = now.map(([part]) => /[A-Z][a-z ]*\d?/.exec(part)[0]).filter((name, k, all) => name !== all[k - 1]);
+  const wanted = ["Preparation", "As planned", "Pass 1", "Pass 2", "Pass 3", "Pass 4", "Pass 5", "Pass 6", "Pass 7", "Program and report"];
+  assert.deepEqual(names, wanted.filter((name) => names.includes(name)), seen.join("\n"));
+  assert.ok(names.includes("As planned") && names.includes("Pass 1"), seen.join("\n"));
+  assert.match(seen[0], /ahead: . Passes of the correction/);
 }
 
 /** The texts of the reasons that are shown. */
@@ -119,8 +135,11 @@ async function assertShows(page, study) {
   for (const [key, shown] of Object.entries(await shownNumbers(page))) {
     assert.deepEqual(shown, [mm(before[key]), mm(after[key])], key);
   }
+  await goTo(page, "program");
+  await idle(page);
   assert.equal(await page.locator("[data-do=download]").count(), study.program.written ? 1 : 0);
   assert.equal(await page.locator("[data-program=none]").count(), study.program.written ? 0 : 1);
+  await goTo(page, "compare");
 }
 
 test("the demo specimen goes from its CT to two cuts side by side", async (t) => {
@@ -330,9 +349,10 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await assertAccessible(page, "run, under way");
     await page.waitForSelector(".page[data-step=compare]");
     await settle(page, "compare");
-    const {progress, moments, needle} = await page.evaluate(() => window.seenOfRun);
+    const {progress, moments, parts, needle} = await page.evaluate(() => window.seenOfRun);
     assert.ok(progress.length > 2 && Math.min(...progress) >= 0 && Math.max(...progress) <= 1, `progress: ${progress}`);
     assert.ok(moments.length > 2 && needle, `moments: ${moments}`);
+    assertParts(parts);
   });
 
   await step("verdict, reasons, numbers and program are those of the study", async () => {

@@ -21,6 +21,7 @@ test("a program is offered once every caution is accepted, and it is the one tha
   await goTo(page, "run");
   await page.click("[data-do=run]");
   await page.waitForSelector(".page[data-step=compare]");
+  await goTo(page, "program");
   await idle(page);
   const missing = await stateOf(page, "run.gate.missing");
   assert.ok(missing.length > 1 && !gateOf(inside).written);

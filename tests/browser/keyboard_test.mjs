@@ -103,13 +103,20 @@ test("opening, seeing and planning by keyboard alone", async (t) => {
     await until(page, () => window.incise.state.edge.isClosed);
     await pressOn(page, "[data-do=save-edge]");
     await until(page, () => window.incise.state.case.inputs["tumor.contour"] === "tumor_edge.csv");
+    await idle(page);
+    const surface = await stateOf(page, "case.inputs"),
+      said = await page.textContent("[data-section=keep] .warning");
+    assert.ok(said.includes(`names a tumour surface, ${surface["tumor.surface"]}:`), said);
+    await pressOn(page, "[data-do=remove-surface]");
+    await until(page, () => window.incise.state.case.inputs["tumor.surface"] === null);
+    assert.equal(await page.locator("[data-do=remove-surface]").count(), 0);
     const x = readPoints(path.join(folder, "specimen", "tumor_edge.csv")).map((point) => point[0]);
     assert.ok(Math.abs(Math.max(...x) - Math.min(...x) - 12) < 1, "12 mm wide");
   });
 
   await then("a coarse mesh is stretched and a path planned", async () => {
     const revision = await stateOf(page, "case.revision");
-    await studio.call("change", {revision, set: {"meshing.tets": 6000, "tumor.surface": null}}); // less to compute
+    await studio.call("change", {revision, set: {"meshing.tets": 6000}}); // less to compute
     await until(page, () => window.incise.state.case.settings.meshing.tets === 6000);
     await step(page, "hold");
     await fresh(page, "body");

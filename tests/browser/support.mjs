@@ -13,10 +13,25 @@ const kStop = 1000 * Number(process.env.INCISE_STOP_S || 600); // ms: ends a tes
 const kPlanes = ["axial", "coronal", "sagittal"];
 
 /** The page's steps in their order. */
-export const kSteps = ["open", "see", "edge", "hold", "plan", "run", "compare"];
+export const kSteps = ["open", "see", "edge", "hold", "plan", "run", "compare", "photograph", "register", "program"];
 
 /** The packages of package.json, from the folder that INCISE_NODE_MODULES names, else from this one. */
 export const packages = createRequire(path.join(process.env.INCISE_NODE_MODULES || kHere, "none.js"));
+if (!isInstalled("playwright-core")) skip("the packages of tests/browser/package.json are not installed");
+
+function isInstalled(name) {
+  try {
+    return Boolean(packages.resolve(name));
+  } catch {
+    return false;
+  }
+}
+
+/** Ends a test file that cannot run here, with the status by which ctest knows it. */
+export function skip(reason) {
+  console.log(`SKIPPED: ${reason}`);
+  process.exit(77);
+}
 
 function command() {
   assert.ok(process.env.INCISE_COMMAND, "INCISE_COMMAND has to name the built incise command");

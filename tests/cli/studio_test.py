@@ -3,9 +3,11 @@
 import array
 import http.client
 import json
+import math
 import os
 import pathlib
 import re
+import shlex
 import signal
 import socket
 import subprocess
@@ -14,6 +16,7 @@ import time
 import unittest
 
 import small_case
+import small_photo
 from command import BAD_CASE, BAD_DATA, COMMAND, DONE, CommandTest
 
 LONG_CUT = {"cut": {"advance_per_step_mm": 0.2}}  # long enough to be met on its way
@@ -172,8 +175,9 @@ class Calls(StudioTest):
         self.wait_until(lambda: any(one["stage"].startswith("cut") for one in studio.call("state")[1]["running"]))
         status, _ = studio.call("change", {"revision": studio.call("case")[1]["revision"], "set": {"plan.depth_mm": 4}})
         self.assertEqual(status, 200)
-        status, refused = studio.call("body")
-        self.assertEqual((status, refused["problem"]["message"]), (422, "A run is under way. Wait for its end, or stop it."))
+        for other in ("body", "run", "lay"):
+            status, refused = studio.call(other)
+            self.assertEqual((status, refused["problem"]["message"]), (422, "A run is under way. Wait for its end, or stop it."), other)
         asking.join()
         status, run = answers[0]
         self.assertEqual((status, {round(depth, 9) for depth in run["as_planned"]["depth"]["planned_mm"]}), (200, {5.0}))
@@ -220,6 +224,132 @@ class Calls(StudioTest):
     def wait_until(self, holds):
         while not holds():
             time.sleep(0.05)
+
+
+class AfterTheCut(StudioTest):
+    SCALE = 0.06  # mm per pixel
+
+    def named(self, studio, name, folder=None):
+        listed = studio.call("files", {"folder": folder} if folder else {})[1]["entries"]
+        return next(entry for entry in listed if entry["name"] == name)
+
+    def repeated(self, answer):
+        """What the command prints that the answer names as its own."""
+        words = shlex.split(answer["command"])
+        self.assertEqual(words[0], "incise")
+        return self.json_of(*words[1:])
+
+    def test_a_photograph_gets_the_measures_of_the_command_and_says_what_was_drawn_by_hand(self):
+        case = self.small()
+        rings = ((6.0 / self.SCALE, 4.0, small_photo.GREEN, 0.0), (10.0 / self.SCALE, 4.0, small_photo.RED, 0.0))
+        small_photo.ring_photo(self.folder / "cut.png", rings=rings)
+        studio = self.studio(case)
+        photo = self.named(studio, "cut.png")
+        self.assertEqual(photo["kind"], "picture")
+        picture = studio.call("picture", {"file": photo["id"]})[1]
+        self.assertEqual((picture["width"], picture["height"], len(studio.array(picture["rgb"]))), (500, 500, 3 * 500 * 500))
+        status, found = studio.call("photograph", {"file": photo["id"], "scale": {"mm_per_pixel": self.SCALE}})
+        self.assertEqual((status, found["by_hand"], found["incision_closed"]), (200, [], True), found)
+        self.assertEqual(found["evaluation"]["abs_error_mm"], self.repeated(found)["abs_error_mm"])
+        self.assertAlmostEqual(found["evaluation"]["abs_error_mm"]["mean"], 0.5, delta=0.02)
+        self.assertEqual(sorted(found["files"]), [f"photograph_cut/{name}" for name in ("evaluation.json", "found.png", "manifest.json")])
+        for u, v in found["incision_px"]:
+            self.assertAlmostEqual(math.hypot(u - 250, v - 250) * self.SCALE, 10.0, delta=0.1)
+        angles = [2 * math.pi * n / 72 for n in range(72)]
+        drawn = [[250 + 10.5 / self.SCALE * math.cos(a), 250 - 10.5 / self.SCALE * math.sin(a)] for a in angles]
+        status, by_hand = studio.call("photograph", {"file": photo["id"], "scale": {"two_points": [100, 100, 200, 100, 6.0]}, "incision_px": drawn})
+        self.assertEqual((status, by_hand["by_hand"], by_hand["evaluation"]["by_hand"]), (200, ["incision"], ["incision"]), by_hand)
+        self.assertAlmostEqual(by_hand["evaluation"]["abs_error_mm"]["mean"], 0.0, delta=0.03)
+        self.assertEqual(by_hand["evaluation"]["abs_error_mm"], self.repeated(by_hand)["abs_error_mm"])
+        for change, path in (({"scale": {}}, "scale"), ({"scale": {"mm_per_pixel": -1}}, "mm_per_pixel"), ({"scale": {"ruler": "tape"}}, "ruler"),
+                             ({"scale": {"two_points": [1, 2]}}, "two_points"), ({"incision_px": [[1, 2]]}, "incision_px"), ({"red": "blue"}, "red"),
+                             ({"max_gap_mm": -1}, "max_gap_mm")):
+            status, answer = studio.call("photograph", {"file": photo["id"], "scale": {"mm_per_pixel": self.SCALE}, **change})
+            self.assertEqual((status, answer["problem"]["path"]), (422, path), answer)
+        self.assertEqual(len(list(case.glob("photograph_cut*"))), 1)
+
+    def test_a_virtual_cloud_is_registered_and_the_path_laid_on_it_is_labelled_virtual(self):
+        self.json_of("phantom", "--seed", 3, "-o", "specimen")
+        studio = self.studio(self.folder / "specimen")
+        revision = studio.call("case")[1]["revision"]
+        self.assertEqual(studio.call("change", {"revision": revision, "set": {"meshing.tets": 6000}})[0], 200)
+        self.assertEqual(studio.call("lay", {})[1]["problem"]["path"], "registration")
+        status, cloud = studio.call("virtual_cloud", {"seed": 4})
+        self.assertEqual((status, cloud["cloud_is"], cloud["name"]), (200, "virtual", "virtual_cloud.ply"), cloud)
+        status, found = studio.call("register", {"file": cloud["file"], "scale": "fixed"})
+        self.assertEqual((status, found["is_virtual"], found["registration"]["outcome"]), (200, True, "converged"), found)
+        residuals = [abs(r) for r in studio.array(found["sample"]["residuals_mm"]) if r == r]
+        self.assertEqual(len(studio.array(found["sample"]["points"])), 3 * len(studio.array(found["sample"]["residuals_mm"])))
+        self.assertGreater(len(residuals), 1000)
+        self.assertLess(sorted(residuals)[len(residuals) // 2], 0.3)
+        status, laid = studio.call("lay", {"camera": None})
+        self.assertEqual(status, 200, laid)
+        path = json.loads((self.folder / "specimen" / "on_tissue" / "path" / "path.json").read_text())
+        self.assertEqual((path["frame"], path["specimen_is"]), ("robot", "virtual"))
+        self.assertEqual(laid["program"] is None, bool(laid["gate"]["missing"] or laid["gate"]["refused"]))
+        self.assertEqual(len(laid["commands"]), 2)
+        self.assertEqual(studio.call("register", {"file": cloud["file"], "scale": [2, 1]})[1]["problem"]["path"], "scale")
+        self.assertEqual(studio.call("register", {"file": cloud["file"]})[0], 200)
+        self.assertFalse((self.folder / "specimen" / "on_tissue").exists())  # it lay where the last registration put it
+
+    def test_the_arm_and_the_report_are_those_of_the_run(self):
+        case = self.small(small_case.SOUND)
+        small_case.write_tumor_surface(case / "tumor.stl")
+        studio = self.studio(case)
+        self.assertEqual(studio.call("arm")[1]["problem"]["path"], "program")
+        self.assertEqual(studio.call("report")[1]["problem"]["path"], "report")
+        accept = [word for word in small_case.ACCEPTED if word != "--accept"]
+        status, run = studio.call("run", {"accept": accept})
+        self.assertIsNotNone(run["program"], run)
+        arm = studio.call("arm")[1]
+        times, ends, phases = (studio.array(arm[name]) for name in ("time_s", "ends", "phase"))
+        self.assertEqual((len(ends), len(phases)), (len(times) * len(arm["hulls"]) * 6, len(times)))
+        self.assertEqual((arm["outcome"], arm["hulls"][-1]["name"]), ("completed", "needle"))
+        tip = studio.array(arm["tip"])
+        needle = 6 * (len(arm["hulls"]) - 1)
+        for frame in (0, len(times) // 2, len(times) - 1):
+            at = frame * len(arm["hulls"]) * 6 + needle
+            for axis in range(3):
+                self.assertAlmostEqual(ends[at + axis], tip[3 * frame + axis], delta=0.01)
+        self.assertIn("cut", {arm["phases"][phase] for phase in phases})
+        report = studio.call("report")[1]
+        self.assertEqual(bytes(studio.array(report["html"])), (case / "out" / "report.html").read_bytes())
+
+
+class OtherBeginnings(StudioTest):
+    def test_a_case_is_made_of_a_mesh_a_surface_or_labels(self):
+        case = self.small()
+        self.json_of("phantom", "--seed", 3, "-o", "specimen")
+        self.json_of("segment", "specimen/ct", "-o", "tongue.seg.nrrd")
+        studio = self.studio()
+        here = studio.call("files")[1]["folder"]["id"]
+        of_case = next(entry for entry in studio.call("files")[1]["entries"] if entry["name"] == "case")
+        mesh = next(entry for entry in studio.call("files", {"folder": of_case["id"]})[1]["entries"] if entry["kind"] == "mesh")
+        status, made = studio.call("create", {"mesh": mesh["id"], "folder": here, "name": "of_mesh", "settings": {}})
+        self.assertEqual((status, made["inputs"]["specimen.mesh"]), (200, "../case/block.msh"), made)
+        self.assertEqual(studio.call("body")[1]["tets"], 12 * 18 * 4 * 6)
+        labels = next(entry for entry in studio.call("files")[1]["entries"] if entry["name"] == "tongue.seg.nrrd")
+        self.assertEqual(labels["kind"], "labels")
+        status, made = studio.call("create", {"labels": labels["id"], "folder": here, "name": "of_labels", "settings": {}})
+        self.assertEqual((status, made["inputs"]["ct.labels"]), (200, "../tongue.seg.nrrd"), made)
+        tissue = studio.call("tissue")[1]
+        self.assertEqual([one["value"] for one in tissue["given_labels"]], [1])
+        volume = tissue["summary"]["volume_mm3"]
+        x, y, z = studio.array(tissue["skin"]["vertices"])[:3]
+        stroke = {"tissue": False, "radius_mm": 6, "path_mm": [[x, y, z]]}
+        status, edited = studio.call("change", {"revision": made["revision"], "set": {"ct.edits": [stroke]}})
+        self.assertEqual((status, edited["settings"]["ct"]["edits"][0]["radius_mm"]), (200, 6.0), edited)
+        self.assertLess(studio.call("tissue")[1]["summary"]["volume_mm3"], volume - 100)
+        status, refused = studio.call("change", {"revision": edited["revision"], "set": {"ct.label_values": [9]}})
+        self.assertEqual(status, 200)
+        self.assertEqual(studio.call("tissue")[1]["problem"]["path"], "labels")
+        surface = self.folder / "ball.stl"
+        small_case.write_tumor_surface(surface)
+        chosen = next(entry for entry in studio.call("files")[1]["entries"] if entry["name"] == "ball.stl")
+        status, made = studio.call("create", {"surface": chosen["id"], "folder": here, "name": "of_surface", "settings": {}})
+        self.assertEqual((status, made["inputs"]["specimen.mesh"]), (200, "body.vtu"), made)
+        self.assertEqual(studio.call("create", {"folder": here, "name": "of_nothing"})[1]["problem"]["path"], "scan")
+        self.assertFalse((self.folder / "of_nothing").exists())
 
 
 class Refusals(StudioTest):
@@ -310,6 +440,9 @@ class Attacks(StudioTest):
             self.assertEqual(ask("POST", "/api/call/state", b"{}", Host=host)[0], 403, host)
             self.assertEqual(ask("GET", "/", Host=host)[0], 403, host)
         self.assertEqual(ask("POST", "/api/call/state", b"{}", Host=None)[0], 403)
+        with socket.create_connection(("127.0.0.1", self.running.port)) as twice:
+            twice.sendall(f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{self.running.port}\r\nHost: evil.example\r\n\r\n".encode())
+            self.assertIn(b" 403 ", twice.recv(100))
         for token in (None, "", "0" * 32):
             self.assertEqual(ask("POST", "/api/call/state", b"{}", X_Incise_Token=token)[0], 401)
             self.assertEqual(ask("GET", "/api/events", X_Incise_Token=token)[0], 401)
@@ -336,6 +469,8 @@ class Attacks(StudioTest):
     def test_large_requests_are_refused_before_they_are_read(self):
         status, _, _ = self.running.ask("POST", "/api/call/state", None, Content_Length=str(2 << 30))
         self.assertEqual(status, 413)
+        status, _, answer = self.running.ask("POST", "/api/call/state", b" " * (5 << 20))
+        self.assertEqual((status, json.loads(answer)["message"]), (413, "A request is at most 4 MB."))
         status, _, _ = self.running.ask("GET", "/", X_Filler="x" * 9000)
         self.assertEqual(status, 400)
         self.assertEqual(self.running.call("state")[0], 200)

@@ -27,6 +27,12 @@ struct PointCloud {
 /// The cloud as a mesh without triangles, with point data `normals` where it has them: what files hold.
 [[nodiscard]] TriMesh mesh_of(const PointCloud& cloud);
 
+/// Point data of a cloud that no camera saw: whatever is laid on it is labelled virtual. Files keep it.
+inline constexpr const char* kVirtualMark = "virtual";
+[[nodiscard]] inline bool is_marked_virtual(const TriMesh& cloud) {
+  return cloud.point_data.contains(kVirtualMark);
+}
+
 /// The points with the given numbers, in their order.
 [[nodiscard]] PointCloud subset(const PointCloud& cloud, std::span<const std::size_t> indices);
 

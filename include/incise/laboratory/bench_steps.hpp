@@ -31,6 +31,16 @@ struct PhantomRequest {
 /// stretched tissue), tumor.ply, case.yaml, and truth.json for tests; all or nothing. @throws DataError
 steps::StepResult make_phantom_case(const PhantomRequest& request, const steps::StepContext& context);
 
+/// A cloud as a depth camera might give it of a case's stretched specimen, in the robot's frame, for practice: the
+/// visible surface about 1 mm apart, turned and shifted at random from where the case says that it lies, with noise, a
+/// tenth of its points missing, and marked virtual. The seed is the context's.
+struct VirtualCloudRequest {
+  std::filesystem::path case_file;
+  std::filesystem::path output;  ///< .ply
+};
+/// @throws DataError for a case whose stretch does not come to rest; CaseError
+steps::StepResult make_virtual_cloud(const VirtualCloudRequest& request, const steps::StepContext& context);
+
 /// What a laboratory would have of a virtual specimen.
 struct MakeSpecimenRequest {
   std::filesystem::path specimen;  ///< file of hidden parameters; empty: drawn from the seed of the context

@@ -25,6 +25,17 @@ struct ScaleRequest {
   [[nodiscard]] int ways() const;
 };
 
+struct FoundScale {
+  PhotoScale scale;
+  nlohmann::ordered_json summary;  ///< how it was found
+  std::vector<Vec2> marks_px;      ///< that it was read from
+  std::optional<Ruler> ruler;      ///< likewise
+};
+/// @param name  stands for the photograph in messages. @throws CaseError for a scale that is given in no way or in
+/// several, or by places that give none; DataError where no ruler is found.
+[[nodiscard]] FoundScale find_scale(const ScaleRequest& request, const ColorPicture& picture,
+                                    const std::filesystem::path& name);
+
 /// From a photograph of a cut, or from contours, to its measures.
 struct EvaluateRequest {
   std::filesystem::path photo;         ///< empty: contours
@@ -46,6 +57,20 @@ struct EvaluateRequest {
 /// The result is not acceptable if the cut's outcome is not a success, or if the verdict refuses the measurement; see
 /// `outcome` and `verdict` of the JSON. @throws DataError, CaseError
 [[nodiscard]] StepResult evaluate_cut(const EvaluateRequest& request, const StepContext& context);
+
+/// What was found in a photograph, in its pixels.
+struct FoundPixels {
+  std::vector<Vec2> marks_px;  ///< of the scale
+  std::vector<Vec2> incision_px;
+  bool incision_is_closed = true;
+  std::vector<Vec2> tumor_edge_px;
+};
+struct PhotographedCut {
+  StepResult step;
+  FoundPixels pixels;  ///< empty lists for contours
+};
+/// As evaluate_cut, with the places in the photograph. @throws likewise
+[[nodiscard]] PhotographedCut evaluate_photograph(const EvaluateRequest& request, const StepContext& context);
 
 /// From evaluations before and after a change to tests, tables and figures.
 struct CompareRequest {

@@ -1,12 +1,22 @@
 // What the page asks of the server, and how answers reach the state.
 
 import {call, load} from "./api.js";
-import {state, update, isFresh, setting} from "./store.js";
+import {state, update, hasVoxels, isFresh, newBrush, newCloud, newPatch, newPhoto, setting} from "./store.js";
+import {argumentsOf} from "./photo_settings.js";
 import {middleOf, minus, plus, voxelAt} from "./geometry.js";
 
 const kDerived = ["tissue", "body", "stretch", "plan"];
 const kPlanned = ["body", "stretch", "plan"];
-const kNeeds = {see: ["tissue"], edge: ["tissue"], hold: ["body"], plan: kPlanned, run: kPlanned, compare: kPlanned};
+const kNeeds = {
+  see: ["tissue"],
+  edge: ["tissue"],
+  hold: ["body"],
+  plan: kPlanned,
+  run: kPlanned,
+  compare: kPlanned,
+  register: ["body", "stretch"],
+  program: kPlanned,
+};
 
 /** One call with its marks in the state: busy while it runs, its problem if it fails. @returns the result, or null. */
 export async function ask(name, args = {}, isWanted = () => true) {
@@ -50,6 +60,9 @@ export function takeCase(found, isOther) {
   update({case: found, problems: {}, accept: isOther ? [] : state.accept});
   if (!isOther) return;
   update({
+    ...nothingMeasured(),
+    brush: newBrush(),
+    patch: newPatch(),
     scan: null,
     tissue: null,
     body: null,
@@ -60,12 +73,29 @@ export function takeCase(found, isOther) {
     cross: null,
     edge: {...state.edge, points: [], curve: [], isClosed: false, selected: -1, isSaved: true, mode: "look"},
   });
-  loadScan(); // before the tissue: the picture comes first
+  scanning = loadScan();
   goTo("see");
 }
 
+// Of the steps after the run: without a photograph, a registration and an arm.
+function nothingMeasured() {
+  return {
+    picture: null,
+    photograph: null,
+    photo: newPhoto(),
+    cloud: newCloud(),
+    register: null,
+    lay: null,
+    acceptLaid: [],
+    arm: null,
+  };
+}
+
+let scanning = null; // the scan on its way: it comes before the tissue, which may take long without a region box
+
 async function loadScan() {
   const file = state.case.file;
+  if (!state.case.inputs["ct.volume"]) return;
   const scan = await ask("scan");
   if (scan && state.case && state.case.file === file) update({scan, cross: state.cross || firstPlace(scan.grid)});
 }
@@ -88,6 +118,15 @@ export async function begin(name, args) {
 export async function list(folder) {
   const files = await ask("files", folder ? {folder} : {});
   if (files) update({files});
+}
+
+/** Lists the start's folder the nearest to the case. */
+export async function listNearCase() {
+  await list();
+  const {roots = [], folder} = state.files || {};
+  const about = roots.filter((root) => state.case && state.case.file.startsWith(`${root.name}/`));
+  const nearest = about.sort((a, b) => b.name.length - a.name.length)[0];
+  if (nearest && nearest.id !== folder.id) await list(nearest.id);
 }
 
 /** Shows a step, and computes what it shows. */
@@ -118,6 +157,7 @@ function withTriangles(result) {
 /** Computes what the step shows and what is not there yet for these settings. */
 export async function refreshStep() {
   const step = state.step;
+  await scanning;
   for (const name of needsOf(step)) {
     if (!state.case || state.step !== step) return;
     if (isFresh(name) || isFailed(name)) continue;
@@ -125,11 +165,13 @@ export async function refreshStep() {
     if (!(await refresh(name)) && state.case.revision === revision) break;
   }
   if (step === "edge" && state.step === step && isFailed("tissue") && !state.body && !isFailed("body")) refresh("body");
+  if (step === "program" && state.step === step && state.run && state.run.program && !state.arm) refresh("arm");
 }
 
 // A body that is no part of a scan has no tissue to find: its mesh is drawn on instead.
 function needsOf(step) {
   if (step === "edge" && isFailed("tissue")) return ["body"];
+  if (!hasVoxels() && (step === "see" || step === "edge")) return ["body"];
   return kNeeds[step] || [];
 }
 
@@ -196,7 +238,57 @@ export async function saveEdge(points, where) {
 export async function run() {
   update({messages: [], moment: null, progress: {...state.progress, run: null}});
   const result = await refresh("run", {accept: state.accept});
-  if (result) goTo("compare");
+  if (!result) return;
+  update({arm: null, lay: null});
+  goTo(state.step === "program" ? "program" : "compare");
+}
+
+/** Shows a photograph; what was found on another one is dropped. */
+export async function openPicture(file) {
+  update({picture: null, photograph: null, photo: {...newPhoto(), file}});
+  await refresh("picture", {file: file.id});
+}
+
+/** Finds the contours on the photograph, or takes those drawn by hand, and measures the cut. */
+export async function measure() {
+  const asked = argumentsOf(state.photo);
+  if (await refresh("photograph", asked)) update({photograph: {...state.photograph, asked: JSON.stringify(asked)}});
+}
+
+/** Makes a cloud for practice, and chooses it. */
+export async function makeCloud(seed) {
+  const made = await ask("virtual_cloud", {seed});
+  if (!made) return;
+  chooseCloud({id: made.file, name: made.name}, true);
+  if (state.files) list(state.files.folder.id); // it may be in the folder that is listed
+}
+
+/** Chooses the cloud to be registered; a registration of another one is dropped. */
+export function chooseCloud(file, isVirtual = false) {
+  update({cloud: {...state.cloud, file, isVirtual}, register: null, lay: null, acceptLaid: [], notice: ""});
+}
+
+/** Finds where the simulated surface lies in the cloud. */
+export async function register() {
+  const {file, scale, range, settling_mm} = state.cloud;
+  update({lay: null});
+  await refresh("register", {file: file.id, scale: scale === "range" ? range : scale, settling_mm});
+}
+
+/** Drops the registration. */
+export function refuseRegistration() {
+  update({
+    register: null,
+    lay: null,
+    acceptLaid: [],
+    notice: "The registration is refused. Nothing of it is kept here.",
+  });
+}
+
+/** Lays the run's path on the registered cloud. */
+export async function lay() {
+  const {frame, camera} = state.cloud;
+  await refresh("lay", {camera: frame === "camera" && camera ? camera.id : null, accept: state.acceptLaid});
 }
 
 /** Takes an event of the server. */
@@ -231,7 +323,8 @@ export function takeState(data) {
   setProblem("state", data.case_problem ? {kind: "problem", ...data.case_problem} : null);
   if (data.case && !isBusySetting()) takeStored(data.case);
   const isRunning = state.running.some((job) => job.call === "run");
-  if (wasRunning && !isRunning && !state.busy.run) update({notice: "The run has ended. Run again to see what is there."});
+  if (wasRunning && !isRunning && !state.busy.run)
+    update({notice: "The run has ended. Run again to see what is there."});
 }
 
 // An answer that will bring the same case is on its way.

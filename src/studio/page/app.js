@@ -5,7 +5,7 @@ import {useEffect, useReducer, useRef} from "preact/hooks";
 import {call, listen} from "./api.js";
 import {state, subscribe, update} from "./store.js";
 import {goTo, takeEvent, takeState} from "./actions.js";
-import {connectViews, makeView, views} from "./views.js";
+import {connectViews, frameOn, makeView, views} from "./views.js";
 import {kViewNames} from "./scene.js";
 import {Button, Check, Status} from "./widgets.js";
 import {StepOpen} from "./step_open.js";
@@ -15,6 +15,10 @@ import {StepHold} from "./step_hold.js";
 import {StepPlan} from "./step_plan.js";
 import {StepRun, isRunning} from "./step_run.js";
 import {ComparePictures, StepCompare} from "./step_compare.js";
+import {PhotographPictures, StepPhotograph} from "./step_photograph.js";
+import {ResidualScale, StepRegister} from "./step_register.js";
+import {StepProgram} from "./step_program.js";
+import {Player} from "./arm_player.js";
 import {kPlanes} from "./geometry.js";
 import {spoken} from "./words.js";
 
@@ -27,6 +31,9 @@ const kSteps = [
   ["plan", "Plan", StepPlan],
   ["run", "Run", StepRun],
   ["compare", "Compare", StepCompare],
+  ["photograph", "Photograph", StepPhotograph],
+  ["register", "Register", StepRegister],
+  ["program", "Program", StepProgram],
 ];
 
 const kLinks = {starting: "Connecting", open: "Connected", lost: "No server", denied: "Not allowed"};
@@ -132,6 +139,7 @@ function Panel() {
     if (last.current !== name) {
       heading.current.closest(".panel").scrollTop = 0;
       heading.current.focus({preventScroll: true});
+      document.querySelector("[aria-current=step]").scrollIntoView({block: "nearest", inline: "nearest"});
     }
     last.current = name;
   }, [name]);
@@ -188,6 +196,8 @@ function Views() {
       : null,
     [...kPlanes, "scene"].map((name) => h(View, {key: name, name})),
     state.step === "compare" ? h(ComparePictures) : null,
+    state.step === "photograph" ? h(PhotographPictures) : null,
+    state.step === "program" ? h(Player) : null,
   );
 }
 
@@ -205,6 +215,7 @@ function View({name}) {
     ),
     h("div", {class: "view-host", ref: host}),
     name === "scene" ? h(Legend) : h(NoPicture),
+    name === "scene" && state.step === "register" ? h(ResidualScale) : null,
   );
 }
 
@@ -214,6 +225,12 @@ function SceneButtons() {
     "span",
     {class: "row tight"},
     kViewNames.map((name) => h(Button, {key: name, onClick: () => views.scene.look(name)}, name)),
+    state.step === "program" && state.arm
+      ? [
+          h(Button, {key: "arm", onClick: () => frameOn("arm"), "data-do": "show-arm"}, "Whole arm"),
+          h(Button, {key: "tissue", onClick: () => frameOn("tissue"), "data-do": "show-tissue"}, "Tissue"),
+        ]
+      : null,
   );
 }
 

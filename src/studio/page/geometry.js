@@ -148,13 +148,14 @@ function clipped(outline, face, limit) {
 
 /** Points on a smooth closed curve (centripetal Catmull-Rom) through control points, about `step` mm apart. */
 export function smoothLoop(points, step) {
-  const count = points.length;
-  if (count < 3) return points;
-  const at = (k) => points[(k + count) % count];
-  return points.flatMap((point, k) => {
-    const parts = clamp(Math.round(length(minus(at(k + 1), point)) / step), 1, 60);
-    return Array.from({length: parts}, (_, part) => between(at(k - 1), point, at(k + 1), at(k + 2), part / parts));
-  });
+  return points.length < 3 ? points : points.flatMap((_, k) => smoothSide(points, k, step));
+}
+
+/** Those of its side from point k up to the next, which is left out. */
+export function smoothSide(points, k, step) {
+  const at = (place) => points[(place + points.length) % points.length];
+  const parts = clamp(Math.round(length(minus(at(k + 1), at(k))) / step), 1, 60);
+  return Array.from({length: parts}, (_, part) => between(at(k - 1), at(k), at(k + 1), at(k + 2), part / parts));
 }
 
 function between(a, b, c, d, share) {
@@ -168,6 +169,22 @@ function between(a, b, c, d, share) {
     bc = mix(b, c, t1, t2),
     cd = mix(c, d, t2, t3);
   return mix(mix(ab, bc, 0, t2), mix(bc, cd, t1, t3), t1, t2);
+}
+
+/** Points of a line more than `least` mm from the one kept before. */
+export function thinned(points, least) {
+  const kept = [];
+  for (const point of points) if (!kept.length || length(minus(point, kept.at(-1))) > least) kept.push(point);
+  return kept;
+}
+
+/** Points on a line of points, at most `step` mm apart. */
+export function filled(points, step) {
+  return points.flatMap((from, k) => {
+    const along = minus(points[k + 1] || from, from),
+      parts = Math.max(1, Math.ceil(length(along) / step));
+    return Array.from({length: parts}, (_, part) => plus(from, along, part / parts));
+  });
 }
 
 /** A list of points from what the server calls a curve: [[x, y, z]], or an object with `points_mm`. */

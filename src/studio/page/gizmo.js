@@ -1,14 +1,14 @@
-// The world's axes in a corner of the 3D view, with the anatomical letters at both ends.
+// The world's axes in a corner of the 3D view, with letters at their ends: anatomical ones, or the robot's x, y and z.
 
 const kNamespace = "http://www.w3.org/2000/svg";
-const kEnds = ["R", "L", "A", "P", "I", "S"];
+const kEnds = {anatomical: ["R", "L", "A", "P", "I", "S"], robot: ["", "x", "", "y", "", "z"]};
 const kShades = {light: ["#b3383c", "#2f7d4f", "#3260a8"], dark: ["#ff8c8c", "#6fd39b", "#8fb8ff"]};
 
 /** An element `node` (SVG) that draw() turns. */
 export class Gizmo {
   constructor() {
     this.node = make("svg", {viewBox: "-55 -55 110 110", "aria-hidden": "true", class: "gizmo"});
-    this.marks = kEnds.map((name, end) => this.makeMark(name, end));
+    this.marks = kEnds.anatomical.map((name, end) => this.makeMark(name, end));
   }
 
   makeMark(name, end) {
@@ -18,6 +18,13 @@ export class Gizmo {
     const group = make("g", {});
     group.append(line, text);
     return {group, line, text, axis: end >> 1, sign: end & 1 ? 1 : -1};
+  }
+
+  /** Names the ends of the axes. @param frame  "anatomical" or "robot" */
+  name(frame) {
+    this.marks.forEach((mark, end) => {
+      mark.text.textContent = kEnds[frame][end];
+    });
   }
 
   /** @param axes  {right, up, towards}: three.js vectors */

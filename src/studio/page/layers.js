@@ -1,8 +1,24 @@
 // Which things each step shows in the 3D view.
 
-import {balls, boxLines, depthLines, heldColours, needle, plate, skinMesh, tubes, ballAbout} from "./things.js";
+import {
+  armHulls,
+  ballAbout,
+  balls,
+  boxLines,
+  cloudPoints,
+  depthLines,
+  heldColours,
+  needle,
+  placed,
+  plate,
+  residualColours,
+  skinMesh,
+  trace,
+  tubes,
+} from "./things.js";
+import {moved, registeredView} from "./registered.js";
 import {directionOf, pointsOf} from "./geometry.js";
-import {ink, intended, onBlack} from "./colours.js";
+import {ink, intended, isDark, onBlack} from "./colours.js";
 import {setting} from "./store.js";
 
 const kTube = 0.28; // mm
@@ -11,8 +27,7 @@ const kWideTube = 0.36;
 /** The layers of the state: {name, label, colour, isArea, parts, build}; a layer is built anew when one of its `parts`
  *  is another object. @param edge  {points, isClosed} */
 export function layersOf(state, edge) {
-  const make = {see: seen, edge: drawn, hold: held, plan: planned, run: running, compare: compared}[state.step] || seen;
-  return make(state, edge).filter(Boolean);
+  return (kMakers[state.step] || seen)(state, edge).filter(Boolean);
 }
 
 function skinLayer(skin, name = "tissue", opacity = 1) {
@@ -96,6 +111,7 @@ function held(state, edge) {
       build: () => [skinMesh(body.skin, {colours: heldColours(body.held)})],
     },
     ...plateLayers(body.skin),
+    ...(isRest ? patchLayers(state.patch) : []),
     isPulled ? curveLayer("tumour", "tumour's edge", ink.tumour, pulledEdge, true, [stretch]) : null,
     isRest && edge.isRest ? edgeLayer(edge) : null,
   ];
@@ -116,6 +132,22 @@ function plateLayers(skin) {
       build: () => plate(one.plane.point_mm, normal, about.centre, about.radius),
     };
   });
+}
+
+// The lines of painted patches, and the stroke that is being painted.
+function patchLayers({k: of, isEmpty, stroke}) {
+  const list = setting("specimen.constraints") || [],
+    colour = intended();
+  const lines = list.map(({where}, k) => (where && where.patch && !(isEmpty && k === of) ? where.patch.path_mm : []));
+  return [...lines, stroke].map((points, k) =>
+    ballsAndLine(`patch${k}`, k < list.length ? `painted line of ${k + 1}` : "stroke", colour, points),
+  );
+}
+
+function ballsAndLine(name, label, colour, points) {
+  return points.length < 2
+    ? ballLayer(name, label, colour, points, 0.6, [points, colour])
+    : curveLayer(name, label, colour, points, false, [points, colour], kWideTube);
 }
 
 function planned(state) {
@@ -198,3 +230,110 @@ function compared(state) {
     focusLayer(state),
   ];
 }
+
+// The cloud over the simulated surface, whose points have the colours of their distances from it.
+function registered(state) {
+  const {stretch, register, cloud} = state,
+    view = registeredView(register);
+  if (!view) return [skinLayer(stretch && stretch.skin)];
+  const colour = isDark() ? "#c9ced3" : "#4a5056";
+  return [
+    skinLayer(stretch && stretch.skin, "tissue", 0.3),
+    {
+      name: "cloud",
+      label: register.is_virtual ? "virtual cloud, made up" : `cloud ${cloud.file ? cloud.file.name : ""}`,
+      colour,
+      isArea: true,
+      parts: [view, colour],
+      build: () => [cloudPoints(view.cloud, {colour, size: 3})],
+    },
+    {
+      name: "residuals",
+      label: "simulated surface, by distance",
+      colour: "#74b3d8",
+      isArea: true,
+      parts: [view],
+      build: () => [cloudPoints(view.sample, {colours: residualColours(view.residuals_mm, view.top_mm), size: 6})],
+    },
+  ];
+}
+
+// In the robot's frame. Without an arm: as in the step before.
+function played(state) {
+  const {arm, plan, stretch, run} = state;
+  if (!arm) return compared(state);
+  const pose = arm.T_robot_sim,
+    isClosed = !(plan && plan.path) || plan.path.closed !== false;
+  const line = (name, label, colour, curve) =>
+    curveLayer(
+      name,
+      label,
+      colour,
+      pointsOf(curve).map((point) => moved(point, pose)),
+      isClosed,
+      [arm, plan, run, colour],
+    );
+  const skin = stretch && stretch.skin;
+  return [
+    skin && {
+      name: "tissue",
+      label: "stretched tissue",
+      colour: ink.tissue,
+      isArea: true,
+      parts: [skin, arm],
+      build: () => placed([skinMesh(skin, {colour: ink.tissue, opacity: 1})], pose),
+    },
+    ...armLayers(arm),
+    line("path", "planned path", intended(), plan && plan.path),
+    line("after", "corrected path", ink.corrected, run && run.corrected && run.corrected.path),
+    line("tumour", "tumour's edge", ink.tumour, plan && plan.edge),
+    {
+      name: "table",
+      label: `table, ${kTableGrid} mm grid`,
+      colour: "#9fb2c2",
+      isArea: true,
+      parts: [arm],
+      build: () => plate([0, 0, arm.table_z_mm], [0, 0, 1], middleOfTable(arm), kTableRadius, kTableGrid),
+    },
+  ];
+}
+
+const kTableRadius = 200; // mm
+const kTableGrid = 50;
+
+// Below the course of the tip: the tissue lies there.
+function middleOfTable(arm) {
+  return ballAbout(arm.tip).centre;
+}
+
+function armLayers(arm) {
+  const colour = isDark() ? "#9aa4ad" : "#c3c9cf";
+  return [
+    {
+      name: "arm",
+      label: "arm",
+      colour,
+      isArea: true,
+      parts: [arm, colour],
+      build: () => armHulls(arm.hulls, (name) => (name === "needle" ? ink.tool : colour)),
+    },
+    {
+      name: "trace",
+      label: "course of the tip so far",
+      colour: ink.reached,
+      parts: [arm],
+      build: () => [trace(arm.tip, ink.reached)],
+    },
+  ];
+}
+
+const kMakers = {
+  see: seen,
+  edge: drawn,
+  hold: held,
+  plan: planned,
+  run: running,
+  compare: compared,
+  register: registered,
+  program: played,
+};

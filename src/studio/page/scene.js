@@ -15,8 +15,8 @@ const kViews = {Oblique: [-0.6, 0.75], Top: [0, Math.PI / 2], Front: [0, 0], Lef
 export const kViewNames = Object.keys(kViews);
 
 /** The scene. Things in it are layers with names; mm, LPS. `onLayers()` is called when a layer comes or goes.
- *  `tool` (or null) sees the pointer and keys first: {press(event), drag(event), drop(), click(event), key(event)};
- *  press and key answer whether they took the event. */
+ *  `tool` (or null) sees the pointer and keys first: {press(event), drag(event), drop(), click(event), key(event)}, and
+ *  if it likes hover(event) and cancel(), for a second finger; press and key answer whether they took the event. */
 export class Scene {
   constructor(host, onLayers) {
     this.host = host;
@@ -118,6 +118,15 @@ export class Scene {
     this.radius = radius;
     if (isFirst) this.look("Oblique");
     else this.render();
+  }
+
+  /** Makes a ball fill the view without turning it. */
+  frame(centre, radius) {
+    this.centre.set(...centre);
+    this.target.copy(this.centre);
+    this.radius = radius;
+    this.zoom = 1;
+    this.render();
   }
 
   /** Forgets what was fitted: the next fit is a first one. */
@@ -268,12 +277,13 @@ export class Scene {
     canvas.setPointerCapture(event.pointerId);
     this.fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
     this.travel = 0;
+    if (this.isTaken && this.tool && this.tool.cancel) this.tool.cancel();
     this.isTaken = event.button === 0 && this.fingers.size === 1 && Boolean(this.tool) && this.tool.press(event);
   }
 
   move(event) {
     const last = this.fingers.get(event.pointerId);
-    if (!last) return;
+    if (!last) return this.tool && this.tool.hover && this.tool.hover(event);
     const dx = event.offsetX - last[0],
       dy = event.offsetY - last[1];
     this.travel += Math.abs(dx) + Math.abs(dy);

@@ -1,6 +1,6 @@
 // One of the three orthogonal slices: the picture, the tissue found, box, seed, tumour's edge and crosshair.
 
-import {Plane, boxOutline, clamp, letterOf, middleOf, minus, plus, roundedDown, voxelAt} from "./geometry.js";
+import {Plane, boxOutline, clamp, filled, letterOf, middleOf, minus, plus, roundedDown, voxelAt} from "./geometry.js";
 import {SliceImage, outlineOf, paintGrey, paintLabels} from "./slice_image.js";
 import {onBlack, rgbOf} from "./colours.js";
 import {place} from "./words.js";
@@ -8,10 +8,14 @@ import {place} from "./words.js";
 const kFont = "600 12px system-ui, sans-serif";
 const kReach = 12; // px: how near to a handle a pointer takes it
 const kTouchReach = 24;
+const kCut = 0.98; // of its radius: a ball of a stroke that a slice cuts farther out shows no more than a dot
 
 /** A slice. Its `model` is shared by the three of them:
- *  {scan, tissue, table, window, cross, box, seed, edge, overlay, isPlacing, isBoxShown}; lengths in mm, LPS.
- *  It calls `on.cross(point)`, `on.window(width, level)`, `on.box(box)`, `on.seed(point)`. */
+ *  {room, scan, tissue, table, window, cross, box, seed, edge, overlay, isPlacing, isBoxShown, brush, strokes, stroke};
+ *  lengths in mm, LPS. `room`: the case's file, for another has other places; `brush`: {tissue, radius_mm} or null;
+ *  `strokes`: those that the tissue does not show yet; `stroke`: the path that is being painted.
+ *  It calls `on.cross(point)`, `on.window(width, level)`, `on.box(box)`, `on.seed(point)`, `on.painting()`,
+ *  `on.stroke(path)`, `on.putAway()`. */
 export class SliceView {
   constructor(host, name, model, on) {
     Object.assign(this, {host, name, model, on, zoom: 0, middle: [0, 0], drag: null, fingers: new Map()});
@@ -37,11 +41,21 @@ export class SliceView {
   plane() {
     const grid = this.grid();
     if (!grid) return null;
-    if (!this.ownPlane || this.ownPlane.grid !== grid) {
-      this.ownPlane = new Plane(grid, this.name);
-      this.fit();
-    }
+    if (!this.ownPlane || this.ownPlane.grid !== grid) this.take(new Plane(grid, this.name));
     return this.ownPlane;
+  }
+
+  /** Shows another grid: all of it, or, where it lies in the same room, the same place at the same size. */
+  take(plane) {
+    const {ownPlane: last, middle} = this,
+      isSame = last && this.room === this.model.room;
+    this.ownPlane = plane;
+    this.room = this.model.room;
+    if (!isSame) return this.fit();
+    const at = last.toPixel(this.cross());
+    const place = last.toPoint([middle[0] / last.step[0], middle[1] / last.step[1], at[2]]);
+    this.middle = [0, 1].map((k) => plane.toPixel(place)[k] * plane.step[k]);
+    return undefined;
   }
 
   /** Number of the slice that is shown. */
@@ -123,11 +137,13 @@ export class SliceView {
     if (!this.plane() || !(this.zoom > 0)) return;
     this.drawScan(pen);
     this.drawTissue(pen);
+    this.drawStrokes(pen);
     this.drawBox(pen);
     this.drawEdge(pen);
     this.drawSeed(pen);
     this.drawCross(pen);
     this.drawFrame(pen);
+    this.drawBrush(pen);
     this.drawnCount += 1;
     this.host.dataset.ready = "yes";
   }
@@ -177,6 +193,53 @@ export class SliceView {
     pen.lineWidth = 1.4 / (plane.step[0] * this.zoom);
     pen.stroke(this.outline.path);
     pen.restore();
+  }
+
+  /** What is painted and not yet in the tissue: where the slice cuts the balls along a stroke's path. */
+  drawStrokes(pen) {
+    const {brush, stroke, strokes} = this.model;
+    const shown = brush && stroke.length ? [...strokes, {...brush, path_mm: stroke}] : strokes;
+    for (const one of shown) {
+      pen.fillStyle = one.tissue ? onBlack.add : onBlack.take;
+      pen.globalAlpha = 0.55;
+      pen.fill(this.cutOf(one));
+      pen.globalAlpha = 1;
+    }
+  }
+
+  cutOf({radius_mm: radius, path_mm: path}) {
+    const plane = this.plane(),
+      slice = this.slice(),
+      cut = new Path2D();
+    for (const point of filled(path, 0.3 * radius)) {
+      const depth = (plane.toPixel(point)[2] - slice) * plane.step[2],
+        [x, y] = this.toScreen(point);
+      if (Math.abs(depth) >= kCut * radius) continue;
+      const wide = this.zoom * Math.sqrt(radius ** 2 - depth ** 2);
+      cut.moveTo(x + wide, y);
+      cut.arc(x, y, wide, 0, 2 * Math.PI);
+    }
+    return cut;
+  }
+
+  /** The brush under the pointer in its true size, and beside it the sign of what it does. */
+  drawBrush(pen) {
+    const {brush} = this.model;
+    if (!brush || !this.pointer) return;
+    const [x, y] = this.pointer,
+      wide = brush.radius_mm * this.zoom,
+      [right, low] = [x, y].map((value) => value + 0.71 * wide + 9);
+    for (const [colour, width] of [
+      ["#000", 3],
+      [brush.tissue ? onBlack.add : onBlack.take, 1.5],
+    ]) {
+      pen.strokeStyle = colour;
+      pen.lineWidth = width;
+      pen.beginPath();
+      pen.arc(x, y, wide, 0, 2 * Math.PI);
+      pen.stroke();
+    }
+    this.word(pen, brush.tissue ? "+" : "−", right, low, "center");
   }
 
   /** The box where the slice cuts it, with a handle in the middle of each side; faint where it lies before or behind. */
@@ -335,7 +398,7 @@ export class SliceView {
     canvas.setAttribute(
       "aria-label",
       `${this.name} slice. Arrow keys move the crosshair, Page Up and Page Down the slice, ` +
-        "plus and minus zoom, Home shows all.",
+        "plus and minus zoom, Home shows all. With a brush, Enter paints a ball at the crosshair.",
     );
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("pointerdown", (event) => this.press(event));
@@ -343,6 +406,8 @@ export class SliceView {
     for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => this.release(event));
     canvas.addEventListener("pointerleave", () => {
       this.readout.textContent = "";
+      this.pointer = null;
+      if (this.model.brush) this.render();
     });
     canvas.addEventListener("wheel", (event) => this.roll(event), {passive: false});
     canvas.addEventListener("keydown", (event) => this.key(event));
@@ -360,14 +425,17 @@ export class SliceView {
     this.canvas.setPointerCapture(event.pointerId);
     const {offsetX: x, offsetY: y} = event;
     this.fingers.set(event.pointerId, [x, y]);
+    this.model.stroke = [];
     if (this.fingers.size > 1) this.drag = {kind: "pinch"};
     else this.drag = this.dragFor(event, x, y);
     if (this.drag.kind === "cross") this.point(x, y);
+    if (this.drag.kind === "brush") this.paint(x, y);
   }
 
   dragFor(event, x, y) {
     if (event.button === 2) return {kind: "window", x, y};
     if (event.button === 1 || event.shiftKey) return {kind: "pan", x, y};
+    if (this.model.brush) return {kind: "brush"};
     const handle = this.handleAt(x, y, event.pointerType === "touch" ? kTouchReach : kReach);
     return handle ? {kind: "box", face: handle.face} : {kind: "cross", x, y};
   }
@@ -378,9 +446,15 @@ export class SliceView {
     this.on.cross(point);
   }
 
+  paint(x, y) {
+    this.model.stroke.push(this.toPoint(x, y));
+    this.on.painting();
+  }
+
   move(event) {
     if (!this.plane()) return;
     const {offsetX: x, offsetY: y} = event;
+    this.pointer = [x, y];
     this.tell(x, y);
     const last = this.fingers.get(event.pointerId);
     if (!last || !this.drag) return this.hover(x, y);
@@ -391,17 +465,26 @@ export class SliceView {
     else if (this.drag.kind === "pan") this.pan(by);
     else if (this.drag.kind === "window") this.shade(by);
     else if (this.drag.kind === "box") this.dragFace(x, y);
+    else if (this.drag.kind === "brush") this.paint(x, y);
     else this.point(x, y);
   }
 
   hover(x, y) {
+    if (this.model.brush) {
+      this.canvas.style.cursor = "none";
+      return this.render();
+    }
     const handle = this.handleAt(x, y, kReach);
     const isAcross = handle && Math.abs(this.plane().right[handle.face >> 1]) > 0.7;
     this.canvas.style.cursor = handle ? (isAcross ? "ew-resize" : "ns-resize") : "crosshair";
+    return undefined;
   }
 
   release(event) {
+    const {stroke} = this.model;
     this.fingers.delete(event.pointerId);
+    this.model.stroke = [];
+    if (event.type === "pointerup" && stroke.length) this.on.stroke(stroke);
     if (!this.fingers.size) this.drag = null;
     this.render();
   }
@@ -479,6 +562,8 @@ export class SliceView {
     else if (event.key === "-") this.zoomBy(1 / 1.2);
     else if (event.key === "Home") this.fit();
     else if (event.key === "Enter" && this.model.isPlacing) this.on.seed(this.cross());
+    else if (event.key === "Enter" && this.model.brush) this.on.stroke([this.cross()]);
+    else if (event.key === "Escape" && this.model.brush) this.on.putAway();
     else return;
     event.preventDefault();
   }

@@ -1,16 +1,16 @@
-// Step 7: the cut as planned and the corrected one, side by side, and the gate before the robot's program.
+// Step 7: the cut as planned and the corrected one, side by side.
 
 import {h} from "preact";
-import {state, update, isFresh} from "./store.js";
-import {run} from "./actions.js";
+import {state, isFresh} from "./store.js";
+import {goTo, run} from "./actions.js";
 import {approach, showPlace} from "./views.js";
 import {isRunning} from "./step_run.js";
-import {Button, Check, Problems, Reasons, Section, Status} from "./widgets.js";
+import {Button, Problems, Reasons, Section, Status} from "./widgets.js";
 import {ContourView, boundsOf} from "./contour_view.js";
 import {Plot} from "./plots.js";
 import {pointsOf} from "./geometry.js";
 import {ink, intended, isDark} from "./colours.js";
-import {fixed, isNumber, mm, spoken} from "./words.js";
+import {mm, spoken} from "./words.js";
 
 const kNumbers = [
   ["nearest_to_tumor_mm", "Closest approach to the tumour"],
@@ -41,7 +41,16 @@ export function StepCompare() {
       h(Reasons, {verdict: result.verdict, onPlace: showPlace}),
     ),
     h(Section, {title: "Numbers", id: "numbers"}, h(Table, {result})),
-    h(Gate, {result}),
+    h(
+      Section,
+      {title: "Robot program", id: "to-program"},
+      h(
+        "p",
+        null,
+        result.program ? "The verdict allows a program." : result.why_without_program || "There is no program.",
+      ),
+      h(Button, {onClick: () => goTo("program"), "data-do": "to-program"}, "Go to the program"),
+    ),
   );
 }
 
@@ -89,102 +98,6 @@ function Table({result}) {
   );
 }
 
-// --- The gate. ---
-
-function Gate({result}) {
-  const gate = result.gate || {},
-    place = (id) => (result.verdict.reasons || []).findIndex((reason) => reason.id === id);
-  // In the order of the reasons: a caution that was accepted stays where it was.
-  const open = [...(gate.missing || []), ...(gate.accepted || [])].sort((a, b) => place(a) - place(b));
-  return h(
-    Section,
-    {title: "Robot program", id: "gate"},
-    (gate.refused || []).length
-      ? h("p", null, `Refused: ${gate.refused.map(spoken).join(", ")}. Nobody can accept this.`)
-      : null,
-    open.length
-      ? h(
-          "fieldset",
-          {class: "gate"},
-          h("legend", null, "Cautions that a person has to accept, each by itself"),
-          open.map((id) =>
-            h(Check, {
-              key: id,
-              label: cautionText(result, id),
-              isOn: state.accept.includes(id),
-              onChange: (isOn) => accept(id, isOn),
-            }),
-          ),
-        )
-      : null,
-    open.length
-      ? h(
-          Button,
-          {disabled: isRunning() || !isOtherChoice(gate), onClick: run, "data-do": "accept"},
-          "Run again with these accepted",
-        )
-      : null,
-    h(Problems, {calls: ["run"]}),
-    result.program
-      ? h(Program, {text: result.program})
-      : h("p", {class: "warning", "data-program": "none"}, result.why_without_program || "There is no program."),
-    h(Checks, {checks: result.checks}),
-    result.report ? h("p", {class: "soft path"}, `Report: ${result.report}`) : null,
-  );
-}
-
-function Checks({checks}) {
-  if (!Array.isArray(checks) || !checks.length) return null;
-  const failed = checks.filter((check) => !check.passed).length;
-  const title = failed ? `${failed} of ${checks.length} checks failed` : `All ${checks.length} checks passed`;
-  return h(
-    "details",
-    {open: failed > 0},
-    h("summary", null, title),
-    h(
-      "ul",
-      {class: "facts"},
-      checks.map((check, k) => h("li", {key: k}, h(OneCheck, {check}))),
-    ),
-  );
-}
-
-function OneCheck({check}) {
-  const number = (value) => (isNumber(value) ? fixed(value, 2) : String(value));
-  const has = Boolean(check.relation) && check.value !== null && check.value !== undefined;
-  const found = has ? `: ${number(check.value)} ${check.unit || ""}` : "";
-  return [h(Status, {status: check.passed ? "ok" : "refused"}), ` ${check.text}${found}`];
-}
-
-function accept(id, isOn) {
-  update({accept: isOn ? [...state.accept, id] : state.accept.filter((other) => other !== id)});
-}
-
-function isOtherChoice(gate) {
-  return [...state.accept].sort().join() !== [...(gate.accepted || [])].sort().join();
-}
-
-function cautionText(result, id) {
-  const reason = (result.verdict.reasons || []).find((one) => one.id === id);
-  return `${spoken(id)}${reason ? `: ${reason.message}` : ""}`;
-}
-
-function Program({text}) {
-  const save = () => {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([text], {type: "text/plain"}));
-    link.download = "incise.script";
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  };
-  return h(
-    "div",
-    {"data-program": "there"},
-    h(Button, {isMain: true, onClick: save, "data-do": "download"}, "Download the program"),
-    h("pre", {tabIndex: 0, role: "region", "aria-label": "The robot's program"}, text),
-  );
-}
-
 // --- The pictures. ---
 
 let memo = {run: null};
@@ -209,7 +122,8 @@ function makePictures(run, plan) {
   };
 }
 
-function afterColour() {
+/** The colour of what is corrected. */
+export function afterColour() {
   return isDark() ? "#5db4e8" : ink.corrected;
 }
 

@@ -2,7 +2,7 @@
 
 import {h} from "preact";
 import {state, update, setting} from "./store.js";
-import {refresh, saveEdge} from "./actions.js";
+import {change, refresh, saveEdge} from "./actions.js";
 import {approach, dropEllipse, shownSkin, skinQuery, views} from "./views.js";
 import {Button, Choice, NumberInput, Numbers, Problems, Section, Working} from "./widgets.js";
 import {pointsOf, length, minus} from "./geometry.js";
@@ -204,7 +204,22 @@ function Keep() {
       "Store the edge in the case",
     ),
     h(Working, {call: "edge", text: "Storing"}),
-    h(Problems, {calls: ["edge"]}),
+    h(Problems, {calls: ["change", "edge"]}),
     state.notice ? h("p", {role: "status", class: "notice"}, state.notice) : null,
+    h(Surface),
+  );
+}
+
+/** What a new edge leaves as it was: the case's surface of the tumour, which may belong to the edge before. */
+function Surface() {
+  const inputs = state.case.inputs || {},
+    name = inputs["tumor.surface"];
+  if (!name || !inputs["tumor.contour"] || "tumor.surface" in state.drafts) return null;
+  const isNew = state.edge.points.length > 0 && state.edge.isSaved;
+  return h(
+    "div",
+    {class: isNew ? "warning" : "soft", role: "status"},
+    h("p", null, `The case also names a tumour surface, ${name}: the verdict compares both.`),
+    h(Button, {onClick: () => change({"tumor.surface": null}), "data-do": "remove-surface"}, "Remove it"),
   );
 }

@@ -17,13 +17,16 @@ import {
   problemAt,
   useId,
 } from "./widgets.js";
+import {kConstraints, kWords, constraints, putConstraints} from "./constraints.js";
+import {Patch} from "./patch_panel.js";
+import {beginPatch, leavePatch, shownRegion} from "./patch.js";
 import {kDirections} from "./geometry.js";
+import {crosshair} from "./views.js";
 import {holds} from "./colours.js";
 import {mm, spoken} from "./words.js";
 
-const kPath = "specimen.constraints";
+const kMostColoured = 8; // of the constraints: as many as the body's `held` has bits
 const kAxes = ["x", "y", "z"];
-const kWords = Object.keys(kDirections);
 
 // What a new one starts with; the numbers are there to be changed.
 const kNew = {
@@ -37,38 +40,6 @@ const kNewRegions = {
   sphere: (at) => ({sphere: {center_mm: at, radius_mm: 5}}),
   plane: (at) => ({plane: {point_mm: at, normal: "posterior"}}),
 };
-
-// The server returns a constraint in its normal form, with the kind of each part; a case file takes it without these,
-// and a person reads a direction better than its numbers.
-function asWritten({kind, where, ...rest}) {
-  const one = {kind: kind === "plane" || kind === "surface" ? "support" : kind};
-  if (where) one.where = regionAsWritten(where);
-  if (rest.plane) rest.plane = withWords(rest.plane);
-  return {...one, ...rest};
-}
-
-function regionAsWritten(where) {
-  const kind = where.kind || Object.keys(where)[0],
-    value = where[kind];
-  return {[kind]: value && typeof value === "object" && !Array.isArray(value) ? withWords(value) : value};
-}
-
-function withWords(group) {
-  const given = Object.entries(group).filter(([, value]) => value !== null);
-  return Object.fromEntries(
-    given.map(([key, value]) => [key, key === "direction" || key === "normal" ? wordOf(value) : value]),
-  );
-}
-
-function wordOf(direction) {
-  const isSame = (word) => kDirections[word].every((value, k) => value === direction[k]);
-  return Array.isArray(direction) ? kWords.find(isSame) || direction : direction;
-}
-
-function constraints() {
-  const list = setting(kPath);
-  return list && list.map(asWritten);
-}
 
 /** The panel. */
 export function StepHold() {
@@ -90,11 +61,15 @@ export function StepHold() {
         "div",
         {class: "row"},
         Object.keys(kNew).map((kind) =>
-          h(Button, {key: kind, onClick: () => put([...(list || []), fresh(kind)])}, `Add ${kind}`),
+          h(Button, {key: kind, onClick: () => putConstraints([...(list || []), fresh(kind)])}, `Add ${kind}`),
         ),
       ),
-      list ? h(Button, {onClick: () => change({[kPath]: null})}, "Back to the default") : null,
-      h(Problems, {calls: ["change", "body"], shown: (list || []).map((_, k) => `${kPath}[${k}]`)}),
+      list ? h(Button, {onClick: backToDefault}, "Back to the default") : null,
+      list && list.length > kMostColoured
+        ? h("p", {class: "soft"}, `The 3D view colours what the first ${kMostColoured} of them hold.`)
+        : null,
+      h(Problems, {calls: ["change"], shown: (list || []).map((_, k) => `${kConstraints}[${k}]`)}),
+      h(Missing),
       h(Working, {call: "body", text: "Meshing the body"}),
     ),
     h(Body),
@@ -102,12 +77,31 @@ export function StepHold() {
   );
 }
 
-function put(list) {
-  change({[kPath]: list});
+function backToDefault() {
+  leavePatch();
+  putConstraints([]);
+}
+
+/** What the constraints lack before they hold a body. One after the other is added, so that this is no failure. */
+function Missing() {
+  const {body} = state.problems;
+  if (!isAboutConstraints(body)) return h(Problems, {calls: ["body"]});
+  return h(
+    "div",
+    {class: "soft", role: "status", "data-missing": body.path},
+    body.path === kConstraints
+      ? h("p", null, `Still needed: ${body.expected} (found: ${body.found}). ${body.hint || ""}`)
+      : null,
+    state.body ? h("p", null, "Until the constraints hold the body, the 3D view shows it as it was held last.") : null,
+  );
+}
+
+function isAboutConstraints(problem) {
+  return Boolean(problem && problem.kind === "problem" && problem.path && problem.path.startsWith(kConstraints));
 }
 
 function place() {
-  return (state.cross || [0, 0, 0]).map((value) => Number(value.toFixed(1)));
+  return (crosshair() || [0, 0, 0]).map((value) => Number(value.toFixed(1)));
 }
 
 function fresh(kind) {
@@ -143,9 +137,14 @@ function Dot({k}) {
 }
 
 function Constraint({one, k}) {
-  const set = (patch) => put(constraints().with(k, {...one, ...patch}));
+  const set = (patch) => putConstraints(constraints().with(k, {...one, ...patch}));
   const found = state.body && isFresh("body") && state.body.constraints && state.body.constraints[k];
-  const problem = problemAt(`${kPath}[${k}]`);
+  const problem = problemAt(`${kConstraints}[${k}]`),
+    isRefused = problem && problem === state.problems.change;
+  const remove = () => {
+    leavePatch();
+    putConstraints(constraints().toSpliced(k, 1));
+  };
   return h(
     "fieldset",
     {class: "hold"},
@@ -156,12 +155,12 @@ function Constraint({one, k}) {
       spoken(one.kind),
       found ? h("span", {class: "soft"}, ` ${found.vertices} vertices`) : null,
     ),
-    one.where ? h(Region, {where: one.where, onChange: (where) => set({where})}) : null,
+    one.where ? h(Region, {k, where: shownRegion(one, k), onChange: (where) => set({where})}) : null,
     h(Own, {one, set}),
-    problem ? h("p", {class: "problem", role: "alert"}, complaint(problem)) : null,
+    problem ? h("p", isRefused ? {class: "problem", role: "alert"} : {class: "soft"}, complaint(problem)) : null,
     h(
       Button,
-      {onClick: () => put(constraints().toSpliced(k, 1)), "aria-label": `Remove constraint ${k + 1}, ${one.kind}`},
+      {onClick: remove, "aria-label": `Remove constraint ${k + 1}, ${one.kind}`},
       "Remove",
     ),
   );
@@ -226,14 +225,20 @@ function Direction({label, value, onChange}) {
   );
 }
 
-function Region({where, onChange}) {
+function Region({k, where, onChange}) {
   const kind = Object.keys(where)[0];
   const kinds = [
     ["end", "End"],
     ["box_mm", "Box"],
     ["sphere", "Sphere"],
     ["plane", "Plane"],
+    ["patch", "Painted patch"],
   ];
+  const choose = (name) => {
+    if (name === "patch") return beginPatch(k);
+    leavePatch();
+    return kNewRegions[name] && onChange(kNewRegions[name](place()));
+  };
   const known = kinds.some(([name]) => name === kind);
   return h(
     "div",
@@ -242,9 +247,11 @@ function Region({where, onChange}) {
       label: "Where",
       value: kind,
       options: known ? kinds : [...kinds, [kind, spoken(kind)]],
-      onChange: (name) => kNewRegions[name] && onChange(kNewRegions[name](place())),
+      onChange: choose,
     }),
-    h(RegionInputs, {kind, value: where[kind], onChange: (value) => onChange({[kind]: value})}),
+    kind === "patch"
+      ? h(Patch, {k, patch: where.patch})
+      : h(RegionInputs, {kind, value: where[kind], onChange: (value) => onChange({[kind]: value})}),
   );
 }
 

@@ -1,17 +1,28 @@
-// Step 1: open a case, make one from a scan, or make the demo specimen.
+// Step 1: open a case, make one from a file, or make the demo specimen.
 
 import {h} from "preact";
 import {useEffect, useState} from "preact/hooks";
 import {state} from "./store.js";
 import {begin, goTo, list} from "./actions.js";
 import {Button, Choice, NumberInput, Numbers, Problems, Section, TextInput, Working, problemAt} from "./widgets.js";
-import {size, spoken} from "./words.js";
+import {FileList} from "./file_list.js";
 
-const kSigns = {folder: "▸", scan: "▤", case: "◆"};
+// What a case can begin with, by the kind of file, and what is done with it.
+const kBeginnings = {
+  scan: ["A scan", "Which of its values are tissue is set in the next step."],
+  labels: ["Labels", "Each voxel's value says what it is. Which of them are tissue is set in the next step."],
+  mesh: ["A mesh", "Tetrahedra, mm. They are the body as it is."],
+  surface: ["A surface", "A closed surface, mm. What lies inside is meshed now."],
+};
+
+// A file with voxels may be either; only a person knows.
+function beginningsOf(file) {
+  return file.kind === "scan" && file.bytes ? ["scan", "labels"] : [file.kind];
+}
 
 /** The panel. */
 export function StepOpen() {
-  const [scan, setScan] = useState(null);
+  const [source, setSource] = useState(null);
   useEffect(() => {
     if (!state.files) list();
   }, []);
@@ -19,8 +30,8 @@ export function StepOpen() {
     "div",
     null,
     state.case ? h(OpenCase) : null,
-    h(Section, {title: "Files on this computer", id: "files"}, h(Listing, {scan, setScan})),
-    scan && state.files ? h(NewCase, {key: scan.id, scan}) : null,
+    h(Section, {title: "Files on this computer", id: "files"}, h(Listing, {source, setSource})),
+    source && state.files ? h(NewCase, {key: source.id, file: source}) : null,
     h(Demo),
   );
 }
@@ -40,66 +51,19 @@ function OpenCase() {
   );
 }
 
-function Listing({scan, setScan}) {
-  const {files} = state;
-  if (!files)
-    return h("div", null, h(Working, {call: "files", text: "Reading the folder"}), h(Problems, {calls: ["files"]}));
-  const {roots = [], folder, up, entries = []} = files;
-  const roomOf = (id) => (roots.some((root) => root.id === id) ? id : "");
+function Listing({source, setSource}) {
+  const acts = {folder: (file) => list(file.id), case: (file) => begin("open", {file: file.id})};
+  const actOf = (file) => {
+    const act = acts[file.kind] || (kBeginnings[file.kind] ? setSource : null);
+    return act && (() => act(file));
+  };
+  const isChosen = (file) => (kBeginnings[file.kind] ? Boolean(source) && source.id === file.id : undefined);
   return h(
     "div",
     null,
-    roots.length > 1
-      ? h(Choice, {
-          label: "Start from",
-          value: roomOf(folder.id),
-          onChange: (id) => id && list(id),
-          options: [["", "…"], ...roots.map((root) => [root.id, root.name])],
-        })
-      : null,
-    h(
-      "div",
-      {class: "row between"},
-      h("strong", {class: "path"}, folder.name),
-      h(Button, {disabled: !up, onClick: () => list(up)}, "Up"),
-    ),
-    h(
-      "ul",
-      {class: "files", "aria-label": `Files in ${folder.name}`},
-      entries.map((file) => h(FileRow, {key: file.id, file, isChosen: Boolean(scan) && scan.id === file.id, setScan})),
-    ),
-    entries.length ? null : h("p", {class: "soft"}, "There is nothing in this folder that can be opened."),
-    files.left_out ? h("p", {class: "soft"}, `${files.left_out} more are not shown.`) : null,
-    h(Problems, {calls: ["files", "open", "state"]}),
+    h(FileList, {actOf, isChosen, empty: "There is nothing in this folder that can be opened."}),
+    h(Problems, {calls: ["open", "state"]}),
     h(Working, {call: "open", text: "Opening the case"}),
-  );
-}
-
-function FileRow({file, isChosen, setScan}) {
-  const act = {folder: () => list(file.id), case: () => begin("open", {file: file.id}), scan: () => setScan(file)}[
-    file.kind
-  ];
-  const about = h("span", {class: "soft"}, [spoken(file.kind), size(file.bytes)].filter(Boolean).join(", "));
-  const name = [
-    h("span", {class: "sign", "aria-hidden": "true"}, kSigns[file.kind] || "·"),
-    h("span", {class: "name"}, file.name),
-    about,
-  ];
-  if (!act) return h("li", {class: "file"}, name);
-  return h(
-    "li",
-    null,
-    h(
-      "button",
-      {
-        type: "button",
-        class: "file",
-        "data-kind": file.kind,
-        "aria-pressed": file.kind === "scan" ? String(isChosen) : undefined,
-        onClick: act,
-      },
-      name,
-    ),
   );
 }
 
@@ -111,63 +75,67 @@ function placesForCase({roots = [], folder}) {
   return all.filter(([id], k) => all.findIndex(([other]) => other === id) === k);
 }
 
-function NewCase({scan}) {
-  const [name, setName] = useState(scan.name.replace(/\.[^/]*$/, "") + "_case");
-  const [spacing, setSpacing] = useState(null),
-    [hu, setHu] = useState(null);
-  const settings = {...(spacing ? {"ct.spacing_mm": spacing} : {}), ...(hu ? {"ct.hu": hu} : {})};
+function NewCase({file}) {
+  const [name, setName] = useState(file.name.replace(/\.[^/]*$/, "") + "_case");
+  const [settings, setSettings] = useState({});
+  const beginnings = beginningsOf(file),
+    [as, setAs] = useState(beginnings[0]);
   const places = placesForCase(state.files),
     [place, setPlace] = useState(places[0][0]);
-  const make = () => begin("create", {scan: scan.id, folder: place, name, settings});
+  const make = () => begin("create", {[as]: file.id, folder: place, name, settings: as === "scan" ? settings : {}});
   return h(
     Section,
-    {title: `New case from ${scan.name}`, id: "create"},
+    {title: `New case from ${file.name}`, id: "create"},
+    beginnings.length > 1
+      ? h(Choice, {
+          label: "Use it as",
+          value: as,
+          options: beginnings.map((kind) => [kind, kBeginnings[kind][0]]),
+          onChange: setAs,
+        })
+      : null,
+    h("p", {class: "soft"}, kBeginnings[as][1]),
     h(TextInput, {label: "Name of its folder", value: name, onChange: setName, problem: problemAt("name")}),
     places.length > 1
       ? h(Choice, {label: "Made in", value: place, options: places, onChange: setPlace, problem: problemAt("folder")})
       : null,
-    h(
-      "p",
-      {class: "soft"},
-      "For PNG slices only. DICOM, NRRD, NIfTI and MetaImage scans hold these numbers themselves.",
-    ),
-    h(Numbers, {
-      label: "Spacing",
-      unit: "mm",
-      names: ["column", "row", "slice"],
-      value: spacing,
-      step: 0.1,
-      onChange: setSpacing,
-      problem: problemAt("ct.spacing_mm"),
-    }),
-    h(Numbers, {
-      label: "HU from grey value",
-      names: ["slope", "intercept"],
-      value: hu,
-      step: 1,
-      onChange: setHu,
-      problem: problemAt("ct.hu"),
-    }),
-    spacing || hu
-      ? h(
-          Button,
-          {
-            onClick: () => {
-              setSpacing(null);
-              setHu(null);
-            },
-          },
-          "Leave these out",
-        )
-      : null,
+    as === "scan" && !file.bytes ? h(Reading, {settings, setSettings}) : null,
     h(
       Button,
       {isMain: true, disabled: !name || Boolean(state.busy.create), onClick: make, "data-do": "create"},
       "Make the case",
     ),
-    h(Working, {call: "create", text: "Reading the scan"}),
+    h(Working, {call: "create", text: "Reading the file"}),
     h(Problems, {calls: ["create"], shown: ["name", "ct.spacing_mm", "ct.hu"]}),
   );
+}
+
+// How pictures become a scan.
+function Reading({settings, setSettings}) {
+  const about = (key) => ({
+    value: settings[key] || null,
+    onChange: (value) => setSettings({...settings, [key]: value}),
+    problem: problemAt(key),
+  });
+  return [
+    h(
+      "p",
+      {key: "about", class: "soft"},
+      "For PNG slices only. DICOM, NRRD, NIfTI and MetaImage scans hold these numbers themselves.",
+    ),
+    h(Numbers, {
+      key: "spacing",
+      label: "Spacing",
+      unit: "mm",
+      names: ["column", "row", "slice"],
+      step: 0.1,
+      ...about("ct.spacing_mm"),
+    }),
+    h(Numbers, {key: "hu", label: "HU from grey value", names: ["slope", "intercept"], step: 1, ...about("ct.hu")}),
+    Object.keys(settings).length
+      ? h(Button, {key: "out", onClick: () => setSettings({})}, "Leave these out")
+      : null,
+  ];
 }
 
 function Demo() {

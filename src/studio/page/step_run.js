@@ -4,6 +4,7 @@ import {h} from "preact";
 import {useEffect, useRef, useState} from "preact/hooks";
 import {state, isFresh} from "./store.js";
 import {goTo, run, stop} from "./actions.js";
+import {partsOfRun, wordForPart} from "./run_parts.js";
 import {Button, Problems, Section} from "./widgets.js";
 import {duration, isNumber, place, spoken} from "./words.js";
 
@@ -54,16 +55,41 @@ function Progress() {
     spoken(stage) || "Starting",
     part || "",
     share === undefined ? "" : `${Math.round(100 * share)} %`,
-    isNumber(left) ? `about ${duration(left)} left` : "",
+    isNumber(left) ? `about ${duration(left)} left in this ${wordForPart()}` : "",
   ]
     .filter(Boolean)
     .join(", ");
   return h(
     "div",
     {class: "progress", "data-progress": share === undefined ? "" : share.toFixed(3)},
+    h(Parts),
     h("p", null, text),
-    h("progress", {max: 1, value: share, "aria-label": "Progress of the run"}),
+    h("progress", {max: 1, value: share, "aria-label": `Progress of this ${wordForPart()}`}),
     h(Announcer, {text}),
+  );
+}
+
+const kParts = {
+  done: ["✓", "done"],
+  now: ["▸", "under way"],
+  ahead: ["·", "to come"],
+  "left out": ["–", "not needed"],
+};
+
+/** Where the run is as a whole; the bar below it is about the part that is under way. */
+function Parts() {
+  return h(
+    "ol",
+    {class: "run-parts", "aria-label": "Parts of the run"},
+    partsOfRun().map(({name, is}) =>
+      h(
+        "li",
+        {key: name, "data-part": is, "aria-current": is === "now" ? "step" : undefined},
+        h("span", {"aria-hidden": "true"}, kParts[is][0]),
+        ` ${name}`,
+        h("span", {class: "unseen"}, `, ${kParts[is][1]}`),
+      ),
+    ),
   );
 }
 

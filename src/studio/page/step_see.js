@@ -1,9 +1,11 @@
 // Step 2: look at the scan, and say which part of it is the specimen.
 
 import {h} from "preact";
-import {state, update, setting, isFresh} from "./store.js";
+import {state, update, hasVoxels, setting, isFresh} from "./store.js";
 import {change} from "./actions.js";
-import {fitBox, showPlace} from "./views.js";
+import {crosshair, fitBox, showPlace} from "./views.js";
+import {Brush} from "./brush_panel.js";
+import {LabelValues} from "./label_values.js";
 import {
   Button,
   Facts,
@@ -18,24 +20,29 @@ import {
   problemAt,
   useId,
 } from "./widgets.js";
-import {middleOf, plus, voxelAt} from "./geometry.js";
+import {plus, voxelAt} from "./geometry.js";
 
-const kKeys = ["ct.window_hu", "ct.roi_box_mm", "ct.seed_mm", "ct.opening_radius_mm", "ct.smoothing_mm"];
+const kKeys = [
+  "ct.window_hu",
+  "ct.label_values",
+  "ct.roi_box_mm",
+  "ct.seed_mm",
+  "ct.opening_radius_mm",
+  "ct.smoothing_mm",
+  "ct.edits",
+];
 const kAxes = ["x", "y", "z"];
 
 /** The panel. */
 export function StepSee() {
+  if (!hasVoxels()) return h(MeshOnly);
   return h(
     "div",
     null,
     h(Problems, {calls: ["scan"]}),
     h(Working, {call: "scan", text: "Reading the scan"}),
     h(Picture),
-    h(
-      Section,
-      {title: "Which values are tissue", id: "window"},
-      h(Setting, {path: "ct.window_hu", label: "Tissue", names: ["least", "greatest"], step: 5}),
-    ),
+    state.case.inputs["ct.labels"] ? h(LabelValues) : h(Values),
     h(Box),
     h(Seed),
     h(
@@ -48,21 +55,66 @@ export function StepSee() {
         h(Setting, {path: "ct.smoothing_mm", label: "Smoothing", step: 0.1, isOptional: true}),
       ),
     ),
+    h(Brush),
     h(Found),
   );
 }
 
+// A case that begins with a mesh has nothing to find.
+function MeshOnly() {
+  const {body} = state;
+  return h(
+    Section,
+    {title: "Body", id: "mesh"},
+    h(
+      "p",
+      {class: "soft"},
+      "The case begins with a mesh: there are no slices, and no tissue has to be found. Step Hold sets how it is held.",
+    ),
+    h(Problems, {calls: ["body"]}),
+    h(Working, {call: "body", text: "Reading the mesh"}),
+    body ? h(Facts, {facts: {tets: body.tets, vertices_of_the_skin: body.skin.vertices.length / 3}}) : null,
+  );
+}
+
+function Values() {
+  return h(
+    Section,
+    {title: "Which values are tissue", id: "window"},
+    h(Setting, {path: "ct.window_hu", label: "Tissue", names: ["least", "greatest"], step: 5}),
+  );
+}
+
 function Picture() {
-  const {window: grey, cross, scan} = state;
-  const put = (patch) => update({window: {...grey, ...patch}});
-  const at = cross && scan ? voxelAt(scan.grid, cross) : -1;
-  const here = cross || (scan ? middleOf(scan.grid) : null);
+  const {scan} = state,
+    here = crosshair(),
+    at = here && scan ? voxelAt(scan.grid, here) : -1;
   return h(
     Section,
     {title: "Picture", id: "picture"},
+    scan ? h(Greys) : null,
+    h(Overlay),
+    here
+      ? h(Numbers, {
+          label: "Crosshair",
+          unit: "mm",
+          names: kAxes,
+          value: here.map((value) => Number(value.toFixed(1))),
+          step: 1,
+          onChange: (point) => showPlace(point),
+          hint: at >= 0 ? `${scan.voxels[at]} HU here` : null,
+        })
+      : null,
+  );
+}
+
+function Greys() {
+  const {window: grey, scan} = state;
+  const put = (patch) => update({window: {...grey, ...patch}});
+  return [
     h(
       "div",
-      {class: "pair"},
+      {key: "numbers", class: "pair"},
       h(NumberInput, {
         label: "Window width",
         unit: "HU",
@@ -81,24 +133,12 @@ function Picture() {
     ),
     h(
       "div",
-      {class: "row"},
+      {key: "presets", class: "row"},
       h(Button, {onClick: () => put({width: 400, level: 40})}, "Soft tissue"),
       h(Button, {onClick: () => put({width: 2000, level: 400})}, "Bone"),
-      scan ? h(Button, {onClick: () => put(rangeOf(scan))}, "All values") : null,
+      h(Button, {onClick: () => put(rangeOf(scan))}, "All values"),
     ),
-    h(Overlay),
-    here
-      ? h(Numbers, {
-          label: "Crosshair",
-          unit: "mm",
-          names: kAxes,
-          value: here.map((value) => Number(value.toFixed(1))),
-          step: 1,
-          onChange: (point) => showPlace(point),
-          hint: at >= 0 ? `${scan.voxels[at]} HU here` : null,
-        })
-      : null,
-  );
+  ];
 }
 
 function rangeOf(scan) {
@@ -165,7 +205,7 @@ function Box() {
 
 // A quarter of the scan in each direction, about the crosshair; to be dragged to where it should be.
 function boxAbout(grid) {
-  const middle = state.cross || middleOf(grid);
+  const middle = crosshair();
   const half = grid.size.map((count, k) => 0.125 * count * grid.spacing_mm[k]);
   const reach = kAxes.map((_, world) => grid.axes.reduce((sum, axis, k) => sum + Math.abs(axis[world]) * half[k], 0));
   return [plus(middle, reach, -1), plus(middle, reach)].map((corner) => corner.map((value) => Math.round(value)));
@@ -173,8 +213,8 @@ function boxAbout(grid) {
 
 function Seed() {
   const seed = setting("ct.seed_mm"),
-    isPlacing = state.placing === "seed";
-  const here = state.cross || (state.scan && middleOf(state.scan.grid));
+    isPlacing = state.placing === "seed",
+    here = crosshair();
   return h(
     Section,
     {title: "Seed", id: "seed"},

@@ -1,5 +1,45 @@
 // What the page knows at the moment. Everything in it can be asked of the server again.
 
+/** A photograph's settings before anything is chosen. `scale`: how it is found, with what each way needs; `hand`: what
+ *  is drawn by hand, a line each or null; `mode`: what a click on it does. */
+export function newPhoto() {
+  return {
+    file: null,
+    scale: {how: "mm_per_pixel", mm_per_pixel: null, ruler_mm: null, points: [], distance_mm: null, size_mm: null},
+    red: "annotation",
+    max_gap_mm: null,
+    hand: {incision: null, tumor_edge: null},
+    mode: "look",
+    selected: -1,
+  };
+}
+
+/** A cloud's settings before one is chosen. `frame`: where its coordinates are: "robot" or "camera". */
+export function newCloud() {
+  return {
+    file: null,
+    isVirtual: false,
+    scale: "fixed",
+    range: [0.9, 1.1],
+    settling_mm: 0,
+    frame: "robot",
+    camera: null,
+  };
+}
+
+/** The brush before its first stroke. `past`, `future`: lists of strokes for undo and redo; `refused`: how many points
+ *  there would have been with a stroke that was not added, or 0. */
+export function newBrush() {
+  return {radius_mm: 2, past: [], future: [], refused: 0};
+}
+
+/** No patch is being painted. `k`: of which constraint one is; `isEmpty`: it was cleared, or has no point yet, and the
+ *  case keeps what it holds until it has one; `radius_mm`: of such a patch; `stroke`: points under the pointer so far;
+ *  `refused`: how many points there would have been with a stroke that was not added, or 0. */
+export function newPatch() {
+  return {k: -1, isEmpty: false, radius_mm: 5, stroke: [], refused: 0};
+}
+
 /** The state. `drafts`: settings on their way to the server; `refused`: settings that it refused; `problems`: the last
  *  problem of each call. */
 export const state = {
@@ -23,10 +63,20 @@ export const state = {
   plan: null,
   run: null,
   accept: [],
+  picture: null,
+  photograph: null,
+  photo: newPhoto(),
+  cloud: newCloud(),
+  register: null,
+  lay: null,
+  acceptLaid: [],
+  arm: null,
   cross: null,
   window: {width: 400, level: 40},
   overlay: 0.35,
   placing: null,
+  brush: newBrush(),
+  patch: newPatch(),
   focus: null,
   edge: {points: [], isClosed: false, selected: -1, curve: [], isSaved: true, mode: "look", where: "rest"},
   scrub: 1,
@@ -78,6 +128,12 @@ export function setting(key) {
   if (key in state.drafts) return state.drafts[key];
   const value = state.case ? valueAt(state.case.settings, key) : undefined;
   return value === undefined ? null : value;
+}
+
+/** Whether the case has voxels, of a scan or of labels, in which tissue is found; else it begins with a mesh. */
+export function hasVoxels() {
+  const {inputs} = state.case || {};
+  return Boolean(inputs && (inputs["ct.volume"] || inputs["ct.labels"]));
 }
 
 /** The unit of a setting, or "". */

@@ -1,8 +1,8 @@
 // What the 3D view is made of: skins, curves, points, planes. Lengths in mm, LPS.
 
 import * as THREE from "three";
-import {minus, plus, length} from "./geometry.js";
-import {holds, ink} from "./colours.js";
+import {minus, plus, length, thinned} from "./geometry.js";
+import {holds, ink, kUnseen, scaleColour} from "./colours.js";
 
 /** A skin. @param look  {colour, opacity, colours: Float32Array of linear RGB per vertex} */
 export function skinMesh(skin, look) {
@@ -79,12 +79,6 @@ export function tubes(points, isClosed, colour, radius) {
   return withGhost(geometry, colour);
 }
 
-function thinned(points, least) {
-  const kept = [];
-  for (const point of points) if (!kept.length || length(minus(point, kept.at(-1))) > least) kept.push(point);
-  return kept;
-}
-
 function withGhost(geometry, colour) {
   const solid = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color: colour}));
   const ghost = new THREE.Mesh(
@@ -131,8 +125,8 @@ export function boxLines(box, colour) {
   return [lines];
 }
 
-/** A plane as a square with a grid of 10 mm, below `middle`. @param normal  unit vector */
-export function plate(point, normal, middle, radius) {
+/** A plane as a square with a grid of `step` mm, below `middle`. @param normal  unit vector */
+export function plate(point, normal, middle, radius, step = 10) {
   const side = 20 * Math.ceil(radius / 8);
   const group = new THREE.Group();
   const sheet = new THREE.Mesh(
@@ -145,7 +139,7 @@ export function plate(point, normal, middle, radius) {
       depthWrite: false,
     }),
   );
-  const grid = new THREE.GridHelper(side, side / 10, 0x8497a6, 0xa9b6c0);
+  const grid = new THREE.GridHelper(side, side / step, 0x8497a6, 0xa9b6c0);
   grid.rotation.x = Math.PI / 2;
   group.add(sheet, grid);
   const up = new THREE.Vector3(...normal);
@@ -177,4 +171,105 @@ export function ballAbout(vertices) {
   }
   const size = minus(high, low);
   return {centre: plus(low, size, 0.5), radius: 0.5 * length(size), low, high};
+}
+
+let disc = null;
+
+/** A white disc, so that points are round. */
+function discTexture() {
+  if (disc) return disc;
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 32;
+  const pen = canvas.getContext("2d");
+  pen.fillStyle = "#fff";
+  pen.arc(16, 16, 15, 0, 2 * Math.PI);
+  pen.fill();
+  disc = new THREE.CanvasTexture(canvas);
+  return disc;
+}
+
+/** Points of a cloud, as dots of so many pixels. @param look  {colour, size} or {colours: Float32Array, size} */
+export function cloudPoints(points, {colour, colours, size}) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+  if (colours) geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  const material = new THREE.PointsMaterial({
+    color: colours ? 0xffffff : colour,
+    vertexColors: Boolean(colours),
+    size,
+    sizeAttenuation: false,
+    map: discTexture(),
+    alphaTest: 0.5,
+  });
+  const dots = new THREE.Points(geometry, material);
+  dots.frustumCulled = false;
+  return dots;
+}
+
+/** Colours of residuals, mm, from minus `top` to `top`: linear RGB for each; one that is no number was not seen. */
+export function residualColours(residuals, top) {
+  const colours = new Float32Array(3 * residuals.length),
+    colour = new THREE.Color();
+  residuals.forEach((residual, k) => {
+    if (Number.isNaN(residual)) colour.set(kUnseen);
+    else colour.setRGB(...scaleColour(residual / top).map((value) => value / 255), THREE.SRGBColorSpace);
+    colours.set(colour.toArray(), 3 * k);
+  });
+  return colours;
+}
+
+/** Moves objects by a rigid transform of 4 rows of 4. */
+export function placed(objects, pose) {
+  const matrix = new THREE.Matrix4().set(...pose.flat());
+  for (const object of objects) object.applyMatrix4(matrix);
+  return objects;
+}
+
+// --- The arm. ---
+
+const kUp = new THREE.Vector3(0, 1, 0);
+
+/** An arm's hulls as capsules; poseArm() puts them where they belong. */
+export function armHulls(hulls, colourOf) {
+  return hulls.map(({name, radius_mm: radius}) => {
+    const material = new THREE.MeshPhongMaterial({color: colourOf(name), shininess: 25});
+    const ball = new THREE.SphereGeometry(radius, 28, 18);
+    const group = new THREE.Group();
+    group.add(
+      new THREE.Mesh(ball, material),
+      new THREE.Mesh(ball, material),
+      new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, 1, 28, 1, true), material),
+    );
+    return group;
+  });
+}
+
+/** Puts each capsule between its two ends. @param ends  [[x, y, z, x, y, z]], mm */
+export function poseArm(groups, ends) {
+  groups.forEach((group, k) => {
+    const [from, to, rod] = group.children;
+    from.position.set(...ends[k].slice(0, 3));
+    to.position.set(...ends[k].slice(3));
+    const along = to.position.clone().sub(from.position),
+      reach = along.length();
+    rod.visible = reach > 1e-6;
+    rod.position.copy(from.position).addScaledVector(along, 0.5);
+    if (rod.visible) rod.quaternion.setFromUnitVectors(kUp, along.divideScalar(reach));
+    rod.scale.set(1, Math.max(reach, 1e-6), 1);
+  });
+}
+
+/** A line of which showTrace() shows the first part. @param points  Float32Array */
+export function trace(points, colour) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+  const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({color: colour, depthTest: false}));
+  line.renderOrder = 6;
+  line.frustumCulled = false;
+  return line;
+}
+
+/** Shows the first points of a trace. */
+export function showTrace(line, count) {
+  line.geometry.setDrawRange(0, count);
 }

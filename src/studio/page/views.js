@@ -1,19 +1,24 @@
 // The four views, and what of the state they show.
 
-import {state, update, setting, when, subscribe} from "./store.js";
+import {state, update, setting, isFresh, when, subscribe} from "./store.js";
 import {change} from "./actions.js";
+import {addStroke, brush, strokes} from "./brush.js";
 import {GreyTable} from "./slice_image.js";
 import {SliceView} from "./slices.js";
 import {Scene, SkinQuery} from "./scene.js";
 import {EdgeTool, ellipseOnSkin, withCurve} from "./edge_tool.js";
-import {directionOf, kPlanes, pointsOf} from "./geometry.js";
+import {PatchTool} from "./patch_tool.js";
+import {growPatch, isAtRest, paintPatch, paintedPatch} from "./patch.js";
+import {directionOf, kPlanes, middleOf, pointsOf} from "./geometry.js";
 import {layersOf} from "./layers.js";
-import {ballAbout, blend} from "./things.js";
+import {ballAbout, blend, poseArm, showTrace} from "./things.js";
+import {moved} from "./registered.js";
+import {endsAt, onPlayer, player, rewind, sampleAt} from "./arm_player.js";
 
-/** The views by name: axial, coronal, sagittal, scene; `edge`: the tool that draws on the skin. */
+/** The views by name: axial, coronal, sagittal, scene; `edge` and `patch`: the tools that draw on the skin. */
 export const views = {};
 
-const model = {table: new GreyTable(), isPlacing: false, isBoxShown: true};
+const model = {table: new GreyTable(), isPlacing: false, isBoxShown: true, brush: null, strokes: [], stroke: []};
 
 /** Makes a view in an element; once for each. */
 export function makeView(host, name) {
@@ -31,6 +36,9 @@ const kOn = {
     change({"ct.seed_mm": point.map((value) => Math.round(10 * value) / 10)});
     update({placing: null});
   },
+  painting: renderSlices,
+  stroke: (path) => brush() && addStroke(brush(), path),
+  putAway: () => update({placing: null}),
 };
 
 function makeScene(host) {
@@ -47,6 +55,16 @@ function makeScene(host) {
     query: skinQuery,
     onEllipse: (point) => dropEllipse(point),
   });
+  views.patch = new PatchTool(views.scene, {
+    get: () => (isAtRest() ? paintedPatch() : null),
+    query: skinQuery,
+    on: {
+      painting: (stroke) => update({patch: {...state.patch, stroke}}),
+      stroke: (path) => paintedPatch() && paintPatch(state.patch.k, paintedPatch(), path),
+      grow: growPatch,
+      end: () => update({placing: null}),
+    },
+  });
   syncScene();
 }
 
@@ -58,9 +76,13 @@ function keyed(value) {
   return value;
 }
 
+let foundCount = 0; // of the strokes: so many are in the tissue that is shown
+
 function syncModel() {
   const edge = shownEdge();
+  if (isFresh("tissue") && !("ct.edits" in state.drafts)) foundCount = strokes().length;
   Object.assign(model, {
+    room: state.case && state.case.file,
     scan: state.scan && keyed(state.scan),
     tissue: state.tissue && keyed(state.tissue),
     cross: state.cross,
@@ -70,6 +92,8 @@ function syncModel() {
     seed: setting("ct.seed_mm"),
     isPlacing: state.placing === "seed",
     isBoxShown: state.step === "see",
+    brush: brush(),
+    strokes: strokes().slice(foundCount),
     edge: edge.isRest ? edge.points : [],
   });
   renderSlices();
@@ -99,7 +123,16 @@ function syncScene() {
   for (const layer of wanted) build(layer);
   fitScene();
   scrub();
-  views.scene.tool = state.step === "edge" ? views.edge : null;
+  placeArm();
+  views.scene.gizmo.name(isArmShown() ? "robot" : "anatomical");
+  chooseTool();
+}
+
+function chooseTool() {
+  const isPainting = state.step === "hold" && Boolean(paintedPatch());
+  views.scene.tool = state.step === "edge" ? views.edge : isPainting ? views.patch : null;
+  views.scene.host.dataset.tool = isPainting ? "patch" : "";
+  if (!isPainting) views.patch.hide();
 }
 
 function forget(name) {
@@ -114,21 +147,53 @@ function build(layer) {
   views.scene.put(layer.name, layer.build(), layer);
 }
 
-let fitted = {skin: null, file: "", centre: null, radius: 0};
+let fitted = {of: null, room: "", centre: null, radius: 0};
 
-/** Fits the view to the skin where it is another one; small changes of size leave the camera alone. */
+/** Fits the view to what the step shows, where it is something else; small changes of size leave the camera alone. */
 function fitScene() {
-  const skin = shownSkin(),
-    file = state.case ? state.case.file : "";
-  if (!skin || skin === fitted.skin) return;
-  const ball = ballAbout(skin.vertices),
-    isOther = file !== fitted.file;
-  fitted.skin = skin;
+  const isArm = isArmShown(),
+    of = isArm ? state.arm : shownSkin();
+  if (!of || of === fitted.of) return;
+  const room = `${state.case ? state.case.file : ""} ${isArm ? "robot" : "sim"}`;
+  const ball = isArm ? armBall() : ballAbout(of.vertices),
+    isOther = room !== fitted.room;
+  fitted.of = of;
   const shift = isOther ? Infinity : Math.hypot(...ball.centre.map((value, k) => value - fitted.centre[k]));
   if (shift < 0.06 * ball.radius && Math.abs(ball.radius - fitted.radius) < 0.06 * ball.radius) return;
-  fitted = {skin, file, ...ball};
+  fitted = {of, room, ...ball};
   if (isOther) views.scene.forget();
   views.scene.fit(ball.centre, ball.radius);
+}
+
+// --- The arm, in the robot's frame. ---
+
+function isArmShown() {
+  return state.step === "program" && Boolean(state.arm);
+}
+
+function armBall() {
+  const {centre, radius} = ballAbout(state.arm.ends);
+  return {centre, radius: 0.95 * radius}; // of the box about all that it does: its corners are empty
+}
+
+/** Makes the whole arm, or the tissue that it cuts, fill the 3D view. @param what  "arm" or "tissue" */
+export function frameOn(what) {
+  const {arm, stretch} = state;
+  if (!isArmShown() || !views.scene) return;
+  const ball = what === "arm" || !stretch ? armBall() : ballAbout(stretch.skin.vertices);
+  const centre = what === "arm" || !stretch ? ball.centre : moved(ball.centre, arm.T_robot_sim);
+  views.scene.frame(centre, ball.radius);
+}
+
+/** Puts the arm where it is at the player's time. */
+function placeArm() {
+  const {arm} = state,
+    layer = views.scene && views.scene.layers.get("arm");
+  if (!isArmShown() || !layer) return;
+  poseArm(layer.objects, endsAt(arm, player.time));
+  const way = views.scene.layers.get("trace");
+  if (way) showTrace(way.objects[0], sampleAt(arm, player.time).k + 1);
+  views.scene.render();
 }
 
 /** The skin that the step shows: {vertices, triangles}, or null. */
@@ -137,7 +202,7 @@ export function shownSkin() {
   if (step === "edge" && state.edge.where === "stretched") return stretch && stretch.skin;
   if (step === "see" || step === "edge" || step === "open")
     return (tissue && tissue.skin) || (body && body.skin) || null;
-  if (step === "hold") return body && body.skin;
+  if (step === "hold") return (body && body.skin) || (tissue && tissue.skin) || null;
   return (stretch && stretch.skin) || (body && body.skin) || (tissue && tissue.skin) || null;
 }
 
@@ -177,6 +242,12 @@ export function dropEllipse(point) {
   return update({edge: withCurve(next, query), notice: ""});
 }
 
+/** The crosshair's place, mm: the middle of the slices where none was chosen; null without slices. */
+export function crosshair() {
+  const shown = state.scan || state.tissue;
+  return state.cross || (shown && shown.grid ? middleOf(shown.grid) : null);
+}
+
 /** Moves crosshair and 3D view to a place, mm. */
 export function showPlace(point) {
   update({cross: point, focus: point});
@@ -191,6 +262,8 @@ export function fitBox(box) {
 /** Connects the views with the state. */
 export function connectViews() {
   subscribe(syncModel);
+  onPlayer(placeArm);
+  when(() => [state.arm], rewind);
   when(
     () => [
       state.step,
@@ -199,12 +272,16 @@ export function connectViews() {
       state.stretch,
       state.plan,
       state.run,
+      state.register,
+      state.arm,
       state.moment,
       state.edge,
       state.case,
       state.drafts,
       state.focus,
       state.scrub,
+      state.placing,
+      state.patch,
     ],
     syncScene,
   );

@@ -4,7 +4,7 @@ import {h} from "preact";
 import {useState} from "preact/hooks";
 import {state, setting, unitOf} from "./store.js";
 import {change} from "./actions.js";
-import {fixed, isNumber, nameOf, plain, spoken} from "./words.js";
+import {fixed, isNumber, nameOf, plain, spoken, whole} from "./words.js";
 
 let lastId = 0;
 
@@ -315,9 +315,7 @@ function factText(key, value) {
   if (!isNumber(value)) return typeof value === "boolean" ? (value ? "yes" : "no") : String(value);
   const unit = kUnits[key.split("_").pop()] || "";
   const number =
-    Number.isInteger(value) || Math.abs(value) >= 1000
-      ? Math.round(value).toLocaleString("en").replaceAll(",", "\u202f")
-      : fixed(value, unit === "HU" ? 0 : 2);
+    Number.isInteger(value) || Math.abs(value) >= 1000 ? whole(value) : fixed(value, unit === "HU" ? 0 : 2);
   return unit ? `${number} ${unit}` : number;
 }
 

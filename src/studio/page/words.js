@@ -29,6 +29,11 @@ export function duration(seconds) {
   return seconds < 90 ? `${Math.max(1, Math.round(seconds))} s` : `${Math.round(seconds / 60)} min`;
 }
 
+/** A whole number with narrow spaces between thousands. */
+export function whole(value) {
+  return Math.round(value).toLocaleString("en").replaceAll(",", "\u202f");
+}
+
 /** Bytes as "12.3 MB". */
 export function size(bytes) {
   if (!isNumber(bytes)) return "";

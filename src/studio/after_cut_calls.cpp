@@ -1,0 +1,541 @@
+#include "arguments.hpp"
+#include "calls.hpp"
+
+#include <incise/core/described_json.hpp>
+#include <incise/core/error.hpp>
+#include <incise/core/median.hpp>
+#include <incise/geometry/neighbours.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/json_file.hpp>
+#include <incise/io/path_io.hpp>
+#include <incise/io/picture_io.hpp>
+#include <incise/io/surface_io.hpp>
+#include <incise/io/transform_json.hpp>
+#include <incise/laboratory/bench_steps.hpp>
+#include <incise/robot/arm_hulls.hpp>
+#include <incise/robot/player.hpp>
+#include <incise/robot/program_audit.hpp>
+#include <incise/steps/camera_steps.hpp>
+#include <incise/steps/cut_steps.hpp>
+#include <incise/steps/registration_trust.hpp>
+#include <incise/steps/robot_steps.hpp>
+#include <incise/steps/tissue_steps.hpp>
+#include <incise/storage/case_run.hpp>
+#include <incise/storage/registration_json.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace incise::studio {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = Calls::Json;
+
+constexpr std::size_t kMostPixels = 20000;  // of a contour that is drawn by hand
+constexpr double kFrameS = 0.04;            // between two pictures of the arm
+constexpr double kFarMm = 5.0;              // a surface's point this far from every point of a cloud was not seen
+
+/// A word of a command line, as a shell takes it.
+std::string word(const std::string& text) {
+  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_-./=,:").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_line(const std::vector<std::string>& words) {
+  std::string line = "incise";
+  for (const std::string& one : words) line += " " + word(one);
+  return line;
+}
+
+void append(std::vector<std::string>& words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+}
+
+Json pixels_json(const std::vector<Vec2>& pixels) {
+  Json json = Json::array();
+  for (const Vec2& p : pixels) json.push_back({p.x(), p.y()});
+  return json;
+}
+
+/// Every file of a folder of results, named from the case's folder on.
+Json files_in(const fs::path& folder, const fs::path& of_case) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) names.push_back(entry.path().lexically_proximate(of_case).string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// --- The photograph. ---
+
+steps::ScaleRequest scale_in(const Json& arguments) {
+  const Json given = argument<Json>(arguments, "scale", "how long a pixel is");
+  if (!given.is_object()) throw CaseError("request", "scale", given.dump().substr(0, 80), "an object");
+  const auto lengths = [&](const char* name, std::size_t count) {
+    if (!given.contains(name)) return std::vector<double>{};
+    const std::string expected = fmt::format("{} numbers", count);
+    auto numbers = argument<std::vector<double>>(given, name, expected.c_str());
+    if (numbers.size() == count) return numbers;
+    throw CaseError("request", name, fmt::format("{} numbers", numbers.size()), expected);
+  };
+  steps::ScaleRequest scale;
+  if (given.contains("mm_per_pixel")) scale.mm_per_pixel = positive_argument(given, "mm_per_pixel");
+  if (given.contains("ruler")) scale.ruler = word_argument<RulerKind>(given, "ruler");
+  if (given.contains("ruler_mm")) scale.ruler_mm = positive_argument(given, "ruler_mm");
+  scale.two_points = lengths("two_points", 5);
+  scale.rectangle = lengths("rectangle", 8);
+  scale.rectangle_mm = lengths("rectangle_mm", 2);
+  if (scale.ways() != 1)
+    throw CaseError("request", "scale", fmt::format("{} scales", scale.ways()),
+                    "one of mm_per_pixel, ruler, two_points, rectangle");
+  return scale;
+}
+
+std::vector<std::string> scale_words(const steps::ScaleRequest& scale) {
+  std::vector<std::string> words;
+  const auto add = [&](const char* option, const std::vector<double>& numbers) {
+    if (numbers.empty()) return;
+    words.emplace_back(option);
+    for (const double number : numbers) words.push_back(fmt::format("{}", number));
+  };
+  if (scale.mm_per_pixel > 0.0) add("--mm-per-pixel", {scale.mm_per_pixel});
+  if (scale.ruler) append(words, {"--ruler", std::string(to_string(*scale.ruler))});
+  if (scale.ruler_mm) add("--ruler-mm", {*scale.ruler_mm});
+  add("--two-points", scale.two_points);
+  add("--rectangle", scale.rectangle);
+  add("--rectangle-mm", scale.rectangle_mm);
+  return words;
+}
+
+/// Contours that a person drew over a photograph, in its pixels; an empty one was not drawn.
+struct DrawnContours {
+  std::vector<Vec2> incision_px, tumor_edge_px;
+  bool incision_is_closed = true;
+  [[nodiscard]] bool has_both() const { return !incision_px.empty() && !tumor_edge_px.empty(); }
+  [[nodiscard]] bool has_any() const { return !incision_px.empty() || !tumor_edge_px.empty(); }
+};
+
+DrawnContours drawn_in(const Json& arguments) {
+  DrawnContours drawn;
+  const auto take = [&](const char* name, std::vector<Vec2>& pixels) {
+    if (!arguments.contains(name)) return;
+    pixels = pixels_argument(arguments, name);
+    if (pixels.size() < 3 || pixels.size() > kMostPixels)
+      throw CaseError("request", name, fmt::format("{} points", pixels.size()),
+                      fmt::format("3 to {} points", kMostPixels));
+  };
+  take("incision_px", drawn.incision_px);
+  take("tumor_edge_px", drawn.tumor_edge_px);
+  drawn.incision_is_closed = argument_or(arguments, "incision_closed", "true or false", true);
+  return drawn;
+}
+
+Contour in_plane(const std::vector<Vec2>& pixels, bool is_closed, const PhotoScale& scale) {
+  Contour contour;
+  contour.is_closed = is_closed;
+  for (const Vec2& pixel : pixels) {
+    const Vec2 at = scale.plane_mm(pixel);
+    contour.points.emplace_back(at.x(), at.y(), 0.0);
+  }
+  return contour;
+}
+
+steps::EvaluateRequest evaluation_of(const CaseFile& file, const Json& arguments) {
+  const Case& settings = file.settings;
+  steps::EvaluateRequest request;
+  request.photo = text_argument(arguments, "file");
+  request.scale = scale_in(arguments);
+  request.contour = ContourKind::InnerEdge;
+  request.settings.target_mm = settings.plan.lateral_margin_mm - radius_mm(settings.tool);
+  request.settings.close_margin_mm = settings.close_margin_mm;
+  request.max_gap_mm = argument_or(arguments, "max_gap_mm", "a length", request.max_gap_mm);
+  if (!(request.max_gap_mm >= 0.0 && request.max_gap_mm <= 10.0))
+    throw CaseError("request", "max_gap_mm", fmt::format("{}", request.max_gap_mm), "0 to 10 mm");
+  if (arguments.contains("red")) request.red = word_argument<RedLine>(arguments, "red");
+  return request;
+}
+
+std::vector<std::string> words_of_settings(const steps::EvaluateRequest& request) {
+  return {"--target-mm", fmt::format("{}", *request.settings.target_mm), "--close-margin-mm",
+          fmt::format("{}", request.settings.close_margin_mm)};
+}
+
+/// The measures of contours of which a person drew one at least; both are written beside them.
+/// @param found  what the photograph shows, for the one that was not drawn.
+steps::PhotographedCut evaluate_drawn(const steps::EvaluateRequest& request, const DrawnContours& drawn,
+                                      const steps::FoundPixels& found, const fs::path& to,
+                                      const steps::StepContext& context) {
+  const ColorPicture picture = decode_picture(read_text(request.photo), request.photo);
+  const steps::FoundScale scale = steps::find_scale(request.scale, picture, request.photo);
+  const bool has_incision = !drawn.incision_px.empty(), has_edge = !drawn.tumor_edge_px.empty();
+  steps::FoundPixels pixels{scale.marks_px, has_incision ? drawn.incision_px : found.incision_px,
+                            has_incision ? drawn.incision_is_closed : found.incision_is_closed,
+                            has_edge ? drawn.tumor_edge_px : found.tumor_edge_px};
+  write_contour_csv(to / "incision.csv", in_plane(pixels.incision_px, pixels.incision_is_closed, scale.scale));
+  write_contour_csv(to / "tumor_edge.csv", in_plane(pixels.tumor_edge_px, true, scale.scale));
+  steps::EvaluateRequest of_contours;
+  of_contours.incision = to / "incision.csv";
+  of_contours.tumor = to / "tumor_edge.csv";
+  of_contours.is_open = !pixels.incision_is_closed;
+  of_contours.contour = request.contour;
+  of_contours.settings = request.settings;
+  steps::StepResult step = steps::evaluate_cut(of_contours, context);
+  step.json["photo"] = request.photo.string();
+  step.json["mm_per_pixel"] = scale.scale.mm_per_pixel(pixels.tumor_edge_px.front());
+  step.json["scale"] = scale.summary;
+  return {std::move(step), std::move(pixels)};
+}
+
+// --- The cloud. ---
+
+ScaleRange scale_range_in(const Json& arguments) {
+  if (!arguments.contains("scale")) return ScaleRange::fixed();
+  const Json& given = arguments.at("scale");
+  if (given == "fixed") return ScaleRange::fixed();
+  if (given == "free") return ScaleRange::free();
+  if (given.is_array() && given.size() == 2 && given[0].is_number() && given[1].is_number()) {
+    const ScaleRange range{given[0].get<double>(), given[1].get<double>()};
+    if (range.low > 0.0 && range.low <= range.high && range.high < 1e6) return range;
+  }
+  throw CaseError("request", "scale", given.dump().substr(0, 80), "fixed, free, or [low, high] with 0 < low <= high");
+}
+
+std::string scale_word(const ScaleRange& range, const Json& arguments) {
+  const Json given = arguments.value("scale", Json("fixed"));
+  return given.is_string() ? given.get<std::string>() : fmt::format("{},{}", range.low, range.high);
+}
+
+Points moved_by(const Mat4& T, const Points& points) {
+  Points moved;
+  moved.reserve(points.size());
+  for (const Vec3& p : points) moved.emplace_back((T * p.homogeneous()).head<3>());
+  return moved;
+}
+
+/// Of each point along its normal from the cloud about it: the median over the nearest of its points, so that their
+/// noise does not hide what both surfaces differ by. Not a number where the cloud has none near.
+std::vector<float> residuals_of(const PointCloud& surface, const Points& cloud) {
+  constexpr std::size_t kNear = 9;
+  const NeighbourSearch search(cloud);
+  std::vector<float> residuals;
+  for (std::size_t i = 0; i < surface.points.size(); ++i) {
+    std::vector<double> along;
+    for (const Neighbour& near : search.nearest(surface.points[i], kNear)) {
+      const Vec3 way = surface.points[i] - cloud[near.index];
+      if (near.squared_mm2 <= kFarMm * kFarMm)
+        along.push_back(surface.normals.empty() ? way.norm() : way.dot(surface.normals[i]));
+    }
+    residuals.push_back(along.empty() ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(median(along)));
+  }
+  return residuals;
+}
+
+fs::path registration_folder(const CaseFile& file) {
+  return file.folder / "registration";
+}
+
+/// The program along a laid path, as the case would have it. @param laid  folder of path.json and surface.ply
+steps::ExportRequest export_of(const Case& settings, const fs::path& laid, const fs::path& script) {
+  steps::ExportRequest making;
+  making.path = laid / "path.json";
+  making.surface = laid / "surface.ply";
+  making.power_w = settings.plan.power_w;
+  making.overlap_mm = settings.cut.overlap_mm;
+  making.is_open = settings.plan.kind != PlanKind::Ring;
+  making.checks.planned_depth_mm = settings.plan.depth_mm;
+  making.checks.close_margin_mm = settings.close_margin_mm;
+  if (settings.T_flange_tool) making.setup.T_flange_tool = *settings.T_flange_tool;
+  making.output = script;
+  return making;
+}
+
+std::vector<std::string> words_of(const steps::ProjectRequest& laying) {
+  std::vector<std::string> words{"project",   laying.path.string(),   "--transform", laying.transform.string(),
+                                 "--surface", laying.surface.string()};
+  if (!laying.camera.empty()) append(words, {"--camera", laying.camera.string()});
+  append(words, {"-o", laying.output.string()});
+  return words;
+}
+
+std::vector<std::string> words_of(const steps::ExportRequest& making) {
+  const auto number = [](double value) { return fmt::format("{}", value); };
+  std::vector<std::string> words{"export",         making.path.string(),         "--surface", making.surface.string(),
+                                 "--registration", making.registration.string(), "--power-w", number(*making.power_w),
+                                 "--overlap-mm",   number(*making.overlap_mm)};
+  append(words, {"--depth-mm", number(making.checks.planned_depth_mm), "--close-margin-mm",
+                 number(making.checks.close_margin_mm)});
+  const Mat4& T = making.setup.T_flange_tool;
+  if (T != ArmSetup{}.T_flange_tool) {
+    const Eigen::AngleAxisd turn(Mat3(T.topLeftCorner<3, 3>()));
+    const Vec3 rotation = turn.angle() * turn.axis();
+    words.emplace_back("--tcp");
+    for (const double value : {T(0, 3), T(1, 3), T(2, 3), rotation.x(), rotation.y(), rotation.z()})
+      words.push_back(number(value));
+  }
+  if (making.is_open) words.emplace_back("--open");
+  for (const std::string& id : making.accepted) append(words, {"--accept", id});
+  append(words, {"-o", making.output.string()});
+  return words;
+}
+
+/// Why a gate lets no program through, for a person.
+std::string why_closed(const Json& gate) {
+  const auto listed = [&](const char* key) {
+    std::string names;
+    for (const Json& id : gate.at(key)) names += (names.empty() ? "" : ", ") + id.get<std::string>();
+    return names;
+  };
+  if (const std::string refused = listed("refused"); !refused.empty()) return "refused: " + refused;
+  return "cautions that nobody has accepted: " + listed("missing");
+}
+
+/// Of the arm along a program, every kFrameS, the last cycle among them.
+struct ArmFrames {
+  std::vector<float> time_s, ends;
+  Points tips;
+  std::vector<std::uint8_t> phases;
+};
+
+ArmFrames frames_of(const Replay& replay, const ArmModel& arm, const Instrument& instrument, double table_z_mm) {
+  ArmFrames frames;
+  double next_s = 0.0;
+  for (std::size_t i = 0; i < replay.samples.size(); ++i) {
+    const ReplaySample& sample = replay.samples[i];
+    if (sample.time_s < next_s && i + 1 < replay.samples.size()) continue;
+    next_s = sample.time_s + kFrameS;
+    frames.time_s.push_back(static_cast<float>(sample.time_s));
+    frames.tips.push_back(sample.tip_mm);
+    frames.phases.push_back(static_cast<std::uint8_t>(sample.phase));
+    for (const Capsule& hull : hulls_at(arm, sample.q_rad, instrument, table_z_mm)) {
+      for (const Vec3& end : {hull.from_mm, hull.to_mm}) {
+        for (int a = 0; a < 3; ++a) frames.ends.push_back(static_cast<float>(end[a]));
+      }
+    }
+  }
+  return frames;
+}
+
+Json matrix_json(const Mat4& T) {
+  Json rows = Json::array();
+  for (int r = 0; r < 4; ++r) rows.push_back({T(r, 0), T(r, 1), T(r, 2), T(r, 3)});
+  return rows;
+}
+
+}  // namespace
+
+Json Calls::picture(const Json& arguments) {
+  const fs::path file = text_argument(arguments, "file");
+  const ColorPicture picture = decode_picture(read_text(file), file);
+  return {{"width", picture.width},
+          {"height", picture.height},
+          {"rgb", blobs_.put("picture.rgb", std::span<const std::uint8_t>(picture.rgb))}};
+}
+
+Json Calls::photograph(const Json& arguments) {
+  const CaseFile file = read_case(file_);
+  steps::EvaluateRequest request = evaluation_of(file, arguments);
+  const DrawnContours drawn = drawn_in(arguments);
+  const fs::path folder = file.folder / ("photograph_" + request.photo.stem().string());
+  const steps::StepContext step{context(), workers_, monitor_};
+  AtomicFolder target(folder);
+  steps::PhotographedCut cut;
+  if (!drawn.has_both()) {
+    request.figure = target.path() / "found.png";
+    cut = steps::evaluate_photograph(request, step);
+    cut.step.json["figure"] = (folder / "found.png").string();
+  }
+  if (drawn.has_any()) cut = evaluate_drawn(request, drawn, cut.pixels, target.path(), step);
+  Json by_hand = Json::array();
+  if (!drawn.incision_px.empty()) by_hand.push_back("incision");
+  if (!drawn.tumor_edge_px.empty()) by_hand.push_back("tumor_edge");
+  Json& evaluation = cut.step.json;
+  evaluation["by_hand"] = by_hand;
+  write_json(target.path() / "evaluation.json", evaluation);
+  write_manifest(target.path(),
+                 steps::manifest_of(step.run, Json{{"by_hand", by_hand}}.dump(), {request.photo}, step.wall_s()));
+  target.commit();
+  std::vector<std::string> words{"evaluate"};
+  if (drawn.has_any()) {
+    append(words, {"--incision", (folder / "incision.csv").string(), "--tumor", (folder / "tumor_edge.csv").string(),
+                   "--contour", "inner_edge"});
+    if (!cut.pixels.incision_is_closed) words.emplace_back("--open");
+  } else {
+    append(words, {request.photo.string()});
+    append(words, scale_words(request.scale));
+    append(words,
+           {"--red", std::string(to_string(request.red)), "--max-gap-mm", fmt::format("{}", request.max_gap_mm)});
+  }
+  append(words, words_of_settings(request));
+  return {{"mm_per_pixel", evaluation.at("mm_per_pixel")},
+          {"scale", evaluation.at("scale")},
+          {"marks_px", pixels_json(cut.pixels.marks_px)},
+          {"incision_px", pixels_json(cut.pixels.incision_px)},
+          {"incision_closed", cut.pixels.incision_is_closed},
+          {"tumor_edge_px", pixels_json(cut.pixels.tumor_edge_px)},
+          {"by_hand", by_hand},
+          {"evaluation", evaluation},
+          {"files", files_in(folder, file.folder)},
+          {"command", command_line(words)}};
+}
+
+Json Calls::virtual_cloud(const Json& arguments) {
+  const CaseFile file = read_case(file_);
+  const fs::path cloud = file.folder / "virtual_cloud.ply";
+  if (fs::exists(fs::symlink_status(cloud)) && !is_marked_virtual(read_cloud(cloud)))
+    throw DataError(cloud, "", "a cloud that is not marked virtual", "none, or an earlier virtual cloud");
+  const std::uint64_t seed = seed_argument(arguments, "seed");
+  Json done = laboratory::make_virtual_cloud({file_, cloud}, {context(seed), workers_, monitor_}).json;
+  done["name"] = cloud.filename().string();
+  return done;
+}
+
+Json Calls::register_cloud(const Json& arguments) {
+  const CaseFile file = read_case(file_);
+  const fs::path target = text_argument(arguments, "file");
+  const steps::StepContext step{context(), workers_, monitor_};
+  steps::SurfaceRequest seen;
+  seen.input = file_;
+  seen.output = output_beside(file_) / "simulated_surface.ply";
+  remove_replaceable(laid_folder(file));  // its path and program lie where the last registration put them
+  const Study study = study_until(Stage::Stretch);
+  static_cast<void>(steps::see_surface(seen, step));
+  steps::RegisterRequest request;
+  request.source = seen.output;
+  request.target = target;
+  request.approach = file.settings.plan.approach;
+  request.output = registration_folder(file);
+  request.settings.scale = scale_range_in(arguments);
+  request.settings.settling_mm = argument_or(arguments, "settling_mm", "a length", 0.0);
+  const std::vector<Problem> problems = validate(request.settings);
+  if (!problems.empty()) throw CaseError("request", problems.front());
+  const Json found = steps::lay_clouds(request, step).json;
+  const TriMesh cloud = read_cloud(target);
+  const fs::path written = request.output / "registration.json";
+  Json json{{"registration", found},
+            {"verdict", to_json(steps::verdict_of(read_registration(written), written))},
+            {"is_virtual", is_marked_virtual(cloud)}};
+  json["target"] = {{"points", blobs_.put("register.target", std::span<const Vec3>(cloud.vertices))}};
+  json["skin"] = nullptr;
+  json["sample"] = nullptr;
+  if (found.contains("T_target_source") && !found.at("T_target_source").is_null()) {
+    const Mat4 T = transform_in(found, "T_target_source", written);
+    const Skin skin = skin_of(study.model->mesh);
+    json["skin"] = surface_json(blobs_, "register.skin",
+                                moved_by(T, positions_on(skin, study.stretched->state.positions)), skin.triangles);
+    const PointCloud laid = cloud_of(read_cloud(request.output / "moved_source.ply"));
+    const std::vector<float> residuals = residuals_of(laid, cloud.vertices);
+    json["sample"] = {{"points", blobs_.put("register.points", std::span<const Vec3>(laid.points))},
+                      {"residuals_mm", blobs_.put("register.residuals", std::span<const float>(residuals))}};
+  }
+  json["files"] = files_in(request.output, file.folder);
+  std::vector<std::string> words{"register",
+                                 "--source",
+                                 seen.output.string(),
+                                 "--target",
+                                 target.string(),
+                                 "--scale",
+                                 scale_word(request.settings.scale, arguments)};
+  append(words, {"--settling-mm", fmt::format("{}", request.settings.settling_mm), "-o", request.output.string()});
+  json["command"] = command_line(words);
+  return json;
+}
+
+Json Calls::lay(const Json& arguments) {
+  const CaseFile file = read_case_with_inputs(file_);
+  const Case& settings = file.settings;
+  const std::vector<std::string> accepted = accepted_argument(arguments);
+  const fs::path registration = registration_folder(file) / "registration.json";
+  if (!fs::exists(registration))
+    throw CaseError("request", "registration", "none in the case's folder", "a registered cloud");
+  const steps::StepContext step{context(), workers_, monitor_};
+  const fs::path output = output_beside(file_);
+  const Study study = study_until(Stage::Verify);  // at hand after a run; else it is made now
+  if (!study.as_planned) throw CaseError(file_.string(), "plan", "nothing was cut", "a path that was cut");
+  steps::ProjectRequest laying;
+  laying.path = output / (study.is_accepted ? "correction" : "plan") / "path.json";
+  laying.transform = registration;
+  laying.surface = text_argument(read_json(registration), "target");
+  if (arguments.contains("camera") && !arguments.at("camera").is_null())
+    laying.camera = text_argument(arguments, "camera");
+  const fs::path folder = laid_folder(file);
+  AtomicFolder target(folder);
+  laying.output = target.path() / "path";
+  static_cast<void>(steps::project_onto_tissue(laying, step));
+  steps::ExportRequest making = export_of(settings, laying.output, target.path() / "program.script");
+  making.registration = registration;
+  making.accepted = accepted;
+  const Json made = steps::export_program(making, step).json;
+  Json json{{"path", tool_path_json(read_tool_path(making.path))},
+            {"follows", study.is_accepted ? "corrected" : "planned"}};
+  for (const char* key : {"verdict", "gate", "checks"}) json[key] = made.at(key);
+  const bool is_there = made.contains("program");
+  json["program"] = is_there ? Json(read_text(making.output)) : Json(nullptr);
+  json["why_without_program"] = is_there ? "" : why_closed(made.at("gate"));
+  write_manifest(
+      target.path(),
+      steps::manifest_of(step.run, "{}", {laying.path, registration, laying.surface, laying.camera}, step.wall_s()));
+  target.commit();
+  laying.output = folder / "path";
+  making = export_of(settings, laying.output, folder / "program.script");
+  making.registration = registration;
+  making.accepted = accepted;
+  json["files"] = files_in(folder, file.folder);
+  json["commands"] = {command_line(words_of(laying)), command_line(words_of(making))};
+  return json;
+}
+
+Json Calls::arm(const Json& arguments) {
+  const CaseFile file = read_case(file_);
+  const bool is_laid = argument_or<std::string>(arguments, "of", "run or tissue", "run") == "tissue";
+  const fs::path script = (is_laid ? laid_folder(file) : output_beside(file_) / "program") / "program.script";
+  if (!fs::exists(script))
+    throw CaseError(file_.string(), "program", "none",
+                    is_laid ? "a path on a cloud, with its program" : "a run that wrote a program");
+  const WrittenProgram program = program_from_text(read_text(script), script);
+  const std::optional<Mat4> T_robot_sim =
+      is_laid ? read_tool_path(laid_folder(file) / "path" / "path.json").T_robot_sim : file.settings.T_robot_sim;
+  if (!T_robot_sim) throw CaseError(file_.string(), "robot.T_robot_sim", "none", "where the specimen lies");
+  Replay replay = play(program);
+  judge_audit(replay, audit_program(program));
+  const ArmSetup setup = program.record ? program.record->setup : ArmSetup{};
+  const CheckSettings limits = program.record ? program.record->limits : CheckSettings{};
+  const Instrument instrument{program.T_flange_tool, limits.needle_length_mm, limits.needle_radius_mm,
+                              limits.shaft_radius_mm};
+  const ArmFrames frames = frames_of(replay, setup.arm, instrument, setup.table_z_mm);
+  Json hulls = Json::array();
+  const Hulls of_arm = hulls_at(setup.arm, setup.near_rad, instrument, setup.table_z_mm);
+  for (std::size_t h = 0; h < kHullCount; ++h)
+    hulls.push_back({{"name", kHullNames[h]}, {"radius_mm", of_arm[h].radius_mm}});
+  Json json{{"T_robot_sim", matrix_json(*T_robot_sim)}, {"hulls", std::move(hulls)}};
+  json["time_s"] = blobs_.put("arm.time", std::span<const float>(frames.time_s));
+  json["ends"] = blobs_.put("arm.ends", std::span<const float>(frames.ends));
+  json["tip"] = blobs_.put("arm.tip", std::span<const Vec3>(frames.tips));
+  json["phase"] = blobs_.put("arm.phase", std::span<const std::uint8_t>(frames.phases));
+  json["phases"] = names_of(ProgramPhase{});
+  json["outcome"] = to_string(replay.outcome);
+  json["reason"] = replay.reason;
+  json["duration_s"] = replay.duration_s();
+  json["max_deviation_mm"] = replay.max_deviation_mm;
+  json["table_z_mm"] = setup.table_z_mm;
+  return json;
+}
+
+Json Calls::report(const Json&) {
+  const fs::path page = output_beside(file_) / "report.html";
+  if (!fs::exists(page)) throw CaseError(file_.string(), "report", "none", "a run");
+  const std::string html = read_text(page);
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(html.data()), html.size());
+  return {{"name", page.filename().string()}, {"html", blobs_.put("report.html", bytes)}};
+}
+
+}  // namespace incise::studio

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <incise/core/error.hpp>
+#include <incise/core/names.hpp>
+#include <incise/geometry/types.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace incise::studio {
+
+/// An argument of a call. @param expected  for the message.
+/// @throws CaseError where it is missing or of another type.
+template <class Value>
+Value argument(const nlohmann::ordered_json& arguments, const char* name, const char* expected) {
+  const auto found = arguments.find(name);
+  try {
+    if (found != arguments.end()) return found->get<Value>();
+  } catch (const nlohmann::ordered_json::exception&) {
+  }
+  throw CaseError("request", name, found == arguments.end() ? "nothing" : found->dump().substr(0, 80), expected);
+}
+
+/// The same of one that may be left out.
+template <class Value>
+Value argument_or(const nlohmann::ordered_json& arguments, const char* name, const char* expected, Value otherwise) {
+  return arguments.contains(name) ? argument<Value>(arguments, name, expected) : otherwise;
+}
+
+/// A word of a list. @throws CaseError
+template <Named E>
+E word_argument(const nlohmann::ordered_json& arguments, const char* name) {
+  const std::string expected = choices(names_of(E{}));
+  const auto word = argument<std::string>(arguments, name, expected.c_str());
+  if (const auto value = value_of<E>(word)) return *value;
+  throw CaseError("request", name, "'" + word.substr(0, 40) + "'", expected);
+}
+
+/// @throws CaseError
+[[nodiscard]] std::string text_argument(const nlohmann::ordered_json& arguments, const char* name);
+/// A number that is above 0, and finite. @throws CaseError
+[[nodiscard]] double positive_argument(const nlohmann::ordered_json& arguments, const char* name);
+/// A whole number of at least 0. @throws CaseError
+[[nodiscard]] std::uint64_t seed_argument(const nlohmann::ordered_json& arguments, const char* name);
+/// A list of [x, y, z]. @throws CaseError
+[[nodiscard]] Points points_argument(const nlohmann::ordered_json& arguments, const char* name);
+/// A list of [u, v]. @throws CaseError
+[[nodiscard]] std::vector<Vec2> pixels_argument(const nlohmann::ordered_json& arguments, const char* name);
+/// Ids of cautions that a person accepts; left out: none. @throws CaseError also for one that is no rule's.
+[[nodiscard]] std::vector<std::string> accepted_argument(const nlohmann::ordered_json& arguments);
+
+}  // namespace incise::studio

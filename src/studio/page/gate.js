@@ -1,0 +1,92 @@
+// The gate before a robot's program: the cautions to accept, the checks, and the program itself.
+
+import {h} from "preact";
+import {Button, Check, Problems, Section, Status} from "./widgets.js";
+import {saveFile} from "./save_file.js";
+import {fixed, isNumber, spoken} from "./words.js";
+
+/** The section with the gate of a result, which holds `verdict`, `gate`, `checks`, `program`, `why_without_program`.
+ *  @param accepted  ids that are ticked   @param onAccept  (ids)   @param onAgain  asks for the result with them
+ *  @param call      that gives the result   @param isBusy  whether it cannot be asked for now */
+export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy}) {
+  const gate = result.gate || {};
+  const open = cautionsOf(result, gate);
+  const tick = (id, isOn) => onAccept(isOn ? [...accepted, id] : accepted.filter((other) => other !== id));
+  return h(
+    Section,
+    {title: "Robot program", id: "gate"},
+    (gate.refused || []).length
+      ? h("p", null, `Refused: ${gate.refused.map(spoken).join(", ")}. Nobody can accept this.`)
+      : null,
+    gate.open && !open.length ? h("p", null, "The gate is open: no caution has to be accepted.") : null,
+    open.length
+      ? h(
+          "fieldset",
+          {class: "gate"},
+          h("legend", null, "Cautions that a person has to accept, each by itself"),
+          open.map((id) =>
+            h(Check, {
+              key: id,
+              label: cautionText(result, id),
+              isOn: accepted.includes(id),
+              onChange: (isOn) => tick(id, isOn),
+            }),
+          ),
+          h(Button, {disabled: isBusy || !isOther(accepted, gate), onClick: onAgain, "data-do": "accept"}, again),
+        )
+      : null,
+    h(Problems, {calls: [call]}),
+    result.program
+      ? h(Program, {text: result.program})
+      : h("p", {class: "warning", "data-program": "none"}, result.why_without_program || "There is no program."),
+    result.checks && result.checks.length ? h(Checks, {checks: result.checks}) : null,
+  );
+}
+
+// In the order of the reasons: a caution that was accepted stays where it was.
+function cautionsOf(result, gate) {
+  const reasons = result.verdict.reasons || [];
+  const place = (id) => reasons.findIndex((reason) => reason.id === id);
+  return [...(gate.missing || []), ...(gate.accepted || [])].sort((a, b) => place(a) - place(b));
+}
+
+function isOther(accepted, gate) {
+  return [...accepted].sort().join() !== [...(gate.accepted || [])].sort().join();
+}
+
+function cautionText(result, id) {
+  const reason = (result.verdict.reasons || []).find((one) => one.id === id);
+  return `${spoken(id)}${reason ? `: ${reason.message}` : ""}`;
+}
+
+function Checks({checks}) {
+  const failed = checks.filter((check) => !check.passed).length;
+  const title = failed ? `${failed} of ${checks.length} checks failed` : `All ${checks.length} checks passed`;
+  return h(
+    "details",
+    {open: failed > 0},
+    h("summary", null, title),
+    h(
+      "ul",
+      {class: "facts"},
+      checks.map((check, k) => h("li", {key: k}, h(OneCheck, {check}))),
+    ),
+  );
+}
+
+function OneCheck({check}) {
+  const number = (value) => (isNumber(value) ? fixed(value, 2) : String(value));
+  const has = Boolean(check.relation) && check.value !== null && check.value !== undefined;
+  const found = has ? `: ${number(check.value)} ${check.unit || ""}` : "";
+  return [h(Status, {status: check.passed ? "ok" : "refused"}), ` ${check.text}${found}`];
+}
+
+function Program({text}) {
+  const save = () => saveFile("incise.script", text, "text/plain");
+  return h(
+    "div",
+    {"data-program": "there"},
+    h(Button, {isMain: true, onClick: save, "data-do": "download"}, "Save the program"),
+    h("pre", {tabIndex: 0, role: "region", "aria-label": "The robot's program"}, text),
+  );
+}
