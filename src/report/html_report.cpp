@@ -1,6 +1,7 @@
 #include "report/page_files.hpp"
 #include "report/scene.hpp"
 #include "report/sections.hpp"
+#include "report/three_script.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -59,6 +60,19 @@ Json animations_json(const ReportData& data) {
   return animations;
 }
 
+/// The page's own scripts, one after another; what a module exports is known to those after it.
+std::string page_script() {
+  constexpr std::string_view kExport = "\nexport ";
+  std::string script;
+  for (const char* name : {"decode.js", "gizmo.js", "viewer.js", "cut_view.js", "mesh_view.js", "main.js"}) {
+    std::string code(page::file(name));
+    for (std::size_t at = 0; (at = code.find(kExport, at)) != std::string::npos;)
+      code.replace(at, kExport.size(), "\n");
+    script += code + '\n';
+  }
+  return script;
+}
+
 void require_reportable(const ReportData& data) {
   const std::vector<std::string> problems = find_problems(data);
   if (problems.empty()) return;
@@ -85,18 +99,13 @@ std::string html_report(const ReportData& data) {
                                                            cut_section(data) + error_section(data) + kerf_section(data) + program_section(data);
   const std::string body =
       page_header(data) + "<main>\n" + study + tissue_section(data) + record_section(data) + "</main>\n" + page_footer();
-  std::string script;
-  for (const char* name : {"decode.js", "viewer.js", "cut_view.js", "mesh_view.js", "main.js"}) {
-    script += page::file(name);
-    script += '\n';
-  }
   return filled(page::file("page.html"), {{"title", escaped(data.title)},
                                           {"style", std::string(page::file("page.css"))},
                                           {"body", body},
                                           {"data", script_json(scene)},
                                           {"licence", std::string(page::file("three_licence.txt"))},
-                                          {"three", std::string(page::file("three.js"))},
-                                          {"script", script}});
+                                          {"three", three_script(page::file("three.core.js"), page::file("three.module.js"))},
+                                          {"script", page_script()}});
 }
 
 void write_report(const ReportData& data, const std::filesystem::path& path) {

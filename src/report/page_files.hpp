@@ -7,7 +7,7 @@
 
 namespace incise::page {
 
-/// The files of src/report/page, and three.js.
+/// The files of src/report/page, and three.js of web/.
 [[nodiscard]] std::span<const EmbeddedFile> files();
 
 /// The content of one of them. @throws InvalidArgument for a name that none has.

@@ -1,5 +1,6 @@
 #include "report/markup.hpp"
 #include "report/ring_fixture.hpp"
+#include "report/three_script.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
@@ -72,7 +73,17 @@ TEST(HtmlReport, LoadsNothingFromANetwork) {
 }
 
 TEST(HtmlReport, KeepsTheLicenceOfTheLibraryInIt) {
-  EXPECT_EQ(texts_between(full_page(), "Copyright © 2010-2019 three.js authors", "DEALINGS IN").size(), 2U);
+  EXPECT_EQ(texts_between(full_page(), "Copyright © 2010-2026 three.js authors", "DEALINGS IN").size(), 2U);
+}
+
+TEST(ThreeScript, MakesOneScriptOfTwoModules) {
+  const std::string script =
+      three_script("const a=1,b=2;export{a as One,b as Two};",
+                   "import{One as x}from\"./three.core.js\";export{One,Two}from\"./three.core.js\";const "
+                   "y=x+1;export{y as Y,x as One};");
+  EXPECT_THAT(script, HasSubstr("const a=1,b=2;\nreturn{One:a,Two:b,};"));
+  EXPECT_THAT(script, HasSubstr("const{One:x,}=core;\nconst y=x+1;\nreturn{...core,Y:y,One:x,};"));
+  EXPECT_THROW(static_cast<void>(three_script("const a=1;", "const b=2;")), InvalidArgument);
 }
 
 TEST(HtmlReport, HasDataThatParse) {

@@ -7,7 +7,7 @@
 
 namespace incise {
 
-/// One HTML page with everything in it: pictures, figures, tables, the 3D views and the three.js library (r111, MIT,
+/// One HTML page with everything in it: pictures, figures, tables, the 3D views and the three.js library (MIT,
 /// its notice kept) that draws them. It opens from a disk without a network, and its content security policy forbids it
 /// to load anything. Without WebGL or scripts still pictures take the place of the 3D views. The cut's frames may take
 /// 9 MB of text; when there are more, evenly spaced ones are kept, and the page says how many. Same data, same page.

@@ -62,9 +62,9 @@ class CutView {
   makeTool() {
     const {diameter_mm: diameter, length_mm: length} = this.scene.tool;
     const steel = new THREE.MeshPhongMaterial({color: 0x8d979f, shininess: 60});
-    const body = new THREE.Mesh(new THREE.CylinderBufferGeometry(diameter / 2, diameter / 2, length, 24), steel);
+    const body = new THREE.Mesh(new THREE.CylinderGeometry(diameter / 2, diameter / 2, length, 24), steel);
     body.position.y = length / 2;
-    const tip = new THREE.Mesh(new THREE.SphereBufferGeometry(diameter / 2, 24, 12), steel);
+    const tip = new THREE.Mesh(new THREE.SphereGeometry(diameter / 2, 24, 12), steel);
     this.tool = new THREE.Group();
     this.tool.add(body, tip);
     this.toolSwitch = new THREE.Group();  // the legend shows and hides this one, frames the inner one
@@ -78,7 +78,7 @@ class CutView {
     const normal = new THREE.Vector3(...this.scene.platform.normal).normalize();
     const size = 10 * Math.ceil(0.13 * Math.hypot(...this.scene.step_mm) * 65535);
     this.platform = new THREE.Group();
-    const plate = new THREE.Mesh(new THREE.PlaneBufferGeometry(size, size), new THREE.MeshBasicMaterial(
+    const plate = new THREE.Mesh(new THREE.PlaneGeometry(size, size), new THREE.MeshBasicMaterial(
       {color: 0x9fb2c2, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false}));
     const grid = new THREE.GridHelper(size, size / 10, 0x8497a6, 0xb4c1cb);
     grid.rotation.x = Math.PI / 2;

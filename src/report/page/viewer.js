@@ -12,16 +12,16 @@ class Viewer {
   /** @param frame  {x, y, z, ends}: the picture axes seen along the approach, and the names of the world axes' ends. */
   constructor(stage, frame) {
     this.stage = stage;
-    this.frame = {ends: frame.ends, axes: ["x", "y", "z"].map((key) => new THREE.Vector3(...frame[key]))};
+    this.frame = ["x", "y", "z"].map((key) => new THREE.Vector3(...frame[key]));
     this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
     this.renderer.setClearColor(kBackground);
     this.scene = new THREE.Scene();
     this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 1, 4000);
-    const sky = new THREE.HemisphereLight(0xffffff, 0xc4b8b3, 0.62);
-    sky.position.copy(this.frame.axes[2]);
+    const sky = new THREE.HemisphereLight(0xffffff, 0xb8aaa4, 1.9);
+    sky.position.copy(this.frame[2]);
     this.scene.add(sky);
-    this.lamp = new THREE.DirectionalLight(0xffffff, 0.5);
+    this.lamp = new THREE.DirectionalLight(0xffffff, 1.7);
     this.scene.add(this.lamp, this.lamp.target);
     this.center = new THREE.Vector3();
     this.radius = 1;
@@ -30,10 +30,8 @@ class Viewer {
     stage.append(this.renderer.domElement);
     this.scaleBar = element("div", {className: "scale-bar", "aria-hidden": "true"}, element("i"), element("span"));
     stage.append(this.scaleBar);
-    this.gizmo = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-    this.gizmo.setAttribute("class", "gizmo");
-    this.gizmo.setAttribute("viewBox", "-55 -55 110 110");
-    stage.append(this.gizmo);
+    this.gizmo = new Gizmo(frame.ends);
+    stage.append(this.gizmo.node);
     stage.classList.add("live");
     stage.tabIndex = 0;
     stage.setAttribute("role", "application");
@@ -61,7 +59,7 @@ class Viewer {
   axes() { return this.axesAt(this.azimuth, this.elevation); }
   axesOf(name) { return this.axesAt(...kViews[name]); }
   axesAt(azimuth, elevation) {
-    const [x, y, z] = this.frame.axes;
+    const [x, y, z] = this.frame;
     const mix = (a, u, b, v) => u.clone().multiplyScalar(a).addScaledVector(v, b);
     const right = mix(Math.cos(azimuth), x, Math.sin(azimuth), y);
     const away = mix(-Math.sin(azimuth), x, Math.cos(azimuth), y);
@@ -100,33 +98,13 @@ class Viewer {
     this.lamp.position.copy(this.target).addScaledVector(towards, 90).addScaledVector(up, 60).addScaledVector(right, -40);
     this.renderer.render(this.scene, this.camera);
     this.drawScaleBar(scale);
-    this.drawGizmo(right, up, towards);
+    this.gizmo.draw({right, up, towards}, false);
   }
 
   drawScaleBar(scale) {
     const length = roundedDown(150 / scale);
     this.scaleBar.firstChild.style.width = length * scale + "px";
     this.scaleBar.lastChild.textContent = Number(length.toPrecision(2)) + " mm";
-  }
-
-  /** The world axes with the names of both ends; what points away is faint. */
-  drawGizmo(right, up, towards) {
-    const shades = ["#b3383c", "#2f7d4f", "#3260a8"];
-    const marks = [];
-    for (let axis = 0; axis < 3; ++axis) {
-      for (const sign of [-1, 1]) {
-        const d = new THREE.Vector3().setComponent(axis, sign);
-        const x = 34 * d.dot(right), y = -34 * d.dot(up), depth = d.dot(towards);
-        const name = this.frame.ends[2 * axis + (sign > 0 ? 1 : 0)];
-        const opacity = (0.62 + 0.38 * depth).toFixed(2);
-        marks.push({depth, text: `<g opacity="${opacity}" stroke="${shades[axis]}" fill="${shades[axis]}">` +
-          `<line x1="0" y1="0" x2="${x.toFixed(1)}" y2="${y.toFixed(1)}" stroke-width="2"/>` +
-          `<text x="${(1.32 * x).toFixed(1)}" y="${(1.32 * y).toFixed(1)}" stroke="none"></text></g>`, name});
-      }
-    }
-    marks.sort((a, b) => a.depth - b.depth);
-    this.gizmo.innerHTML = marks.map((mark) => mark.text).join("");
-    this.gizmo.querySelectorAll("text").forEach((node, k) => { node.textContent = marks[k].name; });
   }
 
   turn(dx, dy) {
@@ -244,7 +222,7 @@ function curveTubes(points, isClosed, color, radius) {
   const path = [];
   for (let i = 0; i < points.length; i += 3) path.push(new THREE.Vector3(points[i], points[i + 1], points[i + 2]));
   const curve = new THREE.CatmullRomCurve3(path, isClosed, "centripetal");
-  const geometry = new THREE.TubeBufferGeometry(curve, Math.max(64, 3 * path.length), radius, 8, isClosed);
+  const geometry = new THREE.TubeGeometry(curve, Math.max(64, 3 * path.length), radius, 8, isClosed);
   const solid = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color}));
   const ghost = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(
     {color, transparent: true, opacity: 0.35, depthTest: false, depthWrite: false}));

@@ -1,14 +1,16 @@
-// The world's axes in a corner of the 3D view, with letters at their ends: anatomical ones, or the robot's x, y and z.
+// The world's axes in a corner of the 3D view, of the studio and of the report, with letters at their ends: anatomical
+// ones, or the robot's x, y and z.
 
 const kNamespace = "http://www.w3.org/2000/svg";
 const kEnds = {anatomical: ["R", "L", "A", "P", "I", "S"], robot: ["", "x", "", "y", "", "z"]};
 const kShades = {light: ["#b3383c", "#2f7d4f", "#3260a8"], dark: ["#ff8c8c", "#6fd39b", "#8fb8ff"]};
 
-/** An element `node` (SVG) that draw() turns. */
+/** An element `node` (SVG) that draw() turns.
+ *  @param ends  names of the ends of x, y and z, the negative one first */
 export class Gizmo {
-  constructor() {
+  constructor(ends = kEnds.anatomical) {
     this.node = make("svg", {viewBox: "-55 -55 110 110", "aria-hidden": "true", class: "gizmo"});
-    this.marks = kEnds.anatomical.map((name, end) => this.makeMark(name, end));
+    this.marks = ends.map((name, end) => this.makeMark(name, end));
   }
 
   makeMark(name, end) {
