@@ -12,9 +12,11 @@
 namespace incise {
 namespace {
 
-constexpr double kPictureWidth = 560.0;
-constexpr double kPictureHeight = 520.0;
+constexpr double kPictureWidth = 400.0;
+constexpr double kPictureHeight = 424.0;
+constexpr double kEdge = 14.0;  // between text and the figure's border
 constexpr double kShortBarMm = 5.0;
+constexpr std::string_view kText = "font-size=\"12.5\"";  // a phone shows the figure at 0.9 of its size
 constexpr std::string_view kTumorStroke = "stroke-width=\"2.6\" stroke-linejoin=\"round\"";
 constexpr std::string_view kIntendedStroke = "stroke-width=\"1.6\" stroke-linejoin=\"round\"";
 constexpr std::string_view kCorrectedStroke = "stroke-width=\"1.8\" stroke-dasharray=\"6 3\" stroke-linejoin=\"round\"";
@@ -37,9 +39,10 @@ struct Picture {
   }
 };
 
-Picture picture_of(const ReportIncision& incision, const Vec3& approach, const Vec2& corner, const Vec2& size) {
-  Picture picture{.view = view_along(approach)};
+Picture picture_of(const ReportIncision& incision, const FigureStyle& style, const Vec2& corner, const Vec2& size) {
+  Picture picture{.view = view_along(style.approach)};
   Eigen::AlignedBox2d box;
+  for (const Vec3& p : style.shown_mm) box.extend(Vec2(picture.view.to_view(p).head<2>()));
   for (const Contour* contour :
        {&incision.tumor_edge, &incision.intended_path, &incision.corrected_path, &incision.incision}) {
     for (const Vec3& p : contour->points) box.extend(Vec2(picture.view.to_view(p).head<2>()));
@@ -114,19 +117,20 @@ void draw_incision(SvgWriter& svg, const Picture& picture, const ReportIncision&
 void draw_color_bar(SvgWriter& svg, const Vec2& corner, const Vec2& size, double limit_mm, ErrorColors colors) {
   constexpr int kSteps = 60;
   for (int k = 0; k < kSteps; ++k) {
-    const double share = 1.0 - 2.0 * (k + 0.5) / kSteps;
-    svg.rectangle(corner + Vec2(0.0, size.y() * k / kSteps), {size.x(), size.y() / kSteps + 0.6},
+    const double share = 2.0 * (k + 0.5) / kSteps - 1.0;
+    svg.rectangle(corner + Vec2(size.x() * k / kSteps, 0.0), {size.x() / kSteps + 0.6, size.y()},
                   fmt::format("fill=\"{}\" shape-rendering=\"crispEdges\"", hex_color(error_color(share, colors))));
   }
   svg.rectangle(corner, size, "fill=\"none\" stroke=\"#333\" stroke-width=\"0.8\"");
+  const double bottom = corner.y() + size.y();
   for (const double tick : round_ticks(-limit_mm, limit_mm, 6)) {
-    const double y = corner.y() + size.y() * 0.5 * (1.0 - tick / limit_mm);
-    svg.line({corner.x() + size.x(), y}, {corner.x() + size.x() + 4.0, y}, "stroke=\"#333\"");
-    svg.text({corner.x() + size.x() + 8.0, y + 4.0}, number_text(tick));
+    const double x = corner.x() + size.x() * 0.5 * (1.0 + tick / limit_mm);
+    svg.line({x, bottom}, {x, bottom + 4.0}, "stroke=\"#333\"");
+    svg.text({x, bottom + 17.0}, number_text(tick), "middle", kText);
   }
-  svg.text(corner + Vec2(-4.0, -26.0), "error, mm", "start", "font-weight=\"600\"");
-  svg.text(corner + Vec2(-4.0, -10.0), "farther", "start", "font-size=\"11\"");
-  svg.text(corner + Vec2(-4.0, size.y() + 16.0), "closer", "start", "font-size=\"11\"");
+  svg.text({corner.x(), bottom + 34.0}, "closer", "start", kText);
+  svg.text({corner.x() + 0.5 * size.x(), bottom + 34.0}, "error, mm", "middle", kText);
+  svg.text({corner.x() + size.x(), bottom + 34.0}, "farther", "end", kText);
 }
 
 /// The name of the axis end that points along a picture direction, if one does nearly.
@@ -140,9 +144,8 @@ std::string end_name(const Vec3& direction, const std::array<std::string, 6>& na
 }
 
 void draw_orientation(SvgWriter& svg, const ViewFrame& view, const Vec2& at, const std::array<std::string, 6>& names) {
-  constexpr double kArm = 22.0;
+  constexpr double kArm = 13.0;
   constexpr std::string_view kStyle = "stroke=\"#777\" stroke-width=\"1.2\"";
-  constexpr std::string_view kText = "font-size=\"11\" fill=\"#555\"";
   svg.line(at - Vec2(kArm, 0.0), at + Vec2(kArm, 0.0), kStyle);
   svg.line(at - Vec2(0.0, kArm), at + Vec2(0.0, kArm), kStyle);
   svg.text(at + Vec2(kArm + 4.0, 4.0), end_name(view.x, names), "start", kText);
@@ -159,8 +162,8 @@ struct LegendEntry {
 void draw_legend_row(SvgWriter& svg, const std::vector<LegendEntry>& entries, Vec2 at) {
   for (const LegendEntry& entry : entries) {
     svg.line(at, at + Vec2(20.0, 0.0), entry.style);
-    svg.text(at + Vec2(26.0, 4.0), entry.label, "start", "font-size=\"11\"");
-    at.x() += 50.0 + 6.6 * static_cast<double>(entry.label.size());  // wide enough for any sans-serif face
+    svg.text(at + Vec2(25.0, 4.0), entry.label, "start", kText);
+    at.x() += 35.0 + 7.1 * static_cast<double>(entry.label.size());  // wide enough for any sans-serif face
   }
 }
 
@@ -191,16 +194,31 @@ std::string description_of(const ReportIncision& incision) {
 
 }  // namespace
 
+FigureStyle common_style(std::span<const ReportIncision> incisions, const Vec3& approach,
+                         const std::array<std::string, 6>& axis_names) {
+  FigureStyle style{.error_limit_mm = common_error_limit_mm(incisions),
+                    .approach = approach,
+                    .axis_names = axis_names,
+                    .shown_mm = {}};
+  for (const ReportIncision& incision : incisions) {
+    for (const Contour* contour :
+         {&incision.tumor_edge, &incision.intended_path, &incision.corrected_path, &incision.incision}) {
+      style.shown_mm.insert(style.shown_mm.end(), contour->points.begin(), contour->points.end());
+    }
+  }
+  return style;
+}
+
 std::string contour_figure_svg(const ReportIncision& incision, const FigureStyle& style) {
   require_drawable(incision);
   const double limit_mm = error_limit_of(style, {&incision, 1});
   SvgWriter svg(kPictureWidth, kPictureHeight, fmt::format("{}: contours seen along the approach", incision.name),
                 description_of(incision));
   svg.rectangle({0.0, 0.0}, {kPictureWidth, kPictureHeight}, "fill=\"#fff\"");
-  svg.text({16.0, 26.0}, incision.name, "start", "font-size=\"15\" font-weight=\"600\"");
-  svg.text({16.0, 44.0}, fmt::format("mean |error| {:.2f} mm", incision.mean_abs_error_mm), "start", "fill=\"#555\"");
+  svg.text({kEdge, 24.0}, incision.name, "start", "font-size=\"15\" font-weight=\"600\"");
+  svg.text({kEdge, 42.0}, fmt::format("mean |error| {:.2f} mm", incision.mean_abs_error_mm), "start", kText);
 
-  const Picture picture = picture_of(incision, style.approach, {36.0, 66.0}, {400.0, 366.0});
+  const Picture picture = picture_of(incision, style, {30.0, 60.0}, {340.0, 246.0});
   draw_path(svg, picture, incision.tumor_edge, ink::kTumorEdge, kTumorStroke);
   draw_incision(svg, picture, incision, limit_mm, style.colors);
   draw_path(svg, picture, incision.intended_path, ink::kIntended, kIntendedStroke);
@@ -209,15 +227,15 @@ std::string contour_figure_svg(const ReportIncision& incision, const FigureStyle
     const Vec2 start = picture.at(incision.intended_path.points.front());
     svg.circle(start, 4.5, "fill=\"#fff\" stroke=\"#111\" stroke-width=\"1.6\"");
     svg.text(start + Vec2(0.0, -9.0), "start", "middle",
-             "font-size=\"11\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"");
+             "font-size=\"12.5\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\"");
   }
-  draw_color_bar(svg, {476.0, 96.0}, {16.0, 240.0}, limit_mm, style.colors);
-  draw_orientation(svg, picture.view, {500.0, 412.0}, style.axis_names);
+  draw_orientation(svg, picture.view, {364.0, 36.0}, style.axis_names);
 
   const double bar_px = kShortBarMm * picture.px_per_mm;
-  svg.line({24.0, 448.0}, {24.0 + bar_px, 448.0}, "stroke=\"#111\" stroke-width=\"3\"");
-  svg.text({30.0 + bar_px, 452.0}, fmt::format("{} mm", number_text(kShortBarMm)));
-  draw_legend(svg, incision, {16.0, 482.0});
+  svg.line({kEdge, 336.0}, {kEdge + bar_px, 336.0}, "stroke=\"#111\" stroke-width=\"3\"");
+  svg.text({kEdge, 354.0}, fmt::format("{} mm", number_text(kShortBarMm)), "start", kText);
+  draw_color_bar(svg, {146.0, 324.0}, {236.0, 12.0}, limit_mm, style.colors);
+  draw_legend(svg, incision, {kEdge, 390.0});
   return svg.finish();
 }
 

@@ -25,9 +25,9 @@ void for_each_zone(const PlotArea& area, double reached_mm, double close_mm, con
 /// @param end_px  lower right corner of the text
 void draw_zone_name(SvgWriter& svg, const Vec2& end_px, const std::string& name, std::string_view color) {
   svg.text(end_px, name, "end",
-           "font-size=\"11\" fill=\"#fff\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"");
+           "font-size=\"12\" fill=\"#fff\" stroke=\"#fff\" stroke-width=\"4\" stroke-linejoin=\"round\"");
   svg.text(end_px, name, "end",
-           fmt::format("font-size=\"11\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
+           fmt::format("font-size=\"12\" fill=\"{}\"", color == ink::kTooClose ? ink::kTooCloseText : color));
 }
 
 }  // namespace

@@ -184,7 +184,7 @@ std::string box_plot_svg(std::span<const ReportIncision> incisions, const Figure
     if (is_signed) draw_zone_names(svg, area, incisions.front());
   }
   svg.text({width / 2.0, 340.0}, "line: median · diamond: mean · box: quartiles · whiskers: 1.5 interquartile ranges",
-           "middle", "font-size=\"11\" fill=\"#555\"");
+           "middle", "font-size=\"12\" fill=\"#555\"");
   return svg.finish();
 }
 

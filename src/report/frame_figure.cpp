@@ -46,7 +46,7 @@ void draw_legend(SvgWriter& svg, const std::vector<Entry>& entries, Vec2 at, dou
       svg.rectangle(at - Vec2(0.0, 6.0), {20.0, 12.0},
                     fmt::format("fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"", entry.color));
     }
-    svg.text(at + Vec2(26.0, 4.0), entry.label, "start", "font-size=\"11\"");
+    svg.text(at + Vec2(26.0, 4.0), entry.label, "start", "font-size=\"12\"");
     at.x() += width;
   }
 }

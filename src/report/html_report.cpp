@@ -43,9 +43,13 @@ Json view_json(const ReportData& data) {
 Json axial_json(const SlicePlane& plane) {
   Json slices = Json::array();
   for (const Slice& slice : plane.slices) {
-    slices.push_back({{"position_mm", slice.position_mm}, {"image", slice.image_uri}, {"outline", slice.outline}});
+    slices.push_back({{"position_mm", slice.position_mm},
+                      {"image", slice.image_uri},
+                      {"outline", slice.outline},
+                      {"tumor", slice.tumor},
+                      {"planned", slice.planned_cut}});
   }
-  return {{"axis", plane.axis_name}, {"middle", plane.slices.size() / 2}, {"slices", slices}};
+  return {{"axis", plane.axis_name}, {"first", plane.shown_first}, {"slices", slices}};
 }
 
 Json animations_json(const ReportData& data) {
@@ -95,17 +99,21 @@ std::string html_report(const ReportData& data) {
   if (mesh_is_shown) scene["mesh"] = mesh_json(data.mesh.mesh);
   scene["animations"] = animations_json(data);
 
-  const std::string study = !data.is_of_a_study ? "" : result_section(data) + scan_section(data, planes) + mesh_section(data, mesh_is_shown) +
-                                                           cut_section(data) + error_section(data) + kerf_section(data) + program_section(data);
-  const std::string body =
-      page_header(data) + "<main>\n" + study + tissue_section(data) + record_section(data) + "</main>\n" + page_footer();
-  return filled(page::file("page.html"), {{"title", escaped(data.title)},
-                                          {"style", std::string(page::file("page.css"))},
-                                          {"body", body},
-                                          {"data", script_json(scene)},
-                                          {"licence", std::string(page::file("three_licence.txt"))},
-                                          {"three", three_script(page::file("three.core.js"), page::file("three.module.js"))},
-                                          {"script", page_script()}});
+  const std::string study = !data.is_of_a_study ? ""
+                                                : answer_section(data) + findings_section(data) +
+                                                      caveats_section(data) + scan_section(data, planes) +
+                                                      mesh_section(data, mesh_is_shown) + cut_section(data) +
+                                                      error_section(data) + kerf_section(data) + program_section(data);
+  const std::string body = page_header(data) + "<main>\n" + study + tissue_section(data) + record_section(data) +
+                           "</main>\n" + page_footer();
+  return filled(page::file("page.html"),
+                {{"title", escaped(data.title)},
+                 {"style", std::string(page::file("page.css"))},
+                 {"body", body},
+                 {"data", script_json(scene)},
+                 {"licence", std::string(page::file("three_licence.txt"))},
+                 {"three", three_script(page::file("three.core.js"), page::file("three.module.js"))},
+                 {"script", page_script()}});
 }
 
 void write_report(const ReportData& data, const std::filesystem::path& path) {

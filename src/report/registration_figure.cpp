@@ -56,7 +56,7 @@ void draw_view(SvgWriter& svg, const RegistrationFigure& figure, const ViewFrame
   const double bar_mm = rounded_up(0.1 * 2.0 * half.x());
   const Vec2 at = corner + Vec2(0.0, size.y() + 8.0);
   svg.line(at, at + Vec2(bar_mm / mm_per_px, 0.0), "stroke=\"#111\" stroke-width=\"2\"");
-  svg.text(at + Vec2(bar_mm / mm_per_px + 6.0, 4.0), number_text(bar_mm) + " mm", "start", "font-size=\"11\"");
+  svg.text(at + Vec2(bar_mm / mm_per_px + 6.0, 4.0), number_text(bar_mm) + " mm", "start", "font-size=\"12\"");
 }
 
 void draw_histogram(SvgWriter& svg, const std::vector<double>& residuals, const Vec2& corner, const Vec2& size) {

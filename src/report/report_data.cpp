@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace incise {
 namespace {
@@ -114,6 +115,9 @@ void check_animation(Findings& findings, const ReportAnimation& animation) {
 void check_incision(Findings& findings, const ReportIncision& incision) {
   const std::string place = fmt::format("incision \"{}\"", incision.name);
   findings.number(incision.mean_abs_error_mm, place + ": mean_abs_error_mm");
+  findings.number(incision.nearest_to_tumor_mm.value_or(0.0), place + ": nearest_to_tumor_mm");
+  findings.number(incision.least_depth_mm.value_or(0.0), place + ": least_depth_mm");
+  findings.number(incision.greatest_error_mm.value_or(0.0), place + ": greatest_error_mm");
   findings.number(incision.target_mm, place + ": target_mm");
   findings.number(incision.close_margin_mm, place + ": close_margin_mm");
   for (const double error : incision.signed_error_mm) {
@@ -177,6 +181,13 @@ ReportFrame frame_of(const TetMesh& mesh, std::span<const BoundaryFace> uncut, P
   }
   frame.positions_mm = std::move(positions);
   return frame;
+}
+
+std::vector<ReportIncision> drawn_incisions(const ReportData& data) {
+  std::vector<ReportIncision> drawn;
+  std::copy_if(data.incisions.begin(), data.incisions.end(), std::back_inserter(drawn),
+               [](const ReportIncision& incision) { return incision.incision.points.size() >= 2; });
+  return drawn;
 }
 
 std::vector<std::string> find_problems(const ReportData& data) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace incise {
 namespace {
@@ -118,7 +119,15 @@ class Slicer {
     slice.image_uri = png_data_uri(encode_png(pixels, columns_, rows_, 1));
     if (has_outline)
       slice.outline = outline_path(tissue, columns_, rows_, 0.5, width_mm_ / columns_, height_mm_ / rows_);
+    slice.tumor = section_of(picture_.tumor, normal_index);
+    slice.planned_cut = section_of(picture_.planned_cut, normal_index);
     return slice;
+  }
+
+  /// Index of the slice nearest to a place.
+  [[nodiscard]] int nearest_to(const Vec3& place) const {
+    const double index = picture_.ct.grid.index_from_world(place)[normal_axis()];
+    return std::clamp(static_cast<int>(std::lround(index)), 0, count() - 1);
   }
 
  private:
@@ -126,6 +135,39 @@ class Slicer {
   [[nodiscard]] double spacing_along(int world) const {
     return picture_.ct.grid.spacing_mm[axes_[static_cast<std::size_t>(world)].index_axis];
   }
+  /// A place in mm: to the right and down from the picture's top left corner, and along the normal from the first
+  /// slice, in slices.
+  [[nodiscard]] Vec3 in_picture(const Vec3& world) const {
+    const Vec3 index = picture_.ct.grid.index_from_world(world);
+    const auto along = [&](int axis_of_world, double sense, double extent_mm) {
+      const AxisMatch& match = axes_[static_cast<std::size_t>(axis_of_world)];
+      const double share =
+          (index[match.index_axis] + 0.5) / picture_.ct.grid.size[static_cast<std::size_t>(match.index_axis)];
+      return extent_mm * (match.sign * sense > 0.0 ? share : 1.0 - share);
+    };
+    return {along(layout_.right, layout_.right_sign, width_mm_), along(layout_.down, layout_.down_sign, height_mm_),
+            index[normal_axis()]};
+  }
+
+  /// Where a surface meets a slice, as SVG path data: one stroke for each triangle that the plane crosses.
+  [[nodiscard]] std::string section_of(const TriMesh& surface, int normal_index) const {
+    std::string path;
+    for (const Triangle& triangle : surface.triangles) {
+      std::vector<Vec2> ends;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 a = in_picture(vertex(surface.vertices, triangle[k]));
+        const Vec3 b = in_picture(vertex(surface.vertices, triangle[(k + 1) % 3]));
+        const double from = a.z() - normal_index;
+        const double to = b.z() - normal_index;
+        if ((from < 0.0) == (to < 0.0)) continue;
+        ends.emplace_back((a + from / (from - to) * (b - a)).head<2>());
+      }
+      if (ends.size() == 2)
+        path += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", ends[0].x(), ends[0].y(), ends[1].x(), ends[1].y());
+    }
+    return path;
+  }
+
   /// Continuous index of the centre of a picture element.
   [[nodiscard]] Vec3 index_of(int column, int row, int normal_index) const {
     Vec3 index;
@@ -147,12 +189,29 @@ class Slicer {
   int columns_ = 0, rows_ = 0;
 };
 
+/// The middle of the planned cut, or else of the tumour, if one is known. A tumour's surface may rise above the skin.
+std::optional<Vec3> middle_of_interest(const CtPicture& picture) {
+  Box3 box;
+  const TriMesh& shown = picture.planned_cut.vertices.empty() ? picture.tumor : picture.planned_cut;
+  for (const Vec3& p : shown.vertices) box.extend(p);
+  return box.isEmpty() ? std::nullopt : std::optional<Vec3>(box.center());
+}
+
+/// Of evenly spaced slices the indices, or of one slice that through `place`.
+std::vector<int> slices_to_show(const Slicer& slicer, int wanted, const std::optional<Vec3>& place) {
+  if (wanted == 1 && place) return {slicer.nearest_to(*place)};
+  std::vector<int> indices;
+  for (int k = 0; k < wanted; ++k) indices.push_back(static_cast<int>((k + 0.5) * slicer.count() / wanted));
+  return indices;
+}
+
 }  // namespace
 
 std::array<SlicePlane, 3> slice_planes(const CtPicture& picture, const std::array<std::string, 6>& axis_names,
                                        int max_axial) {
   INCISE_REQUIRE(max_axial >= 1, "expected at least one axial slice");
   std::array<SlicePlane, 3> planes;
+  const std::optional<Vec3> center = middle_of_interest(picture);
   for (std::size_t p = 0; p < planes.size(); ++p) {
     const Layout& layout = kLayouts[p];
     const Slicer slicer(picture, layout);
@@ -167,11 +226,15 @@ std::array<SlicePlane, 3> slice_planes(const CtPicture& picture, const std::arra
     plane.ends = {end_of(layout.right, -layout.right_sign), end_of(layout.right, layout.right_sign),
                   end_of(layout.down, -layout.down_sign), end_of(layout.down, layout.down_sign)};
     const int wanted = p == 0 ? std::min(max_axial, slicer.count()) : 1;
-    for (int k = 0; k < wanted; ++k) {
-      plane.slices.push_back(slicer.at(static_cast<int>((k + 0.5) * slicer.count() / wanted)));
-    }
+    for (const int index : slices_to_show(slicer, wanted, center)) plane.slices.push_back(slicer.at(index));
     std::sort(plane.slices.begin(), plane.slices.end(),
               [](const Slice& a, const Slice& b) { return a.position_mm < b.position_mm; });
+    plane.shown_first = plane.slices.size() / 2;
+    if (!center) continue;
+    const auto off = [&](const Slice& slice) { return std::abs(slice.position_mm - (*center)[layout.normal]); };
+    const auto nearest = std::min_element(plane.slices.begin(), plane.slices.end(),
+                                          [&off](const Slice& a, const Slice& b) { return off(a) < off(b); });
+    plane.shown_first = static_cast<std::size_t>(nearest - plane.slices.begin());
   }
   return planes;
 }
@@ -181,13 +244,18 @@ std::string slice_svg(const SlicePlane& plane, const Slice& slice) {
   const double h = plane.height_mm;
   const double unit = std::max(w, h) / 100.0;  // so that text and lines look the same on small and large scans
   SvgWriter svg(w, h, fmt::format("{} CT slice", plane.name),
-                fmt::format("{} slice at {} = {} mm, {} by {} mm; the outline is the segmented tissue.", plane.name,
-                            plane.axis_name, number_text(std::round(10.0 * slice.position_mm) / 10.0),
+                fmt::format("{} slice at {} = {} mm, {} by {} mm; orange: border of the segmented tissue; green: "
+                            "tumour; blue: planned cut.",
+                            plane.name, plane.axis_name, number_text(std::round(10.0 * slice.position_mm) / 10.0),
                             number_text(std::round(w)), number_text(std::round(h))));
   svg.image({0.0, 0.0}, {w, h}, slice.image_uri);
-  svg.open_group(
-      fmt::format("fill=\"none\" stroke=\"#ffb000\" stroke-width=\"{:.3f}\" stroke-linejoin=\"round\"", 0.6 * unit));
-  svg.path(slice.outline, "class=\"outline\"");
+  svg.open_group(fmt::format("fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\"{:.3f}\"",
+                             0.6 * unit));
+  svg.path(slice.outline, fmt::format("class=\"outline\" stroke=\"{}\"", slice_ink::kTissue));
+  svg.path(slice.tumor,
+           fmt::format("class=\"tumor\" stroke=\"{}\" stroke-width=\"{:.3f}\"", slice_ink::kTumor, 0.9 * unit));
+  svg.path(slice.planned_cut, fmt::format("class=\"planned-cut\" stroke=\"{}\" stroke-width=\"{:.3f}\"",
+                                          slice_ink::kPlannedCut, 0.9 * unit));
   svg.close_group();
   svg.open_group(
       fmt::format("font-size=\"{:.2f}\" fill=\"#fff\" stroke=\"#000\" stroke-width=\"{:.3f}\" paint-order=\"stroke\"",

@@ -3,6 +3,7 @@
 #include <incise/report/report_data.hpp>
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace incise {
@@ -12,6 +13,8 @@ struct Slice {
   double position_mm = 0.0;  ///< of the slice along its normal's world axis
   std::string image_uri;     ///< PNG
   std::string outline;       ///< SVG path data, mm, of the border of the tissue; may be empty
+  std::string tumor;         ///< the same of the tumour in this plane
+  std::string planned_cut;   ///< and of the sheet that the planned path sweeps
 };
 
 /// Slices along one direction of the scan, shown the way radiologists do.
@@ -21,14 +24,23 @@ struct SlicePlane {
   double width_mm = 0.0, height_mm = 0.0;
   std::array<std::string, 4> ends;  ///< names of left, right, top, bottom
   std::vector<Slice> slices;        ///< ascending position
+  std::size_t shown_first =
+      0;  ///< the one through the middle of the planned cut, or of the tumour; without both the middle one
 };
 
-/// Axial (at most `max_axial` evenly spaced slices), coronal (the middle one) and sagittal (the middle one). Planes
-/// follow the volume's own axes, named after the world axis they are nearest to.
+/// Axial (at most `max_axial` evenly spaced slices), coronal and sagittal (the one through the tumour's centre; without
+/// a tumour the middle one). Planes follow the volume's own axes, named after the world axis they are nearest to.
 [[nodiscard]] std::array<SlicePlane, 3> slice_planes(const CtPicture& picture,
                                                      const std::array<std::string, 6>& axis_names, int max_axial);
 
-/// A complete SVG picture of one slice with outline, scale bar and the names of its sides.
+/// Colours of the curves on a slice.
+namespace slice_ink {
+inline constexpr std::string_view kTissue = "#ffb000";
+inline constexpr std::string_view kTumor = "#2fe39f";
+inline constexpr std::string_view kPlannedCut = "#6fc6ff";
+}  // namespace slice_ink
+
+/// A complete SVG picture of one slice with its curves, scale bar and the names of its sides.
 [[nodiscard]] std::string slice_svg(const SlicePlane& plane, const Slice& slice);
 
 }  // namespace incise

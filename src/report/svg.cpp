@@ -40,6 +40,21 @@ std::string number_text(double value) {
   return value < 0.0 && digits != "0" ? "−" + digits : digits;
 }
 
+std::string fixed_text(double value, int decimals) {
+  INCISE_REQUIRE(std::isfinite(value), "expected a finite number");
+  const std::string digits = fmt::format("{:.{}f}", std::abs(value), decimals);
+  const bool is_zero = digits.find_first_not_of("0.") == std::string::npos;
+  return value < 0.0 && !is_zero ? "−" + digits : digits;
+}
+
+std::string measure_text(double value, std::string_view unit) {
+  const double size = std::abs(value);
+  if (size < 1e12 && value == std::round(value)) return fixed_text(value, 0);
+  const int decimals = size >= 1000.0 ? 0 : size >= 100.0 ? 1 : unit.empty() && size < 1.0 ? 3 : 2;
+  const std::string text = fixed_text(value, decimals);
+  return text.find_first_not_of("0.") == std::string::npos ? "0" : text;
+}
+
 std::string hex_color(const Vec3& rgb) {
   const auto byte = [](double part) {
     return static_cast<int>(std::lround(255.0 * std::min(1.0, std::max(0.0, part))));

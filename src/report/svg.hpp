@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/geometry/types.hpp>
+#include <incise/report/number_text.hpp>
 
 #include <span>
 #include <string>
@@ -10,6 +11,9 @@ namespace incise {
 
 /// A number as a person writes it: four significant digits, whole numbers in full, a true minus sign.
 [[nodiscard]] std::string number_text(double value);
+
+/// A number with so many decimals and a true minus sign; never "−0".
+[[nodiscard]] std::string fixed_text(double value, int decimals);
 
 /// A PNG file as an address that a page or an SVG holds within itself.
 [[nodiscard]] std::string png_data_uri(std::string_view png);

@@ -12,37 +12,74 @@
 namespace incise {
 namespace {
 
-/// Grows one HTML table. Cells are escaped here.
+/// Grows one HTML table. Cells are escaped here. A long one can be folded, and a phone begins with it folded.
 class TableWriter {
  public:
+  /// @param kind  class of the table; empty: on a phone each of its rows becomes a block.
+  explicit TableWriter(std::string_view kind = "") : kind_(kind) {}
   void header(std::string_view name, bool is_number = false) {
     head_ += fmt::format("<th scope=\"col\"{}>{}</th>", is_number ? " class=\"number\"" : "", escaped(name));
+    names_.emplace_back(name);
   }
-  void row() { body_ += body_.empty() ? "<tr>" : "</tr>\n<tr>"; }
-  void name(std::string_view text) { body_ += fmt::format("<th scope=\"row\">{}</th>", escaped(text)); }
-  void cell(std::string_view text) { body_ += fmt::format("<td>{}</td>", escaped(text)); }
-  void code(std::string_view text) { body_ += fmt::format("<td><code>{}</code></td>", escaped(text)); }
-  void unit(std::string_view text) { body_ += fmt::format("<td class=\"unit\">{}</td>", escaped(text)); }
-  void number(std::string_view text) { body_ += fmt::format("<td class=\"number\">{}</td>", escaped(text)); }
-  void raw(std::string_view html) { body_ += fmt::format("<td>{}</td>", html); }
+  void row() {
+    body_ += body_.empty() ? "<tr>" : "</tr>\n<tr>";
+    column_ = 0;
+    ++rows_;
+  }
+  void name(std::string_view text) {
+    body_ += fmt::format("<th scope=\"row\">{}</th>", escaped(text));
+    ++column_;
+  }
+  void cell(std::string_view text) { raw(escaped(text)); }
+  void code(std::string_view text) { raw("<code>" + escaped(text) + "</code>"); }
+  void unit(std::string_view text) { add(escaped(text), "unit"); }
+  void number(std::string_view text) { add(escaped(text), "number"); }
+  void raw(const std::string& html, bool is_number = false) { add(html, is_number ? "number" : ""); }
   [[nodiscard]] std::string html() const {
     if (body_.empty()) return "";
     const std::string head = head_.empty() ? "" : "<thead><tr>" + head_ + "</tr></thead>\n";
-    return "<div class=\"table\"><table>\n" + head + "<tbody>\n" + body_ + "</tr>\n</tbody></table></div>\n";
+    const std::string table = fmt::format(
+        "<div class=\"table\"><table class=\"{}\">\n{}<tbody>\n{}</tr>\n</tbody></table></div>\n", kind_, head, body_);
+    constexpr int kLong = 8;
+    if (rows_ <= kLong) return table;
+    return fmt::format("<details class=\"fold\" open><summary>{} rows</summary>\n{}</details>\n", rows_, table);
   }
 
  private:
-  std::string head_, body_;
+  /// A cell carries its column's name, which a phone shows beside it.
+  void add(const std::string& html, std::string_view kind) {
+    const std::string name = column_ < names_.size() ? fmt::format(" data-name=\"{}\"", escaped(names_[column_])) : "";
+    body_ += fmt::format("<td{}{}>{}</td>", kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), name, html);
+    ++column_;
+  }
+
+  std::string kind_, head_, body_;
+  std::vector<std::string> names_;
+  std::size_t column_ = 0;
+  int rows_ = 0;
 };
 
-std::string optional_text(const std::optional<double>& value) {
-  return value ? number_text(*value) : "–";
+std::string optional_text(const std::optional<double>& value, std::string_view unit) {
+  return value ? measure_text(*value, unit) : "–";
 }
 
 bool reads_as_number(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
+}
+
+/// "ok", "refused", and how the cut ended where that was no success.
+std::string judgement_of(const ReportIncision& incision) {
+  const VerdictStatus status = incision.verdict.status();
+  std::string words(to_string(status));
+  if (incision.outcome != Outcome::Success) {
+    std::string outcome(to_string(incision.outcome));
+    std::replace(outcome.begin(), outcome.end(), '_', ' ');
+    words += " (" + outcome + ")";
+  }
+  static constexpr std::array<const char*, 3> kTones{"good", "caution", "bad"};
+  return fmt::format("<span class=\"{}\">{}</span>", kTones[static_cast<std::size_t>(status)], words);
 }
 
 /// As a reader writes it.
@@ -52,6 +89,43 @@ std::string sign_of(const std::string& relation) {
 }
 
 }  // namespace
+
+std::string with_capital(std::string text) {
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
+    text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  return text;
+}
+
+std::string answer_table(std::span<const ReportIncision> incisions) {
+  struct Row {
+    const char* name;
+    std::optional<double> ReportIncision::*number;
+    const char* unknown;
+  };
+  static constexpr std::array<Row, 3> kRows{
+      {{"Closest approach to the tumour", &ReportIncision::nearest_to_tumor_mm, "not measured"},
+       {"Least depth", &ReportIncision::least_depth_mm, "nothing was cut"},
+       {"Greatest error", &ReportIncision::greatest_error_mm, "not measured"}}};
+  const bool lacks_correction = incisions.size() == 1;
+  TableWriter table("plain");
+  table.header("Simulated");
+  for (const ReportIncision& incision : incisions) table.header(incision.name, true);
+  if (lacks_correction) table.header("Corrected", true);
+  table.row();
+  table.name("Verdict of the cut");
+  for (const ReportIncision& incision : incisions) table.raw(judgement_of(incision), true);
+  if (lacks_correction) table.number("not cut");
+  for (const Row& row : kRows) {
+    table.row();
+    table.name(row.name);
+    for (const ReportIncision& incision : incisions) {
+      const std::optional<double>& number = incision.*row.number;
+      table.number(number ? fixed_text(*number, 2) + " mm" : row.unknown);
+    }
+    if (lacks_correction) table.number("not cut");
+  }
+  return table.html();
+}
 
 std::string evaluation_table(std::span<const ReportMeasure> measures) {
   const auto has = [&](std::optional<double> ReportMeasure::*which) {
@@ -67,8 +141,8 @@ std::string evaluation_table(std::span<const ReportMeasure> measures) {
   for (const ReportMeasure& measure : measures) {
     table.row();
     table.name(measure.name);
-    table.number(optional_text(measure.before));
-    if (has_after) table.number(optional_text(measure.after));
+    table.number(optional_text(measure.before, measure.unit));
+    if (has_after) table.number(optional_text(measure.after, measure.unit));
     table.unit(measure.unit);
   }
   return table.html();
@@ -83,7 +157,7 @@ std::string stage_table(std::span<const ReportStage> stages) {
     table.row();
     table.name(stage.name);
     table.cell(stage.state);
-    table.number(fmt::format("{:.2f}", stage.wall_s));
+    table.number(measure_text(stage.wall_s, "s"));
   }
   return table.html();
 }
@@ -99,11 +173,11 @@ std::string check_table(std::span<const ReportCheck> checks) {
     table.row();
     table.name(check.name);
     if (check.relation.empty()) {  // a plain yes or no
-      table.number("");
-      table.number("");
+      table.number(check.passed ? "yes" : "no");
+      table.number("yes");
     } else {
-      table.number(number_text(check.value));
-      table.number(sign_of(check.relation) + number_text(check.limit));
+      table.number(measure_text(check.value, check.unit));
+      table.number(sign_of(check.relation) + measure_text(check.limit, check.unit));
     }
     table.unit(check.unit);
     table.raw(check.passed ? "<span class=\"good\">✓ passed</span>" : "<span class=\"bad\">✗ failed</span>");

@@ -7,6 +7,12 @@
 
 namespace incise {
 
+/// With a capital as its first letter, where that is one of ASCII.
+[[nodiscard]] std::string with_capital(std::string text);
+
+/// The verdict and the three numbers of each incision, side by side; what is not known is said in words.
+[[nodiscard]] std::string answer_table(std::span<const ReportIncision> incisions);
+
 /// HTML tables; each is empty text when there are no rows.
 [[nodiscard]] std::string evaluation_table(std::span<const ReportMeasure> measures);
 [[nodiscard]] std::string stage_table(std::span<const ReportStage> stages);

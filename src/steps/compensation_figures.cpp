@@ -2,6 +2,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/table_io.hpp>
+#include <incise/report/number_text.hpp>
 #include <incise/steps/compensation_figures.hpp>
 
 #include <fmt/format.h>
@@ -95,7 +96,7 @@ std::optional<CompensationFigure> robust_offsets(const std::filesystem::path& ro
 }
 
 std::string cell_of(const Json& number) {
-  return number.is_null() ? std::string("–") : fmt::format("{:.3f}", number.get<double>());
+  return number.is_null() ? std::string("–") : measure_text(number.get<double>(), "mm");
 }
 
 }  // namespace

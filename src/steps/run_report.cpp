@@ -1,6 +1,9 @@
+#include "kept_cut.hpp"
+
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/evaluation/contour_errors.hpp>
+#include <incise/geometry/surface_query.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_file.hpp>
@@ -15,15 +18,19 @@
 #include <incise/meshing/quality.hpp>
 #include <incise/report/figures.hpp>
 #include <incise/report/html_report.hpp>
+#include <incise/report/number_text.hpp>
 #include <incise/steps/compensation_figures.hpp>
 #include <incise/steps/run_report.hpp>
 #include <incise/storage/case_file.hpp>
-#include <incise/storage/result_json.hpp>
+#include <incise/workflow/cut_verdict.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <functional>
+#include <numeric>
 #include <ostream>
 
 namespace incise::steps {
@@ -32,12 +39,19 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kVirtualNotice =
-    "Virtual specimen: the CT is synthetic and the cut is simulated. No tissue was cut, and no number here is a "
-    "measurement.";
-constexpr const char* kSimulatedNotice =
-    "The scan is of a real body; clamp, stretch and cut are simulated. No tissue was cut, and no number here is a "
-    "measurement.";
+constexpr const char* kVirtualNotice = "Virtual specimen, simulated cut: no number here is a measurement";
+constexpr const char* kSimulatedNotice = "Simulated cut on a real scan: no number here is a measurement";
+
+/// What every run leaves open; README.md, "Limits", says more.
+constexpr std::array<const char*, 4> kCaveats{
+    "This is research software. Nothing in it has been validated on tissue.",
+    "The law of the cut is not calibrated against this tissue, unless the case says so. Do not trust the forces on the "
+    "tool.",
+    "Tissue is homogeneous, isotropic and linear elastic in a frame that rotates with it; the tumour is no stiffer "
+    "than the rest. "
+    "The platform is rigid and frictionless, and clamp and pull hold their vertices exactly in place.",
+    "Heat does not act on the simulated tissue. How far it reaches is a closed form that nobody has fitted to "
+    "electrosurgery."};
 
 Vec3 vector_from(const Json& json) {
   return Vec3(json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>());
@@ -115,6 +129,58 @@ void add_ct(const fs::path& root, const CaseFile& file, Monitor& monitor, Report
   throw_if_cancelled(monitor, "the report");
 }
 
+/// A sheet between two rows of points, of as many each.
+TriMesh sheet(const Points& upper, const Points& lower, bool is_closed) {
+  TriMesh mesh;
+  const std::size_t n = upper.size();
+  mesh.vertices = upper;
+  mesh.vertices.insert(mesh.vertices.end(), lower.begin(), lower.end());
+  for (std::size_t i = 0; i + (is_closed ? 0 : 1) < n; ++i) {
+    const VertexId a(i), b((i + 1) % n), c(n + i), d(n + (i + 1) % n);
+    mesh.triangles.push_back({a, c, b});
+    mesh.triangles.push_back({b, c, d});
+  }
+  return mesh;
+}
+
+/// Where points of the stretched tissue lie at rest. One beyond the tissue moves with what is nearest to it.
+Points at_rest(Points points, const TetMesh& mesh, std::span<const Vec3> stretched) {
+  constexpr double kReachMm = 1e3;
+  const TetLocator locator(mesh, stretched);
+  for (Vec3& p : points) {
+    if (const auto place = locator.locate(p, kReachMm)) p = position_of(*place, mesh, mesh.vertices);
+  }
+  return points;
+}
+
+/// The tumour and the planned cut on the CT, which shows the tissue at rest.
+void add_plan_to_ct(const fs::path& root, const CaseFile& file, const TetMesh& mesh, ReportData& data) {
+  const fs::path deformed = root / "stretched" / "deformed.vtu";
+  if (data.ct.ct.voxels.empty() || !fs::exists(root / "plan" / "path.json") || !fs::exists(deformed)) return;
+  const ToolPath plan = read_tool_path(root / "plan" / "path.json");
+  const Points stretched = read_tet_mesh(deformed).vertices;
+  const auto rest_sheet = [&](const Points& upper, const Points& lower, bool is_closed) {
+    return sheet(at_rest(upper, mesh, stretched), at_rest(lower, mesh, stretched), is_closed);
+  };
+  Points entries, tips;
+  for (const Waypoint& waypoint : plan.waypoints) {
+    entries.push_back(waypoint.position_mm);
+    tips.push_back(waypoint.position_mm + waypoint.depth_mm * waypoint.axis);
+  }
+  data.ct.planned_cut = rest_sheet(entries, tips, plan.is_closed);
+  if (!file.inputs.tumor_surface.empty()) {
+    data.ct.tumor = read_surface(file.inputs.tumor_surface);
+    if (file.settings.tumor_configuration == TumorConfiguration::Stretched)
+      data.ct.tumor.vertices = at_rest(std::move(data.ct.tumor.vertices), mesh, stretched);
+    data.ct.tumor_is_surface = true;
+  } else if (!plan.tumor_edge.points.empty()) {
+    constexpr double kBandMm = 1.0;  // an edge has no depth: a mark that is seen where it meets a slice
+    Points lower = plan.tumor_edge.points;
+    for (Vec3& p : lower) p += kBandMm * file.settings.plan.approach.normalized();
+    data.ct.tumor = rest_sheet(plan.tumor_edge.points, lower, true);
+  }
+}
+
 void add_mesh(const TetMesh& mesh, ReportData& data) {
   const MeshQuality quality = quality_of(mesh);
   data.mesh.mesh = mesh;
@@ -157,30 +223,132 @@ std::vector<ReportFrame> read_frames(const fs::path& folder, const TetMesh& mesh
 struct CutFolder {
   const char* folder;
   const char* name;
+  bool is_corrected;
 };
-constexpr std::array<CutFolder, 2> kCuts{{{"as_planned", "As planned"}, {"corrected", "Corrected"}}};
+constexpr std::array<CutFolder, 2> kCuts{{{"as_planned", "As planned", false}, {"corrected", "Corrected", true}}};
 
-void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, const TetMesh& mesh, Monitor& monitor,
-             ReportData& data) {
-  const fs::path folder = root / cut.folder;
-  if (!fs::exists(folder / "incision.json")) return;
-  const Json json = read_json(folder / "incision.json");
-  const ToolPath plan = read_tool_path(root / "plan" / "path.json");
-  const bool is_ring = plan.is_closed;
+/// A cut's contour, its errors and the numbers that judge it.
+ReportIncision judged_incision(const fs::path& folder, const CaseFile& file, const ToolPath& plan) {
+  SimulatedCut cut = read_kept_cut(folder, file.settings, plan);
   ReportIncision incision;
-  incision.name = cut.name;
-  incision.outcome = read_outcome(json, "outcome", folder / "incision.json");
-  incision.verdict = from_json<Verdict>(json.at("verdict"), folder / "incision.json", "/verdict");
-  if (json.at("closed_loop").is_boolean()) incision.closed_loop = json.at("closed_loop").get<bool>();
-  if (json.at("negative_margin").is_boolean()) incision.negative_margin = json.at("negative_margin").get<bool>();
+  incision.outcome = cut.outcome;
+  incision.nearest_to_tumor_mm = nearest_to_tumor_mm(file.settings, cut);
+  if (cut.incision.kerf_width_mm > 0.0) incision.least_depth_mm = cut.incision.kerf.depth.depth_mm.min;
+  if (cut.centerline.abs_error_mm) {
+    incision.greatest_error_mm = cut.centerline.abs_error_mm->max;
+    incision.mean_abs_error_mm = cut.centerline.abs_error_mm->mean;
+  }
+  incision.verdict = std::move(cut.verdict);
+  incision.closed_loop = cut.centerline.closed_loop;
+  incision.negative_margin = cut.centerline.negative_margin;
   incision.target_mm = file.settings.plan.lateral_margin_mm;
   incision.close_margin_mm = file.settings.close_margin_mm;
   incision.kerf_allowance_mm = radius_mm(file.settings.tool);
   incision.measured_contour = "kerf mid-line, stretched tissue before the cut";
   incision.tumor_edge = plan.tumor_edge;
   incision.intended_path = entry_contour(plan);
-  const bool has_correction = fs::exists(root / "correction" / "path.json");
-  if (has_correction) incision.corrected_path = entry_contour(read_tool_path(root / "correction" / "path.json"));
+  incision.incision = std::move(cut.centerline.errors.points);
+  incision.signed_error_mm = std::move(cut.centerline.errors.signed_error_mm);
+  return incision;
+}
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Why the path was moved the way it was; empty where it was not moved against the error.
+std::string why_moved(const ReportIncision& before, const ReportIncision& after, const Vec3& approach) {
+  constexpr double kLeastMm = 0.05;  // less is not seen in the figure
+  if (before.signed_error_mm.empty() || after.corrected_path.points.empty()) return "";
+  const double error_mm = mean_of(before.signed_error_mm);
+  const double move_mm =
+      mean_of(contour_errors(after.corrected_path, after.tumor_edge, after.target_mm, approach).signed_error_mm) -
+      mean_of(contour_errors(after.intended_path, after.tumor_edge, after.target_mm, approach).signed_error_mm);
+  if (std::min(std::abs(error_mm), std::abs(move_mm)) < kLeastMm || error_mm * move_mm > 0.0) return "";
+  return fmt::format(
+      "As planned, the cut lies {} mm {} the tumour than intended on average; the corrected path therefore lies {} mm "
+      "{} the "
+      "intended one, so that the cut lands where it was intended.",
+      measure_text(std::abs(error_mm), "mm"), error_mm < 0.0 ? "closer to" : "farther from",
+      measure_text(std::abs(move_mm), "mm"), move_mm > 0.0 ? "outside" : "inside");
+}
+
+/// Why there is no corrected cut.
+std::string why_not_corrected(const CaseFile& file, const Json& study) {
+  if (file.settings.plan.kind == PlanKind::Line) return "There is no corrected cut: only a ring is corrected.";
+  const Json stages = study.value("stages", Json::array());
+  const bool was_asked =
+      std::any_of(stages.begin(), stages.end(), [](const Json& stage) { return stage.at("name") == "compensate"; });
+  return was_asked ? "There is no corrected cut: the cut as planned left no ring whose mid-line could be measured."
+                   : "There is no corrected cut: no correction was asked for.";
+}
+
+void add_remarks(const CaseFile& file, const Json& study, ReportData& data) {
+  if (data.incisions.empty()) return;
+  if (data.incisions.size() == 1) {
+    data.remarks.push_back(why_not_corrected(file, study));
+    return;
+  }
+  if (study.contains("accepted") && !study.at("accepted").get<bool>())
+    data.remarks.emplace_back("The correction is not accepted: the verdict is that of the cut as planned.");
+  const std::string why = why_moved(data.incisions.front(), data.incisions.back(), data.approach);
+  if (!why.empty()) data.remarks.push_back(why);
+}
+
+/// A warning of the run, unless it repeats a finding.
+void add_warning(std::string text, ReportData& data) {
+  const auto repeats = [&text](const std::string& finding) { return text.find(finding) != std::string::npos; };
+  for (const ReportNotice& notice : data.notices) {
+    if (repeats(notice.text)) return;
+  }
+  std::vector<const Verdict*> verdicts;
+  if (data.verdict) verdicts.push_back(&*data.verdict);
+  for (const ReportIncision& incision : data.incisions) verdicts.push_back(&incision.verdict);
+  for (const Verdict* verdict : verdicts) {
+    for (const VerdictReason& reason : verdict->reasons()) {
+      if (repeats(reason.message)) return;
+    }
+  }
+  data.notices.push_back({Severity::Warning, std::move(text)});
+}
+
+/// Findings beside the run's verdict, and what holds for every run.
+void add_findings(const CaseFile& file, const Json& study, ReportData& data) {
+  const Json program = study.value("program", Json::object());
+  if (program.contains("reason"))
+    data.notices.push_back({Severity::Warning, "no program: " + program.at("reason").get<std::string>()});
+  const bool is_accepted = study.value("accepted", false);
+  for (std::size_t k = 0; k < data.incisions.size(); ++k) {
+    if ((k == 1) == is_accepted) continue;  // the cut that the verdict judges
+    for (const VerdictReason& reason : data.incisions[k].verdict.reasons()) {
+      data.notices.push_back(
+          {Severity::Notice, fmt::format("{}, which the verdict does not judge: {}: {}", data.incisions[k].name,
+                                         to_string(reason.severity), reason.message)});
+    }
+  }
+  for (const Json& warning : study.value("warnings", Json::array())) add_warning(warning.get<std::string>(), data);
+  data.caveats.emplace_back(
+      file.settings.is_virtual
+          ? "The CT is synthetic and the cut is simulated. No tissue was cut."
+          : "The scan is of a real body; clamp, stretch and cut are simulated. No tissue was cut.");
+  data.caveats.insert(data.caveats.end(), kCaveats.begin(), kCaveats.end());
+  if (data.incisions.size() > 1)
+    data.caveats.emplace_back(
+        "The correction is checked with the model that made it: the check cannot reveal an error of the model itself.");
+  const auto left_out = program.value("checks_not_made", std::vector<std::string>{});
+  if (!left_out.empty())
+    data.caveats.push_back(fmt::format("The checks of the robot program leave out: {}.", fmt::join(left_out, "; ")));
+}
+
+void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, const TetMesh& mesh, Monitor& monitor,
+             ReportData& data) {
+  const fs::path folder = root / cut.folder;
+  if (!fs::exists(folder / "incision.json")) return;
+  const ToolPath plan = read_tool_path(root / "plan" / "path.json");
+  ReportIncision incision = judged_incision(folder, file, plan);
+  incision.name = cut.name;
+  const fs::path corrected = root / "correction" / "path.json";
+  if (cut.is_corrected && fs::exists(corrected)) incision.corrected_path = entry_contour(read_tool_path(corrected));
 
   ReportAnimation animation;
   animation.name = cut.name;
@@ -188,24 +356,17 @@ void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, c
   animation.tool_length_mm = length_mm(file.settings.tool).value_or(animation.tool_diameter_mm);
   if (!plan.tumor_edge.points.empty()) animation.lines.push_back({LineKind::TumorEdge, plan.tumor_edge});
   animation.lines.push_back({LineKind::IntendedPath, incision.intended_path});
-  if (has_correction) animation.lines.push_back({LineKind::CorrectedPath, incision.corrected_path});
-  if (fs::exists(folder / "centerline.csv")) {
-    const Contour midline = read_contour(folder / "centerline.csv", is_ring);
-    animation.lines.push_back({LineKind::KerfMidLine, midline});
-    if (is_ring) {
-      ContourErrors errors = contour_errors(midline, plan.tumor_edge, incision.target_mm, file.settings.plan.approach);
-      incision.incision = std::move(errors.points);
-      incision.signed_error_mm = std::move(errors.signed_error_mm);
-      incision.mean_abs_error_mm = json.at("abs_error_mm").at("mean");
-      data.incisions.push_back(incision);
-    }
-  }
+  if (!incision.corrected_path.points.empty())
+    animation.lines.push_back({LineKind::CorrectedPath, incision.corrected_path});
+  if (fs::exists(folder / "centerline.csv"))
+    animation.lines.push_back({LineKind::KerfMidLine, read_contour(folder / "centerline.csv", plan.is_closed)});
+  data.incisions.push_back(std::move(incision));
   animation.frames = read_frames(folder, mesh, monitor);
   data.animations.push_back(std::move(animation));
 }
 
 std::string cell(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", *value) : "–";
+  return value ? measure_text(*value, "mm") : "–";
 }
 
 std::optional<double> number_at(const Json& json, const std::string& pointer) {
@@ -361,13 +522,29 @@ void add_kerf(const fs::path& root, ReportData& data) {
 void add_program(const fs::path& root, const Json& study, ReportData& data) {
   if (!study.contains("program")) return;
   const Json& program = study.at("program");
-  for (const auto& [key, value] : program.items()) {
-    if (value.is_number() || value.is_boolean() || value.is_string())
-      data.program.push_back({key,
-                              value.is_string()         ? value.get<std::string>()
-                              : value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
-                                                        : value.dump(),
-                              ""});
+  struct Shown {
+    const char* key;
+    const char* name;
+    const char* unit;
+  };
+  static constexpr std::array<Shown, 8> kShown{
+      {{"written", "written", ""},
+       {"reason", "why not", ""},
+       {"follows", "it follows the", ""},
+       {"duration_s", "duration", "s"},
+       {"cut_length_mm", "length of the cut", "mm"},
+       {"overlap_mm", "overlap", "mm"},
+       {"spacing_mm", "distance between poses", "mm"},
+       {"chord_error_mm", "greatest distance of a straight move from the path", "mm"}}};
+  for (const auto& [key, name, unit] : kShown) {
+    if (!program.contains(key)) continue;
+    const Json& value = program.at(key);
+    data.program.push_back({name,
+                            value.is_number()    ? measure_text(value.get<double>(), unit)
+                            : value.is_boolean() ? (value.get<bool>() ? "yes" : "no")
+                            : value.is_string()  ? value.get<std::string>()
+                                                 : value.dump(),
+                            unit});
   }
   if (program.contains("checks")) {
     for (const Json& check : program.at("checks")) {
@@ -375,15 +552,10 @@ void add_program(const fs::path& root, const Json& study, ReportData& data) {
                              check.at("limit"), check.at("passed")});
     }
   }
-  if (program.contains("checks_not_made")) {
-    for (const Json& name : program.at("checks_not_made")) {
-      data.notices.push_back({Severity::Warning, "Not checked for the robot program: " + name.get<std::string>()});
-    }
-  }
   if (program.contains("replay")) {
     const Json& replay = program.at("replay");
     const auto number = [](const Json& value) {
-      return value.is_null() ? std::string("-") : fmt::format("{:.4g}", value.get<double>());
+      return value.is_null() ? std::string("not known") : measure_text(value.get<double>(), "mm");
     };
     const Json& speed = replay.at("tip_speed_mm_s");
     data.replay = {{"greatest deviation from the intended course", number(replay.at("max_deviation_mm")), "mm"},
@@ -447,19 +619,17 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
 void write_report_and_figures(const ReportData& data, const fs::path& page) {
   write_report(data, page);
   const fs::path folder = page.parent_path() / "figures";
-  if (data.incisions.empty()) return;
+  const std::vector<ReportIncision> drawn = drawn_incisions(data);
+  if (drawn.empty()) return;
   std::filesystem::create_directories(folder);
   const auto write = [&folder](const char* name, const std::string& content) {
     write_atomically(folder / name, [&content](std::ostream& out) { out << content; });
   };
-  FigureStyle style;
-  style.approach = data.approach;
-  style.axis_names = data.axis_names;
-  style.error_limit_mm = common_error_limit_mm(data.incisions);
-  write("contours.svg", contour_figure_svg(data.incisions.front(), style));
-  if (data.incisions.size() > 1) write("contours_corrected.svg", contour_figure_svg(data.incisions.back(), style));
-  write("error_by_angle.svg", error_by_angle_svg(data.incisions, style));
-  write("box_plot.svg", box_plot_svg(data.incisions, style));
+  const FigureStyle style = common_style(drawn, data.approach, data.axis_names);
+  write("contours.svg", contour_figure_svg(drawn.front(), style));
+  if (drawn.size() > 1) write("contours_corrected.svg", contour_figure_svg(drawn.back(), style));
+  write("error_by_angle.svg", error_by_angle_svg(drawn, style));
+  write("box_plot.svg", box_plot_svg(drawn, style));
   constexpr std::array<const char*, 3> kPlots{"kerf_depth.svg", "kerf_lag.svg", "kerf_drift.svg"};
   for (std::size_t i = 0; i < data.kerf_plots.size() && i < kPlots.size(); ++i)
     write(kPlots[i], line_plot_svg(data.kerf_plots[i]));
@@ -496,6 +666,7 @@ ReportData run_report(const fs::path& root, Monitor& monitor) {
   if (fs::exists(mesh_file)) {
     const TetMesh mesh = read_tet_mesh(mesh_file);
     add_mesh(mesh, data);
+    add_plan_to_ct(root, file, mesh, data);
     for (const CutFolder& cut : kCuts)
       from_written_json(root / cut.folder / "incision.json", [&] { add_cut(root, cut, file, mesh, monitor, data); });
   }
@@ -509,6 +680,8 @@ ReportData run_report(const fs::path& root, Monitor& monitor) {
         data.stages.push_back({stage.at("name"), stage.at("state"), stage.at("wall_s")});
     }
     add_program(root, study, data);
+    add_remarks(file, study, data);
+    add_findings(file, study, data);
   });
   add_provenance(root, file, data);
   return data;

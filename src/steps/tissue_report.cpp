@@ -2,6 +2,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
+#include <incise/report/number_text.hpp>
 #include <incise/robot/player.hpp>
 #include <incise/steps/run_report.hpp>
 
@@ -20,8 +21,8 @@ struct Shown {
   const char* unit;
 };
 
-std::string words(const Json& value) {
-  if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
+std::string words(const Json& value, std::string_view unit) {
+  if (value.is_number_float()) return measure_text(value.get<double>(), unit);
   if (value.is_string()) return value.get<std::string>();
   return value.is_null() ? "-" : value.dump();
 }
@@ -39,7 +40,7 @@ ReportPicture picture_of(const std::filesystem::path& folder, const char* stem, 
   const Json results = results_in(folder, fmt::format("{}.json", stem).c_str(), verb);
   ReportPicture picture;
   for (const Shown& s : shown) {
-    if (results.contains(s.key)) picture.values.push_back({s.name, words(results.at(s.key)), s.unit});
+    if (results.contains(s.key)) picture.values.push_back({s.name, words(results.at(s.key), s.unit), s.unit});
   }
   picture.svg = read_text(folder / fmt::format("{}.svg", stem));
   return picture;

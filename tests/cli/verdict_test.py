@@ -55,8 +55,8 @@ class VerdictTest(CommandTest):
         in_path = self.read("program/path.json")["verdict"]
         self.assertEqual({key: in_path[key] for key in verdict}, verdict)
         report = (self.out / "report.html").read_text()
-        self.assertIn("Verdict: caution.", report)
-        self.assertLess(report.index("Verdict: caution."), report.index("class=\"cards\""), "before any other number")
+        self.assertIn("<strong>Caution</strong>", report)
+        self.assertLess(report.index("<strong>Caution</strong>"), report.index("class=\"numbers\""), "before any number")
         for reason in verdict["reasons"]:
             self.assertIn(reason["message"].split(":")[0], report)
         shown = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED).stdout
@@ -85,7 +85,7 @@ class VerdictTest(CommandTest):
         self.assertEqual(found["verdict"]["reasons"][0]["id"], "tumor_distance")
         self.assertEqual(found["verdict"]["reasons"][0]["limit"], 2.2)
         self.assert_no_program()
-        self.assertIn("Verdict: refused.", (self.out / "report.html").read_text())
+        self.assertIn("<strong>Refused</strong>", (self.out / "report.html").read_text())
         nobody = self.incise("run", "case", "-o", self.out, "--accept", "tumor_distance")
         self.assert_refused(nobody, BAD_CASE, "--accept", "'tumor_distance'", "nobody can accept")
 

@@ -47,7 +47,7 @@ def replayed(folder, seed, has_plate=True, settling_mm=1):
     assert (out / "replay" / "replay.svg").stat().st_size > 0
     loop.run("report", "--registration", out / "registration", "--replay", out / "replay", "-o", out / "report.html")
     page = (out / "report.html").read_text()
-    for shown in ("On the measured tissue", "deviation from the intended path in the cut, greatest", f"{played['max_cut_deviation_mm']:.4g}"):
+    for shown in ("On the measured tissue", "deviation from the intended path in the cut, greatest", f"{played['max_cut_deviation_mm']:.2f}"):
         assert shown in page, shown
     first_screen = page[page.index("<main>"):page.index("</svg>")]  # the sentence, then the picture of the program
     assert f"Tip against path, in the cut: at most {played['max_cut_deviation_mm']:.2f} mm" in first_screen and "The program as the player ran it" in first_screen

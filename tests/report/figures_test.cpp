@@ -49,11 +49,11 @@ TEST(ContourFigure, ShowsEdgePathsIncisionScaleAndUnits) {
 }
 
 TEST(ContourFigure, DrawsTheScaleBarToScale) {
-  // Two points 40 mm apart across the view fill its width of 400 px: 5 mm are 50 px.
+  // Two points 40 mm apart across the view fill its width of 340 px: 5 mm are 42.5 px.
   ReportIncision cut;
   cut.incision = {.points = {{0, 0, 0}, {40, 0, 0}, {20, 1, 0}}, .is_closed = true};
   cut.signed_error_mm = {0.0, 0.0, 0.0};
-  EXPECT_THAT(contour_figure_svg(cut), HasSubstr("x1=\"24.00\" y1=\"448.00\" x2=\"74.00\" y2=\"448.00\""));
+  EXPECT_THAT(contour_figure_svg(cut), HasSubstr("x1=\"14.00\" y1=\"336.00\" x2=\"56.50\" y2=\"336.00\""));
 }
 
 TEST(ContourFigure, MarksPointsThatAreTooCloseAndThoseThatReachTheEdge) {
@@ -100,7 +100,7 @@ TEST(ContourFigure, IsThePictureOfACurveTurnedWithItsView) {
   cut.signed_error_mm = {0.0, 0.0, 0.0};
   const auto polygons = texts_between(contour_figure_svg(cut), "<polygon points=\"", "\"");
   ASSERT_FALSE(polygons.empty());
-  EXPECT_EQ(polygons.front(), "53.00,432.00 419.00,432.00 419.00,66.00 ");  // 366 px for 10 mm, centred
+  EXPECT_EQ(polygons.front(), "77.00,306.00 323.00,306.00 323.00,60.00 ");  // 246 px for 10 mm, centred
 }
 
 TEST(ContourFigure, EscapesNames) {

@@ -25,16 +25,21 @@ struct FigureStyle {
       0.0;  ///< error axis and colour bar reach at least this far both ways; farther where the data do
   Vec3 approach = -Vec3::UnitZ();
   std::array<std::string, 6> axis_names{"R", "L", "A", "P", "I", "S"};
+  Points shown_mm;  ///< a contour figure has room for these, too: figures side by side then have one scale
 };
+
+/// What the contour figures of several incisions share: one range of colours, one scale.
+[[nodiscard]] FigureStyle common_style(std::span<const ReportIncision> incisions, const Vec3& approach,
+                                       const std::array<std::string, 6>& axis_names);
 
 /// The error limit that covers all points of all incisions, rounded up to a round number, mm (0.5 at least).
 [[nodiscard]] double common_error_limit_mm(std::span<const ReportIncision> incisions);
 
 /// Seen along the approach: tumour edge (green), intended path (black), corrected path (blue), the incision coloured by
 /// its signed error with a colour bar, a scale bar of 5 mm, and marks where the cut came too close to or reached the
-/// tumour edge. All figures are complete SVG documents without a reference to anything outside. @throws InvalidArgument
-/// if a number is not finite, or there is no incision contour or not one error per point of it. Source: after [Paper,
-/// Fig. 6].
+/// tumour edge. 400 px wide, to be read on a phone or beside another. All figures are complete SVG documents without a
+/// reference to anything outside. @throws InvalidArgument if a number is not finite, or there is no incision contour or
+/// not one error per point of it. Source: after [Paper, Fig. 6].
 [[nodiscard]] std::string contour_figure_svg(const ReportIncision& incision, const FigureStyle& style = {});
 
 /// Signed error against the place on the ring: the angle about the tumour's centre, counter-clockwise from the start of

@@ -28,6 +28,9 @@ struct CtPicture {
   double window_low_hu = -160.0;  ///< shown black
   double window_high_hu = 240.0;  ///< shown white
   std::string caption;            ///< where the scan is from
+  TriMesh tumor;                  ///< at rest, mm: its surface, or a band along its edge; no triangles: not drawn
+  bool tumor_is_surface = false;  ///< which of the two
+  TriMesh planned_cut;            ///< at rest, mm: the sheet from the planned path's entry points to its tips
 };
 
 /// 1 where a label is not 0, else 0: for CtPicture::occupancy.
@@ -95,6 +98,10 @@ struct ReportIncision {
   Verdict verdict;                      ///< of this cut: a success that something argues against is not shown as good
   std::optional<bool> closed_loop;      ///< none for an open cut
   std::optional<bool> negative_margin;  ///< the cut keeps clear of the tumour edge; none: not known
+  /// The three numbers on the page's first screen; absent: not measured.
+  std::optional<double> nearest_to_tumor_mm;  ///< least tissue between kerf and tumour; negative: the kerf enters it
+  std::optional<double> least_depth_mm;       ///< of the kerf, along the path
+  std::optional<double> greatest_error_mm;    ///< of the absolute errors
   double mean_abs_error_mm = 0.0;
   double target_mm = 5.0;        ///< the distance to the tumour edge that was aimed at
   double close_margin_mm = kCloseMarginMm;  ///< less tissue than this counts as too close
@@ -111,9 +118,6 @@ struct ReportIncision {
   std::vector<double> signed_error_mm;  ///< one per incision point; positive = farther from the tumour than intended
 };
 
-struct ReportHeadline {
-  std::string label, value, unit, note;
-};
 /// One measure of the evaluation, before and after.
 struct ReportMeasure {
   std::string name, unit;
@@ -159,16 +163,16 @@ struct ReportTable {
 struct ReportData {
   std::string title = "Simulated incision";
   std::string subtitle;
-  std::optional<Verdict> verdict;  ///< shown first of all; absent: not judged
+  std::optional<Verdict> verdict;  ///< in the page's first line; absent: not judged
   std::string virtual_notice;      ///< not empty: shown as a banner above everything ("Virtual specimen: …")
   Vec3 approach = -Vec3::UnitZ();  ///< the direction in which the camera and the tool look at the tissue
   /// What the ends of the axes are called: -x, +x, -y, +y, -z, +z.
   std::array<std::string, 6> axis_names{"R", "L", "A", "P", "I", "S"};
-  std::vector<ReportHeadline> headlines;  ///< shown after those that follow from `incisions`
   CtPicture ct;
   MeshPicture mesh;
   std::vector<ReportAnimation> animations;
   std::vector<ReportIncision> incisions;  ///< in the order in which they were made: before, after
+  std::vector<std::string> remarks;  ///< sentences on them: why there is none after, why the path was moved as it was
   std::vector<ReportMeasure> evaluation;
   std::vector<LinePlot> kerf_plots;       ///< depth, lag and drift along the path
   std::vector<std::string> kerf_figures;  ///< complete SVG documents
@@ -188,8 +192,12 @@ struct ReportData {
   std::vector<ReportValue> settings;    ///< all settings, flattened: "cut.speed_mm_s"
   std::vector<ReportValue> provenance;  ///< version, commit, command, seed, threads, machine, hashes
   std::vector<ReportFile> files;
-  std::vector<ReportNotice> notices;
+  std::vector<ReportNotice> notices;  ///< findings of this run; listed with the verdict's reasons, worst first
+  std::vector<std::string> caveats;   ///< what holds for every run like this one, in sentences; listed by themselves
 };
+
+/// The incisions that have a contour to draw.
+[[nodiscard]] std::vector<ReportIncision> drawn_incisions(const ReportData& data);
 
 /// Everything that keeps `data` from being reported, in words: numbers that are not finite, indices out of range, lists
 /// of unequal length, a zero direction. Empty: html_report accepts it.

@@ -7,28 +7,35 @@ window.addEventListener("error", (event) => { document.documentElement.dataset.s
 function startSlices(plane) {
   const figure = document.getElementById("axial");
   if (!figure || plane.slices.length < 2) return;
-  const image = figure.querySelector("image"), outline = figure.querySelector("path.outline");
+  const image = figure.querySelector("image");
+  const curves = {outline: "outline", tumor: "tumor", planned: "planned-cut"};
   const place = figure.querySelector(".place");
   const show = (k) => {
     const slice = plane.slices[k];
     image.setAttribute("href", slice.image);
-    if (outline) outline.setAttribute("d", slice.outline);
+    for (const [key, name] of Object.entries(curves)) figure.querySelector(`path.${name}`).setAttribute("d", slice[key]);
     place.textContent = `${plane.axis} = ${slice.position_mm.toFixed(1)} mm`;
     slider.setAttribute("aria-valuetext", place.textContent);
   };
   const slider = element("input", {type: "range", min: 0, max: plane.slices.length - 1, step: 1, "aria-label": "Axial slice",
-                                   value: plane.middle, oninput: () => show(Number(slider.value))});
-  show(plane.middle);
+                                   value: plane.first, oninput: () => show(Number(slider.value))});
+  show(plane.first);
   figure.querySelector(".slice-control").append(slider);
 }
 
-function startOutlineSwitch() {
-  const box = document.getElementById("outline-switch");
-  if (!box) return;
-  box.parentElement.classList.remove("hidden");
-  box.onchange = () => document.querySelectorAll("path.outline").forEach((path) => {
-    path.style.display = box.checked ? "" : "none";
-  });
+/** The legend under the slices switches their curves. */
+function startCurveSwitches() {
+  for (const box of document.querySelectorAll("[data-curve]")) {
+    box.onchange = () => document.querySelectorAll(`path.${box.dataset.curve}`).forEach((path) => {
+      path.style.display = box.checked ? "" : "none";
+    });
+  }
+}
+
+/** On a phone a long table begins folded. */
+function foldTables() {
+  if (!window.matchMedia("(max-width: 640px)").matches) return;
+  for (const fold of document.querySelectorAll("details.fold")) fold.open = false;
 }
 
 /** Two ways to colour the error: the safe one, and jet. */
@@ -62,7 +69,8 @@ function startView(id, make) {
 
 const report = JSON.parse(document.getElementById("report-data").textContent);
 startColorSwitch();
-startOutlineSwitch();
+startCurveSwitches();
+foldTables();
 if (report.axial) startSlices(report.axial);
 if (report.mesh) startView("mesh-view", (host) => new MeshView(host, report.mesh, report.view));
 if (report.animations.length) startView("cut-view", (host) => new CutView(host, report.animations, report.view));
