@@ -3,6 +3,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/report/figures.hpp>
+#include <incise/report/number_text.hpp>
 #include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
 
@@ -23,7 +24,8 @@ ReportTable table_of(const std::string& title, const ReportJson& rows) {
   for (const auto& [column, value] : rows.front().items()) table.columns.push_back(column);
   for (const ReportJson& row : rows) {
     std::vector<std::string>& cells = table.rows.emplace_back();
-    for (const std::string& column : table.columns) cells.push_back(row.contains(column) ? cell(row.at(column)) : "");
+    for (const std::string& column : table.columns)
+      cells.push_back(row.contains(column) ? cell(row.at(column), column) : "");
   }
   return table;
 }
@@ -31,7 +33,7 @@ ReportTable table_of(const std::string& title, const ReportJson& rows) {
 void add_picture(ReportData& data, const std::filesystem::path& svg, const std::string& title,
                  const std::string& lead) {
   if (!std::filesystem::exists(svg)) return;
-  data.on_tissue.push_back({title, lead, read_text(svg), {}});
+  data.on_tissue.push_back({title, lead, {read_text(svg)}, {}});
 }
 
 /// What the paper measured, as the paper's: never ours.
@@ -46,43 +48,64 @@ ReportTable papers_table() {
   return table;
 }
 
-/// A cut as its photograph shows it: after the paper's Fig. 5 c to f, in the colours of its Fig. 6 c, d.
-void add_cut(ReportData& data, const Trial& trial, const MeasuredCut& cut, const char* name) {
+/// A cut as its photograph shows it.
+ReportIncision photographed_incision(const Trial& trial, const MeasuredCut& cut, const char* name) {
   const ReportJson json = read_json(cut.evaluation);
-  const PhotographedCut photographed = read_photographed_cut(cut.evaluation);
   ReportIncision incision;
   incision.name = fmt::format("{} {} (virtual)", trial.name, name);
   incision.closed_loop = true;
   incision.mean_abs_error_mm = json.at("abs_error_mm").at("mean").get<double>();
   incision.target_mm = json.at("target_mm").get<double>();
   incision.measured_contour = "kerf's inner edge";
-  incision.tumor_edge = photographed.tumor_edge;
+  incision.tumor_edge = read_photographed_cut(cut.evaluation).tumor_edge;
   const ReportJson& points = json.at("points");
   const auto x = points.at("x_mm").get<std::vector<double>>(), y = points.at("y_mm").get<std::vector<double>>();
   for (std::size_t i = 0; i < x.size(); ++i) incision.incision.points.emplace_back(x[i], y.at(i), 0.0);
   incision.signed_error_mm = points.at("signed_error_mm").get<std::vector<double>>();
-  data.on_tissue.push_back(
-      {incision.name,
-       "Tumour edge and inner edge of the kerf, found in the virtual photograph; colour: signed error.",
-       contour_figure_svg(incision, {.error_limit_mm = 3.0, .approach = photographed.approach}),
-       {}});
+  return incision;
+}
+
+/// Both cuts of a specimen side by side: after the paper's Fig. 5 c to f, in the colours of its Fig. 6 c, d.
+void add_pair(ReportData& data, const Trial& trial) {
+  const std::array<ReportIncision, 2> cuts{photographed_incision(trial, *trial.planned.measured, "as planned"),
+                                           photographed_incision(trial, *trial.corrected.measured, "corrected")};
+  const FigureStyle style =
+      common_style(cuts, read_photographed_cut(trial.planned.measured->evaluation).approach, data.axis_names);
+  ReportPicture picture{
+      fmt::format("{}, as planned and corrected (virtual)", trial.name),
+      "Tumour edge and inner edge of the kerf, found in the virtual photographs; colour: signed error.",
+      {},
+      {}};
+  for (const ReportIncision& cut : cuts) picture.svgs.push_back(contour_figure_svg(cut, style));
+  data.on_tissue.push_back(std::move(picture));
 }
 
 /// The first two specimens that were cut twice, as the paper shows two.
-void add_cuts(ReportData& data, const std::vector<Trial>& trials) {
+void add_pairs(ReportData& data, const std::vector<Trial>& trials) {
   int shown = 0;
   for (const Trial& trial : trials) {
     if (trial.role != TrialRole::Test || !trial.planned.measured || !trial.corrected.measured || shown == 2) continue;
-    add_cut(data, trial, *trial.planned.measured, "as planned");
-    add_cut(data, trial, *trial.corrected.measured, "corrected");
+    add_pair(data, trial);
     ++shown;
   }
 }
 
+/// "S5 (register)": each specimen that a step refused, and which step.
+std::string refused_specimens(const std::vector<Trial>& trials) {
+  std::string list;
+  for (const Trial& trial : trials) {
+    for (const std::string& reason : refusals_of(trial)) {
+      list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", trial.name, reason.substr(0, reason.find(':')));
+    }
+  }
+  return list;
+}
+
 void add_gain(ReportTable& table, const char* name, const ReportJson& summary) {
-  table.rows.push_back({name, cell(summary.at("pairs")), cell(summary.at("mean_before_mm")),
-                        cell(summary.at("mean_after_mm")), cell(summary.at("gain_percent")), cell(summary.at("worse")),
-                        cell(summary.at("most_worse_mm"))});
+  table.rows.push_back({name, cell(summary.at("pairs"), "pairs"), cell(summary.at("mean_before_mm"), "mean_before_mm"),
+                        cell(summary.at("mean_after_mm"), "mean_after_mm"),
+                        cell(summary.at("gain_percent"), "gain_percent"), cell(summary.at("worse"), "worse"),
+                        cell(summary.at("most_worse_mm"), "most_worse_mm")});
 }
 
 /// The figures that the experiment was made for.
@@ -95,8 +118,8 @@ ReportTable outcome_table(const ReportJson& result) {
   if (result.contains("paper_pass")) add_gain(table, "the paper's single pass", result.at("paper_pass"));
   if (result.contains("known_physics")) {
     const ReportJson& floor = result.at("known_physics");
-    table.rows.push_back({"known-physics limit (the arm's errors not known)", cell(floor.at("specimens")),
-                          "", cell(floor.at("mean_after_mm")), "", "", ""});
+    table.rows.push_back({"known-physics limit (the arm's errors not known)", cell(floor.at("specimens"), "specimens"),
+                          "", cell(floor.at("mean_after_mm"), "mean_after_mm"), "", "", ""});
   }
   return table;
 }
@@ -113,9 +136,9 @@ ReportTable fit_table(const ReportJson& result) {
       table.rows.push_back({parameter, "", "", "not varied", ""});
       continue;
     }
-    table.rows.push_back({parameter, fmt::format("{:.3f}", estimate.at("mean").get<double>()),
-                          fmt::format("{:.3f}", estimate.at("sd").get<double>()),
-                          estimate.at("told").get<std::string>(), estimate.at("at_limit").get<bool>() ? "yes" : "no"});
+    table.rows.push_back({parameter, measure_text(estimate.at("mean").get<double>(), "mm"),
+                          measure_text(estimate.at("sd").get<double>(), "mm"), estimate.at("told").get<std::string>(),
+                          estimate.at("at_limit").get<bool>() ? "yes" : "no"});
   }
   for (const ReportJson& one : result.at("left_out_of_calibration"))
     table.rows.push_back(
@@ -136,13 +159,16 @@ ReportData experiment_report(const std::vector<Trial>& trials, const ReportJson&
   if (summary.pairs > 0) {
     data.subtitle = fmt::format(
         "Mean absolute error of the photographs of {} virtual specimens: {:.2f} mm as planned, {:.2f} mm corrected "
-        "({:.0f} % less); {} worse.",
+        "({:.0f} % less); {} worse. ",
         summary.pairs, summary.mean_before_mm, summary.mean_after_mm, summary.gain_percent, summary.worse);
   }
+  const std::string refused = refused_specimens(trials);
+  data.subtitle +=
+      refused.empty() ? "No step refused a specimen." : "Refused, with the step that did: " + refused + ".";
   add_picture(
       data, folder / "comparison/box_plot.svg", "Errors before and after",
       "Absolute and signed errors along the contours of the virtual photographs, after the paper's Fig. 6 a, b.");
-  add_cuts(data, trials);
+  add_pairs(data, trials);
   add_picture(data, folder / "comparison/error_by_clock.svg", "Error round the ring",
               "Signed error by the place on a clock face over the tumour.");
   add_picture(data, folder / "advice/roc.svg", "Was the advice right?",

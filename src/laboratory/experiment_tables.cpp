@@ -1,6 +1,7 @@
 #include "laboratory/experiment_tables.hpp"
 
 #include <incise/io/atomic_file.hpp>
+#include <incise/report/number_text.hpp>
 
 #include <fmt/format.h>
 
@@ -56,7 +57,7 @@ TableJson row_of(const Trial& trial, const char* cut_name, const TrialCut& cut) 
 
 /// A cell of a CSV file: quoted where it has to be.
 std::string csv_cell(const TableJson& value) {
-  std::string text = value.is_number_float() ? fmt::format("{}", value.get<double>()) : cell(value);
+  std::string text = value.is_number_float() ? fmt::format("{}", value.get<double>()) : cell(value, "");
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -65,11 +66,12 @@ std::string csv_cell(const TableJson& value) {
 
 }  // namespace
 
-std::string cell(const TableJson& value) {
+std::string cell(const TableJson& value, std::string_view column) {
   if (value.is_null()) return "";
   if (value.is_string()) return value.get<std::string>();
-  if (value.is_number_float()) return fmt::format("{:.4g}", value.get<double>());
-  return value.dump();
+  if (!value.is_number_float()) return value.dump();
+  const bool is_share = column.ends_with("_score") || column.ends_with("_fraction");
+  return measure_text(value.get<double>(), is_share ? "" : "mm");
 }
 
 std::vector<std::string> refusals_of(const Trial& trial) {

@@ -82,7 +82,8 @@ inline void describe(Visitor& v, TrialSummary& s) {
 [[nodiscard]] nlohmann::ordered_json assessments_json(const std::vector<Trial>& trials);
 void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials);
 
-/// A cell as a person reads it: four digits, nothing for null.
-[[nodiscard]] std::string cell(const nlohmann::ordered_json& value);
+/// A cell as a person reads it, nothing for null. @param column  its name, which tells a score or a share from a
+/// length.
+[[nodiscard]] std::string cell(const nlohmann::ordered_json& value, std::string_view column);
 
 }  // namespace incise::laboratory

@@ -60,9 +60,23 @@ std::vector<Box> boxes_of(std::span<const ErrorSeries> series) {
   return boxes;
 }
 
-/// A name as wide as its box allows.
-std::string shortened(const std::string& name, std::size_t most) {
-  return name.size() <= most ? name : name.substr(0, most - 1) + "…";
+constexpr double kLeastPitch = 62.0;  // from box to box, px
+constexpr double kCharacter = 7.2;    // of a name, px
+
+/// How wide the longest name is, px.
+double widest_name(const std::vector<Box>& boxes) {
+  std::size_t longest = 0;
+  for (const Box& box : boxes) longest = std::max(longest, box.name.size());
+  return kCharacter * static_cast<double>(longest);
+}
+
+/// A name beneath its box: level where all names fit, else all of them slanted, whole in any case.
+void draw_name(SvgWriter& svg, const Vec2& at, const std::string& name, bool is_slanted) {
+  if (!is_slanted) {
+    svg.text(at, name, "middle");
+    return;
+  }
+  svg.text(at, name, "end", fmt::format("transform=\"rotate(-35 {:.2f} {:.2f})\"", at.x(), at.y()));
 }
 
 /// Of errors without their sign: the zones are those of errors towards the tumour.
@@ -85,12 +99,12 @@ void draw_zone_key(SvgWriter& svg, const Vec2& middle) {
   const auto entry = [&](std::string_view color, const char* name, double width) {
     svg.rectangle(at - Vec2(0.0, 9.0), {14.0, 10.0},
                   fmt::format("fill=\"{}\" fill-opacity=\"0.16\" stroke=\"{}\"", color, color));
-    svg.text(at + Vec2(20.0, 0.0), name, "start", "font-size=\"11\"");
+    svg.text(at + Vec2(20.0, 0.0), name, "start", "font-size=\"12\"");
     at.x() += width;
   };
   entry(ink::kTooClose, "too close", 95.0);
   entry(ink::kReached, "tumour edge reached", 160.0);
-  svg.text(at, "in a): where the error is towards the tumour", "start", "font-size=\"11\" fill=\"#555\"");
+  svg.text(at, "in a): where the error is towards the tumour", "start", "font-size=\"12\" fill=\"#555\"");
 }
 
 void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& boxes, bool is_signed,
@@ -107,6 +121,7 @@ void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& bo
   svg.text(area.corner + Vec2(0.0, -10.0), is_signed ? "b) with sign: negative = too close" : "a) absolute", "start",
            "font-weight=\"600\"");
   const double pitch = area.size.x() / static_cast<double>(boxes.size());
+  const bool is_slanted = widest_name(boxes) > pitch;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
     std::vector<double> values = boxes[k].signed_error_mm;
     if (!is_signed) {
@@ -114,8 +129,7 @@ void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& bo
     }
     const double center = area.corner.x() + pitch * (static_cast<double>(k) + 0.5);
     draw_box(svg, area, center, box_numbers(values), boxes[k].color, std::min(24.0, 0.36 * pitch));
-    svg.text({center, area.corner.y() + area.size.y() + 17.0},
-             shortened(boxes[k].name, static_cast<std::size_t>(pitch / 7.0)), "middle", "font-size=\"11\"");
+    draw_name(svg, {center, area.corner.y() + area.size.y() + 17.0}, boxes[k].name, is_slanted);
   }
 }
 
@@ -161,12 +175,14 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
   require_series(series);
   const double limit = limit_of(series, zones);
   const std::vector<Box> boxes = boxes_of(series);
-  const double panel = std::max(250.0, 62.0 * static_cast<double>(boxes.size()));
+  const double panel = std::max(250.0, kLeastPitch * static_cast<double>(boxes.size()));
   const double width = 70.0 + panel + 80.0 + panel + 16.0;
-  constexpr double kHeight = 420.0;
-  SvgWriter svg(width, kHeight, "Distribution of the errors before and after",
+  const double name_px = widest_name(boxes);
+  const bool is_slanted = name_px > panel / static_cast<double>(boxes.size());
+  const double height = 420.0 + (is_slanted ? 0.58 * name_px : 0.0);
+  SvgWriter svg(width, height, "Distribution of the errors before and after",
                 "Box plots of the absolute and of the signed error; line: median, diamond: mean, box: quartiles.");
-  svg.rectangle({0.0, 0.0}, {width, kHeight}, "fill=\"#fff\"");
+  svg.rectangle({0.0, 0.0}, {width, height}, "fill=\"#fff\"");
   for (const bool is_signed : {false, true}) {
     const PlotArea area{.corner = {is_signed ? 150.0 + panel : 70.0, 36.0},
                         .size = {panel, 300.0},
@@ -174,10 +190,10 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
                         .y_high = limit};
     draw_panel(svg, area, boxes, is_signed, zones);
   }
-  draw_zone_key(svg, {width / 2.0, kHeight - 38.0});
-  svg.text({width / 2.0, kHeight - 14.0},
+  draw_zone_key(svg, {width / 2.0, height - 38.0});
+  svg.text({width / 2.0, height - 14.0},
            "line: median · diamond: mean · box: quartiles · whiskers: 1.5 interquartile ranges", "middle",
-           "font-size=\"11\" fill=\"#555\"");
+           "font-size=\"12\" fill=\"#555\"");
   return svg.finish();
 }
 
@@ -214,7 +230,7 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBo
     svg.text(legend[i] + Vec2(28.0, 4.0), one.name);
   }
   draw_error_zone_names(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
-  svg.text({740.0, 28.0}, "dashed: before · full: after", "end", "font-size=\"11\" fill=\"#555\"");
+  svg.text({740.0, 28.0}, "dashed: before · full: after", "end", "font-size=\"12\" fill=\"#555\"");
   return svg.finish();
 }
 

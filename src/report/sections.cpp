@@ -195,7 +195,8 @@ std::string tissue_section(const ReportData& data) {
   for (const ReportPicture& picture : data.on_tissue) {
     html += "<h3>" + escaped(picture.title) + "</h3>\n";
     if (!picture.lead.empty()) html += "<p>" + escaped(picture.lead) + "</p>\n";
-    html += "<div class=\"figures\">\n" + figure(picture.svg);
+    html += fmt::format("<div class=\"figures{}\">\n", picture.svgs.size() > 1 ? " pair" : "");
+    for (const std::string& svg : picture.svgs) html += figure(svg);
     html += "</div>\n" + value_table(picture.values);
   }
   return html + "</section>\n";

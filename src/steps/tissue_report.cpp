@@ -42,7 +42,7 @@ ReportPicture picture_of(const std::filesystem::path& folder, const char* stem, 
   for (const Shown& s : shown) {
     if (results.contains(s.key)) picture.values.push_back({s.name, words(results.at(s.key), s.unit), s.unit});
   }
-  picture.svg = read_text(folder / fmt::format("{}.svg", stem));
+  picture.svgs.push_back(read_text(folder / fmt::format("{}.svg", stem)));
   return picture;
 }
 

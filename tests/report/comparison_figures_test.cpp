@@ -49,6 +49,16 @@ TEST(ComparisonBoxPlot, ShowsBothSidesEachSpecimenAndBothZonesInBothPanels) {
   EXPECT_EQ(texts_between(svg, "<polygon points=\"", "\"").size(), 12U);
 }
 
+TEST(ComparisonBoxPlot, KeepsLongNamesWhole) {
+  const char* name = "specimen_12_as_planned_by_the_surgeon";
+  const std::string svg =
+      comparison_box_plot_svg(std::vector<ErrorSeries>{series(name, false, 0.1), series("s2", true, 0.1)});
+  expect_whole(svg);
+  EXPECT_EQ(texts_between(svg, std::string(">") + name + "<", "text>").size(), 2U) << "in both panels";
+  EXPECT_THAT(svg, HasSubstr("rotate(-35"));
+  EXPECT_THAT(comparison_box_plot_svg(kFour), Not(HasSubstr("rotate(-35")));
+}
+
 TEST(ErrorByClock, KeepsTheNamesOfManyIncisionsInThePicture) {
   const auto names_at = [](std::size_t count) {
     std::vector<ErrorSeries> many;

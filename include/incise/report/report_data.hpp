@@ -150,7 +150,7 @@ struct ReportFile {
 /// A figure with the numbers that belong to it.
 struct ReportPicture {
   std::string title, lead;
-  std::string svg;  ///< a complete SVG document
+  std::vector<std::string> svgs;  ///< complete SVG documents, shown side by side
   std::vector<ReportValue> values;
 };
 /// Any other table; units belong into the column names.
