@@ -158,9 +158,10 @@ ReportData experiment_report(const std::vector<Trial>& trials, const ReportJson&
   const TrialSummary summary = summary_of(trials, TrialRole::Test);
   if (summary.pairs > 0) {
     data.subtitle = fmt::format(
-        "Mean absolute error of the photographs of {} virtual specimens: {:.2f} mm as planned, {:.2f} mm corrected "
+        "Mean absolute error of the photographs of {} virtual specimen{}: {:.2f} mm as planned, {:.2f} mm corrected "
         "({:.0f} % less); {} worse. ",
-        summary.pairs, summary.mean_before_mm, summary.mean_after_mm, summary.gain_percent, summary.worse);
+        summary.pairs, summary.pairs == 1 ? "" : "s", summary.mean_before_mm, summary.mean_after_mm,
+        summary.gain_percent, summary.worse);
   }
   const std::string refused = refused_specimens(trials);
   data.subtitle +=

@@ -277,8 +277,9 @@ std::string why_moved(const ReportIncision& before, const ReportIncision& after,
 std::string why_not_corrected(const CaseFile& file, const Json& study) {
   if (file.settings.plan.kind == PlanKind::Line) return "There is no corrected cut: only a ring is corrected.";
   const Json stages = study.value("stages", Json::array());
-  const bool was_asked =
-      std::any_of(stages.begin(), stages.end(), [](const Json& stage) { return stage.at("name") == "compensate"; });
+  const bool was_asked = std::any_of(stages.begin(), stages.end(), [](const Json& stage) {
+    return stage.at("name") == "compensate" && stage.at("state") == "skipped";
+  });
   return was_asked ? "There is no corrected cut: the cut as planned left no ring whose mid-line could be measured."
                    : "There is no corrected cut: no correction was asked for.";
 }

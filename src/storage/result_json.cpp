@@ -1,7 +1,4 @@
-#include <incise/core/error.hpp>
 #include <incise/storage/result_json.hpp>
-
-#include <fmt/format.h>
 
 namespace incise {
 
@@ -19,15 +16,6 @@ nlohmann::ordered_json plan_summary_json(const ToolPath& path) {
           {"waypoints", path.waypoints.size()},
           {"duration_s", duration_s(path)},
           {"closed", path.is_closed}};
-}
-
-Outcome read_outcome(const nlohmann::ordered_json& json, const char* key, const std::filesystem::path& file) {
-  const auto found = json.find(key);  // the end where this is no object
-  if (found == json.end() || !found->is_string()) throw DataError(file, key, "no text", "the name of an outcome");
-  const auto name = found->get<std::string>();
-  const std::optional<Outcome> outcome = value_of<Outcome>(name);
-  if (!outcome) throw DataError(file, key, fmt::format("'{}'", name), "the name of an outcome");
-  return *outcome;
 }
 
 }  // namespace incise

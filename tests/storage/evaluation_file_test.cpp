@@ -89,7 +89,6 @@ TEST_F(EvaluationFileTest, HoldsDistancesOfSpecimensOnlyAndAnOutcomeByName) {
   json = file_json(shifted_ring());
   json["outcome"] = 4;
   expect_refused(json, "outcome", "4");
-  EXPECT_THROW(static_cast<void>(read_outcome(nlohmann::ordered_json::array(), "outcome", "incision.json")), DataError);
 }
 
 TEST_F(EvaluationFileTest, HoldsATargetWithinABody) {

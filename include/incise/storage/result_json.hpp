@@ -14,7 +14,4 @@ namespace incise {
 [[nodiscard]] nlohmann::ordered_json correction_summary_json(const Correction& correction);
 [[nodiscard]] nlohmann::ordered_json plan_summary_json(const ToolPath& path);
 
-/// The outcome that a result file names under `key`. @throws DataError naming the file for a name that is none.
-[[nodiscard]] Outcome read_outcome(const nlohmann::ordered_json& json, const char* key, const std::filesystem::path& file);
-
 }  // namespace incise

@@ -35,7 +35,8 @@ export function LabelValues() {
 
 function Label({label, found, chosen}) {
   const {value, voxels} = label;
-  const isOn = (other) => !chosen || chosen.includes(other);
+  const isOn = (other) => !chosen || chosen.includes(other),
+    isLast = isOn(value) && found.filter((one) => isOn(one.value)).length === 1; // without any there is no specimen
   const set = (isWanted) => {
     const wanted = found.map((one) => one.value).filter((other) => (other === value ? isWanted : isOn(other)));
     change({[kPath]: wanted.length === found.length ? null : wanted});
@@ -43,7 +44,12 @@ function Label({label, found, chosen}) {
   return h(
     "label",
     {class: "check", "data-label": value},
-    h("input", {type: "checkbox", checked: isOn(value), onChange: (event) => set(event.target.checked)}),
+    h("input", {
+      type: "checkbox",
+      checked: isOn(value),
+      disabled: isLast,
+      onChange: (event) => set(event.target.checked),
+    }),
     h("span", null, `Label ${value}`),
     h("span", {class: "soft"}, `${whole(voxels)} voxels`),
   );

@@ -113,8 +113,10 @@ export class Scene {
 
   /** Makes a ball of this centre ([x, y, z]) and radius fill the view; turns to the oblique view the first time. */
   fit(centre, radius) {
-    const isFirst = this.radius === 0;
+    const isFirst = this.radius === 0,
+      isCentred = this.target.equals(this.centre);
     this.centre.set(...centre);
+    if (isCentred) this.target.copy(this.centre);
     this.radius = radius;
     if (isFirst) this.look("Oblique");
     else this.render();
