@@ -140,7 +140,7 @@ VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low, const
   return part;
 }
 
-WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad) {
+WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad, std::int16_t beyond) {
   const IndexBox box = index_box(ct.grid, settings.roi_box_mm);
   if (is_empty(box))
     throw CaseError(kWhere, "roi_box_mm", text_of(*settings.roi_box_mm),
@@ -152,7 +152,7 @@ WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, 
     size[axis] = box.high[axis] - box.low[axis] + 2 * pad;
   }
   const VolumeGrid grid = sub_grid(ct.grid, low, size);
-  WorkingVolume work{{grid, std::vector<std::int16_t>(grid.voxel_count(), kAirHu)},
+  WorkingVolume work{{grid, std::vector<std::int16_t>(grid.voxel_count(), beyond)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)}};
   fill_working_volume(ct, settings, box, low, work);

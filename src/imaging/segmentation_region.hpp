@@ -10,7 +10,7 @@ namespace incise {
 
 /// The part of a CT that is looked at, with room around it: everything outside the region of interest is background.
 struct WorkingVolume {
-  CtVolume hu;     ///< air beyond the CT's own grid
+  CtVolume hu;
   Mask region;     ///< inside the CT's grid and the region of interest
   Mask in_window;  ///< in the region, with HU in the window or painted as tissue
 };
@@ -19,9 +19,11 @@ struct WorkingVolume {
 [[nodiscard]] VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low,
                                   const std::array<int, 3>& size);
 
-/// Cuts the region of interest out of the CT, `pad` voxels larger on every side, and applies the edits to it. @throws
+/// Cuts the region of interest out of the CT, `pad` voxels larger on every side, and applies the edits to it.
+/// @param beyond  the value of voxels that the CT does not have. @throws
 /// CaseError: region outside the volume, nothing in the window.
-[[nodiscard]] WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad);
+[[nodiscard]] WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad,
+                                    std::int16_t beyond);
 
 /// The offsets, in the working volume, of the seeds' voxels. @throws CaseError: a seed outside volume, region or
 /// window.

@@ -149,6 +149,20 @@ TEST(Segmentation, RefusesAStrokeWithoutPointsAndASeedThatIsTakenAway) {
   EXPECT_THAT(message_of(ct, settings), testing::AllOf(HasSubstr("seed_mm[0]"), HasSubstr("edits")));
 }
 
+TEST(Segmentation, TakesLabelsNearTheEdgeOfTheirGridAsTheyAre) {
+  const Vec3 middle(11, 11, 11);
+  LabelVolume labels{grid_of(23, 23, 23), std::vector<std::uint8_t>(23 * 23 * 23, 0)};
+  for (std::size_t v = 0; v < labels.voxels.size(); ++v) {
+    const auto [i, j, k] = labels.grid.voxel_at(v);
+    labels.voxels[v] = (Vec3(i, j, k) - middle).norm() <= 10.0 ? 1 : 0;
+  }
+  const auto drawn = static_cast<double>(std::ranges::count(labels.voxels, 1));
+  Monitor monitor;
+  SegmentationSettings settings;
+  settings.smoothing_mm = 0.0;
+  EXPECT_EQ(segment_labels(labels, settings, monitor).volume_mm3, drawn);
+}
+
 TEST(Segmentation, TakesTheLabelsThatAreNamed) {
   LabelVolume labels{grid_of(40, 30, 30), std::vector<std::uint8_t>(40 * 30 * 30, 0)};
   for (std::size_t v = 0; v < labels.voxels.size(); ++v) {
