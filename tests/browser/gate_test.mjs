@@ -4,7 +4,20 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
-import {Studio, goTo, idle, newPage, openStudio, startBrowser, stateOf, temporaryFolder, until, writeBlock} from "./support.mjs";
+import {
+  Studio,
+  assertAccessible,
+  coverage,
+  goTo,
+  idle,
+  newPage,
+  openStudio,
+  startBrowser,
+  stateOf,
+  temporaryFolder,
+  until,
+  writeBlock,
+} from "./support.mjs";
 
 function gateOf(folder) {
   return JSON.parse(fs.readFileSync(path.join(folder, "out", "study.json"), "utf8")).program;
@@ -44,4 +57,17 @@ test("a program is offered once every caution is accepted, and it is the one tha
   assert.ok(gateOf(inside).written);
   const [download] = await Promise.all([page.waitForEvent("download"), page.click("[data-do=download]")]);
   assert.equal(fs.readFileSync(await download.path(), "utf8"), fs.readFileSync(script, "utf8"));
+
+  // The arm plays it, and the report is at hand.
+  await page.waitForSelector("[data-arm=there]");
+  await idle(page);
+  assert.ok((await coverage(page)).scene > 0.02, "the arm is drawn");
+  await page.click("[data-speed='20']");
+  await page.click("[data-do=play]");
+  await until(page, () => Number(document.querySelector(".player").dataset.time) > 1);
+  await page.click("[data-do=rewind]");
+  const [report] = await Promise.all([page.waitForEvent("download"), page.click("[data-do=save-report]")]);
+  const kept = fs.readFileSync(path.join(inside, "out", "report.html"), "utf8");
+  assert.equal(fs.readFileSync(await report.path(), "utf8"), kept);
+  await assertAccessible(page, "program");
 });

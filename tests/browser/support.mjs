@@ -62,17 +62,32 @@ export function incise(folder, ...args) {
   execFileSync(command(), args, {cwd: folder, stdio: "pipe"});
 }
 
+/** Runs Python where the command's tests lie, whose modules it may import. */
+function python(script, ...args) {
+  const options = {cwd: path.join(kHere, "..", "cli"), stdio: "pipe"};
+  execFileSync(process.env.INCISE_PYTHON || "python3", ["-B", "-c", script.join("\n"), ...args], options);
+}
+
 /** Writes the small block of the command's tests as a case. @param changes  laid over it  @returns its folder */
 export function writeBlock(folder, name = "case", changes = {}) {
+  const to = path.join(folder, name);
   const script = [
     "import json, pathlib, sys, small_case",
     "case = small_case.write_case(pathlib.Path(sys.argv[1]), small_case.merged(small_case.SOUND, json.loads(sys.argv[2])))",
     'small_case.write_tumor_surface(case / "tumor.stl")',
   ];
-  const to = path.join(folder, name);
-  const python = process.env.INCISE_PYTHON || "python3";
-  execFileSync(python, ["-B", "-c", script.join("\n"), to, JSON.stringify(changes)], {cwd: path.join(kHere, "..", "cli")});
+  python(script, to, JSON.stringify(changes));
   return to;
+}
+
+/** Writes the photograph of a cut: a green ring in a red one, about the pixel (250, 250). @param radii  of both, px */
+export function writePhotograph(file, [green, red]) {
+  const script = [
+    "import pathlib, sys, small_photo",
+    "rings = ((float(sys.argv[2]), 4.0, small_photo.GREEN, 0.0), (float(sys.argv[3]), 4.0, small_photo.RED, 0.0))",
+    "small_photo.ring_photo(pathlib.Path(sys.argv[1]), rings=rings)",
+  ];
+  python(script, file, String(green), String(red));
 }
 
 /** `incise studio` in a folder. `address`: what it tells the user to open. */

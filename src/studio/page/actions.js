@@ -88,6 +88,7 @@ function nothingMeasured() {
     lay: null,
     acceptLaid: [],
     arm: null,
+    armOf: "run",
   };
 }
 
@@ -165,7 +166,7 @@ export async function refreshStep() {
     if (!(await refresh(name)) && state.case.revision === revision) break;
   }
   if (step === "edge" && state.step === step && isFailed("tissue") && !state.body && !isFailed("body")) refresh("body");
-  if (step === "program" && state.step === step && state.run && state.run.program && !state.arm) refresh("arm");
+  if (step === "program" && state.step === step && !state.arm && programOf(state.armOf)) playProgram(state.armOf);
 }
 
 // A body that is no part of a scan has no tissue to find: its mesh is drawn on instead.
@@ -239,8 +240,20 @@ export async function run() {
   update({messages: [], moment: null, progress: {...state.progress, run: null}});
   const result = await refresh("run", {accept: state.accept});
   if (!result) return;
-  update({arm: null, lay: null});
+  update({arm: null, armOf: "run", lay: null});
   goTo(state.step === "program" ? "program" : "compare");
+}
+
+/** The text of a program, if there is one. @param of  "run", or "tissue": the one that was laid on the cloud */
+export function programOf(of) {
+  const result = of === "tissue" ? state.lay : state.run;
+  return result && result.program;
+}
+
+/** Lets the arm play a program. @param of  as of programOf */
+export async function playProgram(of) {
+  update({arm: null, armOf: of});
+  await refresh("arm", {of});
 }
 
 /** Shows a photograph; what was found on another one is dropped. */
@@ -271,7 +284,7 @@ export function chooseCloud(file, isVirtual = false) {
 /** Finds where the simulated surface lies in the cloud. */
 export async function register() {
   const {file, scale, range, settling_mm} = state.cloud;
-  update({lay: null});
+  update({lay: null, arm: null, armOf: "run"});
   await refresh("register", {file: file.id, scale: scale === "range" ? range : scale, settling_mm});
 }
 
@@ -281,6 +294,8 @@ export function refuseRegistration() {
     register: null,
     lay: null,
     acceptLaid: [],
+    arm: null,
+    armOf: "run",
     notice: "The registration is refused. Nothing of it is kept here.",
   });
 }
@@ -288,6 +303,7 @@ export function refuseRegistration() {
 /** Lays the run's path on the registered cloud. */
 export async function lay() {
   const {frame, camera} = state.cloud;
+  update({arm: null, armOf: "run"});
   await refresh("lay", {camera: frame === "camera" && camera ? camera.id : null, accept: state.acceptLaid});
 }
 

@@ -251,14 +251,16 @@ const plainNumber = (value, digits) => (isNumber(value) ? fixed(value, digits) :
 
 // Name, what the photograph shows, and what the simulated, corrected cut shows; "–" where a cut has no such number.
 function rowsOf(found, cut) {
-  const numbers = (cut && cut.numbers) || {};
+  const numbers = (cut && cut.numbers) || {},
+    errors = found.abs_error_mm || {},
+    signed = found.signed_error_mm || {};
   return [
     ["outcome", "Outcome", spoken(found.outcome), cut ? spoken(cut.outcome) : "–"],
     ["negative_margin", "Negative margin", yesNo(found.negative_margin), "–"],
     ["closed_loop", "Closed loop", yesNo(found.closed_loop), "–"],
-    ["mean_error_mm", "Mean error", mm(found.abs_error_mm.mean), mm(numbers.mean_error_mm)],
-    ["greatest_error_mm", "Greatest error", mm(found.abs_error_mm.max), mm(numbers.greatest_error_mm)],
-    ["signed_mean_mm", "Mean signed error", mm(found.signed_error_mm.mean), "–"],
+    ["mean_error_mm", "Mean error", mm(errors.mean), mm(numbers.mean_error_mm)],
+    ["greatest_error_mm", "Greatest error", mm(errors.max), mm(numbers.greatest_error_mm)],
+    ["signed_mean_mm", "Mean signed error", mm(signed.mean), "–"],
     ["hausdorff_mm", "Hausdorff distance", mm(found.hausdorff_mm && found.hausdorff_mm.symmetric), "–"],
     ["hu_score", "Hu score", plainNumber(found.hu_score, 3), "–"],
     ["hu_excess", "Hu excess", plainNumber(found.hu_excess, 3), "–"],

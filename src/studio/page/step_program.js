@@ -2,13 +2,18 @@
 
 import {h} from "preact";
 import {state, update, isFresh} from "./store.js";
-import {ask, run} from "./actions.js";
+import {ask, playProgram, programOf, run} from "./actions.js";
 import {isRunning} from "./step_run.js";
-import {Button, Problems, Section, Working} from "./widgets.js";
+import {Button, Choice, Problems, Section, Working} from "./widgets.js";
 import {Commands} from "./commands.js";
 import {Gate} from "./gate.js";
 import {quoted, saveFile} from "./save_file.js";
 import {duration, mm, spoken} from "./words.js";
+
+const kPrograms = [
+  ["run", "of the run"],
+  ["tissue", "laid on the measured tissue"],
+];
 
 /** The panel. */
 export function StepProgram() {
@@ -45,6 +50,9 @@ function Arm({result}) {
   return h(
     Section,
     {title: "Arm", id: "arm"},
+    programOf("tissue")
+      ? h(Choice, {label: "Program", value: state.armOf, options: kPrograms, onChange: playProgram})
+      : null,
     h(Working, {call: "arm", text: "Playing the program"}),
     h(Problems, {calls: ["arm"]}),
     arm
@@ -62,7 +70,7 @@ function Arm({result}) {
           h("p", {key: "about", class: "soft"}, "A simulation of the arm and its controller. No robot moves."),
         ]
       : null,
-    result.program
+    result.program || programOf("tissue")
       ? null
       : h("p", {class: "soft", "data-arm-reason": "yes"}, "Without a program the arm has nothing to play."),
   );

@@ -131,7 +131,7 @@ function Result({found}) {
     h(
       "p",
       {class: "verdict"},
-      h(Status, {status: registration.converged ? (reasons.length ? "caution" : "ok") : "refused"}),
+      h(Status, {status: registration.converged ? found.verdict.status : "refused"}),
       ` Outcome: ${spoken(registration.outcome).toLowerCase()}. `,
       found.is_virtual ? h(MadeUp) : null,
     ),

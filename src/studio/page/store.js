@@ -71,6 +71,7 @@ export const state = {
   lay: null,
   acceptLaid: [],
   arm: null,
+  armOf: "run",
   cross: null,
   window: {width: 400, level: 40},
   overlay: 0.35,

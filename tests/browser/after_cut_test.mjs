@@ -1,0 +1,113 @@
+// After the cut: the photograph and its measures, and a cloud on which the path is laid. The arm: gate_test.mjs.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
+import {test} from "node:test";
+import {
+  Studio,
+  assertAccessible,
+  assertNoSideways,
+  chain,
+  coverage,
+  goTo,
+  idle,
+  incise,
+  inputIn,
+  newPage,
+  openStudio,
+  startBrowser,
+  stateOf,
+  temporaryFolder,
+  type,
+  until,
+  writePhotograph,
+} from "./support.mjs";
+
+const kScale = 0.06; // mm per pixel
+const kRadii = [6, 10]; // mm: of the tumour's edge, and of the cut's inner edge
+
+test("a cut that was made is measured, and one to be made is laid on a cloud", async (t) => {
+  const folder = temporaryFolder(t),
+    inside = path.join(folder, "specimen"),
+    step = chain(t);
+  incise(folder, "phantom", "--seed", "3", "-o", "specimen");
+  const file = path.join(inside, "case.yaml");
+  fs.writeFileSync(file, fs.readFileSync(file, "utf8").replace(/tets: \d+/, "tets: 6000")); // coarse: this is about the page
+  writePhotograph(path.join(inside, "cut.png"), kRadii.map((radius) => radius / kScale));
+  const studio = await Studio.start(t, inside, ".");
+  const page = await newPage(await startBrowser(t));
+  await openStudio(page, studio);
+  await until(page, () => window.incise.state.case);
+
+  await step("the contours of a photograph and their measures are shown", async () => {
+    await goTo(page, "photograph");
+    await page.click("[data-picker=photo] [data-file='cut.png']");
+    await page.waitForSelector("[data-photograph=loaded]");
+    await page.selectOption("[data-section=scale] select", "mm_per_pixel");
+    await type(inputIn(page, "scale", "One pixel"), String(kScale));
+    await page.click("[data-do=measure]");
+    await until(page, () => window.incise.state.photograph);
+    await idle(page);
+    const mean = await stateOf(page, "photograph.evaluation.abs_error_mm.mean");
+    assert.ok(Math.abs(mean - 0.5) < 0.05, `${mean}`);
+    assert.ok((await page.textContent("[data-measure=mean_error_mm]")).includes(mean.toFixed(2)));
+    assert.ok(fs.existsSync(path.join(inside, "photograph_cut", "evaluation.json")));
+  });
+
+  await step("a contour that is corrected by hand is said to be", async () => {
+    await page.click("[data-line=incision] [data-do=correct]");
+    await page.click("[data-do=measure]");
+    await until(page, () => window.incise.state.photograph.by_hand.length === 1);
+    await idle(page);
+    await page.waitForSelector("[data-by-hand]");
+    const kept = JSON.parse(fs.readFileSync(path.join(inside, "photograph_cut", "evaluation.json"), "utf8"));
+    assert.deepEqual(kept.by_hand, ["incision"]);
+    await assertAccessible(page, "photograph");
+  });
+
+  await step("a cloud for practice is registered, and is called made up wherever it is shown", async () => {
+    await goTo(page, "register");
+    await idle(page);
+    await page.click("summary:has-text('Make a virtual cloud')");
+    await page.click("[data-do=virtual-cloud]");
+    await until(page, () => window.incise.state.cloud.file);
+    await page.click("[data-do=register]");
+    await page.waitForSelector("[data-register=converged]");
+    await idle(page);
+    assert.ok((await page.locator("[data-virtual=yes]").count()) >= 2);
+    assert.ok((await coverage(page)).scene > 0.02, "the cloud is drawn");
+    assert.ok(Number(await page.getAttribute(".residual-scale", "data-top")) > 0);
+    await assertAccessible(page, "register");
+  });
+
+  await step("the path is laid on it, with the verdict that lets a program through or not", async () => {
+    assert.equal(await page.isEnabled("[data-do=lay]"), false, "nothing was run yet");
+    await goTo(page, "run");
+    await page.click("[data-do=run]");
+    await page.waitForSelector(".page[data-step=compare]");
+    await goTo(page, "register");
+    await idle(page);
+    if (!(await stateOf(page, "register"))) {
+      await page.click("[data-do=register]");
+      await page.waitForSelector("[data-register=converged]");
+    }
+    await page.click("[data-do=lay]");
+    await until(page, () => window.incise.state.lay);
+    await idle(page);
+    const gate = await stateOf(page, "lay.gate");
+    assert.equal(await page.locator("[data-laid=program]").count(), gate.open ? 1 : 0);
+    const laid = JSON.parse(fs.readFileSync(path.join(inside, "on_tissue", "path", "path.json"), "utf8"));
+    assert.deepEqual([laid.frame, laid.specimen_is], ["robot", "virtual"]);
+    assert.equal(fs.existsSync(path.join(inside, "on_tissue", "program.script")), gate.open);
+  });
+
+  await step("on a phone nothing has to be pushed sideways", async () => {
+    await page.setViewportSize({width: 390, height: 844});
+    for (const name of ["photograph", "register", "program"]) {
+      await goTo(page, name);
+      await idle(page);
+      await assertNoSideways(page, name);
+    }
+  });
+});

@@ -1,0 +1,328 @@
+// Tissue by hand: strokes of the brush, labels as a case, and a patch of the skin that holds.
+
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
+import {test} from "node:test";
+import {
+  Studio,
+  assertAccessible,
+  assertNoSideways,
+  chain,
+  fresh,
+  goTo,
+  idle,
+  incise,
+  inputIn,
+  look,
+  newPage,
+  openStudio,
+  scenePixel,
+  slicePixel,
+  startBrowser,
+  stateOf,
+  temporaryFolder,
+  toScreen,
+  type,
+  until,
+} from "./support.mjs";
+
+const kTets = 6000; // coarse: this is about the page
+const kRadius = 4; // mm: of the brush
+const kFrom = [2, -4], // mm: a stroke from the middle of the tongue out of its left side; a cavity would be filled
+  kTo = [36, -4];
+const kLine = [[-8, -5], [-4, -8], [0, -10], [6, -8], [9, -2]]; // mm, as seen from above: of the patch
+
+/** Where a place, mm, is in a view of the page, px. */
+async function pixelIn(page, view, point) {
+  const at = await page.evaluate(([name, place]) => window.incise.views[name].toScreen(place), [view, point]);
+  const canvas = await page.locator(`[data-view=${view}] canvas`).boundingBox();
+  return [canvas.x + at[0], canvas.y + at[1]];
+}
+
+/** Drags from place to place in a view, mm. */
+async function drag(page, view, places) {
+  for (const [k, place] of places.entries()) {
+    await page.mouse.move(...(await pixelIn(page, view, place)), {steps: 8});
+    if (k === 0) await page.mouse.down();
+  }
+  await page.mouse.up();
+}
+
+async function paint(page, from = kFrom, to = kTo) {
+  const height = (await stateOf(page, "cross"))[2];
+  await drag(page, "axial", [[...from, height], [...to, height]]);
+}
+
+/** Waits for so many strokes and the tissue with them. */
+async function strokes(page, count) {
+  await until(page, (wanted) => (window.incise.state.case.settings.ct.edits || []).length === wanted, count);
+  await fresh(page, "tissue");
+  assert.equal(await page.locator("[data-stroke]").count(), count);
+  return stateOf(page, "tissue.summary");
+}
+
+/** Chooses a file in step Open. */
+async function choose(page, name) {
+  await page.click(`[data-file="${name}"]`);
+  await page.waitForSelector("[data-section=create]");
+}
+
+/** A label volume of two blocks side by side, 1 mm voxels. */
+function writeTwoLabels(file) {
+  const size = [36, 24, 24],
+    voxels = Buffer.alloc(size[0] * size[1] * size[2]);
+  for (let k = 6; k < 18; ++k) {
+    for (let j = 6; j < 18; ++j) {
+      for (let i = 6; i < 30; ++i) voxels[i + size[0] * (j + size[1] * k)] = i < 20 ? 3 : 7;
+    }
+  }
+  const head = ["NRRD0004", "type: uint8", "dimension: 3", "space: left-posterior-superior"];
+  head.push(`sizes: ${size.join(" ")}`, "space directions: (1,0,0) (0,1,0) (0,0,1)", "space origin: (0,0,0)");
+  head.push("encoding: raw", "", "");
+  fs.writeFileSync(file, Buffer.concat([Buffer.from(head.join("\n")), voxels]));
+  return {3: 14 * 12 * 12, 7: 10 * 12 * 12};
+}
+
+/** A block, 20 x 60 x 16 mm, as triangles. */
+function writeBlock(file) {
+  const corner = (at) => [20 * (at & 1), 30 * (at & 2), 4 * (at & 4)];
+  const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const triangles = sides.flatMap(([a, b, c, d]) => [[a, b, c], [a, c, d]]);
+  const lines = triangles.flatMap((corners) => [
+    "facet normal 0 0 0",
+    "outer loop",
+    ...corners.map((at) => `vertex ${corner(at).join(" ")}`),
+    "endloop",
+    "endfacet",
+  ]);
+  fs.writeFileSync(file, ["solid block", ...lines, "endsolid block", ""].join("\n"));
+}
+
+test("tissue is painted, labels become a case, and a patch of the skin holds", async (t) => {
+  const folder = temporaryFolder(t),
+    step = chain(t);
+  incise(folder, "phantom", "--format", "nrrd", "-o", "specimen");
+  incise(folder, "segment", "specimen/ct.nrrd", "-o", "labels.nrrd");
+  const counts = writeTwoLabels(path.join(folder, "two.seg.nrrd"));
+  writeBlock(path.join(folder, "block.stl"));
+  const caseText = () => fs.readFileSync(path.join(folder, "specimen", "case.yaml"), "utf8");
+  const studio = await Studio.start(t, folder, "specimen"),
+    page = await newPage(await startBrowser(t));
+  let found = null;
+
+  await step("without a brush a drag moves the crosshair, and nothing is painted", async () => {
+    await openStudio(page, studio);
+    await until(page, () => window.incise.state.scan);
+    await fresh(page, "tissue");
+    found = await stateOf(page, "tissue.summary");
+    await paint(page);
+    assert.ok(Math.abs((await stateOf(page, "cross"))[0] - kTo[0]) < 0.5);
+    assert.equal(await stateOf(page, "case.settings.ct.edits"), null);
+  });
+
+  await step("the brush has its true size under the pointer", async () => {
+    await page.click("[data-do=brush-take]");
+    await type(inputIn(page, "brush", "Radius of the brush"), kRadius - 0.7);
+    await page.focus("[data-view=axial] canvas");
+    await page.keyboard.press("]");
+    assert.equal(await stateOf(page, "brush.radius_mm"), kRadius);
+    const at = [-30, 20, (await stateOf(page, "cross"))[2]]; // on black
+    await page.mouse.move(...(await pixelIn(page, "axial", at)));
+    const rim = await slicePixel(page, "axial", [at[0] - kRadius, at[1], at[2]]);
+    assert.ok(rim[0] > 80 && rim[0] > rim[2] + 40, `orange: ${rim}`);
+    assert.ok(Math.max(...(await slicePixel(page, "axial", at))) < 60, "nothing in its middle");
+  });
+
+  await step("a stroke takes tissue away, and is in the case", async () => {
+    const cross = await stateOf(page, "cross");
+    await paint(page);
+    const after = await strokes(page, 1);
+    assert.deepEqual(await stateOf(page, "cross"), cross, "the crosshair stays");
+    const lost = found.volume_mm3 - after.volume_mm3,
+      wide = Math.PI * kRadius ** 2; // mm2: of the stroke's section
+    assert.ok(lost > 12 * wide && lost < 30 * wide, `${lost} mm3`);
+    const [stroke] = await stateOf(page, "case.settings.ct.edits");
+    assert.deepEqual([stroke.tissue, stroke.radius_mm], [false, kRadius]);
+    stroke.path_mm.slice(1, -1).forEach((point, k) => {
+      const gap = Math.hypot(...point.map((value, axis) => value - stroke.path_mm[k][axis]));
+      assert.ok(gap >= 0.5 * kRadius - 0.02 && gap < 1.5 * kRadius, `${gap} mm from point to point`);
+    });
+    assert.match(caseText(), /edits:/);
+    assert.match(caseText(), /tissue: false/);
+  });
+
+  await step("undo gives the tissue back, and redo takes it away again", async () => {
+    const after = await stateOf(page, "tissue.summary");
+    await page.keyboard.press("Control+z");
+    assert.deepEqual(await strokes(page, 0), found);
+    assert.doesNotMatch(caseText(), /edits:/);
+    await page.click("[data-do=redo]");
+    assert.deepEqual(await strokes(page, 1), after);
+  });
+
+  await step("a ball at the crosshair adds tissue, without a mouse", async () => {
+    const before = await stateOf(page, "tissue.summary");
+    await page.click("[data-do=brush-add]");
+    const inputs = page.locator("[data-section=picture] .numbers input");
+    for (const [k, value] of [-28, -4].entries()) await type(inputs.nth(k), value); // at the tongue's right side
+    await page.focus("[data-do=ball]");
+    await page.keyboard.press("Enter");
+    const after = await strokes(page, 2);
+    assert.ok(after.volume_mm3 > before.volume_mm3 + 40, `${after.volume_mm3 - before.volume_mm3} mm3`);
+    await page.focus("[data-view=axial] canvas");
+    await page.keyboard.press("Enter");
+    assert.deepEqual(await strokes(page, 3), after, "the same ball again");
+  });
+
+  await step("strokes are listed, and removed one by one or all together", async () => {
+    assert.deepEqual(
+      await page.locator("[data-stroke]").evaluateAll((rows) => rows.map((row) => row.dataset.stroke)),
+      ["add", "add", "take"],
+    );
+    await page.focus("[aria-label='Remove stroke 1']");
+    await page.keyboard.press("Enter");
+    await strokes(page, 2);
+    assert.notEqual(await page.evaluate(() => document.activeElement.tagName), "BODY", "the focus is kept");
+    await page.click("[data-do=remove-strokes]");
+    assert.deepEqual(await strokes(page, 0), found);
+    await page.click("[data-do=undo]");
+    await strokes(page, 2);
+    await page.keyboard.press("Escape");
+  });
+
+  await step("more points than a request should hold are not sent", async () => {
+    const path_mm = Array.from({length: 1998}, (_, k) => [40, 0.01 * k, 0]); // in air
+    const {status} = await studio.call("change", {
+      revision: await stateOf(page, "case.revision"),
+      set: {"ct.edits": [{tissue: false, radius_mm: 1, path_mm}]},
+    });
+    assert.equal(status, 200);
+    await strokes(page, 1);
+    await paint(page);
+    await page.waitForSelector("[data-refused]");
+    await idle(page);
+    assert.equal((await stateOf(page, "case.settings.ct.edits")).length, 1);
+    for (const scheme of ["light", "dark"]) {
+      await page.emulateMedia({colorScheme: scheme});
+      await assertAccessible(page, `brush, ${scheme}`);
+    }
+    await page.click("[data-do=remove-strokes]");
+    await strokes(page, 0);
+  });
+
+  await step("a patch painted on the skin holds its vertices", async () => {
+    await studio.call("change", {
+      revision: await stateOf(page, "case.revision"),
+      set: {"meshing.tets": kTets, "tumor.surface": null},
+    });
+    await goTo(page, "hold");
+    await fresh(page, "body");
+    for (const count of [1, 2]) {
+      await page.click("button:text-is('Add fixed')"); // the first holds the back
+      await until(page, (n) => (window.incise.state.case.settings.specimen.constraints || []).length === n, count);
+    }
+    await page.locator(".hold >> nth=1").locator("select").first().selectOption("patch");
+    await look(page, "Top");
+    await drag(page, "scene", kLine.map((at) => [...at, 30]));
+    await until(page, () => (window.incise.state.case.settings.specimen.constraints[1].where || {}).patch);
+    await fresh(page, "body");
+    const [, held] = await stateOf(page, "body.constraints"),
+      {path_mm: line} = await stateOf(page, "case.settings.specimen.constraints.1.where.patch");
+    assert.ok(held.vertices > 5, `${held.vertices} vertices`);
+    const nearest = (at) => Math.min(...line.map((point) => Math.hypot(point[0] - at[0], point[1] - at[1])));
+    for (const at of kLine) assert.ok(nearest(at) < 2.6, `${at}: ${nearest(at)} mm`);
+    const beside = await scenePixel(page, [line[0][0] - 1.5, line[0][1], line[0][2]]);
+    assert.ok(beside[0] > beside[2] + 60, `orange beside the line: ${beside}`);
+    assert.match(caseText(), /patch:/);
+    await assertAccessible(page, "a painted patch");
+  });
+
+  await step("a cleared patch is in the case until it has a point again, the crosshair's for instance", async () => {
+    const before = await stateOf(page, "case.revision");
+    await page.click("[data-do=clear-patch]");
+    await page.waitForSelector("[data-patch='0']");
+    assert.equal(await stateOf(page, "case.revision"), before);
+    await page.focus("[data-do=patch-crosshair]");
+    await page.keyboard.press("Enter");
+    await page.waitForSelector("[data-patch='1']");
+    await idle(page);
+    assert.equal((await stateOf(page, "case.settings.specimen.constraints.1.where.patch.path_mm")).length, 1);
+    await page.click("[data-patch] summary");
+    await page.click("[aria-label='Remove point 1']");
+    await page.waitForSelector("[data-patch='0']");
+  });
+
+  await step("a label volume opens as a case, with the same tissue", async () => {
+    await goTo(page, "open");
+    await choose(page, "labels.nrrd");
+    await page.selectOption("[data-section=create] select >> nth=0", "labels");
+    await assertAccessible(page, "a case from labels");
+    await page.click("[data-do=create]");
+    await page.waitForSelector(".page[data-step=see]");
+    await fresh(page, "tissue");
+    const summary = await stateOf(page, "tissue.summary");
+    assert.ok(Math.abs(summary.volume_mm3 / found.volume_mm3 - 1) < 0.02, `${summary.volume_mm3} mm3`);
+    assert.equal(await page.locator("[data-label]").count(), 1);
+    assert.equal(await page.locator("[data-section=window]").count(), 0);
+  });
+
+  await step("labels are tissue or not, as they are checked", async () => {
+    await goTo(page, "open");
+    await choose(page, "two.seg.nrrd");
+    await page.click("[data-do=create]");
+    await page.waitForSelector(".page[data-step=see]");
+    await fresh(page, "tissue");
+    for (const [value, voxels] of Object.entries(counts)) {
+      const row = page.locator(`[data-label='${value}']`);
+      assert.match((await row.textContent()).replace(/\s/g, ""), new RegExp(`Label${value}${voxels}voxels`));
+      assert.ok(await row.locator("input").isChecked());
+    }
+    const both = await stateOf(page, "tissue.summary");
+    await page.uncheck("[data-label='7'] input");
+    await until(page, () => window.incise.state.case.settings.ct.label_values);
+    await fresh(page, "tissue");
+    assert.deepEqual(await stateOf(page, "case.settings.ct.label_values"), [3]);
+    assert.ok(await page.locator("[data-label='3'] input").isDisabled(), "one label stays");
+    const one = await stateOf(page, "tissue.summary"),
+      share = one.voxels / both.voxels;
+    assert.ok(Math.abs(share - counts[3] / (counts[3] + counts[7])) < 0.05, `${share} of both`);
+    await page.check("[data-label='7'] input");
+    await until(page, () => !window.incise.state.case.settings.ct.label_values);
+    await fresh(page, "tissue");
+    assert.deepEqual(await stateOf(page, "tissue.summary"), both);
+  });
+
+  await step("a surface is meshed, and a mesh taken as it is", async () => {
+    await goTo(page, "open");
+    await choose(page, "block.stl");
+    await page.click("[data-do=create]");
+    await page.waitForSelector("[data-section=mesh]");
+    await fresh(page, "body");
+    const tets = await stateOf(page, "body.tets");
+    assert.ok(tets > 100, `${tets} tets`);
+    fs.copyFileSync(path.join(folder, "block_case", "body.vtu"), path.join(folder, "body.vtu"));
+    await goTo(page, "open");
+    await page.reload(); // lists the folder anew
+    await page.waitForSelector(".page[data-step=see]");
+    await goTo(page, "open");
+    await choose(page, "body.vtu");
+    await page.click("[data-do=create]");
+    await page.waitForSelector("[data-section=mesh]");
+    await fresh(page, "body");
+    assert.equal(await stateOf(page, "body.tets"), tets);
+  });
+
+  await step("on a phone nothing has to be moved sideways", async () => {
+    await page.setViewportSize({width: 390, height: 844});
+    for (const name of ["open", "see", "hold"]) {
+      await goTo(page, name);
+      await idle(page);
+      await assertNoSideways(page, name);
+    }
+  });
+
+  await step("nothing was complained of", async () => {
+    assert.deepEqual(page.complaints, []);
+  });
+});
