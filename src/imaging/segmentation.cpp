@@ -322,7 +322,8 @@ namespace {
 
 enum class Source { Scan, Labels };
 
-Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Monitor& monitor) {
+Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Monitor& monitor,
+                      const std::optional<Verdict>& of_scan = {}) {
   const std::vector<Problem> problems = validate(settings);
   if (!problems.empty())
     throw CaseError("segmentation", "settings",
@@ -346,7 +347,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   if (settings.fill_holes) fill_holes(body, result);
   result.cut_voxels = count_cut_voxels(body, whole.region);
   note_cut_faces(result);
-  if (source == Source::Scan) result.verdict.add(check_scan(ct));
+  if (source == Source::Scan) result.verdict.add(of_scan ? *of_scan : check_scan(ct));
 
   const IndexBox around = grown(box_of(body), pad);
   const CtVolume hu = crop(whole.hu, around);
@@ -403,8 +404,9 @@ void require_labels(const LabelVolume& labels, const SegmentationSettings& setti
 
 }  // namespace
 
-Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor) {
-  return found_in(ct, Source::Scan, settings, monitor);
+Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor,
+                     const std::optional<Verdict>& of_scan) {
+  return found_in(ct, Source::Scan, settings, monitor, of_scan);
 }
 
 Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings, Monitor& monitor) {

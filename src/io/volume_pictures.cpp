@@ -5,6 +5,7 @@
 #include "io/volume_stack.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/workers.hpp>
 
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 
 namespace incise {
 namespace {
@@ -93,21 +95,61 @@ void require_settings(const fs::path& folder, const CtReadSettings& settings) {
   }
 }
 
-void to_hounsfield(const fs::path& file, const RawImage& image, const GrayToHu& hu, std::int16_t* out) {
-  for (std::size_t p = 0; p < image.grid.voxel_count(); ++p) {
-    std::uint16_t gray = 0;
-    if (image.component == Component::U8) {
-      gray = static_cast<unsigned char>(image.bytes[p]);
-    } else {
-      std::memcpy(&gray, image.bytes.data() + p * sizeof gray, sizeof gray);
+/// What each gray level is in HU, computed once for all pixels of all slices.
+class HuTable {
+ public:
+  explicit HuTable(const GrayToHu& hu) : hu_(hu), values_(std::size_t{1} << 16) {
+    for (std::size_t gray = 0; gray < values_.size(); ++gray) {
+      const double value = value_of(gray);
+      values_[gray] = value < -32768.0 || value > 32767.0 ? kNone : static_cast<std::int32_t>(std::lround(value));
     }
-    const double value = hu.slope * gray + hu.intercept;
-    if (value < -32768.0 || value > 32767.0) {
-      throw DataError(file, fmt::format("pixel ({}, {})", p % image.grid.size[0], p / image.grid.size[0]),
-                      fmt::format("gray level {}, that is {:.6g} HU", gray, value), "a value of 16 bits",
-                      "Check ct.hu.");
+  }
+  void convert(const fs::path& file, const RawImage& image, std::int16_t* out) const {
+    for (std::size_t p = 0; p < image.grid.voxel_count(); ++p) {
+      std::uint16_t gray = 0;
+      if (image.component == Component::U8) {
+        gray = static_cast<unsigned char>(image.bytes[p]);
+      } else {
+        std::memcpy(&gray, image.bytes.data() + p * sizeof gray, sizeof gray);
+      }
+      if (values_[gray] == kNone) {
+        throw DataError(file, fmt::format("pixel ({}, {})", p % image.grid.size[0], p / image.grid.size[0]),
+                        fmt::format("gray level {}, that is {:.6g} HU", gray, value_of(gray)), "a value of 16 bits",
+                        "Check ct.hu.");
+      }
+      out[p] = static_cast<std::int16_t>(values_[gray]);
     }
-    out[p] = static_cast<std::int16_t>(std::lround(value));
+  }
+
+ private:
+  static constexpr std::int32_t kNone = std::numeric_limits<std::int32_t>::max();
+  [[nodiscard]] double value_of(std::size_t gray) const {
+    return hu_.slope * static_cast<double>(gray) + hu_.intercept;
+  }
+  GrayToHu hu_;
+  std::vector<std::int32_t> values_;
+};
+
+/// Reads the slices into a volume whose grid has their size, several at a time. @param first  already read
+void read_slices(const std::vector<Picture>& pictures, const HuTable& table, const RawImage& first, CtVolume& volume,
+                 Monitor& monitor) {
+  const VolumeGrid& grid = volume.grid;
+  const std::size_t pixels = first.grid.voxel_count();
+  const auto read = [&](std::size_t k) {
+    const RawImage image = k == 0 ? first : read_gray_png(pictures[k].file);
+    if (image.grid.size[0] != grid.size[0] || image.grid.size[1] != grid.size[1]) {
+      throw DataError(
+          pictures[k].file, "size", fmt::format("{} x {}", image.grid.size[0], image.grid.size[1]),
+          fmt::format("{} x {} as in '{}'", grid.size[0], grid.size[1], pictures[0].file.filename().string()));
+    }
+    table.convert(pictures[k].file, image, volume.voxels.data() + k * pixels);
+  };
+  Workers workers(0);
+  const std::size_t block = 4 * static_cast<std::size_t>(workers.thread_count());  // between two looks at the monitor
+  for (std::size_t begin = 0; begin < pictures.size(); begin += block) {
+    throw_if_cancelled(monitor, "reading CT");
+    monitor.progress("reading CT", static_cast<double>(begin) / static_cast<double>(pictures.size()));
+    workers.for_each(std::min(block, pictures.size() - begin), 1, [&](std::size_t i) { read(begin + i); });
   }
 }
 
@@ -124,23 +166,12 @@ ReadVolume read_picture_folder(const fs::path& folder, const CtReadSettings& set
   diagnostics.format = VolumeFormat::PictureStack;
   diagnostics.slices = static_cast<int>(pictures.size());
   diagnostics.min_step_mm = diagnostics.max_step_mm = (*settings.spacing_mm)[2];
-  for (std::size_t k = 0; k < pictures.size(); ++k) {
-    throw_if_cancelled(monitor, "reading CT");
-    monitor.progress("reading CT", static_cast<double>(k) / static_cast<double>(pictures.size()));
-    const RawImage image = read_gray_png(pictures[k].file);
-    VolumeGrid& grid = result.volume.grid;
-    if (k == 0) {
-      grid.size = {image.grid.size[0], image.grid.size[1], diagnostics.slices};
-      grid.spacing_mm = *settings.spacing_mm;
-      result.volume.voxels.resize(grid.voxel_count());
-    }
-    if (image.grid.size[0] != grid.size[0] || image.grid.size[1] != grid.size[1]) {
-      throw DataError(
-          pictures[k].file, "size", fmt::format("{} x {}", image.grid.size[0], image.grid.size[1]),
-          fmt::format("{} x {} as in '{}'", grid.size[0], grid.size[1], pictures[0].file.filename().string()));
-    }
-    to_hounsfield(pictures[k].file, image, *settings.hu, result.volume.voxels.data() + k * image.grid.voxel_count());
-  }
+  const RawImage first = read_gray_png(pictures.front().file);
+  VolumeGrid& grid = result.volume.grid;
+  grid.size = {first.grid.size[0], first.grid.size[1], diagnostics.slices};
+  grid.spacing_mm = *settings.spacing_mm;
+  result.volume.voxels.resize(grid.voxel_count());
+  read_slices(pictures, HuTable(*settings.hu), first, result.volume, monitor);
   monitor.progress("reading CT", 1.0);
   if (other_files > 0)
     notify(diagnostics, monitor,

@@ -5,6 +5,7 @@
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/geometry/iso_surface.hpp>
+#include <incise/imaging/scan_checks.hpp>
 #include <incise/imaging/segmentation.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
@@ -300,6 +301,7 @@ const CtVolume& Calls::ct_of(const CaseFile& file) {
   if (key != ct_key_) {
     ct_key_.clear();
     ct_ = read_ct(path, file.ct_reading, monitor_).volume;
+    of_scan_ = check_scan(ct_);
     ct_key_ = key;
   }
   return ct_;
@@ -327,8 +329,9 @@ Json Calls::tissue(const Json&) {
   std::optional<LabelVolume> given;
   if (!file.inputs.ct_labels.empty()) given = read_labels(file.inputs.ct_labels);
   const SegmentationSettings& settings = file.settings.segmentation;
+  const CtVolume* const ct = given ? nullptr : &ct_of(file);
   const Segmentation found =
-      given ? segment_labels(*given, settings, monitor_) : segment(ct_of(file), settings, monitor_);
+      given ? segment_labels(*given, settings, monitor_) : segment(*ct, settings, monitor_, of_scan_);
   const TriMesh skin = iso_surface(found.occupancy, 0.5);
   Json summary = to_json(found);
   summary.erase("verdict");

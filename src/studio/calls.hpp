@@ -78,6 +78,7 @@ class Calls {
   std::filesystem::path file_;  ///< of the case
   std::string ct_key_;          ///< which CT is kept: its place, how it was read, and when it was changed
   CtVolume ct_;
+  Verdict of_scan_;  ///< what check_scan says of it
   std::chrono::steady_clock::time_point last_moment_{};
   bool shows_moments_ = true;
 };

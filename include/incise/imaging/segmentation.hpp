@@ -107,6 +107,7 @@ inline void describe(Visitor& v, Segmentation& s) {
 /// G does and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Its verdict
 /// has a caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), when without a
 /// seed another piece is at least a quarter as large as the one that is kept, and those of check_scan.
+/// @param of_scan  what check_scan says of the CT, for one that is segmented again and again; absent: it is asked.
 /// @throws CaseError: settings invalid (all violations listed), region or a seed outside the volume, a seed outside the
 /// window or the region
 ///         or in a part that the opening removes, seeds in separate pieces, nothing in the window, smoothing that
@@ -114,7 +115,8 @@ inline void describe(Visitor& v, Segmentation& s) {
 /// @throws InvalidArgument: a volume without voxels, of the wrong length, or with a non-finite or non-positive grid.
 /// @throws Cancelled.
 /// @note O(voxels of the region); about a second for 150 x 160 x 100.
-[[nodiscard]] Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor);
+[[nodiscard]] Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor,
+                                   const std::optional<Verdict>& of_scan = {});
 
 /// The same from labels that somebody drew: every label but 0 is tissue, or those of `label_values`. The occupancy is 0
 /// or 1 before it is smoothed, so the skin is as accurate as the voxels are small. The window is not used, and the
