@@ -453,7 +453,7 @@ Json Calls::register_cloud(const Json& arguments) {
 Json Calls::lay(const Json& arguments) {
   const CaseFile file = read_case_with_inputs(file_);
   const Case& settings = file.settings;
-  const std::vector<std::string> accepted = accepted_argument(arguments);
+  const std::vector<std::string> accepted = accepted_in(arguments);
   const fs::path registration = registration_folder(file) / "registration.json";
   if (!fs::exists(registration))
     throw CaseError("request", "registration", "none in the case's folder", "a registered cloud");

@@ -203,6 +203,12 @@ RunContext Calls::context(std::uint64_t seed) const {
   return {"incise studio", seed, workers_.thread_count()};
 }
 
+std::vector<std::string> Calls::accepted_in(const Json& arguments) const {
+  std::vector<std::string> accepted = accepted_argument(arguments);
+  if (!accepted.empty() && text_argument(arguments, "revision") != case_revision(file_)) throw StaleRevision(file_);
+  return accepted;
+}
+
 Json Calls::make(const std::string& name, const fs::path& file, const Json& arguments) {
   using Call = Json (Calls::*)(const Json&);
   static const std::map<std::string, Call> without_case{
@@ -441,7 +447,7 @@ void Calls::send_moment(const std::string& cut, const CutState& state, const Ski
 
 Json Calls::run(const Json& arguments) {
   shows_moments_ = true;
-  const std::vector<std::string> accepted = accepted_argument(arguments);
+  const std::vector<std::string> accepted = accepted_in(arguments);
   const fs::path output = output_beside(file_);
   steps::CaseRequest request{read_case_with_inputs(file_), output, {}};
   remove_replaceable(laid_folder(request.file));  // of an earlier run

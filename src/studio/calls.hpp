@@ -63,6 +63,8 @@ class Calls {
   Json report(const Json& arguments);
 
   [[nodiscard]] RunContext context(std::uint64_t seed = 1) const;
+  /// Cautions that a person accepts, of the case as it is. @throws StaleRevision for those of another revision.
+  [[nodiscard]] std::vector<std::string> accepted_in(const Json& arguments) const;
   [[nodiscard]] const CtVolume& ct_of(const CaseFile& file);
   /// A case of what cannot be read is of no use. @param is_made_later  its mesh. @throws DataError
   void require_readable(const CaseFile& made, bool is_made_later);

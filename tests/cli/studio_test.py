@@ -307,7 +307,9 @@ class AfterTheCut(StudioTest):
         self.assertEqual(studio.call("arm")[1]["problem"]["path"], "program")
         self.assertEqual(studio.call("report")[1]["problem"]["path"], "report")
         accept = [word for word in small_case.ACCEPTED if word != "--accept"]
-        status, run = studio.call("run", {"accept": accept})
+        self.assertEqual(studio.call("run", {"accept": accept})[1]["problem"]["path"], "revision")
+        self.assertEqual(studio.call("run", {"accept": accept, "revision": "of another case"})[0], 409)
+        status, run = studio.call("run", {"accept": accept, "revision": studio.call("case")[1]["revision"]})
         self.assertIsNotNone(run["program"], run)
         arm = studio.call("arm")[1]
         times, ends, phases = (studio.array(arm[name]) for name in ("time_s", "ends", "phase"))

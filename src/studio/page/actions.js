@@ -57,7 +57,9 @@ async function reload() {
 
 /** Takes a case that the server gave; `isOther`: it is not the one that was open. */
 export function takeCase(found, isOther) {
-  update({case: found, problems: {}, accept: isOther ? [] : state.accept});
+  // What a person accepted were cautions about the case as it was.
+  const isSame = !isOther && state.case && state.case.revision === found.revision;
+  update({case: found, problems: {}, ...(isSame ? {} : {accept: [], acceptLaid: []})});
   if (!isOther) return;
   update({
     ...nothingMeasured(),
@@ -236,9 +238,18 @@ export async function saveEdge(points, where) {
 }
 
 /** Runs the case: cut as planned, correction, cut along the corrected path. */
-export async function run() {
-  update({messages: [], moment: null, progress: {...state.progress, run: null}});
-  const result = await refresh("run", {accept: state.accept});
+export function run() {
+  return runWith({});
+}
+
+/** The same with the cautions of the last run that a person accepts. */
+export function runAccepting() {
+  return runWith({accept: state.accept, revision: state.run.revision});
+}
+
+async function runWith(acceptance) {
+  update({messages: [], moment: null, progress: {...state.progress, run: null}, accept: acceptance.accept || []});
+  const result = await refresh("run", acceptance);
   if (!result) return;
   update({arm: null, armOf: "run", lay: null});
   goTo(state.step === "program" ? "program" : "compare");
@@ -284,7 +295,7 @@ export function chooseCloud(file, isVirtual = false) {
 /** Finds where the simulated surface lies in the cloud. */
 export async function register() {
   const {file, scale, range, settling_mm} = state.cloud;
-  update({lay: null, arm: null, armOf: "run"});
+  update({lay: null, acceptLaid: [], arm: null, armOf: "run"});
   await refresh("register", {file: file.id, scale: scale === "range" ? range : scale, settling_mm});
 }
 
@@ -301,10 +312,19 @@ export function refuseRegistration() {
 }
 
 /** Lays the run's path on the registered cloud. */
-export async function lay() {
+export function lay() {
+  return layWith({});
+}
+
+/** The same with the cautions that a person accepts. */
+export function layAccepting() {
+  return layWith({accept: state.acceptLaid, revision: state.lay.revision});
+}
+
+async function layWith(acceptance) {
   const {frame, camera} = state.cloud;
-  update({arm: null, armOf: "run"});
-  await refresh("lay", {camera: frame === "camera" && camera ? camera.id : null, accept: state.acceptLaid});
+  update({arm: null, armOf: "run", acceptLaid: acceptance.accept || []});
+  await refresh("lay", {camera: frame === "camera" && camera ? camera.id : null, ...acceptance});
 }
 
 /** Takes an event of the server. */

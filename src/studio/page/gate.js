@@ -7,8 +7,9 @@ import {fixed, isNumber, spoken} from "./words.js";
 
 /** The section with the gate of a result, which holds `verdict`, `gate`, `checks`, `program`, `why_without_program`.
  *  @param accepted  ids that are ticked   @param onAccept  (ids)   @param onAgain  asks for the result with them
- *  @param call      that gives the result   @param isBusy  whether it cannot be asked for now */
-export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy}) {
+ *  @param call      that gives the result   @param isBusy  whether it cannot be asked for now
+ *  @param fileName  under which the program is saved */
+export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, fileName = "incise.script"}) {
   const gate = result.gate || {};
   const open = cautionsOf(result, gate);
   const tick = (id, isOn) => onAccept(isOn ? [...accepted, id] : accepted.filter((other) => other !== id));
@@ -37,7 +38,7 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy})
       : null,
     h(Problems, {calls: [call]}),
     result.program
-      ? h(Program, {text: result.program})
+      ? h(Program, {text: result.program, fileName})
       : h("p", {class: "warning", "data-program": "none"}, result.why_without_program || "There is no program."),
     result.checks && result.checks.length ? h(Checks, {checks: result.checks}) : null,
   );
@@ -81,8 +82,8 @@ function OneCheck({check}) {
   return [h(Status, {status: check.passed ? "ok" : "refused"}), ` ${check.text}${found}`];
 }
 
-function Program({text}) {
-  const save = () => saveFile("incise.script", text, "text/plain");
+function Program({text, fileName}) {
+  const save = () => saveFile(fileName, text, "text/plain");
   return h(
     "div",
     {"data-program": "there"},

@@ -41,6 +41,7 @@ export function StepCompare() {
       h(Reasons, {verdict: result.verdict, onPlace: showPlace}),
     ),
     h(Section, {title: "Numbers", id: "numbers"}, h(Table, {result})),
+    h(Planned, {cut: result.as_planned}),
     h(
       Section,
       {title: "Robot program", id: "to-program"},
@@ -51,6 +52,17 @@ export function StepCompare() {
       ),
       h(Button, {onClick: () => goTo("program"), "data-do": "to-program"}, "Go to the program"),
     ),
+  );
+}
+
+// What is known against the cut as planned, which the run's verdict does not judge once the correction is accepted.
+function Planned({cut}) {
+  if (!cut || !cut.verdict || cut.verdict.status === "ok") return null;
+  return h(
+    Section,
+    {title: "Against the cut as planned", id: "against-planned"},
+    h("p", {class: "verdict"}, h(Status, {status: cut.verdict.status})),
+    h(Reasons, {verdict: cut.verdict, onPlace: showPlace}),
   );
 }
 

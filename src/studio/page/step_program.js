@@ -2,7 +2,7 @@
 
 import {h} from "preact";
 import {state, update, isFresh} from "./store.js";
-import {ask, playProgram, programOf, run} from "./actions.js";
+import {ask, goTo, playProgram, programOf, run, runAccepting} from "./actions.js";
 import {isRunning} from "./step_run.js";
 import {Button, Choice, Problems, Section, Working} from "./widgets.js";
 import {Commands} from "./commands.js";
@@ -30,11 +30,19 @@ export function StepProgram() {
     "div",
     {"data-arm": state.arm ? "there" : "none"},
     isFresh("run") ? null : h("p", {class: "warning"}, "The settings have changed since this run."),
+    programOf("tissue")
+      ? h(
+          "p",
+          {class: "warning", "data-laid-too": "yes"},
+          "This is the program of the run. The one on the measured tissue stands in step 9; running again removes it. ",
+          h(Button, {onClick: () => goTo("register")}, "Go to it"),
+        )
+      : null,
     h(Gate, {
       result,
       accepted: state.accept,
       onAccept: (accept) => update({accept}),
-      onAgain: run,
+      onAgain: runAccepting,
       again: "Run again with these accepted",
       call: "run",
       isBusy: isRunning(),

@@ -3,7 +3,7 @@
 import {h} from "preact";
 import {useState} from "preact/hooks";
 import {state, update, isFresh} from "./store.js";
-import {chooseCloud, goTo, lay, makeCloud, refuseRegistration, register} from "./actions.js";
+import {chooseCloud, goTo, lay, layAccepting, makeCloud, refuseRegistration, register} from "./actions.js";
 import {Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status, Working} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {Gate} from "./gate.js";
@@ -291,7 +291,8 @@ function Laid() {
       result: laid,
       accepted: state.acceptLaid,
       onAccept: (acceptLaid) => update({acceptLaid}),
-      onAgain: lay,
+      onAgain: layAccepting,
+      fileName: "incise_on_tissue.script",
       again: "Lay it again with these accepted",
       call: "lay",
       isBusy: Boolean(state.busy.lay),

@@ -131,11 +131,14 @@ export function Button({onClick, isMain, isPressed, disabled, title, children, .
 
 /** Numbers side by side: a point, a direction, a window. `names`: one label for each. */
 export function Numbers({label, names, unit, value, step, onChange, problem, hint}) {
-  const id = useId("numbers");
+  const id = useId("numbers"),
+    [draft, setDraft] = useState(null); // until every number is there; none is made up
+  const shown = draft || names.map((_, i) => (value && isNumber(value[i]) ? value[i] : null));
   const put = (k, number) => {
-    const next = names.map((_, i) => (value && isNumber(value[i]) ? value[i] : 0));
-    next[k] = number;
-    onChange(next);
+    const next = shown.map((old, i) => (i === k ? number : old));
+    const isWhole = next.every(isNumber);
+    setDraft(isWhole ? null : next);
+    if (isWhole) onChange(next);
   };
   return h(
     "fieldset",
@@ -150,7 +153,7 @@ export function Numbers({label, names, unit, value, step, onChange, problem, hin
           label: name,
           isShort: true,
           step,
-          value: value ? value[k] : null,
+          value: shown[k],
           problem: problem ? {} : null,
           onChange: (number) => put(k, number),
         }),
