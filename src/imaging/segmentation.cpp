@@ -338,7 +338,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   report(0.0);
   // The final box is the body's box plus the margin, and the body may grow a little: the pad has room for both.
   const int pad = settings.margin_voxels + kGrowth;
-  const WorkingVolume whole = cut_out(ct, settings, pad, source == Source::Scan ? kAirHu : std::int16_t{0});
+  const WorkingVolume whole = cut_out(ct, settings, pad, source == Source::Scan ? kAirHu : std::int16_t{0}, monitor);
   const std::vector<std::size_t> seeds = locate_seeds(ct, whole, settings);
   report(0.1);
   Segmentation result;

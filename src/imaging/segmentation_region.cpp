@@ -105,12 +105,15 @@ void paint(const Contour& piece, const TissueEdit& edit, const SegmentationSetti
       }
 }
 
-void apply_edits(const SegmentationSettings& settings, WorkingVolume& work) {
+void apply_edits(const SegmentationSettings& settings, WorkingVolume& work, Monitor& monitor) {
   if (!settings.edits) return;
   for (const TissueEdit& edit : *settings.edits) {
     const Points& path = edit.path_mm;
     paint({{path.front()}, false}, edit, settings, work);
-    for (std::size_t i = 1; i < path.size(); ++i) paint({{path[i - 1], path[i]}, false}, edit, settings, work);
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      throw_if_cancelled(monitor, "segmenting");
+      paint({{path[i - 1], path[i]}, false}, edit, settings, work);
+    }
   }
 }
 
@@ -140,7 +143,8 @@ VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low, const
   return part;
 }
 
-WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad, std::int16_t beyond) {
+WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad, std::int16_t beyond,
+                      Monitor& monitor) {
   const IndexBox box = index_box(ct.grid, settings.roi_box_mm);
   if (is_empty(box))
     throw CaseError(kWhere, "roi_box_mm", text_of(*settings.roi_box_mm),
@@ -156,7 +160,7 @@ WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, 
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)}};
   fill_working_volume(ct, settings, box, low, work);
-  apply_edits(settings, work);
+  apply_edits(settings, work, monitor);
   require_tissue(work, settings);
   return work;
 }

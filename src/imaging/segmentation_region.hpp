@@ -23,7 +23,7 @@ struct WorkingVolume {
 /// @param beyond  the value of voxels that the CT does not have. @throws
 /// CaseError: region outside the volume, nothing in the window.
 [[nodiscard]] WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, int pad,
-                                    std::int16_t beyond);
+                                    std::int16_t beyond, Monitor& monitor);
 
 /// The offsets, in the working volume, of the seeds' voxels. @throws CaseError: a seed outside volume, region or
 /// window.

@@ -148,7 +148,7 @@ nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::order
 
 /// The cloud of whatever the input is, and what is said of it.
 nlohmann::ordered_json cloud_of_input(const SurfaceRequest& request, const StepContext& context, PointCloud& cloud,
-                                      std::string& specimen_id) {
+                                      std::string& specimen_id, bool& is_virtual) {
   const std::filesystem::path& input = request.input;
   const Vec3 approach = request.approach.value_or(-Vec3::UnitZ());
   if (std::filesystem::is_directory(input) || is_one_of(input, {".yaml", ".yml", ".json"})) {
@@ -159,6 +159,7 @@ nlohmann::ordered_json cloud_of_input(const SurfaceRequest& request, const StepC
   if (is_one_of(input, {".vtu", ".vtk", ".msh", ".node", ".ele"}))
     return seen(skin_of(read_tet_mesh(input, context.monitor), input), request, approach, context.workers, cloud);
   const TriMesh read = read_cloud(input);
+  is_virtual = is_marked_virtual(read);
   require_surface(read.vertices, input);
   nlohmann::ordered_json result = read.triangles.empty() ? cleaned(cloud_of(read), request, approach, context, cloud)
                                                          : seen(read, request, approach, context.workers, cloud);
@@ -176,18 +177,21 @@ nlohmann::ordered_json cloud_of_input(const SurfaceRequest& request, const StepC
 StepResult see_surface(const SurfaceRequest& request, const StepContext& context) {
   PointCloud cloud;
   std::string specimen_id = specimen_id_of(request.input);
-  StepResult result{cloud_of_input(request, context, cloud, specimen_id)};
+  bool is_virtual = false;
+  StepResult result{cloud_of_input(request, context, cloud, specimen_id, is_virtual)};
   if (cloud.points.size() < kFewestPoints) {
     throw DataError(request.input, "surface", fmt::format("{} points left", cloud.points.size()),
                     fmt::format("at least {}", kFewestPoints), "Check the approach, the box and the planes");
   }
   require_surface(cloud.points, request.input);
+  TriMesh made = mesh_of(cloud);
+  if (is_virtual) made.point_data[kVirtualMark] = {1, std::vector<double>(made.vertices.size(), 1.0)};
   if (request.output.extension() == ".vtp") {
-    write_vtp(request.output, mesh_of(cloud));
+    write_vtp(request.output, made);
   } else if (request.plane_z_mm) {
-    write_ply_at_true_size(request.output, mesh_of(cloud), result.json["camera_scale"].get<double>(), specimen_id);
+    write_ply_at_true_size(request.output, made, result.json["camera_scale"].get<double>(), specimen_id);
   } else {
-    write_ply(request.output, mesh_of(cloud), specimen_id);
+    write_ply(request.output, made, specimen_id);
   }
   result.json["specimen_id"] =
       specimen_id.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(specimen_id);

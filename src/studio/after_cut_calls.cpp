@@ -21,6 +21,7 @@
 #include <incise/steps/registration_trust.hpp>
 #include <incise/steps/robot_steps.hpp>
 #include <incise/steps/tissue_steps.hpp>
+#include <incise/storage/case_edit.hpp>
 #include <incise/storage/case_run.hpp>
 #include <incise/storage/registration_json.hpp>
 
@@ -170,12 +171,23 @@ std::vector<std::string> words_of_settings(const steps::EvaluateRequest& request
           fmt::format("{}", request.settings.close_margin_mm)};
 }
 
+void require_in_picture(const std::vector<Vec2>& pixels, const char* name, const ColorPicture& picture) {
+  const Vec2 last(picture.width - 0.5, picture.height - 0.5);
+  for (const Vec2& p : pixels) {
+    if ((p.array() >= -0.5).all() && (p.array() <= last.array()).all()) continue;
+    throw CaseError("request", name, fmt::format("a point at pixel ({:.4g}, {:.4g})", p.x(), p.y()),
+                    fmt::format("points in the photograph of {} x {}", picture.width, picture.height));
+  }
+}
+
 /// The measures of contours of which a person drew one at least; both are written beside them.
 /// @param found  what the photograph shows, for the one that was not drawn.
 steps::PhotographedCut evaluate_drawn(const steps::EvaluateRequest& request, const DrawnContours& drawn,
                                       const steps::FoundPixels& found, const fs::path& to,
                                       const steps::StepContext& context) {
   const ColorPicture picture = decode_picture(read_text(request.photo), request.photo);
+  require_in_picture(drawn.incision_px, "incision_px", picture);
+  require_in_picture(drawn.tumor_edge_px, "tumor_edge_px", picture);
   const steps::FoundScale scale = steps::find_scale(request.scale, picture, request.photo);
   const bool has_incision = !drawn.incision_px.empty(), has_edge = !drawn.tumor_edge_px.empty();
   steps::FoundPixels pixels{scale.marks_px, has_incision ? drawn.incision_px : found.incision_px,
@@ -240,6 +252,10 @@ std::vector<float> residuals_of(const PointCloud& surface, const Points& cloud) 
   return residuals;
 }
 
+fs::path surface_folder(const CaseFile& file) {
+  return file.folder / "simulated_surface";
+}
+
 fs::path registration_folder(const CaseFile& file) {
   return file.folder / "registration";
 }
@@ -299,6 +315,31 @@ std::string why_closed(const Json& gate) {
   return "cautions that nobody has accepted: " + listed("missing");
 }
 
+/// The surface of the stretched specimen as the camera would see it: `surface.ply` in a folder of its own.
+void write_simulated_surface(const CaseFile& file, const steps::StepContext& step) {
+  AtomicFolder target(surface_folder(file));
+  steps::SurfaceRequest seen;
+  seen.input = file.file;
+  seen.output = target.path() / "surface.ply";
+  static_cast<void>(steps::see_surface(seen, step));
+  write_manifest(target.path(), steps::manifest_of(step.run, "{}", {file.file}, step.wall_s()));
+  target.commit();
+}
+
+void remove_registration(const CaseFile& file) {
+  remove_replaceable(laid_folder(file));
+  remove_replaceable(registration_folder(file));
+}
+
+/// A program that the arm would not run to its end as it was checked is none. @returns why; empty: it does
+std::string fault_of(const fs::path& script) {
+  const WrittenProgram program = program_from_text(read_text(script), script);
+  Replay replay = play(program);
+  judge_audit(replay, audit_program(program));
+  if (replay.outcome == ReplayOutcome::Completed) return {};
+  return fmt::format("replay: {}{}{}", to_string(replay.outcome), replay.reason.empty() ? "" : ": ", replay.reason);
+}
+
 /// Of the arm along a program, every kFrameS, the last cycle among them.
 struct ArmFrames {
   std::vector<float> time_s, ends;
@@ -354,7 +395,13 @@ Json Calls::photograph(const Json& arguments) {
     cut = steps::evaluate_photograph(request, step);
     cut.step.json["figure"] = (folder / "found.png").string();
   }
-  if (drawn.has_any()) cut = evaluate_drawn(request, drawn, cut.pixels, target.path(), step);
+  if (drawn.has_any()) {
+    steps::PhotographedCut by_person = evaluate_drawn(request, drawn, cut.pixels, target.path(), step);
+    for (const char* key : {"warnings", "verdict"}) {  // of the line that was found
+      if (cut.step.json.contains(key)) by_person.step.json[key] = cut.step.json.at(key);
+    }
+    cut = std::move(by_person);
+  }
   Json by_hand = Json::array();
   if (!drawn.incision_px.empty()) by_hand.push_back("incision");
   if (!drawn.tumor_edge_px.empty()) by_hand.push_back("tumor_edge");
@@ -391,8 +438,9 @@ Json Calls::photograph(const Json& arguments) {
 Json Calls::virtual_cloud(const Json& arguments) {
   const CaseFile file = read_case(file_);
   const fs::path cloud = file.folder / "virtual_cloud.ply";
-  if (fs::exists(fs::symlink_status(cloud)) && !is_marked_virtual(read_cloud(cloud)))
-    throw DataError(cloud, "", "a cloud that is not marked virtual", "none, or an earlier virtual cloud");
+  const fs::file_status there = fs::symlink_status(cloud);
+  if (fs::exists(there) && (!fs::is_regular_file(there) || !is_marked_virtual(read_cloud(cloud))))
+    throw DataError(cloud, "", "a link, or a cloud that is not marked virtual", "none, or an earlier virtual cloud");
   const std::uint64_t seed = seed_argument(arguments, "seed");
   Json done = laboratory::make_virtual_cloud({file_, cloud}, {context(seed), workers_, monitor_}).json;
   done["name"] = cloud.filename().string();
@@ -403,14 +451,8 @@ Json Calls::register_cloud(const Json& arguments) {
   const CaseFile file = read_case(file_);
   const fs::path target = text_argument(arguments, "file");
   const steps::StepContext step{context(), workers_, monitor_};
-  steps::SurfaceRequest seen;
-  seen.input = file_;
-  seen.output = output_beside(file_) / "simulated_surface.ply";
-  remove_replaceable(laid_folder(file));  // its path and program lie where the last registration put them
-  const Study study = study_until(Stage::Stretch);
-  static_cast<void>(steps::see_surface(seen, step));
   steps::RegisterRequest request;
-  request.source = seen.output;
+  request.source = surface_folder(file) / "surface.ply";
   request.target = target;
   request.approach = file.settings.plan.approach;
   request.output = registration_folder(file);
@@ -418,6 +460,9 @@ Json Calls::register_cloud(const Json& arguments) {
   request.settings.settling_mm = argument_or(arguments, "settling_mm", "a length", 0.0);
   const std::vector<Problem> problems = validate(request.settings);
   if (!problems.empty()) throw CaseError("request", problems.front());
+  remove_registration(file);  // and what was laid by it
+  const Study study = study_until(Stage::Stretch);
+  write_simulated_surface(file, step);
   const Json found = steps::lay_clouds(request, step).json;
   const TriMesh cloud = read_cloud(target);
   const fs::path written = request.output / "registration.json";
@@ -440,7 +485,7 @@ Json Calls::register_cloud(const Json& arguments) {
   json["files"] = files_in(request.output, file.folder);
   std::vector<std::string> words{"register",
                                  "--source",
-                                 seen.output.string(),
+                                 request.source.string(),
                                  "--target",
                                  target.string(),
                                  "--scale",
@@ -453,14 +498,23 @@ Json Calls::register_cloud(const Json& arguments) {
 Json Calls::lay(const Json& arguments) {
   const CaseFile file = read_case_with_inputs(file_);
   const Case& settings = file.settings;
-  const std::vector<std::string> accepted = accepted_in(arguments);
+  if (half_width_mm(settings.tool) > 0.0)
+    throw CaseError(file_.string(), "tool.kind", std::string(kind_of(settings.tool)),
+                    "a round tool: a program does not turn another into its direction of travel");
   const fs::path registration = registration_folder(file) / "registration.json";
   if (!fs::exists(registration))
     throw CaseError("request", "registration", "none in the case's folder", "a registered cloud");
+  const std::string registration_sha256 = sha256_of_file(registration);
+  const std::vector<std::string> accepted = accepted_in(arguments);
+  if (!accepted.empty() && text_argument(arguments, "registration_sha256") != registration_sha256)
+    throw CaseError("request", "registration_sha256", "another registration's", "that whose cautions are accepted");
+  if (text_argument(read_json(registration), "source") != (surface_folder(file) / "surface.ply").string())
+    throw CaseError(registration.string(), "source", "another surface", "this case's, registered here");
   const steps::StepContext step{context(), workers_, monitor_};
   const fs::path output = output_beside(file_);
   const Study study = study_until(Stage::Verify);  // at hand after a run; else it is made now
   if (!study.as_planned) throw CaseError(file_.string(), "plan", "nothing was cut", "a path that was cut");
+  write_simulated_surface(file, step);  // another one than was registered is refused
   steps::ProjectRequest laying;
   laying.path = output / (study.is_accepted ? "correction" : "plan") / "path.json";
   laying.transform = registration;
@@ -478,9 +532,12 @@ Json Calls::lay(const Json& arguments) {
   Json json{{"path", tool_path_json(read_tool_path(making.path))},
             {"follows", study.is_accepted ? "corrected" : "planned"}};
   for (const char* key : {"verdict", "gate", "checks"}) json[key] = made.at(key);
-  const bool is_there = made.contains("program");
-  json["program"] = is_there ? Json(read_text(making.output)) : Json(nullptr);
-  json["why_without_program"] = is_there ? "" : why_closed(made.at("gate"));
+  std::string why = made.contains("program") ? fault_of(making.output) : why_closed(made.at("gate"));
+  if (!why.empty()) fs::remove(making.output);
+  json["program"] = why.empty() ? Json(read_text(making.output)) : Json(nullptr);
+  json["why_without_program"] = std::move(why);
+  json["registration_sha256"] = registration_sha256;
+  write_json(target.path() / "laid.json", {{"case_sha256", case_revision(file_)}});
   write_manifest(
       target.path(),
       steps::manifest_of(step.run, "{}", {laying.path, registration, laying.surface, laying.camera}, step.wall_s()));
@@ -494,9 +551,17 @@ Json Calls::lay(const Json& arguments) {
   return json;
 }
 
+Json Calls::unregister(const Json&) {
+  remove_registration(read_case(file_));
+  return Json::object();
+}
+
 Json Calls::arm(const Json& arguments) {
   const CaseFile file = read_case(file_);
-  const bool is_laid = argument_or<std::string>(arguments, "of", "run or tissue", "run") == "tissue";
+  remove_stale_laid(file);
+  const auto of = argument_or<std::string>(arguments, "of", "run or tissue", "run");
+  if (of != "run" && of != "tissue") throw CaseError("request", "of", "'" + of.substr(0, 40) + "'", "run or tissue");
+  const bool is_laid = of == "tissue";
   const fs::path script = (is_laid ? laid_folder(file) : output_beside(file_) / "program") / "program.script";
   if (!fs::exists(script))
     throw CaseError(file_.string(), "program", "none",

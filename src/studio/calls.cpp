@@ -9,6 +9,7 @@
 #include <incise/imaging/segmentation.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/laboratory/bench_steps.hpp>
 #include <incise/steps/case_steps.hpp>
@@ -203,6 +204,14 @@ RunContext Calls::context(std::uint64_t seed) const {
   return {"incise studio", seed, workers_.thread_count()};
 }
 
+void remove_stale_laid(const CaseFile& file) {
+  const fs::path note = laid_folder(file) / "laid.json";
+  if (!fs::exists(note)) return;
+  const Json laid = read_json(note);
+  if (!laid.is_object() || laid.value("case_sha256", "") != case_revision(file.file))
+    remove_replaceable(laid_folder(file));
+}
+
 std::vector<std::string> Calls::accepted_in(const Json& arguments) const {
   std::vector<std::string> accepted = accepted_argument(arguments);
   if (!accepted.empty() && text_argument(arguments, "revision") != case_revision(file_)) throw StaleRevision(file_);
@@ -227,6 +236,7 @@ Json Calls::make(const std::string& name, const fs::path& file, const Json& argu
                                                    {"virtual_cloud", &Calls::virtual_cloud},
                                                    {"register", &Calls::register_cloud},
                                                    {"lay", &Calls::lay},
+                                                   {"unregister", &Calls::unregister},
                                                    {"arm", &Calls::arm},
                                                    {"report", &Calls::report}};
   file_ = file;
@@ -295,7 +305,9 @@ Json Calls::change(const Json& arguments) {
     changes[key] = fs::path(file.get<std::string>()).lexically_proximate(before.folder).string();
   }
   require_known_files(before, parse_case(changed_case(read_text(file_), changes), file_), chosen);
-  return case_json(change_case(file_, revision, changes));
+  const CaseFile changed = change_case(file_, revision, changes);
+  remove_stale_laid(changed);
+  return case_json(changed);
 }
 
 const CtVolume& Calls::ct_of(const CaseFile& file) {
@@ -366,6 +378,7 @@ Json Calls::edge(const Json& arguments) {
   const CaseChanges changes{{"tumor.contour", target.lexically_proximate(file.folder).string()},
                             {"tumor.configuration", text_argument(arguments, "configuration")}};
   static_cast<void>(parse_case(changed_case(read_text(file_), changes), file_));  // before anything is written
+  remove_replaceable(laid_folder(file));                                          // of another edge
   write_contour_csv(target, resample(drawn, std::max<std::size_t>(count, drawn.points.size())));
   try {
     return case_json(change_case(file_, revision, changes));
@@ -378,6 +391,7 @@ Json Calls::edge(const Json& arguments) {
 
 Study Calls::study_until(Stage until) {
   CaseFile file = read_case_with_inputs(file_);
+  remove_stale_laid(file);
   RunOptions options;
   options.until = until;
   CaseRun run(std::move(file), output_beside(file_), options, context());

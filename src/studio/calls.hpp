@@ -24,6 +24,9 @@ namespace incise::studio {
   return file.folder / "on_tissue";
 }
 
+/// Removes it where the case is not the one that it was made of. @throws DataError for somebody else's folder.
+void remove_stale_laid(const CaseFile& file);
+
 /// What a browser asks for, each a few calls of the library: see docs/decisions/0009-studio.md. The state is in the
 /// case folder; only the CT that was read last is kept.
 class Calls {
@@ -59,6 +62,7 @@ class Calls {
   Json virtual_cloud(const Json& arguments);
   Json register_cloud(const Json& arguments);
   Json lay(const Json& arguments);
+  Json unregister(const Json& arguments);
   Json arm(const Json& arguments);
   Json report(const Json& arguments);
 

@@ -266,6 +266,8 @@ class AfterTheCut(StudioTest):
         angles = [2 * math.pi * n / 72 for n in range(72)]
         drawn = [[250 + 10.5 / self.SCALE * math.cos(a), 250 - 10.5 / self.SCALE * math.sin(a)] for a in angles]
         status, by_hand = studio.call("photograph", {"file": photo["id"], "scale": {"two_points": [100, 100, 200, 100, 6.0]}, "incision_px": drawn})
+        outside = studio.call("photograph", {"file": photo["id"], "scale": {"mm_per_pixel": self.SCALE}, "incision_px": [[-5000, -5000], [-4000, -5000], [-4000, -4000]]})[1]
+        self.assertEqual(outside["problem"]["path"], "incision_px")
         self.assertEqual((status, by_hand["by_hand"], by_hand["evaluation"]["by_hand"]), (200, ["incision"], ["incision"]), by_hand)
         self.assertAlmostEqual(by_hand["evaluation"]["abs_error_mm"]["mean"], 0.0, delta=0.03)
         self.assertEqual(by_hand["evaluation"]["abs_error_mm"], self.repeated(by_hand)["abs_error_mm"])
@@ -296,6 +298,26 @@ class AfterTheCut(StudioTest):
         self.assertEqual((path["frame"], path["specimen_is"]), ("robot", "virtual"))
         self.assertEqual(laid["program"] is None, bool(laid["gate"]["missing"] or laid["gate"]["refused"]))
         self.assertEqual(len(laid["commands"]), 2)
+        revision = studio.call("case")[1]["revision"]
+        accept = {"accept": ["mesh_resolution"], "revision": revision}
+        self.assertEqual(studio.call("lay", {**accept, "registration_sha256": "another"})[1]["problem"]["path"], "registration_sha256")
+        self.assertEqual(studio.call("lay", {**accept, "registration_sha256": laid["registration_sha256"]})[0], 200)
+        self.assertEqual(studio.call("arm", {"of": "nothing"})[1]["problem"]["path"], "of")
+        cleaned = self.json_of("surface", "specimen/virtual_cloud.ply", "-o", "specimen/cleaned.ply")
+        self.assertGreater(cleaned["points"], 1000)
+        same = studio.call("register", {"file": self.named(studio, "cleaned.ply", self.named(studio, "specimen")["id"])["id"]})[1]
+        self.assertTrue(same["is_virtual"], same)  # the mark stays with the points
+        self.assertFalse((self.folder / "specimen" / "on_tissue").exists())
+        self.assertEqual(studio.call("lay")[0], 200)
+        changed = studio.call("change", {"revision": revision, "set": {"meshing.tets": 6500}})
+        self.assertEqual(changed[0], 200)
+        self.assertFalse((self.folder / "specimen" / "on_tissue").exists())  # it was laid for the case as it was
+        status, other = studio.call("lay")
+        self.assertEqual(status, 422, other)  # another surface than was registered
+        self.assertIn("register again", other["problem"]["message"])
+        self.assertEqual(studio.call("unregister")[0], 200)
+        self.assertEqual(studio.call("lay")[1]["problem"]["path"], "registration")
+        cloud = {"file": studio.call("virtual_cloud", {"seed": 5})[1]["file"]}
         self.assertEqual(studio.call("register", {"file": cloud["file"], "scale": [2, 1]})[1]["problem"]["path"], "scale")
         self.assertEqual(studio.call("register", {"file": cloud["file"]})[0], 200)
         self.assertFalse((self.folder / "specimen" / "on_tissue").exists())  # it lay where the last registration put it

@@ -61,6 +61,7 @@ export function takeCase(found, isOther) {
   const isSame = !isOther && state.case && state.case.revision === found.revision;
   update({case: found, problems: {}, ...(isSame ? {} : {accept: [], acceptLaid: []})});
   if (!isOther) return;
+  for (const name of Object.keys(tickets)) tickets[name] += 1; // answers about the case before are of no use
   update({
     ...nothingMeasured(),
     brush: newBrush(),
@@ -249,9 +250,9 @@ export function runAccepting() {
 
 async function runWith(acceptance) {
   update({messages: [], moment: null, progress: {...state.progress, run: null}, accept: acceptance.accept || []});
+  update({arm: null, armOf: "run", lay: null}); // a run removes what was laid
   const result = await refresh("run", acceptance);
   if (!result) return;
-  update({arm: null, armOf: "run", lay: null});
   goTo(state.step === "program" ? "program" : "compare");
 }
 
@@ -300,14 +301,15 @@ export async function register() {
 }
 
 /** Drops the registration. */
-export function refuseRegistration() {
+export async function refuseRegistration() {
+  if (!(await ask("unregister"))) return;
   update({
     register: null,
     lay: null,
     acceptLaid: [],
     arm: null,
     armOf: "run",
-    notice: "The registration is refused. Nothing of it is kept here.",
+    notice: "The registration is refused, and nothing of it is kept.",
   });
 }
 
@@ -318,7 +320,8 @@ export function lay() {
 
 /** The same with the cautions that a person accepts. */
 export function layAccepting() {
-  return layWith({accept: state.acceptLaid, revision: state.lay.revision});
+  const {revision, registration_sha256} = state.lay;
+  return layWith({accept: state.acceptLaid, revision, registration_sha256});
 }
 
 async function layWith(acceptance) {
