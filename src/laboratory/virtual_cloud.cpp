@@ -5,6 +5,7 @@
 #include <incise/io/surface_io.hpp>
 #include <incise/laboratory/bench_steps.hpp>
 #include <incise/storage/case_run.hpp>
+#include <incise/virtual_bench/readings.hpp>
 
 namespace incise::laboratory {
 namespace {
@@ -13,8 +14,8 @@ constexpr double kSpacingMm = 1.0;
 constexpr double kNoiseMm = 0.1;
 constexpr double kMissingShare = 0.1;
 constexpr double kMostTiltDeg = 5.0, kMostTurnDeg = 20.0, kMostShiftMm = 20.0;
-const Vec3 kHolderMm(600.0, 0.0, 150.0);  // where a specimen lies whose case does not say it
 
+/// As the case says; else on the virtual bench's holder.
 Mat4 believed_place(const Case& settings, const Points& positions) {
   if (settings.T_robot_sim) return *settings.T_robot_sim;
   Box3 box;

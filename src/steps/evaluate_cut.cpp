@@ -299,7 +299,7 @@ FoundScale find_scale(const ScaleRequest& request, const ColorPicture& picture, 
   return found;
 }
 
-PhotographedCut evaluate_photograph(const EvaluateRequest& asked, const StepContext& context) {
+EvaluatedCut evaluate_in_pixels(const EvaluateRequest& asked, const StepContext& context) {
   const EvaluateRequest request = completed(asked);
   const std::vector<std::filesystem::path> inputs{request.photo, request.incision, request.tumor, request.line};
   const std::string specimen_id = specimen_of(request, inputs);
@@ -313,7 +313,7 @@ PhotographedCut evaluate_photograph(const EvaluateRequest& asked, const StepCont
 }
 
 StepResult evaluate_cut(const EvaluateRequest& request, const StepContext& context) {
-  return evaluate_photograph(request, context).step;
+  return evaluate_in_pixels(request, context).step;
 }
 
 }  // namespace incise::steps

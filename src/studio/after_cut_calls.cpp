@@ -1,5 +1,6 @@
 #include "arguments.hpp"
 #include "calls.hpp"
+#include "command_line.hpp"
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
@@ -39,23 +40,6 @@ using Json = Calls::Json;
 constexpr std::size_t kMostPixels = 20000;  // of a contour that is drawn by hand
 constexpr double kFrameS = 0.04;            // between two pictures of the arm
 constexpr double kFarMm = 5.0;              // a surface's point this far from every point of a cloud was not seen
-
-/// A word of a command line, as a shell takes it.
-std::string word(const std::string& text) {
-  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::string_view("_-./=,:").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-std::string command_line(const std::vector<std::string>& words) {
-  std::string line = "incise";
-  for (const std::string& one : words) line += " " + word(one);
-  return line;
-}
 
 void append(std::vector<std::string>& words, const std::vector<std::string>& more) {
   words.insert(words.end(), more.begin(), more.end());
@@ -182,9 +166,9 @@ void require_in_picture(const std::vector<Vec2>& pixels, const char* name, const
 
 /// The measures of contours of which a person drew one at least; both are written beside them.
 /// @param found  what the photograph shows, for the one that was not drawn.
-steps::PhotographedCut evaluate_drawn(const steps::EvaluateRequest& request, const DrawnContours& drawn,
-                                      const steps::FoundPixels& found, const fs::path& to,
-                                      const steps::StepContext& context) {
+steps::EvaluatedCut evaluate_drawn(const steps::EvaluateRequest& request, const DrawnContours& drawn,
+                                   const steps::FoundPixels& found, const fs::path& to,
+                                   const steps::StepContext& context) {
   const ColorPicture picture = decode_picture(read_text(request.photo), request.photo);
   require_in_picture(drawn.incision_px, "incision_px", picture);
   require_in_picture(drawn.tumor_edge_px, "tumor_edge_px", picture);
@@ -389,14 +373,14 @@ Json Calls::photograph(const Json& arguments) {
   const fs::path folder = file.folder / ("photograph_" + request.photo.stem().string());
   const steps::StepContext step{context(), workers_, monitor_};
   AtomicFolder target(folder);
-  steps::PhotographedCut cut;
+  steps::EvaluatedCut cut;
   if (!drawn.has_both()) {
     request.figure = target.path() / "found.png";
-    cut = steps::evaluate_photograph(request, step);
+    cut = steps::evaluate_in_pixels(request, step);
     cut.step.json["figure"] = (folder / "found.png").string();
   }
   if (drawn.has_any()) {
-    steps::PhotographedCut by_person = evaluate_drawn(request, drawn, cut.pixels, target.path(), step);
+    steps::EvaluatedCut by_person = evaluate_drawn(request, drawn, cut.pixels, target.path(), step);
     for (const char* key : {"warnings", "verdict"}) {  // of the line that was found
       if (cut.step.json.contains(key)) by_person.step.json[key] = cut.step.json.at(key);
     }

@@ -1,6 +1,7 @@
 #include "calls.hpp"
 
 #include "arguments.hpp"
+#include "command_line.hpp"
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
@@ -485,6 +486,9 @@ Json Calls::run(const Json& arguments) {
   };
   const Json done = steps::run_loop(request, accepted, {context(), workers_, monitor_}, take).json;
   json["report"] = done.at("report");
+  std::vector<std::string> words{"run", file_.string()};
+  for (const std::string& id : accepted) words.insert(words.end(), {"--accept", id});
+  json["command"] = command_line(words);
   return json;
 }
 

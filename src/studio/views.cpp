@@ -83,6 +83,19 @@ std::vector<std::uint8_t> held_by(const Skin& skin, const TissueModel& model) {
   return marks;
 }
 
+/// A constraint as a case file has it: without what was left out there, and without the words that a result adds.
+Json as_written(const Constraint& constraint) {
+  Json json = to_json(constraint);
+  json["kind"] = names_of(constraint)[constraint.index()];
+  if (json.contains("where")) json["where"].erase("kind");
+  const Json whole = json.flatten();
+  Json kept = Json::object();
+  for (const auto& [place, value] : whole.items()) {
+    if (!value.is_null()) kept[place] = value;
+  }
+  return kept.unflatten();
+}
+
 Json constraints_json(const TissueModel& model) {
   std::vector<std::size_t> counts(model.constraints.size(), 0);
   for (const auto& holders : model.holder) {
@@ -93,7 +106,7 @@ Json constraints_json(const TissueModel& model) {
   for (std::size_t c = 0; c < counts.size(); ++c)
     list.push_back({{"kind", names_of(model.constraints[c])[model.constraints[c].index()]},
                     {"vertices", counts[c]},
-                    {"setting", to_json(model.constraints[c])}});
+                    {"setting", as_written(model.constraints[c])}});
   return list;
 }
 

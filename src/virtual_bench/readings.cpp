@@ -12,7 +12,6 @@ constexpr std::uint64_t kReadingStream = 0xc2b2ae35ULL;
 constexpr double kForceNoise = 0.05;       // standard deviation, relative
 constexpr double kElasticityNoise = 0.20;  // likewise
 constexpr double kElasticityVoxelMm = 2.0;
-const Vec3 kHolderMm(600.0, 0.0, 150.0);   // the middle of the holder's platform in the base frame
 constexpr double kCameraHeightMm = 230.0;  // above the platform
 constexpr int kCloudStride = 3;            // every third pixel of the depth picture becomes a point
 

@@ -115,7 +115,8 @@ class Calls(StudioTest):
         self.assertEqual([constraint["kind"] for constraint in body["constraints"]], ["fixed", "displaced", "support"])
         self.assertTrue(any(mark & 1 for mark in held) and any(mark & 2 for mark in held) and 0 in held)
         settings = [constraint["setting"] for constraint in body["constraints"]]  # the default, written out, holds as the default does
-        changed = studio.call("change", {"revision": changed["revision"], "set": {"specimen.constraints": settings}})[1]
+        status, changed = studio.call("change", {"revision": changed["revision"], "set": {"specimen.constraints": settings}})
+        self.assertEqual(status, 200, changed)
         self.assertEqual([constraint["vertices"] for constraint in studio.call("body")[1]["constraints"]], [constraint["vertices"] for constraint in body["constraints"]])
         stretched = studio.call("stretch")[1]
         self.assertEqual(stretched["outcome"], "success")

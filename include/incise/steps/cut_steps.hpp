@@ -65,12 +65,12 @@ struct FoundPixels {
   bool incision_is_closed = true;
   std::vector<Vec2> tumor_edge_px;
 };
-struct PhotographedCut {
+struct EvaluatedCut {
   StepResult step;
   FoundPixels pixels;  ///< empty lists for contours
 };
 /// As evaluate_cut, with the places in the photograph. @throws likewise
-[[nodiscard]] PhotographedCut evaluate_photograph(const EvaluateRequest& request, const StepContext& context);
+[[nodiscard]] EvaluatedCut evaluate_in_pixels(const EvaluateRequest& request, const StepContext& context);
 
 /// From evaluations before and after a change to tests, tables and figures.
 struct CompareRequest {

@@ -9,6 +9,9 @@
 
 namespace incise {
 
+/// The middle of the holder's platform, mm, in the robot's base frame.
+inline const Vec3 kHolderMm(600.0, 0.0, 150.0);
+
 /// Where the specimen's frame really lies in the robot's base frame. Hidden.
 [[nodiscard]] Mat4 T_robot_specimen(const Specimen& specimen);
 /// Where the camera stands; x to the right of the picture, y down, z away from it. Known from its calibration; what is

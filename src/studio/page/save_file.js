@@ -1,4 +1,4 @@
-// Files that the page hands to the person, and words for their clipboard.
+// Files that the page hands to the person.
 
 /** Offers something to be saved. @param content  a text or a typed array   @param type  such as "text/plain" */
 export function saveFile(name, content, type) {
@@ -7,9 +7,4 @@ export function saveFile(name, content, type) {
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
-
-/** A word of a command as a shell takes it. */
-export function quoted(word) {
-  return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }

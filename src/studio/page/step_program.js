@@ -7,7 +7,7 @@ import {isRunning} from "./step_run.js";
 import {Button, Choice, Problems, Section, Working} from "./widgets.js";
 import {Commands} from "./commands.js";
 import {Gate} from "./gate.js";
-import {quoted, saveFile} from "./save_file.js";
+import {saveFile} from "./save_file.js";
 import {duration, mm, spoken} from "./words.js";
 
 const kPrograms = [
@@ -100,11 +100,9 @@ function Save({result}) {
 }
 
 // What gives the same results without the page, in the order in which it was done.
-function commandsOf({case: open, run: result, photograph, register, lay}) {
-  const accepted = (result.gate && result.gate.accepted) || [];
-  const flags = accepted.map((id) => ` --accept ${id}`).join("");
+function commandsOf({run: result, photograph, register, lay}) {
   return [
-    `incise run ${quoted(open.file)}${flags}`,
+    result.command,
     photograph && photograph.command,
     register && register.command,
     ...((lay && lay.commands) || []),
