@@ -31,7 +31,9 @@ constexpr double kDifferent = 0.08;         // rms distance, in radii, from whic
 constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
 constexpr double kMirrorRatio = 0.95;       // of scores and residuals: beyond it source or mirror image fits better
 constexpr double kUsualScale = 0.05;        // both sensors are metric
-constexpr double kSettled = 0.008;          // rms, in the target's radius: 0.2 mm on a tongue; 0.1 mm is found where nothing has settled
+// Rms of what no change of the pose explains, in the target's radius: 0.08 mm on a tongue. Where nothing has settled
+// 0.01 mm is found, and 0.2 to 0.3 mm of a settling by 1 mm.
+constexpr double kSettled = 0.003;
 constexpr double kAtLimit = 1e-6;           // relative: a scale that near to an end of its range stands there
 
 /// Both clouds about the target's middle, in units of its radius, and the way back.
@@ -347,11 +349,11 @@ class Registering {
 
   /// Tissue that has settled passes for a shift or a tilt where settling is not looked for.
   void note_settling(Registration& result, const ShapeResidual& shape) const {
-    if (settings_.settling_mm > 0.0 || shape.settled_rms <= kSettled) return;
+    if (settings_.settling_mm > 0.0 || shape.apart_rms <= kSettled) return;
     result.reasons.push_back(
         fmt::format("apart from the pose the surfaces differ smoothly by {:.2g} mm (rms), up to {:.2g} mm, as tissue does that has settled or "
                     "is held differently; the pose may be off by as much, settling_mm looks for both",
-                    frame_.length * shape.settled_rms, frame_.length * shape.settled_largest));
+                    frame_.length * shape.apart_rms, frame_.length * shape.apart_largest));
   }
 
   void to_millimetres(PoseObservability& c) const {

@@ -143,6 +143,7 @@ class Settling {
     result_.settled_rms = std::sqrt(settled.squaredNorm() / static_cast<double>(settled.size()));
     result_.settled_largest = settled.cwiseAbs().maxCoeff();
     result_.settled = settled_source(settled);
+    if (!result_.is_degenerate) measure_apart(settled);
     return result_;
   }
 
@@ -179,6 +180,29 @@ class Settling {
       cloud.normals.push_back(result_.transform.rotation * source_.cloud.normals[i]);
     }
     return cloud;
+  }
+
+  /// What of the settling is left once the pose has taken up as much of it as it can: the rest of it the clouds cannot
+  /// tell from a motion, and only its size before it was looked for decides between the two.
+  void measure_apart(const Vector& settled) {
+    const std::vector<Patch> found = patches();
+    const Eigen::Index motions = settings_.scale.is_fixed() ? kMotions - 1 : kMotions;
+    const Vec3 up = result_.transform.rotation * asked_.up;
+    Matrix gradients(static_cast<Eigen::Index>(found.size()), motions);
+    Vector raised(gradients.rows()), weight(gradients.rows());
+    for (Eigen::Index i = 0; i < gradients.rows(); ++i) {
+      const Patch& patch = found[static_cast<std::size_t>(i)];
+      gradients.row(i) = unit_gradient(patch).transpose().head(motions);
+      raised[i] = patch.normal.dot(up) * settled[static_cast<Eigen::Index>(patch.row)];
+      weight[i] = patch.weight;
+    }
+    const Matrix weighted = gradients.transpose() * weight.asDiagonal();
+    Matrix system = weighted * gradients;
+    system.diagonal().array() += 1e-9 * system.trace();
+    const Vector apart = raised - gradients * system.ldlt().solve(weighted * raised);
+    if (!apart.allFinite() || !(weight.sum() > 0.0)) return;
+    result_.apart_rms = std::sqrt(apart.cwiseAbs2().dot(weight) / weight.sum());
+    result_.apart_largest = apart.cwiseProduct((weight.array() > 0.0).cast<double>().matrix()).cwiseAbs().maxCoeff();
   }
 
   /// One Gauss-Newton step of pose and settling together.

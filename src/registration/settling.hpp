@@ -20,6 +20,8 @@ struct SettledPose {
   Similarity transform;
   double settled_rms = 0.0;      ///< over the source's points
   double settled_largest = 0.0;
+  double apart_rms = 0.0;  ///< of the part of it, along the normals, that no change of the pose explains
+  double apart_largest = 0.0;
   double noise = 0.0;            ///< robust standard deviation of what is left
   Eigen::Matrix<double, 7, 7> covariance =
       Eigen::Matrix<double, 7, 7>::Zero();  ///< as in PoseObservability, about `center`

@@ -7,8 +7,8 @@ namespace incise {
 /// What noise does not explain of the distance between two surfaces that lie on each other. In units of the target's radius.
 struct ShapeResidual {
   double left = 0.0;         ///< by neither noise nor settling: see shape_residual
-  double settled_rms = 0.0;  ///< of the smooth part, which settling explains
-  double settled_largest = 0.0;
+  double apart_rms = 0.0;  ///< of the smooth part, which settling explains and no change of the pose does
+  double apart_largest = 0.0;
 };
 
 /// How far the source lies from the target where neither noise nor settling explains it: the distance that nine tenths

@@ -341,6 +341,26 @@ TEST(Settling, ADipIsNotTakenForAShiftWhereSettlingIsLookedFor) {
   const auto shift = [](const Registration& r) { return r.T_target_source(Vec3(0.0, 0.0, 10.0)).head<2>().norm(); };
   EXPECT_LT(shift(settled), 0.5 * shift(rigid)) << shift(settled) << " and " << shift(rigid) << " mm";
   EXPECT_GT(settled.certificate.sd_mm, rigid.certificate.sd_mm) << "what settling leaves open is told";
+  EXPECT_THAT(rigid.reasons, Contains(HasSubstr("differ smoothly by")))
+      << "nor is it silent where it is not looked for";
+}
+
+TEST(Settling, IsNotSuspectedWhereNothingHasSettled) {
+  Workers workers(2);
+  RegistrationSettings settings;
+  settings.scale = ScaleRange::fixed();
+  settings.start = Similarity{};
+  for (const int seed : {1, 2, 3, 4}) {
+    Random random(seed);
+    const PointCloud source = testing::hill(2500, random);
+    PointCloud seen = testing::hill(4000, random);
+    for (Vec3& p : seen.points) p += 0.1 * Vec3(random.normal(), random.normal(), random.normal());
+    seen.normals.clear();
+    const PointCloud target = with_normals(seen, -Vec3::UnitZ(), 16, workers);
+    const Registration found = register_clouds(source, target, settings, workers, silent);
+    ASSERT_EQ(found.outcome, RegistrationOutcome::Converged);
+    EXPECT_THAT(found.reasons, ::testing::Each(::testing::Not(HasSubstr("differ smoothly by")))) << seed;
+  }
 }
 
 TEST(Settling, WhatItLeavesOpenIsInTheWeakestMotionToo) {
