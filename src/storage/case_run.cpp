@@ -56,7 +56,7 @@ auto CaseRun::guarded(Monitor& monitor, const Work& work) -> decltype(work()) {
   try {
     if (options_.until >= Stage::Plan || file.inputs.specimen_mesh.empty()) require_plan_inputs(file);
     if (options_.until >= Stage::Verify) require_place_for_arm(file.settings);
-    folder.remove_what_is_out_of_date(monitor);
+    folder.remove_what_is_out_of_date(options_.until, monitor);
     return work();
   } catch (const CaseError& error) {
     remove_if_nothing_was_made();

@@ -93,6 +93,18 @@ void require_inside(const LabelVolume& labels, const std::filesystem::path& file
   }
 }
 
+/// Takes a verdict away from its path. What refused the path stays until a run says otherwise: nobody may accept it.
+void take_verdict_from(const std::filesystem::path& file) {
+  const Verdict older = read_path_verdict(file);
+  if (older.status() != VerdictStatus::Refused) return write_tool_path(file, read_tool_path(file));
+  Verdict kept;
+  kept.add("not_simulated", {}, "a later run has not come to the cut along the path again");
+  for (const VerdictReason& reason : older.reasons()) {
+    if (reason.severity == VerdictStatus::Refused) kept.add(reason);
+  }
+  write_tool_path(file, read_tool_path(file), kept);
+}
+
 }  // namespace
 
 RunFolder::RunFolder(CaseFile file, std::filesystem::path root, RunContext context)
@@ -206,19 +218,20 @@ bool RunFolder::is_made_as_now(const std::filesystem::path& result) {
   }
 }
 
-void RunFolder::remove_what_is_out_of_date(Monitor& monitor) {
+void RunFolder::remove_what_is_out_of_date(Stage until, Monitor& monitor) {
   if (has_products() && !std::filesystem::exists(root_ / "cache")) {
     monitor.message(Severity::Notice,
                     fmt::format("{}: its results have no cache beside them, as those of version 0.1.0: "
                                 "all of them are computed again",
                                 root_.string()));
   }
-  // What a path is worth depends on more than the path: the run that is about to begin says it again at its end.
+  // What a path is worth depends on more than the path: a run that cuts says it again at its end.
+  const bool stays = until < Stage::Simulate && is_own_manifest(root_ / "manifest.json") && is_made_as_now(root_);
   for (const char* product : {"plan", "correction"}) {
     const std::filesystem::path path = folder(product) / "path.json";
-    if (!std::filesystem::exists(path) || !std::filesystem::exists(folder(product) / kStageFile)) continue;
+    if (stays || !std::filesystem::exists(path) || !std::filesystem::exists(folder(product) / kStageFile)) continue;
     try {
-      write_tool_path(path, read_tool_path(path));
+      take_verdict_from(path);
     } catch (const DataError&) {  // damaged: nobody can follow it, and the run refuses it by name
     }
   }

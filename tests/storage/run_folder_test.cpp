@@ -373,8 +373,31 @@ TEST_F(RunFolderTest, AVerdictIsNotedInThePathAndIsNoChangeOfIt) {
   open().plan(note("plan"), small_ring());
   EXPECT_EQ(read_text(file), noted);
   Monitor quiet;
-  open("plan: {close_margin_mm: 3}\n").remove_what_is_out_of_date(quiet);
+  open("plan: {close_margin_mm: 3}\n").remove_what_is_out_of_date(Stage::Verify, quiet);
   EXPECT_NE(read_text(file), noted) << "it was judged by other limits";
+}
+
+TEST_F(RunFolderTest, ARunThatEndsBeforeItCutsLeavesTheVerdictAndEveryRunLeavesARefusal) {
+  open().plan(note("plan"), small_ring());
+  Verdict verdict;
+  verdict.add("depth", 0.5, "too shallow");
+  verdict.add("open_layer", 0.5, "open");
+  open().verdicts(verdict, std::nullopt);
+  open().write_manifest_to(folder_ / "out", 1.0);
+  const std::filesystem::path file = folder_ / "out" / "plan" / "path.json";
+  const auto ids = [&] {
+    std::vector<std::string> found;
+    const Verdict stated = read_path_verdict(file);
+    for (const VerdictReason& reason : stated.reasons()) found.push_back(reason.id);
+    return found;
+  };
+  Monitor quiet;
+  open().remove_what_is_out_of_date(Stage::Stretch, quiet);
+  EXPECT_EQ(ids(), (std::vector<std::string>{"open_layer", "depth"}));
+  open("plan: {close_margin_mm: 3}\n").remove_what_is_out_of_date(Stage::Stretch, quiet);
+  EXPECT_EQ(ids(), (std::vector<std::string>{"open_layer", "not_simulated"}));
+  open().remove_what_is_out_of_date(Stage::Verify, quiet);
+  EXPECT_EQ(ids(), (std::vector<std::string>{"open_layer", "not_simulated"}));
 }
 
 TEST_F(RunFolderTest, ACorrectionIsWrittenPassByPass) {

@@ -5,6 +5,7 @@
 #include <incise/storage/case_file.hpp>
 #include <incise/workflow/inputs.hpp>
 #include <incise/workflow/product_sink.hpp>
+#include <incise/workflow/study.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -83,10 +84,11 @@ class RunFolder : public Inputs, public ProductSink {
   void absent(const std::string& name) override;
   void verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
 
-  /// Before a run: removes the verdicts beside the paths, which the run notes again at its end, and a program and a
-  /// summary that were made with other settings or inputs than the case's. Says so. @throws DataError where an input
-  /// cannot be read.
-  void remove_what_is_out_of_date(Monitor& monitor);
+  /// Before a run up to a stage: removes a program and a summary that were made with other settings or inputs than the
+  /// case's, and says so; and the verdicts beside the paths, which a run that cuts notes again at its end. Where the
+  /// run ends before it cuts, the verdicts of the case as it is stay. What a verdict refuses stays in any case.
+  /// @throws DataError where an input cannot be read.
+  void remove_what_is_out_of_date(Stage until, Monitor& monitor);
 
   /// A manifest for an output folder of this run. @param verdict  of the run; null: the folder has none.
   void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);
