@@ -6,6 +6,7 @@
 #include <incise/core/nearest_name.hpp>
 #include <incise/core/units.hpp>
 #include <incise/steps/robot_steps.hpp>
+#include <incise/storage/case_file.hpp>
 #include <incise/storage/own_files.hpp>
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@ constexpr double kMostPowerW = 400.0;        // no electrosurgical generator giv
 
 struct ExportArguments {
   steps::ExportRequest request;
+  std::filesystem::path case_file;
   std::string robot = "ur10e", format = "urscript", motion, kind;
   double shaft_diameter_mm = 2.0 * CheckSettings{}.shaft_radius_mm;
   double power_w = 0.0;  // not given
@@ -29,6 +31,7 @@ struct ExportArguments {
 /// What the options say, as the library has it.
 steps::ExportRequest request_of(const ExportArguments& arguments) {
   steps::ExportRequest request = arguments.request;
+  if (!arguments.case_file.empty()) steps::take_case(read_case(arguments.case_file).settings, request);
   request.form = value_named<steps::ProgramForm>(arguments.format);
   if (!arguments.motion.empty()) request.motion = value_named<ScriptMotion>(arguments.motion);
   if (!arguments.kind.empty()) request.kind = value_named<PathKind>(arguments.kind);
@@ -79,6 +82,9 @@ void add_export(Application& application) {
       ->expected(1)
       ->take_all();
   add_accept(*verb, a.request.accepted);
+  CLI::Option* const of_case =
+      verb->add_option("--case", a.case_file,
+                       "Case of the path: its arm, limits, power, heat, tool and overlap, as `incise run` takes them");
   verb->add_option("--intended", a.request.intended, "The path before correction, to check the deviation");
   verb->add_option("--surface", a.request.surface,
                    "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth, arm, "
@@ -111,6 +117,8 @@ void add_export(Application& application) {
       ->check(CLI::Range(0.0, kLargestLengthMm))
       ->default_str("");
   verb->add_flag("--open", a.request.is_open, "The path is an open cut: closed, gap and encloses are not checked");
+  for (const char* name : {"--power-w", "--tcp", "--depth-mm", "--close-margin-mm", "--overlap-mm", "--open"})
+    of_case->excludes(verb->get_option(name));
 }
 
 }  // namespace incise::cli

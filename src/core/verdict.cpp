@@ -38,6 +38,13 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "The tumour's edge fits its surface only with the axes of the other convention (RAS for LPS)."},
     {"platform", kRefused, 0.0, ">=", "mm",
      "Least height of the tool's tip above the platform that supports the tissue."},
+    {"cut_face",
+     kRefused,
+     {},
+     "",
+     "",
+     "The path or the tumour's edge lies where the region of interest cuts through the tissue: the specimen goes on "
+     "there."},
     {"program_check", kRefused, {}, "", "", "A safety check of the robot program failed."},
     {"photo_oblique", kRefused, 0.03, "<=", "",
      "Change of scale along the ruler of a photograph: the camera does not look straight down."},

@@ -318,6 +318,29 @@ int Segmentation::cut_faces() const {
   return static_cast<int>(std::count_if(cut_voxels.begin(), cut_voxels.end(), [](std::size_t n) { return n > 0; }));
 }
 
+std::vector<CutPlane> cut_planes(const Segmentation& found, const SegmentationSettings& settings) {
+  const LabelVolume& labels = found.labels;
+  const Mat3& axes = labels.grid.direction;
+  const Mat3 sides = settings.roi_box_mm ? Mat3(Mat3::Identity()) : axes;  // the volume's own lie along its axes
+  std::vector<CutPlane> planes;
+  for (int side = 0; side < 6; ++side) {
+    const Vec3 outward = (side % 2 == 0 ? -1.0 : 1.0) * sides.col(side / 2);
+    Eigen::Index world = 0;
+    outward.cwiseAbs().maxCoeff(&world);
+    const auto face = static_cast<std::size_t>(2 * world + (outward[world] > 0.0 ? 1 : 0));
+    if (found.cut_voxels[face] == 0) continue;
+    const double voxel_mm = (axes.transpose() * outward).cwiseAbs().dot(labels.grid.spacing_mm);
+    double farthest_mm = -std::numeric_limits<double>::infinity();
+    for (std::size_t v = 0; v < labels.voxels.size(); ++v) {
+      if (labels.voxels[v] == 0) continue;
+      const auto [i, j, k] = labels.grid.voxel_at(v);
+      farthest_mm = std::max(farthest_mm, outward.dot(labels.grid.world_from_index(Vec3(i, j, k))));
+    }
+    planes.push_back({static_cast<RegionFace>(face), outward, farthest_mm + 0.5 * voxel_mm, voxel_mm});
+  }
+  return planes;
+}
+
 namespace {
 
 enum class Source { Scan, Labels };

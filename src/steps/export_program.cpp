@@ -14,6 +14,7 @@
 #include <incise/steps/robot_steps.hpp>
 #include <incise/storage/own_files.hpp>
 #include <incise/storage/registration_json.hpp>
+#include <incise/workflow/run.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -96,7 +97,7 @@ void require_a_mark(const std::vector<std::string>& overrides) {
 /// Settings that follow from others.
 void complete(ExportRequest& a, const ToolPath& path) {
   const bool is_mark = path.kind == PathKind::Mark;
-  a.settings.overlap_mm = a.overlap_mm.value_or(is_mark ? 0.0 : kRingOverlapMm);
+  a.settings.overlap_mm = a.overlap_mm.value_or(is_mark ? 0.0 : a.usual_overlap_mm);
   if (is_mark) a.settings.plunge_speed_mm_s = a.checks.mark_speed_mm_s;
   a.checks.must_be_ring = !a.is_open;
   const double length_mm = a.setup.T_flange_tool.topRightCorner<3, 1>().norm();
@@ -143,10 +144,9 @@ void warn_of_less(const ExportRequest& a, const CheckInputs& inputs, const ToolP
   looser(a.setup.table_z_mm < ArmSetup{}.table_z_mm, "--table-z-mm", a.setup.table_z_mm, ArmSetup{}.table_z_mm);
 }
 
-/// With the constants of muscle that a case has by default: a path does not say what it is cut into.
 double half_width_of_heat_mm(const ToolPath& path, const ExportRequest& request) {
-  const Needle needle{.length_mm = request.checks.needle_length_mm};
-  return widest_heat(ThermalSettings{}, *request.power_w, path, needle).half_width_mm;
+  const Tool tool = request.tool.value_or(Needle{.length_mm = request.checks.needle_length_mm});
+  return widest_heat(request.thermal, *request.power_w, path, tool).half_width_mm;
 }
 
 std::string text_of(const RobotProgram& program, const ProgramChecks& checks, const ProgramHeader& header,
@@ -192,6 +192,17 @@ void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monit
                                                      reason.message, reason.id));
     }
   }
+}
+
+void take_case(const Case& settings, ExportRequest& request) {
+  require_round_tool(settings);
+  take_arm(settings, request.setup);
+  take_limits(settings, request.checks);
+  request.is_open = !request.checks.must_be_ring;
+  request.usual_overlap_mm = settings.cut.overlap_mm;
+  request.power_w = settings.plan.power_w;
+  request.thermal = settings.thermal;
+  request.tool = settings.tool;
 }
 
 StepResult export_program(const ExportRequest& given, const StepContext& context) {

@@ -6,6 +6,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/median.hpp>
 #include <incise/geometry/neighbours.hpp>
+#include <incise/imaging/photo_doubts.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_file.hpp>
@@ -27,9 +28,11 @@
 #include <incise/storage/registration_json.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 namespace incise::studio {
 namespace fs = std::filesystem;
@@ -39,6 +42,7 @@ using Json = Calls::Json;
 
 constexpr std::size_t kMostPixels = 20000;  // of a contour that is drawn by hand
 constexpr double kFrameS = 0.04;            // between two pictures of the arm
+constexpr double kFrameVoxelMm = 1.0;       // one point of a frame's tissue in each cube of this size
 constexpr double kFarMm = 5.0;              // a surface's point this far from every point of a cloud was not seen
 
 void append(std::vector<std::string>& words, const std::vector<std::string>& more) {
@@ -61,11 +65,30 @@ Json files_in(const fs::path& folder, const fs::path& of_case) {
   return names;
 }
 
+/// The folder of what was found in a file, `PREFIX_STEM` in the case's folder: the same as before for the same file,
+/// and one of its own for another file of that name.
+fs::path folder_of_finding(const CaseFile& file, const std::string& prefix, const fs::path& source) {
+  for (int k = 1;; ++k) {
+    fs::path folder = file.folder / (k == 1 ? prefix + source.stem().string()
+                                            : fmt::format("{}{}_{}", prefix, source.stem().string(), k));
+    if (!fs::exists(fs::symlink_status(folder))) return folder;
+    if (!fs::exists(folder / "manifest.json")) continue;
+    const std::vector<ManifestInput> inputs = read_manifest(folder).inputs;
+    if (!inputs.empty() && inputs.front().path == source.string()) return folder;
+  }
+}
+
 // --- The photograph. ---
 
 steps::ScaleRequest scale_in(const Json& arguments) {
   const Json given = argument<Json>(arguments, "scale", "how long a pixel is");
   if (!given.is_object()) throw CaseError("request", "scale", given.dump().substr(0, 80), "an object");
+  static const std::set<std::string> known{"mm_per_pixel", "ruler",     "ruler_mm",
+                                           "two_points",   "rectangle", "rectangle_mm"};
+  for (const auto& [key, value] : given.items()) {
+    if (!known.contains(key))
+      throw CaseError("request", "scale", "'" + key.substr(0, 40) + "'", fmt::format("{}", fmt::join(known, ", ")));
+  }
   const auto lengths = [&](const char* name, std::size_t count) {
     if (!given.contains(name)) return std::vector<double>{};
     const std::string expected = fmt::format("{} numbers", count);
@@ -189,6 +212,9 @@ steps::EvaluatedCut evaluate_drawn(const steps::EvaluateRequest& request, const 
   step.json["photo"] = request.photo.string();
   step.json["mm_per_pixel"] = scale.scale.mm_per_pixel(pixels.tumor_edge_px.front());
   step.json["scale"] = scale.summary;
+  Verdict of_scale;
+  if (scale.ruler) add_ruler_doubts(*scale.ruler, of_scale);
+  step.json["verdict"] = to_json(of_scale);
   return {std::move(step), std::move(pixels)};
 }
 
@@ -236,6 +262,31 @@ std::vector<float> residuals_of(const PointCloud& surface, const Points& cloud) 
   return residuals;
 }
 
+/// The line that `frame` or `incise track` found with a cloud; nothing for another cloud.
+std::optional<Contour> marked_beside(const fs::path& cloud) {
+  const fs::path marked = cloud.parent_path() / "contour.csv";
+  if (!fs::exists(cloud.parent_path() / "cloud.ply") || !fs::exists(marked)) return std::nullopt;
+  return read_contour(marked);
+}
+
+/// The case's edge on a cloud, and how far the points of the marked one lie from it.
+Json edges_json(const Points& simulated, const std::optional<Contour>& marked) {
+  Json json{
+      {"simulated_mm", points_json(simulated)}, {"marked_mm", nullptr}, {"mean_mm", nullptr}, {"greatest_mm", nullptr}};
+  if (!marked || simulated.empty()) return json;
+  const Contour edge{simulated, true};
+  double sum = 0.0, greatest = 0.0;
+  for (const Vec3& place : marked->points) {
+    const double distance = nearest_on(edge, place).distance_mm;
+    sum += distance;
+    greatest = std::max(greatest, distance);
+  }
+  json["marked_mm"] = points_json(marked->points);
+  json["mean_mm"] = sum / static_cast<double>(marked->points.size());
+  json["greatest_mm"] = greatest;
+  return json;
+}
+
 fs::path surface_folder(const CaseFile& file) {
   return file.folder / "simulated_surface";
 }
@@ -244,45 +295,19 @@ fs::path registration_folder(const CaseFile& file) {
   return file.folder / "registration";
 }
 
-/// The program along a laid path, as the case would have it. @param laid  folder of path.json and surface.ply
-steps::ExportRequest export_of(const Case& settings, const fs::path& laid, const fs::path& script) {
-  steps::ExportRequest making;
-  making.path = laid / "path.json";
-  making.surface = laid / "surface.ply";
-  making.power_w = settings.plan.power_w;
-  making.overlap_mm = settings.cut.overlap_mm;
-  making.is_open = settings.plan.kind != PlanKind::Ring;
-  making.checks.planned_depth_mm = settings.plan.depth_mm;
-  making.checks.close_margin_mm = settings.close_margin_mm;
-  if (settings.T_flange_tool) making.setup.T_flange_tool = *settings.T_flange_tool;
-  making.output = script;
-  return making;
-}
-
 std::vector<std::string> words_of(const steps::ProjectRequest& laying) {
   std::vector<std::string> words{"project",   laying.path.string(),   "--transform", laying.transform.string(),
                                  "--surface", laying.surface.string()};
   if (!laying.camera.empty()) append(words, {"--camera", laying.camera.string()});
+  if (laying.settings.kind == PathKind::Mark) append(words, {"--kind", "mark"});
   append(words, {"-o", laying.output.string()});
   return words;
 }
 
-std::vector<std::string> words_of(const steps::ExportRequest& making) {
-  const auto number = [](double value) { return fmt::format("{}", value); };
-  std::vector<std::string> words{"export",         making.path.string(),         "--surface", making.surface.string(),
-                                 "--registration", making.registration.string(), "--power-w", number(*making.power_w),
-                                 "--overlap-mm",   number(*making.overlap_mm)};
-  append(words, {"--depth-mm", number(making.checks.planned_depth_mm), "--close-margin-mm",
-                 number(making.checks.close_margin_mm)});
-  const Mat4& T = making.setup.T_flange_tool;
-  if (T != ArmSetup{}.T_flange_tool) {
-    const Eigen::AngleAxisd turn(Mat3(T.topLeftCorner<3, 3>()));
-    const Vec3 rotation = turn.angle() * turn.axis();
-    words.emplace_back("--tcp");
-    for (const double value : {T(0, 3), T(1, 3), T(2, 3), rotation.x(), rotation.y(), rotation.z()})
-      words.push_back(number(value));
-  }
-  if (making.is_open) words.emplace_back("--open");
+std::vector<std::string> words_of(const steps::ExportRequest& making, const fs::path& case_file) {
+  std::vector<std::string> words{"export",    making.path.string(),    "--case",         case_file.string(),
+                                 "--surface", making.surface.string(), "--registration", making.registration.string()};
+  if (!making.intended.empty()) append(words, {"--intended", making.intended.string()});
   for (const std::string& id : making.accepted) append(words, {"--accept", id});
   append(words, {"-o", making.output.string()});
   return words;
@@ -311,7 +336,7 @@ void write_simulated_surface(const CaseFile& file, const steps::StepContext& ste
 }
 
 void remove_registration(const CaseFile& file) {
-  remove_replaceable(laid_folder(file));
+  remove_laid(file);
   remove_replaceable(registration_folder(file));
 }
 
@@ -370,7 +395,7 @@ Json Calls::photograph(const Json& arguments) {
   const CaseFile file = read_case(file_);
   steps::EvaluateRequest request = evaluation_of(file, arguments);
   const DrawnContours drawn = drawn_in(arguments);
-  const fs::path folder = file.folder / ("photograph_" + request.photo.stem().string());
+  const fs::path folder = folder_of_finding(file, "photograph_", request.photo);
   const steps::StepContext step{context(), workers_, monitor_};
   AtomicFolder target(folder);
   steps::EvaluatedCut cut;
@@ -419,6 +444,56 @@ Json Calls::photograph(const Json& arguments) {
           {"command", command_line(words)}};
 }
 
+Json Calls::frame(const Json& arguments) {
+  const CaseFile file = read_case(file_);
+  const steps::StepContext step{context(), workers_, monitor_};
+  steps::TrackRequest request;
+  request.color = text_argument(arguments, "color");
+  const auto given = [&](const char* name) {
+    return arguments.contains(name) && !arguments.at(name).is_null() ? text_argument(arguments, name) : "";
+  };
+  request.depth = given("depth");
+  request.intrinsics = given("intrinsics");
+  if (arguments.contains("mark")) request.mark = word_argument<InkColor>(arguments, "mark");
+  request.is_open = argument_or(arguments, "is_open", "true or false", false);
+  request.output = folder_of_finding(file, "frame_", request.color);
+  steps::SurfaceRequest cleaned;
+  cleaned.input = request.output / "cloud.ply";
+  cleaned.approach = Vec3::UnitZ();  // a camera looks along its own z
+  cleaned.cleaning.planes = argument_or(arguments, "planes", "a whole number", 1);
+  cleaned.cleaning.voxel_mm = kFrameVoxelMm;
+  cleaned.output = request.output / "tissue.ply";
+  const std::vector<Problem> problems = validate(cleaned.cleaning);
+  if (!problems.empty()) throw CaseError("request", problems.front());
+  const Json summary = steps::track_mark(request, step).json;
+  const Json tissue = steps::see_surface(cleaned, step).json;
+  const fs::path drawn = request.output / "found.png";
+  const ColorPicture found = decode_picture(read_text(drawn), drawn);
+  std::vector<std::string> words{"track", request.color.string()};
+  if (!request.depth.empty()) append(words, {request.depth.string(), "--intrinsics", request.intrinsics.string()});
+  append(words, {"--mark", std::string(to_string(request.mark))});
+  if (request.is_open) words.emplace_back("--open");
+  append(words, {"-o", request.output.string()});
+  const std::vector<std::string> cleaning{"surface",    cleaned.input.string(),
+                                          "--approach", "0",
+                                          "0",          "1",
+                                          "--planes",   fmt::format("{}", cleaned.cleaning.planes),
+                                          "--voxel-mm", fmt::format("{}", kFrameVoxelMm),
+                                          "-o",         cleaned.output.string()};
+  return {{"cloud", cleaned.output.string()},
+          {"name", (request.output.filename() / cleaned.output.filename()).string()},
+          {"found",
+           {{"width", found.width},
+            {"height", found.height},
+            {"rgb", blobs_.put("frame.rgb", std::span<const std::uint8_t>(found.rgb))}}},
+          {"mark_mm",
+           points_json(read_contour(request.output / "contour.csv", summary.at("closed_loop").get<bool>()).points)},
+          {"summary", summary},
+          {"points", tissue.at("points")},
+          {"files", files_in(request.output, file.folder)},
+          {"commands", {command_line(words), command_line(cleaning)}}};
+}
+
 Json Calls::virtual_cloud(const Json& arguments) {
   const CaseFile file = read_case(file_);
   const fs::path cloud = file.folder / "virtual_cloud.ply";
@@ -445,7 +520,8 @@ Json Calls::register_cloud(const Json& arguments) {
   const std::vector<Problem> problems = validate(request.settings);
   if (!problems.empty()) throw CaseError("request", problems.front());
   remove_registration(file);  // and what was laid by it
-  const Study study = study_until(Stage::Stretch);
+  const bool has_edge = !file.inputs.tumor_contour.empty();
+  const Study study = study_until(has_edge ? Stage::Plan : Stage::Stretch);
   write_simulated_surface(file, step);
   const Json found = steps::lay_clouds(request, step).json;
   const TriMesh cloud = read_cloud(target);
@@ -456,6 +532,7 @@ Json Calls::register_cloud(const Json& arguments) {
   json["target"] = {{"points", blobs_.put("register.target", std::span<const Vec3>(cloud.vertices))}};
   json["skin"] = nullptr;
   json["sample"] = nullptr;
+  json["edges"] = {{"simulated_mm", nullptr}, {"marked_mm", nullptr}, {"mean_mm", nullptr}, {"greatest_mm", nullptr}};
   if (found.contains("T_target_source") && !found.at("T_target_source").is_null()) {
     const Mat4 T = transform_in(found, "T_target_source", written);
     const Skin skin = skin_of(study.model->mesh);
@@ -465,6 +542,8 @@ Json Calls::register_cloud(const Json& arguments) {
     const std::vector<float> residuals = residuals_of(laid, cloud.vertices);
     json["sample"] = {{"points", blobs_.put("register.points", std::span<const Vec3>(laid.points))},
                       {"residuals_mm", blobs_.put("register.residuals", std::span<const float>(residuals))}};
+    if (study.plan && has_edge)
+      json["edges"] = edges_json(moved_by(T, study.plan->tumor_edge.points), marked_beside(target));
   }
   json["files"] = files_in(request.output, file.folder);
   std::vector<std::string> words{"register",
@@ -481,57 +560,81 @@ Json Calls::register_cloud(const Json& arguments) {
 
 Json Calls::lay(const Json& arguments) {
   const CaseFile file = read_case_with_inputs(file_);
+  const std::string revision = case_revision(file_);
   const Case& settings = file.settings;
-  if (half_width_mm(settings.tool) > 0.0)
-    throw CaseError(file_.string(), "tool.kind", std::string(kind_of(settings.tool)),
-                    "a round tool: a program does not turn another into its direction of travel");
+  const bool is_mark = arguments.contains("kind") && word_argument<PathKind>(arguments, "kind") == PathKind::Mark;
+  const PathKind kind = is_mark ? PathKind::Mark : PathKind::Incise;
   const fs::path registration = registration_folder(file) / "registration.json";
   if (!fs::exists(registration))
     throw CaseError("request", "registration", "none in the case's folder", "a registered cloud");
   const std::string registration_sha256 = sha256_of_file(registration);
-  const std::vector<std::string> accepted = accepted_in(arguments);
-  if (!accepted.empty() && text_argument(arguments, "registration_sha256") != registration_sha256)
+  steps::ExportRequest making;
+  steps::take_case(settings, making);
+  making.is_open = making.is_open && !is_mark;
+  making.registration = registration;
+  making.accepted = accepted_in(arguments);
+  if (!making.accepted.empty() && text_argument(arguments, "registration_sha256") != registration_sha256)
     throw CaseError("request", "registration_sha256", "another registration's", "that whose cautions are accepted");
   if (text_argument(read_json(registration), "source") != (surface_folder(file) / "surface.ply").string())
     throw CaseError(registration.string(), "source", "another surface", "this case's, registered here");
   const steps::StepContext step{context(), workers_, monitor_};
   const fs::path output = output_beside(file_);
-  const Study study = study_until(Stage::Verify);  // at hand after a run; else it is made now
+  write_simulated_surface(file, step);             // another one than was registered is refused
+  const Study study = study_until(Stage::Verify);  // the last: it leaves the paths with their verdicts
   if (!study.as_planned) throw CaseError(file_.string(), "plan", "nothing was cut", "a path that was cut");
-  write_simulated_surface(file, step);  // another one than was registered is refused
+  const fs::path planned = output / "plan" / "path.json";
+  if (!study.is_accepted && !file.inputs.tool_path.empty())
+    throw CaseError(file_.string(), "path", "a given path whose correction is not accepted",
+                    "a path that was planned or corrected here", "incise project lays a given path");
   steps::ProjectRequest laying;
-  laying.path = output / (study.is_accepted ? "correction" : "plan") / "path.json";
+  laying.path = study.is_accepted ? output / "correction" / "path.json" : planned;
+  laying.settings.kind = kind;
   laying.transform = registration;
   laying.surface = text_argument(read_json(registration), "target");
   if (arguments.contains("camera") && !arguments.at("camera").is_null())
     laying.camera = text_argument(arguments, "camera");
-  const fs::path folder = laid_folder(file);
+  const fs::path folder = laid_folder(file, kind);
   AtomicFolder target(folder);
-  laying.output = target.path() / "path";
+  // Where the files lie: first where they are made, then where they are to be.
+  const auto lie_in = [&](const fs::path& place) {
+    laying.output = place / "path";
+    making.path = laying.output / "path.json";
+    making.surface = laying.output / "surface.ply";
+    making.output = place / "program.script";
+    if (study.is_accepted && !is_mark) making.intended = place / "intended.json";
+  };
+  const auto intended_of = [&] {
+    steps::ProjectRequest intended = laying;
+    intended.path = planned;
+    intended.output = making.intended;
+    return intended;
+  };
+  lie_in(target.path());
   static_cast<void>(steps::project_onto_tissue(laying, step));
-  steps::ExportRequest making = export_of(settings, laying.output, target.path() / "program.script");
-  making.registration = registration;
-  making.accepted = accepted;
+  if (!making.intended.empty()) static_cast<void>(steps::project_onto_tissue(intended_of(), step));
   const Json made = steps::export_program(making, step).json;
   Json json{{"path", tool_path_json(read_tool_path(making.path))},
-            {"follows", study.is_accepted ? "corrected" : "planned"}};
+            {"follows", is_mark             ? "edge"
+                        : study.is_accepted ? "corrected"
+                                            : "planned"}};
   for (const char* key : {"verdict", "gate", "checks"}) json[key] = made.at(key);
   std::string why = made.contains("program") ? fault_of(making.output) : why_closed(made.at("gate"));
   if (!why.empty()) fs::remove(making.output);
   json["program"] = why.empty() ? Json(read_text(making.output)) : Json(nullptr);
   json["why_without_program"] = std::move(why);
   json["registration_sha256"] = registration_sha256;
-  write_json(target.path() / "laid.json", {{"case_sha256", case_revision(file_)}});
+  write_json(target.path() / "laid.json", {{"case_sha256", revision}});
   write_manifest(
       target.path(),
       steps::manifest_of(step.run, "{}", {laying.path, registration, laying.surface, laying.camera}, step.wall_s()));
+  if (case_revision(file_) != revision) throw StaleRevision(file_);  // what the run left may be of another case
   target.commit();
-  laying.output = folder / "path";
-  making = export_of(settings, laying.output, folder / "program.script");
-  making.registration = registration;
-  making.accepted = accepted;
+  lie_in(folder);
   json["files"] = files_in(folder, file.folder);
-  json["commands"] = {command_line(words_of(laying)), command_line(words_of(making))};
+  std::vector<std::string> commands{command_line(words_of(laying))};
+  if (!making.intended.empty()) commands.push_back(command_line(words_of(intended_of())));
+  commands.push_back(command_line(words_of(making, file_)));
+  json["commands"] = commands;
   return json;
 }
 
@@ -543,16 +646,18 @@ Json Calls::unregister(const Json&) {
 Json Calls::arm(const Json& arguments) {
   const CaseFile file = read_case(file_);
   remove_stale_laid(file);
-  const auto of = argument_or<std::string>(arguments, "of", "run or tissue", "run");
-  if (of != "run" && of != "tissue") throw CaseError("request", "of", "'" + of.substr(0, 40) + "'", "run or tissue");
-  const bool is_laid = of == "tissue";
-  const fs::path script = (is_laid ? laid_folder(file) : output_beside(file_) / "program") / "program.script";
+  const auto of = argument_or<std::string>(arguments, "of", "run, tissue or mark", "run");
+  if (of != "run" && of != "tissue" && of != "mark")
+    throw CaseError("request", "of", "'" + of.substr(0, 40) + "'", "run, tissue or mark");
+  const bool is_laid = of != "run";
+  const fs::path laid = laid_folder(file, of == "mark" ? PathKind::Mark : PathKind::Incise);
+  const fs::path script = (is_laid ? laid : output_beside(file_) / "program") / "program.script";
   if (!fs::exists(script))
     throw CaseError(file_.string(), "program", "none",
                     is_laid ? "a path on a cloud, with its program" : "a run that wrote a program");
   const WrittenProgram program = program_from_text(read_text(script), script);
   const std::optional<Mat4> T_robot_sim =
-      is_laid ? read_tool_path(laid_folder(file) / "path" / "path.json").T_robot_sim : file.settings.T_robot_sim;
+      is_laid ? read_tool_path(laid / "path" / "path.json").T_robot_sim : file.settings.T_robot_sim;
   if (!T_robot_sim) throw CaseError(file_.string(), "robot.T_robot_sim", "none", "where the specimen lies");
   Replay replay = play(program);
   judge_audit(replay, audit_program(program));

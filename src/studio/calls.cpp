@@ -205,12 +205,22 @@ RunContext Calls::context(std::uint64_t seed) const {
   return {"incise studio", seed, workers_.thread_count()};
 }
 
+fs::path laid_folder(const CaseFile& file, PathKind kind) {
+  return file.folder / (kind == PathKind::Mark ? "mark_on_tissue" : "on_tissue");
+}
+
+void remove_laid(const CaseFile& file) {
+  for (const PathKind kind : {PathKind::Incise, PathKind::Mark}) remove_replaceable(laid_folder(file, kind));
+}
+
 void remove_stale_laid(const CaseFile& file) {
-  const fs::path note = laid_folder(file) / "laid.json";
-  if (!fs::exists(note)) return;
-  const Json laid = read_json(note);
-  if (!laid.is_object() || laid.value("case_sha256", "") != case_revision(file.file))
-    remove_replaceable(laid_folder(file));
+  for (const PathKind kind : {PathKind::Incise, PathKind::Mark}) {
+    const fs::path note = laid_folder(file, kind) / "laid.json";
+    if (!fs::exists(note)) continue;
+    const Json laid = read_json(note);
+    if (!laid.is_object() || laid.value("case_sha256", "") != case_revision(file.file))
+      remove_replaceable(laid_folder(file, kind));
+  }
 }
 
 std::vector<std::string> Calls::accepted_in(const Json& arguments) const {
@@ -234,6 +244,7 @@ Json Calls::make(const std::string& name, const fs::path& file, const Json& argu
                                                    {"run", &Calls::run},
                                                    {"picture", &Calls::picture},
                                                    {"photograph", &Calls::photograph},
+                                                   {"frame", &Calls::frame},
                                                    {"virtual_cloud", &Calls::virtual_cloud},
                                                    {"register", &Calls::register_cloud},
                                                    {"lay", &Calls::lay},
@@ -379,7 +390,7 @@ Json Calls::edge(const Json& arguments) {
   const CaseChanges changes{{"tumor.contour", target.lexically_proximate(file.folder).string()},
                             {"tumor.configuration", text_argument(arguments, "configuration")}};
   static_cast<void>(parse_case(changed_case(read_text(file_), changes), file_));  // before anything is written
-  remove_replaceable(laid_folder(file));                                          // of another edge
+  remove_laid(file);                                                              // of another edge
   write_contour_csv(target, resample(drawn, std::max<std::size_t>(count, drawn.points.size())));
   try {
     return case_json(change_case(file_, revision, changes));
@@ -429,7 +440,9 @@ Json Calls::plan(const Json&) {
     throw CaseError(file_.string(), "specimen.constraints", explain_stretch(*study.stretched),
                     "a stretch that comes to rest");
   Verdict verdict = study.about_inputs;
-  verdict.add(verdict_before_cut(file.settings, *study.model, study.stretched->state.positions, *study.plan));
+  std::vector<CutPlane> planes;
+  if (study.segmentation) planes = cut_planes(*study.segmentation, file.settings.segmentation);
+  verdict.add(verdict_before_cut(file.settings, *study.model, planes, study.stretched->state.positions, *study.plan));
   return {{"path", tool_path_json(*study.plan)},
           {"edge", points_json(study.plan->tumor_edge.points)},
           {"verdict", to_json(verdict)}};
@@ -465,7 +478,7 @@ Json Calls::run(const Json& arguments) {
   const std::vector<std::string> accepted = accepted_in(arguments);
   const fs::path output = output_beside(file_);
   steps::CaseRequest request{read_case_with_inputs(file_), output, {}};
-  remove_replaceable(laid_folder(request.file));  // of an earlier run
+  remove_laid(request.file);  // of an earlier run
   request.options.watch = [this](const auto& cut, const auto& model, const auto& progress) {
     show_moment(cut, model, progress);
   };

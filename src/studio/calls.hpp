@@ -19,12 +19,12 @@
 
 namespace incise::studio {
 
-/// Where `lay` puts the path and the program on the measured tissue. It goes when the case is run or registered anew.
-[[nodiscard]] inline std::filesystem::path laid_folder(const CaseFile& file) {
-  return file.folder / "on_tissue";
-}
-
-/// Removes it where the case is not the one that it was made of. @throws DataError for somebody else's folder.
+/// Where `lay` puts a path of that kind and its program on the measured tissue. It goes when the case is run or
+/// registered anew.
+[[nodiscard]] std::filesystem::path laid_folder(const CaseFile& file, PathKind kind);
+/// Removes what was laid of both kinds. @throws DataError for somebody else's folder.
+void remove_laid(const CaseFile& file);
+/// The same where the case is not the one that it was made of.
 void remove_stale_laid(const CaseFile& file);
 
 /// What a browser asks for, each a few calls of the library: see docs/decisions/0009-studio.md. The state is in the
@@ -59,6 +59,7 @@ class Calls {
   // After the cut: after_cut_calls.cpp.
   Json picture(const Json& arguments);
   Json photograph(const Json& arguments);
+  Json frame(const Json& arguments);
   Json virtual_cloud(const Json& arguments);
   Json register_cloud(const Json& arguments);
   Json lay(const Json& arguments);

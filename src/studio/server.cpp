@@ -414,7 +414,8 @@ class Server {
 
   /// Files that a call names by their ids, as paths.
   void translate_files(Json& arguments) const {
-    for (const char* name : {"file", "folder", "scan", "labels", "mesh", "surface", "camera"}) {
+    for (const char* name :
+         {"file", "folder", "scan", "labels", "mesh", "surface", "camera", "color", "depth", "intrinsics"}) {
       if (arguments.contains(name) && !arguments.at(name).is_null())
         arguments[name] = path_of(arguments.at(name), name);
     }

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/geometry/surface_query.hpp>
 #include <incise/workflow/cut_doubts.hpp>
 
 #include <fmt/format.h>
@@ -76,6 +77,62 @@ class WayOfTool {
   double deepest_mm_ = 0.0;
 };
 
+/// Tells which places of the stretched skin lie on a face that the region of interest made.
+class MadeSkin {
+ public:
+  MadeSkin(const TissueModel& model, std::span<const CutPlane> planes, std::span<const Vec3> stretched)
+      : skin_(boundary_surface(model.mesh)), planes_(planes), search_(at(stretched)) {}
+
+  /// The plane under the nearest place of the skin; null: it is the specimen's own.
+  [[nodiscard]] const CutPlane* under(const Vec3& place) const {
+    const auto& corners = skin_.triangles[search_.nearest(place).triangle.index()];
+    const auto on = std::ranges::find_if(planes_, [&](const CutPlane& plane) {
+      return std::ranges::all_of(corners, [&](VertexId v) { return plane.holds(skin_.vertices[v.index()]); });
+    });
+    return on == planes_.end() ? nullptr : &*on;
+  }
+
+ private:
+  [[nodiscard]] TriMesh at(std::span<const Vec3> stretched) const {
+    TriMesh moved = skin_;
+    moved.vertices.assign(stretched.begin(), stretched.end());
+    return moved;
+  }
+
+  TriMesh skin_;  // at rest, with all vertices of the mesh
+  std::span<const CutPlane> planes_;
+  SurfaceQuery search_;
+};
+
+/// Places on a skin that the region of interest made: there is tissue above and around them that the plan does not
+/// know.
+void add_cut_faces(const TissueModel& model, std::span<const CutPlane> planes, std::span<const Vec3> stretched,
+                   const ToolPath& path, Verdict& verdict) {
+  if (planes.empty()) return;
+  const MadeSkin skin(model, planes, stretched);
+  const auto add = [&](std::string_view what, std::span<const Vec3> places) {
+    const CutPlane* first = nullptr;
+    std::size_t count = 0, at = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      const CutPlane* const plane = skin.under(places[i]);
+      if (plane == nullptr) continue;
+      if (count++ == 0) {
+        first = plane;
+        at = i;
+      }
+    }
+    if (count == 0) return;
+    verdict.add("cut_face", static_cast<double>(count),
+                fmt::format("{} of {} points of {} lie where the region of interest (ct.roi_box_mm) cuts through the "
+                            "tissue, on its {} side: there is no skin there, the specimen goes on. Move the box's face "
+                            "outwards, take what lies behind it away with the brush (ct.edits), or cut elsewhere",
+                            count, places.size(), what, to_string(first->face)),
+                VerdictPlace{{}, places[at], fmt::format("point {} of {}", at, what)});
+  };
+  add("the path", entry_contour(path).points);
+  add("the tumour's edge", path.tumor_edge.points);
+}
+
 }  // namespace
 
 void require_no_locking(const TissueModel& model) {
@@ -116,7 +173,8 @@ std::optional<PlatformClearance> platform_clearance(const TissueModel& model, co
   return least;
 }
 
-Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path) {
+Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const CutPlane> cut_planes,
+                           std::span<const Vec3> stretched, const ToolPath& path) {
   Verdict verdict;
   const double ratio = greatest_ratio(model).ratio;
   if (model.material.volume == VolumeTreatment::PerTet && ratio > *verdict_rule("locking").limit + kRatioRounding) {
@@ -142,6 +200,7 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::
                 fmt::format("the tool's tip goes {:.2f} mm below the platform that supports the tissue, at waypoint {}", -platform->height_mm, platform->waypoint),
                 VerdictPlace{{}, path.waypoints[platform->waypoint].position_mm, fmt::format("waypoint {}", platform->waypoint)});
   }
+  add_cut_faces(model, cut_planes, stretched, path, verdict);
   return verdict;
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 ArmSetup arm_setup_of(const Case& settings) {
   ArmSetup setup;
-  if (settings.T_flange_tool) setup.T_flange_tool = *settings.T_flange_tool;
+  take_arm(settings, setup);
   return setup;
 }
 
@@ -48,15 +48,13 @@ CheckedProgram checked_program(const Case& settings, Inputs& inputs, const Study
   made.path = in_robot_frame(chosen, *settings.T_robot_sim);
   const ToolPath intended = in_robot_frame(*study.plan, *settings.T_robot_sim);
   made.program = program_along(made.path, settings, inputs);
-  CheckSettings limits;
-  limits.must_be_ring = settings.plan.kind == PlanKind::Ring;
-  limits.planned_depth_mm = settings.plan.depth_mm;
-  limits.close_margin_mm = settings.close_margin_mm;
   CheckInputs known;
   known.intended = &intended;
   known.power_w = settings.plan.power_w;
   known.heat_half_width_mm =
       widest_heat(settings.thermal, settings.plan.power_w, made.path, settings.tool).half_width_mm;
+  CheckSettings limits;
+  take_limits(settings, limits);
   made.checks = check_program(made.program, made.path, limits, known);
   return made;
 }
@@ -102,6 +100,22 @@ void add_program(const Case& settings, Inputs& inputs, std::span<const std::stri
 }
 
 }  // namespace
+
+void take_arm(const Case& settings, ArmSetup& setup) {
+  if (settings.T_flange_tool) setup.T_flange_tool = *settings.T_flange_tool;
+}
+
+void take_limits(const Case& settings, CheckSettings& limits) {
+  limits.must_be_ring = settings.plan.kind == PlanKind::Ring;
+  limits.planned_depth_mm = settings.plan.depth_mm;
+  limits.close_margin_mm = settings.close_margin_mm;
+}
+
+void require_round_tool(const Case& settings) {
+  if (half_width_mm(settings.tool) > 0.0)
+    throw CaseError("case", "tool.kind", std::string(kind_of(settings.tool)),
+                    "a round tool: a program does not turn another into its direction of travel");
+}
 
 void require_place_for_arm(const Case& settings) {
   constexpr double kFarthestMm = 1e4;  // many times an arm's reach

@@ -222,6 +222,7 @@ class Runner {
     sink_.labels(note, *study_.segmentation);
     report("the scan", study_.segmentation->verdict);
     study_.about_inputs.add(study_.segmentation->verdict);
+    cut_planes_ = cut_planes(*study_.segmentation, settings_.segmentation);
     return true;
   }
 
@@ -331,7 +332,7 @@ class Runner {
   /// A cut with what is held against it.
   SimulatedCut judged(IncisionResult incision, const ToolPath& path) const {
     SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size());
-    cut.verdict.add(verdict_before_cut(settings_, *study_.model, study_.stretched->state.positions, path));
+    cut.verdict.add(verdict_before_cut(settings_, *study_.model, cut_planes_, study_.stretched->state.positions, path));
     return cut;
   }
 
@@ -546,6 +547,7 @@ class Runner {
   ProductSink& sink_;
   bool must_resume_;  ///< nothing was gone on with yet, and something has to be
   std::optional<TetMesh> given_mesh_;
+  std::vector<CutPlane> cut_planes_;  ///< of the tissue at rest
   std::optional<Contour> tumor_edge_;
   std::optional<TriMesh> tumor_surface_;
   std::optional<Contour> line_;

@@ -298,7 +298,8 @@ class AfterTheCut(StudioTest):
         path = json.loads((self.folder / "specimen" / "on_tissue" / "path" / "path.json").read_text())
         self.assertEqual((path["frame"], path["specimen_is"]), ("robot", "virtual"))
         self.assertEqual(laid["program"] is None, bool(laid["gate"]["missing"] or laid["gate"]["refused"]))
-        self.assertEqual(len(laid["commands"]), 2)
+        self.assertEqual(len(laid["commands"]), 3 if laid["follows"] == "corrected" else 2)
+        self.assertNotIn("not_simulated", laid["gate"]["missing"])  # its cut was simulated, and its verdict is here
         revision = studio.call("case")[1]["revision"]
         accept = {"accept": ["mesh_resolution"], "revision": revision}
         self.assertEqual(studio.call("lay", {**accept, "registration_sha256": "another"})[1]["problem"]["path"], "registration_sha256")
@@ -310,7 +311,19 @@ class AfterTheCut(StudioTest):
         self.assertTrue(same["is_virtual"], same)  # the mark stays with the points
         self.assertFalse((self.folder / "specimen" / "on_tissue").exists())
         self.assertEqual(studio.call("lay")[0], 200)
-        changed = studio.call("change", {"revision": revision, "set": {"meshing.tets": 6500}})
+        status, mark = studio.call("lay", {"kind": "mark"})
+        self.assertEqual((status, mark["follows"]), (200, "edge"), mark)
+        speeds = {waypoint["speed_mm_s"] for waypoint in json.loads((self.folder / "specimen/mark_on_tissue/path/path.json").read_text())["waypoints"]}
+        self.assertEqual(speeds, {2.0})
+        self.assertTrue((self.folder / "specimen" / "on_tissue").exists())  # one of each kind
+        kept = studio.call("change", {"revision": revision, "set": {"plan.close_margin_mm": 4.6}})[1]
+        self.assertFalse((self.folder / "specimen" / "mark_on_tissue").exists())
+        self.assertEqual(studio.call("register", {"file": cloud["file"], "scale": "fixed"})[0], 200)
+        refused = studio.call("lay")[1]
+        self.assertIn("lateral_margin", refused["gate"]["refused"])  # whatever was computed after the cut, its verdict stays
+        accept = {"accept": ["not_simulated"], "revision": kept["revision"], "registration_sha256": refused["registration_sha256"]}
+        self.assertIsNone(studio.call("lay", accept)[1]["program"])
+        changed = studio.call("change", {"revision": kept["revision"], "set": {"meshing.tets": 6500}})
         self.assertEqual(changed[0], 200)
         self.assertFalse((self.folder / "specimen" / "on_tissue").exists())  # it was laid for the case as it was
         status, other = studio.call("lay")

@@ -230,6 +230,27 @@ TEST(Segmentation, LeavesAMarginOfAirAllAroundEvenWhereTheRegionCutsThroughTissu
   EXPECT_EQ(grid.origin_mm, (grid.world_from_index(Vec3::Zero())));
 }
 
+TEST(CutPlanes, LieWhereTheRegionOrTheVolumeCutsTheBody) {
+  SegmentationSettings settings;
+  EXPECT_TRUE(cut_planes(run(ball_of_tissue(), settings), settings).empty());
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
+  const auto in_box = cut_planes(run(ball_of_tissue(), settings), settings);
+  ASSERT_EQ(in_box.size(), 1U);
+  EXPECT_EQ(in_box[0].face, RegionFace::Superior);
+  EXPECT_EQ(in_box[0].outward, Vec3(0, 0, 1));
+  EXPECT_NEAR(in_box[0].at_mm, 15.0, 0.5 * in_box[0].voxel_mm + 1e-9);
+  EXPECT_TRUE(in_box[0].holds(Vec3(15, 15, in_box[0].at_mm)));
+  EXPECT_FALSE(in_box[0].holds(Vec3(15, 15, 10)));
+  CtVolume turned = ball_of_tissue();
+  turned.grid.direction << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  settings.roi_box_mm = Box3(Vec3(-15, -100, -100), Vec3(100, 100, 100));
+  const auto of_turned = cut_planes(run(turned, settings), settings);
+  ASSERT_EQ(of_turned.size(), 1U);
+  EXPECT_EQ(of_turned[0].face, RegionFace::Right);
+  EXPECT_EQ(of_turned[0].outward, Vec3(-1, 0, 0));
+  EXPECT_NEAR(of_turned[0].at_mm, 15.0, 0.5 * of_turned[0].voxel_mm + 1e-9);
+}
+
 TEST(Segmentation, CutsHalfABallAtTheFaceOfTheLastVoxelInTheRegion) {
   SegmentationSettings settings;
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));

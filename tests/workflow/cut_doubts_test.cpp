@@ -38,7 +38,7 @@ ToolPath ring(double radius_mm = 7.0) {
 /// "id: message" of each reason.
 std::vector<std::string> doubts(const TissueModel& model) {
   std::vector<std::string> lines;
-  const Verdict verdict = verdict_before_cut(Case{}, model, model.mesh.vertices, ring());
+  const Verdict verdict = verdict_before_cut(Case{}, model, {}, model.mesh.vertices, ring());
   for (const VerdictReason& reason : verdict.reasons()) {
     lines.push_back(reason.id + ": " + reason.message);
   }
@@ -103,13 +103,41 @@ TEST(VerdictBeforeCut, RefusesATipThatGoesThroughThePlatform) {
                                               {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(1, 25, 9))}}, SupportConstraint{Vec3(0, 0, 2), Vec3::UnitZ()}});
   ToolPath path = ring();  // on z = 8, 5 mm deep: a millimetre above the platform
   EXPECT_NEAR(platform_clearance(model, path)->height_mm, 1.0, 1e-12);
-  EXPECT_FALSE(verdict_before_cut(Case{}, model, model.mesh.vertices, path).has("platform"));
+  EXPECT_FALSE(verdict_before_cut(Case{}, model, {}, model.mesh.vertices, path).has("platform"));
   path.waypoints[7].depth_mm = 6.5;
-  const Verdict verdict = verdict_before_cut(Case{}, model, model.mesh.vertices, path);
+  const Verdict verdict = verdict_before_cut(Case{}, model, {}, model.mesh.vertices, path);
   ASSERT_TRUE(verdict.has("platform"));
   EXPECT_NEAR(*verdict.reasons().front().value, -0.5, 1e-12);
   EXPECT_EQ(verdict.reasons().front().at->text, "waypoint 7");
   EXPECT_FALSE(platform_clearance(block(6, 0.45), path)) << "no platform";
+}
+
+TEST(VerdictBeforeCut, RefusesAPathOrAnEdgeOnAFaceThatTheRegionMade) {
+  const TissueModel model = block(24, 0.45);
+  Points stretched = model.mesh.vertices;
+  for (Vec3& place : stretched)
+    place.x() *= 1.5;  // planes are of the tissue at rest, a path is on the stretched tissue
+  const CutPlane above{RegionFace::Superior, Vec3::UnitZ(), 8.0, 0.5};
+  const CutPlane beside{RegionFace::Left, Vec3::UnitX(), 24.0, 0.5};
+  const auto judged = [&](const CutPlane& plane, double middle_mm) {
+    ToolPath path = ring();
+    for (Waypoint& waypoint : path.waypoints) waypoint.position_mm.x() += middle_mm - 12.0;
+    path.tumor_edge.points = {Vec3(20, 10, 8), Vec3(18, 14, 8), Vec3(22, 14, 8)};
+    return verdict_before_cut(Case{}, model, std::array{plane}, stretched, path);
+  };
+  EXPECT_FALSE(judged(beside, 18.0).has("cut_face")) << "its skin is the specimen's own, 11 mm from the face";
+  EXPECT_FALSE(judged(beside, 28.0).has("cut_face")) << "beside the face, on the skin";
+  const Verdict verdict = judged(above, 18.0);
+  ASSERT_TRUE(verdict.has("cut_face"));
+  EXPECT_EQ(verdict.status(), VerdictStatus::Refused);
+  std::vector<std::string> lines;
+  for (const VerdictReason& reason : verdict.reasons()) {
+    if (reason.id == "cut_face") lines.push_back(reason.message);
+  }
+  EXPECT_THAT(lines, ElementsAre(HasSubstr("24 of 24 points of the path lie"),
+                                 HasSubstr("3 of 3 points of the tumour's edge lie")));
+  EXPECT_THAT(lines.front(), HasSubstr("on its superior side"));
+  EXPECT_EQ(verdict.reasons().front().at->position_mm, Vec3(25, 12, 8));
 }
 
 }  // namespace

@@ -96,6 +96,19 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("verdict", s.verdict, "On this tissue.");
 }
 
+/// A side of the region of interest (or of the volume) that goes through the body: the body's skin there is none of the
+/// specimen's, which goes on behind it.
+struct CutPlane {
+  RegionFace face = RegionFace::Right;
+  Vec3 outward = Vec3::Zero();  ///< unit, LPS
+  double at_mm = 0.0;           ///< of the plane along `outward`
+  double voxel_mm = 0.0;        ///< a voxel's length along `outward`: the plane is known to less than that
+  /// Whether a place at rest (LPS, mm) lies on the plane, within a voxel.
+  [[nodiscard]] bool holds(const Vec3& place) const { return outward.dot(place) > at_mm - voxel_mm; }
+};
+/// Of each face with `cut_voxels`. @param settings  with which the body was found. O(voxels).
+[[nodiscard]] std::vector<CutPlane> cut_planes(const Segmentation& found, const SegmentationSettings& settings);
+
 /// CT -> one clean tissue label and its sub-voxel occupancy.
 /// Steps: window and region -> edits by hand -> pieces (face-connected; separated by erosion with a ball, grown back
 /// within the window)

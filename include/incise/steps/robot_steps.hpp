@@ -1,10 +1,13 @@
 #pragma once
 
+#include <incise/cutting/thermal.hpp>
+#include <incise/cutting/tool.hpp>
 #include <incise/robot/checks.hpp>
 #include <incise/robot/player.hpp>
 #include <incise/robot/program.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/steps/step.hpp>
+#include <incise/workflow/case.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -32,13 +35,19 @@ struct ExportRequest {
   std::optional<ScriptMotion> motion;  ///< of URScript alone; absent: MoveP
   CheckSettings checks;
   ProgramSettings settings;
-  std::optional<double> overlap_mm;  ///< of a closed path; absent: kRingOverlapMm for an incision, none for a mark
+  std::optional<double> overlap_mm;  ///< of a closed path; absent: usual_overlap_mm for an incision, none for a mark
+  double usual_overlap_mm = kRingOverlapMm;
   ArmSetup setup;
   std::optional<double> power_w;       ///< of the generator; absent: not known
+  ThermalSettings thermal;             ///< of the tissue: a path does not say what it is cut into
+  std::optional<Tool> tool;            ///< absent: a needle as long as `checks` has it
   std::vector<std::string> overrides;  ///< checks that a person takes on them
   std::vector<std::string> accepted;   ///< cautions of the verdict, likewise
   std::filesystem::path output;
 };
+/// Puts what a run of the case says of its own program in place: arm, limits, power, heat, tool and overlap.
+/// @throws CaseError as require_round_tool.
+void take_case(const Case& settings, ExportRequest& request);
 /// Writes the program if the verdict allows it; else the result is not acceptable, and nothing is written.
 /// @throws DataError for a file that cannot be used; CaseError for overrides, a tool or an output that do not go with
 /// the path or the form.

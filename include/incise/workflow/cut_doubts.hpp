@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/imaging/segmentation.hpp>
 #include <incise/mechanics/tissue.hpp>
 #include <incise/workflow/products.hpp>
 
@@ -29,9 +30,11 @@ struct PlatformClearance {
 /// A holder's surface is no plane and is not looked at.
 [[nodiscard]] std::optional<PlatformClearance> platform_clearance(const TissueModel& model, const ToolPath& path);
 
-/// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the tool, a tip that goes
-/// through the platform.
-[[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+/// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the
+/// tool, a tip that goes through the platform, an entry or an edge on a face that the region of interest made.
+/// @param cut_planes  of the tissue at rest; none for a specimen that was given as a mesh.
+[[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model,
+                                         std::span<const CutPlane> cut_planes, std::span<const Vec3> stretched,
                                          const ToolPath& path);
 
 }  // namespace incise

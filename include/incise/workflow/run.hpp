@@ -43,6 +43,14 @@ struct Run {
 /// The same on all threads of the machine, without messages or files.
 [[nodiscard]] Run run(const Case& settings, Inputs& inputs, Cache& cache, std::span<const std::string> accepted = {});
 
+/// Puts what a case sets of the arm in place, and what it sets of the limits that its program is checked against.
+void take_arm(const Case& settings, ArmSetup& setup);
+void take_limits(const Case& settings, CheckSettings& limits);
+
+/// Checks that a program can hold the case's tool. @throws CaseError (tool.kind) for one that is not round: a program
+/// does not turn it into its direction of travel.
+void require_round_tool(const Case& settings);
+
 /// Checks that a case that requests a program states a place for the arm.
 /// @throws CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place that the arm cannot reach.
 void require_place_for_arm(const Case& settings);
