@@ -10,6 +10,7 @@
 namespace incise::cli {
 namespace {
 
+constexpr const char* kNoMark = "none";
 constexpr double kLargestMarginMm = 50.0;  // a wider ring leaves the organ
 
 struct TrackArguments : steps::TrackRequest {
@@ -30,7 +31,10 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
     throw CaseError("command line", "--margin-mm", fmt::format("{} mm for an open mark", request.margin_mm),
                     "0: an open mark is cut along");
   }
-  request.mark = value_named<InkColor>(arguments.mark_name);
+  request.mark.reset();
+  if (arguments.mark_name != kNoMark) request.mark = value_named<InkColor>(arguments.mark_name);
+  if (!request.mark && request.has_plan)
+    throw CaseError("command line", "--plan", "--mark none", "a mark that the incision goes round");
   request.edge = value_named<LineEdge>(arguments.edge_name);
   request.plan.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
   return run_step(options, [&](const auto& context) { return steps::track_mark(request, context); });
@@ -51,7 +55,8 @@ void add_track(Application& application) {
                    "JSON: width, height, fx, fy, cx, cy, depth_scale (m), distortion, depth {...}, T_color_depth");
   verb->add_option("--camera", a.camera,
                    "JSON with T_robot_camera: results in the robot's frame; without it: in the colour camera's");
-  verb->add_option("--mark", a.mark_name, "Colour of the mark")->check(name_of_any<InkColor>());
+  verb->add_option("--mark", a.mark_name, "Colour of the mark; none: the cloud alone")
+      ->check(CLI::IsMember({"red", "green", kNoMark}));
   verb->add_option("--edge", a.edge_name, "Contour of the mark: its middle, or its inner border")
       ->check(name_of_any<LineEdge>());
   verb->add_option(

@@ -129,6 +129,21 @@ double mm_per_pixel(const OrganizedCloud& cloud, const std::filesystem::path& na
   return middle;
 }
 
+/// What has depth, with the pixels' colours.
+TriMesh colored_cloud(const Scene& scene) {
+  TriMesh cloud;
+  DataArray red{1, {}}, green{1, {}}, blue{1, {}};
+  for (std::size_t i = 0; i < scene.cloud.points.size(); ++i) {
+    if (scene.cloud.is_measured[i] == 0) continue;
+    cloud.vertices.push_back(scene.cloud.points[i]);
+    red.values.push_back(scene.picture.rgb[3 * i]);
+    green.values.push_back(scene.picture.rgb[3 * i + 1]);
+    blue.values.push_back(scene.picture.rgb[3 * i + 2]);
+  }
+  cloud.point_data = {{"red", red}, {"green", green}, {"blue", blue}};
+  return cloud;
+}
+
 struct Tracked {
   MarkedLine line;
   LiftedLine lifted;
@@ -142,18 +157,10 @@ Tracked tracked(const Scene& scene, const TrackRequest& request) {
   const LineSettings line{.edge = request.edge,
                           .mm_per_pixel = mm_per_pixel(scene.cloud, scene.depth_name),
                           .max_gap_mm = request.max_gap_mm};
-  result.line = find_marked_line(scene.picture, request.mark, line, request.color);
+  result.line = find_marked_line(scene.picture, *request.mark, line, request.color);
   result.lifted =
       lift_to_space(result.line.points_px, result.line.is_closed, scene.cloud, request.lift, scene.depth_name);
-  DataArray red{1, {}}, green{1, {}}, blue{1, {}};
-  for (std::size_t i = 0; i < scene.cloud.points.size(); ++i) {
-    if (scene.cloud.is_measured[i] == 0) continue;
-    result.cloud.vertices.push_back(scene.cloud.points[i]);
-    red.values.push_back(scene.picture.rgb[3 * i]);
-    green.values.push_back(scene.picture.rgb[3 * i + 1]);
-    blue.values.push_back(scene.picture.rgb[3 * i + 2]);
-  }
-  result.cloud.point_data = {{"red", red}, {"green", green}, {"blue", blue}};
+  result.cloud = colored_cloud(scene);
   if (result.line.is_closed)
     result.lifted.contour =
         start_farthest_along(counter_clockwise(result.lifted.contour, result.approach), result.start);
@@ -208,7 +215,7 @@ std::optional<std::string> doubt_about(const MarkedLine& line, const TrackReques
 }
 
 nlohmann::json settings_json(const TrackRequest& request) {
-  return {{"mark", to_string(request.mark)},
+  return {{"mark", to_string(*request.mark)},
           {"edge", to_string(request.edge)},
           {"max_gap_mm", request.max_gap_mm},
           {"max_hole_mm", request.lift.max_hole_mm},
@@ -220,10 +227,34 @@ nlohmann::json settings_json(const TrackRequest& request) {
           {"axis", request.plan.axis_mode == AxisMode::SurfaceNormal ? "normal" : "approach"}};
 }
 
+/// A frame without a mark: its cloud alone.
+StepResult see_frame(Scene scene, const TrackRequest& request, const StepContext& context) {
+  Tracked seen;
+  seen.cloud = colored_cloud(scene);
+  if (seen.cloud.vertices.empty()) throw DataError(scene.depth_name, "", "no pixel with depth", "some");
+  if (!request.camera.empty()) {
+    move_to_robot(seen, rigid_transform_in(read_json(request.camera), "T_robot_camera", request.camera));
+    scene.inputs.push_back(request.camera);
+  }
+  require_replaceable(request.output);
+  AtomicFolder target(request.output);
+  write_ply(target.path() / "cloud.ply", seen.cloud, common_specimen_id(scene.inputs));
+  write_manifest(target.path(), manifest_of(context.run, R"({"mark": "none"})", scene.inputs, context.wall_s()));
+  target.commit();
+  StepResult result;
+  result.json["outcome"] = to_string(Outcome::Success);
+  result.json["frame"] = request.camera.empty() ? "camera" : "robot";
+  result.json["mark"] = "none";
+  result.json["cloud_points"] = seen.cloud.vertices.size();
+  result.json["cloud"] = (request.output / "cloud.ply").string();
+  return result;
+}
+
 }  // namespace
 
 StepResult track_mark(const TrackRequest& request, const StepContext& context) {
   Scene scene = request.depth.empty() ? scene_from_ply(request) : scene_from_pictures(request);
+  if (!request.mark) return see_frame(std::move(scene), request, context);
   Tracked found = tracked(scene, request);
   if (!request.camera.empty()) {
     move_to_robot(found, rigid_transform_in(read_json(request.camera), "T_robot_camera", request.camera));
@@ -248,7 +279,7 @@ StepResult track_mark(const TrackRequest& request, const StepContext& context) {
   json["length_mm"] = length_mm(found.lifted.contour);
   json["closed_loop"] = found.line.is_closed;
   json["frame"] = request.camera.empty() ? "camera" : "robot";
-  json["mark"] = to_string(request.mark);
+  json["mark"] = to_string(*request.mark);
   json["width_px"] = found.line.width_px;
   json["max_gap_mm"] = found.line.longest_unseen_mm;
   json["gap_tolerance_mm"] = found.line.gap_tolerance_mm;

@@ -42,6 +42,7 @@ using Json = Calls::Json;
 
 constexpr std::size_t kMostPixels = 20000;  // of a contour that is drawn by hand
 constexpr double kFrameS = 0.04;            // between two pictures of the arm
+constexpr const char* kNoMark = "none";     // on a frame's tissue
 constexpr double kFrameVoxelMm = 1.0;       // one point of a frame's tissue in each cube of this size
 constexpr double kFarMm = 5.0;              // a surface's point this far from every point of a cloud was not seen
 
@@ -262,11 +263,13 @@ std::vector<float> residuals_of(const PointCloud& surface, const Points& cloud) 
   return residuals;
 }
 
-/// The line that `frame` or `incise track` found with a cloud; nothing for another cloud.
+/// The line that was found with a cloud, by `frame` or by `incise track`; nothing for another cloud.
 std::optional<Contour> marked_beside(const fs::path& cloud) {
-  const fs::path marked = cloud.parent_path() / "contour.csv";
-  if (!fs::exists(cloud.parent_path() / "cloud.ply") || !fs::exists(marked)) return std::nullopt;
-  return read_contour(marked);
+  const fs::path of_frame = cloud.parent_path() / "track" / "contour.csv",
+                 of_track = cloud.parent_path() / "contour.csv";
+  if (cloud.filename() == "tissue.ply" && fs::exists(of_frame)) return read_contour(of_frame);
+  if (cloud.filename() == "cloud.ply" && fs::exists(of_track)) return read_contour(of_track);
+  return std::nullopt;
 }
 
 /// The case's edge on a cloud, and how far the points of the marked one lie from it.
@@ -454,24 +457,56 @@ Json Calls::frame(const Json& arguments) {
   };
   request.depth = given("depth");
   request.intrinsics = given("intrinsics");
-  if (arguments.contains("mark")) request.mark = word_argument<InkColor>(arguments, "mark");
+  const bool is_cloud = request.color.extension() == ".ply";
+  if (request.depth.empty() != is_cloud)
+    throw CaseError("request", "depth", is_cloud ? "a depth picture beside a cloud" : "nothing",
+                    is_cloud ? "none: a cloud has its own depth" : "the depth picture of the frame");
+  if (request.intrinsics.empty() != is_cloud)
+    throw CaseError("request", "intrinsics", is_cloud ? "intrinsics beside a cloud" : "nothing",
+                    is_cloud ? "none" : "the cameras' intrinsics (JSON)");
+  if (arguments.value("mark", Json()) == kNoMark)
+    request.mark.reset();
+  else if (arguments.contains("mark"))
+    request.mark = word_argument<InkColor>(arguments, "mark");
   request.is_open = argument_or(arguments, "is_open", "true or false", false);
-  request.output = folder_of_finding(file, "frame_", request.color);
+  const fs::path folder = folder_of_finding(file, "frame_", request.color);
   steps::SurfaceRequest cleaned;
-  cleaned.input = request.output / "cloud.ply";
   cleaned.approach = Vec3::UnitZ();  // a camera looks along its own z
-  cleaned.cleaning.planes = argument_or(arguments, "planes", "a whole number", 1);
+  constexpr std::uint64_t kUsualPlanes = 1, kNoMore = 1000;  // the library says how many it takes
+  cleaned.cleaning.planes = static_cast<int>(
+      std::min(kNoMore, arguments.contains("planes") ? seed_argument(arguments, "planes") : kUsualPlanes));
   cleaned.cleaning.voxel_mm = kFrameVoxelMm;
-  cleaned.output = request.output / "tissue.ply";
   const std::vector<Problem> problems = validate(cleaned.cleaning);
   if (!problems.empty()) throw CaseError("request", problems.front());
-  const Json summary = steps::track_mark(request, step).json;
+  const auto lie_in = [&](const fs::path& place) {
+    request.output = place / "track";
+    cleaned.input = request.output / "cloud.ply";
+    cleaned.output = place / "tissue.ply";
+  };
+  AtomicFolder target(folder);
+  lie_in(target.path());
+  Json summary = steps::track_mark(request, step).json;
   const Json tissue = steps::see_surface(cleaned, step).json;
-  const fs::path drawn = request.output / "found.png";
-  const ColorPicture found = decode_picture(read_text(drawn), drawn);
+  write_manifest(target.path(),
+                 steps::manifest_of(step.run, "{}", {request.color, request.depth, request.intrinsics}, step.wall_s()));
+  target.commit();
+  lie_in(folder);
+  for (const char* name : {"contour", "cloud", "figure"}) {
+    if (summary.contains(name))
+      summary[name] = (request.output / fs::path(summary.at(name).get<std::string>()).filename()).string();
+  }
+  Json found = nullptr, marked = nullptr;
+  if (request.mark) {
+    const fs::path drawn = request.output / "found.png";
+    const ColorPicture picture = decode_picture(read_text(drawn), drawn);
+    found = {{"width", picture.width},
+             {"height", picture.height},
+             {"rgb", blobs_.put("frame.rgb", std::span<const std::uint8_t>(picture.rgb))}};
+    marked = points_json(read_contour(request.output / "contour.csv", summary.at("closed_loop").get<bool>()).points);
+  }
   std::vector<std::string> words{"track", request.color.string()};
   if (!request.depth.empty()) append(words, {request.depth.string(), "--intrinsics", request.intrinsics.string()});
-  append(words, {"--mark", std::string(to_string(request.mark))});
+  append(words, {"--mark", request.mark ? std::string(to_string(*request.mark)) : kNoMark});
   if (request.is_open) words.emplace_back("--open");
   append(words, {"-o", request.output.string()});
   const std::vector<std::string> cleaning{"surface",    cleaned.input.string(),
@@ -481,16 +516,12 @@ Json Calls::frame(const Json& arguments) {
                                           "--voxel-mm", fmt::format("{}", kFrameVoxelMm),
                                           "-o",         cleaned.output.string()};
   return {{"cloud", cleaned.output.string()},
-          {"name", (request.output.filename() / cleaned.output.filename()).string()},
-          {"found",
-           {{"width", found.width},
-            {"height", found.height},
-            {"rgb", blobs_.put("frame.rgb", std::span<const std::uint8_t>(found.rgb))}}},
-          {"mark_mm",
-           points_json(read_contour(request.output / "contour.csv", summary.at("closed_loop").get<bool>()).points)},
+          {"name", (folder.filename() / cleaned.output.filename()).string()},
+          {"found", std::move(found)},
+          {"mark_mm", std::move(marked)},
           {"summary", summary},
           {"points", tissue.at("points")},
-          {"files", files_in(request.output, file.folder)},
+          {"files", files_in(folder, file.folder)},
           {"commands", {command_line(words), command_line(cleaning)}}};
 }
 

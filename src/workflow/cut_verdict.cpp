@@ -12,7 +12,7 @@
 namespace incise {
 namespace {
 
-// Vertices held back to cut.max_step_mm, per step and tet. The limit is for loose bits: sound cuts of 41 000 tets have 5e-5 to 3e-4, a block of
+// Vertices held back to max_step_mm, per step and tet. The limit is for loose bits: sound cuts of 41 000 tets have 5e-5 to 3e-4, a block of
 // tets of 4 mm, whose body lags for no reason in its law, 0.02 to 0.03.
 constexpr double kHeldBackShare = 0.002;
 constexpr double kInvertedShare = 1e-4;  // of the tets: one or two slivers at the kerf's teeth do not move a line that is measured over many
@@ -140,7 +140,7 @@ void judge_convergence(const SimulatedCut& cut, Verdict& verdict) {
   const double held_back = static_cast<double>(incision.held_back_vertices) / std::max(1.0, static_cast<double>(incision.steps.size() * cut.tets));
   if (held_back > kHeldBackShare) {
     verdict.add("convergence", held_back,
-                fmt::format("vertices were held back to cut.max_step_mm {} times in {} steps: the body lags for "
+                fmt::format("vertices were held back in their motion {} times in {} steps: the body lags for "
                             "numerical reasons only",
                             incision.held_back_vertices, incision.steps.size()));
   }

@@ -43,6 +43,18 @@ double mean_distance_from_mean(const std::vector<double>& values) {
   return distance;
 }
 
+/// The progress of this cut under a name of its own: it is none of the path's.
+class OwnStage : public Monitor {
+ public:
+  explicit OwnStage(Monitor& outer) : outer_(outer) {}
+  void message(Severity severity, std::string_view text) override { outer_.message(severity, text); }
+  void progress(std::string_view, double fraction) override { outer_.progress("checking the mesh", fraction); }
+  [[nodiscard]] bool is_cancelled() const override { return outer_.is_cancelled(); }
+
+ private:
+  Monitor& outer_;
+};
+
 }  // namespace
 
 std::optional<double> mesh_floor_mm(const Case& settings, const TissueModel& model, const TissueState& stretched,
@@ -52,7 +64,8 @@ std::optional<double> mesh_floor_mm(const Case& settings, const TissueModel& mod
   frozen.cut = without_drag(settings);
   frozen.plan.power_w = frozen.cut.reference_power_w;
   frozen.frames = 0;
-  const SimulatedCut cut = cut_and_judge(frozen, held, rest_state(held), path, path, workers, monitor);
+  OwnStage stage(monitor);
+  const SimulatedCut cut = cut_and_judge(frozen, held, rest_state(held), path, path, workers, stage);
   if (cut.outcome == Outcome::Cancelled) throw Cancelled("the cut for the mesh-resolution limit was interrupted");
   const bool is_centerline = settings.compensation.observable == ContourKind::Centerline;
   const Evaluation& seen = is_centerline ? cut.centerline : cut.inner_edge;

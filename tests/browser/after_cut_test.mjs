@@ -63,7 +63,17 @@ test("a cut that was made is measured, and one to be made is laid on a cloud", a
     await page.waitForSelector("[data-by-hand]");
     const kept = JSON.parse(fs.readFileSync(path.join(inside, "photograph_cut", "evaluation.json"), "utf8"));
     assert.deepEqual(kept.by_hand, ["incision"]);
+    assert.ok((await page.textContent("[data-by-hand]")).includes("Found automatically: the tumour's edge"));
     await assertAccessible(page, "photograph");
+  });
+
+  await step("of two contours that were drawn by hand it is said that nothing was found", async () => {
+    await page.click("[data-line=tumor_edge] [data-do=correct]");
+    await page.click("[data-do=measure]");
+    await until(page, () => window.incise.state.photograph.by_hand.length === 2);
+    await idle(page);
+    assert.ok((await page.textContent("[data-by-hand]")).includes("Nothing was found automatically"));
+    assert.equal(await page.locator("[data-section=photo-result] .verdict:has-text('this measurement')").count(), 0);
   });
 
   await step("a cloud for practice is registered, and is called made up wherever it is shown", async () => {
@@ -78,6 +88,7 @@ test("a cut that was made is measured, and one to be made is laid on a cloud", a
     assert.ok((await page.locator("[data-virtual=yes]").count()) >= 2);
     assert.ok((await coverage(page)).scene > 0.02, "the cloud is drawn");
     assert.ok(Number(await page.getAttribute(".residual-scale", "data-top")) > 0);
+    assert.equal(await page.locator("[data-edges]").count(), 0, "no edge is marked on a cloud without colours");
     await assertAccessible(page, "register");
   });
 
@@ -100,6 +111,18 @@ test("a cut that was made is measured, and one to be made is laid on a cloud", a
     const laid = JSON.parse(fs.readFileSync(path.join(inside, "on_tissue", "path", "path.json"), "utf8"));
     assert.deepEqual([laid.frame, laid.specimen_is], ["robot", "virtual"]);
     assert.equal(fs.existsSync(path.join(inside, "on_tissue", "program.script")), gate.open);
+  });
+
+  await step("the edge is laid on it for a mark, beside the incision", async () => {
+    const before = await stateOf(page, "lay");
+    await page.click("[data-do=lay-mark]");
+    await until(page, () => window.incise.state.mark);
+    await idle(page);
+    assert.deepEqual(await stateOf(page, "lay"), before);
+    assert.ok((await page.textContent("[data-marked]")).includes("to be marked"));
+    await goTo(page, "program");
+    await idle(page);
+    assert.equal(await page.locator("[data-program-of]").count(), 3);
   });
 
   await step("on a phone nothing has to be pushed sideways", async () => {

@@ -77,7 +77,7 @@ async function assertViews(page, step, isPhone) {
 /** Notes the progress and the moments that the page shows from now on. */
 function watchRun(page) {
   return page.evaluate(() => {
-    const seen = {progress: [], moments: [], parts: [], needle: false};
+    const seen = {progress: [], moments: [], parts: [], within: [], needle: false};
     const note = (list, value) => value !== undefined && list.at(-1) !== Number(value) && list.push(Number(value));
     window.seenOfRun = seen;
     new MutationObserver(() => {
@@ -87,6 +87,10 @@ function watchRun(page) {
       if (moment) note(seen.moments, moment.dataset.moment);
       const parts = [...document.querySelectorAll("[data-part]")].map((part) => `${part.dataset.part}: ${part.textContent}`).join("|");
       if (parts && seen.parts.at(-1) !== parts) seen.parts.push(parts);
+      if (bar && bar.dataset.progress) {
+        const now = document.querySelector("[data-part=now]").textContent;
+        seen.within.push([`${now}: ${bar.querySelector("p").textContent.split(",")[0]}`, Number(bar.dataset.progress)]);
+      }
       seen.needle ||= window.incise.views.scene.layers.has("tool");
     }).observe(document.body, {subtree: true, childList: true, attributes: true, characterData: true});
   });
@@ -97,15 +101,50 @@ function assertParts(seen) {
   const now = seen.map((parts) => parts.split("|").filter((part) => part.startsWith("now: ")));
   assert.ok(now.every((parts) => parts.length === 1), seen.join("\n"));
   const names = now.map(([part]) => /[A-Z][a-z ]*\d?/.exec(part)[0]).filter((name, k, all) => name !== all[k - 1]);
-  const wanted = ["Preparation", "As planned", "Pass 1", "Pass 2", "Pass 3", "Pass 4", "Pass 5", "Pass 6", "Pass 7", "Program and report"];
+  const passes = Array.from({length: 7}, (_, k) => `Pass ${k + 1}`),
+    wanted = ["Preparation", "As planned", "Check of the mesh", ...passes, "Program and report"];
   assert.deepEqual(names, wanted.filter((name) => names.includes(name)), seen.join("\n"));
   assert.ok(names.includes("As planned") && names.includes("Pass 1"), seen.join("\n"));
   assert.match(seen[0], /ahead: . Passes of the correction/);
 }
 
-/** The texts of the reasons that are shown. */
+/** Fails where the progress of a part's stage runs back. @param seen  [[part and stage, progress]] in their order */
+function assertForwards(seen) {
+  const last = new Map();
+  for (const [part, progress] of seen) {
+    assert.ok(progress >= (last.get(part) || 0), `${part}: ${progress} after ${last.get(part)}`);
+    last.set(part, progress);
+  }
+}
+
+/** The texts of the reasons that are shown, without the page's own names for the settings that they name. */
 function shownReasons(page) {
-  return page.locator("[data-section=verdict] .reason").allTextContents();
+  return page.locator("[data-section=verdict] .reason").evaluateAll((nodes) =>
+    nodes.map((node) => {
+      const copy = node.cloneNode(true);
+      for (const name of copy.querySelectorAll(".field-name")) name.remove();
+      return copy.textContent;
+    }),
+  );
+}
+
+/** The ids of a verdict's reasons, as docs/models/verdict.md lists them. */
+function documentedReasons() {
+  const text = fs.readFileSync(new URL("../../docs/models/verdict.md", import.meta.url), "utf8");
+  return [...text.matchAll(/^\| `([a-z_]+)` \| (?:refused|caution) \|/gm)].map(([, id]) => id).sort();
+}
+
+/** A place of the specimen in the robot's coordinates. */
+function moved(pose, point) {
+  return pose.slice(0, 3).map((row) => row[0] * point[0] + row[1] * point[1] + row[2] * point[2] + row[3]);
+}
+
+/** Waits until the case holds another place under the robot. @returns it */
+async function newPose(page, before) {
+  const isOther = (old) => JSON.stringify(window.incise.state.case.settings.robot.T_robot_sim) !== old;
+  await until(page, isOther, JSON.stringify(before));
+  await fresh(page, "plan");
+  return stateOf(page, "case.settings.robot.T_robot_sim");
 }
 
 async function shownNumbers(page) {
@@ -158,6 +197,19 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await assertAccessible(page, "open, no case");
   });
 
+  await step("for every reason that a verdict can have, the page knows what a person can do, and where", async () => {
+    const [ways, steps] = await page.evaluate(async () => {
+      const {kWaysOut, kStepTitles} = await import("/page/words.js");
+      return [kWaysOut, Object.keys(kStepTitles)];
+    });
+    assert.deepEqual(steps, kSteps);
+    assert.deepEqual(Object.keys(ways).sort(), documentedReasons());
+    for (const [id, [text, ...where]] of Object.entries(ways)) {
+      assert.ok(text.length > 20 && where.length, `${id}: ${text}`);
+      for (const name of where) assert.ok(kSteps.includes(name), `${id}: ${name}`);
+    }
+  });
+
   await step("the demo specimen is made, and its slices and skin are drawn where they are", async () => {
     await page.click("[data-do=demo]");
     await page.waitForSelector(".page[data-step=see]");
@@ -165,6 +217,27 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await fresh(page, "tissue");
     assert.equal(await page.textContent(".head .badge"), "virtual specimen");
     for (const [view, share] of Object.entries(await coverage(page))) assert.ok(share > 0.05 && share < 0.9, `${view}: ${share}`);
+  });
+
+  await step("the list of files shows it, as a case without a size", async () => {
+    await goTo(page, "open");
+    await page.waitForSelector("[data-file=virtual_tongue_1]");
+    assert.equal((await page.textContent("[data-file=virtual_tongue_1] .soft")).trim(), "Case");
+    await goTo(page, "see");
+    await settle(page, "see");
+  });
+
+  await step("an empty input says what is taken, and typing replaces what an input holds", async () => {
+    const smoothing = inputIn(page, "surface", "Smoothing");
+    assert.equal(await smoothing.getAttribute("placeholder"), "automatic");
+    const taken = mm(await stateOf(page, "tissue.summary.smoothing_mm"));
+    assert.ok((await page.textContent("[data-section=surface]")).includes(`Automatic: ${taken}`));
+    const radius = inputIn(page, "brush", "Radius of the brush");
+    await radius.click();
+    await page.keyboard.type("3.5");
+    assert.equal(await radius.inputValue(), "3.5");
+    await page.keyboard.press("Enter");
+    await until(page, () => window.incise.state.brush.radius_mm === 3.5);
   });
 
   await step("a slice shows the scan's voxels, with the patient's left on the right", async () => {
@@ -302,6 +375,21 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     assert.ok(shown.includes(mm(await stateOf(page, "stretch.greatest_mm"))), shown);
   });
 
+  await step("the tumour's edge follows the stretch, and says where it is only known at rest", async () => {
+    await fresh(page, "plan");
+    const legend = () => page.locator(".legend-row label").allTextContents();
+    assert.ok((await legend()).includes("tumour's edge"), `${await legend()}`);
+    const edge = await stateOf(page, "plan.edge"),
+      [red, green, blue] = await scenePixel(page, edge[Math.round(edge.length / 3)]);
+    assert.ok(green > red + 60 && green > blue + 15, `green on the stretched tissue: ${[red, green, blue]}`);
+    const scrub = page.locator(".slider:has(label:text-is('Rest to stretched')) input");
+    await scrub.fill("0.5");
+    await until(page, () => window.incise.state.scrub === 0.5);
+    assert.ok((await legend()).includes("tumour's edge, as it was at rest"), `${await legend()}`);
+    await scrub.fill("1");
+    await until(page, () => window.incise.state.scrub === 1);
+  });
+
   await step("the planned path is drawn round the edge and can be hidden", async () => {
     await goTo(page, "plan");
     await fresh(page, "plan");
@@ -323,6 +411,58 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     const hidden = await scenePixel(page, at);
     assert.ok(hidden[0] > shown[0] + 50, `tissue: ${hidden}`);
     await page.check(".legend label:has-text('planned path') input");
+  });
+
+  await step("the place under the robot is a place and a turn; a matrix for what they cannot say", async () => {
+    const first = await stateOf(page, "case.settings.robot.T_robot_sim"),
+      edge = await stateOf(page, "plan.edge"),
+      middle = [0, 1, 2].map((k) => edge.reduce((sum, point) => sum + point[k], 0) / edge.length);
+    const legend = "Middle of the tumour's edge, mm",
+      at = page.locator(`[data-section=robot] fieldset:has(> legend:text-is("${legend}")) input`);
+    for (const [k, value] of moved(first, middle).entries()) {
+      assert.ok(Math.abs(Number(await at.nth(k).inputValue()) - value) < 0.01, `${k}: ${value}`);
+    }
+    await type(at.nth(0), 512);
+    let pose = await newPose(page, first);
+    assert.ok(distance(moved(pose, middle), moved(first, middle).with(0, 512)) < 0.01, `${moved(pose, middle)}`);
+    await type(inputIn(page, "robot", "Turn about the vertical"), 30);
+    pose = await newPose(page, pose);
+    assert.ok(distance(moved(pose, middle), moved(first, middle).with(0, 512)) < 0.01, "it turns about the middle");
+    assert.ok(Math.abs(pose[0][0] - Math.cos(Math.PI / 6)) < 1e-9 && Math.abs(pose[1][0] - 0.5) < 1e-9, `${pose}`);
+
+    const lowest = (of) =>
+      page.evaluate((rows) => {
+        const {vertices} = window.incise.state.stretch.skin;
+        const [a, b, c, d] = rows[2],
+          height = (i) => a * vertices[i] + b * vertices[i + 1] + c * vertices[i + 2] + d;
+        return vertices.reduce((low, _, i) => (i % 3 ? low : Math.min(low, height(i))), Infinity);
+      }, of);
+    const shown = async () => Number(await page.getAttribute("[data-height]", "data-height"));
+    assert.ok(Math.abs((await shown()) - (await lowest(pose))) < 0.01);
+    assert.match(await page.textContent("[data-height]"), /above the table.*has to hold it/);
+    await page.click("[data-do=set-down]");
+    pose = await newPose(page, pose);
+    assert.ok(Math.abs(await lowest(pose)) < 0.01 && Math.abs(await shown()) < 0.01);
+    assert.match(await page.textContent("[data-height]"), /lies on the table/);
+    await type(at.nth(2), 1);
+    pose = await newPose(page, pose);
+    assert.match(await page.textContent("[data-height]"), /below the table.*raise z/);
+
+    const tilted = [[1, 0, 0, 600], [0, 0.8, -0.6, 0], [0, 0.6, 0.8, 300], [0, 0, 0, 1]];
+    const set = async (value) => {
+      const revision = await stateOf(page, "case.revision");
+      const {status} = await studio.call("change", {revision, set: {"robot.T_robot_sim": value}});
+      assert.equal(status, 200);
+    };
+    await set(tilted);
+    await newPose(page, pose);
+    await page.waitForSelector("[data-place=tilted]");
+    assert.equal(await at.count(), 0);
+    assert.equal(await page.locator("[data-matrix] input:visible").count(), 16);
+    await assertAccessible(page, "a tilted specimen");
+    await set(first);
+    await newPose(page, tilted);
+    await page.waitForSelector("[data-place=upright]");
   });
 
   await step("a setting that is refused says so beside its input and is not kept", async () => {
@@ -349,10 +489,11 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await assertAccessible(page, "run, under way");
     await page.waitForSelector(".page[data-step=compare]");
     await settle(page, "compare");
-    const {progress, moments, parts, needle} = await page.evaluate(() => window.seenOfRun);
+    const {progress, moments, parts, within, needle} = await page.evaluate(() => window.seenOfRun);
     assert.ok(progress.length > 2 && Math.min(...progress) >= 0 && Math.max(...progress) <= 1, `progress: ${progress}`);
     assert.ok(moments.length > 2 && needle, `moments: ${moments}`);
     assertParts(parts);
+    assertForwards(within);
   });
 
   await step("verdict, reasons, numbers and program are those of the study", async () => {

@@ -13,9 +13,11 @@ import {
   idle,
   inputIn,
   knownVoxels,
+  look,
   newPage,
   openStudio,
   readPoints,
+  scenePixel,
   skip,
   slicePixel,
   startBrowser,
@@ -49,7 +51,7 @@ function lastHold(page) {
 
 async function addHold(page, kind, within) {
   const count = await page.locator(".holds > li").count();
-  await page.click(`button:text-is("Add ${kind}")`);
+  await page.click(`[data-add=${kind}]`);
   await until(page, (before) => (window.incise.state.case.settings.specimen.constraints || []).length === before + 1, count);
   await idle(page); // as slow as a person: what is shown next is what the server gives
   if (within) await type(lastHold(page).locator('.number:has(label:text-is("Within")) input'), within);
@@ -69,10 +71,21 @@ test("the head CT's slices become a case with a planned path", async (t) => {
     await page.waitForSelector("[data-section=files] select");
     const root = await page.locator("[data-section=files] select option:not([value=''])").nth(1).getAttribute("value");
     await page.selectOption("[data-section=files] select", root);
-    await page.click("button.file:has-text('slices')");
+    const row = page.locator("button.file:has-text('slices')");
+    assert.equal((await row.locator(".soft").textContent()).trim(), "Scan", "a folder has no size");
+    await row.click();
+    await page.waitForSelector("[data-section=create] fieldset");
+    await typeAll(page, "create", "Spacing, mm", [1, 1, 10]);
+    assert.equal(await page.getAttribute("[data-section=create] [data-odd]", "data-odd"), "2340"); // mm: of a head
     await typeAll(page, "create", "Spacing, mm", [1, 1, 1]);
+    assert.match(await page.textContent("[data-section=create]"), /234 slices of 1 mm: 234 mm/);
+    assert.equal(await page.locator("[data-odd]").count(), 0);
     await typeAll(page, "create", "HU from grey value", [16, -1024]);
     await type(page.locator("[data-section=create] input[type=text]"), "tongue");
+    const place = await page.textContent("[data-section=create] [data-made-as=tongue]");
+    assert.ok(place.includes(`${fs.realpathSync(folder)}/tongue`), place);
+    const choice = page.locator("[data-section=create] .number:has(label:text-is('Make it in')) select option");
+    assert.deepEqual(await choice.allTextContents(), [folder, scans].map((one) => fs.realpathSync(one)));
     await page.click("[data-do=create]");
     await page.waitForSelector(".page[data-step=see]");
     await until(page, () => window.incise.state.scan);
@@ -81,9 +94,18 @@ test("the head CT's slices become a case with a planned path", async (t) => {
     assert.deepEqual(fs.readdirSync(scans), ["slices"]);
   });
 
-  await step("box, window, seed and surface give the tongue", async () => {
+  await step("the page says how large the scan is, and a new box about the crosshair holds a tongue", async () => {
+    assert.equal(await page.getAttribute("[data-extent]", "data-extent"), "512 512 234");
+    assert.equal(await page.locator("[data-odd]").count(), 0);
+    await typeAll(page, "picture", "Crosshair, mm", [247, 190, 20]);
     await page.click("[data-do=box]");
     await until(page, () => window.incise.state.case.settings.ct.roi_box_mm);
+    const [low, high] = await stateOf(page, "case.settings.ct.roi_box_mm");
+    assert.deepEqual([low.slice(0, 2), high], [[212, 155], [282, 225, 55]]);
+    assert.equal(low[2], 0, "clipped to the scan");
+  });
+
+  await step("box, window, seed and surface give the tongue", async () => {
     await typeAll(page, "box", "Low corner, mm", [223, 150, 42]);
     await typeAll(page, "box", "High corner, mm", [273, 208, 77]);
     await stored(page, "ct.roi_box_mm", [[223, 150, 42], [273, 208, 77]]);
@@ -98,6 +120,29 @@ test("the head CT's slices become a case with a planned path", async (t) => {
     await fresh(page, "tissue");
     const {voxels} = await stateOf(page, "tissue.summary");
     assert.ok(voxels > 40_000 && voxels < 90_000, `${voxels} voxels of 1 mm3`);
+  });
+
+  await step("what the box has cut has a colour of its own", async () => {
+    const on = await page.evaluate(() => {
+      const {tissue, case: open} = window.incise.state,
+        {vertices} = tissue.skin,
+        left = open.settings.ct.roi_box_mm[1][0];
+      let best = null; // of the vertices on the box's left face the one that is nearest to its middle
+      for (let i = 0; i < vertices.length; i += 3) {
+        const [x, y, z] = vertices.slice(i, i + 3),
+          off = Math.abs(y - 190) + Math.abs(z - 60);
+        if (Math.abs(x - left) < 0.3 && (!best || off < best.off)) best = {at: [x, y, z], off};
+      }
+      return best.at;
+    });
+    await look(page, "Left");
+    assert.ok(await page.locator(".legend label:has-text('cut by the region box')").count());
+    const [red, green, blue] = await scenePixel(page, on);
+    assert.ok(blue > red, `slate where the box cuts: ${[red, green, blue]}`);
+    await look(page, "Top");
+    const tissue = await scenePixel(page, kMiddle);
+    assert.ok(tissue[0] > tissue[2] + 20, `the tissue's own surface: ${tissue}`);
+    await look(page, "Oblique");
   });
 
   await step("the slices show the scan, and the tongue in it", async () => {
@@ -160,6 +205,9 @@ test("the head CT's slices become a case with a planned path", async (t) => {
     assert.ok(points.length > 20 && (await stateOf(page, "plan.path.closed")));
     const pages = await page.textContent("[data-section=planned]");
     assert.match(pages, new RegExp(`${points.length} waypoints`));
+    for (const {id} of await stateOf(page, "plan.verdict.reasons")) {
+      assert.ok(await page.locator(`[data-section=planned] [data-way-out=${id}]`).count(), `what to do about ${id}`);
+    }
     const refused = "answer 422: /api/call/body"; // of a body that one constraint alone holds
     assert.deepEqual(page.complaints.filter((text) => text !== refused), []);
   });

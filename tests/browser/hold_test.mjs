@@ -2,7 +2,23 @@
 
 import assert from "node:assert/strict";
 import {test} from "node:test";
-import {Studio, chain, fresh, goTo, idle, newPage, openStudio, startBrowser, stateOf, temporaryFolder, type, until, writeBlock} from "./support.mjs";
+import {
+  Studio,
+  assertAccessible,
+  chain,
+  fresh,
+  goTo,
+  idle,
+  inputIn,
+  newPage,
+  openStudio,
+  startBrowser,
+  stateOf,
+  temporaryFolder,
+  type,
+  until,
+  writeBlock,
+} from "./support.mjs";
 
 const kColoured = 8; // constraints
 
@@ -12,7 +28,7 @@ function settingOf(page) {
 
 async function add(page, kind) {
   const before = (await settingOf(page)) || [];
-  await page.click(`button:text-is("Add ${kind}")`);
+  await page.click(`[data-add=${kind}]`);
   await until(page, (count) => (window.incise.state.case.settings.specimen.constraints || []).length > count, before.length);
   await idle(page);
 }
@@ -83,5 +99,113 @@ test("constraints that do not hold the body yet are no failure", async (t) => {
     assert.equal(await more.count(), 1);
     await fresh(page, "body");
     assert.deepEqual(page.complaints, []);
+  });
+});
+
+/** Lets the server answer a call only once the returned function is called. */
+async function holdBack(page, call) {
+  let release = null;
+  const released = new Promise((resolve) => {
+    release = resolve;
+  });
+  const address = `**/api/call/${call}`;
+  await page.route(address, async (route) => {
+    await released;
+    await route.continue();
+  });
+  return async () => {
+    release();
+    await page.unroute(address, {behavior: "wait"});
+  };
+}
+
+test("the default hold is said in words, and a pull that is too long as well", async (t) => {
+  const folder = temporaryFolder(t);
+  writeBlock(folder);
+  const studio = await Studio.start(t, folder, "case"),
+    page = await newPage(await startBrowser(t)),
+    step = chain(t);
+
+  await step("what holds the body by default is said, with the library's own numbers", async () => {
+    await openStudio(page, studio);
+    await until(page, () => window.incise.state.case);
+    await goTo(page, "hold");
+    await fresh(page, "body");
+    page.complaints.splice(0); // of the scan and the tissue that a block does not have
+    const [clamp, pull, support] = await page.locator("[data-default] li").allTextContents();
+    const found = await stateOf(page, "body.constraints");
+    const {within_mm: clamped} = found[0].setting.where.end,
+      {displacement_mm: way} = found[1].setting;
+    assert.ok(clamp.includes(`The back end (${clamped} mm) is clamped`), clamp);
+    assert.ok(clamp.includes(`${found[0].vertices} vertices`), clamp);
+    assert.ok(pull.includes(`is pulled ${-way[1]} mm forwards`), pull);
+    assert.match(support, /rests on a plane/);
+  });
+
+  await step("it can be written into the case; a count of earlier settings says that it is one", async () => {
+    const counts = (await stateOf(page, "body.constraints")).map((one) => one.vertices);
+    const release = await holdBack(page, "body");
+    await page.click("[data-do=own-constraints]");
+    await until(page, () => (window.incise.state.case.settings.specimen.constraints || []).length === 3);
+    await page.waitForSelector("[data-stale]");
+    assert.deepEqual(
+      await page.locator("[data-stale]").evaluateAll((nodes) => nodes.map((node) => Number(node.dataset.stale))),
+      counts.slice(0, 2),
+    );
+    await release();
+    await fresh(page, "body");
+    assert.equal(await page.locator("[data-stale]").count(), 0);
+    assert.deepEqual((await stateOf(page, "body.constraints")).map((one) => one.vertices), counts);
+  });
+
+  await step("a pull that the mesh cannot follow is explained, with what to try and what incise reports", async () => {
+    const legend = '> legend:text-is("Displacement, mm")',
+      way = page.locator(".holds > li").nth(1).locator(`fieldset:has(${legend}) input`);
+    await type(way.nth(1), -400);
+    await until(page, () => window.incise.state.case.settings.specimen.constraints[1].displacement_mm[1] === -400);
+    await fresh(page, "body");
+    await page.click("[data-do=stretch]");
+    await fresh(page, "stretch");
+    const note = await stateOf(page, "stretch.note"),
+      said = page.locator("[data-section=stretch] [data-unstretched]");
+    assert.ok(note, "400 mm are too much for a block of a few centimetres");
+    const text = await said.textContent();
+    assert.match(text, /could not be stretched/);
+    assert.match(text, /Pull less/);
+    for (const part of note.split(/specimen.constraints|displacement_mm/)) {
+      assert.ok(text.includes(part.trim()), `${part} in ${text}`);
+    }
+    assert.match(text, /displacement_mm \(Displacement\)/);
+    assert.deepEqual(page.complaints, []);
+    await assertAccessible(page, "an unfollowed pull");
+  });
+
+  await step("step Plan says the same, and leads back", async () => {
+    await goTo(page, "plan");
+    await page.waitForSelector(".panel [data-unstretched]");
+    await idle(page);
+    await page.click("[data-unstretched] [data-to=hold]");
+    await page.waitForSelector(".page[data-step=hold]");
+    await idle(page);
+    assert.ok(page.complaints.splice(0).every((text) => text === "answer 422: /api/call/plan"));
+  });
+
+  await step("what the tissue is can be set here", async () => {
+    await page.click("[data-section=tissue] summary");
+    const modulus = inputIn(page, "tissue", "Young's modulus"),
+      {material} = await stateOf(page, "case.settings.specimen");
+    assert.equal(Number(await modulus.inputValue()), material.youngs_modulus_kpa);
+    await type(modulus, 35);
+    await until(page, () => window.incise.state.case.settings.specimen.material.youngs_modulus_kpa === 35);
+    await type(inputIn(page, "tissue", "Poisson's ratio"), 0.9);
+    await page.waitForSelector("[data-section=tissue] .problem");
+    assert.match(await page.textContent("[data-section=tissue] .problem"), /0\.9/);
+    await idle(page);
+    const elsewhere = await page.locator("[data-section=constraints] .problem").count();
+    assert.equal(elsewhere, 0, "it stands beside its input alone");
+    await type(inputIn(page, "tissue", "Poisson's ratio"), 0.45);
+    await until(page, () => window.incise.state.case.settings.specimen.material.poissons_ratio === 0.45);
+    await idle(page);
+    assert.deepEqual(page.complaints.splice(0), ["answer 422: /api/call/change"]);
   });
 });

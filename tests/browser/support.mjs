@@ -170,12 +170,23 @@ export async function newPage(browser, options = {}) {
     note(`dialog: ${dialog.message()}`);
     await dialog.dismiss();
   });
+  if (process.env.INCISE_PAGE_FOLDER) await servePagesFrom(page, process.env.INCISE_PAGE_FOLDER);
   await page.addInitScript(() => {
     document.addEventListener("securitypolicyviolation", (event) => {
       console.error(`policy: ${event.violatedDirective} ${event.blockedURI}`);
     });
   });
   return page;
+}
+
+// Modules and style sheet from a folder in place of those built into the command: to try a page without a build.
+function servePagesFrom(page, folder) {
+  const folders = [folder, path.join(folder, "../../report/page")]; // whose viewer the studio shares
+  return page.route("**/page/*", (route) => {
+    const name = path.basename(new URL(route.request().url()).pathname);
+    const file = folders.map((one) => path.join(one, name)).find((one) => fs.existsSync(one));
+    return file ? route.fulfill({path: file}) : route.continue();
+  });
 }
 
 /** Opens a studio's address and waits until the page is connected. */

@@ -219,7 +219,7 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     await goTo(page, "hold");
     await fresh(page, "body");
     for (const count of [1, 2]) {
-      await page.click("button:text-is('Add fixed')"); // the first holds the back
+      await page.click("[data-add=fixed]"); // the first holds the back
       await until(page, (n) => (window.incise.state.case.settings.specimen.constraints || []).length === n, count);
     }
     await page.locator(".hold >> nth=1").locator("select").first().selectOption("patch");
@@ -302,10 +302,7 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     const tets = await stateOf(page, "body.tets");
     assert.ok(tets > 100, `${tets} tets`);
     fs.copyFileSync(path.join(folder, "block_case", "body.vtu"), path.join(folder, "body.vtu"));
-    await goTo(page, "open");
-    await page.reload(); // lists the folder anew
-    await page.waitForSelector(".page[data-step=see]");
-    await goTo(page, "open");
+    await goTo(page, "open"); // lists the folder as it is now
     await choose(page, "body.vtu");
     await page.click("[data-do=create]");
     await page.waitForSelector("[data-section=mesh]");

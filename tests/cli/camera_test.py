@@ -229,6 +229,14 @@ class TrackTest(CommandTest):
         self.assertFalse(json.loads((self.out / "path.json").read_text())["closed"])
         self.assertAlmostEqual(result["length_mm"], 1.5 * math.pi * 10.0, delta=1.0)
 
+    def test_a_frame_without_a_mark_gives_its_cloud(self):
+        marked = self.json_of(*self.scene())
+        result = self.json_of(*self.scene(), "--mark", "none")
+        self.assertEqual((result["mark"], result["cloud_points"]), ("none", marked["cloud_points"]))
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()), ["cloud.ply", "manifest.json"])
+        done = self.incise(*self.scene(), "--mark", "none", "--camera", "mount.json", "--plan")
+        self.assert_refused(done, BAD_CASE, "--plan: found --mark none")
+
     def test_a_hole_in_the_depth_is_bridged_or_told(self):
         ring_px = round(10.0 / PIXEL_MM)
         result = self.json_of(*self.scene(hole=(160 + ring_px, 120, 4)), "--max-hole-mm", 3)

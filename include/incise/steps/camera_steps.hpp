@@ -21,7 +21,7 @@ struct TrackRequest {
   std::filesystem::path depth;       ///< picture; empty with a cloud
   std::filesystem::path intrinsics;  ///< JSON; empty with a cloud
   std::filesystem::path camera;      ///< JSON with T_robot_camera; empty: results in the colour camera's frame
-  InkColor mark = InkColor::Green;
+  std::optional<InkColor> mark = InkColor::Green;  ///< absent: none is looked for, and the cloud is all
   LineEdge edge = LineEdge::Middle;
   double max_gap_mm = LineSettings{}.max_gap_mm;  ///< a ring with a longer gap is open
   LiftSettings lift;
@@ -31,7 +31,7 @@ struct TrackRequest {
   bool has_plan = false;                                ///< also plan an incision; only with `camera`
   double margin_mm = PlanSettings{}.lateral_margin_mm;  ///< from the mark to the incision; 0: along the mark
   PlanSettings plan;                                    ///< depth, speed, waypoints and axis of the incision
-  std::filesystem::path output;                         ///< folder: contour.csv, cloud.ply, found.png, path.json
+  std::filesystem::path output;                         ///< folder: contour.csv, cloud.ply, found.png, path.json; without a mark cloud.ply
 };
 /// Not acceptable: a mark that is closed where an open one was asked for, or the other way round. @throws DataError,
 /// CaseError

@@ -1,8 +1,20 @@
 // What the page asks of the server, and how answers reach the state.
 
 import {call, load} from "./api.js";
-import {state, update, hasVoxels, isFresh, newBrush, newCloud, newPatch, newPhoto, setting} from "./store.js";
+import {
+  state,
+  update,
+  hasVoxels,
+  isFresh,
+  newBrush,
+  newCloud,
+  newFraming,
+  newPatch,
+  newPhoto,
+  setting,
+} from "./store.js";
 import {argumentsOf} from "./photo_settings.js";
+import {basisOf, differences, freeLetter, isKept} from "./kept.js";
 import {middleOf, minus, plus, voxelAt} from "./geometry.js";
 
 const kDerived = ["tissue", "body", "stretch", "plan"];
@@ -59,7 +71,8 @@ async function reload() {
 export function takeCase(found, isOther) {
   // What a person accepted were cautions about the case as it was.
   const isSame = !isOther && state.case && state.case.revision === found.revision;
-  update({case: found, problems: {}, ...(isSame ? {} : {accept: [], acceptLaid: []})});
+  update({case: found, problems: {}, ...(isSame ? {} : {accept: [], acceptLaid: [], acceptMark: []})});
+  dropForeign();
   if (!isOther) return;
   for (const name of Object.keys(tickets)) tickets[name] += 1; // answers about the case before are of no use
   update({
@@ -80,6 +93,12 @@ export function takeCase(found, isOther) {
   goTo("see");
 }
 
+// A kept result of another case, tissue or tumour's edge cannot be laid over this one's.
+function dropForeign() {
+  const kept = state.kept.filter((one) => one.basis === basisOf(state.case));
+  if (kept.length < state.kept.length) update({kept, keptDropped: state.kept.length - kept.length});
+}
+
 // Of the steps after the run: without a photograph, a registration and an arm.
 function nothingMeasured() {
   return {
@@ -87,12 +106,15 @@ function nothingMeasured() {
     photograph: null,
     photo: newPhoto(),
     cloud: newCloud(),
+    framing: newFraming(),
+    frame: null,
     register: null,
-    lay: null,
-    acceptLaid: [],
-    arm: null,
-    armOf: "run",
+    ...nothingLaid(),
   };
+}
+
+function nothingLaid() {
+  return {lay: null, acceptLaid: [], mark: null, acceptMark: [], arm: null, armOf: "run"};
 }
 
 let scanning = null; // the scan on its way: it comes before the tissue, which may take long without a region box
@@ -115,12 +137,15 @@ function firstPlace(grid) {
 /** Opens, makes or virtually makes a case: the calls `open`, `create` and `demo`. */
 export async function begin(name, args) {
   const found = await ask(name, args);
-  if (found) takeCase(found, true);
+  if (!found) return;
+  takeCase(found, true);
+  list(); // its folder may be in the one that is listed
 }
 
-/** Lists a folder of the server. */
+/** Lists a folder of the server; without one that which is listed, as it is now, or the start's first. */
 export async function list(folder) {
-  const files = await ask("files", folder ? {folder} : {});
+  const here = folder || (state.files && state.files.folder.id);
+  const files = (await ask("files", here ? {folder: here} : {})) || (here && !folder && (await ask("files")));
   if (files) update({files});
 }
 
@@ -141,14 +166,15 @@ export function goTo(step) {
 
 const tickets = {};
 
-/** Asks for a derived result; an answer that a newer question has overtaken is dropped. */
-export async function refresh(name, args = {}) {
-  const ticket = (tickets[name] || 0) + 1;
-  tickets[name] = ticket;
-  const isLast = () => tickets[name] === ticket;
+/** Asks for a derived result; an answer that a newer question has overtaken is dropped.
+ *  @param as  the state's name for the result   @param about  what is kept with it */
+export async function refresh(name, args = {}, as = name, about = {}) {
+  const ticket = (tickets[as] || 0) + 1;
+  tickets[as] = ticket;
+  const isLast = () => tickets[as] === ticket;
   const revision = state.case.revision;
   const result = await ask(name, args, isLast);
-  if (result && isLast()) update({[name]: {...withTriangles(result), revision}});
+  if (result && isLast()) update({[as]: {...withTriangles(result), revision, ...about}});
   return isLast() ? result : null;
 }
 
@@ -160,16 +186,24 @@ function withTriangles(result) {
 
 /** Computes what the step shows and what is not there yet for these settings. */
 export async function refreshStep() {
-  const step = state.step;
+  const step = state.step,
+    wasRunning = Boolean(state.busy.run);
   await scanning;
   for (const name of needsOf(step)) {
     if (!state.case || state.step !== step) return;
+    if (state.busy.run && !wasRunning) return; // the run that has begun meanwhile has the output folder to itself
     if (isFresh(name) || isFailed(name)) continue;
     const revision = state.case.revision;
     if (!(await refresh(name)) && state.case.revision === revision) break;
   }
   if (step === "edge" && state.step === step && isFailed("tissue") && !state.body && !isFailed("body")) refresh("body");
-  if (step === "program" && state.step === step && !state.arm && programOf(state.armOf)) playProgram(state.armOf);
+  if (step === "program" && state.step === step && !state.arm) playFirst();
+}
+
+// The program that was played last, where it is still there; else the first.
+function playFirst() {
+  const of = programOf(state.armOf) ? state.armOf : ["run", "tissue", "mark"].find(programOf);
+  if (of) playProgram(of);
 }
 
 // A body that is no part of a scan has no tissue to find: its mesh is drawn on instead.
@@ -191,24 +225,22 @@ export async function stop(name) {
 }
 
 let pending = {};
-let timer = 0;
 let isSending = false;
 
-/** Sets settings {key: value}: shown at once, sent after a moment without further changes. */
+/** Sets settings {key: value}: shown at once, and sent; what is set while a change is under way goes with the next. */
 export function change(set) {
   Object.assign(pending, set);
   update({drafts: {...state.drafts, ...set}});
-  clearTimeout(timer);
-  timer = setTimeout(send, 40);
+  send();
 }
 
 async function send() {
   if (isSending) return;
   isSending = true;
   while (Object.keys(pending).length) {
+    await overtake();
     const set = pending;
     pending = {};
-    await overtake();
     const found = await ask("change", {revision: state.case.revision, set});
     update({drafts: withoutSent(state.drafts, set), refused: found ? {} : {...state.refused, ...set}});
     if (found) takeCase(found, false);
@@ -249,16 +281,58 @@ export function runAccepting() {
 }
 
 async function runWith(acceptance) {
+  if (!(await allSent())) return;
   update({messages: [], moment: null, progress: {...state.progress, run: null}, accept: acceptance.accept || []});
-  update({arm: null, armOf: "run", lay: null}); // a run removes what was laid
-  const result = await refresh("run", acceptance);
-  if (!result) return;
-  goTo(state.step === "program" ? "program" : "compare");
+  update(nothingLaid()); // a run removes what was laid
+  const about = {settings: state.case.settings, basis: basisOf(state.case)};
+  const result = await refresh("run", acceptance, "run", about);
+  askAgain();
+  if (result) goTo(state.step === "program" ? "program" : "compare");
+  else refreshStep();
 }
 
-/** The text of a program, if there is one. @param of  "run", or "tissue": the one that was laid on the cloud */
+// A setting that was typed just now belongs to what is run next. @returns false where the server refused one
+async function allSent() {
+  const waiting = Object.keys(pending);
+  while (isSending || Object.keys(pending).length) await new Promise((resolve) => setTimeout(resolve, 20));
+  return !waiting.some((key) => key in state.refused);
+}
+
+// What was refused because a run was under way may be asked for once more.
+function askAgain() {
+  for (const name of kPlanned) setProblem(name, null);
+}
+
+/** Keeps the run's result beside those that follow, and runs the case with its settings as they are now. */
+export async function keepAndRun() {
+  if (!(await allSent())) return;
+  keep();
+  await run();
+}
+
+function keep() {
+  const {run: result, kept} = state,
+    letter = freeLetter(kept);
+  if (!result || !letter || isKept(result)) return;
+  const {settings, basis, as_planned, corrected, outcome, verdict} = result;
+  update({kept: [...kept, {letter, settings, basis, as_planned, corrected, outcome, verdict}], keptDropped: 0});
+}
+
+/** Forgets a kept result. */
+export function dropKept(letter) {
+  update({kept: state.kept.filter((one) => one.letter !== letter)});
+}
+
+/** Writes a kept result's settings to the case again. */
+export function putBack(one) {
+  change(differences(state.case.settings, one.settings));
+}
+
+const kResults = {run: "run", tissue: "lay", mark: "mark"};
+
+/** The text of a program, if there is one. @param of  "run"; "tissue" or "mark": one that was laid on the cloud */
 export function programOf(of) {
-  const result = of === "tissue" ? state.lay : state.run;
+  const result = state[kResults[of]];
   return result && result.program;
 }
 
@@ -290,13 +364,38 @@ export async function makeCloud(seed) {
 
 /** Chooses the cloud to be registered; a registration of another one is dropped. */
 export function chooseCloud(file, isVirtual = false) {
-  update({cloud: {...state.cloud, file, isVirtual}, register: null, lay: null, acceptLaid: [], notice: ""});
+  const cloud = {...state.cloud, file, isVirtual, isOfFrame: false};
+  update({cloud, register: null, ...nothingLaid(), notice: ""});
+}
+
+/** Finds the mark on a frame of a colour and depth camera, and chooses the frame's cloud. */
+export async function readFrame() {
+  const asked = frameArguments(state.framing),
+    first = lastKey;
+  const found = await refresh("frame", asked, "frame", {asked: JSON.stringify(asked)});
+  if (!found) return;
+  chooseCloud({id: found.file, name: found.name});
+  const said = state.messages.filter(
+    ({key, call: of, severity}) => key > first && of === "frame" && severity !== "info",
+  );
+  update({
+    cloud: {...state.cloud, isOfFrame: true, frame: "camera"},
+    frame: {...state.frame, warnings: said.map(({text}) => text)},
+  });
+  if (state.files) list(state.files.folder.id); // its folder may be in the one that is listed
+}
+
+/** The arguments of the call `frame`, or null while a file is missing. */
+export function frameArguments({isCloud, color, organised, depth, intrinsics, mark, isOpen, planes}) {
+  const about = {mark, is_open: isOpen, planes};
+  if (isCloud) return organised && {color: organised.id, ...about};
+  return color && depth && intrinsics && {color: color.id, depth: depth.id, intrinsics: intrinsics.id, ...about};
 }
 
 /** Finds where the simulated surface lies in the cloud. */
 export async function register() {
   const {file, scale, range, settling_mm} = state.cloud;
-  update({lay: null, acceptLaid: [], arm: null, armOf: "run"});
+  update(nothingLaid());
   await refresh("register", {file: file.id, scale: scale === "range" ? range : scale, settling_mm});
 }
 
@@ -305,29 +404,34 @@ export async function refuseRegistration() {
   if (!(await ask("unregister"))) return;
   update({
     register: null,
-    lay: null,
-    acceptLaid: [],
-    arm: null,
-    armOf: "run",
+    ...nothingLaid(),
     notice: "The registration is refused, and nothing of it is kept.",
   });
 }
 
-/** Lays the run's path on the registered cloud. */
-export function lay() {
-  return layWith({});
+const kLaid = {
+  incise: {as: "lay", accepted: "acceptLaid", of: "tissue"},
+  mark: {as: "mark", accepted: "acceptMark", of: "mark"},
+};
+
+/** Lays the run's path on the registered cloud, or the tumour's edge. @param kind  "incise" or "mark" */
+export function lay(kind) {
+  return layWith(kind, {});
 }
 
-/** The same with the cautions that a person accepts. */
-export function layAccepting() {
-  const {revision, registration_sha256} = state.lay;
-  return layWith({accept: state.acceptLaid, revision, registration_sha256});
+/** The same with the cautions that a person accepts for this kind. */
+export function layAccepting(kind) {
+  const {as, accepted} = kLaid[kind],
+    {revision, registration_sha256} = state[as];
+  return layWith(kind, {accept: state[accepted], revision, registration_sha256});
 }
 
-async function layWith(acceptance) {
-  const {frame, camera} = state.cloud;
-  update({arm: null, armOf: "run", acceptLaid: acceptance.accept || []});
-  await refresh("lay", {camera: frame === "camera" && camera ? camera.id : null, ...acceptance});
+async function layWith(kind, acceptance) {
+  const {frame, camera} = state.cloud,
+    {as, accepted, of} = kLaid[kind];
+  update({arm: null, armOf: of, layKind: kind, [accepted]: acceptance.accept || []});
+  await refresh("lay", {kind, camera: frame === "camera" && camera ? camera.id : null, ...acceptance}, as);
+  if (state.step === "program") refreshStep();
 }
 
 /** Takes an event of the server. */

@@ -20,21 +20,24 @@ import {ResidualScale, StepRegister} from "./step_register.js";
 import {StepProgram} from "./step_program.js";
 import {Player} from "./arm_player.js";
 import {kPlanes} from "./geometry.js";
-import {spoken} from "./words.js";
+import {whereRunIs} from "./run_parts.js";
+import {kStepTitles} from "./words.js";
 
-/** The steps in their order: name, title, panel, and what they need before they make sense. */
-const kSteps = [
-  ["open", "Open", StepOpen],
-  ["see", "See", StepSee],
-  ["edge", "Tumour edge", StepEdge],
-  ["hold", "Hold", StepHold],
-  ["plan", "Plan", StepPlan],
-  ["run", "Run", StepRun],
-  ["compare", "Compare", StepCompare],
-  ["photograph", "Photograph", StepPhotograph],
-  ["register", "Register", StepRegister],
-  ["program", "Program", StepProgram],
-];
+const kPanels = {
+  open: StepOpen,
+  see: StepSee,
+  edge: StepEdge,
+  hold: StepHold,
+  plan: StepPlan,
+  run: StepRun,
+  compare: StepCompare,
+  photograph: StepPhotograph,
+  register: StepRegister,
+  program: StepProgram,
+};
+
+/** The steps in their order: name, title and panel. */
+const kSteps = Object.entries(kStepTitles).map(([name, title]) => [name, title, kPanels[name]]);
 
 const kLinks = {starting: "Connecting", open: "Connected", lost: "No server", denied: "Not allowed"};
 
@@ -78,12 +81,12 @@ function Head() {
 
 function Job() {
   if (!isRunning() || state.step === "run") return null;
-  const job = state.progress.run || {};
+  const where = whereRunIs();
   return h(
     "button",
     {type: "button", class: "job", onClick: () => goTo("run")},
     h("span", {class: "spinner", "aria-hidden": "true"}),
-    `Running${job.stage ? `: ${spoken(job.stage)}` : ""}${job.fraction ? ` ${Math.round(100 * job.fraction)} %` : ""}`,
+    where ? `Running: ${where}` : "Running",
   );
 }
 

@@ -13,18 +13,42 @@ export function boundsOf(curves, direction) {
   return {low: [Math.min(...range(0)), Math.min(...range(1))], high: [Math.max(...range(0)), Math.max(...range(1))]};
 }
 
-/** A picture of curves. @param curves  [{label, colour, width, dash, points, isClosed}]
- *  @param bounds  of the picture, so that two pictures share one scale; @param mark  a point to ring, or null */
+// The pictures that are shown, by id: {scale, draw}. They share the least of their scales, px per mm, so that what is
+// larger on one of them is larger.
+const pictures = new Map();
+
+function shareScale(id, scale, draw) {
+  const last = commonScale();
+  pictures.set(id, {scale, draw});
+  const common = commonScale();
+  if (common !== last) for (const [other, picture] of pictures) if (other !== id) picture.draw();
+  return common;
+}
+
+function commonScale() {
+  return Math.min(...[...pictures.values()].map(({scale}) => scale));
+}
+
+/** A picture of curves. @param curves  [{label, letter, colour, width, dash, points, isClosed}]; one with a letter has
+ *  it on its line   @param bounds  of the picture, the same for those beside it
+ *  @param mark  a point to ring, or null */
 export function ContourView({title, curves, direction, bounds, mark, id}) {
   const host = useRef(null);
   useEffect(() => {
     const room = host.current, // the observer may report once more after the component is gone
       canvas = room.querySelector("canvas");
-    const draw = () => drawAll(room, canvas, {curves, direction, bounds, mark});
+    const draw = () => {
+      const own = scaleIn(room, bounds);
+      if (own > 0) drawAll(room, canvas, {curves, direction, bounds, mark, scale: shareScale(id, own, redraw)});
+    };
+    const redraw = () => drawAll(room, canvas, {curves, direction, bounds, mark, scale: commonScale()});
     const watch = new ResizeObserver(draw);
     watch.observe(room);
     draw();
-    return () => watch.disconnect();
+    return () => {
+      watch.disconnect();
+      pictures.delete(id);
+    };
   }, [curves, bounds, mark, isDark()]);
   const shown = curves.filter((curve) => pointsOf(curve.points).length > 1);
   return h(
@@ -42,7 +66,9 @@ export function ContourView({title, curves, direction, bounds, mark, id}) {
     h(
       "ul",
       {class: "key"},
-      shown.map((curve) => h("li", {key: curve.label}, h(Swatch, {curve}), curve.label)),
+      shown.map((curve) =>
+        h("li", {key: curve.label, title: curve.label}, h(Swatch, {curve}), h("span", null, curve.label)),
+      ),
     ),
   );
 }
@@ -63,26 +89,50 @@ function Swatch({curve}) {
   );
 }
 
-function drawAll(host, canvas, {curves, direction, bounds, mark}) {
+const kRoom = [56, 60]; // px, beside the curves for the letters of the directions and the bar
+
+// The scale with which all curves fit, px per mm; not above 0 where there is no room.
+function scaleIn(host, bounds) {
+  const span = [0, 1].map((k) => Math.max(1, bounds.high[k] - bounds.low[k]));
+  return Math.min((host.clientWidth - kRoom[0]) / span[0], (host.clientHeight - kRoom[1]) / span[1]);
+}
+
+function drawAll(host, canvas, {curves, direction, bounds, mark, scale}) {
   const width = host.clientWidth,
     height = host.clientHeight,
     ratio = Math.min(2, window.devicePixelRatio || 1);
-  if (!width || !height) return;
   Object.assign(canvas, {width: width * ratio, height: height * ratio});
   const pen = canvas.getContext("2d");
   pen.scale(ratio, ratio);
   const {right, up} = viewAlong(direction);
-  const span = [0, 1].map((k) => Math.max(1, bounds.high[k] - bounds.low[k]));
-  const scale = Math.min((width - 56) / span[0], (height - 60) / span[1]);
   const middle = [0, 1].map((k) => 0.5 * (bounds.low[k] + bounds.high[k]));
   const at = (point) => [
     width / 2 + (dot(point, right) - middle[0]) * scale,
     height / 2 - (dot(point, up) - middle[1]) * scale,
   ];
   for (const curve of curves) stroke(pen, pointsOf(curve.points).map(at), curve);
+  const lettered = curves.filter((curve) => curve.letter);
+  lettered.forEach((curve, k) => letter(pen, pointsOf(curve.points).map(at), curve, (k + 0.5) / lettered.length));
   if (mark) ring(pen, at(mark));
   drawFrame(pen, width, height, scale, right, up);
-  host.dataset.ready = "yes";
+  Object.assign(host.dataset, {ready: "yes", scale: scale.toFixed(3)});
+}
+
+// A curve's letter on it, at a share of its points.
+function letter(pen, points, {letter: text, colour}, share) {
+  if (points.length < 2) return;
+  const [x, y] = points[Math.floor(share * points.length)];
+  pen.beginPath();
+  pen.arc(x, y, 8, 0, 2 * Math.PI);
+  pen.fillStyle = isDark() ? "#1a1e22" : "#ffffff";
+  pen.fill();
+  pen.lineWidth = 1.5;
+  pen.strokeStyle = pen.fillStyle = colour;
+  pen.stroke();
+  pen.font = "700 11px system-ui, sans-serif";
+  pen.textAlign = "center";
+  pen.textBaseline = "middle";
+  pen.fillText(text, x, y + 0.5);
 }
 
 function stroke(pen, points, {colour, width = 2, dash = [], isClosed}) {

@@ -47,7 +47,8 @@ export function FileList({actOf, isChosen, empty}) {
 }
 
 function FileRow({file, act, isChosen}) {
-  const about = h("span", {class: "soft"}, [spoken(file.kind), size(file.bytes)].filter(Boolean).join(", "));
+  const words = [spoken(file.kind), file.bytes ? size(file.bytes) : ""].filter(Boolean);
+  const about = h("span", {class: "soft"}, words.join(", "));
   const name = [
     h("span", {class: "sign", "aria-hidden": "true"}, kSigns[file.kind] || "·"),
     h("span", {class: "name"}, file.name),

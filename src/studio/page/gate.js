@@ -1,24 +1,24 @@
 // The gate before a robot's program: the cautions to accept, the checks, and the program itself.
 
 import {h} from "preact";
-import {Button, Check, Problems, Section, Status} from "./widgets.js";
+import {Button, Check, Explained, Problems, Section, Status, WayOut} from "./widgets.js";
 import {saveFile} from "./save_file.js";
 import {fixed, isNumber, spoken} from "./words.js";
 
 /** The section with the gate of a result, which holds `verdict`, `gate`, `checks`, `program`, `why_without_program`.
  *  @param accepted  ids that are ticked   @param onAccept  (ids)   @param onAgain  asks for the result with them
  *  @param call      that gives the result   @param isBusy  whether it cannot be asked for now
- *  @param fileName  under which the program is saved */
-export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, fileName = "incise.script"}) {
+ *  @param fileName  under which the program is saved   @param title  of the section   @param note  above all else */
+export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, ...shown}) {
+  const {fileName = "incise.script", title = "Robot program", note = null} = shown;
   const gate = result.gate || {};
   const open = cautionsOf(result, gate);
   const tick = (id, isOn) => onAccept(isOn ? [...accepted, id] : accepted.filter((other) => other !== id));
   return h(
     Section,
-    {title: "Robot program", id: "gate"},
-    (gate.refused || []).length
-      ? h("p", null, `Refused: ${gate.refused.map(spoken).join(", ")}. Nobody can accept this.`)
-      : null,
+    {title, id: "gate"},
+    note,
+    h(Refused, {result, ids: gate.refused || []}),
     gate.open && !open.length ? h("p", null, "The gate is open: no caution has to be accepted.") : null,
     open.length
       ? h(
@@ -28,7 +28,7 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
           open.map((id) =>
             h(Check, {
               key: id,
-              label: cautionText(result, id),
+              label: h(Explained, {text: reasonText(result, id)}),
               isOn: accepted.includes(id),
               onChange: (isOn) => tick(id, isOn),
             }),
@@ -39,8 +39,31 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
     h(Problems, {calls: [call]}),
     result.program
       ? h(Program, {text: result.program, fileName})
-      : h("p", {class: "warning", "data-program": "none"}, result.why_without_program || "There is no program."),
+      : h(
+          "p",
+          {class: "warning", "data-program": "none"},
+          h(Explained, {text: result.why_without_program || withoutProgram(gate)}),
+        ),
     result.checks && result.checks.length ? h(Checks, {checks: result.checks}) : null,
+  );
+}
+
+function withoutProgram({refused = [], missing = []}) {
+  if (missing.length && !refused.length)
+    return "There is no program yet: a person has to accept each of the cautions above.";
+  return "There is no program.";
+}
+
+function Refused({result, ids}) {
+  if (!ids.length) return null;
+  return h(
+    "div",
+    {"data-refused": ids.length},
+    h("p", null, "The verdict refuses this cut. Nobody can accept it:"),
+    ids.map((id) => [
+      h("p", {key: id, class: "refusal"}, h(Explained, {text: reasonText(result, id)})),
+      h(WayOut, {key: `${id}-out`, id}),
+    ]),
   );
 }
 
@@ -55,7 +78,7 @@ function isOther(accepted, gate) {
   return [...accepted].sort().join() !== [...(gate.accepted || [])].sort().join();
 }
 
-function cautionText(result, id) {
+function reasonText(result, id) {
   const reason = (result.verdict.reasons || []).find((one) => one.id === id);
   return `${spoken(id)}${reason ? `: ${reason.message}` : ""}`;
 }

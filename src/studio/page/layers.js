@@ -19,6 +19,9 @@ import {
 import {moved, registeredView} from "./registered.js";
 import {directionOf, pointsOf} from "./geometry.js";
 import {ink, intended, isDark, onBlack} from "./colours.js";
+import {cutLayer, tissueParts} from "./cut_faces.js";
+import {edgeAt} from "./stretched_edge.js";
+import {dashesOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {setting} from "./store.js";
 
 const kTube = 0.28; // mm
@@ -65,8 +68,10 @@ function focusLayer(state) {
 function seen(state, edge) {
   const box = setting("ct.roi_box_mm"),
     seed = setting("ct.seed_mm");
+  const {own, cut} = state.tissue ? tissueParts(state.tissue) : {own: state.body && state.body.skin, cut: null};
   return [
-    skinLayer(state.tissue ? state.tissue.skin : state.body && state.body.skin),
+    skinLayer(own),
+    cutLayer(cut),
     box && {
       name: "box",
       label: "region box",
@@ -82,11 +87,14 @@ function seen(state, edge) {
 
 function drawn(state, edge) {
   const {edge: own, tissue, body, stretch} = state;
-  const skin = own.where === "stretched" ? stretch && stretch.skin : (tissue && tissue.skin) || (body && body.skin);
+  const isPulled = own.where === "stretched",
+    parts = !isPulled && tissue ? tissueParts(tissue) : null;
+  const skin = isPulled ? stretch && stretch.skin : body && body.skin;
   const others = own.points.filter((_, k) => k !== own.selected);
   const chosen = own.points.filter((_, k) => k === own.selected);
   return [
-    skinLayer(skin),
+    skinLayer(parts ? parts.own : skin),
+    parts && cutLayer(parts.cut),
     edgeLayer(edge),
     own.mode === "look" ? null : ballLayer("points", "points", ink.tumour, others, 0.7, [own.points, own.selected]),
     own.mode === "look"
@@ -98,9 +106,8 @@ function drawn(state, edge) {
 function held(state, edge) {
   const {body, stretch, scrub} = state;
   if (!body) return [skinLayer(state.tissue && state.tissue.skin)];
-  const isPulled = stretch && scrub > 0.995,
-    isRest = !stretch || scrub < 0.005;
-  const pulledEdge = isPulled ? pointsOf(stretch.edge) : [];
+  const isRest = !stretch || scrub < 0.005,
+    shown = edgeAt(state, edge, stretch ? scrub : 0);
   return [
     {
       name: "body",
@@ -112,8 +119,7 @@ function held(state, edge) {
     },
     ...plateLayers(body.skin),
     ...(isRest ? patchLayers(state.patch) : []),
-    isPulled ? curveLayer("tumour", "tumour's edge", ink.tumour, pulledEdge, true, [stretch]) : null,
-    isRest && edge.isRest ? edgeLayer(edge) : null,
+    curveLayer("tumour", shown.label, ink.tumour, shown.points, shown.isClosed, [shown.points, shown.label]),
   ];
 }
 
@@ -150,11 +156,13 @@ function ballsAndLine(name, label, colour, points) {
     : curveLayer(name, label, colour, points, false, [points, colour], kWideTube);
 }
 
-function planned(state) {
-  const {plan, stretch, body} = state;
+function planned(state, edge) {
+  const {plan, stretch, body} = state,
+    shown = plan || !edge ? {points: []} : edgeAt(state, edge, stretch ? 1 : 0);
   return [
     skinLayer((stretch && stretch.skin) || (body && body.skin)),
     ...pathLayers(plan),
+    curveLayer("tumour", shown.label, ink.tumour, shown.points, shown.isClosed, [shown.points, shown.label]),
     plan ? markerLayer(plan.verdict, plan) : null,
     focusLayer(state),
   ];
@@ -226,9 +234,33 @@ function compared(state) {
     ...pathLayers(plan).filter((layer) => layer && layer.name !== "depth"),
     line("before", "mid-line as planned", ink.kerf, run.as_planned),
     line("after", "mid-line corrected", ink.corrected, run.corrected),
+    ...keptLayers(state, isClosed),
     markerLayer(run.verdict, run),
     focusLayer(state),
   ];
+}
+
+const kDash = 0.35; // mm in 3D for a pixel of a dash in the pictures
+
+// The mid-lines of kept results, with their dashes: a tube's colour alone is hard to tell.
+function keptLayers(state, isClosed) {
+  return laidOver().map((one) => {
+    const {colour, dash} = lookOf(one),
+      points = pointsOf((shownCut(one) || {}).centerline);
+    if (points.length < 2) return null;
+    const parts = dashesOf(
+      points,
+      isClosed,
+      dash.map((length) => kDash * length),
+    );
+    return {
+      name: `kept${one.letter}`,
+      label: titleOf(one),
+      colour,
+      parts: [one, state.keptCut, colour, isClosed],
+      build: () => parts.flatMap((part) => tubes(part, false, colour, kWideTube)),
+    };
+  });
 }
 
 // The cloud over the simulated surface, whose points have the colours of their distances from it.
@@ -255,7 +287,22 @@ function registered(state) {
       parts: [view],
       build: () => [cloudPoints(view.sample, {colours: residualColours(view.residuals_mm, view.top_mm), size: 6})],
     },
+    view.edge && curveLayer("edge", "tumour's edge of the case", ink.tumour, view.edge, true, [view], kWideTube),
+    view.marked && markedLayer(state, view),
   ];
+}
+
+// Dashed, so that it is not the case's own edge to anybody.
+function markedLayer({frame}, view) {
+  const colour = isDark() ? "#f08cc4" : "#a3267a",
+    isClosed = !frame || frame.summary.closed_loop;
+  return {
+    name: "marked",
+    label: "edge marked on the tissue",
+    colour,
+    parts: [view, colour, isClosed],
+    build: () => dashesOf(view.marked, isClosed, [1.6, 0.8]).flatMap((part) => tubes(part, false, colour, kWideTube)),
+  };
 }
 
 // In the robot's frame. Without an arm: as in the step before.
@@ -284,8 +331,12 @@ function played(state) {
       build: () => placed([skinMesh(skin, {colour: ink.tissue, opacity: 1})], pose),
     },
     ...armLayers(arm),
-    line("path", "planned path", intended(), plan && plan.path),
-    line("after", "corrected path", ink.corrected, run && run.corrected && run.corrected.path),
+    ...(state.armOf === "run"
+      ? [
+          line("path", "planned path", intended(), plan && plan.path),
+          line("after", "corrected path", ink.corrected, run && run.corrected && run.corrected.path),
+        ]
+      : [laidLayer(state)]),
     line("tumour", "tumour's edge", ink.tumour, plan && plan.edge),
     {
       name: "table",
@@ -296,6 +347,12 @@ function played(state) {
       build: () => plate([0, 0, arm.table_z_mm], [0, 0, 1], middleOfTable(arm), kTableRadius, kTableGrid),
     },
   ];
+}
+
+// What the program follows that was laid on the tissue; in the robot's frame already.
+function laidLayer({armOf, lay, mark}) {
+  const [laid, label] = armOf === "mark" ? [mark, "edge to be marked"] : [lay, "path on the tissue"];
+  return laid && curveLayer("laid", label, intended(), pointsOf(laid.path), laid.path.closed, [laid, intended()]);
 }
 
 const kTableRadius = 200; // mm

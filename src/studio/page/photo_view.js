@@ -344,7 +344,8 @@ export class PhotoView {
   }
 }
 
-function imageOf({width, height, rgb}) {
+/** A canvas with a picture {width, height, rgb}. */
+export function imageOf({width, height, rgb}) {
   const canvas = document.createElement("canvas");
   Object.assign(canvas, {width, height});
   const image = new ImageData(width, height);

@@ -6,6 +6,8 @@ import UPlot from "uplot";
 import {isDark} from "./colours.js";
 import {fixed, isNumber} from "./words.js";
 
+const kLegend = 34; // px, of a legend of one line
+
 function colours() {
   return isDark() ? {words: "#a9b1b8", grid: "#333a41"} : {words: "#565d65", grid: "#e2e3df"};
 }
@@ -44,7 +46,7 @@ function options(title, unit, curves, size) {
   const value = (_, number) => (isNumber(number) ? `${fixed(number, 2)} mm` : "–");
   return {
     ...size,
-    legend: {live: true},
+    legend: {live: true, markers: {dash: (_, k) => (k && curves[k - 1].dash ? "dashed" : "solid")}},
     cursor: {points: {size: 6}, drag: {x: false, y: false}},
     scales: {x: {time: false}},
     axes: [axis("along the path, mm", 38), axis(unit, 48)],
@@ -67,10 +69,20 @@ export function Plot({title, unit, curves, id}) {
   const host = useRef(null);
   useEffect(() => {
     const node = host.current;
-    const room = () => ({width: Math.max(200, node.clientWidth), height: Math.max(110, node.clientHeight - 34)});
-    const plot = new UPlot(options(title, unit, curves, room()), onOneScale(curves), node);
-    const watch = new ResizeObserver(() => plot.setSize(room()));
+    const room = (below) => ({
+      width: Math.max(200, node.clientWidth),
+      height: Math.max(110, node.clientHeight - below),
+    });
+    const plot = new UPlot(options(title, unit, curves, room(kLegend)), onOneScale(curves), node);
+    const legend = node.querySelector(".u-legend");
+    // With many curves the legend has several lines; its width follows the plot's, so that comes first.
+    const fit = () => {
+      plot.setSize(room(kLegend));
+      plot.setSize(room(Math.max(kLegend, legend.offsetHeight + 6)));
+    };
+    const watch = new ResizeObserver(fit);
     watch.observe(node);
+    fit();
     node.dataset.ready = "yes";
     return () => {
       watch.disconnect();

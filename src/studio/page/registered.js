@@ -4,7 +4,8 @@ import {roundedDown} from "./geometry.js";
 
 let memo = {result: null};
 
-/** {cloud, sample: Float32Array, residuals_mm, hasUnseen, top_mm}; `top_mm`: the end of the colours on both sides. The
+/** {cloud, sample: Float32Array, residuals_mm, edge, marked, hasUnseen, top_mm}; `edge`: the case's tumour edge,
+ *  `marked`: the one that is marked on the tissue, points or null; `top_mm`: the end of the colours on both sides. The
  *  same object for as long as the result is the same; null where there is no pose. */
 export function registeredView(result) {
   if (!result || !result.sample) return null;
@@ -12,15 +13,25 @@ export function registeredView(result) {
   return memo.view;
 }
 
-function makeView({registration, target, sample}) {
+function makeView({registration, target, sample, edges}) {
   const pose = registration.T_target_source;
   return {
     cloud: movedBack(target.points, pose),
     sample: movedBack(sample.points, pose),
     residuals_mm: sample.residuals_mm,
+    ...edgesOf(edges, pose),
     hasUnseen: sample.residuals_mm.some(Number.isNaN),
     top_mm: topOf(sample.residuals_mm),
   };
+}
+
+function edgesOf(edges, pose) {
+  const points = (list) => {
+    if (!list || !list.length) return null;
+    const flat = movedBack(new Float32Array(list.flat()), pose);
+    return list.map((_, k) => [...flat.slice(3 * k, 3 * k + 3)]);
+  };
+  return {edge: points(edges && edges.simulated_mm), marked: points(edges && edges.marked_mm)};
 }
 
 /** Points moved by the inverse of a similarity transform. @param pose  4 rows of 4 */

@@ -91,8 +91,9 @@ export class Scene {
     });
   }
 
+  // A frame later: the slices, which cost little, are on the screen before a scene that takes long to draw.
   changed() {
-    this.render();
+    requestAnimationFrame(() => this.render());
     this.onLayers();
   }
 

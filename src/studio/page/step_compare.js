@@ -5,10 +5,11 @@ import {state, isFresh} from "./store.js";
 import {goTo, run} from "./actions.js";
 import {approach, showPlace} from "./views.js";
 import {isRunning} from "./step_run.js";
+import {contourOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
+import {KeptTable, WhatIf} from "./what_if.js";
 import {Button, Problems, Reasons, Section, Status} from "./widgets.js";
 import {ContourView, boundsOf} from "./contour_view.js";
 import {Plot} from "./plots.js";
-import {pointsOf} from "./geometry.js";
 import {ink, intended, isDark} from "./colours.js";
 import {mm, spoken} from "./words.js";
 
@@ -40,7 +41,12 @@ export function StepCompare() {
       h("p", {class: "verdict"}, h(Status, {status: result.verdict.status}), ` ${sentence(result)}`),
       h(Reasons, {verdict: result.verdict, onPlace: showPlace}),
     ),
-    h(Section, {title: "Numbers", id: "numbers"}, h(Table, {result})),
+    h(
+      Section,
+      {title: "Numbers", id: "numbers"},
+      laidOver().length ? h(KeptTable, {rows: kNumbers}) : h(Table, {result}),
+    ),
+    h(WhatIf),
     h(Planned, {cut: result.as_planned}),
     h(
       Section,
@@ -112,26 +118,33 @@ function Table({result}) {
 
 // --- The pictures. ---
 
-let memo = {run: null};
+let memo = {parts: []};
 
-/** Curves and plots of a result; the same objects for as long as the result and the colours are the same. */
+/** Curves and plots of a result; the same objects for as long as what is shown and the colours are the same. */
 function picturesOf(run, plan) {
-  if (memo.run !== run || memo.plan !== plan || memo.isDark !== isDark()) {
-    memo = {run, plan, isDark: isDark(), ...makePictures(run, plan)};
-  }
+  const parts = [run, plan, isDark(), state.kept, state.keptCut, state.case];
+  if (parts.some((part, k) => part !== memo.parts[k])) memo = {parts, ...makePictures(run, plan)};
   return memo;
 }
 
 function makePictures(run, plan) {
-  const before = contoursOf(run.as_planned, ink.kerf, plan),
-    after = contoursOf(run.corrected, afterColour(), plan);
+  const isClosed = isRing(plan),
+    others = laidOver();
+  const over = (which) => others.map((one) => contourOf(one, which, isClosed)).filter(Boolean);
+  const withOthers = (cut, colour, over) => (cut || over.length ? [...contoursOf(cut, colour, plan), ...over] : []);
+  const before = withOthers(run.as_planned, ink.kerf, over("as_planned")),
+    after = withOthers(run.corrected, afterColour(), over("corrected"));
   return {
     before,
     after,
     bounds: boundsOf([...before, ...after], approach()),
-    errors: errorsOf(run),
-    depths: depthsOf(run),
+    errors: errorsOf(run, others),
+    depths: depthsOf(run, others),
   };
+}
+
+function isRing(plan) {
+  return !(plan && plan.path) || plan.path.closed !== false;
 }
 
 /** The colour of what is corrected. */
@@ -140,8 +153,8 @@ export function afterColour() {
 }
 
 function contoursOf(cut, colour, plan) {
-  if (!cut) return [];
-  const isClosed = !(plan && plan.path) || plan.path.closed !== false;
+  const isClosed = isRing(plan),
+    {path, centerline, inner_edge: innerEdge} = cut || {};
   return [
     {label: "planned path", colour: intended(), width: 1.5, points: plan && plan.path, isClosed},
     {
@@ -149,11 +162,11 @@ function contoursOf(cut, colour, plan) {
       colour: isDark() ? "#9aa3ab" : "#6b6b6b",
       width: 1.3,
       dash: [4, 3],
-      points: cut.path,
+      points: path,
       isClosed,
     },
-    {label: "mid-line of the cut", colour, width: 2.4, points: cut.centerline, isClosed},
-    {label: "inner edge", colour, width: 1.2, dash: [1, 2], points: cut.inner_edge, isClosed},
+    {label: "mid-line of the cut", colour, width: 2.4, points: centerline, isClosed},
+    {label: "inner edge", colour, width: 1.2, dash: [1, 2], points: innerEdge, isClosed},
     {
       label: "tumour's edge",
       colour: isDark() ? "#2fd6a3" : ink.tumour,
@@ -164,15 +177,17 @@ function contoursOf(cut, colour, plan) {
   ];
 }
 
-function errorsOf({as_planned: before, corrected: after}) {
-  const curve = (cut, label, colour) =>
-    cut && cut.errors && {label, colour, x: cut.errors.arclength_mm, y: cut.errors.signed_mm};
-  return [curve(before, "as planned", ink.kerf), curve(after, "corrected", afterColour())].filter(Boolean);
+function errorsOf({as_planned: before, corrected: after}, others) {
+  const curve = (cut, look) => cut && cut.errors && {...look, x: cut.errors.arclength_mm, y: cut.errors.signed_mm};
+  return [
+    curve(before, kBeforeLook),
+    curve(after, afterLook()),
+    ...others.map((one) => curve(shownCut(one), lookOver(one))),
+  ].filter(Boolean);
 }
 
-function depthsOf({as_planned: before, corrected: after}) {
-  const reached = (cut, label, colour) =>
-    cut && cut.depth && {label, colour, x: cut.depth.arclength_mm, y: cut.depth.reached_mm};
+function depthsOf({as_planned: before, corrected: after}, others) {
+  const reached = (cut, look) => cut && cut.depth && {...look, x: cut.depth.arclength_mm, y: cut.depth.reached_mm};
   const first = (before && before.depth) || (after && after.depth);
   const planned = first && {
     label: "planned",
@@ -181,8 +196,17 @@ function depthsOf({as_planned: before, corrected: after}) {
     x: first.arclength_mm,
     y: first.planned_mm,
   };
-  return [planned, reached(before, "as planned", ink.kerf), reached(after, "corrected", afterColour())].filter(Boolean);
+  return [
+    planned,
+    reached(before, kBeforeLook),
+    reached(after, afterLook()),
+    ...others.map((one) => reached(shownCut(one), lookOver(one))),
+  ].filter(Boolean);
 }
+
+const kBeforeLook = {label: "as planned", colour: ink.kerf};
+const afterLook = () => ({label: "corrected", colour: afterColour()});
+const lookOver = (one) => ({label: titleOf(one), ...lookOf(one)});
 
 /** Contours and plots for the large part of the page. */
 export function ComparePictures() {
@@ -200,9 +224,9 @@ export function ComparePictures() {
       title: [title, cut && cut.verdict ? `: ${spoken(cut.verdict.status)}` : ""].join(""),
     });
   return [
-    run.as_planned && pointsOf(run.as_planned.centerline) ? view("before", "As planned", before, run.as_planned) : null,
-    run.corrected
-      ? view("after", "Corrected", after, run.corrected)
+    before.length ? view("before", "As planned", before, run.as_planned) : null,
+    after.length
+      ? view("after", run.corrected ? "Corrected" : "Corrected: only of kept results", after, run.corrected)
       : h(
           "figure",
           {class: "contours", key: "after"},

@@ -1,29 +1,41 @@
 // Step 4: how the specimen is held, and what the pull does to it.
 
 import {h} from "preact";
-import {state, update, setting, isFresh, unitOf} from "./store.js";
-import {change, refresh} from "./actions.js";
+import {state, update, isFresh} from "./store.js";
+import {refresh} from "./actions.js";
+import {rowsOf} from "./fields.js";
 import {
   Button,
   Choice,
-  Facts,
+  Explained,
   NumberInput,
   Numbers,
   Problems,
   Section,
+  Setting,
+  StepLinks,
   TextInput,
   Working,
   complaint,
   problemAt,
   useId,
 } from "./widgets.js";
-import {kConstraints, kWords, constraints, putConstraints} from "./constraints.js";
+import {
+  kConstraints,
+  kKinds,
+  kWords,
+  constraints,
+  directionText,
+  inWords,
+  putConstraints,
+  written,
+} from "./constraints.js";
 import {Patch} from "./patch_panel.js";
 import {beginPatch, leavePatch, shownRegion} from "./patch.js";
 import {kDirections} from "./geometry.js";
 import {crosshair} from "./views.js";
 import {holds} from "./colours.js";
-import {mm, spoken} from "./words.js";
+import {mm, spoken, whole} from "./words.js";
 
 const kMostColoured = 8; // of the constraints: as many as the body's `held` has bits
 const kAxes = ["x", "y", "z"];
@@ -61,20 +73,31 @@ export function StepHold() {
         "div",
         {class: "row"},
         Object.keys(kNew).map((kind) =>
-          h(Button, {key: kind, onClick: () => putConstraints([...(list || []), fresh(kind)])}, `Add ${kind}`),
+          h(
+            Button,
+            {key: kind, onClick: () => putConstraints([...(list || []), fresh(kind)]), "data-add": kind},
+            `Add a ${kKinds[kind].toLowerCase()}`,
+          ),
         ),
       ),
       list ? h(Button, {onClick: backToDefault}, "Back to the default") : null,
       list && list.length > kMostColoured
         ? h("p", {class: "soft"}, `The 3D view colours what the first ${kMostColoured} of them hold.`)
         : null,
-      h(Problems, {calls: ["change"], shown: (list || []).map((_, k) => `${kConstraints}[${k}]`)}),
+      h(Problems, {calls: ["change"], shown: shownKeys(list)}),
       h(Missing),
       h(Working, {call: "body", text: "Meshing the body"}),
     ),
     h(Body),
+    h(Tissue),
     h(Stretch),
   );
+}
+
+// The problems of these stand beside their inputs.
+function shownKeys(list) {
+  const holds = (list || []).map((_, k) => `${kConstraints}[${k}]`);
+  return [...holds, ...rowsOf("meshing"), ...rowsOf("specimen.material")];
 }
 
 function backToDefault() {
@@ -90,7 +113,11 @@ function Missing() {
     "div",
     {class: "soft", role: "status", "data-missing": body.path},
     body.path === kConstraints
-      ? h("p", null, `Still needed: ${body.expected} (found: ${body.found}). ${body.hint || ""}`)
+      ? h(
+          "p",
+          null,
+          h(Explained, {text: `Still needed: ${body.expected} (found: ${body.found}). ${body.hint || ""}`}),
+        )
       : null,
     state.body ? h("p", null, "Until the constraints hold the body, the 3D view shows it as it was held last.") : null,
   );
@@ -111,21 +138,44 @@ function fresh(kind) {
 }
 
 function ByDefault() {
-  const found = (state.body && state.body.constraints) || [];
+  const found = (state.body && state.body.constraints) || [],
+    isNow = isFresh("body");
   return h(
     "div",
     null,
+    h("p", {class: "soft"}, "The case says nothing about it, so the body is held by the default:"),
+    isNow ? null : h("p", {class: "soft"}, "It is computed for the body as it is now."),
+    isNow
+      ? h(
+          "ul",
+          {class: "facts", "data-default": found.length},
+          found.map((one, k) =>
+            h("li", {key: k}, h(Dot, {k}), inWords(one.setting), h("span", {class: "soft"}, ` ${countText(one)}`)),
+          ),
+        )
+      : null,
     h(
-      "p",
-      {class: "soft"},
-      "The case says nothing, so the body is held by the default. The first one that you add replaces the default.",
+      Button,
+      {
+        disabled: !isNow,
+        onClick: () => putConstraints(written(found.map((one) => one.setting)).map(rounded)),
+        "data-do": "own-constraints",
+      },
+      "Change these",
     ),
-    h(
-      "ul",
-      {class: "facts"},
-      found.map((one, k) => h("li", {key: k}, h(Dot, {k}), `${spoken(one.kind)}: ${one.vertices} vertices`)),
-    ),
+    h("p", {class: "soft below"}, "The first one that you add replaces the default."),
   );
+}
+
+// A plane found under the body has more decimals than a person would type.
+function rounded(one) {
+  if (!one.plane) return one;
+  return {...one, plane: {...one.plane, point_mm: one.plane.point_mm.map((value) => Number(value.toFixed(2)))}};
+}
+
+// A support holds what comes to rest on it, which is not known before.
+function countText({kind, vertices}) {
+  return kind === "support" ? "" : `${whole(vertices)} vertices of the mesh.`;
 }
 
 function Dot({k}) {
@@ -138,7 +188,7 @@ function Dot({k}) {
 
 function Constraint({one, k}) {
   const set = (patch) => putConstraints(constraints().with(k, {...one, ...patch}));
-  const found = state.body && isFresh("body") && state.body.constraints && state.body.constraints[k];
+  const found = state.body && state.body.constraints && state.body.constraints[k];
   const problem = problemAt(`${kConstraints}[${k}]`),
     isRefused = problem && problem === state.problems.change;
   const remove = () => {
@@ -152,18 +202,32 @@ function Constraint({one, k}) {
       "legend",
       null,
       h(Dot, {k}),
-      spoken(one.kind),
-      found ? h("span", {class: "soft"}, ` ${found.vertices} vertices`) : null,
+      kKinds[one.kind] || spoken(one.kind),
+      found && found.kind !== "support" ? h(Count, {vertices: found.vertices}) : null,
     ),
     one.where ? h(Region, {k, where: shownRegion(one, k), onChange: (where) => set({where})}) : null,
     h(Own, {one, set}),
-    problem ? h("p", isRefused ? {class: "problem", role: "alert"} : {class: "soft"}, complaint(problem)) : null,
+    problem
+      ? h(
+          "p",
+          isRefused ? {class: "problem", role: "alert"} : {class: "soft"},
+          h(Explained, {text: complaint(problem)}),
+        )
+      : null,
     h(
       Button,
       {onClick: remove, "aria-label": `Remove constraint ${k + 1}, ${one.kind}`},
       "Remove",
     ),
   );
+}
+
+// Before the body is there anew, the count is that of the settings before.
+function Count({vertices}) {
+  const text = ` ${whole(vertices)} vertices`;
+  return isFresh("body")
+    ? h("span", {class: "soft"}, text)
+    : h("span", {class: "soft", "data-stale": vertices}, `${text} with earlier settings`);
 }
 
 function Own({one, set}) {
@@ -174,6 +238,7 @@ function Own({one, set}) {
       names: kAxes,
       value: one.displacement_mm,
       step: 1,
+      hint: "x to the patient's left, y to the back, z to the head: y −8 pulls 8 mm forwards.",
       onChange: (displacement_mm) => set({displacement_mm}),
     });
   }
@@ -219,7 +284,7 @@ function Direction({label, value, onChange}) {
       label,
       value: isOther ? "other" : value,
       onChange: choose,
-      options: [...kWords.map((word) => [word, spoken(word)]), ["other", "Three numbers"]],
+      options: [...kWords.map((word) => [word, directionText(word)]), ["other", "Three numbers"]],
     }),
     isOther ? h(Numbers, {label: `${label}, x y z`, names: kAxes, value, step: 0.1, onChange}) : null,
   );
@@ -322,25 +387,83 @@ function RegionInputs({kind, value, onChange}) {
 function Body() {
   const {body} = state;
   if (!body) return null;
+  const isNow = isFresh("body");
   return h(
     Section,
     {title: "Body", id: "body"},
     h(
-      "div",
-      {class: isFresh("body") ? null : "stale"},
-      h(Facts, {facts: {tets: body.tets, vertices_of_the_skin: body.skin.vertices.length / 3}}),
+      "p",
+      {class: isNow ? null : "stale", "data-tets": body.tets},
+      `The mesh has ${whole(body.tets)} tetrahedra, and ${whole(body.skin.vertices.length / 3)} vertices on its skin`,
+      isNow ? "." : ", with earlier settings.",
     ),
-    setting("meshing.tets") !== null
-      ? h(NumberInput, {
-          label: "Tets of the mesh, about",
-          unit: unitOf("meshing.tets"),
-          value: setting("meshing.tets"),
-          step: 5000,
-          min: 1,
-          problem: problemAt("meshing.tets"),
-          onChange: (tets) => change({"meshing.tets": tets}),
-        })
-      : null,
+    h(Rows, {
+      title: "Mesh",
+      group: "meshing",
+      about: "The body is filled with tetrahedra. 0: as many as the lengths of their edges give.",
+    }),
+  );
+}
+
+/** What the tissue is, as far as one input each can say it. */
+function Tissue() {
+  return h(
+    Section,
+    {title: "Tissue", id: "tissue"},
+    h(Rows, {
+      title: "Stiffness and other properties",
+      group: "specimen.material",
+      about:
+        "Young's modulus says how stiff the tissue is, Poisson's ratio how little its volume changes (0.5: not at " +
+        "all). At first they are the paper's.",
+    }),
+  );
+}
+
+function Rows({title, group, about}) {
+  const keys = rowsOf(group);
+  if (!keys.length) return null;
+  return h(
+    "details",
+    {"data-group": group, open: keys.some((key) => problemAt(key)) || undefined},
+    h("summary", null, title),
+    h("p", {class: "soft"}, about),
+    h(
+      "div",
+      {class: "grid"},
+      keys.map((path) => h(Setting, {key: path, path})),
+    ),
+  );
+}
+
+// What a stretch that is of no use means, by its outcome.
+const kWrong = {
+  element_inverted:
+    "The tissue is pulled farther than the simulation can follow: somewhere it was turned inside out. A short or " +
+    "thin piece of tissue does not bear a long pull.",
+  not_converged: "The simulation found no position in which the tissue, held like this, comes to rest.",
+  cancelled: "The stretch was stopped before its end.",
+};
+
+/** What went wrong with a stretch in plain words, what to try, and what the library says. Nothing for a success. */
+export function Unstretched({stretch}) {
+  if (!stretch || !stretch.note) return null;
+  const isHere = state.step === "hold",
+    isByDefault = !constraints();
+  return h(
+    "div",
+    {class: "problem block", role: "alert", "data-unstretched": stretch.outcome},
+    h("strong", null, "The tissue could not be stretched."),
+    h("p", null, kWrong[stretch.outcome] || "The stretch did not end well, and nothing can be planned on it."),
+    h("p", null, isHere ? "What to try:" : ["What to try in step", h(StepLinks, {steps: ["hold"]})]),
+    h(
+      "ul",
+      {class: "tries"},
+      h("li", null, isByDefault ? "Pull less: press Change these, and make the displacement smaller." : "Pull less."),
+      h("li", null, "Clamp and pull larger regions, or regions farther apart."),
+      h("li", null, "Make the mesh finer, under Body."),
+    ),
+    h("p", null, "incise reports: ", h(Explained, {text: stretch.note})),
   );
 }
 
@@ -353,20 +476,12 @@ function Stretch() {
     {title: "Stretch", id: "stretch"},
     h(
       Button,
-      {
-        isMain: !stretch || isStale,
-        disabled: Boolean(busy.stretch),
-        "data-do": "stretch",
-        onClick: async () => {
-          if (await refresh("stretch")) update({scrub: 1});
-        },
-      },
+      {isMain: !stretch || isStale, disabled: Boolean(busy.stretch), "data-do": "stretch", onClick: stretchAndLook},
       stretch ? "Stretch again" : "Stretch",
     ),
     h(Working, {call: "stretch", text: "Stretching"}),
     h(Problems, {calls: ["stretch"]}),
-    stretch && stretch.note ? h("p", {class: "warning"}, stretch.note) : null,
-    isStale ? h("p", {class: "warning"}, "The settings have changed since this stretch.") : null,
+    isStale ? h("p", {class: "warning"}, "The settings have changed since this stretch.") : h(Unstretched, {stretch}),
     stretch
       ? h(
           "div",
@@ -386,4 +501,12 @@ function Stretch() {
       : null,
     stretch ? h("p", null, `Greatest displacement: ${mm(stretch.greatest_mm)}`) : null,
   );
+}
+
+// The plan gives where the tumour's edge lies on the stretched tissue.
+async function stretchAndLook() {
+  const found = await refresh("stretch");
+  if (!found) return;
+  update({scrub: 1});
+  if (!found.note && state.case.edge && state.step === "hold") refresh("plan");
 }

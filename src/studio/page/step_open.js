@@ -3,9 +3,21 @@
 import {h} from "preact";
 import {useEffect, useState} from "preact/hooks";
 import {state} from "./store.js";
-import {begin, goTo, list} from "./actions.js";
-import {Button, Choice, NumberInput, Numbers, Problems, Section, TextInput, Working, problemAt} from "./widgets.js";
+import {ask, begin, goTo, list} from "./actions.js";
+import {
+  Button,
+  Choice,
+  NumberInput,
+  Numbers,
+  OddSize,
+  Problems,
+  Section,
+  TextInput,
+  Working,
+  problemAt,
+} from "./widgets.js";
 import {FileList} from "./file_list.js";
+import {fixed, plain} from "./words.js";
 
 // What a case can begin with, by the kind of file, and what is done with it.
 const kBeginnings = {
@@ -24,7 +36,7 @@ function beginningsOf(file) {
 export function StepOpen() {
   const [source, setSource] = useState(null);
   useEffect(() => {
-    if (!state.files) list();
+    list(); // as it is now: cases may have been made since
   }, []);
   return h(
     "div",
@@ -36,6 +48,16 @@ export function StepOpen() {
   );
 }
 
+const kInputs = {
+  "ct.volume": "Scan",
+  "ct.labels": "Labels",
+  "specimen.mesh": "Mesh",
+  "tumor.contour": "Tumour's edge",
+  "tumor.surface": "Tumour's surface",
+  "plan.line": "Line of the cut",
+  path: "Path",
+};
+
 function OpenCase() {
   const inputs = Object.entries(state.case.inputs || {}).filter(([, name]) => name);
   return h(
@@ -45,7 +67,7 @@ function OpenCase() {
     h(
       "dl",
       {class: "facts"},
-      inputs.map(([key, name]) => [h("dt", null, key), h("dd", null, String(name))]),
+      inputs.map(([key, name]) => [h("dt", null, kInputs[key] || key), h("dd", null, String(name))]),
     ),
     h(Button, {onClick: () => goTo("see")}, "Go on with it"),
   );
@@ -67,12 +89,35 @@ function Listing({source, setSource}) {
   );
 }
 
-// Other roots hold what others keep: with them, a new case goes where the studio was started, or where one chooses.
-function placesForCase({roots = [], folder}) {
-  const here = [folder.id, folder.name];
-  if (roots.length < 2) return [here];
-  const all = [...roots.map((root) => [root.id, root.name]), here];
-  return all.filter(([id], k) => all.findIndex(([other]) => other === id) === k);
+// Where a case can be made: in a folder that the studio was started with, or in the one that is listed.
+function placesForCase({roots = [], folder}, chosen) {
+  const all = [...roots, folder, ...(chosen ? [chosen] : [])];
+  return all.filter(({id}, k) => all.findIndex((other) => other.id === id) === k);
+}
+
+/** A choice of the folder in which a case is made. @param chosen  {id, name}   @param name  of the case's own folder */
+function MadeIn({chosen, onChoose, name, places}) {
+  return [
+    h(Choice, {
+      key: "in",
+      label: "Make it in",
+      value: chosen.id,
+      options: places.map(({id, name: folder}) => [id, folder]),
+      onChange: (id) => onChoose(places.find((place) => place.id === id)),
+      problem: problemAt("folder"),
+    }),
+    h(
+      "p",
+      {key: "as", class: "soft path", "data-made-as": name},
+      `It will be ${chosen.name}/${name}. For another folder, go there in the list above, and choose it here.`,
+    ),
+  ];
+}
+
+function usePlace() {
+  const [chosen, setChosen] = useState(null),
+    places = state.files ? placesForCase(state.files, chosen) : [];
+  return {chosen: chosen || places[0], onChoose: setChosen, places};
 }
 
 function NewCase({file}) {
@@ -80,9 +125,11 @@ function NewCase({file}) {
   const [settings, setSettings] = useState({});
   const beginnings = beginningsOf(file),
     [as, setAs] = useState(beginnings[0]);
-  const places = placesForCase(state.files),
-    [place, setPlace] = useState(places[0][0]);
-  const make = () => begin("create", {[as]: file.id, folder: place, name, settings: as === "scan" ? settings : {}});
+  const place = usePlace(),
+    folder = place.chosen.id;
+  const [pictures, setPictures] = useState(0),
+    isReading = as === "scan" && pictures > 0;
+  const make = () => begin("create", {[as]: file.id, folder, name, settings: isReading ? settings : {}});
   return h(
     Section,
     {title: `New case from ${file.name}`, id: "create"},
@@ -95,23 +142,38 @@ function NewCase({file}) {
         })
       : null,
     h("p", {class: "soft"}, kBeginnings[as][1]),
+    as === "scan" && !file.bytes ? h(Inside, {file, setPictures}) : null,
+    isReading ? h(Reading, {pictures, settings, setSettings}) : null,
     h(TextInput, {label: "Name of its folder", value: name, onChange: setName, problem: problemAt("name")}),
-    places.length > 1
-      ? h(Choice, {label: "Made in", value: place, options: places, onChange: setPlace, problem: problemAt("folder")})
-      : null,
-    as === "scan" && !file.bytes ? h(Reading, {settings, setSettings}) : null,
+    h(MadeIn, {...place, name}),
     h(
       Button,
       {isMain: true, disabled: !name || Boolean(state.busy.create), onClick: make, "data-do": "create"},
       "Make the case",
     ),
     h(Working, {call: "create", text: "Reading the file"}),
-    h(Problems, {calls: ["create"], shown: ["name", "ct.spacing_mm", "ct.hu"]}),
+    h(Problems, {calls: ["create"], shown: ["name", "folder", ...(isReading ? ["ct.spacing_mm", "ct.hu"] : [])]}),
   );
 }
 
+/** A folder that may be a scan: a way into it, and how many pictures it holds. */
+function Inside({file, setPictures}) {
+  useEffect(() => {
+    ask("files", {folder: file.id}).then((found) => setPictures(found ? found.entries.filter(isPicture).length : 0));
+  }, []);
+  return h(
+    "div",
+    {class: "row"},
+    h(Button, {onClick: () => list(file.id), "data-do": "look-inside"}, "Look into this folder"),
+  );
+}
+
+function isPicture({name}) {
+  return name.toLowerCase().endsWith(".png");
+}
+
 // How pictures become a scan.
-function Reading({settings, setSettings}) {
+function Reading({pictures, settings, setSettings}) {
   const about = (key) => ({
     value: settings[key] || null,
     onChange: (value) => setSettings({...settings, [key]: value}),
@@ -121,7 +183,7 @@ function Reading({settings, setSettings}) {
     h(
       "p",
       {key: "about", class: "soft"},
-      "For PNG slices only. DICOM, NRRD, NIfTI and MetaImage scans hold these numbers themselves.",
+      `${pictures} PNG pictures. They hold neither millimetres nor Hounsfield units (HU): state both.`,
     ),
     h(Numbers, {
       key: "spacing",
@@ -131,24 +193,53 @@ function Reading({settings, setSettings}) {
       step: 0.1,
       ...about("ct.spacing_mm"),
     }),
-    h(Numbers, {key: "hu", label: "HU from grey value", names: ["slope", "intercept"], step: 1, ...about("ct.hu")}),
-    Object.keys(settings).length
-      ? h(Button, {key: "out", onClick: () => setSettings({})}, "Leave these out")
-      : null,
+    h(Height, {key: "height", pictures, spacing: settings["ct.spacing_mm"]}),
+    h(Numbers, {
+      key: "hu",
+      label: "HU from grey value",
+      names: ["slope", "intercept"],
+      step: 1,
+      hint: greysText(settings["ct.hu"]),
+      ...about("ct.hu"),
+    }),
   ];
+}
+
+function Height({pictures, spacing}) {
+  if (!spacing) return null;
+  const height = pictures * spacing[2];
+  return [
+    h(
+      "p",
+      {key: "is", class: "soft"},
+      `${pictures} slices of ${plain(spacing[2])} mm: ${plain(height)} mm from foot to head.`,
+    ),
+    h(OddSize, {key: "odd", sizes: [height]}),
+  ];
+}
+
+function greysText(hu) {
+  if (!hu) return "HU = slope × grey value + intercept. Air is at −1000 HU, muscle near 50 HU.";
+  const at = (grey) => `${grey} is ${fixed(hu[0] * grey + hu[1], 0)} HU`;
+  return `Grey value ${at(0)}, ${at(100)}, ${at(255)}. Air should come to −1000 HU, muscle to about 50 HU.`;
 }
 
 function Demo() {
   const [seed, setSeed] = useState(1);
-  const folder = state.files && placesForCase(state.files)[0][0];
+  const place = usePlace();
   return h(
     Section,
     {title: "Demo specimen", id: "demo"},
     h("p", {class: "soft"}, "A virtual tongue with a CT of its own. Another seed gives another shape."),
     h(NumberInput, {label: "Seed", value: seed, step: 1, min: 0, onChange: setSeed}),
+    place.chosen ? h(MadeIn, {...place, name: `virtual_tongue_${seed}`}) : null,
     h(
       Button,
-      {disabled: !folder || Boolean(state.busy.demo), onClick: () => begin("demo", {folder, seed}), "data-do": "demo"},
+      {
+        disabled: !place.chosen || Boolean(state.busy.demo),
+        onClick: () => begin("demo", {folder: place.chosen.id, seed}),
+        "data-do": "demo",
+      },
       "Make the demo specimen",
     ),
     h(Working, {call: "demo", text: "Making the specimen"}),

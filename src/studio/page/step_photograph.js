@@ -212,31 +212,40 @@ function Result() {
     photograph.asked === JSON.stringify(argumentsOf(state.photo))
       ? null
       : h("p", {class: "warning"}, "Scale, settings or lines have changed since this measurement."),
-    h(Verdict, {evaluation}),
-    byHand.length
-      ? h(
-          "p",
-          {class: "warning", "data-by-hand": byHand.join(" ")},
-          `Drawn by hand: ${byHand.map((line) => spoken(line).toLowerCase()).join(", ")}.`,
-        )
-      : null,
+    byHand.length ? h("p", {class: "warning", "data-by-hand": byHand.join(" ")}, byHandText(byHand)) : null,
+    h(Verdict, {evaluation, isDrawn: isAllDrawn(byHand)}),
     h("p", {class: "soft"}, `${scaleText(photograph)} 12 o'clock is marked on the incision.`),
     h(Measures, {evaluation}),
     h(ByClock, {evaluation}),
   );
 }
 
-// Contours that were both drawn by hand have no verdict: it is about what was found.
-function Verdict({evaluation: {outcome, verdict}}) {
+const kLines = {incision: "the incision", tumor_edge: "the tumour's edge"};
+
+function isAllDrawn(byHand) {
+  return byHand.length === Object.keys(kLines).length;
+}
+
+function byHandText(byHand) {
+  if (isAllDrawn(byHand))
+    return "Both lines were drawn by hand. Nothing was found automatically: these are the measures of the drawing.";
+  const [drawn] = byHand,
+    [found] = Object.keys(kLines).filter((line) => line !== drawn);
+  return `Drawn by hand: ${kLines[drawn]}. Found automatically: ${kLines[found]}.`;
+}
+
+// Of lines that were both drawn by hand, the verdict is about the scale.
+function Verdict({evaluation: {outcome, verdict}, isDrawn}) {
   const ended = `Outcome: ${spoken(outcome).toLowerCase()}.`;
   if (!verdict) return h("p", {class: "verdict"}, ended);
-  const isGood = !verdict.reasons.length;
+  const isGood = !verdict.reasons.length,
+    about = isDrawn ? "the scale" : "this measurement";
   return [
     h(
       "p",
       {class: "verdict", key: "status"},
       h(Status, {status: verdict.status}),
-      ` ${ended} ${isGood ? "No reason against this measurement is known." : "Reasons, worst first:"}`,
+      ` ${ended} ${isGood ? `No reason against ${about} is known.` : "Reasons, worst first:"}`,
     ),
     h(Reasons, {verdict, key: "reasons"}),
   ];

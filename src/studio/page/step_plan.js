@@ -1,12 +1,14 @@
 // Step 5: the intended path, and the settings of the cut.
 
 import {h} from "preact";
-import {state, setting, isFresh, unitOf, valueAt} from "./store.js";
-import {change} from "./actions.js";
+import {state, isFresh} from "./store.js";
 import {showPlace} from "./views.js";
-import {Button, Problems, Reasons, Section, Setting, Status, Working, complaint, problemAt} from "./widgets.js";
+import {rowsOf} from "./fields.js";
+import {Problems, Reasons, Section, Setting, Status, Working} from "./widgets.js";
+import {RobotPlace} from "./robot_place.js";
+import {Unstretched} from "./step_hold.js";
 import {pointsOf, length, minus} from "./geometry.js";
-import {hasUnitInName, mm, isNumber, plain} from "./words.js";
+import {mm} from "./words.js";
 
 const kPlan = [
   "plan.lateral_margin_mm",
@@ -21,11 +23,13 @@ const kCut = ["cut.speed_mm_s", "cut.dullness", "cut.overlap_mm"];
 
 /** The panel. */
 export function StepPlan() {
-  const shown = [...rowsOf("plan"), ...rowsOf("cut")];
+  const shown = [...["plan", "cut", "tool", "thermal"].flatMap(rowsOf), "robot.T_robot_sim"];
+  const isUnstretched = isFresh("stretch") && Boolean(state.stretch.note); // the plan's problem says the same again
   return h(
     "div",
     null,
-    h(Problems, {calls: ["change", "body", "stretch", "plan"], shown}),
+    h(Problems, {calls: ["change", "body", "stretch", ...(isUnstretched ? [] : ["plan"])], shown}),
+    isUnstretched ? h(Unstretched, {stretch: state.stretch}) : null,
     h(Working, {call: "body", text: "Meshing the body"}),
     h(Working, {call: "stretch", text: "Stretching"}),
     h(Working, {call: "plan", text: "Planning the path"}),
@@ -36,20 +40,16 @@ export function StepPlan() {
       {title: "Simulated cut", id: "cut"},
       h(Rows, {keys: present(kCut)}),
       h(More, {group: "cut", known: kCut}),
+      h(More, {group: "tool", known: [], title: "Tool"}),
+      h(More, {group: "thermal", known: [], title: "Heat"}),
     ),
-    h(Place),
+    h(RobotPlace),
   );
 }
 
-/** Every setting of a group of the case that one input can hold. */
-function rowsOf(group) {
-  const fields = valueAt(state.case.settings, group) || {};
-  return Object.keys(fields).map((key) => `${group}.${key}`);
-}
-
 function present(keys) {
-  const all = new Set([...rowsOf("plan"), ...rowsOf("cut")]);
-  return keys.filter((key) => all.has(key));
+  const all = [...rowsOf("plan"), ...rowsOf("cut")];
+  return keys.filter((key) => all.includes(key));
 }
 
 function Rows({keys}) {
@@ -60,21 +60,10 @@ function Rows({keys}) {
   );
 }
 
-function More({group, known}) {
-  const rest = rowsOf(group).filter((key) => !known.includes(key) && isShown(key) && isSimple(setting(key)));
+function More({group, known, title = "More settings"}) {
+  const rest = rowsOf(group).filter((key) => !known.includes(key));
   if (!rest.length) return null;
-  return h("details", null, h("summary", null, "More settings"), h(Rows, {keys: rest}));
-}
-
-// Files are no settings of this kind; a length or power for which the server names no unit is no setting of the case.
-function isShown(key) {
-  return !(key in (state.case.inputs || {})) && (Boolean(unitOf(key)) || !hasUnitInName(key));
-}
-
-function isSimple(value) {
-  return (
-    value === null || typeof value !== "object" || (Array.isArray(value) && value.every(isNumber) && value.length < 5)
-  );
+  return h("details", {"data-group": group}, h("summary", null, title), h(Rows, {keys: rest}));
 }
 
 function Result() {
@@ -85,6 +74,7 @@ function Result() {
   return h(
     Section,
     {title: "Planned path", id: "planned"},
+    isFresh("plan") ? null : h("p", {class: "soft"}, "With earlier settings:"),
     h(
       "div",
       {class: isFresh("plan") ? null : "stale"},
@@ -95,67 +85,6 @@ function Result() {
         ` ${points.length} waypoints, ${mm(along)} long, ${plan.path.closed ? "a ring" : "open"}.`,
       ),
       h(Reasons, {verdict: plan.verdict, onPlace: showPlace}),
-    ),
-  );
-}
-
-const kIdentity = [
-  [1, 0, 0, 0],
-  [0, 1, 0, 0],
-  [0, 0, 1, 0],
-  [0, 0, 0, 1],
-];
-
-/** Where the specimen lies under the robot: a transform by rows. */
-function Place() {
-  const path = "robot.T_robot_sim",
-    rows = setting(path),
-    problem = problemAt(path);
-  return h(
-    Section,
-    {title: "Place under the robot", id: "robot"},
-    h(
-      "p",
-      {class: "soft"},
-      "From simulation to robot coordinates, by rows; the last column is in mm. Without it no program is written.",
-    ),
-    rows
-      ? h(
-          "table",
-          {class: "matrix"},
-          h(
-            "tbody",
-            null,
-            rows.map((row, r) =>
-              h(
-                "tr",
-                {key: r},
-                row.map((value, c) =>
-                  h(
-                    "td",
-                    {key: c},
-                    h("input", {
-                      type: "number",
-                      step: "any",
-                      value: plain(value),
-                      "aria-label": `Row ${r + 1}, column ${c + 1}`,
-                      "aria-invalid": problem ? "true" : undefined,
-                      onChange: (event) => change({[path]: rows.with(r, row.with(c, Number(event.target.value)))}),
-                    }),
-                  ),
-                ),
-              ),
-            ),
-          ),
-        )
-      : null,
-    problem ? h("p", {class: "problem", role: "alert"}, complaint(problem)) : null,
-    h(
-      "div",
-      {class: "row"},
-      rows
-        ? h(Button, {onClick: () => change({[path]: null})}, "Remove")
-        : h(Button, {onClick: () => change({[path]: kIdentity})}, "State the place"),
     ),
   );
 }

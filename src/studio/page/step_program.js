@@ -7,12 +7,15 @@ import {isRunning} from "./step_run.js";
 import {Button, Choice, Problems, Section, Working} from "./widgets.js";
 import {Commands} from "./commands.js";
 import {Gate} from "./gate.js";
+import {LaidGate} from "./laid_gate.js";
 import {saveFile} from "./save_file.js";
 import {duration, mm, spoken} from "./words.js";
 
+// Of the programs that there can be: the state's word, its heading, its name in a list.
 const kPrograms = [
-  ["run", "of the run"],
-  ["tissue", "laid on the measured tissue"],
+  ["tissue", "Incision on the measured tissue", "the incision on the measured tissue"],
+  ["mark", "Mark on the measured tissue", "the mark on the measured tissue"],
+  ["run", "Program of the run", "the program of the run"],
 ];
 
 /** The panel. */
@@ -30,37 +33,67 @@ export function StepProgram() {
     "div",
     {"data-arm": state.arm ? "there" : "none"},
     isFresh("run") ? null : h("p", {class: "warning"}, "The settings have changed since this run."),
-    programOf("tissue")
-      ? h(
-          "p",
-          {class: "warning", "data-laid-too": "yes"},
-          "This is the program of the run. The one on the measured tissue stands in step 9; running again removes it. ",
-          h(Button, {onClick: () => goTo("register")}, "Go to it"),
-        )
-      : null,
-    h(Gate, {
-      result,
-      accepted: state.accept,
-      onAccept: (accept) => update({accept}),
-      onAgain: runAccepting,
-      again: "Run again with these accepted",
-      call: "run",
-      isBusy: isRunning(),
-    }),
-    h(Arm, {result}),
+    h(Programs, {result}),
+    h(Arm),
     h(Save, {result}),
     h(Section, {title: "Repeat", id: "repeat"}, h(Commands, {lines: commandsOf(state)})),
   );
 }
 
-function Arm({result}) {
-  const {arm} = state;
+// Of the run alone, or of it and what was laid, each with its own gate.
+function Programs({result}) {
+  if (!state.lay && !state.mark) return h(RunGate, {result});
+  return kPrograms
+    .filter(([of]) => of === "run" || (of === "mark" ? state.mark : state.lay))
+    .map(([of, title]) =>
+      h(
+        "div",
+        {key: of, "data-program-of": of},
+        of === "run"
+          ? h(RunGate, {result, title, note: h(Elsewhere)})
+          : h(LaidGate, {kind: of === "mark" ? "mark" : "incise", title}),
+      ),
+    );
+}
+
+function Elsewhere() {
+  return h(
+    "p",
+    {class: "warning", "data-laid-too": "yes"},
+    "It cuts where the case says that the specimen lies, not where the camera found it. Running again removes what was " +
+      "laid in step 9. ",
+    h(Button, {onClick: () => goTo("register")}, "Go to step 9"),
+  );
+}
+
+function RunGate({result, title, note}) {
+  return h(Gate, {
+    result,
+    title,
+    note,
+    accepted: state.accept,
+    onAccept: (accept) => update({accept}),
+    onAgain: runAccepting,
+    again: "Run again with these accepted",
+    call: "run",
+    isBusy: isRunning(),
+  });
+}
+
+function Arm() {
+  const {arm} = state,
+    there = kPrograms.filter(([of]) => programOf(of));
   return h(
     Section,
     {title: "Arm", id: "arm"},
-    programOf("tissue")
-      ? h(Choice, {label: "Program", value: state.armOf, options: kPrograms, onChange: playProgram})
-      : null,
+    there.length > 1
+      ? h(Choice, {
+          label: "It plays",
+          value: state.armOf,
+          options: there.map(([of, , name]) => [of, name]),
+          onChange: playProgram,
+        })
+      : there.map(([of, , name]) => h("p", {key: of, class: "soft"}, `It plays ${name}.`)),
     h(Working, {call: "arm", text: "Playing the program"}),
     h(Problems, {calls: ["arm"]}),
     arm
@@ -78,7 +111,7 @@ function Arm({result}) {
           h("p", {key: "about", class: "soft"}, "A simulation of the arm and its controller. No robot moves."),
         ]
       : null,
-    result.program || programOf("tissue")
+    there.length
       ? null
       : h("p", {class: "soft", "data-arm-reason": "yes"}, "Without a program the arm has nothing to play."),
   );
@@ -100,11 +133,13 @@ function Save({result}) {
 }
 
 // What gives the same results without the page, in the order in which it was done.
-function commandsOf({run: result, photograph, register, lay}) {
+function commandsOf({run: result, photograph, frame, cloud, register, lay, mark}) {
   return [
     result.command,
     photograph && photograph.command,
+    ...((cloud.isOfFrame && frame && frame.commands) || []),
     register && register.command,
+    ...((mark && mark.commands) || []),
     ...((lay && lay.commands) || []),
   ];
 }

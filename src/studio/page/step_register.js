@@ -1,12 +1,13 @@
 // Step 9: where the simulated tissue lies under the camera, and the run's path laid on it.
 
 import {h} from "preact";
-import {useState} from "preact/hooks";
+import {useEffect, useRef, useState} from "preact/hooks";
 import {state, update, isFresh} from "./store.js";
-import {chooseCloud, goTo, lay, layAccepting, makeCloud, refuseRegistration, register} from "./actions.js";
+import {chooseCloud, goTo, lay, makeCloud, refuseRegistration, register} from "./actions.js";
+import {Frame} from "./frame_panel.js";
 import {Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status, Working} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
-import {Gate} from "./gate.js";
+import {LaidGate, laidOf} from "./laid_gate.js";
 import {Commands} from "./commands.js";
 import {registeredView} from "./registered.js";
 import {kUnseen, scaleColour} from "./colours.js";
@@ -17,6 +18,10 @@ const kScales = [
   ["fixed", "fixed: the cloud has its true size"],
   ["free", "free"],
   ["range", "within a range"],
+];
+const kSources = [
+  ["cloud", "A cloud"],
+  ["frame", "A colour and depth picture"],
 ];
 const kFrames = [
   ["robot", "in the robot's frame"],
@@ -35,7 +40,8 @@ export function StepRegister() {
     cloud.file ? h(Settings) : null,
     found ? h(Result, {found}) : null,
     found ? h(Decision) : null,
-    state.lay ? h(Laid) : null,
+    state.lay ? h(Laid, {kind: "incise"}) : null,
+    state.mark ? h(Laid, {kind: "mark"}) : null,
     h("p", {role: "status", class: state.notice ? "notice" : undefined}, state.notice),
   );
 }
@@ -50,14 +56,24 @@ function isMadeUp() {
 }
 
 function Cloud() {
-  const {cloud} = state,
-    [seed, setSeed] = useState(1);
+  const {cloud} = state;
   return h(
     Section,
-    {title: "Cloud", id: "cloud"},
-    h("p", {class: "soft"}, "The tissue as the camera sees it: a cloud of points or a surface, mm."),
-    cloud.file ? h("p", {class: "path"}, cloud.file.name, " ", isMadeUp() ? h(MadeUp) : null) : null,
+    {title: "What the camera sees", id: "cloud"},
+    h(Choice, {label: "Given as", value: cloud.from, options: kSources, onChange: (from) => setCloud({from})}),
+    h("p", {class: "soft"}, "The tissue on the table, stretched as it is simulated."),
+    cloud.from === "frame" ? h(Frame) : h(Points),
+  );
+}
+
+function Points() {
+  const {cloud} = state,
+    [seed, setSeed] = useState(1);
+  return [
+    h("p", {class: "soft", key: "about"}, "A cloud of points or a surface, mm."),
+    cloud.file ? h("p", {class: "path", key: "name"}, cloud.file.name, " ", isMadeUp() ? h(MadeUp) : null) : null,
     h(FilePicker, {
+      key: "picker",
       label: "cloud",
       endings: kEndings,
       chosen: cloud.file,
@@ -66,7 +82,7 @@ function Cloud() {
     }),
     h(
       "details",
-      null,
+      {key: "virtual"},
       h("summary", null, "Make a virtual cloud for practice"),
       h("p", {class: "soft"}, "A cloud as a depth camera might give it of this case's stretched specimen, made up."),
       h(NumberInput, {label: "Seed", value: seed, step: 1, min: 0, onChange: setSeed}),
@@ -76,9 +92,9 @@ function Cloud() {
         "Make a virtual cloud",
       ),
     ),
-    h(Working, {call: "virtual_cloud", text: "Making the cloud"}),
-    h(Problems, {calls: ["virtual_cloud"]}),
-  );
+    h(Working, {key: "working", call: "virtual_cloud", text: "Making the cloud"}),
+    h(Problems, {key: "problems", calls: ["virtual_cloud"]}),
+  ];
 }
 
 function setCloud(patch) {
@@ -142,8 +158,23 @@ function Result({found}) {
     ),
     found.sample ? null : h("p", {class: "soft"}, "There is no pose, so the cloud is not shown."),
     h(Fit, {registration}),
+    h(Edges, {edges: found.edges}),
     registration.certificate ? h(Observability, {certificate: registration.certificate}) : null,
     h(Commands, {lines: [found.command], files: found.files}),
+  );
+}
+
+// How far the edge that is marked on the tissue lies from where the case has it.
+function Edges({edges}) {
+  if (!edges || !isNumber(edges.mean_mm)) return null;
+  return h(
+    "p",
+    {"data-edges": "yes"},
+    "The edge marked on the tissue lies ",
+    h("strong", {"data-edge": "mean"}, mm(edges.mean_mm)),
+    " from the case's tumour edge on average, and at most ",
+    h("strong", {"data-edge": "greatest"}, mm(edges.greatest_mm)),
+    ".",
   );
 }
 
@@ -218,28 +249,55 @@ function Motions({visible}) {
 
 // --- The decision. ---
 
+// Kind, button, what it does, and the name for tests.
+const kKinds = [
+  [
+    "incise",
+    "Lay the incision",
+    "Puts the run's path on the measured tissue, for a program that cuts along it.",
+    "lay",
+  ],
+  [
+    "mark",
+    "Mark the edge again",
+    "Puts the tumour's edge there, for a program that marks it by electrocautery, 1 mm deep at 2 mm/s. The paper does so " +
+      "before the cut, so that the edge is seen in the photograph.",
+    "lay-mark",
+  ],
+];
+
 function Decision() {
   const {cloud, run} = state;
   const isReady = Boolean(run) && (cloud.frame === "robot" || cloud.camera);
   return h(
     Section,
     {title: "Decision", id: "decision"},
-    h(Choice, {
-      label: "The cloud is",
-      value: cloud.frame,
-      options: kFrames,
-      onChange: (frame) => setCloud({frame}),
-    }),
+    cloud.isOfFrame
+      ? h("p", null, "The frame's cloud is where the camera sees it. To lay a path, say where the camera is.")
+      : h(Choice, {
+          label: "The cloud is",
+          value: cloud.frame,
+          options: kFrames,
+          onChange: (frame) => setCloud({frame}),
+        }),
     cloud.frame === "camera" ? h(Camera) : null,
+    kKinds.map(([kind, title, about, name], k) =>
+      h(
+        "div",
+        {key: kind, class: "act"},
+        h(
+          Button,
+          {isMain: k === 0, disabled: !isReady || Boolean(state.busy.lay), onClick: () => lay(kind), "data-do": name},
+          title,
+        ),
+        h("p", {class: "about"}, about),
+      ),
+    ),
     h(
       "div",
-      {class: "row"},
-      h(
-        Button,
-        {isMain: true, disabled: !isReady || Boolean(state.busy.lay), onClick: lay, "data-do": "lay"},
-        "Lay the path on this tissue",
-      ),
+      {class: "act"},
       h(Button, {onClick: refuseRegistration, "data-do": "refuse"}, "Refuse"),
+      h("p", {class: "about"}, "Removes this registration and all that was laid by it."),
     ),
     run
       ? null
@@ -250,14 +308,18 @@ function Decision() {
           h(Button, {onClick: () => goTo("run")}, "Go to the run"),
         ),
     h(Working, {call: "lay", text: "Laying the path"}),
-    state.lay ? null : h(Problems, {calls: ["lay"]}),
+    laidOf(state.layKind).result ? null : h(Problems, {calls: ["lay"]}),
   );
 }
 
 function Camera() {
   const {camera} = state.cloud;
   return [
-    h("p", {class: "path", key: "name"}, camera ? camera.name : "A camera's file with T_robot_camera."),
+    h(
+      "p",
+      {class: "path", key: "name"},
+      camera ? camera.name : "A file that says where the camera is under the robot (T_robot_camera).",
+    ),
     h(FilePicker, {
       key: "picker",
       label: "camera's file",
@@ -269,35 +331,34 @@ function Camera() {
   ];
 }
 
-function Laid() {
-  const {lay: laid} = state;
+const kFollows = {
+  corrected: "The corrected path is laid on the tissue, in the robot's frame.",
+  planned: "The planned path is laid on the tissue, in the robot's frame.",
+  edge: "The tumour's edge is laid on the tissue, in the robot's frame, to be marked.",
+};
+
+function Laid({kind}) {
+  const {of, result} = laidOf(kind),
+    verdict = useRef(null);
+  useEffect(() => verdict.current.scrollIntoView({block: "center"}), [result]);
   return h(
     "div",
-    {"data-laid": laid.program ? "program" : "none"},
+    {[kind === "mark" ? "data-marked" : "data-laid"]: result.program ? "program" : "none"},
     isMadeUp() ? h("p", {class: "warning"}, h(MadeUp), " No real tissue lies where this path leads.") : null,
-    isFresh("lay") ? null : h("p", {class: "warning"}, "The settings have changed since the path was laid."),
+    isFresh(of) ? null : h("p", {class: "warning"}, "The settings have changed since this was laid."),
     h(
       Section,
-      {title: "Verdict", id: "laid-verdict"},
+      {title: kind === "mark" ? "Verdict on the mark" : "Verdict on the incision", id: `${of}-verdict`},
       h(
         "p",
-        {class: "verdict"},
-        h(Status, {status: laid.verdict.status}),
-        ` The ${laid.follows} path is laid on the tissue, in the robot's frame.`,
+        {class: "verdict", ref: verdict},
+        h(Status, {status: result.verdict.status}),
+        ` ${kFollows[result.follows]}`,
       ),
-      h(Reasons, {verdict: laid.verdict}),
+      h(Reasons, {verdict: result.verdict}),
     ),
-    h(Gate, {
-      result: laid,
-      accepted: state.acceptLaid,
-      onAccept: (acceptLaid) => update({acceptLaid}),
-      onAgain: layAccepting,
-      fileName: "incise_on_tissue.script",
-      again: "Lay it again with these accepted",
-      call: "lay",
-      isBusy: Boolean(state.busy.lay),
-    }),
-    h(Commands, {lines: laid.commands, files: laid.files}),
+    h(LaidGate, {kind}),
+    h(Commands, {lines: result.commands, files: result.files}),
   );
 }
 

@@ -4,8 +4,8 @@ import {h} from "preact";
 import {useEffect, useRef, useState} from "preact/hooks";
 import {state, isFresh} from "./store.js";
 import {goTo, run, stop} from "./actions.js";
-import {partsOfRun, wordForPart} from "./run_parts.js";
-import {Button, Problems, Section} from "./widgets.js";
+import {partsOfRun, shareOfPart, wordForPart} from "./run_parts.js";
+import {Button, Explained, Problems, Section} from "./widgets.js";
 import {duration, isNumber, place, spoken} from "./words.js";
 
 const kQuiet = 5000; // ms between announcements
@@ -49,11 +49,12 @@ function progressOfRun() {
 }
 
 function Progress() {
-  const {stage, part, fraction, left_s: left} = progressOfRun();
-  const share = isNumber(fraction) ? fraction : undefined;
+  const {stage, left_s: left} = progressOfRun(),
+    share = shareOfPart(),
+    now = partsOfRun().find(({is}) => is === "now");
   const text = [
     spoken(stage) || "Starting",
-    part || "",
+    stage && now ? now.name : "",
     share === undefined ? "" : `${Math.round(100 * share)} %`,
     isNumber(left) ? `about ${duration(left)} left in this ${wordForPart()}` : "",
   ]
@@ -148,7 +149,7 @@ function Messages() {
               {key: one.key, "data-severity": one.severity},
               h("span", {class: "sign", "aria-hidden": "true"}, kSigns[one.severity] || "·"),
               h("span", {class: "soft"}, `${spoken(one.severity)}: `),
-              one.text,
+              h(Explained, {text: one.text}),
             ),
           ),
         )

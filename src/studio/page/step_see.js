@@ -11,6 +11,7 @@ import {
   Facts,
   NumberInput,
   Numbers,
+  OddSize,
   Problems,
   Reasons,
   Section,
@@ -20,7 +21,9 @@ import {
   problemAt,
   useId,
 } from "./widgets.js";
-import {plus, voxelAt} from "./geometry.js";
+import {boundsOfGrid, spanAt} from "./cut_faces.js";
+import {voxelAt} from "./geometry.js";
+import {fixed, mm, plain} from "./words.js";
 
 const kKeys = [
   "ct.window_hu",
@@ -51,13 +54,20 @@ export function StepSee() {
       h(
         "div",
         {class: "pair"},
-        h(Setting, {path: "ct.opening_radius_mm", label: "Opening radius", step: 0.5}),
-        h(Setting, {path: "ct.smoothing_mm", label: "Smoothing", step: 0.1, isOptional: true}),
+        h(Setting, {path: "ct.opening_radius_mm", step: 0.5, hint: "Cuts bridges thinner than twice this."}),
+        h(Setting, {path: "ct.smoothing_mm", step: 0.1, hint: takenText()}),
       ),
     ),
     h(Brush),
     h(Found),
   );
+}
+
+// What is taken for a smoothing that is not set.
+function takenText() {
+  const {tissue} = state;
+  if (setting("ct.smoothing_mm") !== null || !tissue || !isFresh("tissue")) return null;
+  return `Automatic: ${mm(tissue.summary.smoothing_mm)}.`;
 }
 
 // A case that begins with a mesh has nothing to find.
@@ -81,7 +91,7 @@ function Values() {
   return h(
     Section,
     {title: "Which values are tissue", id: "window"},
-    h(Setting, {path: "ct.window_hu", label: "Tissue", names: ["least", "greatest"], step: 5}),
+    h(Setting, {path: "ct.window_hu", names: ["least", "greatest"], step: 5}),
   );
 }
 
@@ -92,6 +102,7 @@ function Picture() {
   return h(
     Section,
     {title: "Picture", id: "picture"},
+    scan ? h(Extent, {scan}) : null,
     scan ? h(Greys) : null,
     h(Overlay),
     here
@@ -106,6 +117,20 @@ function Picture() {
         })
       : null,
   );
+}
+
+function Extent({scan}) {
+  const {size, spacing_mm: spacing} = scan.grid,
+    lengths = size.map((count, k) => count * spacing[k]);
+  const range = [scan.least_hu, scan.greatest_hu].map((value) => fixed(value, 0)).join(" to ");
+  return [
+    h(
+      "p",
+      {key: "is", class: "soft", "data-extent": lengths.map(plain).join(" ")},
+      `${size.join(" × ")} voxels: ${lengths.map((length) => fixed(length, 1)).join(" × ")} mm, ${range} HU.`,
+    ),
+    h(OddSize, {key: "odd", sizes: lengths}),
+  ];
 }
 
 function Greys() {
@@ -173,7 +198,11 @@ function Box() {
     return h(
       Section,
       {title: "Region box", id: "box"},
-      h("p", {class: "soft"}, "There is no box: the whole scan is searched."),
+      h(
+        "p",
+        {class: "soft"},
+        "There is no box: the whole scan is searched. For a box, put the crosshair into the tissue first.",
+      ),
       h(
         Button,
         {disabled: !scan, onClick: () => change({[path]: boxAbout(scan.grid)}), "data-do": "box"},
@@ -203,12 +232,13 @@ function Box() {
   );
 }
 
-// A quarter of the scan in each direction, about the crosshair; to be dragged to where it should be.
+const kBox = 70; // mm: what holds a tongue
+
+// To be dragged to where it should be; clipped to the scan.
 function boxAbout(grid) {
-  const middle = crosshair();
-  const half = grid.size.map((count, k) => 0.125 * count * grid.spacing_mm[k]);
-  const reach = kAxes.map((_, world) => grid.axes.reduce((sum, axis, k) => sum + Math.abs(axis[world]) * half[k], 0));
-  return [plus(middle, reach, -1), plus(middle, reach)].map((corner) => corner.map((value) => Math.round(value)));
+  const ends = boundsOfGrid(grid);
+  const spans = crosshair().map((value, k) => spanAt(value, kBox, [ends[0][k], ends[1][k]]));
+  return [0, 1].map((side) => spans.map((span) => span[side]));
 }
 
 function Seed() {

@@ -14,17 +14,27 @@ export function newPhoto() {
   };
 }
 
-/** A cloud's settings before one is chosen. `frame`: where its coordinates are: "robot" or "camera". */
+/** A cloud's settings before one is chosen. `from`: "cloud", or "frame" of a colour and depth camera; `isOfFrame`:
+ *  whether the chosen one is such a frame's; `frame`: where its coordinates are: "robot" or "camera". */
 export function newCloud() {
   return {
+    from: "cloud",
     file: null,
     isVirtual: false,
+    isOfFrame: false,
     scale: "fixed",
     range: [0.9, 1.1],
     settling_mm: 0,
     frame: "robot",
     camera: null,
   };
+}
+
+/** A frame of a colour and depth camera before its files are chosen. `isCloud`: it is one organised, coloured cloud;
+ *  `planes`: how many flat things are taken out of its cloud. */
+export function newFraming() {
+  const files = {color: null, depth: null, intrinsics: null, organised: null};
+  return {...files, isCloud: false, mark: "green", isOpen: false, planes: 1};
 }
 
 /** The brush before its first stroke. `past`, `future`: lists of strokes for undo and redo; `refused`: how many points
@@ -41,7 +51,9 @@ export function newPatch() {
 }
 
 /** The state. `drafts`: settings on their way to the server; `refused`: settings that it refused; `problems`: the last
- *  problem of each call. */
+ *  problem of each call; `kept`: results of earlier runs, as kept.js has them; `keptDropped`: how many of them were of
+ *  something else; `keptCut`: which of their cuts the plots and the 3D view show; `mark`: the edge as `lay` laid it;
+ *  `layKind`: what `lay` was asked for last. */
 export const state = {
   link: "starting",
   version: "",
@@ -63,13 +75,21 @@ export const state = {
   plan: null,
   run: null,
   accept: [],
+  kept: [],
+  keptDropped: 0,
+  keptCut: "corrected",
   picture: null,
   photograph: null,
   photo: newPhoto(),
   cloud: newCloud(),
+  framing: newFraming(),
+  frame: null,
   register: null,
   lay: null,
   acceptLaid: [],
+  mark: null,
+  acceptMark: [],
+  layKind: "incise",
   arm: null,
   armOf: "run",
   cross: null,
@@ -106,15 +126,28 @@ export function subscribe(listener) {
   listeners.add(listener);
 }
 
-/** Calls `apply` after an update in which one of the values that `select` gives is another object or number. */
+/** Calls `apply(now)` after an update in which what `select` gives is another. */
 export function when(select, apply) {
-  let last = [];
+  let last = null;
   subscribe(() => {
     const now = select();
-    if (now.length === last.length && now.every((value, k) => value === last[k])) return;
+    if (isSame(now, last)) return;
     last = now;
-    apply();
+    apply(now);
   });
+}
+
+/** Whether two values are one, or lists and objects with the same in them. Arrays of the server are the same only where
+ *  they are one: they are too large to be compared. */
+export function isSame(a, b) {
+  if (a === b) return true;
+  if (!isPlain(a) || !isPlain(b)) return false;
+  const keys = Object.keys(a);
+  return keys.length === Object.keys(b).length && keys.every((key) => isSame(a[key], b[key]));
+}
+
+function isPlain(value) {
+  return Array.isArray(value) || (value !== null && typeof value === "object" && value.constructor === Object);
 }
 
 /** A value under a dotted key, or undefined. */

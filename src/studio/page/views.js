@@ -1,6 +1,6 @@
 // The four views, and what of the state they show.
 
-import {state, update, setting, isFresh, when, subscribe} from "./store.js";
+import {state, update, setting, isFresh, isSame, when} from "./store.js";
 import {change} from "./actions.js";
 import {addStroke, brush, strokes} from "./brush.js";
 import {GreyTable} from "./slice_image.js";
@@ -10,6 +10,7 @@ import {EdgeTool, ellipseOnSkin, withCurve} from "./edge_tool.js";
 import {PatchTool} from "./patch_tool.js";
 import {growPatch, isAtRest, paintPatch, paintedPatch} from "./patch.js";
 import {directionOf, kPlanes, middleOf, pointsOf} from "./geometry.js";
+import {isDark} from "./colours.js";
 import {layersOf} from "./layers.js";
 import {ballAbout, blend, poseArm, showTrace} from "./things.js";
 import {moved} from "./registered.js";
@@ -78,10 +79,11 @@ function keyed(value) {
 
 let foundCount = 0; // of the strokes: so many are in the tissue that is shown
 
-function syncModel() {
+// What the slices show: they are drawn again where one of these is another.
+function shownInSlices() {
   const edge = shownEdge();
   if (isFresh("tissue") && !("ct.edits" in state.drafts)) foundCount = strokes().length;
-  Object.assign(model, {
+  return {
     room: state.case && state.case.file,
     scan: state.scan && keyed(state.scan),
     tissue: state.tissue && keyed(state.tissue),
@@ -95,8 +97,7 @@ function syncModel() {
     brush: brush(),
     strokes: strokes().slice(foundCount),
     edge: edge.isRest ? edge.points : [],
-  });
-  renderSlices();
+  };
 }
 
 function renderSlices() {
@@ -142,7 +143,7 @@ function forget(name) {
 
 function build(layer) {
   const last = built.get(layer.name);
-  if (last && last.length === layer.parts.length && last.every((part, k) => part === layer.parts[k])) return;
+  if (isSame(last, layer.parts)) return;
   built.set(layer.name, layer.parts);
   views.scene.put(layer.name, layer.build(), layer);
 }
@@ -261,7 +262,10 @@ export function fitBox(box) {
 
 /** Connects the views with the state. */
 export function connectViews() {
-  subscribe(syncModel);
+  when(shownInSlices, (shown) => {
+    Object.assign(model, shown);
+    renderSlices();
+  });
   onPlayer(placeArm);
   when(() => [state.arm], rewind);
   when(
@@ -272,6 +276,9 @@ export function connectViews() {
       state.stretch,
       state.plan,
       state.run,
+      isDark(),
+      state.kept,
+      state.keptCut,
       state.register,
       state.arm,
       state.moment,

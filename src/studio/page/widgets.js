@@ -3,8 +3,9 @@
 import {h} from "preact";
 import {useState} from "preact/hooks";
 import {state, setting, unitOf} from "./store.js";
-import {change} from "./actions.js";
-import {fixed, isNumber, nameOf, plain, spoken, whole} from "./words.js";
+import {change, goTo} from "./actions.js";
+import {fieldOf, fieldOfProblem, fieldText, partsOf} from "./fields.js";
+import {fixed, isNumber, kStepTitles, kWaysOut, nameOf, plain, spoken, whole} from "./words.js";
 
 let lastId = 0;
 
@@ -13,8 +14,18 @@ export function useId(stem) {
   return useState(() => `${stem}-${++lastId}`)[0];
 }
 
+/** For an input: its content is selected when it gets the focus, so that typing replaces it. */
+export const kSelected = {
+  onFocus: (event) => event.target.select(),
+  onMouseDown: ({currentTarget}) => {
+    if (document.activeElement === currentTarget) return;
+    // The press that gives the focus would put the caret where it is, and so undo the selection.
+    currentTarget.addEventListener("mouseup", (event) => event.preventDefault(), {once: true});
+  },
+};
+
 /** A number with label and unit. It is handed on when the input is left, with Enter, or by the arrow keys.
- *  Emptied, it gives null if `isOptional`. */
+ *  Emptied, it gives null if `isOptional`; `whenEmpty` is shown in it then. */
 export function NumberInput({
   label,
   unit,
@@ -27,6 +38,7 @@ export function NumberInput({
   onChange,
   isShort,
   hint,
+  whenEmpty,
 }) {
   const id = useId("number"),
     [draft, setDraft] = useState(null);
@@ -50,8 +62,10 @@ export function NumberInput({
         min,
         max,
         value: draft === null ? plain(value) : draft,
+        placeholder: isOptional ? whenEmpty : undefined,
         "aria-invalid": problem ? "true" : undefined,
         "aria-describedby": `${id}-about`,
+        ...kSelected,
         onInput: (event) => setDraft(event.target.value),
         onChange: commit,
       }),
@@ -180,20 +194,28 @@ function shownValue(key) {
 }
 
 /** An input for any setting: number, words, yes or no, numbers in a row. Others are not shown. */
-export function Setting({path, label, step, names, isOptional, hint}) {
+export function Setting({path, label, step, names, hint}) {
   const value = shownValue(path),
     unit = unitOf(path),
-    problem = problemAt(path);
-  const text = label || nameOf(path),
+    problem = problemAt(path),
+    field = fieldOf(path) || {label: nameOf(path)};
+  const text = label || field.label,
     onChange = (next) => change({[path]: next});
-  const about = {label: text, unit, problem, onChange, hint};
+  const about = {label: text, unit, problem, onChange, hint: hint || field.hint};
   if (names || isRow(value)) return h(Numbers, {...about, value, step, names: names || letters(value.length)});
   if (typeof value === "boolean") return h(Check, {label: text, isOn: value, onChange});
   const choices = state.case.choices && state.case.choices[path];
-  if (choices) return h(Choice, {...about, value, options: choices.map((word) => [word, spoken(word)])});
+  const said = (word) => (field.words && field.words[word]) || spoken(word);
+  if (choices) return h(Choice, {...about, value, options: choices.map((word) => [word, said(word)])});
   if (typeof value === "string") return h(TextInput, {...about, value, onChange: (words) => onChange(words || null)});
   if (value === null || isNumber(value))
-    return h(NumberInput, {...about, value, step, isOptional: isOptional || value === null});
+    return h(NumberInput, {
+      ...about,
+      value,
+      step,
+      whenEmpty: field.whenEmpty,
+      isOptional: Boolean(field.whenEmpty) || value === null,
+    });
   return null;
 }
 
@@ -215,7 +237,29 @@ export function complaint({found, expected, hint, message}) {
 
 function ProblemText({problem}) {
   if (!problem || !problem.message) return null;
-  return h("span", {class: "problem", role: "alert"}, complaint(problem));
+  return h("span", {class: "problem", role: "alert"}, h(Explained, {text: complaint(problem)}));
+}
+
+/** A message, with the page's own name beside each setting that it names by its key. */
+export function Explained({text}) {
+  return partsOf(text).map((part, k) => [
+    part.text,
+    part.field ? h("span", {key: k, class: "field-name"}, ` (${fieldText(part.field)})`) : null,
+  ]);
+}
+
+/** Where something can be changed: a link to each of the steps but this one. */
+export function StepLinks({steps}) {
+  return steps
+    .filter((step) => step !== state.step)
+    .map((step) => [
+      " ",
+      h(
+        "button",
+        {key: step, type: "button", class: "step-link", "data-to": step, onClick: () => goTo(step)},
+        `${kStepTitles[step]} →`,
+      ),
+    ]);
 }
 
 /** What went wrong in calls, unless it stands beside an input of this panel (`shown`: their keys). */
@@ -231,14 +275,24 @@ export function Problems({calls, shown = []}) {
     h(
       "div",
       {key: name, class: "problem block", role: "alert", "data-problem": name},
-      problem.path && !problem.message.includes(problem.path) ? h("strong", null, `${problem.path}: `) : null,
-      problem.message,
-      problem.hint && !problem.message.includes(problem.hint) ? h("p", null, problem.hint) : null,
+      problem.path && !problem.message.includes(problem.path)
+        ? h("strong", null, h(Explained, {text: `${problem.path}: `}))
+        : null,
+      h(Explained, {text: problem.message}),
+      problem.hint && !problem.message.includes(problem.hint) ? h("p", null, h(Explained, {text: problem.hint})) : null,
+      h(WayOutOfProblem, {problem}),
       problem.kind === "crashed"
         ? h("p", null, "The calculation ended without an answer. The case is unharmed.")
         : null,
     ),
   );
+}
+
+function WayOutOfProblem({problem}) {
+  const field = fieldOfProblem(problem);
+  if (!field || field.step === state.step || (field.step !== "open" && !state.case)) return null;
+  const text = `It can be changed as “${field.said || field.label}”:`;
+  return h("p", {class: "way-out"}, text, h(StepLinks, {steps: [field.step]}));
 }
 
 // --- Verdicts. ---
@@ -262,8 +316,22 @@ export function Reasons({verdict, onPlace}) {
   return h(
     "ul",
     {class: "reasons"},
-    reasons.map((reason, k) => h("li", {key: k}, h(Reason, {reason, onPlace}))),
+    reasons.map((reason, k) =>
+      h(
+        "li",
+        {key: k},
+        h(Reason, {reason, onPlace}),
+        (reasons[k + 1] || {}).id === reason.id ? null : h(WayOut, {id: reason.id}),
+      ),
+    ),
   );
+}
+
+/** What a person can do about a reason, and in which steps. */
+export function WayOut({id}) {
+  const [text, ...steps] = kWaysOut[id] || [];
+  if (!text) return null;
+  return h("p", {class: "way-out", "data-way-out": id}, text, h(StepLinks, {steps}));
 }
 
 function Reason({reason, onPlace}) {
@@ -271,7 +339,7 @@ function Reason({reason, onPlace}) {
     text = [
       h(Status, {status: reason.severity}),
       " ",
-      reason.message,
+      h(Explained, {text: reason.message}),
       at.text ? h("span", {class: "soft"}, ` (${at.text})`) : null,
     ];
   if (!at.position_mm || !onPlace) return h("div", {class: "reason"}, text);
@@ -339,5 +407,18 @@ export function Working({call, text}) {
     progress && isNumber(progress.fraction)
       ? h("progress", {max: 1, value: progress.fraction, "aria-label": text})
       : null,
+  );
+}
+
+const [kLeastSize, kGreatestSize] = [20, 1000]; // mm: of a scan of a part of a body
+
+/** A caution about lengths that no scan of a part of a body has. */
+export function OddSize({sizes}) {
+  const odd = sizes.find((size) => size < kLeastSize || size > kGreatestSize);
+  if (odd === undefined) return null;
+  return h(
+    "p",
+    {class: "warning", "data-odd": plain(odd)},
+    `${plain(odd)} mm is ${odd < kLeastSize ? "little" : "much"} for a part of a body. Is the spacing right?`,
   );
 }

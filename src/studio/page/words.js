@@ -61,3 +61,62 @@ export function nameOf(key) {
 export function spoken(word) {
   return word ? nameOf(String(word)) : "";
 }
+
+/** The steps' titles by name, in their order. */
+export const kStepTitles = {
+  open: "Open",
+  see: "See",
+  edge: "Tumour edge",
+  hold: "Hold",
+  plan: "Plan",
+  run: "Run",
+  compare: "Compare",
+  photograph: "Photograph",
+  register: "Register",
+  program: "Program",
+};
+
+/** What a person can do about each reason of a verdict, by its id (docs/models/verdict.md lists them), and where. */
+export const kWaysOut = {
+  outcome: ["Step Run lists what happened. A smaller pull, a finer mesh or another place may help.", "run", "hold"],
+  tumor_distance: [
+    "Raise the lateral margin. If the tumour's surface belongs to another edge, remove it from the case.",
+    "plan",
+    "edge",
+  ],
+  lateral_margin: ["Raise the lateral margin, so that the cut keeps farther away.", "plan"],
+  open_layer: ["Raise the overlap, or lower the speed or the dullness of the simulated cut.", "plan"],
+  contour_surface: ["Draw the tumour's edge again, or remove the tumour's surface from the case.", "edge"],
+  contour_flipped: ["Draw the tumour's edge here, or save its file again with its coordinate system.", "edge"],
+  platform: ["Plan a smaller depth, or lower the support under the tissue.", "plan", "hold"],
+  cut_face: [
+    "Move the region box outwards, take away what lies behind its face with the brush, or draw the edge elsewhere.",
+    "see",
+    "edge",
+  ],
+  program_check: [
+    "The program's checks name what failed. Most depend on the place under the robot, the depth or the speed.",
+    "program",
+    "plan",
+  ],
+  photo_oblique: ["Photograph the cut again, with the camera straight above it.", "photograph"],
+  photo_lens: ["Correct the photograph for its lens, or take it again from farther away.", "photograph"],
+  depth: ["Plan a greater depth. The tool then drags more tissue along.", "plan"],
+  heat: ["Use less power, a higher speed or a greater lateral margin.", "plan"],
+  typed_transform: ["Register the tissue under the robot's camera, or measure its place and accept this.", "register"],
+  not_simulated: ["Run the case, so that a simulated cut is known for this path.", "run"],
+  not_corrected: ["Compare both cuts. A person can accept the path without a correction.", "compare", "program"],
+  eligibility: ["The assessment says why. A person can accept the path in spite of it.", "program"],
+  registration: ["Register again: a cloud with more of the surface, and with nothing else in it.", "register"],
+  mesh_resolution: ["Make the mesh finer: more tetrahedra, or a shorter fine edge.", "hold"],
+  locking: ["Under Tissue, let the change of volume be averaged, or lower Poisson's ratio.", "hold"],
+  convergence: ["A finer mesh or a smaller pull may help.", "hold"],
+  photo_scale: ["Give the scale over a longer part of the ruler.", "photograph"],
+  photo_specimen: ["Choose the photograph of this specimen, or draw the tumour's edge on it by hand.", "photograph"],
+  photo_ring: ["Draw the tumour's edge on the photograph by hand.", "photograph"],
+  scan: [
+    "Check the region box, the seed and the brush. Values on a wrong scale need a new case with other numbers.",
+    "see",
+    "open",
+  ],
+};
