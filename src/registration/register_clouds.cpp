@@ -34,6 +34,9 @@ constexpr double kUsualScale = 0.05;        // both sensors are metric
 // Rms of what no change of the pose explains, in the target's radius: 0.08 mm on a tongue. Where nothing has settled
 // 0.01 mm is found, and 0.2 to 0.3 mm of a settling by 1 mm.
 constexpr double kSettled = 0.003;
+// The same of all of it, a motion or not: 0.5 mm on a tongue. Up to 0.4 mm are found where nothing has settled. Without
+// this a step across the tissue, which looks like a tilt, would not be suspected.
+constexpr double kSettledOrMoved = 0.02;
 constexpr double kAtLimit = 1e-6;           // relative: a scale that near to an end of its range stands there
 
 /// Both clouds about the target's middle, in units of its radius, and the way back.
@@ -349,7 +352,8 @@ class Registering {
 
   /// Tissue that has settled passes for a shift or a tilt where settling is not looked for.
   void note_settling(Registration& result, const ShapeResidual& shape) const {
-    if (settings_.settling_mm > 0.0 || shape.apart_rms <= kSettled) return;
+    const bool is_suspected = shape.apart_rms > kSettled || shape.settled_rms > kSettledOrMoved;
+    if (settings_.settling_mm > 0.0 || !is_suspected) return;
     result.reasons.push_back(
         fmt::format("apart from the pose the surfaces differ smoothly by {:.2g} mm (rms), up to {:.2g} mm, as tissue does that has settled or "
                     "is held differently; the pose may be off by as much, settling_mm looks for both",

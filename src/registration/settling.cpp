@@ -143,6 +143,8 @@ class Settling {
     result_.settled_rms = std::sqrt(settled.squaredNorm() / static_cast<double>(settled.size()));
     result_.settled_largest = settled.cwiseAbs().maxCoeff();
     result_.settled = settled_source(settled);
+    result_.apart_rms = result_.settled_rms;
+    result_.apart_largest = result_.settled_largest;
     if (!result_.is_degenerate) measure_apart(settled);
     return result_;
   }

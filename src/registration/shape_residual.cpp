@@ -79,7 +79,7 @@ ShapeResidual shape_residual(const SampledSurface& source, const SampledSurface&
   if (sizes.empty()) return {};
   const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(kShare * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), at, sizes.end());
-  return {*at, settled.apart_rms, settled.apart_largest};
+  return {*at, settled.apart_rms, settled.apart_largest, settled.settled_rms};
 }
 
 }  // namespace incise

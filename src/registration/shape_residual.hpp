@@ -9,6 +9,7 @@ struct ShapeResidual {
   double left = 0.0;         ///< by neither noise nor settling: see shape_residual
   double apart_rms = 0.0;  ///< of the smooth part, which settling explains and no change of the pose does
   double apart_largest = 0.0;
+  double settled_rms = 0.0;  ///< of all of the smooth part
 };
 
 /// How far the source lies from the target where neither noise nor settling explains it: the distance that nine tenths

@@ -73,9 +73,11 @@ fs::path folder_of_finding(const CaseFile& file, const std::string& prefix, cons
     fs::path folder = file.folder / (k == 1 ? prefix + source.stem().string()
                                             : fmt::format("{}{}_{}", prefix, source.stem().string(), k));
     if (!fs::exists(fs::symlink_status(folder))) return folder;
-    if (!fs::exists(folder / "manifest.json")) continue;
-    const std::vector<ManifestInput> inputs = read_manifest(folder).inputs;
-    if (!inputs.empty() && inputs.front().path == source.string()) return folder;
+    try {
+      const std::vector<ManifestInput> inputs = read_manifest(folder).inputs;
+      if (!inputs.empty() && inputs.front().path == source.string()) return folder;
+    } catch (const DataError&) {  // somebody else's
+    }
   }
 }
 
@@ -550,6 +552,7 @@ Json Calls::register_cloud(const Json& arguments) {
   request.settings.settling_mm = argument_or(arguments, "settling_mm", "a length", 0.0);
   const std::vector<Problem> problems = validate(request.settings);
   if (!problems.empty()) throw CaseError("request", problems.front());
+  const std::optional<Contour> marked = marked_beside(target);
   remove_registration(file);  // and what was laid by it
   const bool has_edge = !file.inputs.tumor_contour.empty();
   const Study study = study_until(has_edge ? Stage::Plan : Stage::Stretch);
@@ -573,8 +576,7 @@ Json Calls::register_cloud(const Json& arguments) {
     const std::vector<float> residuals = residuals_of(laid, cloud.vertices);
     json["sample"] = {{"points", blobs_.put("register.points", std::span<const Vec3>(laid.points))},
                       {"residuals_mm", blobs_.put("register.residuals", std::span<const float>(residuals))}};
-    if (study.plan && has_edge)
-      json["edges"] = edges_json(moved_by(T, study.plan->tumor_edge.points), marked_beside(target));
+    if (study.plan && has_edge) json["edges"] = edges_json(moved_by(T, study.plan->tumor_edge.points), marked);
   }
   json["files"] = files_in(request.output, file.folder);
   std::vector<std::string> words{"register",
@@ -654,7 +656,12 @@ Json Calls::lay(const Json& arguments) {
   json["program"] = why.empty() ? Json(read_text(making.output)) : Json(nullptr);
   json["why_without_program"] = std::move(why);
   json["registration_sha256"] = registration_sha256;
-  write_json(target.path() / "laid.json", {{"case_sha256", revision}});
+  Json read_from = Json::object();
+  for (const fs::path& input : {file.inputs.tumor_contour, file.inputs.tumor_surface, file.inputs.line_contour,
+                                file.inputs.tool_path, registration, laying.surface, laying.camera}) {
+    if (!input.empty()) read_from[input.string()] = sha256_of_file(input);
+  }
+  write_json(target.path() / "laid.json", {{"case_sha256", revision}, {"inputs", read_from}});
   write_manifest(
       target.path(),
       steps::manifest_of(step.run, "{}", {laying.path, registration, laying.surface, laying.camera}, step.wall_s()));

@@ -213,13 +213,25 @@ void remove_laid(const CaseFile& file) {
   for (const PathKind kind : {PathKind::Incise, PathKind::Mark}) remove_replaceable(laid_folder(file, kind));
 }
 
+namespace {
+
+/// Whether what was laid is of the case and of the files as they are now. @param note  laid.json
+bool is_of_now(const CaseFile& file, const Json& note) {
+  if (!note.is_object() || note.value("case_sha256", "") != case_revision(file.file)) return false;
+  const Json inputs = note.value("inputs", Json::object());
+  for (const auto& [input, sha256] : inputs.items()) {
+    if (!fs::is_regular_file(input) || sha256 != sha256_of_file(input)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 void remove_stale_laid(const CaseFile& file) {
   for (const PathKind kind : {PathKind::Incise, PathKind::Mark}) {
     const fs::path note = laid_folder(file, kind) / "laid.json";
     if (!fs::exists(note)) continue;
-    const Json laid = read_json(note);
-    if (!laid.is_object() || laid.value("case_sha256", "") != case_revision(file.file))
-      remove_replaceable(laid_folder(file, kind));
+    if (!is_of_now(file, read_json(note))) remove_replaceable(laid_folder(file, kind));
   }
 }
 

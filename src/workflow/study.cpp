@@ -116,6 +116,7 @@ class Runner {
     if (options_.until >= Stage::Verify && !study_.corrected) sink_.absent("corrected");
     const bool was_correction_asked = options_.until >= Stage::Verify && settings_.plan.kind == PlanKind::Ring;
     hand_over_verdicts(was_correction_asked && !study_.is_accepted);
+    if (options_.until == Stage::Plan && study_.plan) refuse_before_cut();
     study_.verdict = verdict_of_run(settings_, study_.about_inputs, verifying_cut(study_), was_correction_asked, study_.is_accepted);
     return std::move(study_);
   }
@@ -314,6 +315,16 @@ class Runner {
     if (!path.is_closed || settings_.cut.overlap_mm < round_mm) return;
     throw CaseError("case", "cut.overlap_mm", fmt::format("{} mm", settings_.cut.overlap_mm),
                     fmt::format("less than the {:.1f} mm of the tip's way round the ring", round_mm));
+  }
+
+  /// What refuses the plan already goes with its path, although no cut was made.
+  void refuse_before_cut() {
+    Verdict early =
+        verdict_before_cut(settings_, *study_.model, cut_planes_, study_.stretched->state.positions, *study_.plan);
+    if (early.status() != VerdictStatus::Refused) return;
+    report("the plan", early);
+    early.add("not_simulated", {}, "the run ended before it cut along the path");
+    sink_.verdicts(early, std::nullopt);
   }
 
   /// Whoever takes a path from its file finds there what its cut is worth.

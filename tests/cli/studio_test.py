@@ -316,6 +316,13 @@ class AfterTheCut(StudioTest):
         speeds = {waypoint["speed_mm_s"] for waypoint in json.loads((self.folder / "specimen/mark_on_tissue/path/path.json").read_text())["waypoints"]}
         self.assertEqual(speeds, {2.0})
         self.assertTrue((self.folder / "specimen" / "on_tissue").exists())  # one of each kind
+        edge = self.folder / "specimen" / "tumor.csv"
+        before = edge.read_text()
+        edge.write_text(before + "\n")
+        self.assertEqual(studio.call("arm", {"of": "mark"})[1]["problem"]["found"], "none")  # laid from another edge
+        self.assertFalse((self.folder / "specimen" / "on_tissue").exists())
+        edge.write_text(before)
+        self.assertEqual(studio.call("lay", {"kind": "mark"})[0], 200)
         kept = studio.call("change", {"revision": revision, "set": {"plan.close_margin_mm": 4.6}})[1]
         self.assertFalse((self.folder / "specimen" / "mark_on_tissue").exists())
         self.assertEqual(studio.call("register", {"file": cloud["file"], "scale": "fixed"})[0], 200)
