@@ -5,7 +5,7 @@ class CutView {
   constructor(host, animations, frame) {
     this.host = host;
     this.stage = host.querySelector(".stage");
-    this.viewer = new Viewer(this.stage, frame);
+    this.viewer = newViewer(this.stage, frame);
     this.animations = animations;
     this.decoded = animations.map((animation) => new Array(animation.frames.length));
     this.clock = element("div", {className: "clock", "aria-live": "off"});
@@ -26,14 +26,14 @@ class CutView {
     this.makeTissue();
     this.makeTool();
     this.makePlatform();
-    this.controls.replaceChildren(this.playerRow(which), this.legendRow(), viewer.viewRow());
+    this.controls.replaceChildren(this.playerRow(which), this.legendRow(), viewRow(viewer));
 
     const last = this.scene.frames.length - 1;
     this.showFrame(last);
     if (which === 0 && !this.isFitted) {
       const geometry = this.skin(last).outer;
       geometry.computeBoundingSphere();
-      viewer.fit(geometry.boundingSphere.center, 0.86 * geometry.boundingSphere.radius);
+      viewer.fit(geometry.boundingSphere.center.toArray(), 0.86 * geometry.boundingSphere.radius);
       this.isFitted = true;
     }
     const frame = this.scene.frames[last];
@@ -180,4 +180,17 @@ class CutView {
     if (this.platform) add("platform, 10 mm grid", "#9fb2c2", [this.platform], true, true);
     return row;
   }
+}
+
+/** A curve as a thin tube, with a faint second copy where the tissue hides it. */
+function curveTubes(points, isClosed, color, radius) {
+  const path = [];
+  for (let i = 0; i < points.length; i += 3) path.push(new THREE.Vector3(points[i], points[i + 1], points[i + 2]));
+  const curve = new THREE.CatmullRomCurve3(path, isClosed, "centripetal");
+  const geometry = new THREE.TubeGeometry(curve, Math.max(64, 3 * path.length), radius, 8, isClosed);
+  const solid = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color}));
+  const ghost = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(
+    {color, transparent: true, opacity: 0.35, depthTest: false, depthWrite: false}));
+  ghost.renderOrder = 5;
+  return [solid, ghost];
 }

@@ -1,4 +1,9 @@
 "use strict";
+// What the page's views share: numbers from text, elements, and the viewer with its legend.
+
+const kTissueColor = 0xdb9a8f;
+const kKerfColor = 0x9c1f24;
+
 // Numbers travel as base64 of little-endian integers, which is how every machine that runs a browser stores them.
 
 function bytesOf(text) {
@@ -33,8 +38,33 @@ function element(name, properties, ...children) {
   return node;
 }
 
-/** The largest of 1, 2, 5 times a power of ten that is not above the value. */
-function roundedDown(value) {
-  const decade = Math.pow(10, Math.floor(Math.log10(value)));
-  return [5, 2, 1].map((factor) => factor * decade).find((round) => round <= value * (1 + 1e-9));
+/** A viewer in a stage, in place of the still picture. @param frame  {x, y, z, ends}: the picture's axes seen along the
+ *  approach, and the names of the world axes' ends */
+function newViewer(stage, frame) {
+  const viewer = new Viewer(THREE, stage, {
+    gizmo: new Gizmo(frame.ends), names: ["Oblique", "Top", "Front", "Side"], basis: [frame.x, frame.y, frame.z],
+    barLength: 150, scrolls: true});
+  stage.classList.add("live");
+  return viewer;
+}
+
+/** Buttons for the named views and a word on the mouse. */
+function viewRow(viewer) {
+  return element("div", {className: "row"},
+    ...viewer.names.map((name) => element("button", {type: "button", textContent: name, onclick: () => viewer.look(name)})),
+    element("span", {className: "hint", textContent:
+      "drag: turn · shift-drag: move · wheel after a click: zoom · arrow keys, + and − work, too"}));
+}
+
+/** A switch that is also the legend: a coloured mark, a name, and whether the things are shown. */
+function legendSwitch(viewer, label, color, things, isOn, isArea) {
+  const apply = (visible) => {
+    for (const thing of things) thing.visible = visible;
+    viewer.render();
+  };
+  const box = element("input", {type: "checkbox", checked: isOn, onchange: () => apply(box.checked)});
+  const swatch = element("span", {className: isArea ? "swatch area" : "swatch"});
+  swatch.style.background = color;
+  apply(isOn);
+  return element("label", {}, box, swatch, label);
 }

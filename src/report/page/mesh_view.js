@@ -35,7 +35,7 @@ const kFaces = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 class MeshView {
   constructor(host, scene, frame) {
     this.host = host;
-    this.viewer = new Viewer(host.querySelector(".stage"), frame);
+    this.viewer = newViewer(host.querySelector(".stage"), frame);
     this.ends = frame.ends;
     this.positions = decodePositions(scene, scene.positions);
     this.attribute = new THREE.BufferAttribute(this.positions, 3);
@@ -49,7 +49,7 @@ class MeshView {
 
     const ball = new THREE.Sphere().setFromPoints([new THREE.Vector3(...this.low),
       new THREE.Vector3(...this.low.map((low, k) => low + this.size[k]))]);
-    this.viewer.fit(ball.center, 0.8 * ball.radius);
+    this.viewer.fit(ball.center.toArray(), 0.8 * ball.radius);
     host.dataset.coverage = this.viewer.coverage().toFixed(3);
     host.dataset.viewerReady = `tets=${scene.tet_count} triangles=${this.outer.geometry.index.count / 3}`;
   }
@@ -68,7 +68,7 @@ class MeshView {
   open() {
     const axis = Number(this.axisSelect.value);
     const plane = this.low[axis] + this.size[axis] * Number(this.slider.value) / 100;
-    const side = this.viewer.axesOf("Oblique").towards.getComponent(axis) < 0 ? -1 : 1;
+    const side = this.viewer.axes("Oblique").towards.getComponent(axis) < 0 ? -1 : 1;
     const count = this.tets.length / 4;
     const isKept = new Uint8Array(count);
     for (let tet = 0; tet < count; ++tet) {
@@ -115,6 +115,6 @@ class MeshView {
       legendSwitch(this.viewer, "surface", "#db9a8f", [this.outer], true, true),
       legendSwitch(this.viewer, "inside", "#f0d9a8", [this.inner], true, true),
       legendSwitch(this.viewer, "element edges", "#26323a", [this.outerLines, this.innerLines], true));
-    controls.replaceChildren(row, legend, this.viewer.viewRow());
+    controls.replaceChildren(row, legend, viewRow(this.viewer));
   }
 }

@@ -1,80 +1,115 @@
-"use strict";
-// A parallel projection that can be turned, moved and zoomed: lengths in it can be measured, so it has a scale bar.
+// The 3D viewer of the studio and of the report: a parallel projection that can be turned, moved and zoomed, so that
+// lengths in it can be measured. It imports nothing, for a page on a disk cannot: three.js and the gizmo are handed over.
 
-const kBackground = 0xf6f6f3;
-const kTissueColor = 0xdb9a8f;
-const kKerfColor = 0x9c1f24;
+const kSmallMove = 5; // px: less is a click
 
-// Azimuth turns about the approach; elevation 90 degrees looks straight along it.
-const kViews = {Oblique: [-0.6, 0.75], Top: [0, Math.PI / 2], Front: [0, 0], Side: [Math.PI / 2, 0]};
+const kWorld = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
 
-class Viewer {
-  /** @param frame  {x, y, z, ends}: the picture axes seen along the approach, and the names of the world axes' ends. */
-  constructor(stage, frame) {
-    this.stage = stage;
-    this.frame = ["x", "y", "z"].map((key) => new THREE.Vector3(...frame[key]));
-    this.renderer = new THREE.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
-    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    this.renderer.setClearColor(kBackground);
-    this.scene = new THREE.Scene();
-    this.camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 1, 4000);
-    const sky = new THREE.HemisphereLight(0xffffff, 0xb8aaa4, 1.9);
-    sky.position.copy(this.frame[2]);
-    this.scene.add(sky);
-    this.lamp = new THREE.DirectionalLight(0xffffff, 1.7);
-    this.scene.add(this.lamp, this.lamp.target);
-    this.center = new THREE.Vector3();
-    this.radius = 1;
-    this.isDirty = false;
+// Azimuth turns about the basis' z axis; elevation 90 degrees looks straight down along it.
+const kAngles = [
+  [-0.6, 0.75],
+  [0, Math.PI / 2],
+  [0, 0],
+  [Math.PI / 2, 0],
+];
 
-    stage.append(this.renderer.domElement);
-    this.scaleBar = element("div", {className: "scale-bar", "aria-hidden": "true"}, element("i"), element("span"));
-    stage.append(this.scaleBar);
-    this.gizmo = new Gizmo(frame.ends);
-    stage.append(this.gizmo.node);
-    stage.classList.add("live");
-    stage.tabIndex = 0;
-    stage.setAttribute("role", "application");
+/** The viewer in an element; mm. @param three  the library   @param options
+ *  `gizmo`: turned with the view; `names`: of the views: oblique, from above, from the front, from the side;
+ *  `basis`: axes that the views refer to, three vectors; `barLength`: about that of the scale bar, px;
+ *  `scrolls`: the page about it, so that the wheel is taken only where the view has the focus, or with Ctrl;
+ *  `isDark()`: whether the page is dark. */
+export class Viewer {
+  constructor(three, host, {gizmo, names, basis = kWorld, barLength = 110, scrolls = false, isDark = () => false}) {
+    Object.assign(this, {three, host, gizmo, names, barLength, scrolls, isDark});
+    this.basis = basis.map((axis) => new three.Vector3(...axis));
+    this.centre = new three.Vector3();
+    this.target = new three.Vector3();
+    this.radius = 0;
+    this.zoom = 1;
+    [this.azimuth, this.elevation] = kAngles[0];
+    this.fingers = new Map();
+    this.makeRenderer();
+    this.makeLights();
+    this.makeFurniture();
     this.listen();
-    new ResizeObserver(() => this.resize()).observe(stage);
+    this.resize();
+    new ResizeObserver(() => this.resize()).observe(host);
   }
 
-  /** Makes a ball of this centre and radius fill the view. */
-  fit(center, radius) {
-    this.center.copy(center);
+  makeRenderer() {
+    const {three} = this;
+    this.renderer = new three.WebGLRenderer({antialias: true, alpha: true, preserveDrawingBuffer: true});
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
+    this.renderer.setClearColor(0x000000, 0);
+    this.scene = new three.Scene();
+    this.camera = new three.OrthographicCamera(-1, 1, 1, -1, 1, 6000);
+    this.canvas = this.renderer.domElement;
+    this.host.append(this.canvas);
+  }
+
+  makeLights() {
+    const sky = new this.three.HemisphereLight(0xffffff, 0xb8aaa4, 1.9);
+    sky.position.copy(this.basis[2]);
+    this.lamp = new this.three.DirectionalLight(0xffffff, 1.7);
+    this.scene.add(sky, this.lamp, this.lamp.target);
+  }
+
+  makeFurniture() {
+    this.scaleBar = document.createElement("div");
+    this.scaleBar.className = "scale-bar";
+    this.scaleBar.setAttribute("aria-hidden", "true");
+    this.scaleBar.append(document.createElement("i"), document.createElement("span"));
+    this.host.append(this.scaleBar, this.gizmo.node);
+  }
+
+  // --- Camera. ---
+
+  /** Makes a ball of this centre ([x, y, z]) and radius fill the view; turns to the oblique view the first time. */
+  fit(centre, radius) {
+    const isFirst = this.radius === 0,
+      isCentred = this.target.equals(this.centre);
+    this.centre.set(...centre);
+    if (isCentred) this.target.copy(this.centre);
     this.radius = radius;
-    this.look("Oblique");
-    this.resize();
+    if (isFirst) this.look(this.names[0]);
+    else this.render();
   }
 
   /** Turns to a named view. */
   look(name) {
-    [this.azimuth, this.elevation] = kViews[name];
-    this.target = this.center.clone();
+    [this.azimuth, this.elevation] = this.anglesOf(name);
+    this.target.copy(this.centre);
     this.zoom = 1;
     this.render();
   }
 
-  /** The observer's axes: right, up, and towards the observer. */
-  axes() { return this.axesAt(this.azimuth, this.elevation); }
-  axesOf(name) { return this.axesAt(...kViews[name]); }
-  axesAt(azimuth, elevation) {
-    const [x, y, z] = this.frame;
+  anglesOf(name) {
+    return kAngles[this.names.indexOf(name)];
+  }
+
+  /** The observer's axes: right, up, and towards the observer; as they are now, or of a named view. */
+  axes(name) {
+    const [azimuth, elevation] = name ? this.anglesOf(name) : [this.azimuth, this.elevation],
+      [x, y, z] = this.basis;
     const mix = (a, u, b, v) => u.clone().multiplyScalar(a).addScaledVector(v, b);
-    const right = mix(Math.cos(azimuth), x, Math.sin(azimuth), y);
     const away = mix(-Math.sin(azimuth), x, Math.cos(azimuth), y);
-    const up = mix(Math.sin(elevation), away, Math.cos(elevation), z);
-    const towards = mix(-Math.cos(elevation), away, Math.sin(elevation), z);
-    return {right, up, towards};
+    return {
+      right: mix(Math.cos(azimuth), x, Math.sin(azimuth), y),
+      up: mix(Math.sin(elevation), away, Math.cos(elevation), z),
+      towards: mix(-Math.cos(elevation), away, Math.sin(elevation), z),
+    };
   }
 
   pixelsPerMm() {
-    return this.zoom * Math.min(this.stage.clientHeight, this.stage.clientWidth * 0.8) / (2 * this.radius);
+    return (this.zoom * Math.min(this.host.clientHeight, 0.8 * this.host.clientWidth)) / (2 * Math.max(1, this.radius));
   }
 
   resize() {
-    const width = Math.max(1, this.stage.clientWidth), height = Math.max(1, this.stage.clientHeight);
-    this.renderer.setSize(width, height);
+    this.renderer.setSize(Math.max(1, this.host.clientWidth), Math.max(1, this.host.clientHeight));
     this.render();
   }
 
@@ -87,24 +122,35 @@ class Viewer {
 
   draw() {
     this.isDirty = false;
-    const {right, up, towards} = this.axes();
-    const scale = this.pixelsPerMm();
-    const halfWidth = this.stage.clientWidth / (2 * scale), halfHeight = this.stage.clientHeight / (2 * scale);
-    Object.assign(this.camera, {left: -halfWidth, right: halfWidth, top: halfHeight, bottom: -halfHeight});
-    this.camera.position.copy(this.target).addScaledVector(towards, 2000);
-    this.camera.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(right, up, towards));
-    this.camera.updateProjectionMatrix();
-    this.lamp.target.position.copy(this.target);
-    this.lamp.position.copy(this.target).addScaledVector(towards, 90).addScaledVector(up, 60).addScaledVector(right, -40);
+    const width = this.host.clientWidth,
+      height = this.host.clientHeight;
+    if (!width || !height) return;
+    const axes = this.axes(),
+      scale = this.pixelsPerMm();
+    this.placeCamera(axes, width / (2 * scale), height / (2 * scale));
     this.renderer.render(this.scene, this.camera);
-    this.drawScaleBar(scale);
-    this.gizmo.draw({right, up, towards}, false);
+    this.drawFurniture(axes, scale);
   }
 
-  drawScaleBar(scale) {
-    const length = roundedDown(150 / scale);
-    this.scaleBar.firstChild.style.width = length * scale + "px";
-    this.scaleBar.lastChild.textContent = Number(length.toPrecision(2)) + " mm";
+  placeCamera({right, up, towards}, halfWidth, halfHeight) {
+    Object.assign(this.camera, {left: -halfWidth, right: halfWidth, top: halfHeight, bottom: -halfHeight});
+    this.camera.position.copy(this.target).addScaledVector(towards, 3000);
+    this.camera.quaternion.setFromRotationMatrix(new this.three.Matrix4().makeBasis(right, up, towards));
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+    this.lamp.target.position.copy(this.target);
+    this.lamp.position
+      .copy(this.target)
+      .addScaledVector(towards, 90)
+      .addScaledVector(up, 60)
+      .addScaledVector(right, -40);
+  }
+
+  drawFurniture(axes, scale) {
+    const bar = roundedDown(this.barLength / scale);
+    this.scaleBar.firstChild.style.width = `${bar * scale}px`;
+    this.scaleBar.lastChild.textContent = `${Number(bar.toPrecision(2))} mm`;
+    this.gizmo.draw(axes, this.isDark());
   }
 
   turn(dx, dy) {
@@ -114,8 +160,8 @@ class Viewer {
   }
 
   pan(dx, dy) {
-    const {right, up} = this.axes();
-    const mm = 1 / this.pixelsPerMm();
+    const {right, up} = this.axes(),
+      mm = 1 / this.pixelsPerMm();
     this.target.addScaledVector(right, -dx * mm).addScaledVector(up, dy * mm);
     this.render();
   }
@@ -125,107 +171,100 @@ class Viewer {
     this.render();
   }
 
-  /** Drag turns, drag with the right button or Shift moves, wheel with Ctrl or on the focused view zooms, two fingers zoom. */
+  // --- Mouse, touch and keyboard. ---
+
   listen() {
-    const canvas = this.renderer.domElement;
-    const fingers = new Map();
-    const spread = () => {
-      const [a, b] = [...fingers.values()];
-      return Math.hypot(a.x - b.x, a.y - b.y);
-    };
+    const {canvas} = this;
+    canvas.tabIndex = 0;
+    canvas.style.outlineOffset = "-2px"; // else the host's border hides the focus
+    canvas.setAttribute("role", "application");
+    canvas.setAttribute(
+      "aria-label",
+      "3D view. Arrow keys turn it, with Shift they move it, plus and minus zoom, 1 to 4 choose a view.",
+    );
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("pointerdown", (event) => {
-      this.stage.focus({preventScroll: true});
-      canvas.setPointerCapture(event.pointerId);
-      fingers.set(event.pointerId, {x: event.clientX, y: event.clientY});
-    });
-    canvas.addEventListener("pointermove", (event) => {
-      const last = fingers.get(event.pointerId);
-      if (!last) return;
-      const dx = event.clientX - last.x, dy = event.clientY - last.y;
-      const before = fingers.size === 2 ? spread() : 0;
-      fingers.set(event.pointerId, {x: event.clientX, y: event.clientY});
-      if (fingers.size === 2) {
-        this.zoomBy(spread() / Math.max(1, before));
-        this.pan(dx / 2, dy / 2);
-      } else if (event.buttons & 2 || event.shiftKey) {
-        this.pan(dx, dy);
-      } else {
-        this.turn(dx, dy);
-      }
-    });
-    for (const name of ["pointerup", "pointercancel"]) {
-      canvas.addEventListener(name, (event) => fingers.delete(event.pointerId));
+    canvas.addEventListener("pointerdown", (event) => this.press(event));
+    canvas.addEventListener("pointermove", (event) => this.move(event));
+    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => this.release(event));
+    canvas.addEventListener("wheel", (event) => this.roll(event), {passive: false});
+    canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  press(event) {
+    this.canvas.focus({preventScroll: true});
+    this.canvas.setPointerCapture(event.pointerId);
+    this.fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    this.travel = 0;
+  }
+
+  move(event) {
+    const last = this.fingers.get(event.pointerId);
+    if (!last) return;
+    const dx = event.offsetX - last[0],
+      dy = event.offsetY - last[1];
+    this.travel += Math.abs(dx) + Math.abs(dy);
+    const before = this.spread();
+    this.fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+    this.drag(event, dx, dy, before);
+  }
+
+  /** @param before  the distance of two fingers before the move; 0: there is one */
+  drag(event, dx, dy, before) {
+    if (before > 0) {
+      this.zoomBy(Math.max(1, this.spread()) / before);
+      this.pan(dx / 2, dy / 2);
+    } else if (event.buttons & 6 || event.shiftKey) {
+      this.pan(dx, dy);
+    } else if (this.travel > kSmallMove) {
+      this.turn(dx, dy);
     }
-    canvas.addEventListener("wheel", (event) => {
-      if (document.activeElement !== this.stage && !event.ctrlKey) return;  // let the page scroll
-      event.preventDefault();
-      this.zoomBy(Math.exp(-0.0012 * event.deltaY));
-    }, {passive: false});
-    this.stage.addEventListener("keydown", (event) => {
-      const turns = {ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12]};
-      if (turns[event.key]) {
-        if (event.shiftKey) this.pan(...turns[event.key]);
-        else this.turn(...turns[event.key]);
-      } else if (event.key === "+" || event.key === "=") {
-        this.zoomBy(1.15);
-      } else if (event.key === "-") {
-        this.zoomBy(1 / 1.15);
-      } else {
-        return;
-      }
-      event.preventDefault();
-    });
+  }
+
+  spread() {
+    const [a, b] = [...this.fingers.values()];
+    return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
+  }
+
+  release(event) {
+    this.fingers.delete(event.pointerId);
+  }
+
+  isClick() {
+    return this.travel <= kSmallMove;
+  }
+
+  roll(event) {
+    if (this.scrolls && document.activeElement !== this.canvas && !event.ctrlKey) return;
+    event.preventDefault();
+    this.zoomBy(Math.exp(-0.0012 * event.deltaY));
+  }
+
+  key(event) {
+    const turns = {ArrowLeft: [-12, 0], ArrowRight: [12, 0], ArrowUp: [0, -12], ArrowDown: [0, 12]}[event.key];
+    const view = this.names[Number(event.key) - 1];
+    if (turns && event.shiftKey) this.pan(...turns);
+    else if (turns) this.turn(...turns);
+    else if (event.key === "+" || event.key === "=") this.zoomBy(1.15);
+    else if (event.key === "-") this.zoomBy(1 / 1.15);
+    else if (view) this.look(view);
+    else return;
+    event.preventDefault();
   }
 
   /** Share of the picture that is not background: proof that something is to be seen. */
   coverage() {
     this.draw();
     const gl = this.renderer.getContext();
-    const width = gl.drawingBufferWidth, height = gl.drawingBufferHeight;
-    const pixels = new Uint8Array(4 * width * height);
-    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
     let drawn = 0;
-    for (let i = 0; i < pixels.length; i += 4) {
-      if (Math.abs(pixels[i] - 0xf6) + Math.abs(pixels[i + 1] - 0xf6) + Math.abs(pixels[i + 2] - 0xf3) > 24) ++drawn;
-    }
-    return drawn / (width * height);
-  }
-
-  /** Buttons for the named views and a word on the mouse. */
-  viewRow() {
-    const row = element("div", {className: "row"});
-    for (const name of ["Oblique", "Top", "Front", "Side"]) {
-      row.append(element("button", {type: "button", textContent: name, onclick: () => this.look(name)}));
-    }
-    row.append(element("span", {className: "hint", textContent:
-      "drag: turn · shift-drag: move · wheel after a click: zoom · arrow keys, + and − work, too"}));
-    return row;
+    for (let i = 3; i < pixels.length; i += 4) if (pixels[i] > 24) ++drawn;
+    return drawn / (pixels.length / 4);
   }
 }
 
-/** A switch that is also the legend: a coloured mark, a name, and whether the things are shown. */
-function legendSwitch(viewer, label, color, things, isOn, isArea) {
-  const apply = (visible) => {
-    for (const thing of things) thing.visible = visible;
-    viewer.render();
-  };
-  const box = element("input", {type: "checkbox", checked: isOn, onchange: () => apply(box.checked)});
-  const swatch = element("span", {className: isArea ? "swatch area" : "swatch"});
-  swatch.style.background = color;
-  apply(isOn);
-  return element("label", {}, box, swatch, label);
-}
-
-/** A curve as a thin tube, with a faint second copy where the tissue hides it. */
-function curveTubes(points, isClosed, color, radius) {
-  const path = [];
-  for (let i = 0; i < points.length; i += 3) path.push(new THREE.Vector3(points[i], points[i + 1], points[i + 2]));
-  const curve = new THREE.CatmullRomCurve3(path, isClosed, "centripetal");
-  const geometry = new THREE.TubeGeometry(curve, Math.max(64, 3 * path.length), radius, 8, isClosed);
-  const solid = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({color}));
-  const ghost = new THREE.Mesh(geometry, new THREE.MeshBasicMaterial(
-    {color, transparent: true, opacity: 0.35, depthTest: false, depthWrite: false}));
-  ghost.renderOrder = 5;
-  return [solid, ghost];
+/** The largest of 1, 2, 5 times a power of ten that is not above the value: the length of a scale bar. */
+export function roundedDown(value) {
+  const decade = 10 ** Math.floor(Math.log10(value));
+  return [5, 2, 1].map((factor) => factor * decade).find((round) => round <= value * (1 + 1e-9)) || decade;
 }

@@ -1,5 +1,7 @@
 // Points, grids and curves. Coordinates are LPS, mm; a point is [x, y, z].
 
+export {roundedDown} from "./viewer.js";
+
 export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
 export const plus = (a, b, factor = 1) => [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]];
@@ -191,12 +193,6 @@ export function filled(points, step) {
 export function pointsOf(curve) {
   if (!curve) return [];
   return Array.isArray(curve) ? curve : curve.points_mm || [];
-}
-
-/** The largest of 1, 2, 5 times a power of ten that is not above the value: the length of a scale bar. */
-export function roundedDown(value) {
-  const decade = 10 ** Math.floor(Math.log10(value));
-  return [5, 2, 1].map((factor) => factor * decade).find((round) => round <= value * (1 + 1e-9)) || decade;
 }
 
 /** The picture's axes for someone who looks along `approach`, as in the report: right, up, towards the observer. */
