@@ -43,8 +43,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "",
-     "The path or the tumour's edge lies where the region of interest cuts through the tissue: the specimen goes on "
-     "there."},
+     "The path or the tumour's edge lies where the region of interest cuts through the tissue. The specimen continues "
+     "beyond that face."},
     {"program_check", kRefused, {}, "", "", "A safety check of the robot program failed."},
     {"photo_oblique", kRefused, 0.03, "<=", "",
      "Change of scale along the ruler of a photograph: the camera does not look straight down."},
@@ -198,6 +198,15 @@ VerdictGate gate_of(const Verdict& verdict, std::span<const std::string> accepte
   }
   gate.is_open = gate.refused.empty() && gate.missing.empty();
   return gate;
+}
+
+Verdict refusals_of(const Verdict& verdict, std::string why) {
+  Verdict kept;
+  kept.add("not_simulated", {}, std::move(why));
+  for (const VerdictReason& reason : verdict.reasons()) {
+    if (reason.severity == VerdictStatus::Refused) kept.add(reason);
+  }
+  return kept;
 }
 
 }  // namespace incise

@@ -325,10 +325,8 @@ std::vector<CutPlane> cut_planes(const Segmentation& found, const SegmentationSe
   std::vector<CutPlane> planes;
   for (int side = 0; side < 6; ++side) {
     const Vec3 outward = (side % 2 == 0 ? -1.0 : 1.0) * sides.col(side / 2);
-    Eigen::Index world = 0;
-    outward.cwiseAbs().maxCoeff(&world);
-    const auto face = static_cast<std::size_t>(2 * world + (outward[world] > 0.0 ? 1 : 0));
-    if (found.cut_voxels[face] == 0) continue;
+    const RegionFace face = face_towards(outward);
+    if (found.cut_voxels[static_cast<std::size_t>(face)] == 0) continue;
     const double voxel_mm = (axes.transpose() * outward).cwiseAbs().dot(labels.grid.spacing_mm);
     double farthest_mm = -std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < labels.voxels.size(); ++v) {
@@ -336,7 +334,7 @@ std::vector<CutPlane> cut_planes(const Segmentation& found, const SegmentationSe
       const auto [i, j, k] = labels.grid.voxel_at(v);
       farthest_mm = std::max(farthest_mm, outward.dot(labels.grid.world_from_index(Vec3(i, j, k))));
     }
-    planes.push_back({static_cast<RegionFace>(face), outward, farthest_mm + 0.5 * voxel_mm, voxel_mm});
+    planes.push_back({face, outward, farthest_mm + 0.5 * voxel_mm, voxel_mm});
   }
   return planes;
 }

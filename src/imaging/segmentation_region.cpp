@@ -194,16 +194,18 @@ std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& w
   return offsets;
 }
 
+RegionFace face_towards(const Vec3& direction) {
+  Eigen::Index world = 0;
+  direction.cwiseAbs().maxCoeff(&world);
+  return static_cast<RegionFace>(2 * world + (direction[world] > 0.0 ? 1 : 0));
+}
+
 std::array<std::size_t, 6> count_cut_voxels(const Mask& body, const Mask& region) {
-  // Each of the six index directions belongs to the world side that it points at most.
-  std::array<std::size_t, 6> side{};
+  std::array<std::size_t, 6> side{};  // of the six index directions
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    Eigen::Index world = 0;
     const Vec3 direction = body.grid.direction.col(static_cast<Eigen::Index>(axis));
-    direction.cwiseAbs().maxCoeff(&world);
-    const bool along = direction[world] > 0.0;
-    side[2 * axis] = 2 * static_cast<std::size_t>(world) + (along ? 0 : 1);
-    side[2 * axis + 1] = 2 * static_cast<std::size_t>(world) + (along ? 1 : 0);
+    side[2 * axis] = static_cast<std::size_t>(face_towards(-direction));
+    side[2 * axis + 1] = static_cast<std::size_t>(face_towards(direction));
   }
   const VolumeGrid& grid = body.grid;
   std::array<std::size_t, 6> counts{};

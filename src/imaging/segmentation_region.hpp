@@ -30,6 +30,9 @@ struct WorkingVolume {
 [[nodiscard]] std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& work,
                                                     const SegmentationSettings& settings);
 
+/// The face of the region that a direction (LPS) points at most.
+[[nodiscard]] RegionFace face_towards(const Vec3& direction);
+
 /// How many voxels of the body have a face on each side of the region, in the order of RegionFace.
 [[nodiscard]] std::array<std::size_t, 6> count_cut_voxels(const Mask& body, const Mask& region);
 

@@ -102,12 +102,6 @@ std::string digest_of(const ToolPath& path, const Verdict& verdict) {
   return sha256_of_text(document_of(path).dump() + to_json(verdict).dump());
 }
 
-Verdict not_simulated(const char* why) {
-  Verdict verdict;
-  verdict.add("not_simulated", {}, why);
-  return verdict;
-}
-
 }  // namespace
 
 ToolPath tool_path_from_json(std::string_view text, const std::filesystem::path& name) {
@@ -170,15 +164,10 @@ Verdict read_path_verdict(const std::filesystem::path& file) {
   const ordered_json document = read_json(file);
   const ToolPath path = path_in(document, file);
   const std::optional<StatedVerdict> stated = stated_in(document, file);
-  if (!stated) return not_simulated("the path's file holds no verdict: no simulated cut along it is known");
+  if (!stated) return refusals_of({}, "the path's file holds no verdict: no simulated cut along it is known");
   if (stated->digest == digest_of(path, stated->verdict)) return stated->verdict;
-  // A changed digit does not make a refused path one that can be accepted.
-  Verdict verdict =
-      not_simulated("the path was changed after its cut was simulated: the verdict in its file is of another path");
-  for (const VerdictReason& reason : stated->verdict.reasons()) {
-    if (reason.severity == VerdictStatus::Refused) verdict.add(reason);
-  }
-  return verdict;
+  return refusals_of(stated->verdict,
+                     "the path was changed after its cut was simulated: the verdict in its file is of another path");
 }
 
 void require_path_unchanged(const std::filesystem::path& file) {

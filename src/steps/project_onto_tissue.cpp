@@ -145,6 +145,7 @@ ProjectedPath laid_down(const ToolPath& path, const Placement& placement, const 
     const MeasuredSurface surface(placement.measured, approach_of(path, placement.T_robot_sim));
     ProjectedPath projected = project_path(path, placement.T_robot_sim, surface, request.settings, request.surface);
     projected.path.source_sha256 = sha256_of_file(request.path);
+    projected.path.specimen_id = path.specimen_id;
     projected.path.is_virtual = path.is_virtual || is_marked_virtual(placement.measured);
     return projected;
   } catch (const InvalidArgument& error) {

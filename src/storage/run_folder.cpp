@@ -97,12 +97,8 @@ void require_inside(const LabelVolume& labels, const std::filesystem::path& file
 void take_verdict_from(const std::filesystem::path& file) {
   const Verdict older = read_path_verdict(file);
   if (older.status() != VerdictStatus::Refused) return write_tool_path(file, read_tool_path(file));
-  Verdict kept;
-  kept.add("not_simulated", {}, "a later run has not come to the cut along the path again");
-  for (const VerdictReason& reason : older.reasons()) {
-    if (reason.severity == VerdictStatus::Refused) kept.add(reason);
-  }
-  write_tool_path(file, read_tool_path(file), kept);
+  write_tool_path(file, read_tool_path(file),
+                  refusals_of(older, "a later run has not come to the cut along the path again"));
 }
 
 }  // namespace

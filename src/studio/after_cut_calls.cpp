@@ -474,9 +474,10 @@ Json Calls::frame(const Json& arguments) {
   const fs::path folder = folder_of_finding(file, "frame_", request.color);
   steps::SurfaceRequest cleaned;
   cleaned.approach = Vec3::UnitZ();  // a camera looks along its own z
-  constexpr std::uint64_t kUsualPlanes = 1, kNoMore = 1000;  // the library says how many it takes
-  cleaned.cleaning.planes = static_cast<int>(
-      std::min(kNoMore, arguments.contains("planes") ? seed_argument(arguments, "planes") : kUsualPlanes));
+  if (arguments.contains("planes"))
+    cleaned.cleaning.planes = count_argument(arguments, "planes");
+  else
+    cleaned.cleaning.planes = 1;  // the table
   cleaned.cleaning.voxel_mm = kFrameVoxelMm;
   const std::vector<Problem> problems = validate(cleaned.cleaning);
   if (!problems.empty()) throw CaseError("request", problems.front());

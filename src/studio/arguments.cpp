@@ -2,6 +2,8 @@
 
 #include <incise/core/verdict.hpp>
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
@@ -23,6 +25,13 @@ std::uint64_t seed_argument(const Json& arguments, const char* name) {
   const Json given = argument<Json>(arguments, name, "a whole number of at least 0");
   if (given.is_number_unsigned()) return given.get<std::uint64_t>();
   throw CaseError("request", name, given.dump().substr(0, 80), "a whole number of at least 0");
+}
+
+int count_argument(const Json& arguments, const char* name) {
+  constexpr std::uint64_t kMost = 1'000'000'000;
+  const std::uint64_t count = seed_argument(arguments, name);
+  if (count > kMost) throw CaseError("request", name, fmt::format("{}", count), "a count");
+  return static_cast<int>(count);
 }
 
 Points points_argument(const Json& arguments, const char* name) {

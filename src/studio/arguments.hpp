@@ -45,6 +45,8 @@ E word_argument(const nlohmann::ordered_json& arguments, const char* name) {
 [[nodiscard]] double positive_argument(const nlohmann::ordered_json& arguments, const char* name);
 /// A whole number of at least 0. @throws CaseError
 [[nodiscard]] std::uint64_t seed_argument(const nlohmann::ordered_json& arguments, const char* name);
+/// The same of things to count: at most a billion. @throws CaseError
+[[nodiscard]] int count_argument(const nlohmann::ordered_json& arguments, const char* name);
 /// A list of [x, y, z]. @throws CaseError
 [[nodiscard]] Points points_argument(const nlohmann::ordered_json& arguments, const char* name);
 /// A list of [u, v]. @throws CaseError

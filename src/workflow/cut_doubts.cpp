@@ -77,10 +77,10 @@ class WayOfTool {
   double deepest_mm_ = 0.0;
 };
 
-/// Tells which places of the stretched skin lie on a face that the region of interest made.
-class MadeSkin {
+/// Tells which places of the stretched skin lie on a face where the region of interest cuts through the tissue.
+class ArtificialSkin {
  public:
-  MadeSkin(const TissueModel& model, std::span<const CutPlane> planes, std::span<const Vec3> stretched)
+  ArtificialSkin(const TissueModel& model, std::span<const CutPlane> planes, std::span<const Vec3> stretched)
       : skin_(boundary_surface(model.mesh)), planes_(planes), search_(at(stretched)) {}
 
   /// The plane under the nearest place of the skin; null: it is the specimen's own.
@@ -104,12 +104,11 @@ class MadeSkin {
   SurfaceQuery search_;
 };
 
-/// Places on a skin that the region of interest made: there is tissue above and around them that the plan does not
-/// know.
+/// Places on artificial skin: above and around them lies tissue that the plan does not know.
 void add_cut_faces(const TissueModel& model, std::span<const CutPlane> planes, std::span<const Vec3> stretched,
                    const ToolPath& path, Verdict& verdict) {
   if (planes.empty()) return;
-  const MadeSkin skin(model, planes, stretched);
+  const ArtificialSkin skin(model, planes, stretched);
   const auto add = [&](std::string_view what, std::span<const Vec3> places) {
     const CutPlane* first = nullptr;
     std::size_t count = 0, at = 0;
@@ -124,8 +123,8 @@ void add_cut_faces(const TissueModel& model, std::span<const CutPlane> planes, s
     if (count == 0) return;
     verdict.add("cut_face", static_cast<double>(count),
                 fmt::format("{} of {} points of {} lie where the region of interest (ct.roi_box_mm) cuts through the "
-                            "tissue, on its {} side: there is no skin there, the specimen goes on. Move the box's face "
-                            "outwards, take what lies behind it away with the brush (ct.edits), or cut elsewhere",
+                            "tissue, on its {} side. The skin there is artificial: the specimen continues beyond it. "
+                            "Move the box's face outwards, or cut elsewhere",
                             count, places.size(), what, to_string(first->face)),
                 VerdictPlace{{}, places[at], fmt::format("point {} of {}", at, what)});
   };

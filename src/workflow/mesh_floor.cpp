@@ -43,7 +43,7 @@ double mean_distance_from_mean(const std::vector<double>& values) {
   return distance;
 }
 
-/// The progress of this cut under a name of its own: it is none of the path's.
+/// Reports the progress of this cut as a stage of its own, because it is not a cut along the planned path.
 class OwnStage : public Monitor {
  public:
   explicit OwnStage(Monitor& outer) : outer_(outer) {}

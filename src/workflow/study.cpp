@@ -319,12 +319,11 @@ class Runner {
 
   /// What refuses the plan already goes with its path, although no cut was made.
   void refuse_before_cut() {
-    Verdict early =
+    const Verdict early =
         verdict_before_cut(settings_, *study_.model, cut_planes_, study_.stretched->state.positions, *study_.plan);
     if (early.status() != VerdictStatus::Refused) return;
     report("the plan", early);
-    early.add("not_simulated", {}, "the run ended before it cut along the path");
-    sink_.verdicts(early, std::nullopt);
+    sink_.verdicts(refusals_of(early, "the run ended before it cut along the path"), std::nullopt);
   }
 
   /// Whoever takes a path from its file finds there what its cut is worth.

@@ -297,6 +297,8 @@ class AfterTheCut(StudioTest):
         self.assertEqual(status, 200, laid)
         path = json.loads((self.folder / "specimen" / "on_tissue" / "path" / "path.json").read_text())
         self.assertEqual((path["frame"], path["specimen_is"]), ("robot", "virtual"))
+        planned = json.loads((self.folder / "specimen" / "out" / "plan" / "path.json").read_text())
+        self.assertEqual(path["specimen_id"], planned["specimen_id"])  # so that a program is held to its specimen
         self.assertEqual(laid["program"] is None, bool(laid["gate"]["missing"] or laid["gate"]["refused"]))
         self.assertEqual(len(laid["commands"]), 3 if laid["follows"] == "corrected" else 2)
         self.assertNotIn("not_simulated", laid["gate"]["missing"])  # its cut was simulated, and its verdict is here

@@ -107,4 +107,9 @@ inline void describe(Visitor& v, VerdictGate& g) {
 /// @param accepted_ids  as given with `--accept`; ids of reasons that the verdict does not have are ignored.
 [[nodiscard]] VerdictGate gate_of(const Verdict& verdict, std::span<const std::string> accepted_ids);
 
+/// What remains of a verdict whose path is no longer the one that was cut: its refusals, and a caution `not_simulated`.
+/// So a path that was refused does not become one that a person may accept.
+/// @param why  the path counts as not simulated, one sentence.
+[[nodiscard]] Verdict refusals_of(const Verdict& verdict, std::string why);
+
 }  // namespace incise

@@ -96,8 +96,8 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("verdict", s.verdict, "On this tissue.");
 }
 
-/// A side of the region of interest (or of the volume) that goes through the body: the body's skin there is none of the
-/// specimen's, which goes on behind it.
+/// A face of the region of interest, or of the volume, that cuts through the body. The skin there is artificial: the
+/// specimen continues beyond it.
 struct CutPlane {
   RegionFace face = RegionFace::Right;
   Vec3 outward = Vec3::Zero();  ///< unit, LPS

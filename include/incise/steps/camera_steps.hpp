@@ -31,7 +31,7 @@ struct TrackRequest {
   bool has_plan = false;                                ///< also plan an incision; only with `camera`
   double margin_mm = PlanSettings{}.lateral_margin_mm;  ///< from the mark to the incision; 0: along the mark
   PlanSettings plan;                                    ///< depth, speed, waypoints and axis of the incision
-  std::filesystem::path output;                         ///< folder: contour.csv, cloud.ply, found.png, path.json; without a mark cloud.ply
+  std::filesystem::path output;  ///< folder: contour.csv, cloud.ply, found.png, path.json; without a mark cloud.ply
 };
 /// Not acceptable: a mark that is closed where an open one was asked for, or the other way round. @throws DataError,
 /// CaseError

@@ -36,7 +36,7 @@ struct ExportRequest {
   CheckSettings checks;
   ProgramSettings settings;
   std::optional<double> overlap_mm;  ///< of a closed path; absent: usual_overlap_mm for an incision, none for a mark
-  double usual_overlap_mm = kRingOverlapMm;
+  double usual_overlap_mm = kRingOverlapMm;  ///< of an incision, >= 0
   ArmSetup setup;
   std::optional<double> power_w;       ///< of the generator; absent: not known
   ThermalSettings thermal;             ///< of the tissue: a path does not say what it is cut into
@@ -45,7 +45,7 @@ struct ExportRequest {
   std::vector<std::string> accepted;   ///< cautions of the verdict, likewise
   std::filesystem::path output;
 };
-/// Puts what a run of the case says of its own program in place: arm, limits, power, heat, tool and overlap.
+/// Copies from a case what its own run takes for its program: arm, limits, power, heat, tool and overlap.
 /// @throws CaseError as require_round_tool.
 void take_case(const Case& settings, ExportRequest& request);
 /// Writes the program if the verdict allows it; else the result is not acceptable, and nothing is written.

@@ -43,7 +43,7 @@ struct Run {
 /// The same on all threads of the machine, without messages or files.
 [[nodiscard]] Run run(const Case& settings, Inputs& inputs, Cache& cache, std::span<const std::string> accepted = {});
 
-/// Puts what a case sets of the arm in place, and what it sets of the limits that its program is checked against.
+/// Copy what a case says of the arm, and of the limits that its program is checked against; the rest stays.
 void take_arm(const Case& settings, ArmSetup& setup);
 void take_limits(const Case& settings, CheckSettings& limits);
 

@@ -225,18 +225,16 @@ export async function stop(name) {
 }
 
 let pending = {};
-let isSending = false;
+let sending = null; // a promise while changes are under way
 
 /** Sets settings {key: value}: shown at once, and sent; what is set while a change is under way goes with the next. */
 export function change(set) {
   Object.assign(pending, set);
   update({drafts: {...state.drafts, ...set}});
-  send();
+  sending ||= send();
 }
 
 async function send() {
-  if (isSending) return;
-  isSending = true;
   while (Object.keys(pending).length) {
     await overtake();
     const set = pending;
@@ -245,7 +243,7 @@ async function send() {
     update({drafts: withoutSent(state.drafts, set), refused: found ? {} : {...state.refused, ...set}});
     if (found) takeCase(found, false);
   }
-  isSending = false;
+  sending = null;
   refreshStep();
 }
 
@@ -293,8 +291,8 @@ async function runWith(acceptance) {
 
 // A setting that was typed just now belongs to what is run next. @returns false where the server refused one
 async function allSent() {
-  const waiting = Object.keys(pending);
-  while (isSending || Object.keys(pending).length) await new Promise((resolve) => setTimeout(resolve, 20));
+  const waiting = Object.keys(state.drafts);
+  await sending;
   return !waiting.some((key) => key in state.refused);
 }
 
@@ -472,7 +470,7 @@ export function takeState(data) {
 
 // An answer that will bring the same case is on its way.
 function isBusySetting() {
-  return isSending || ["open", "create", "demo", "edge", "change"].some((name) => state.busy[name]);
+  return Boolean(sending) || ["open", "create", "demo", "edge", "change"].some((name) => state.busy[name]);
 }
 
 function takeStored(found) {

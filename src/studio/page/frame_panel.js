@@ -18,6 +18,7 @@ const kForms = [
 const kMarks = [
   ["green", "green"],
   ["red", "red"],
+  ["none", "there is none"],
 ];
 
 // Key, name, endings, and what it is.
@@ -62,7 +63,7 @@ export function Frame() {
       options: kMarks,
       onChange: (mark) => setFraming({mark}),
     }),
-    h(Check, {
+    framing.mark === "none" ? null : h(Check, {
       key: "open",
       label: "The mark is a line with two ends, not a ring",
       isOn: framing.isOpen,
@@ -121,8 +122,7 @@ function Found() {
     frame.asked === JSON.stringify(frameArguments(framing))
       ? null
       : h("p", {class: "warning"}, "Files or settings have changed since the frame was read."),
-    h("h4", null, "The mark that was found"),
-    h(Picture, {picture: frame.found}),
+    frame.found ? [h("h4", {key: "title"}, "The mark that was found"), h(Picture, {key: "picture", picture: frame.found})] : null,
     (frame.warnings || []).map((text, k) => h("p", {key: k, class: "warning"}, text)),
     h(Numbers, {frame}),
     h("p", {class: "soft"}, `The tissue in it, ${frame.name}, is the cloud to register.`),
@@ -132,7 +132,7 @@ function Found() {
 
 function Numbers({frame: {summary, points}}) {
   const yesNo = (value) => (value ? "yes" : "no");
-  const rows = [
+  const ofMark = [
     ["outcome", "Outcome", spoken(summary.outcome)],
     ["closed_loop", "Closed ring", yesNo(summary.closed_loop)],
     ["length_mm", "Length of the mark", mm(summary.length_mm)],
@@ -140,6 +140,9 @@ function Numbers({frame: {summary, points}}) {
     ["max_gap_mm", "Longest gap in it", mm(summary.max_gap_mm)],
     ["max_hole_mm", "Longest part without depth", mm(summary.max_hole_mm)],
     ["leaves_picture", "Leaves the picture", yesNo(summary.leaves_picture)],
+  ];
+  const rows = [
+    ...(summary.mark === "none" ? [] : ofMark),
     ["points", "Points of tissue", isNumber(points) ? whole(points) : "–"],
   ];
   return h(
