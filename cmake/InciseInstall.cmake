@@ -13,7 +13,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/incise DESTINATION ${CMAKE_INSTA
 
 # As src/io and src/imaging ask for them.
 get_property(INCISE_ITK_COMPONENTS GLOBAL PROPERTY INCISE_IO_ITK_COMPONENTS)
-list(APPEND INCISE_ITK_COMPONENTS ITKConnectedComponents ITKDistanceMap ITKSmoothing)
+list(APPEND INCISE_ITK_COMPONENTS ITKConnectedComponents ITKSmoothing)
 list(JOIN INCISE_ITK_COMPONENTS " " INCISE_ITK_COMPONENTS)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/incise-config.cmake.in ${PROJECT_BINARY_DIR}/incise-config.cmake
   INSTALL_DESTINATION ${package_folder})

@@ -31,7 +31,7 @@ struct ExportArguments {
 /// What the options say, as the library has it.
 steps::ExportRequest request_of(const ExportArguments& arguments) {
   steps::ExportRequest request = arguments.request;
-  if (!arguments.case_file.empty()) steps::take_case(read_case(arguments.case_file).settings, request);
+  if (!arguments.case_file.empty()) steps::take_case(read_case(arguments.case_file), request);
   request.form = value_named<steps::ProgramForm>(arguments.format);
   if (!arguments.motion.empty()) request.motion = value_named<ScriptMotion>(arguments.motion);
   if (!arguments.kind.empty()) request.kind = value_named<PathKind>(arguments.kind);

@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 namespace incise::cli {
 namespace {
 
@@ -17,6 +20,7 @@ struct TrackArguments : steps::TrackRequest {
   std::string mark_name = "green";
   std::string edge_name = "middle";
   std::string axis = "approach";
+  std::vector<const CLI::Option*> of_mark;  ///< that mean nothing without one
 };
 
 int run(const TrackArguments& arguments, const CommonOptions& options) {
@@ -33,8 +37,10 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   }
   request.mark.reset();
   if (arguments.mark_name != kNoMark) request.mark = value_named<InkColor>(arguments.mark_name);
-  if (!request.mark && request.has_plan)
-    throw CaseError("command line", "--plan", "--mark none", "a mark that the incision goes round");
+  for (const CLI::Option* option : arguments.of_mark) {
+    if (!request.mark && option->count() > 0)
+      throw CaseError("command line", option->get_name(), "given with --mark none", "a mark, or none of its options");
+  }
   request.edge = value_named<LineEdge>(arguments.edge_name);
   request.plan.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
   return run_step(options, [&](const auto& context) { return steps::track_mark(request, context); });
@@ -57,6 +63,7 @@ void add_track(Application& application) {
                    "JSON with T_robot_camera: results in the robot's frame; without it: in the colour camera's");
   verb->add_option("--mark", a.mark_name, "Colour of the mark; none: the cloud alone")
       ->check(CLI::IsMember({"red", "green", kNoMark}));
+  const std::vector<CLI::Option*> before = verb->get_options();
   verb->add_option("--edge", a.edge_name, "Contour of the mark: its middle, or its inner border")
       ->check(name_of_any<LineEdge>());
   verb->add_option(
@@ -73,6 +80,9 @@ void add_track(Application& application) {
   add_options_of(*verb, a.plan, "depth_mm", "speed_mm_s", "waypoints");
   verb->add_option("--axis", a.axis, "Tool axis: along the camera's view, or against the surface's normal")
       ->check(CLI::IsMember({"approach", "normal"}));
+  for (const CLI::Option* option : verb->get_options()) {
+    if (std::ranges::find(before, option) == before.end()) a.of_mark.push_back(option);
+  }
   verb->add_option("--ply-width", a.ply_width, "Columns of an organised cloud whose header does not state them")
       ->check(above_zero("--ply-width"));
   verb->add_option("--ply-unit-mm", a.ply_unit_mm, "Its unit: 1000 for metres")->check(above_zero("--ply-unit-mm"));

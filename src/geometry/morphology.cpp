@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/geometry/distance_line.hpp>
 #include <incise/geometry/morphology.hpp>
 
 #include <fmt/format.h>
@@ -16,45 +17,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Slack, in mm, that keeps pixels at exactly the radius on the same side whatever the rounding.
 constexpr double kRadiusSlack = 1e-9;
 
-/// Scratch for the transform of one line of pixels.
-struct Line {
-  std::vector<double> values;  // in: squared distance found so far; out: with this line's direction included
-  std::vector<double> result;
-  std::vector<std::size_t> apexes;  // pixels whose parabolas form the lower envelope
-  std::vector<double> starts;       // where each of them begins to be the lowest
-};
-
-/// result[q] = min over p of (q - p)² + values[p]: the lower envelope of a parabola on each pixel.
-void transform(Line& line) {
-  const std::size_t n = line.values.size();
-  line.apexes.clear();
-  line.starts.clear();
-  for (std::size_t q = 0; q < n; ++q) {
-    if (line.values[q] == kInfinity) continue;
-    const double x = static_cast<double>(q);
-    double start = -kInfinity;
-    while (!line.apexes.empty()) {
-      const double p = static_cast<double>(line.apexes.back());
-      start = ((line.values[q] + x * x) - (line.values[line.apexes.back()] + p * p)) / (2.0 * (x - p));
-      if (start > line.starts.back()) break;
-      line.apexes.pop_back();
-      line.starts.pop_back();
-      start = -kInfinity;
-    }
-    line.apexes.push_back(q);
-    line.starts.push_back(start);
-  }
-  line.result.assign(n, kInfinity);
-  if (line.apexes.empty()) return;
-  std::size_t lowest = 0;
-  for (std::size_t q = 0; q < n; ++q) {
-    const double x = static_cast<double>(q);
-    while (lowest + 1 < line.apexes.size() && line.starts[lowest + 1] < x) ++lowest;
-    const double step = x - static_cast<double>(line.apexes[lowest]);
-    line.result[q] = step * step + line.values[line.apexes[lowest]];
-  }
-}
-
 void require_radius(double radius_mm) {
   INCISE_REQUIRE(std::isfinite(radius_mm) && radius_mm >= 0.0,
                  fmt::format("expected a radius of 0 mm or more, found {}", radius_mm));
@@ -66,18 +28,18 @@ ScalarRaster distance_to(const Raster& raster, std::uint8_t value) {
   ScalarRaster distance(raster, kInfinity);
   const auto width = static_cast<std::size_t>(raster.width);
   const auto height = static_cast<std::size_t>(raster.height);
-  Line line;
+  DistanceLine line;
   line.values.resize(height);
   for (std::size_t i = 0; i < width; ++i) {
     for (std::size_t j = 0; j < height; ++j) line.values[j] = raster.pixels[i + width * j] == value ? 0.0 : kInfinity;
-    transform(line);
+    line.transform();
     for (std::size_t j = 0; j < height; ++j) distance.pixels[i + width * j] = line.result[j];
   }
   line.values.resize(width);
   for (std::size_t j = 0; j < height; ++j) {
     const auto row = distance.pixels.begin() + static_cast<std::ptrdiff_t>(width * j);
     std::copy(row, row + static_cast<std::ptrdiff_t>(width), line.values.begin());
-    transform(line);
+    line.transform();
     std::transform(line.result.begin(), line.result.end(), row,
                    [&](double squared) { return raster.pixel_mm * std::sqrt(squared); });
   }

@@ -5,6 +5,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/expect.hpp>
 #include <incise/core/median.hpp>
+#include <incise/imaging/cut_faces.hpp>
 #include <incise/imaging/scan_checks.hpp>
 #include <incise/imaging/segmentation.hpp>
 
@@ -230,16 +231,32 @@ IndexBox grown(IndexBox box, int voxels) {
   return box;
 }
 
-void note_cut_faces(Segmentation& result) {
+/// Counts the voxels that are cut, by the faces that cut them. @param grid  of the voxels
+void note_cut_faces(const VolumeGrid& grid, Segmentation& result) {
+  for (const CutVoxel& voxel : result.cut) ++result.cut_voxels.at(static_cast<std::size_t>(face_of(grid, voxel.side)));
   if (result.cut_faces() == 0) return;
   std::vector<std::string> faces;
   for (std::size_t f = 0; f < 6; ++f)
     if (result.cut_voxels[f] > 0)
       faces.push_back(fmt::format("{} ({} voxels)", to_string(static_cast<RegionFace>(f)), result.cut_voxels[f]));
-  result.verdict.add("scan", static_cast<double>(faces.size()),
-                     fmt::format("the specimen touches {} of 6 sides of the region of interest: {}. It is cut off there; if that is not meant, "
-                                 "it leaks into its surroundings",
-                                 faces.size(), fmt::join(faces, ", ")));
+  result.verdict.add(
+      "scan", static_cast<double>(faces.size()),
+      fmt::format("{} of 6 sides of the region of interest cut through the specimen: {}. Its skin is artificial "
+                  "there. If the specimen should end before, it leaks into its surroundings",
+                  faces.size(), fmt::join(faces, ", ")));
+}
+
+/// The voxels that a smaller grid has, by their places in its array.
+std::vector<CutVoxel> moved(const std::vector<CutVoxel>& cut, const VolumeGrid& from, const VolumeGrid& to) {
+  const Eigen::Array3i first = from.index_from_world(to.origin_mm).array().round().cast<int>();
+  std::vector<CutVoxel> kept;
+  for (const CutVoxel& voxel : cut) {
+    const auto [i, j, k] = from.voxel_at(static_cast<std::size_t>(voxel.voxel));
+    const std::array<int, 3> at{i - first[0], j - first[1], k - first[2]};
+    if (!to.contains(at[0], at[1], at[2])) continue;
+    kept.push_back({static_cast<std::int32_t>(to.offset(at[0], at[1], at[2])), voxel.side});
+  }
+  return kept;
 }
 
 /// Smoothing shrinks what is curved as strongly as its length: a body of a few millimetres loses a part that counts.
@@ -318,27 +335,6 @@ int Segmentation::cut_faces() const {
   return static_cast<int>(std::count_if(cut_voxels.begin(), cut_voxels.end(), [](std::size_t n) { return n > 0; }));
 }
 
-std::vector<CutPlane> cut_planes(const Segmentation& found, const SegmentationSettings& settings) {
-  const LabelVolume& labels = found.labels;
-  const Mat3& axes = labels.grid.direction;
-  const Mat3 sides = settings.roi_box_mm ? Mat3(Mat3::Identity()) : axes;  // the volume's own lie along its axes
-  std::vector<CutPlane> planes;
-  for (int side = 0; side < 6; ++side) {
-    const Vec3 outward = (side % 2 == 0 ? -1.0 : 1.0) * sides.col(side / 2);
-    const RegionFace face = face_towards(outward);
-    if (found.cut_voxels[static_cast<std::size_t>(face)] == 0) continue;
-    const double voxel_mm = (axes.transpose() * outward).cwiseAbs().dot(labels.grid.spacing_mm);
-    double farthest_mm = -std::numeric_limits<double>::infinity();
-    for (std::size_t v = 0; v < labels.voxels.size(); ++v) {
-      if (labels.voxels[v] == 0) continue;
-      const auto [i, j, k] = labels.grid.voxel_at(v);
-      farthest_mm = std::max(farthest_mm, outward.dot(labels.grid.world_from_index(Vec3(i, j, k))));
-    }
-    planes.push_back({face, outward, farthest_mm + 0.5 * voxel_mm, voxel_mm});
-  }
-  return planes;
-}
-
 namespace {
 
 enum class Source { Scan, Labels };
@@ -366,8 +362,8 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   Mask body = find_body(whole, seeds, settings, result);
   report(0.4);
   if (settings.fill_holes) fill_holes(body, result);
-  result.cut_voxels = count_cut_voxels(body, whole.region);
-  note_cut_faces(result);
+  result.cut = find_cut_voxels(body, whole, ct.grid, settings);
+  note_cut_faces(body.grid, result);
   if (source == Source::Scan) result.verdict.add(of_scan ? *of_scan : check_scan(ct));
 
   const IndexBox around = grown(box_of(body), pad);
@@ -383,6 +379,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   const IndexBox kept = grown(box_of(label), settings.margin_voxels);
   result.labels = crop(label, kept);
   result.occupancy = crop(occupancy, kept);
+  result.cut = moved(result.cut, body.grid, result.labels.grid);
   result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
   result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
   result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5);

@@ -194,32 +194,34 @@ std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& w
   return offsets;
 }
 
-RegionFace face_towards(const Vec3& direction) {
-  Eigen::Index world = 0;
-  direction.cwiseAbs().maxCoeff(&world);
-  return static_cast<RegionFace>(2 * world + (direction[world] > 0.0 ? 1 : 0));
+std::array<int, 3> step_towards(std::int32_t side) {
+  std::array<int, 3> step{};
+  step.at(static_cast<std::size_t>(side / 2)) = side % 2 == 0 ? -1 : 1;
+  return step;
 }
 
-std::array<std::size_t, 6> count_cut_voxels(const Mask& body, const Mask& region) {
-  std::array<std::size_t, 6> side{};  // of the six index directions
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Vec3 direction = body.grid.direction.col(static_cast<Eigen::Index>(axis));
-    side[2 * axis] = static_cast<std::size_t>(face_towards(-direction));
-    side[2 * axis + 1] = static_cast<std::size_t>(face_towards(direction));
-  }
+std::vector<CutVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
+                                      const SegmentationSettings& settings) {
   const VolumeGrid& grid = body.grid;
-  std::array<std::size_t, 6> counts{};
-  const auto is_region = [&](int i, int j, int k) { return grid.contains(i, j, k) && region.at(i, j, k) != 0; };
+  const Eigen::Array3i first = scan.index_from_world(grid.origin_mm).array().round().cast<int>();
+  const auto goes_on_at = [&](int i, int j, int k) {
+    if (!scan.contains(i + first[0], j + first[1], k + first[2])) return true;
+    const std::size_t v = grid.offset(i, j, k);
+    const std::int16_t hu = work.hu.voxels[v];
+    return work.region.voxels[v] == 0 && hu >= settings.window_low_hu && hu <= settings.window_high_hu;
+  };
+  std::vector<CutVoxel> cut;
   for (int k = 0; k < grid.size[2]; ++k)
     for (int j = 0; j < grid.size[1]; ++j)
       for (int i = 0; i < grid.size[0]; ++i) {
-        if (body.at(i, j, k) == 0) continue;
-        const std::array<bool, 6> goes_on{is_region(i - 1, j, k), is_region(i + 1, j, k), is_region(i, j - 1, k),
-                                          is_region(i, j + 1, k), is_region(i, j, k - 1), is_region(i, j, k + 1)};
-        for (std::size_t d = 0; d < 6; ++d)
-          if (!goes_on[d]) ++counts[side[d]];
+        const std::size_t v = grid.offset(i, j, k);
+        if (body.voxels[v] == 0) continue;
+        for (std::int32_t side = 0; side < 6; ++side) {
+          const auto [di, dj, dk] = step_towards(side);
+          if (goes_on_at(i + di, j + dj, k + dk)) cut.push_back({static_cast<std::int32_t>(v), side});
+        }
       }
-  return counts;
+  return cut;
 }
 
 IndexBox box_of(const Mask& mask) {

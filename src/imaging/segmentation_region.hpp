@@ -30,11 +30,13 @@ struct WorkingVolume {
 [[nodiscard]] std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& work,
                                                     const SegmentationSettings& settings);
 
-/// The face of the region that a direction (LPS) points at most.
-[[nodiscard]] RegionFace face_towards(const Vec3& direction);
+/// The voxels of the body beyond which tissue goes on outside the region, and those at the end of the volume, beyond
+/// which nobody knows. Skin that merely lies at the region's face is not among them. @pre all on one grid.
+[[nodiscard]] std::vector<CutVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
+                                                    const SegmentationSettings& settings);
 
-/// How many voxels of the body have a face on each side of the region, in the order of RegionFace.
-[[nodiscard]] std::array<std::size_t, 6> count_cut_voxels(const Mask& body, const Mask& region);
+/// The step along the grid towards a CutVoxel's side.
+[[nodiscard]] std::array<int, 3> step_towards(std::int32_t side);
 
 /// The smallest index box, from low to below high, that holds the mask's voxels. @pre at least one.
 struct IndexBox {

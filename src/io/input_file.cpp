@@ -165,6 +165,7 @@ std::vector<fs::path> input_files(const fs::path& path) {
 }
 
 std::string sha256_of_input(const fs::path& path) {
+  if (fs::is_directory(path)) return sha256_of_folder(path);
   const std::vector<fs::path> files = input_files(path);
   if (files.size() == 1 && files.front() == path) return sha256_of_file(path);
   std::string lines;

@@ -50,16 +50,12 @@ void describe(Visitor& v, KeptAnswer& k) {
 /// More than one step of an experiment writes.
 constexpr std::size_t kRoomBytes = std::size_t{32} << 20U;
 
-std::string content_of(const std::filesystem::path& path) {
-  return std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path);
-}
-
 /// What a step left, by content. Empty where one is missing.
 std::vector<std::string> products_of(const ExperimentStep& step) {
   std::vector<std::string> digests;
   for (const std::filesystem::path& path : step.products) {
     if (!std::filesystem::exists(path)) return {};
-    digests.push_back(content_of(path));
+    digests.push_back(sha256_of_input(path));
   }
   return digests;
 }
@@ -68,7 +64,7 @@ std::vector<std::string> products_of(const ExperimentStep& step) {
 CacheKey key_of(const ExperimentStep& step) {
   CacheKey key(step.name);
   for (const std::string& word : step.arguments) key.add_text(word);
-  for (const std::filesystem::path& path : step.inputs) key.add_text(path.string()).add_text(content_of(path));
+  for (const std::filesystem::path& path : step.inputs) key.add_text(path.string()).add_text(sha256_of_input(path));
   return key;
 }
 

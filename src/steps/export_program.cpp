@@ -42,6 +42,13 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   return path;
 }
 
+void require_of_case(const ToolPath& path, const ExportRequest& request) {
+  if (!are_of_different_specimens(path.specimen_id, request.case_specimen_id)) return;
+  throw DataError(request.path, "specimen_id", path.specimen_id,
+                  fmt::format("{}'s specimen, {}", request.case_file.string(), request.case_specimen_id),
+                  "Two scans of one specimen get one specimen_id in their cases");
+}
+
 /// Of the simulated cut that verifies the path, and of the registration. @param kind_in_file, kind  of the path as it
 /// was read, and as it is exported
 Verdict verdict_along(const ExportRequest& request, PathKind kind_in_file, PathKind kind,
@@ -194,7 +201,8 @@ void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monit
   }
 }
 
-void take_case(const Case& settings, ExportRequest& request) {
+void take_case(const CaseFile& file, ExportRequest& request) {
+  const Case& settings = file.settings;
   require_round_tool(settings);
   take_arm(settings, request.setup);
   take_limits(settings, request.checks);
@@ -203,6 +211,8 @@ void take_case(const Case& settings, ExportRequest& request) {
   request.power_w = settings.plan.power_w;
   request.thermal = settings.thermal;
   request.tool = settings.tool;
+  request.case_file = file.file;
+  request.case_specimen_id = specimen_id_of_case(file);
 }
 
 StepResult export_program(const ExportRequest& given, const StepContext& context) {
@@ -218,7 +228,12 @@ StepResult export_program(const ExportRequest& given, const StepContext& context
   ToolPath path = read_robot_path(request.path);
   const PathKind kind_in_file = path.kind;
   if (request.kind) path.kind = *request.kind;
-  if (path.kind == PathKind::Mark) require_a_mark(request.overrides);
+  require_of_case(path, request);
+  if (path.kind == PathKind::Mark) {
+    require_a_mark(request.overrides);
+    // A case whose cut is open says nothing of the mark of its tumour's edge.
+    if (!request.case_file.empty()) request.is_open = false;
+  }
   if (request.is_open && path.is_closed) {
     throw CaseError("command line", "--open", fmt::format("{}, a closed path", request.path.string()), "an open path",
                     "Leave --open out: a ring must pass closed, gap and encloses.");
@@ -271,6 +286,10 @@ StepResult export_program(const ExportRequest& given, const StepContext& context
   ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())},
                            {"made_from", request.path.filename().string()},
                            {"made_from_sha256", sha256_of_file(request.path)}};
+  if (!request.case_file.empty()) {
+    provenance.emplace_back("case", request.case_file.filename().string());
+    provenance.emplace_back("case_sha256", sha256_of_file(request.case_file));
+  }
   if (!path.specimen_id.empty()) provenance.emplace_back("specimen_id", path.specimen_id);
   if (path.is_virtual) provenance.emplace_back("specimen", kVirtualSpecimen);
   for (const auto& line : verdict_header(verdict, gate)) provenance.push_back(line);

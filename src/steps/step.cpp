@@ -36,8 +36,7 @@ Manifest manifest_of(const RunContext& run, std::string settings_json, const std
   manifest.instruction_set = to_string(active_isa());
   for (const std::filesystem::path& path : inputs) {
     if (path.empty()) continue;
-    manifest.inputs.push_back(
-        {path.string(), std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path)});
+    manifest.inputs.push_back({path.string(), sha256_of_input(path)});
   }
   manifest.specimen_id = id_that_all_state(inputs);
   manifest.wall_s = wall_s;

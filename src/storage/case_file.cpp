@@ -259,6 +259,20 @@ void require_input_files(const CaseFile& file) {
   }
 }
 
+std::string specimen_id_of_case(const CaseFile& file,
+                                const std::function<std::string(const std::filesystem::path&)>& digest) {
+  if (!file.settings.specimen_id.empty()) return file.settings.specimen_id;
+  const std::filesystem::path& mesh = file.inputs.specimen_mesh;
+  const std::filesystem::path& scan = file.inputs.ct_volume.empty() ? file.inputs.ct_labels : file.inputs.ct_volume;
+  if (mesh.empty()) return scan.empty() ? "" : specimen_id_of_scan(digest(scan));
+  const std::string stated = specimen_id_of(mesh);
+  return stated.empty() ? specimen_id_of_mesh(digest(mesh)) : stated;
+}
+
+std::string specimen_id_of_case(const CaseFile& file) {
+  return specimen_id_of_case(file, sha256_of_input);
+}
+
 std::vector<SettingLine> settings_of(const CaseFile& file) {
   std::vector<SettingLine> settings;
   const auto lister = walk<SettingLister>(file);

@@ -18,6 +18,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kVerdicts = "verdicts";  // the cache's slot
+
+/// The verdict of the cut along a product's path. A case that is changed and changed back finds it again.
+struct KeptVerdict {
+  std::string product;
+  std::string path;  // as path_json
+  Verdict verdict;
+};
+void describe(Visitor& v, KeptVerdict& k) {
+  v("product", k.product, "Whose path it is.");
+  v("path", k.path, "The path that was cut, as its file has it.");
+  v("verdict", k.verdict, "On the cut.");
+}
+
+bool is_of_a_cut(const Verdict& verdict) {
+  return !verdict.has("not_simulated");
+}
+
 /// One line per pass and waypoint.
 void write_history(const std::filesystem::path& file, const ConvergedCompensation& iteration) {
   write_atomically(file, [&](std::ostream& out) {
@@ -82,11 +100,37 @@ void RunFolder::verdicts(const std::optional<Verdict>& of_planned, const std::op
     if (!verdict || !std::filesystem::exists(file)) return;
     Verdict whole = *verdict;
     whole.add(advice_against(is_corrected));
-    if (to_json(read_path_verdict(file)) == to_json(whole)) return;
-    write_tool_path(file, read_tool_path(file), whole);
+    const Verdict stated = read_path_verdict(file);
+    if (is_of_a_cut(stated) && !is_of_a_cut(whole)) return;
+    if (to_json(stated) != to_json(whole)) write_tool_path(file, read_tool_path(file), whole);
   };
+  if (!of_planned && !of_corrected) return restore_verdicts();
   note("plan", of_planned, false);
   note("correction", of_corrected, true);
+  keep_verdicts();
+}
+
+void RunFolder::keep_verdicts() {
+  std::vector<KeptVerdict> kept;
+  for (const char* product : {"plan", "correction"}) {
+    const std::filesystem::path file = folder(product) / "path.json";
+    if (!std::filesystem::exists(file)) continue;
+    const Verdict verdict = read_path_verdict(file);
+    if (is_of_a_cut(verdict)) kept.push_back({product, path_json(read_tool_path(file)), verdict});
+  }
+  if (!kept.empty()) cache_.keep(kVerdicts, key_of_case(), kept);
+}
+
+void RunFolder::restore_verdicts() {
+  Monitor quiet;
+  const auto kept = cache_.find<std::vector<KeptVerdict>>(kVerdicts, key_of_case(), quiet);
+  if (!kept) return;
+  for (const KeptVerdict& known : *kept) {
+    const std::filesystem::path file = folder(known.product) / "path.json";
+    if (!std::filesystem::exists(file) || is_of_a_cut(read_path_verdict(file))) continue;
+    const ToolPath path = read_tool_path(file);
+    if (path_json(path) == known.path) write_tool_path(file, path, known.verdict);
+  }
 }
 
 }  // namespace incise

@@ -125,17 +125,12 @@ bool RunFolder::has_products() const {
 std::string RunFolder::input_hash(const std::filesystem::path& path) {
   if (path.empty()) return "none";
   std::string& hash = hashes_[path];
-  if (hash.empty()) hash = std::filesystem::is_directory(path) ? sha256_of_folder(path) : sha256_of_input(path);
+  if (hash.empty()) hash = sha256_of_input(path);
   return hash;
 }
 
 std::string RunFolder::specimen_id() {
-  if (!file_.settings.specimen_id.empty()) return file_.settings.specimen_id;
-  const std::filesystem::path& mesh = file_.inputs.specimen_mesh;
-  const std::filesystem::path& scan = file_.inputs.ct_volume.empty() ? file_.inputs.ct_labels : file_.inputs.ct_volume;
-  if (mesh.empty()) return scan.empty() ? "" : specimen_id_of_scan(input_hash(scan));
-  const std::string stated = specimen_id_of(mesh);
-  return stated.empty() ? specimen_id_of_mesh(input_hash(mesh)) : stated;
+  return specimen_id_of_case(file_, [this](const std::filesystem::path& input) { return input_hash(input); });
 }
 
 ToolPath RunFolder::with_specimen(ToolPath path) {
@@ -194,6 +189,14 @@ void RunFolder::write(const ProductNote& note, const std::function<void(const st
   for (const char* made_of_it : kMadeOfThem) remove_replaceable(root_ / made_of_it);
   for (auto later = place + 1; later != kProducts.end(); ++later) remove_replaceable(folder(*later));
   target.commit();
+}
+
+CacheKey RunFolder::key_of_case() {
+  const Manifest now = manifest_now(0.0);
+  CacheKey key("verdicts");
+  key.add_text(now.settings_json).add_text(now.specimen_id);
+  for (std::size_t i = 1; i < now.inputs.size(); ++i) key.add_text(now.inputs[i].sha256);  // 0: the case's own file
+  return key;
 }
 
 bool RunFolder::is_made_as_now(const std::filesystem::path& result) {

@@ -292,6 +292,14 @@ Json edges_json(const Points& simulated, const std::optional<Contour>& marked) {
   return json;
 }
 
+/// The colour of a frame's mark; nothing: it has none.
+std::optional<InkColor> mark_in(const Json& arguments) {
+  const auto word = argument<std::string>(arguments, "mark", "red, green or none");
+  if (word == kNoMark) return std::nullopt;
+  if (const auto colour = value_of<InkColor>(word)) return *colour;
+  throw CaseError("request", "mark", "'" + word.substr(0, 40) + "'", "red, green or none");
+}
+
 fs::path surface_folder(const CaseFile& file) {
   return file.folder / "simulated_surface";
 }
@@ -466,10 +474,7 @@ Json Calls::frame(const Json& arguments) {
   if (request.intrinsics.empty() != is_cloud)
     throw CaseError("request", "intrinsics", is_cloud ? "intrinsics beside a cloud" : "nothing",
                     is_cloud ? "none" : "the cameras' intrinsics (JSON)");
-  if (arguments.value("mark", Json()) == kNoMark)
-    request.mark.reset();
-  else if (arguments.contains("mark"))
-    request.mark = word_argument<InkColor>(arguments, "mark");
+  if (arguments.contains("mark")) request.mark = mark_in(arguments);
   request.is_open = argument_or(arguments, "is_open", "true or false", false);
   const fs::path folder = folder_of_finding(file, "frame_", request.color);
   steps::SurfaceRequest cleaned;
@@ -595,7 +600,6 @@ Json Calls::register_cloud(const Json& arguments) {
 Json Calls::lay(const Json& arguments) {
   const CaseFile file = read_case_with_inputs(file_);
   const std::string revision = case_revision(file_);
-  const Case& settings = file.settings;
   const bool is_mark = arguments.contains("kind") && word_argument<PathKind>(arguments, "kind") == PathKind::Mark;
   const PathKind kind = is_mark ? PathKind::Mark : PathKind::Incise;
   const fs::path registration = registration_folder(file) / "registration.json";
@@ -603,8 +607,7 @@ Json Calls::lay(const Json& arguments) {
     throw CaseError("request", "registration", "none in the case's folder", "a registered cloud");
   const std::string registration_sha256 = sha256_of_file(registration);
   steps::ExportRequest making;
-  steps::take_case(settings, making);
-  making.is_open = making.is_open && !is_mark;
+  steps::take_case(file, making);
   making.registration = registration;
   making.accepted = accepted_in(arguments);
   if (!making.accepted.empty() && text_argument(arguments, "registration_sha256") != registration_sha256)

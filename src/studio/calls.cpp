@@ -375,11 +375,13 @@ Json Calls::tissue(const Json&) {
   const Segmentation found =
       given ? segment_labels(*given, settings, monitor_) : segment(*ct, settings, monitor_, of_scan_);
   const TriMesh skin = iso_surface(found.occupancy, 0.5);
+  const std::vector<std::uint8_t> cut = cut_triangles(CutFaces(found), skin);
   Json summary = to_json(found);
   summary.erase("verdict");
   return {{"grid", grid_json(found.labels.grid)},
           {"labels", blobs_.put("tissue.labels", std::span<const std::uint8_t>(found.labels.voxels))},
           {"skin", surface_json(blobs_, "tissue.skin", skin.vertices, skin.triangles)},
+          {"cut", blobs_.put("tissue.cut", std::span<const std::uint8_t>(cut))},
           {"given_labels", given ? label_counts(*given) : Json(nullptr)},
           {"summary", std::move(summary)},
           {"verdict", to_json(found.verdict)}};
@@ -452,9 +454,8 @@ Json Calls::plan(const Json&) {
     throw CaseError(file_.string(), "specimen.constraints", explain_stretch(*study.stretched),
                     "a stretch that comes to rest");
   Verdict verdict = study.about_inputs;
-  std::vector<CutPlane> planes;
-  if (study.segmentation) planes = cut_planes(*study.segmentation, file.settings.segmentation);
-  verdict.add(verdict_before_cut(file.settings, *study.model, planes, study.stretched->state.positions, *study.plan));
+  const CutFaces faces = study.segmentation ? CutFaces(*study.segmentation) : CutFaces();
+  verdict.add(verdict_before_cut(file.settings, *study.model, faces, study.stretched->state.positions, *study.plan));
   return {{"path", tool_path_json(*study.plan)},
           {"edge", points_json(study.plan->tumor_edge.points)},
           {"verdict", to_json(verdict)}};

@@ -186,6 +186,8 @@ class Server {
       }
       if (connections_ >= kMostConnections) continue;  // closes it
       ++connections_;
+      boost::system::error_code ignored;
+      socket.set_option(Tcp::no_delay(true), ignored);  // a header goes at once, not with what follows it
       asio::co_spawn(io_, converse(beast::tcp_stream(std::move(socket))),
                      [this](std::exception_ptr) { --connections_; });
     }

@@ -83,6 +83,17 @@ std::vector<std::uint8_t> held_by(const Skin& skin, const TissueModel& model) {
   return marks;
 }
 
+std::vector<std::uint8_t> cut_triangles(const CutFaces& faces, const TriMesh& skin) {
+  std::vector<std::uint8_t> cut;
+  cut.reserve(skin.triangles.size());
+  for (const auto& [a, b, c] : skin.triangles) {
+    const bool is_cut =
+        faces.under({skin.vertices[a.index()], skin.vertices[b.index()], skin.vertices[c.index()]}).has_value();
+    cut.push_back(is_cut ? 1 : 0);
+  }
+  return cut;
+}
+
 /// A constraint as a case file has it: without what was left out there, and without the words that a result adds.
 Json as_written(const Constraint& constraint) {
   Json json = to_json(constraint);

@@ -2,6 +2,7 @@
 
 #include "blob_folder.hpp"
 
+#include <incise/imaging/cut_faces.hpp>
 #include <incise/mechanics/tissue.hpp>
 #include <incise/workflow/products.hpp>
 
@@ -23,6 +24,9 @@ struct Skin {
 [[nodiscard]] Skin skin_of(const TetMesh& mesh, std::span<const std::uint8_t> is_live = {});
 /// The skin's vertices where `positions` (of all vertices of the mesh) has them.
 [[nodiscard]] Points positions_on(const Skin& skin, std::span<const Vec3> positions);
+
+/// For each triangle of a found tissue's skin, 1 where the region of interest or the end of the scan made it.
+[[nodiscard]] std::vector<std::uint8_t> cut_triangles(const CutFaces& faces, const TriMesh& skin);
 
 /// Which constraints hold each vertex of the skin: bit c for constraint c of the first eight.
 [[nodiscard]] std::vector<std::uint8_t> held_by(const Skin& skin, const TissueModel& model);

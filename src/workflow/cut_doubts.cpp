@@ -80,16 +80,13 @@ class WayOfTool {
 /// Tells which places of the stretched skin lie on a face where the region of interest cuts through the tissue.
 class ArtificialSkin {
  public:
-  ArtificialSkin(const TissueModel& model, std::span<const CutPlane> planes, std::span<const Vec3> stretched)
-      : skin_(boundary_surface(model.mesh)), planes_(planes), search_(at(stretched)) {}
+  ArtificialSkin(const TissueModel& model, const CutFaces& faces, std::span<const Vec3> stretched)
+      : skin_(boundary_surface(model.mesh)), faces_(faces), search_(at(stretched)) {}
 
-  /// The plane under the nearest place of the skin; null: it is the specimen's own.
-  [[nodiscard]] const CutPlane* under(const Vec3& place) const {
-    const auto& corners = skin_.triangles[search_.nearest(place).triangle.index()];
-    const auto on = std::ranges::find_if(planes_, [&](const CutPlane& plane) {
-      return std::ranges::all_of(corners, [&](VertexId v) { return plane.holds(skin_.vertices[v.index()]); });
-    });
-    return on == planes_.end() ? nullptr : &*on;
+  /// The face that made the nearest place of the skin; nothing: it is the specimen's own.
+  [[nodiscard]] std::optional<RegionFace> under(const Vec3& place) const {
+    const auto& [a, b, c] = skin_.triangles[search_.nearest(place).triangle.index()];
+    return faces_.under({skin_.vertices[a.index()], skin_.vertices[b.index()], skin_.vertices[c.index()]});
   }
 
  private:
@@ -100,32 +97,32 @@ class ArtificialSkin {
   }
 
   TriMesh skin_;  // at rest, with all vertices of the mesh
-  std::span<const CutPlane> planes_;
+  const CutFaces& faces_;
   SurfaceQuery search_;
 };
 
 /// Places on artificial skin: above and around them lies tissue that the plan does not know.
-void add_cut_faces(const TissueModel& model, std::span<const CutPlane> planes, std::span<const Vec3> stretched,
+void add_cut_faces(const TissueModel& model, const CutFaces& faces, std::span<const Vec3> stretched,
                    const ToolPath& path, Verdict& verdict) {
-  if (planes.empty()) return;
-  const ArtificialSkin skin(model, planes, stretched);
+  if (faces.empty()) return;
+  const ArtificialSkin skin(model, faces, stretched);
   const auto add = [&](std::string_view what, std::span<const Vec3> places) {
-    const CutPlane* first = nullptr;
+    std::optional<RegionFace> first;
     std::size_t count = 0, at = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const CutPlane* const plane = skin.under(places[i]);
-      if (plane == nullptr) continue;
+      const std::optional<RegionFace> face = skin.under(places[i]);
+      if (!face) continue;
       if (count++ == 0) {
-        first = plane;
+        first = face;
         at = i;
       }
     }
-    if (count == 0) return;
+    if (!first) return;
     verdict.add("cut_face", static_cast<double>(count),
-                fmt::format("{} of {} points of {} lie where the region of interest (ct.roi_box_mm) cuts through the "
-                            "tissue, on its {} side. The skin there is artificial: the specimen continues beyond it. "
-                            "Move the box's face outwards, or cut elsewhere",
-                            count, places.size(), what, to_string(first->face)),
+                fmt::format("{} of {} points of {} lie where the region of interest (ct.roi_box_mm) or the end of the "
+                            "scan cuts through the tissue, on its {} side. The skin there is artificial: the specimen "
+                            "continues beyond it. Move the box's face outwards, or cut elsewhere",
+                            count, places.size(), what, to_string(*first)),
                 VerdictPlace{{}, places[at], fmt::format("point {} of {}", at, what)});
   };
   add("the path", entry_contour(path).points);
@@ -172,7 +169,7 @@ std::optional<PlatformClearance> platform_clearance(const TissueModel& model, co
   return least;
 }
 
-Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::span<const CutPlane> cut_planes,
+Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const CutFaces& cut_faces,
                            std::span<const Vec3> stretched, const ToolPath& path) {
   Verdict verdict;
   const double ratio = greatest_ratio(model).ratio;
@@ -199,7 +196,7 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, std::
                 fmt::format("the tool's tip goes {:.2f} mm below the platform that supports the tissue, at waypoint {}", -platform->height_mm, platform->waypoint),
                 VerdictPlace{{}, path.waypoints[platform->waypoint].position_mm, fmt::format("waypoint {}", platform->waypoint)});
   }
-  add_cut_faces(model, cut_planes, stretched, path, verdict);
+  add_cut_faces(model, cut_faces, stretched, path, verdict);
   return verdict;
 }
 

@@ -223,7 +223,7 @@ class Runner {
     sink_.labels(note, *study_.segmentation);
     report("the scan", study_.segmentation->verdict);
     study_.about_inputs.add(study_.segmentation->verdict);
-    cut_planes_ = cut_planes(*study_.segmentation, settings_.segmentation);
+    cut_faces_ = CutFaces(*study_.segmentation);
     return true;
   }
 
@@ -320,7 +320,7 @@ class Runner {
   /// What refuses the plan already goes with its path, although no cut was made.
   void refuse_before_cut() {
     const Verdict early =
-        verdict_before_cut(settings_, *study_.model, cut_planes_, study_.stretched->state.positions, *study_.plan);
+        verdict_before_cut(settings_, *study_.model, cut_faces_, study_.stretched->state.positions, *study_.plan);
     if (early.status() != VerdictStatus::Refused) return;
     report("the plan", early);
     sink_.verdicts(refusals_of(early, "the run ended before it cut along the path"), std::nullopt);
@@ -342,7 +342,7 @@ class Runner {
   /// A cut with what is held against it.
   SimulatedCut judged(IncisionResult incision, const ToolPath& path) const {
     SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size());
-    cut.verdict.add(verdict_before_cut(settings_, *study_.model, cut_planes_, study_.stretched->state.positions, path));
+    cut.verdict.add(verdict_before_cut(settings_, *study_.model, cut_faces_, study_.stretched->state.positions, path));
     return cut;
   }
 
@@ -557,7 +557,7 @@ class Runner {
   ProductSink& sink_;
   bool must_resume_;  ///< nothing was gone on with yet, and something has to be
   std::optional<TetMesh> given_mesh_;
-  std::vector<CutPlane> cut_planes_;  ///< of the tissue at rest
+  CutFaces cut_faces_;  ///< of the tissue at rest
   std::optional<Contour> tumor_edge_;
   std::optional<TriMesh> tumor_surface_;
   std::optional<Contour> line_;

@@ -86,6 +86,25 @@ class SpecimenIdTest(CommandTest):
         (self.folder / "labels.nrrd.manifest.json").write_text("{}")
         self.assert_refused(self.incise("segment", "ct.nrrd", "-o", "labels.nrrd"), BAD_DATA, "labels.nrrd.manifest.json", "another origin")
 
+    def test_a_program_is_made_for_the_case_of_its_specimen(self):
+        path = self.path()
+        self.case("other", specimen_id=OTHER)
+        done = self.incise("export", path, "--case", "other", "-o", "cut.script")
+        self.assert_refused(done, BAD_DATA, "path.json", f"specimen_id: found {OWN}", f"case.yaml's specimen, {OTHER}")
+        case = self.case("own", specimen_id=OWN, cut={"overlap_mm": 4.0})
+        self.json_of("export", path, "--case", "own", "--accept", "not_simulated", "-o", "cut.script")
+        digest = hashlib.sha256((case / "case.yaml").read_bytes()).hexdigest()
+        script = (self.folder / "cut.script").read_text()
+        for line in ("incise.case: case.yaml", f"incise.case_sha256: {digest}", "incise.overlap_mm: 4"):
+            self.assertIn(f"# {line}\n", script)
+        # The cut of this case is open; the mark of its tumour's edge is a ring.
+        self.case("line", specimen_id=OWN, plan={"kind": "line"})
+        edge = ring()["waypoints"]
+        mark = self.path(kind="mark", waypoints=[{**point, "depth_mm": 1.0, "speed_mm_s": 2.0} for point in edge],
+                         tumor_edge=[point["position_mm"] for point in edge])
+        made = self.json_of("export", mark, "--case", "line", "-o", "mark.script")
+        self.assertIn("closed", {check["name"] for check in made["checks"]})
+
     def test_a_case_that_is_given_another_id_plans_anew(self):
         case = self.case("case", specimen_id=OWN)
         self.incise("run", case, "-o", self.out)

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/imaging/cut_faces.hpp>
 #include <incise/imaging/phantom.hpp>
 #include <incise/imaging/segmentation.hpp>
 
@@ -230,25 +231,59 @@ TEST(Segmentation, LeavesAMarginOfAirAllAroundEvenWhereTheRegionCutsThroughTissu
   EXPECT_EQ(grid.origin_mm, (grid.world_from_index(Vec3::Zero())));
 }
 
-TEST(CutPlanes, LieWhereTheRegionOrTheVolumeCutsTheBody) {
+/// A small triangle about a place, seen from where it looks.
+std::array<Vec3, 3> about(const Vec3& place, const Vec3& normal = Vec3::UnitZ()) {
+  const Vec3 along = 0.2 * normal.unitOrthogonal();
+  return {place, place + along, place + normal.cross(along)};
+}
+
+TEST(CutFaces, LieWhereTheRegionCutsTheBody) {
   SegmentationSettings settings;
-  EXPECT_TRUE(cut_planes(run(ball_of_tissue(), settings), settings).empty());
+  EXPECT_TRUE(CutFaces(run(ball_of_tissue(), settings)).empty());
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
-  const auto in_box = cut_planes(run(ball_of_tissue(), settings), settings);
-  ASSERT_EQ(in_box.size(), 1U);
-  EXPECT_EQ(in_box[0].face, RegionFace::Superior);
-  EXPECT_EQ(in_box[0].outward, Vec3(0, 0, 1));
-  EXPECT_NEAR(in_box[0].at_mm, 15.0, 0.5 * in_box[0].voxel_mm + 1e-9);
-  EXPECT_TRUE(in_box[0].holds(Vec3(15, 15, in_box[0].at_mm)));
-  EXPECT_FALSE(in_box[0].holds(Vec3(15, 15, 10)));
+  const CutFaces in_box(run(ball_of_tissue(), settings));
+  EXPECT_EQ(in_box.under(about(Vec3(15, 15, 15.5))), RegionFace::Superior);
+  EXPECT_FALSE(in_box.under(about(Vec3(15, 15, 5.4)))) << "the ball's own skin";
+  EXPECT_FALSE(in_box.under(about(Vec3(27, 15, 15.5)))) << "beside the disc, in the plane of the face";
+  EXPECT_FALSE(in_box.under(about(Vec3(25.2, 15, 15.2), Vec3::UnitX()))) << "the ball's own skin at the disc's rim";
   CtVolume turned = ball_of_tissue();
   turned.grid.direction << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   settings.roi_box_mm = Box3(Vec3(-15, -100, -100), Vec3(100, 100, 100));
-  const auto of_turned = cut_planes(run(turned, settings), settings);
-  ASSERT_EQ(of_turned.size(), 1U);
-  EXPECT_EQ(of_turned[0].face, RegionFace::Right);
-  EXPECT_EQ(of_turned[0].outward, Vec3(-1, 0, 0));
-  EXPECT_NEAR(of_turned[0].at_mm, 15.0, 0.5 * of_turned[0].voxel_mm + 1e-9);
+  EXPECT_EQ(CutFaces(run(turned, settings)).under(about(Vec3(-15.5, 15, 15), -Vec3::UnitX())), RegionFace::Right);
+}
+
+TEST(CutFaces, AreNoneWhereTheRegionEndsJustAboveTheSkin) {
+  SegmentationSettings settings;  // the ball ends at z 25.4
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 25));
+  const Segmentation touched = run(ball_of_tissue(), settings);
+  EXPECT_EQ(touched.cut_faces(), 0);
+  EXPECT_TRUE(CutFaces(touched).empty());
+}
+
+TEST(CutFaces, AreThoseOfABumpAloneWhereOnlyABumpReachesTheRegionsFace) {
+  const CtVolume ct = scan_of(grid_of(40, 40, 30), [](const Vec3& p) {
+    const bool is_slab = p.z() > 5 && p.z() < 20 && p.x() > 5 && p.x() < 35 && p.y() > 5 && p.y() < 35;
+    return is_slab || (p - Vec3(12, 12, 19)).norm() < 5.0 ? 50.0 : -1000.0;
+  });
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
+  settings.smoothing_mm = 0.0;
+  const CutFaces faces(run(ct, settings));
+  EXPECT_EQ(faces.under(about(Vec3(12, 12, 20.0))), RegionFace::Superior);
+  EXPECT_FALSE(faces.under(about(Vec3(28, 28, 20.0)))) << "sound skin at the same height";
+}
+
+TEST(CutFaces, LieAtTheScansEndWhereAnObliqueScanEndsWithinTheRegion) {
+  CtVolume ct = ball_of_tissue();
+  ct.grid.direction = Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  ct.grid.size[2] = 16;
+  ct.voxels.resize(ct.grid.voxel_count());
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3::Constant(-100), Vec3::Constant(100));
+  const CutFaces faces(run(ct, settings));
+  const Vec3 out = ct.grid.direction.col(2);
+  EXPECT_TRUE(faces.under(about(ct.grid.world_from_index(Vec3(15, 15, 15.5)), out)));
+  EXPECT_FALSE(faces.under(about(ct.grid.world_from_index(Vec3(15, 15, 5.4)), -out)));
 }
 
 TEST(Segmentation, CutsHalfABallAtTheFaceOfTheLastVoxelInTheRegion) {

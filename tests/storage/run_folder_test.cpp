@@ -400,6 +400,38 @@ TEST_F(RunFolderTest, ARunThatEndsBeforeItCutsLeavesTheVerdictAndEveryRunLeavesA
   EXPECT_EQ(ids(), (std::vector<std::string>{"open_layer", "not_simulated"}));
 }
 
+TEST_F(RunFolderTest, ACaseThatIsChangedAndChangedBackFindsTheVerdictOfItsCut) {
+  open().plan(note("plan"), small_ring());
+  Verdict verdict;
+  verdict.add("depth", 0.5, "too shallow");
+  open().verdicts(verdict, std::nullopt);
+  open().write_manifest_to(folder_ / "out", 1.0);
+  const std::filesystem::path file = folder_ / "out" / "plan" / "path.json";
+  const auto planned = [&](const std::string& change, const ToolPath& path) {
+    Monitor quiet;
+    RunFolder folder = open(change);
+    folder.remove_what_is_out_of_date(Stage::Plan, quiet);
+    folder.plan(note("plan"), path);
+    folder.verdicts(std::nullopt, std::nullopt);
+    folder.write_manifest_to(folder_ / "out", 1.0);
+    std::vector<std::string> ids;
+    const Verdict stated = read_path_verdict(file);
+    for (const VerdictReason& reason : stated.reasons()) ids.push_back(reason.id);
+    return ids;
+  };
+  EXPECT_EQ(planned("plan: {close_margin_mm: 3}\n", small_ring()), std::vector<std::string>{"not_simulated"});
+  EXPECT_EQ(planned("", small_ring()), std::vector<std::string>{"depth"});
+  ToolPath other = small_ring();
+  other.waypoints[0].depth_mm += 1.0;
+  std::filesystem::remove_all(folder_ / "out" / "plan");
+  EXPECT_EQ(planned("", other), std::vector<std::string>{"not_simulated"}) << "a verdict is that of one path";
+  // Refusals that need no cut do not take the place of a cut's verdict, and are kept by nobody.
+  std::filesystem::remove_all(folder_ / "out" / "plan");
+  EXPECT_EQ(planned("", small_ring()), std::vector<std::string>{"depth"});
+  open().verdicts(refusals_of(verdict, "the run ended before it cut along the path"), std::nullopt);
+  EXPECT_TRUE(read_path_verdict(file).has("depth"));
+}
+
 TEST_F(RunFolderTest, ACorrectionIsWrittenPassByPass) {
   open().correction(note("correction"), small_correction(small_ring()));
   const std::filesystem::path folder = folder_ / "out" / "correction";

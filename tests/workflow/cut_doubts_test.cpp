@@ -115,15 +115,25 @@ TEST(VerdictBeforeCut, RefusesATipThatGoesThroughThePlatform) {
 TEST(VerdictBeforeCut, RefusesAPathOrAnEdgeOnAFaceThatTheRegionMade) {
   const TissueModel model = block(24, 0.45);
   Points stretched = model.mesh.vertices;
-  for (Vec3& place : stretched)
-    place.x() *= 1.5;  // planes are of the tissue at rest, a path is on the stretched tissue
-  const CutPlane above{RegionFace::Superior, Vec3::UnitZ(), 8.0, 0.5};
-  const CutPlane beside{RegionFace::Left, Vec3::UnitX(), 24.0, 0.5};
-  const auto judged = [&](const CutPlane& plane, double middle_mm) {
+  for (Vec3& place : stretched) place.x() *= 1.5;  // faces are of the tissue at rest, a path is on the stretched tissue
+  // The block's voxels lie at 0.5, 1.5, ...: its top is cut, or its end at x = 24.
+  const auto cut_towards = [](std::int32_t side, int axis, int last) {
+    Segmentation found;
+    found.labels.grid.size = {24, 24, 8};
+    found.labels.grid.origin_mm = Vec3::Constant(0.5);
+    found.labels.voxels.assign(found.labels.grid.voxel_count(), 1);
+    for (std::size_t v = 0; v < found.labels.voxels.size(); ++v) {
+      if (found.labels.grid.voxel_at(v).at(static_cast<std::size_t>(axis)) == last)
+        found.cut.push_back({static_cast<std::int32_t>(v), side});
+    }
+    return CutFaces(found);
+  };
+  const CutFaces above = cut_towards(5, 2, 7), beside = cut_towards(1, 0, 23);
+  const auto judged = [&](const CutFaces& faces, double middle_mm) {
     ToolPath path = ring();
     for (Waypoint& waypoint : path.waypoints) waypoint.position_mm.x() += middle_mm - 12.0;
     path.tumor_edge.points = {Vec3(20, 10, 8), Vec3(18, 14, 8), Vec3(22, 14, 8)};
-    return verdict_before_cut(Case{}, model, std::array{plane}, stretched, path);
+    return verdict_before_cut(Case{}, model, faces, stretched, path);
   };
   EXPECT_FALSE(judged(beside, 18.0).has("cut_face")) << "its skin is the specimen's own, 11 mm from the face";
   EXPECT_FALSE(judged(beside, 28.0).has("cut_face")) << "beside the face, on the skin";

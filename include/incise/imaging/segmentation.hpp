@@ -52,12 +52,23 @@ void describe(Visitor& v, SegmentationSettings& s);
 /// finer the scan, the smaller what it shows.
 [[nodiscard]] double smoothing_length_mm(const SegmentationSettings& settings, const Vec3& spacing_mm);
 
-/// The sides of the region of interest (or of the volume) that the body runs into, in this order.
+/// The sides of the region of interest (or of the volume) that cut through the body, in this order.
 enum class RegionFace { Right, Left, Anterior, Posterior, Inferior, Superior };
 inline constexpr std::array<std::string_view, 6> kRegionFaceNames{"right",     "left",     "anterior",
                                                                   "posterior", "inferior", "superior"};
 [[nodiscard]] constexpr Names names_of(RegionFace) {
   return kRegionFaceNames;
+}
+
+/// A voxel of the body beyond which the tissue goes on although the body ends there: the region of interest, or the
+/// volume, has cut it.
+struct CutVoxel {
+  std::int32_t voxel = 0;  ///< its place in the labels' array
+  std::int32_t side = 0;   ///< where the tissue goes on, along the grid: 0 to 5 are -i, +i, -j, +j, -k, +k
+};
+inline void describe(Visitor& v, CutVoxel& c) {
+  v("voxel", c.voxel, "Its place in the labels' array.");
+  v("side", c.side, "Where the tissue goes on: 0 to 5 are -i, +i, -j, +j, -k, +k.");
 }
 
 /// The specimen found in a CT. Both volumes share one grid: the body's box and a margin of air. It may reach beyond the
@@ -73,11 +84,12 @@ struct Segmentation {
   std::size_t components = 0;    ///< separate pieces in the window (after the opening's erosion), before one was chosen
   std::size_t holes_filled = 0;  ///< cavities
   std::size_t hole_voxels = 0;   ///< and their voxels
-  std::array<std::size_t, 6>
-      cut_voxels{};                     ///< body voxels at each RegionFace: > 0 where the region cuts through tissue
+  /// Body voxels at each RegionFace beyond which tissue goes on: > 0 where the region or the volume cuts through it
+  std::array<std::size_t, 6> cut_voxels{};
+  std::vector<CutVoxel> cut;            ///< these voxels, once for each side
   double smoothing_mm = 0.0;            ///< that was taken
   Verdict verdict;                      ///< what argues against this tissue: check_scan, and a body that the region cuts off
-  [[nodiscard]] int cut_faces() const;  ///< how many of the six are touched
+  [[nodiscard]] int cut_faces() const;  ///< how many of the six cut through tissue
 };
 inline void describe(Visitor& v, Segmentation& s) {
   v.bulk("labels", s.labels, "1: tissue.");
@@ -90,24 +102,12 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("components", s.components, "Separate pieces in the window, before one was chosen.");
   v("holes_filled", s.holes_filled, "Cavities.");
   v("hole_voxels", s.hole_voxels, "Voxels of the cavities.");
-  v("cut_voxels", s.cut_voxels, "Voxels of the body at each face of the region.");
+  v("cut_voxels", s.cut_voxels, "Voxels of the body at each face of the region, where tissue goes on beyond it.");
+  v.bulk("cut", s.cut, "These voxels.");
   v.derived("cut_faces", s.cut_faces(), "How many faces of the region cut through tissue.");
   v("smoothing_mm", s.smoothing_mm, "Length that was taken.");
   v("verdict", s.verdict, "On this tissue.");
 }
-
-/// A face of the region of interest, or of the volume, that cuts through the body. The skin there is artificial: the
-/// specimen continues beyond it.
-struct CutPlane {
-  RegionFace face = RegionFace::Right;
-  Vec3 outward = Vec3::Zero();  ///< unit, LPS
-  double at_mm = 0.0;           ///< of the plane along `outward`
-  double voxel_mm = 0.0;        ///< a voxel's length along `outward`: the plane is known to less than that
-  /// Whether a place at rest (LPS, mm) lies on the plane, within a voxel.
-  [[nodiscard]] bool holds(const Vec3& place) const { return outward.dot(place) > at_mm - voxel_mm; }
-};
-/// Of each face with `cut_voxels`. @param settings  with which the body was found. O(voxels).
-[[nodiscard]] std::vector<CutPlane> cut_planes(const Segmentation& found, const SegmentationSettings& settings);
 
 /// CT -> one clean tissue label and its sub-voxel occupancy.
 /// Steps: window and region -> edits by hand -> pieces (face-connected; separated by erosion with a ball, grown back

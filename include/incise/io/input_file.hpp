@@ -31,8 +31,9 @@ void require_file_or_folder(const std::filesystem::path& path);
 /// @throws DataError as require_file_or_folder.
 [[nodiscard]] std::vector<std::filesystem::path> input_files(const std::filesystem::path& path);
 
-/// SHA-256 over the contents of input_files(path): of one file its own hash, else of the lines "<hash or missing>  <name>\n". It changes with
-/// any byte that reading `path` would see. @throws DataError as input_files, or where a file cannot be read.
+/// SHA-256 over the contents of input_files(path): of one file its own hash, else of the lines "<hash or missing>
+/// <name>\n"; of a folder that of sha256_of_folder. It changes with any byte that reading `path` would see. @throws
+/// DataError as input_files, or where a file cannot be read.
 [[nodiscard]] std::string sha256_of_input(const std::filesystem::path& path);
 
 }  // namespace incise

@@ -7,7 +7,7 @@
 #include <incise/robot/program.hpp>
 #include <incise/robot/program_text.hpp>
 #include <incise/steps/step.hpp>
-#include <incise/workflow/case.hpp>
+#include <incise/storage/case_file.hpp>
 
 #include <filesystem>
 #include <optional>
@@ -41,13 +41,16 @@ struct ExportRequest {
   std::optional<double> power_w;       ///< of the generator; absent: not known
   ThermalSettings thermal;             ///< of the tissue: a path does not say what it is cut into
   std::optional<Tool> tool;            ///< absent: a needle as long as `checks` has it
+  std::filesystem::path case_file;     ///< whose settings these are; empty: no case's
+  std::string case_specimen_id;        ///< of that case; empty: not known
   std::vector<std::string> overrides;  ///< checks that a person takes on them
   std::vector<std::string> accepted;   ///< cautions of the verdict, likewise
   std::filesystem::path output;
 };
-/// Copies from a case what its own run takes for its program: arm, limits, power, heat, tool and overlap.
-/// @throws CaseError as require_round_tool.
-void take_case(const Case& settings, ExportRequest& request);
+/// Copies from a case what its own run takes for its program: arm, limits, power, heat, tool and overlap. The path has
+/// to be of the case's specimen. Reads the scan or mesh of a case that names no specimen.
+/// @throws CaseError as require_round_tool; DataError where the scan or mesh cannot be read.
+void take_case(const CaseFile& file, ExportRequest& request);
 /// Writes the program if the verdict allows it; else the result is not acceptable, and nothing is written.
 /// @throws DataError for a file that cannot be used; CaseError for overrides, a tool or an output that do not go with
 /// the path or the form.

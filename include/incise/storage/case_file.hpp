@@ -4,6 +4,7 @@
 #include <incise/workflow/case.hpp>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,14 @@ void require_input_files(const CaseFile& file);
 /// @pre a mesh is named.
 /// @throws DataError naming the file and its first problem: an inverted, flat or duplicate tet, more than one body, and the like.
 [[nodiscard]] TetMesh read_specimen_mesh(const CaseFile& file, Monitor& monitor);
+
+/// Which specimen the case is of: what it says, else what its mesh's file says, else an id from the data of its scan or
+/// mesh; empty: it names neither. @param digest  SHA-256 of an input, hexadecimal. @throws DataError where that cannot
+/// be read.
+[[nodiscard]] std::string specimen_id_of_case(const CaseFile& file,
+                                              const std::function<std::string(const std::filesystem::path&)>& digest);
+/// The same; reads the scan or mesh.
+[[nodiscard]] std::string specimen_id_of_case(const CaseFile& file);
 
 /// All settings of a case, defaults included, in the file's order.
 [[nodiscard]] std::vector<SettingLine> settings_of(const CaseFile& file);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/imaging/segmentation.hpp>
+#include <incise/imaging/cut_faces.hpp>
 #include <incise/mechanics/tissue.hpp>
 #include <incise/workflow/products.hpp>
 
@@ -32,9 +32,8 @@ struct PlatformClearance {
 
 /// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the
 /// tool, a tip that goes through the platform, an entry or an edge on a face that the region of interest made.
-/// @param cut_planes  of the tissue at rest; none for a specimen that was given as a mesh.
-[[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model,
-                                         std::span<const CutPlane> cut_planes, std::span<const Vec3> stretched,
-                                         const ToolPath& path);
+/// @param cut_faces  of the tissue at rest; none for a specimen that was given as a mesh.
+[[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const CutFaces& cut_faces,
+                                         std::span<const Vec3> stretched, const ToolPath& path);
 
 }  // namespace incise
