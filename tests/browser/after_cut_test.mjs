@@ -5,22 +5,20 @@ import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 import {
-  Studio,
   assertAccessible,
   assertNoSideways,
   chain,
   coverage,
   goTo,
   idle,
-  incise,
   inputIn,
-  newPage,
-  openStudio,
-  startBrowser,
+  openedStudio,
+  runCase,
   stateOf,
   temporaryFolder,
   type,
   until,
+  writePhantom,
   writePhotograph,
 } from "./support.mjs";
 
@@ -28,17 +26,10 @@ const kScale = 0.06; // mm per pixel
 const kRadii = [6, 10]; // mm: of the tumour's edge, and of the cut's inner edge
 
 test("a cut that was made is measured, and one to be made is laid on a cloud", async (t) => {
-  const folder = temporaryFolder(t),
-    inside = path.join(folder, "specimen"),
+  const inside = writePhantom(temporaryFolder(t), "--seed", "3"),
     step = chain(t);
-  incise(folder, "phantom", "--seed", "3", "-o", "specimen");
-  const file = path.join(inside, "case.yaml");
-  fs.writeFileSync(file, fs.readFileSync(file, "utf8").replace(/tets: \d+/, "tets: 6000")); // coarse: this is about the page
   writePhotograph(path.join(inside, "cut.png"), kRadii.map((radius) => radius / kScale));
-  const studio = await Studio.start(t, inside, ".");
-  const page = await newPage(await startBrowser(t));
-  await openStudio(page, studio);
-  await until(page, () => window.incise.state.case);
+  const {page} = await openedStudio(t, inside, ".");
 
   await step("the contours of a photograph and their measures are shown", async () => {
     await goTo(page, "photograph");
@@ -94,9 +85,7 @@ test("a cut that was made is measured, and one to be made is laid on a cloud", a
 
   await step("the path is laid on it, with the verdict that lets a program through or not", async () => {
     assert.equal(await page.isEnabled("[data-do=lay]"), false, "nothing was run yet");
-    await goTo(page, "run");
-    await page.click("[data-do=run]");
-    await page.waitForSelector(".page[data-step=compare]");
+    await runCase(page);
     await goTo(page, "register");
     await idle(page);
     if (!(await stateOf(page, "register"))) {

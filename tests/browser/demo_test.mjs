@@ -5,7 +5,6 @@ import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 import {
-  Studio,
   assertAccessible,
   assertNoSideways,
   chain,
@@ -18,14 +17,12 @@ import {
   kSteps,
   knownVoxels,
   look,
-  newPage,
-  openStudio,
+  openedStudio,
   readPoints,
   scenePixel,
   settle,
   silhouette,
   slicePixel,
-  startBrowser,
   stateOf,
   temporaryFolder,
   toScreen,
@@ -85,7 +82,8 @@ function watchRun(page) {
         moment = document.querySelector("[data-moment]");
       if (bar && bar.dataset.progress) note(seen.progress, bar.dataset.progress);
       if (moment) note(seen.moments, moment.dataset.moment);
-      const parts = [...document.querySelectorAll("[data-part]")].map((part) => `${part.dataset.part}: ${part.textContent}`).join("|");
+      const all = [...document.querySelectorAll("[data-part]")];
+      const parts = all.map((part) => `${part.dataset.part}: ${part.textContent}`).join("|");
       if (parts && seen.parts.at(-1) !== parts) seen.parts.push(parts);
       if (bar && bar.dataset.progress) {
         const now = document.querySelector("[data-part=now]").textContent;
@@ -96,7 +94,8 @@ function watchRun(page) {
   });
 }
 
-/** Fails unless the parts of a run were under way one at a time and in their order. @param seen  each with its state, divided by | */
+/** Fails unless the parts of a run were under way one at a time and in their order.
+ *  @param seen  each with its state, divided by | */
 function assertParts(seen) {
   const now = seen.map((parts) => parts.split("|").filter((part) => part.startsWith("now: ")));
   assert.ok(now.every((parts) => parts.length === 1), seen.join("\n"));
@@ -149,7 +148,10 @@ async function newPose(page, before) {
 
 async function shownNumbers(page) {
   const rows = await page.locator(".numbers-table tbody tr").all();
-  const pairs = rows.map(async (row) => [await row.getAttribute("data-number"), await row.locator("td").allTextContents()]);
+  const pairs = rows.map(async (row) => [
+    await row.getAttribute("data-number"),
+    await row.locator("td").allTextContents(),
+  ]);
   return Object.fromEntries(await Promise.all(pairs));
 }
 
@@ -184,14 +186,11 @@ async function assertShows(page, study) {
 test("the demo specimen goes from its CT to two cuts side by side", async (t) => {
   const folder = temporaryFolder(t),
     inside = path.join(folder, "virtual_tongue_1");
-  const studio = await Studio.start(t, folder),
-    browser = await startBrowser(t);
-  const page = await newPage(browser),
+  const {studio, page} = await openedStudio(t, folder),
     step = chain(t);
   let study = null;
 
-  await step("without a case the page offers files and the demo, and nothing serious bars anyone from them", async () => {
-    await openStudio(page, studio);
+  await step("without a case the page offers files and the demo, and nothing serious bars anyone from it", async () => {
     await page.waitForSelector(".files", {state: "attached"});
     assert.deepEqual(await page.locator(".steps button:disabled").count(), kSteps.length - 1);
     await assertAccessible(page, "open, no case");
@@ -216,7 +215,9 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await until(page, () => window.incise.state.scan);
     await fresh(page, "tissue");
     assert.equal(await page.textContent(".head .badge"), "virtual specimen");
-    for (const [view, share] of Object.entries(await coverage(page))) assert.ok(share > 0.05 && share < 0.9, `${view}: ${share}`);
+    for (const [view, share] of Object.entries(await coverage(page))) {
+      assert.ok(share > 0.05 && share < 0.9, `${view}: ${share}`);
+    }
   });
 
   await step("the list of files shows it, as a case without a size", async () => {
@@ -245,7 +246,9 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await page.fill(".slider:has(label:text-is('Tissue overlay')) input", "0");
     const known = await knownVoxels(page);
     assert.equal(known.length, 6);
-    for (const {view, found, expected} of known) assert.ok(Math.abs(found - expected) < 12, `${view}: ${found} for ${expected}`);
+    for (const {view, found, expected} of known) {
+      assert.ok(Math.abs(found - expected) < 12, `${view}: ${found} for ${expected}`);
+    }
     assert.ok(known[0].expected > known[1].expected + 60, "a bright place and a dark one");
     const [at, left, back, up] = await page.evaluate(() => {
       const {views, state} = window.incise,
@@ -308,7 +311,7 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
       const off = Math.min(...onScreen.map((at) => distance(at, clicked)));
       assert.ok(off < 5, `${off} px from ${clicked}`);
     }
-    for (const [x, y] of stored) assert.ok(Math.abs(Math.hypot(x - kMiddle[0], y - kMiddle[1]) - kRadius) < 1, `${x}, ${y}`);
+    for (const [x, y] of stored) assert.ok(Math.abs(distance([x, y], kMiddle) - kRadius) < 1, `${x}, ${y}`);
     assert.equal(await stateOf(page, "case.settings.tumor.configuration"), "rest");
   });
 
@@ -335,7 +338,8 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
         at = (v) => [...body.skin.vertices.slice(3 * v, 3 * v + 3)];
       const numbers = [...body.held.keys()];
       const topOf = (list) => list.reduce((best, v) => (best < 0 || at(v)[2] > at(best)[2] ? v : best), -1);
-      const farthest = (list, sign) => list.reduce((best, v) => (best < 0 || sign * at(v)[1] > sign * at(best)[1] ? v : best), -1);
+      const farthest = (list, sign) =>
+        list.reduce((best, v) => (best < 0 || sign * at(v)[1] > sign * at(best)[1] ? v : best), -1);
       const top = (list, sign) => {
         const end = at(farthest(list, sign))[1];
         return topOf(list.filter((v) => Math.abs(at(v)[1] - end) < 6)); // well inside the held end
@@ -344,7 +348,9 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
       const middle = numbers.filter((v) => body.held[v] === 0 && Math.abs(at(v)[0]) < 5);
       return {clamped: at(top(held(1), 1)), pulled: at(top(held(2), -1)), free: at(topOf(middle))};
     });
-    const [clamped, pulled, free] = await Promise.all([places.clamped, places.pulled, places.free].map((at) => scenePixel(page, at)));
+    const [clamped, pulled, free] = await Promise.all(
+      [places.clamped, places.pulled, places.free].map((at) => scenePixel(page, at)),
+    );
     assert.ok(clamped[2] > clamped[0] + 40, `clamped, blue: ${clamped}`);
     assert.ok(pulled[0] > pulled[2] + 80, `pulled, orange: ${pulled}`);
     assert.ok(free[0] > free[2] + 15 && free[2] > 0.5 * free[0], `free, pink: ${free}`);
@@ -362,7 +368,8 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
       boxes[share] = await silhouette(page);
     }
     const front = await page.evaluate(() => {
-      const least = (vertices) => vertices.reduce((low, value, k) => (k % 3 === 1 ? Math.min(low, value) : low), Infinity);
+      const least = (vertices) =>
+        vertices.reduce((low, value, k) => (k % 3 === 1 ? Math.min(low, value) : low), Infinity);
       const {body, stretch} = window.incise.state;
       return least(body.skin.vertices) - least(stretch.skin.vertices);
     });

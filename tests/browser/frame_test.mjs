@@ -5,7 +5,6 @@ import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 import {
-  Studio,
   assertAccessible,
   assertNoSideways,
   chain,
@@ -13,13 +12,14 @@ import {
   goTo,
   idle,
   incise,
-  newPage,
-  openStudio,
+  openedStudio,
   readPoints,
-  startBrowser,
+  replaceIn,
+  runCase,
   stateOf,
   temporaryFolder,
   until,
+  writePhantom,
 } from "./support.mjs";
 
 // Chooses a file of the folder that is listed.
@@ -41,21 +41,13 @@ async function acceptAll(page, gate, key) {
 
 test("the mark on a frame is found, and both programs are laid on the tissue that it shows", async (t) => {
   const folder = temporaryFolder(t),
-    inside = path.join(folder, "specimen"),
+    inside = writePhantom(folder, "--seed", "3"),
     step = chain(t);
-  incise(folder, "phantom", "--seed", "3", "-o", "specimen");
+  // A coarse mesh needs more room beside the tumour for a program.
+  replaceIn(path.join(inside, "case.yaml"), "lateral_margin_mm: 5", "lateral_margin_mm: 8");
   incise(folder, "bench", "make", "--seed", "3", "-o", "readings", "--truth", "hidden");
-  const file = path.join(inside, "case.yaml");
-  // A coarse mesh, because this is about the page; it needs more room beside the tumour for a program.
-  const text = fs.readFileSync(file, "utf8").replace(/tets: \d+/, "tets: 6000");
-  fs.writeFileSync(file, text.replace("lateral_margin_mm: 5", "lateral_margin_mm: 8"));
-  const studio = await Studio.start(t, folder, "specimen"),
-    page = await newPage(await startBrowser(t));
-  await openStudio(page, studio);
-  await until(page, () => window.incise.state.case);
-  await goTo(page, "run");
-  await page.click("[data-do=run]");
-  await page.waitForSelector(".page[data-step=compare]");
+  const {page} = await openedStudio(t, folder, "specimen");
+  await runCase(page);
   await goTo(page, "register");
   await idle(page);
 

@@ -5,14 +5,12 @@ import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 import {
-  Studio,
   assertAccessible,
   coverage,
   goTo,
   idle,
-  newPage,
-  openStudio,
-  startBrowser,
+  openedStudio,
+  runCase,
   stateOf,
   temporaryFolder,
   until,
@@ -27,13 +25,8 @@ test("a program is offered once every caution is accepted, and it is the one tha
   const folder = temporaryFolder(t),
     inside = writeBlock(folder),
     script = path.join(inside, "out", "program", "program.script");
-  const studio = await Studio.start(t, folder, "case"),
-    page = await newPage(await startBrowser(t));
-  await openStudio(page, studio);
-  await until(page, () => window.incise.state.case);
-  await goTo(page, "run");
-  await page.click("[data-do=run]");
-  await page.waitForSelector(".page[data-step=compare]");
+  const {page} = await openedStudio(t, folder, "case");
+  await runCase(page);
   await goTo(page, "program");
   await idle(page);
   const missing = await stateOf(page, "run.gate.missing");

@@ -5,7 +5,6 @@ import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 import {
-  Studio,
   chain,
   coverage,
   fresh,
@@ -14,13 +13,11 @@ import {
   inputIn,
   knownVoxels,
   look,
-  newPage,
-  openStudio,
+  openedStudio,
   readPoints,
   scenePixel,
   skip,
   slicePixel,
-  startBrowser,
   stateOf,
   temporaryFolder,
   type,
@@ -29,6 +26,7 @@ import {
 } from "./support.mjs";
 
 const kSlices = process.env.INCISE_DATA_DIR ? path.join(process.env.INCISE_DATA_DIR, "ct", "vhf_head_png") : "";
+const kTets = 8000; // coarse: this is about the page
 const kMiddle = [248, 175, 74]; // mm: of the edge, on the back of the tongue
 const kDiameters = [20, 18];
 
@@ -52,7 +50,11 @@ function lastHold(page) {
 async function addHold(page, kind, within) {
   const count = await page.locator(".holds > li").count();
   await page.click(`[data-add=${kind}]`);
-  await until(page, (before) => (window.incise.state.case.settings.specimen.constraints || []).length === before + 1, count);
+  await until(
+    page,
+    (before) => (window.incise.state.case.settings.specimen.constraints || []).length === before + 1,
+    count,
+  );
   await idle(page); // as slow as a person: what is shown next is what the server gives
   if (within) await type(lastHold(page).locator('.number:has(label:text-is("Within")) input'), within);
 }
@@ -62,12 +64,10 @@ test("the head CT's slices become a case with a planned path", async (t) => {
   const folder = temporaryFolder(t),
     scans = temporaryFolder(t); // a copy: whatever the page does, the shared data stay as they are
   fs.cpSync(kSlices, path.join(scans, "slices"), {recursive: true});
-  const studio = await Studio.start(t, folder, "--root", scans),
-    page = await newPage(await startBrowser(t)),
+  const {studio, page} = await openedStudio(t, folder, "--root", scans),
     step = chain(t);
 
   await step("a case is made of the slices of another root, in the folder that the studio was started in", async () => {
-    await openStudio(page, studio);
     await page.waitForSelector("[data-section=files] select");
     const root = await page.locator("[data-section=files] select option:not([value=''])").nth(1).getAttribute("value");
     await page.selectOption("[data-section=files] select", root);
@@ -114,9 +114,8 @@ test("the head CT's slices become a case with a planned path", async (t) => {
     await typeAll(page, "window", "Tissue, HU", [-20, 180]);
     await type(inputIn(page, "surface", "Opening radius"), 4);
     await type(inputIn(page, "surface", "Smoothing"), 1.2);
-    for (const [key, value] of Object.entries({seed_mm: [247, 190, 60], window_hu: [-20, 180], opening_radius_mm: 4, smoothing_mm: 1.2})) {
-      await stored(page, `ct.${key}`, value);
-    }
+    const wanted = {seed_mm: [247, 190, 60], window_hu: [-20, 180], opening_radius_mm: 4, smoothing_mm: 1.2};
+    for (const [key, value] of Object.entries(wanted)) await stored(page, `ct.${key}`, value);
     await fresh(page, "tissue");
     const {voxels} = await stateOf(page, "tissue.summary");
     assert.ok(voxels > 40_000 && voxels < 90_000, `${voxels} voxels of 1 mm3`);
@@ -136,7 +135,7 @@ test("the head CT's slices become a case with a planned path", async (t) => {
       return best.at;
     });
     await look(page, "Left");
-    assert.ok(await page.locator(".legend label:has-text('cut by the region box')").count());
+    assert.ok(await page.locator(".legend label:has-text('cut off by the region')").count());
     const [red, green, blue] = await scenePixel(page, on);
     assert.ok(blue > red, `slate where the box cuts: ${[red, green, blue]}`);
     await look(page, "Top");
@@ -151,7 +150,9 @@ test("the head CT's slices become a case with a planned path", async (t) => {
     assert.ok(tongue[2] > tongue[0] + 25, `blue: ${tongue}`);
     await page.click("button:text-is('All values')");
     await page.fill(".slider:has(label:text-is('Tissue overlay')) input", "0");
-    for (const {view, found, expected} of await knownVoxels(page)) assert.ok(Math.abs(found - expected) < 14, `${view}: ${found} for ${expected}`);
+    for (const {view, found, expected} of await knownVoxels(page)) {
+      assert.ok(Math.abs(found - expected) < 14, `${view}: ${found} for ${expected}`);
+    }
   });
 
   await step("an ellipse on the back of the tongue becomes the edge", async () => {
@@ -173,8 +174,8 @@ test("the head CT's slices become a case with a planned path", async (t) => {
 
   await step("clamp, pull and platform hold it, and it is stretched", async () => {
     const {answer} = await studio.call("case");
-    await studio.call("change", {revision: answer.revision, set: {"meshing.tets": 8000}}); // coarse: this is about the page
-    await stored(page, "meshing.tets", 8000);
+    await studio.call("change", {revision: answer.revision, set: {"meshing.tets": kTets}});
+    await stored(page, "meshing.tets", kTets);
     await goTo(page, "hold");
     await addHold(page, "fixed", 8);
     await addHold(page, "displaced", 7);
@@ -186,7 +187,8 @@ test("the head CT's slices become a case with a planned path", async (t) => {
     await until(page, () => (window.incise.state.case.settings.specimen.constraints || []).length === 3);
     await idle(page);
     const written = fs.readFileSync(path.join(folder, "tongue", "case.yaml"), "utf8");
-    for (const part of ["direction: posterior, within_mm: 8", "direction: anterior, within_mm: 7", "[0, -8, 0]", "[248, 175, 41.5]"]) {
+    const ends = ["direction: posterior, within_mm: 8", "direction: anterior, within_mm: 7"];
+    for (const part of [...ends, "[0, -8, 0]", "[248, 175, 41.5]"]) {
       assert.ok(written.replaceAll('"', "").includes(part), `${part} in\n${written}`);
     }
     await fresh(page, "body");

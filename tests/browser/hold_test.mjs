@@ -3,16 +3,13 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {
-  Studio,
   assertAccessible,
   chain,
   fresh,
   goTo,
   idle,
   inputIn,
-  newPage,
-  openStudio,
-  startBrowser,
+  openedStudio,
   stateOf,
   temporaryFolder,
   type,
@@ -29,22 +26,23 @@ function settingOf(page) {
 async function add(page, kind) {
   const before = (await settingOf(page)) || [];
   await page.click(`[data-add=${kind}]`);
-  await until(page, (count) => (window.incise.state.case.settings.specimen.constraints || []).length > count, before.length);
+  await until(
+    page,
+    (count) => (window.incise.state.case.settings.specimen.constraints || []).length > count,
+    before.length,
+  );
   await idle(page);
 }
 
 test("constraints that do not hold the body yet are no failure", async (t) => {
   const folder = temporaryFolder(t);
   writeBlock(folder);
-  const studio = await Studio.start(t, folder, "case"),
-    page = await newPage(await startBrowser(t)),
+  const {page} = await openedStudio(t, folder, "case"),
     step = chain(t),
     shown = page.locator("[data-section=constraints]"),
     missing = page.locator("[data-missing]");
 
   await step("what is still needed is said, and the body is shown as it was held last", async () => {
-    await openStudio(page, studio);
-    await until(page, () => window.incise.state.case);
     await goTo(page, "hold");
     await fresh(page, "body");
     page.complaints.splice(0); // of the scan and the tissue that a block does not have
@@ -122,13 +120,10 @@ async function holdBack(page, call) {
 test("the default hold is said in words, and a pull that is too long as well", async (t) => {
   const folder = temporaryFolder(t);
   writeBlock(folder);
-  const studio = await Studio.start(t, folder, "case"),
-    page = await newPage(await startBrowser(t)),
+  const {page} = await openedStudio(t, folder, "case"),
     step = chain(t);
 
   await step("what holds the body by default is said, with the library's own numbers", async () => {
-    await openStudio(page, studio);
-    await until(page, () => window.incise.state.case);
     await goTo(page, "hold");
     await fresh(page, "body");
     page.complaints.splice(0); // of the scan and the tissue that a block does not have

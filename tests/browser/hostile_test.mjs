@@ -5,7 +5,7 @@ import fs from "node:fs";
 import http from "node:http";
 import path from "node:path";
 import {test} from "node:test";
-import {Studio, chain, goTo, idle, newPage, openStudio, startBrowser, stateOf, temporaryFolder, until, writeBlock} from "./support.mjs";
+import {chain, goTo, idle, newPage, openedStudio, stateOf, temporaryFolder, writeBlock} from "./support.mjs";
 
 const kMarkup = '<img src="x" onerror="window.hacked = 1">';
 const kFolder = "<img src=x onerror=window.hacked=1>";
@@ -25,12 +25,10 @@ test("a title, a file name and a setting with markup are shown as they are", asy
   writeBlock(folder, "refused", {specimen: {constraints}});
   fs.mkdirSync(path.join(folder, "<svg onload=window.hacked=1>"));
   fs.writeFileSync(path.join(folder, `${kFolder}.csv`), "x_mm,y_mm,z_mm\n");
-  const studio = await Studio.start(t, folder),
-    page = await newPage(await startBrowser(t)),
+  const {page} = await openedStudio(t, folder),
     step = chain(t);
 
   await step("in the list of files, in the problem of a case that is refused, and in the head", async () => {
-    await openStudio(page, studio);
     await page.waitForSelector('button.file:has-text("<svg onload")');
     await page.waitForSelector(`li.file:has-text("${kFolder}.csv")`);
     await page.click('button.file:has-text("refused")');
@@ -101,18 +99,17 @@ test("a page of another origin reads nothing and changes nothing", async (t) => 
   const folder = temporaryFolder(t),
     file = path.join(writeBlock(folder), "case.yaml"),
     before = fs.readFileSync(file, "utf8");
-  const studio = await Studio.start(t, folder, "case"),
-    browser = await startBrowser(t);
-  const own = await newPage(browser);
-  await openStudio(own, studio);
-  await until(own, () => window.incise.state.case);
+  const {studio, browser, page: own} = await openedStudio(t, folder, "case");
   await idle(own);
   const body = JSON.stringify({revision: await stateOf(own, "case.revision"), set: {"plan.depth_mm": 4}});
   const change = `${studio.origin}/api/call/change`,
     state = `${studio.origin}/api/call/state`;
-  const json = (token) => ({method: "POST", headers: {"Content-Type": "application/json", "X-Incise-Token": token}, body});
+  const headers = {"Content-Type": "application/json"};
+  const json = (token) => ({method: "POST", headers: {...headers, "X-Incise-Token": token}, body});
   const html = `<!doctype html><title>other</title><iframe src="${studio.address}"></iframe>
-    <form method="post" enctype="text/plain" action="${change}" target="answer"><input name='${body.slice(0, -1)}, "a' value='": 1}'></form>
+    <form method="post" enctype="text/plain" action="${change}" target="answer">
+      <input name='${body.slice(0, -1)}, "a' value='": 1}'>
+    </form>
     <iframe name="answer"></iframe>`;
   const other = await newPage(browser),
     elsewhere = await otherOrigin(t, html);
@@ -133,11 +130,13 @@ test("a page of another origin reads nothing and changes nothing", async (t) => 
     assert.equal(await ask(other, change, plain), "refused");
     assert.equal(await ask(other, change, {...plain, mode: "no-cors"}), "refused");
     assert.equal(await ask(other, `${studio.origin}/`, {}), "refused");
-    assert.equal(await ask(other, `${studio.origin}/api/events`, {headers: {"X-Incise-Token": studio.token}}), "refused");
+    const events = `${studio.origin}/api/events`;
+    assert.equal(await ask(other, events, {headers: {"X-Incise-Token": studio.token}}), "refused");
   });
 
   await t.test("a form", async () => {
-    const answered = other.waitForResponse((response) => response.url() === change && response.request().method() === "POST");
+    const isAnswer = (response) => response.url() === change && response.request().method() === "POST";
+    const answered = other.waitForResponse(isAnswer);
     await other.evaluate(() => document.forms[0].submit());
     assert.ok((await answered).status() >= 400);
   });

@@ -9,11 +9,12 @@ import {fileURLToPath} from "node:url";
 const kHere = path.dirname(fileURLToPath(import.meta.url));
 const kLock = "package-lock.json";
 const kDone = "installed.json"; // the lock file of what is installed
-const kOptions = ["--ignore-scripts", "--no-audit", "--no-fund", "--fetch-retry-mintimeout=1000", "--fetch-retry-maxtimeout=5000"];
+const kRetries = ["--fetch-retry-mintimeout=1000", "--fetch-retry-maxtimeout=5000"];
+const kOptions = ["--ignore-scripts", "--no-audit", "--no-fund", ...kRetries];
 // The codes of npm for no answer, and for the answer of a gateway.
 const kUnreachable = new Set(
-  ("E502 E503 E504 EAI_AGAIN ECONNABORTED ECONNREFUSED ECONNRESET EHOSTUNREACH EIDLETIMEOUT ENETUNREACH ENOTFOUND EPIPE " +
-    "ERR_SOCKET_TIMEOUT ETIMEDOUT FETCH_ERROR").split(" "),
+  ("E502 E503 E504 EAI_AGAIN ECONNABORTED ECONNREFUSED ECONNRESET EHOSTUNREACH EIDLETIMEOUT ENETUNREACH ENOTFOUND " +
+    "EPIPE ERR_SOCKET_TIMEOUT ETIMEDOUT FETCH_ERROR").split(" "),
 );
 
 const [npm, folder] = process.argv.slice(2);

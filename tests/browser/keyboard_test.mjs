@@ -3,9 +3,21 @@
 import assert from "node:assert/strict";
 import path from "node:path";
 import {test} from "node:test";
-import {Studio, chain, fresh, idle, incise, newPage, openStudio, readPoints, startBrowser, stateOf, temporaryFolder, until} from "./support.mjs";
+import {
+  chain,
+  fresh,
+  idle,
+  openedStudio,
+  readPoints,
+  stateOf,
+  temporaryFolder,
+  until,
+  watchCalls,
+  writePhantom,
+} from "./support.mjs";
 
 const kMostTabs = 250;
+const kSteps = 5; // mm: of an arrow key
 
 /** Presses Tab until the focus is on what a selector names. @returns how often */
 async function tabTo(page, selector) {
@@ -14,7 +26,8 @@ async function tabTo(page, selector) {
     const at = await page.evaluate((wanted) => {
       const node = document.activeElement,
         style = getComputedStyle(node);
-      return {isThere: node.matches(wanted), outline: style.outlineStyle === "none" ? 0 : parseFloat(style.outlineWidth)};
+      const outline = style.outlineStyle === "none" ? 0 : parseFloat(style.outlineWidth);
+      return {isThere: node.matches(wanted), outline};
     }, selector);
     if (!at.isThere) continue;
     assert.ok(at.outline >= 1, `the focus on ${selector} cannot be seen`);
@@ -55,17 +68,16 @@ async function step(page, name) {
 
 test("opening, seeing and planning by keyboard alone", async (t) => {
   const folder = temporaryFolder(t);
-  incise(folder, "phantom", "--format", "nrrd", "-o", "specimen");
-  const studio = await Studio.start(t, folder),
-    page = await newPage(await startBrowser(t)),
+  writePhantom(folder, "--format", "nrrd");
+  const {page} = await openedStudio(t, folder),
     then = chain(t);
 
   await then("a case is opened from the list of files", async () => {
-    await openStudio(page, studio);
     await page.waitForSelector("button.file");
     await pressOn(page, "button.file");
     await page.waitForSelector(".page[data-step=see]");
-    assert.equal(await page.evaluate(() => document.activeElement.tagName), "H2", "the new step's heading has the focus");
+    const focus = await page.evaluate(() => document.activeElement.tagName);
+    assert.equal(focus, "H2", "the new step's heading has the focus");
     await until(page, () => window.incise.state.scan);
     await fresh(page, "tissue");
   });
@@ -74,7 +86,8 @@ test("opening, seeing and planning by keyboard alone", async (t) => {
     const before = await stateOf(page, "cross"),
       {spacing_mm: voxel} = await stateOf(page, "scan.grid");
     await tabTo(page, "[data-view=axial] canvas");
-    for (const key of ["ArrowRight", "ArrowRight", "ArrowDown", "PageUp", "Shift+ArrowLeft"]) await page.keyboard.press(key);
+    const keys = ["ArrowRight", "ArrowRight", "ArrowDown", "PageUp", "Shift+ArrowLeft"];
+    for (const key of keys) await page.keyboard.press(key);
     const moved = (await stateOf(page, "cross")).map((value, k) => (value - before[k]) / voxel[k]);
     [-3, 1, 1].forEach((voxels, k) => assert.ok(Math.abs(moved[k] - voxels) < 1e-6, `${moved}`));
   });
@@ -86,6 +99,32 @@ test("opening, seeing and planning by keyboard alone", async (t) => {
     seed.forEach((value, k) => assert.ok(Math.abs(value - cross[k]) <= 0.051));
     await typeInto(page, await mark(page, "window", "greatest"), 175);
     await until(page, () => window.incise.state.case.settings.ct.window_hu[1] === 175);
+    await fresh(page, "tissue");
+  });
+
+  await then("a corner of the region box that is stepped by keys is written once, and undone in one step", async () => {
+    await pressOn(page, "[data-do=box]");
+    await until(page, () => window.incise.state.case.settings.ct.roi_box_mm);
+    await fresh(page, "tissue");
+    const x = () => stateOf(page, "case.settings.ct.roi_box_mm.0.0"),
+      isAt = (wanted) => until(page, (low) => window.incise.state.case.settings.ct.roi_box_mm[0][0] === low, wanted),
+      before = await x(),
+      low = await mark(page, "box", "x");
+    await tabTo(page, low);
+    await page.clock.install();
+    await page.clock.pauseAt(Date.now() + 60_000); // until the test lets it go on, however long the keys take
+    const calls = watchCalls(page);
+    for (let k = 0; k < kSteps; ++k) await page.keyboard.press("ArrowUp");
+    assert.equal(Number(await page.inputValue(low)), before + kSteps);
+    assert.equal(await x(), before);
+    await page.clock.resume();
+    await isAt(before + kSteps);
+    await fresh(page, "tissue");
+    assert.deepEqual(calls, ["change", "tissue"]);
+    await pressOn(page, "[data-section=box] [data-do=undo]");
+    await isAt(before);
+    await pressOn(page, "[data-section=box] [data-do=undo]");
+    await until(page, () => !window.incise.state.case.settings.ct.roi_box_mm);
     await fresh(page, "tissue");
   });
 
@@ -114,10 +153,7 @@ test("opening, seeing and planning by keyboard alone", async (t) => {
     assert.ok(Math.abs(Math.max(...x) - Math.min(...x) - 12) < 1, "12 mm wide");
   });
 
-  await then("a coarse mesh is stretched and a path planned", async () => {
-    const revision = await stateOf(page, "case.revision");
-    await studio.call("change", {revision, set: {"meshing.tets": 6000}}); // less to compute
-    await until(page, () => window.incise.state.case.settings.meshing.tets === 6000);
+  await then("the mesh is stretched and a path planned", async () => {
     await step(page, "hold");
     await fresh(page, "body");
     await pressOn(page, "[data-do=stretch]");
@@ -127,7 +163,8 @@ test("opening, seeing and planning by keyboard alone", async (t) => {
     await typeInto(page, await mark(page, "plan", "Depth"), 4);
     await until(page, () => window.incise.state.case.settings.plan.depth_mm === 4);
     await fresh(page, "plan");
-    assert.deepEqual([...new Set((await stateOf(page, "plan.path.depth_mm")).map((depth) => depth.toFixed(6)))], ["4.000000"]);
+    const depths = await stateOf(page, "plan.path.depth_mm");
+    assert.deepEqual([...new Set(depths.map((depth) => depth.toFixed(6)))], ["4.000000"]);
   });
 
   await then("without a complaint", async () => {

@@ -9,7 +9,7 @@ import {
   inputIn,
   newPage,
   openStudio,
-  startBrowser,
+  openedStudio,
   stateOf,
   temporaryFolder,
   type,
@@ -20,11 +20,7 @@ import {
 test("a page whose server is killed says so, and a new server shows the same case", async (t) => {
   const folder = temporaryFolder(t);
   writeBlock(folder);
-  const first = await Studio.start(t, folder, "case"),
-    browser = await startBrowser(t),
-    page = await newPage(browser);
-  await openStudio(page, first);
-  await until(page, () => window.incise.state.case);
+  const {studio: first, browser, page} = await openedStudio(t, folder, "case");
   await goTo(page, "plan");
   await fresh(page, "plan");
   await type(inputIn(page, "plan", "Depth"), 4);
@@ -42,7 +38,6 @@ test("a page whose server is killed says so, and a new server shows the same cas
   assert.notEqual(second.address, first.address);
   const next = await newPage(browser);
   await openStudio(next, second);
-  await until(next, () => window.incise.state.case);
   assert.deepEqual(await stateOf(next, "case"), before);
   await goTo(next, "plan");
   await fresh(next, "plan");

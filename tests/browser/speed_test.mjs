@@ -3,22 +3,19 @@
 import assert from "node:assert/strict";
 import {test} from "node:test";
 import {
-  Studio,
   chain,
   fresh,
   goTo,
-  incise,
   inputIn,
-  newPage,
-  openStudio,
-  startBrowser,
+  openedStudio,
   stateOf,
   temporaryFolder,
   type,
   until,
+  watchCalls,
+  writePhantom,
 } from "./support.mjs";
 
-const kTets = 6000; // coarse: this is about the page
 const kSlices = ["axial", "coronal", "sagittal"];
 
 /** Counts from here on how often each view is drawn, and how often each slice was when the 3D view was drawn first. */
@@ -60,19 +57,11 @@ function change(page, ...sets) {
 test("the page draws and sends no more than is needed", async (t) => {
   const folder = temporaryFolder(t),
     step = chain(t);
-  incise(folder, "phantom", "--format", "nrrd", "-o", "specimen");
-  const studio = await Studio.start(t, folder, "specimen"),
-    browser = await startBrowser(t),
-    page = await newPage(browser);
-  await openStudio(page, studio);
-  await until(page, () => window.incise.state.case);
+  writePhantom(folder, "--format", "nrrd");
+  const {page} = await openedStudio(t, folder, "specimen");
   await goTo(page, "see");
   await fresh(page, "tissue");
-  const sent = [];
-  page.on("request", (request) => {
-    const name = /\/api\/call\/(\w+)$/.exec(request.url());
-    if (name) sent.push(name[1]);
-  });
+  const sent = watchCalls(page);
 
   await step("tissue that changes is drawn once in each view, in the slices first", async () => {
     const [, greatest] = await stateOf(page, "case.settings.ct.window_hu");
@@ -116,7 +105,6 @@ test("the page draws and sends no more than is needed", async (t) => {
   });
 
   await step("a plan that changes is drawn, and no slice with it", async () => {
-    await change(page, {"meshing.tets": kTets});
     await goTo(page, "plan");
     await fresh(page, "plan");
     const depth = await stateOf(page, "plan.path.depth_mm");

@@ -68,12 +68,29 @@ function python(script, ...args) {
   execFileSync(process.env.INCISE_PYTHON || "python3", ["-B", "-c", script.join("\n"), ...args], options);
 }
 
+/** Writes a virtual specimen as a case with a coarse mesh: the tests are about the page. @returns its folder */
+export function writePhantom(folder, ...options) {
+  incise(folder, "phantom", ...options, "-o", "specimen");
+  const to = path.join(folder, "specimen");
+  replaceIn(path.join(to, "case.yaml"), /tets: \d+/, "tets: 6000");
+  return to;
+}
+
+/** Replaces a text that a file has to hold. */
+export function replaceIn(file, from, to) {
+  const before = fs.readFileSync(file, "utf8"),
+    after = before.replace(from, to);
+  assert.notEqual(after, before, `${from} in ${file}`);
+  fs.writeFileSync(file, after);
+}
+
 /** Writes the small block of the command's tests as a case. @param changes  laid over it  @returns its folder */
 export function writeBlock(folder, name = "case", changes = {}) {
   const to = path.join(folder, name);
   const script = [
     "import json, pathlib, sys, small_case",
-    "case = small_case.write_case(pathlib.Path(sys.argv[1]), small_case.merged(small_case.SOUND, json.loads(sys.argv[2])))",
+    "settings = small_case.merged(small_case.SOUND, json.loads(sys.argv[2]))",
+    "case = small_case.write_case(pathlib.Path(sys.argv[1]), settings)",
     'small_case.write_tumor_surface(case / "tumor.stl")',
   ];
   python(script, to, JSON.stringify(changes));
@@ -149,8 +166,8 @@ export async function startBrowser(t) {
   return browser;
 }
 
-/** A page of its own context. `page.complaints`: errors of scripts and of the console, broken policies, foreign requests.
- *  @param options  of the context */
+/** A page of its own context. `page.complaints`: errors of scripts and of the console, broken policies, foreign
+ *  requests. @param options  of the context */
 export async function newPage(browser, options = {}) {
   const context = await browser.newContext({viewport: {width: 1400, height: 900}, colorScheme: "light", ...options});
   const page = await context.newPage();
@@ -189,14 +206,25 @@ function servePagesFrom(page, folder) {
   });
 }
 
-/** Opens a studio's address and waits until the page is connected. */
-export async function openStudio(page, studio) {
+/** A studio in a folder, and a page that is connected to it and shows the case that it was started with.
+ *  @returns {studio, browser, page} */
+export async function openedStudio(t, folder, ...args) {
+  const studio = await Studio.start(t, folder, ...args),
+    browser = await startBrowser(t),
+    page = await newPage(browser);
+  await openStudio(page, studio, args.length > 0 && !args[0].startsWith("-"));
+  return {studio, browser, page};
+}
+
+/** Opens a studio's address and waits until the page is connected, and shows a case if there is one. */
+export async function openStudio(page, studio, hasCase = true) {
   page.on("request", (request) => {
     const url = new URL(request.url());
     if (url.protocol.startsWith("http") && url.hostname !== "127.0.0.1") page.complaints.push(`request: ${url}`);
   });
   await page.goto(studio.address);
   await page.waitForSelector("[data-link-state=open]");
+  if (hasCase) await until(page, () => window.incise.state.case);
 }
 
 /** Steps that build on one another: after one that fails, the rest is left out. */
@@ -222,13 +250,15 @@ export async function until(page, condition, argument) {
   try {
     await page.waitForFunction(condition, argument, {polling: 100});
   } catch (error) {
-    throw new Error([error.message, await page.evaluate(standing).catch(String), ...page.complaints].join("\n"), {cause: error});
+    const lines = [error.message, await page.evaluate(standing).catch(String), ...page.complaints];
+    throw new Error(lines.join("\n"), {cause: error});
   }
 }
 
 function standing() {
-  const {step, link, busy, running, problems, drafts, notice, case: open} = window.incise.state;
-  return JSON.stringify({step, link, busy, running, problems, drafts, notice, constraints: open && open.settings.specimen.constraints});
+  const {step, link, busy, running, problems, drafts, notice, case: open} = window.incise.state,
+    constraints = open && open.settings.specimen.constraints;
+  return JSON.stringify({step, link, busy, running, problems, drafts, notice, constraints});
 }
 
 /** Waits until no call is on its way and no setting waits to be sent. */
@@ -254,7 +284,8 @@ export async function fresh(page, name) {
 
 /** A part of the page's state, by a dotted key. */
 export function stateOf(page, key) {
-  return page.evaluate((dotted) => dotted.split(".").reduce((part, name) => part && part[name], window.incise.state), key);
+  const partOf = (dotted) => dotted.split(".").reduce((part, name) => part && part[name], window.incise.state);
+  return page.evaluate(partOf, key);
 }
 
 /** Goes to a step by its button. */
@@ -270,10 +301,18 @@ export async function settle(page, step) {
   await idle(page);
 }
 
+/** Runs the case as it is, until step Compare shows the result. */
+export async function runCase(page) {
+  await goTo(page, "run");
+  await page.click("[data-do=run]");
+  await page.waitForSelector(".page[data-step=compare]");
+}
+
 /** The input of a setting in a section, by its label; `within`: the legend of its group. */
 export function inputIn(page, section, label, within = "") {
-  const group = within ? `[data-section=${section}] fieldset:has(> legend:text-is("${within}"))` : `[data-section=${section}]`;
-  return page.locator(`${group} :is(.number, .check):has(label:text-is("${label}")) :is(input, select)`);
+  const group = within ? ` fieldset:has(> legend:text-is("${within}"))` : "";
+  const row = `:is(.number, .check):has(label:text-is("${label}"))`;
+  return page.locator(`[data-section=${section}]${group} ${row} :is(input, select)`);
 }
 
 /** Types a value into an input and hands it on with Enter. */
@@ -293,10 +332,10 @@ export async function typeAll(page, section, legend, values) {
 
 /** Shares of the pictures that are not background, by view. */
 export function coverage(page) {
-  return page.evaluate((names) => Object.fromEntries(names.map((name) => [name, window.incise.views[name].coverage()])), [
-    ...kPlanes,
-    "scene",
-  ]);
+  return page.evaluate(
+    (names) => Object.fromEntries(names.map((name) => [name, window.incise.views[name].coverage()])),
+    [...kPlanes, "scene"],
+  );
 }
 
 /** Red, green and blue in a slice at a place, mm. */
@@ -351,16 +390,37 @@ export async function look(page, name) {
   await page.click(`[data-view=scene] .view-head button:text-is("${name}")`);
 }
 
-/** Where a place, mm, is on the 3D canvas, px. */
-export function toScreen(page, point) {
-  return page.evaluate((at) => window.incise.views.scene.toScreen(at), point);
+/** Where a place, mm, is in a view, px of its canvas. It is drawn first: a view has turned only when it is drawn. */
+export function toScreen(page, point, view = "scene") {
+  return page.evaluate(
+    ([at, name]) => {
+      window.incise.views[name].draw();
+      return window.incise.views[name].toScreen(at);
+    },
+    [point, view],
+  );
+}
+
+/** Where a place, mm, is in a view, px of the page. */
+export async function pixelIn(page, view, point) {
+  const [x, y] = await toScreen(page, point, view),
+    canvas = await page.locator(`[data-view=${view}] canvas`).boundingBox();
+  return [canvas.x + x, canvas.y + y];
 }
 
 /** Clicks a place of the 3D view, mm. */
 export async function clickScene(page, point) {
-  const [x, y] = await toScreen(page, point),
-    canvas = await page.locator("[data-view=scene] canvas").boundingBox();
-  await page.mouse.click(Math.round(canvas.x + x), Math.round(canvas.y + y));
+  await page.mouse.click(...(await pixelIn(page, "scene", point)).map(Math.round));
+}
+
+/** The names of the calls that the page makes from now on. */
+export function watchCalls(page) {
+  const calls = [];
+  page.on("request", (request) => {
+    const name = /\/api\/call\/(\w+)$/.exec(request.url());
+    if (name) calls.push(name[1]);
+  });
+  return calls;
 }
 
 /** The brightest and the darkest block of voxels in the slices through the crosshair, and the grey of each on the canvas
@@ -406,8 +466,9 @@ export function knownVoxels(page) {
       view.draw();
       const point = middle.map((index, k) => origin[k] + index * spacing[k]);
       const [x, y] = view.toScreen(point).map((pixel) => pixel * view.ratio);
-      const half = Math.max(1, Math.floor(kHalf * view.zoom * spacing[0] * view.ratio));
-      const {data} = view.canvas.getContext("2d").getImageData(Math.round(x) - half, Math.round(y) - half, 2 * half + 1, 2 * half + 1);
+      const half = Math.max(1, Math.floor(kHalf * view.zoom * spacing[0] * view.ratio)),
+        [left, top] = [x, y].map((pixel) => Math.round(pixel) - half);
+      const {data} = view.canvas.getContext("2d").getImageData(left, top, 2 * half + 1, 2 * half + 1);
       let sum = 0;
       for (let k = 0; k < data.length; k += 4) sum += data[k];
       return sum / (data.length / 4);
@@ -415,7 +476,8 @@ export function knownVoxels(page) {
     const planes = {axial: [0, 1], coronal: [0, 2], sagittal: [1, 2]};
     return Object.entries(planes).flatMap(([view, axes]) => {
       const list = blocks(axes);
-      return [list.at(-1), list[0]].map(({middle, mean}) => ({view, expected: mean, found: shown(view, middle), middle}));
+      const compared = ({middle, mean}) => ({view, expected: mean, found: shown(view, middle), middle});
+      return [list.at(-1), list[0]].map(compared);
     });
   });
 }

@@ -5,7 +5,6 @@ import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 import {
-  Studio,
   assertAccessible,
   assertNoSideways,
   chain,
@@ -15,30 +14,23 @@ import {
   incise,
   inputIn,
   look,
-  newPage,
-  openStudio,
+  openedStudio,
+  pixelIn,
   scenePixel,
   slicePixel,
-  startBrowser,
   stateOf,
   temporaryFolder,
-  toScreen,
   type,
   until,
+  watchCalls,
+  writePhantom,
 } from "./support.mjs";
 
-const kTets = 6000; // coarse: this is about the page
 const kRadius = 4; // mm: of the brush
 const kFrom = [2, -4], // mm: a stroke from the middle of the tongue out of its left side; a cavity would be filled
   kTo = [36, -4];
+const kBox = [[-50, -90, -40], [8, 90, 40]]; // mm: its left face cuts through the tongue, the others are outside
 const kLine = [[-8, -5], [-4, -8], [0, -10], [6, -8], [9, -2]]; // mm, as seen from above: of the patch
-
-/** Where a place, mm, is in a view of the page, px. */
-async function pixelIn(page, view, point) {
-  const at = await page.evaluate(([name, place]) => window.incise.views[name].toScreen(place), [view, point]);
-  const canvas = await page.locator(`[data-view=${view}] canvas`).boundingBox();
-  return [canvas.x + at[0], canvas.y + at[1]];
-}
 
 /** Drags from place to place in a view, mm. */
 async function drag(page, view, places) {
@@ -102,17 +94,15 @@ function writeBlock(file) {
 test("tissue is painted, labels become a case, and a patch of the skin holds", async (t) => {
   const folder = temporaryFolder(t),
     step = chain(t);
-  incise(folder, "phantom", "--format", "nrrd", "-o", "specimen");
+  writePhantom(folder, "--format", "nrrd");
   incise(folder, "segment", "specimen/ct.nrrd", "-o", "labels.nrrd");
   const counts = writeTwoLabels(path.join(folder, "two.seg.nrrd"));
   writeBlock(path.join(folder, "block.stl"));
   const caseText = () => fs.readFileSync(path.join(folder, "specimen", "case.yaml"), "utf8");
-  const studio = await Studio.start(t, folder, "specimen"),
-    page = await newPage(await startBrowser(t));
+  const {studio, page} = await openedStudio(t, folder, "specimen");
   let found = null;
 
   await step("without a brush a drag moves the crosshair, and nothing is painted", async () => {
-    await openStudio(page, studio);
     await until(page, () => window.incise.state.scan);
     await fresh(page, "tissue");
     found = await stateOf(page, "tissue.summary");
@@ -175,6 +165,29 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     assert.deepEqual(await strokes(page, 3), after, "the same ball again");
   });
 
+  await step("a stroke that changes nothing is said to, with what to try", async () => {
+    const said = page.locator("[data-idle]");
+    assert.match(await page.textContent("[data-idle=add]"), /adds nothing: only what lies in the scan and is joined/);
+    await page.keyboard.press("Control+z");
+    await strokes(page, 2);
+    assert.equal(await said.count(), 0, "it is undone");
+    await page.keyboard.press("Control+y");
+    await strokes(page, 3);
+    await page.click("[data-do=brush-take]");
+    const x = page.locator("[data-section=picture] .numbers input").first();
+    for (const [place, isIdle] of [[-40, true], [-28, false]]) { // in air, and where the ball was added
+      await type(x, place);
+      await page.click("[data-do=ball]");
+      await strokes(page, 4);
+      assert.equal(await page.locator("[data-idle=take]").count(), isIdle ? 1 : 0, `${place}`);
+      if (isIdle) assert.match(await said.textContent(), /takes nothing away: only what lies in the scan is changed/);
+      if (isIdle) await assertAccessible(page, "an idle stroke");
+      await page.click("[data-do=undo]");
+      await strokes(page, 3);
+      assert.equal(await said.count(), 0);
+    }
+  });
+
   await step("strokes are listed, and removed one by one or all together", async () => {
     assert.deepEqual(
       await page.locator("[data-stroke]").evaluateAll((rows) => rows.map((row) => row.dataset.stroke)),
@@ -211,11 +224,92 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     await strokes(page, 0);
   });
 
-  await step("a patch painted on the skin holds its vertices", async () => {
-    await studio.call("change", {
-      revision: await stateOf(page, "case.revision"),
-      set: {"meshing.tets": kTets, "tumor.surface": null},
+  const box = () => stateOf(page, "case.settings.ct.roi_box_mm");
+  const boxed = async (wanted) => {
+    await until(
+      page,
+      (text) => JSON.stringify(window.incise.state.case.settings.ct.roi_box_mm) === text,
+      JSON.stringify(wanted),
+    );
+    await fresh(page, "tissue");
+  };
+
+  await step("what the region box has cut off has a colour of its own", async () => {
+    await studio.call("change", {revision: await stateOf(page, "case.revision"), set: {"ct.roi_box_mm": kBox}});
+    await boxed(kBox);
+    const {drawn, marked, all, at} = await page.evaluate(() => {
+      const {skin, cut} = window.incise.state.tissue,
+        triangles = ({objects}) => objects[0].geometry.index.count / 3;
+      const layers = ["tissue", "cut-faces"].map((name) => window.incise.views.scene.layers.get(name));
+      const corners = [...cut.keys()].filter((k) => cut[k]).map((k) => skin.triangles[3 * k]);
+      const places = corners.map((v) => [...skin.vertices.slice(3 * v, 3 * v + 3)]);
+      const middle = [1, 2].map((axis) => places.reduce((sum, place) => sum + place[axis], 0) / places.length);
+      const off = ([, y, z]) => Math.hypot(y - middle[0], z - middle[1]);
+      return {
+        drawn: layers.map(triangles),
+        marked: places.length,
+        all: skin.triangles.length / 3,
+        at: places.sort((one, other) => off(one) - off(other))[0],
+      };
     });
+    assert.ok(marked > 100 && marked < 0.5 * all, `${marked} of ${all} triangles`);
+    assert.deepEqual(drawn, [all - marked, marked]);
+    assert.ok(Math.abs(at[0] - kBox[1][0]) < 1, `${at} on the left face`);
+    assert.equal(await page.locator(".legend label:has-text('cut off by the region')").count(), 1);
+    await look(page, "Left");
+    const [red, green, blue] = await scenePixel(page, at);
+    assert.ok(blue > red, `slate where the box cuts: ${[red, green, blue]}`);
+    await look(page, "Oblique");
+  });
+
+  await step("a face of the box that is dragged is written once, when it is let go, and undone in one go", async () => {
+    const calls = watchCalls(page),
+      from = await pixelIn(page, "axial", [kBox[1][0], 0, (await stateOf(page, "cross"))[2]]),
+      pixels = await page.evaluate(() => window.incise.views.axial.zoom),
+      shown = page.locator('[data-section=box] fieldset:has(> legend:text-is("High corner, mm")) input').first();
+    const dragBy = async (...ways) => {
+      await page.mouse.move(...from);
+      await page.mouse.down();
+      for (const way of ways) {
+        await page.mouse.move(from[0] + way * pixels, from[1], {steps: 8});
+        await until(page, (x) => Math.abs(window.incise.views.axial.model.box[1][0] - x) < 0.3, kBox[1][0] + way);
+        assert.ok(Math.abs(Number(await shown.inputValue()) - kBox[1][0] - way) < 0.3, "its number follows");
+        assert.deepEqual(await box(), kBox, "the case keeps its box");
+      }
+    };
+    await page.focus("[data-view=axial] canvas");
+    await page.keyboard.press("Escape"); // puts the brush away
+    await dragBy(3, 6);
+    await page.mouse.up();
+    await until(page, (x) => window.incise.state.case.settings.ct.roi_box_mm[1][0] > x + 5, kBox[1][0]);
+    await fresh(page, "tissue");
+    assert.deepEqual(calls.splice(0), ["change", "tissue"]);
+    const dragged = await box();
+    await page.keyboard.press("Control+z");
+    await boxed(kBox);
+    await page.click("[data-section=box] [data-do=redo]");
+    await boxed(dragged);
+    await page.click("[data-section=box] [data-do=undo]");
+    await boxed(kBox);
+    calls.length = 0;
+
+    // Back where it was, or broken off: there is nothing to write.
+    await dragBy(5, 0);
+    await page.mouse.up();
+    await dragBy(5);
+    await page.locator("[data-view=axial] canvas").dispatchEvent("pointercancel", {pointerId: 1});
+    await until(page, (x) => window.incise.views.axial.model.box[1][0] === x, kBox[1][0]);
+    await page.mouse.up();
+    await idle(page);
+    assert.deepEqual(calls, []);
+    await page.click("button:text-is('Remove the box')");
+    await boxed(null);
+    assert.deepEqual(await stateOf(page, "tissue.summary"), found);
+    assert.equal(await page.locator(".legend label:has-text('cut off by the region')").count(), 0);
+  });
+
+  await step("a patch painted on the skin holds its vertices", async () => {
+    await studio.call("change", {revision: await stateOf(page, "case.revision"), set: {"tumor.surface": null}});
     await goTo(page, "hold");
     await fresh(page, "body");
     for (const count of [1, 2]) {

@@ -5,16 +5,13 @@ import fs from "node:fs";
 import path from "node:path";
 import {test} from "node:test";
 import {
-  Studio,
   assertAccessible,
   assertNoSideways,
   chain,
   goTo,
   idle,
   inputIn,
-  newPage,
-  openStudio,
-  startBrowser,
+  openedStudio,
   stateOf,
   temporaryFolder,
   type,
@@ -50,15 +47,25 @@ test("results are kept, laid over the next one, and put back", async (t) => {
     inside = writeBlock(folder),
     step = chain(t);
   writeBlock(folder, "other");
-  const studio = await Studio.start(t, folder, "case"),
-    page = await newPage(await startBrowser(t));
-  await openStudio(page, studio);
-  await until(page, () => window.incise.state.case);
+  const {page} = await openedStudio(t, folder, "case");
   await goTo(page, "compare");
   await page.click("[data-do=run]");
   await ran(page);
   const first = await stateOf(page, "case.settings"),
     firstNumbers = await numbersOf(page, "as_planned");
+
+  await step("a value has the label that it has in its own step", async () => {
+    const labels = await page.locator("[data-section=what-if] .grid label").allTextContents(),
+      others = [];
+    for (const name of ["plan", "hold"]) {
+      await goTo(page, name);
+      await idle(page);
+      others.push(...(await page.locator(".panel label").allTextContents()));
+    }
+    assert.ok(labels.length > 4, `${labels}`);
+    for (const label of labels) assert.ok(others.includes(label), `${label} in ${others}`);
+    await goTo(page, "compare");
+  });
 
   await step("nothing is kept before a value was changed", async () => {
     assert.equal(await page.isEnabled("[data-do=keep-and-run]"), false);

@@ -138,7 +138,8 @@ class CutView {
     const row = element("div", {className: "row"});
     if (this.animations.length > 1) {
       this.animations.forEach((animation, k) => row.append(element("button", {
-        type: "button", textContent: animation.name, "aria-pressed": String(k === which), onclick: () => this.show(k)})));
+        type: "button", textContent: animation.name, "aria-pressed": String(k === which),
+        onclick: () => this.show(k)})));
     }
     row.append(this.playButton, this.slider);
     if (this.scene.total_frames > count) {

@@ -51,7 +51,8 @@ function newViewer(stage, frame) {
 /** Buttons for the named views and a word on the mouse. */
 function viewRow(viewer) {
   return element("div", {className: "row"},
-    ...viewer.names.map((name) => element("button", {type: "button", textContent: name, onclick: () => viewer.look(name)})),
+    ...viewer.names.map((name) =>
+      element("button", {type: "button", textContent: name, onclick: () => viewer.look(name)})),
     element("span", {className: "hint", textContent:
       "drag: turn · shift-drag: move · wheel after a click: zoom · arrow keys, + and − work, too"}));
 }

@@ -17,8 +17,8 @@ function startSlices(plane) {
     place.textContent = `${plane.axis} = ${slice.position_mm.toFixed(1)} mm`;
     slider.setAttribute("aria-valuetext", place.textContent);
   };
-  const slider = element("input", {type: "range", min: 0, max: plane.slices.length - 1, step: 1, "aria-label": "Axial slice",
-                                   value: plane.first, oninput: () => show(Number(slider.value))});
+  const slider = element("input", {type: "range", min: 0, max: plane.slices.length - 1, step: 1, value: plane.first,
+                                   "aria-label": "Axial slice", oninput: () => show(Number(slider.value))});
   show(plane.first);
   figure.querySelector(".slice-control").append(slider);
 }

@@ -1,5 +1,6 @@
 // The 3D viewer of the studio and of the report: a parallel projection that can be turned, moved and zoomed, so that
-// lengths in it can be measured. It imports nothing, for a page on a disk cannot: three.js and the gizmo are handed over.
+// lengths in it can be measured. It imports nothing, for a page on a disk cannot: three.js and the gizmo are handed
+// over.
 
 const kSmallMove = 5; // px: less is a click
 

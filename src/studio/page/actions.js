@@ -9,6 +9,7 @@ import {
   newBrush,
   newCloud,
   newFraming,
+  newHistory,
   newPatch,
   newPhoto,
   setting,
@@ -77,7 +78,9 @@ export function takeCase(found, isOther) {
   for (const name of Object.keys(tickets)) tickets[name] += 1; // answers about the case before are of no use
   update({
     ...nothingMeasured(),
+    preview: {},
     brush: newBrush(),
+    history: newHistory(),
     patch: newPatch(),
     scan: null,
     tissue: null,
@@ -136,6 +139,7 @@ function firstPlace(grid) {
 
 /** Opens, makes or virtually makes a case: the calls `open`, `create` and `demo`. */
 export async function begin(name, args) {
+  await sending; // what is set belongs to the case that is open
   const found = await ask(name, args);
   if (!found) return;
   takeCase(found, true);
@@ -224,7 +228,10 @@ export async function stop(name) {
   await call("stop", {call: name}).catch(() => null);
 }
 
+const kPause = 300; // ms: of a value that is stepped, after its last step
+
 let pending = {};
+let due = 0; // ms: when it may be sent
 let sending = null; // a promise while changes are under way
 
 /** Sets settings {key: value}: shown at once, and sent; what is set while a change is under way goes with the next. */
@@ -234,8 +241,19 @@ export function change(set) {
   sending ||= send();
 }
 
+/** The same for a value that is stepped, by a key that is held for instance: it is sent after its last step. */
+export function changeSoon(set) {
+  due = performance.now() + kPause;
+  change(set);
+}
+
+/** Whether a setting was set and is not sent yet. */
+export function isWaiting(key) {
+  return key in pending;
+}
+
 async function send() {
-  while (Object.keys(pending).length) {
+  for (await pause(); Object.keys(pending).length; await pause()) {
     await overtake();
     const set = pending;
     pending = {};
@@ -245,6 +263,14 @@ async function send() {
   }
   sending = null;
   refreshStep();
+}
+
+async function pause() {
+  for (let left = due - performance.now(); left > 0; left = due - performance.now()) {
+    await new Promise((resolve) => {
+      setTimeout(resolve, left);
+    });
+  }
 }
 
 // What is computed from the settings as they were is of no use any more.

@@ -1,19 +1,19 @@
 // The brush's strokes: tissue that is painted or taken away in the slices, kept in the case as `ct.edits`.
 
-import {state, update, setting} from "./store.js";
-import {change} from "./actions.js";
+import {state, update, setting, isFresh, isSame} from "./store.js";
+import {put, redo, undo} from "./history.js";
 import {clamp, length, minus, thinned} from "./geometry.js";
 
+const kPath = "ct.edits";
 const kRadii = [0.1, 50]; // mm: what a case takes
 const kFactor = 1.2; // from one radius to the next, by a key
-const kMostSteps = 100; // that can be undone
 
 /** Points of all strokes together, or of one painted line: more would be a large request at every change. */
 export const kMostPoints = 2000;
 
 /** The strokes of the case, in their order: [{tissue, radius_mm, path_mm}]. */
 export function strokes() {
-  return setting("ct.edits") || [];
+  return setting(kPath) || [];
 }
 
 /** What the chosen brush does, {tissue, radius_mm}; null: no brush is chosen. */
@@ -40,50 +40,44 @@ export function addStroke({tissue, radius_mm}, path) {
   const list = [...strokes(), {tissue, radius_mm, path_mm: strokeAlong(path, radius_mm)}];
   const points = list.reduce((sum, stroke) => sum + stroke.path_mm.length, 0);
   if (points > kMostPoints) return update({brush: {...state.brush, refused: points}});
-  return put(list);
+  return putStrokes(list);
 }
 
 /** Removes stroke k. */
 export function removeStroke(k) {
-  put(strokes().toSpliced(k, 1));
+  putStrokes(strokes().toSpliced(k, 1));
 }
 
 /** Removes all strokes. */
 export function removeStrokes() {
-  put([]);
+  putStrokes([]);
 }
 
-function put(list) {
-  const past = [...state.brush.past, strokes()].slice(-kMostSteps);
-  update({brush: {...state.brush, past, future: [], refused: 0}});
-  store(list);
+function putStrokes(list) {
+  put(kPath, list.length ? list : null);
 }
 
-function store(list) {
-  change({"ct.edits": list.length ? list : null});
+let last = null; // the tissue that came last: its skin, the strokes in it, and all else that it was found by
+
+/** Takes new tissue: strokes that were added since the last one and have changed nothing are idle. */
+export function noteTissue() {
+  if (!isFresh("tissue")) return;
+  const {file, inputs, settings} = state.case,
+    {edits, ...ct} = settings.ct;
+  const now = {skin: state.tissue.skin, strokes: edits || [], others: {file, inputs, ct}};
+  const isIdle = last && isOnlyStroked(last, now) && isSameSkin(last.skin, now.skin);
+  last = now;
+  update({brush: {...state.brush, idle: isIdle ? (now.strokes.at(-1).tissue ? "add" : "take") : null}});
 }
 
-/** Whether there is something to undo. Strokes from before the page was opened are removed one by one. */
-export function canUndo() {
-  return state.brush.past.length + strokes().length > 0;
+function isOnlyStroked(before, now) {
+  const count = before.strokes.length;
+  if (now.strokes.length <= count || !isSame(now.others, before.others)) return false;
+  return isSame(now.strokes.slice(0, count), before.strokes);
 }
 
-/** Takes the last change of the strokes back. */
-export function undo() {
-  if (!canUndo()) return;
-  const {past, future} = state.brush,
-    now = strokes(),
-    before = past.length ? past.at(-1) : now.slice(0, -1);
-  update({brush: {...state.brush, past: past.slice(0, -1), future: [...future, now], refused: 0}});
-  store(before);
-}
-
-/** Makes the change that was undone last again. */
-export function redo() {
-  const {past, future} = state.brush;
-  if (!future.length) return;
-  update({brush: {...state.brush, past: [...past, strokes()], future: future.slice(0, -1), refused: 0}});
-  store(future.at(-1));
+function isSameSkin({vertices: a}, {vertices: b}) {
+  return a.length === b.length && a.every((value, i) => value === b[i]);
 }
 
 /** Sets the brush's radius, mm. */

@@ -2,22 +2,20 @@
 
 import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
-import {state, update} from "./store.js";
+import {state, setting, update} from "./store.js";
 import {
   addStroke,
   brush,
-  canUndo,
   kMostPoints,
   lengthOf,
-  redo,
   removeStroke,
   removeStrokes,
   setRadius,
   strokes,
   takeKey,
-  undo,
 } from "./brush.js";
 import {crosshair, showPlace} from "./views.js";
+import {UndoButtons} from "./undo_buttons.js";
 import {Button, NumberInput, Section, complaint, problemAt} from "./widgets.js";
 import {plain, whole} from "./words.js";
 
@@ -42,6 +40,7 @@ export function Brush() {
     h(Size),
     h(Ball),
     h(Refused),
+    h(Idle),
     h(Strokes),
   );
 }
@@ -100,6 +99,27 @@ function Refused() {
   return problem ? h("p", {class: "problem", role: "alert"}, complaint(problem)) : null;
 }
 
+// What the library does with a stroke: segmentation.hpp.
+const kIdle = {
+  add: (region, opening) =>
+    `The last stroke adds nothing: only what lies in ${region} and is joined to the tissue is kept, so paint outwards ` +
+    `from the tissue${opening ? `, with a radius above the opening's ${plain(opening)} mm` : ""}.`,
+  take: (region) =>
+    `The last stroke takes nothing away: only what lies in ${region} is changed, and a hole in the tissue is filled ` +
+    "again, so paint through the tissue's surface.",
+};
+
+// The room for the sentence is always there: a screen reader tells what comes into it.
+function Idle() {
+  const {idle} = state.brush,
+    region = setting("ct.roi_box_mm") ? "the region box" : "the scan";
+  return h(
+    "p",
+    {role: "status", class: idle ? "warning" : undefined, "data-idle": idle || undefined},
+    idle ? kIdle[idle](region, setting("ct.opening_radius_mm")) : "",
+  );
+}
+
 function Strokes() {
   const list = strokes(),
     row = useRef(null);
@@ -114,8 +134,7 @@ function Strokes() {
     h(
       "div",
       {class: "row", ref: row},
-      h(Button, {disabled: !canUndo(), onClick: undo, title: "Ctrl+Z", "data-do": "undo"}, "Undo"),
-      h(Button, {disabled: !state.brush.future.length, onClick: redo, title: "Ctrl+Y", "data-do": "redo"}, "Redo"),
+      h(UndoButtons),
       h(Button, {disabled: !list.length, onClick: removeStrokes, "data-do": "remove-strokes"}, "Remove all strokes"),
     ),
     list.length

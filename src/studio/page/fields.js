@@ -57,6 +57,7 @@ const kLabels = {
   "plan.approach": {hint: "Into the tissue, as one looks at it: 0, 0, −1 is straight down."},
   "plan.start_direction": {hint: "The ring starts where it lies farthest along this."},
   "plan.close_margin_mm": {hint: "Less tissue than this beside the tumour is refused."},
+  "cut.speed_mm_s": {label: "Simulated speed", said: "Simulated speed"},
   "cut.dullness": {hint: "How long contact lasts before tissue is cut."},
   "cut.overlap_mm": {hint: "The ring is cut so far beyond its start."},
   "thermal.conductivity_w_m_k": {label: "Conductivity"},
@@ -110,7 +111,15 @@ function isSimple(value) {
   return value === null || typeof value !== "object" || (value.length > 0 && value.length < 5 && value.every(isNumber));
 }
 
-/** A field as a message says it: 'Speed of the simulated cut, step Plan'. */
+const kPerson = /^(?:Young|Poisson)'s/; // with a capital everywhere
+
+/** A setting's label within a sentence: 'lateral margin', "Young's modulus". */
+export function nameInText(key) {
+  const {label} = fieldOf(key) || {label: nameOf(key)};
+  return kPerson.test(label) ? label : label.charAt(0).toLowerCase() + label.slice(1);
+}
+
+/** A field as a message says it: 'Dullness of the simulated cut, step Plan'. */
 export function fieldText({label, said, of, step}) {
   return [said || (of ? `${label} of the ${of}` : label), step === state.step ? "" : `step ${kStepTitles[step]}`]
     .filter(Boolean)

@@ -122,7 +122,9 @@ function Found() {
     frame.asked === JSON.stringify(frameArguments(framing))
       ? null
       : h("p", {class: "warning"}, "Files or settings have changed since the frame was read."),
-    frame.found ? [h("h4", {key: "title"}, "The mark that was found"), h(Picture, {key: "picture", picture: frame.found})] : null,
+    frame.found
+      ? [h("h4", {key: "title"}, "The mark that was found"), h(Picture, {key: "picture", picture: frame.found})]
+      : null,
     (frame.warnings || []).map((text, k) => h("p", {key: k, class: "warning"}, text)),
     h(Numbers, {frame}),
     h("p", {class: "soft"}, `The tissue in it, ${frame.name}, is the cloud to register.`),

@@ -1,9 +1,10 @@
 // Results of the run that are kept on this page, to lay later ones over them: what they are called, how they are drawn.
 
 import {state, unitOf} from "./store.js";
+import {nameInText} from "./fields.js";
 import {minus, plus, length, pointsOf} from "./geometry.js";
 import {isDark} from "./colours.js";
-import {isNumber, nameOf, plain, spoken} from "./words.js";
+import {isNumber, plain, spoken} from "./words.js";
 
 /** How many results are kept at most. */
 export const kMostKept = 4;
@@ -14,15 +15,6 @@ const kLooks = {
   B: {light: "#b84700", dark: "#ff9155", dash: [2, 3]},
   C: {light: "#5b3fa8", dark: "#b9a1ff", dash: [10, 3, 2, 3]},
   D: {light: "#6f6200", dark: "#e3d64b", dash: [5, 3]},
-};
-
-// What a person calls the settings that the page offers to change; others are called by their keys.
-const kNames = {
-  "plan.speed_mm_s": "speed",
-  "cut.speed_mm_s": "simulated speed",
-  "plan.power_w": "power",
-  "specimen.material.youngs_modulus_kpa": "stiffness",
-  "specimen.material.poissons_ratio": "Poisson's ratio",
 };
 
 // Names and the format's version: no result depends on them.
@@ -93,7 +85,7 @@ export function labelOf({settings}) {
 }
 
 function wordsOf(key, value) {
-  const name = kNames[key] || nameOf(key).toLowerCase(),
+  const name = nameInText(key),
     unit = unitOf(key);
   if (isNumber(value)) return [name, plain(value), unit].filter(Boolean).join(" ");
   if (value === null) return `${name} as by default`;
@@ -101,7 +93,7 @@ function wordsOf(key, value) {
   if (typeof value === "string") return `${name}: ${spoken(value).toLowerCase()}`;
   if (Array.isArray(value) && value.length < 5 && value.every(isNumber))
     return `${name} ${value.map(plain).join(", ")}`;
-  return `other ${name}`;
+  return `${name}: other`;
 }
 
 /** A kept result's letter, with what makes it different. */

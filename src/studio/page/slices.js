@@ -14,8 +14,8 @@ const kCut = 0.98; // of its radius: a ball of a stroke that a slice cuts farthe
  *  {room, scan, tissue, table, window, cross, box, seed, edge, overlay, isPlacing, isBoxShown, brush, strokes, stroke};
  *  lengths in mm, LPS. `room`: the case's file, for another has other places; `brush`: {tissue, radius_mm} or null;
  *  `strokes`: those that the tissue does not show yet; `stroke`: the path that is being painted.
- *  It calls `on.cross(point)`, `on.window(width, level)`, `on.box(box)`, `on.seed(point)`, `on.painting()`,
- *  `on.stroke(path)`, `on.putAway()`. */
+ *  It calls `on.cross(point)`, `on.window(width, level)`, `on.face(box)` while a face of the box is dragged (null: it
+ *  goes back), `on.box(box)` when it is let go, `on.seed(point)`, `on.painting()`, `on.stroke(path)`, `on.putAway()`. */
 export class SliceView {
   constructor(host, name, model, on) {
     Object.assign(this, {host, name, model, on, zoom: 0, middle: [0, 0], drag: null, fingers: new Map()});
@@ -426,6 +426,7 @@ export class SliceView {
     const {offsetX: x, offsetY: y} = event;
     this.fingers.set(event.pointerId, [x, y]);
     this.model.stroke = [];
+    if (this.drag && this.drag.box) this.on.face(null);
     if (this.fingers.size > 1) this.drag = {kind: "pinch"};
     else this.drag = this.dragFor(event, x, y);
     if (this.drag.kind === "cross") this.point(x, y);
@@ -481,10 +482,13 @@ export class SliceView {
   }
 
   release(event) {
-    const {stroke} = this.model;
+    const {stroke} = this.model,
+      {box} = this.drag || {},
+      isDone = event.type === "pointerup";
     this.fingers.delete(event.pointerId);
     this.model.stroke = [];
-    if (event.type === "pointerup" && stroke.length) this.on.stroke(stroke);
+    if (isDone && stroke.length) this.on.stroke(stroke);
+    if (box) (isDone ? this.on.box : this.on.face)(isDone ? box : null);
     if (!this.fingers.size) this.drag = null;
     this.render();
   }
@@ -519,7 +523,8 @@ export class SliceView {
     const box = this.model.box.map((corner) => [...corner]);
     const value = Math.round(10 * this.toPoint(x, y)[axis]) / 10;
     box[side][axis] = side ? Math.max(value, box[0][axis] + 1) : Math.min(value, box[1][axis] - 1);
-    this.on.box(box);
+    this.drag.box = box;
+    this.on.face(box);
   }
 
   zoomBy(factor, x = this.half(0), y = this.half(1)) {

@@ -60,8 +60,8 @@ function Elsewhere() {
   return h(
     "p",
     {class: "warning", "data-laid-too": "yes"},
-    "It cuts where the case says that the specimen lies, not where the camera found it. Running again removes what was " +
-      "laid in step 9. ",
+    "It cuts where the case says that the specimen lies, not where the camera found it. Running again removes what " +
+      "was laid in step 9. ",
     h(Button, {onClick: () => goTo("register")}, "Go to step 9"),
   );
 }

@@ -260,8 +260,8 @@ const kKinds = [
   [
     "mark",
     "Mark the edge again",
-    "Puts the tumour's edge there, for a program that marks it by electrocautery, 1 mm deep at 2 mm/s. The paper does so " +
-      "before the cut, so that the edge is seen in the photograph.",
+    "Puts the tumour's edge there, for a program that marks it by electrocautery, 1 mm deep at 2 mm/s. The paper does " +
+      "so before the cut, so that the edge is seen in the photograph.",
     "lay-mark",
   ],
 ];

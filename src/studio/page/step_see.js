@@ -21,7 +21,8 @@ import {
   problemAt,
   useId,
 } from "./widgets.js";
-import {boundsOfGrid, spanAt} from "./cut_faces.js";
+import {boxAbout, putBox, regionBox, stepBox} from "./region_box.js";
+import {UndoButtons} from "./undo_buttons.js";
 import {voxelAt} from "./geometry.js";
 import {fixed, mm, plain} from "./words.js";
 
@@ -190,10 +191,8 @@ function Overlay() {
 }
 
 function Box() {
-  const box = setting("ct.roi_box_mm"),
-    path = "ct.roi_box_mm";
-  const put = (side) => (corner) => change({[path]: side ? [box[0], corner] : [corner, box[1]]});
-  const scan = state.scan || state.tissue;
+  const box = regionBox(),
+    scan = state.scan || state.tissue;
   if (!box) {
     return h(
       Section,
@@ -204,12 +203,18 @@ function Box() {
         "There is no box: the whole scan is searched. For a box, put the crosshair into the tissue first.",
       ),
       h(
-        Button,
-        {disabled: !scan, onClick: () => change({[path]: boxAbout(scan.grid)}), "data-do": "box"},
-        "Add a box about the crosshair",
+        "div",
+        {class: "row"},
+        h(
+          Button,
+          {disabled: !scan, onClick: () => putBox(boxAbout(crosshair(), scan.grid)), "data-do": "box"},
+          "Add a box about the crosshair",
+        ),
+        h(UndoButtons),
       ),
     );
   }
+  const put = (side) => (corner) => stepBox(box.with(side, corner));
   return h(
     Section,
     {title: "Region box", id: "box"},
@@ -221,24 +226,16 @@ function Box() {
       value: box[1],
       step: 1,
       onChange: put(1),
-      problem: problemAt(path),
+      problem: problemAt("ct.roi_box_mm"),
     }),
     h(
       "div",
       {class: "row"},
       h(Button, {onClick: () => fitBox(box)}, "Zoom to the box"),
-      h(Button, {onClick: () => change({[path]: null})}, "Remove the box"),
+      h(Button, {onClick: () => putBox(null)}, "Remove the box"),
+      h(UndoButtons),
     ),
   );
-}
-
-const kBox = 70; // mm: what holds a tongue
-
-// To be dragged to where it should be; clipped to the scan.
-function boxAbout(grid) {
-  const ends = boundsOfGrid(grid);
-  const spans = crosshair().map((value, k) => spanAt(value, kBox, [ends[0][k], ends[1][k]]));
-  return [0, 1].map((side) => spans.map((span) => span[side]));
 }
 
 function Seed() {

@@ -37,10 +37,15 @@ export function newFraming() {
   return {...files, isCloud: false, mark: "green", isOpen: false, planes: 1};
 }
 
-/** The brush before its first stroke. `past`, `future`: lists of strokes for undo and redo; `refused`: how many points
- *  there would have been with a stroke that was not added, or 0. */
+/** The brush before its first stroke. `refused`: how many points there would have been with a stroke that was not
+ *  added, or 0; `idle`: "add" or "take" where the last stroke did so and changed nothing. */
 export function newBrush() {
-  return {radius_mm: 2, past: [], future: [], refused: 0};
+  return {radius_mm: 2, refused: 0, idle: null};
+}
+
+/** Nothing to undo or to redo: {key, value} of the setting that each step changes, the next one last. */
+export function newHistory() {
+  return {past: [], future: []};
 }
 
 /** No patch is being painted. `k`: of which constraint one is; `isEmpty`: it was cleared, or has no point yet, and the
@@ -50,15 +55,17 @@ export function newPatch() {
   return {k: -1, isEmpty: false, radius_mm: 5, stroke: [], refused: 0};
 }
 
-/** The state. `drafts`: settings on their way to the server; `refused`: settings that it refused; `problems`: the last
- *  problem of each call; `kept`: results of earlier runs, as kept.js has them; `keptDropped`: how many of them were of
- *  something else; `keptCut`: which of their cuts the plots and the 3D view show; `mark`: the edge as `lay` laid it;
- *  `layKind`: what `lay` was asked for last. */
+/** The state. `preview`: settings under the pointer, which are not sent before it lets go; `drafts`: settings on
+ *  their way to the server; `refused`: settings that it refused; `problems`: the last problem of each call;
+ *  `kept`: results of earlier runs, as kept.js has them; `keptDropped`: how many of them were of something else;
+ *  `keptCut`: which of their cuts the plots and the 3D view show; `mark`: the edge as `lay` laid it; `layKind`:
+ *  what `lay` was asked for last. */
 export const state = {
   link: "starting",
   version: "",
   step: "open",
   case: null,
+  preview: {},
   drafts: {},
   refused: {},
   problems: {},
@@ -97,6 +104,7 @@ export const state = {
   overlay: 0.35,
   placing: null,
   brush: newBrush(),
+  history: newHistory(),
   patch: newPatch(),
   focus: null,
   edge: {points: [], isClosed: false, selected: -1, curve: [], isSaved: true, mode: "look", where: "rest"},
@@ -157,9 +165,10 @@ export function valueAt(object, key) {
     .reduce((value, part) => (value === null || value === undefined ? undefined : value[part]), object);
 }
 
-/** A setting as the page shows it: what is on its way to the server, else what the case holds; null where absent. */
+/** A setting as the page shows it: what is under the pointer or on its way to the server, else what the case holds;
+ *  null where absent. */
 export function setting(key) {
-  if (key in state.drafts) return state.drafts[key];
+  for (const shown of [state.preview, state.drafts]) if (key in shown) return shown[key];
   const value = state.case ? valueAt(state.case.settings, key) : undefined;
   return value === undefined ? null : value;
 }

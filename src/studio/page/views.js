@@ -2,7 +2,8 @@
 
 import {state, update, setting, isFresh, isSame, when} from "./store.js";
 import {change} from "./actions.js";
-import {addStroke, brush, strokes} from "./brush.js";
+import {addStroke, brush, noteTissue, strokes} from "./brush.js";
+import {dropBox, regionBox, showBox} from "./region_box.js";
 import {GreyTable} from "./slice_image.js";
 import {SliceView} from "./slices.js";
 import {Scene, SkinQuery} from "./scene.js";
@@ -32,7 +33,8 @@ export function makeView(host, name) {
 const kOn = {
   cross: (cross) => update({cross}),
   window: (width, level) => update({window: {width, level}}),
-  box: (box) => change({"ct.roi_box_mm": box}),
+  face: showBox,
+  box: dropBox,
   seed: (point) => {
     change({"ct.seed_mm": point.map((value) => Math.round(10 * value) / 10)});
     update({placing: null});
@@ -90,7 +92,7 @@ function shownInSlices() {
     cross: state.cross,
     window: state.window,
     overlay: state.overlay,
-    box: setting("ct.roi_box_mm"),
+    box: regionBox(),
     seed: setting("ct.seed_mm"),
     isPlacing: state.placing === "seed",
     isBoxShown: state.step === "see",
@@ -268,6 +270,7 @@ export function connectViews() {
   });
   onPlayer(placeArm);
   when(() => [state.arm], rewind);
+  when(() => [state.tissue], noteTissue);
   when(
     () => [
       state.step,
@@ -284,6 +287,7 @@ export function connectViews() {
       state.moment,
       state.edge,
       state.case,
+      state.preview,
       state.drafts,
       state.focus,
       state.scrub,

@@ -9,19 +9,15 @@ import {isRunning} from "./step_run.js";
 import {isAlike, isKept, kMostKept, labelOf, laidOver, lookOf, titleOf} from "./kept.js";
 import {fixed, isNumber} from "./words.js";
 
-// Key, label, and what it acts on.
-const kSettings = [
-  [
-    "plan.speed_mm_s",
-    "Speed",
-    "Of the robot. It changes the program and the heat beside the cut, not the simulated cut.",
-  ],
-  ["cut.speed_mm_s", "Simulated speed", "Of the simulated tool. With dullness: how far it drags tissue along."],
-  ["cut.dullness", "Dullness", "How long the tool touches tissue before it is cut. Less: a sharper tool."],
-  ["plan.power_w", "Power", "More power cuts faster, and heats more tissue beside the cut."],
-  ["specimen.material.youngs_modulus_kpa", "Stiffness", "Young's modulus of the tissue."],
-  ["specimen.material.poissons_ratio", "Poisson's ratio", "Near 0.5 tissue keeps its volume; 0: it gives way."],
-];
+// Each with what it acts on.
+const kSettings = {
+  "plan.speed_mm_s": "Of the robot. It changes the program and the heat beside the cut, not the simulated cut.",
+  "cut.speed_mm_s": "Of the simulated tool. With dullness: how far it drags tissue along.",
+  "cut.dullness": "How long the tool touches tissue before it is cut. Less: a sharper tool.",
+  "plan.power_w": "More power cuts faster, and heats more tissue beside the cut.",
+  "specimen.material.youngs_modulus_kpa": "The tissue's stiffness.",
+  "specimen.material.poissons_ratio": "Near 0.5 tissue keeps its volume; 0: it gives way.",
+};
 const kCuts = [
   ["corrected", "the corrected cuts"],
   ["as_planned", "the cuts as planned"],
@@ -42,12 +38,12 @@ export function WhatIf() {
     h(
       "div",
       {class: "grid"},
-      kSettings.map(([path, label, hint]) => h(Setting, {key: path, path, label, hint})),
+      Object.entries(kSettings).map(([path, hint]) => h(Setting, {key: path, path, hint})),
     ),
     setting("specimen.material.from_mesh")
-      ? h("p", {class: "soft"}, "Where the mesh brings stiffness or Poisson's ratio, those hold.")
+      ? h("p", {class: "soft"}, "Where the mesh brings Young's modulus or Poisson's ratio, those hold.")
       : null,
-    h(Problems, {calls: ["change"], shown: kSettings.map(([path]) => path)}),
+    h(Problems, {calls: ["change"], shown: Object.keys(kSettings)}),
     h(Buttons),
     h(
       "p",

@@ -194,12 +194,12 @@ function shownValue(key) {
 }
 
 /** An input for any setting: number, words, yes or no, numbers in a row. Others are not shown. */
-export function Setting({path, label, step, names, hint}) {
+export function Setting({path, step, names, hint}) {
   const value = shownValue(path),
     unit = unitOf(path),
     problem = problemAt(path),
     field = fieldOf(path) || {label: nameOf(path)};
-  const text = label || field.label,
+  const text = field.label,
     onChange = (next) => change({[path]: next});
   const about = {label: text, unit, problem, onChange, hint: hint || field.hint};
   if (names || isRow(value)) return h(Numbers, {...about, value, step, names: names || letters(value.length)});
