@@ -39,7 +39,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   if (arguments.mark_name != kNoMark) request.mark = value_named<InkColor>(arguments.mark_name);
   for (const CLI::Option* option : arguments.of_mark) {
     if (!request.mark && option->count() > 0)
-      throw CaseError("command line", option->get_name(), "given with --mark none", "a mark, or none of its options");
+      throw CaseError("command line", option->get_name(), "an option about the mark, with --mark none", "a mark");
   }
   request.edge = value_named<LineEdge>(arguments.edge_name);
   request.plan.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;

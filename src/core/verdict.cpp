@@ -43,8 +43,9 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "",
-     "The path or the tumour's edge lies where the region of interest cuts through the tissue. The specimen continues "
-     "beyond that face."},
+     "The path or the tumour's edge lies where the region of interest, or the end of the scan, cuts through the "
+     "tissue. "
+     "The specimen continues beyond that face."},
     {"program_check", kRefused, {}, "", "", "A safety check of the robot program failed."},
     {"photo_oblique", kRefused, 0.03, "<=", "",
      "Change of scale along the ruler of a photograph: the camera does not look straight down."},
@@ -53,6 +54,12 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"depth", kCaution, 0.9, ">=", "",
      "Least depth of the simulated kerf anywhere along the path, as a share of the planned depth there."},
     {"heat", kCaution, 0.0, ">=", "mm", "Tissue left unheated between the simulated cut and the tumour's edge."},
+    {"painted_skin",
+     kCaution,
+     {},
+     "",
+     "",
+     "The path or the tumour's edge lies on skin that strokes of the brush made (`ct.edits`)."},
     {"typed_transform",
      kCaution,
      {},

@@ -1,9 +1,4 @@
-#include "imaging/segmentation_region.hpp"
-
 #include <incise/imaging/cut_faces.hpp>
-
-#include <algorithm>
-#include <cmath>
 
 namespace incise {
 
@@ -32,21 +27,12 @@ CutFaces::CutFaces(const Segmentation& found) : grid_(found.labels.grid) {
 }
 
 unsigned CutFaces::sides_near(const Vec3& place) const {
-  const Eigen::Array3d at = grid_.index_from_world(place).array();
-  const Eigen::Array3i middle = at.round().cast<int>();
-  constexpr int kReach = 1;  // voxels: a voxel from the middle of a face, which is half a voxel from that of its own
+  const Eigen::Array3i middle = grid_.index_from_world(place).array().round().cast<int>();
   unsigned near = 0;
-  for (int k = middle[2] - kReach; k <= middle[2] + kReach; ++k)
-    for (int j = middle[1] - kReach; j <= middle[1] + kReach; ++j)
-      for (int i = middle[0] - kReach; i <= middle[0] + kReach; ++i) {
-        if (!grid_.contains(i, j, k)) continue;
-        const unsigned sides = sides_[grid_.offset(i, j, k)];
-        for (std::int32_t side = 0; side < 6 && sides != 0; ++side) {
-          if ((sides & 1U << side) == 0) continue;
-          const std::array<int, 3> step = step_towards(side);
-          const Eigen::Array3d face = Eigen::Array3d(i, j, k) + 0.5 * Eigen::Array3d(step[0], step[1], step[2]);
-          if ((face - at).abs().maxCoeff() <= 1.0) near |= 1U << side;
-        }
+  for (int k = middle[2] - 1; k <= middle[2] + 1; ++k)
+    for (int j = middle[1] - 1; j <= middle[1] + 1; ++j)
+      for (int i = middle[0] - 1; i <= middle[0] + 1; ++i) {
+        if (grid_.contains(i, j, k)) near |= sides_[grid_.offset(i, j, k)];
       }
   return near;
 }

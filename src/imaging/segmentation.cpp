@@ -21,6 +21,7 @@ namespace {
 constexpr const char* kStage = "segmenting";
 // Of the volume that is kept: a lesser piece is a crumb, the table or a clamp.
 constexpr double kLeastRivalShare = 0.25;
+constexpr double kCarriedLengths = 4.0;  // of smoothing, within which a cut face is looked for where it was moved to
 constexpr int kGrowth = 3;  // voxels by which the occupancy can reach beyond the body that it is made from
 
 void require_sound_volume(const CtVolume& ct) {
@@ -246,19 +247,6 @@ void note_cut_faces(const VolumeGrid& grid, Segmentation& result) {
                   faces.size(), fmt::join(faces, ", ")));
 }
 
-/// The voxels that a smaller grid has, by their places in its array.
-std::vector<CutVoxel> moved(const std::vector<CutVoxel>& cut, const VolumeGrid& from, const VolumeGrid& to) {
-  const Eigen::Array3i first = from.index_from_world(to.origin_mm).array().round().cast<int>();
-  std::vector<CutVoxel> kept;
-  for (const CutVoxel& voxel : cut) {
-    const auto [i, j, k] = from.voxel_at(static_cast<std::size_t>(voxel.voxel));
-    const std::array<int, 3> at{i - first[0], j - first[1], k - first[2]};
-    if (!to.contains(at[0], at[1], at[2])) continue;
-    kept.push_back({static_cast<std::int32_t>(to.offset(at[0], at[1], at[2])), voxel.side});
-  }
-  return kept;
-}
-
 /// Smoothing shrinks what is curved as strongly as its length: a body of a few millimetres loses a part that counts.
 void note_lost_volume(double sharp_mm3, Segmentation& result) {
   constexpr double kMostShare = 0.02;
@@ -362,7 +350,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   Mask body = find_body(whole, seeds, settings, result);
   report(0.4);
   if (settings.fill_holes) fill_holes(body, result);
-  result.cut = find_cut_voxels(body, whole, ct.grid, settings);
+  result.cut = find_cut_voxels(body, whole, ct.grid, settings.opening_radius_mm);
   note_cut_faces(body.grid, result);
   if (source == Source::Scan) result.verdict.add(of_scan ? *of_scan : check_scan(ct));
 
@@ -379,7 +367,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   const IndexBox kept = grown(box_of(label), settings.margin_voxels);
   result.labels = crop(label, kept);
   result.occupancy = crop(occupancy, kept);
-  result.cut = moved(result.cut, body.grid, result.labels.grid);
+  result.cut = carried_to_surface(result.cut, body.grid, result.labels, kCarriedLengths * result.smoothing_mm);
   result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
   result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
   result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5);

@@ -73,12 +73,14 @@ void fill_working_volume(const CtVolume& ct, const SegmentationSettings& setting
         const std::size_t v = grid.offset(i, j, k);
         const std::int16_t hu = ct.at(at[0], at[1], at[2]);
         work.hu.voxels[v] = hu;
+        const bool is_tissue = hu >= settings.window_low_hu && hu <= settings.window_high_hu;
+        work.tissue.voxels[v] = is_tissue ? 1 : 0;
         bool inside = true;
         for (std::size_t axis = 0; axis < 3; ++axis)
           inside = inside && at[axis] >= box.low[axis] && at[axis] < box.high[axis];
         inside = inside && is_in_roi(settings.roi_box_mm, grid.world_from_index(Vec3(i, j, k)));
         work.region.voxels[v] = inside ? 1 : 0;
-        work.in_window.voxels[v] = inside && hu >= settings.window_low_hu && hu <= settings.window_high_hu ? 1 : 0;
+        work.in_window.voxels[v] = inside && is_tissue ? 1 : 0;
       }
 }
 
@@ -96,8 +98,9 @@ void paint(const Contour& piece, const TissueEdit& edit, const SegmentationSetti
     for (int j = box.low[1]; j < box.high[1]; ++j)
       for (int i = box.low[0]; i < box.high[0]; ++i) {
         const std::size_t v = grid.offset(i, j, k);
-        if (work.region.voxels[v] == 0) continue;
         if (nearest_on(piece, grid.world_from_index(Vec3(i, j, k))).distance_mm > edit.radius_mm) continue;
+        work.tissue.voxels[v] = edit.is_tissue ? 1 : 0;
+        if (work.region.voxels[v] == 0) continue;
         work.in_window.voxels[v] = edit.is_tissue ? 1 : 0;
         std::int16_t& hu = work.hu.voxels[v];
         const bool is_odd = hu < settings.window_low_hu || hu > settings.window_high_hu;
@@ -158,6 +161,7 @@ WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, 
   const VolumeGrid grid = sub_grid(ct.grid, low, size);
   WorkingVolume work{{grid, std::vector<std::int16_t>(grid.voxel_count(), beyond)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
+                     {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)}};
   fill_working_volume(ct, settings, box, low, work);
   apply_edits(settings, work, monitor);
@@ -184,44 +188,95 @@ std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& w
     if (work.in_window.at(at[0], at[1], at[2]) == 0) {
       const std::int16_t hu = work.hu.at(at[0], at[1], at[2]);
       const bool is_tissue = hu >= settings.window_low_hu && hu <= settings.window_high_hu;
-      throw CaseError(kWhere, field, fmt::format("{} with {} HU", text_of(seed), hu),
-                      is_tissue ? std::string("a point that no stroke of `edits` takes away")
-                                : fmt::format("tissue in window_hu [{:g}, {:g}]", settings.window_low_hu,
-                                              settings.window_high_hu));
+      throw CaseError(
+          kWhere, field, fmt::format("{} with {} HU", text_of(seed), hu),
+          is_tissue ? std::string("a point that no stroke of `edits` takes away")
+                    : fmt::format("tissue in window_hu [{:g}, {:g}]", settings.window_low_hu, settings.window_high_hu));
     }
     offsets.push_back(work.hu.grid.offset(at[0], at[1], at[2]));
   }
   return offsets;
 }
 
-std::array<int, 3> step_towards(std::int32_t side) {
-  std::array<int, 3> step{};
+namespace {
+
+using Place = std::array<int, 3>;
+
+Place step_towards(std::int32_t side) {
+  Place step{};
   step.at(static_cast<std::size_t>(side / 2)) = side % 2 == 0 ? -1 : 1;
   return step;
 }
 
+Place moved(const Place& from, const Place& step, int times = 1) {
+  return {from[0] + times * step[0], from[1] + times * step[1], from[2] + times * step[2]};
+}
+
+bool is_in(const Mask& mask, const Place& at) {
+  return mask.grid.contains(at[0], at[1], at[2]) && mask.at(at[0], at[1], at[2]) != 0;
+}
+
+int voxels_within(double length_mm, const VolumeGrid& grid, std::int32_t side) {
+  return static_cast<int>(std::ceil(length_mm / grid.spacing_mm[side / 2]));
+}
+
+/// Whether tissue goes on in the layer whose middle is `beyond`, across the axis of `side`.
+bool goes_on(const WorkingVolume& work, const VolumeGrid& scan, const Place& first, const Place& beyond,
+             std::int32_t side) {
+  constexpr int kLeast = 4;  // of 9: noise has fewer, the rim of a cut more
+  const auto one = static_cast<std::size_t>((side / 2 + 1) % 3), other = static_cast<std::size_t>((side / 2 + 2) % 3);
+  int count = 0;
+  for (int a = -1; a <= 1; ++a)
+    for (int b = -1; b <= 1; ++b) {
+      Place at = beyond;
+      at[one] += a;
+      at[other] += b;
+      const bool is_outside = !scan.contains(at[0] + first[0], at[1] + first[1], at[2] + first[2]);
+      if (is_outside || (!is_in(work.region, at) && is_in(work.tissue, at))) ++count;
+    }
+  return count >= kLeast;
+}
+
+}  // namespace
+
 std::vector<CutVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
-                                      const SegmentationSettings& settings) {
+                                      double opening_mm) {
   const VolumeGrid& grid = body.grid;
-  const Eigen::Array3i first = scan.index_from_world(grid.origin_mm).array().round().cast<int>();
-  const auto goes_on_at = [&](int i, int j, int k) {
-    if (!scan.contains(i + first[0], j + first[1], k + first[2])) return true;
-    const std::size_t v = grid.offset(i, j, k);
-    const std::int16_t hu = work.hu.voxels[v];
-    return work.region.voxels[v] == 0 && hu >= settings.window_low_hu && hu <= settings.window_high_hu;
-  };
+  const Eigen::Array3i low = scan.index_from_world(grid.origin_mm).array().round().cast<int>();
+  const Place first{low[0], low[1], low[2]};
   std::vector<CutVoxel> cut;
-  for (int k = 0; k < grid.size[2]; ++k)
-    for (int j = 0; j < grid.size[1]; ++j)
-      for (int i = 0; i < grid.size[0]; ++i) {
-        const std::size_t v = grid.offset(i, j, k);
-        if (body.voxels[v] == 0) continue;
-        for (std::int32_t side = 0; side < 6; ++side) {
-          const auto [di, dj, dk] = step_towards(side);
-          if (goes_on_at(i + di, j + dj, k + dk)) cut.push_back({static_cast<std::int32_t>(v), side});
-        }
+  for (std::size_t v = 0; v < body.voxels.size(); ++v) {
+    if (body.voxels[v] == 0 && work.in_window.voxels[v] == 0) continue;
+    const Place at = grid.voxel_at(v);
+    for (std::int32_t side = 0; side < 6; ++side) {
+      const Place step = step_towards(side), beyond = moved(at, step);
+      if (is_in(work.region, beyond) || !goes_on(work, scan, first, beyond, side)) continue;
+      Place inwards = at;
+      for (int left = voxels_within(opening_mm, grid, side); left > 0 && !is_in(body, inwards); --left) {
+        if (!is_in(work.in_window, inwards)) break;
+        inwards = moved(inwards, step, -1);
       }
+      if (is_in(body, inwards))
+        cut.push_back({static_cast<std::int32_t>(grid.offset(inwards[0], inwards[1], inwards[2])), side});
+    }
+  }
   return cut;
+}
+
+std::vector<CutVoxel> carried_to_surface(const std::vector<CutVoxel>& cut, const VolumeGrid& from, const Mask& smoothed,
+                                         double reach_mm) {
+  const VolumeGrid& to = smoothed.grid;
+  const Eigen::Array3i low = from.index_from_world(to.origin_mm).array().round().cast<int>();
+  const Place origin{-low[0], -low[1], -low[2]};
+  std::vector<CutVoxel> carried;
+  for (const CutVoxel& voxel : cut) {
+    const Place step = step_towards(voxel.side);
+    Place at = moved(from.voxel_at(static_cast<std::size_t>(voxel.voxel)), origin);
+    for (int left = 1 + voxels_within(reach_mm, to, voxel.side); left > 0 && !is_in(smoothed, at); --left)
+      at = moved(at, step, -1);
+    if (is_in(smoothed, at)) carried.push_back({static_cast<std::int32_t>(to.offset(at[0], at[1], at[2])), voxel.side});
+  }
+  return carried;
 }
 
 IndexBox box_of(const Mask& mask) {

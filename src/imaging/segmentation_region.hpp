@@ -12,7 +12,8 @@ namespace incise {
 struct WorkingVolume {
   CtVolume hu;
   Mask region;     ///< inside the CT's grid and the region of interest
-  Mask in_window;  ///< in the region, with HU in the window or painted as tissue
+  Mask tissue;     ///< HU in the window, or painted as tissue: outside the region, too
+  Mask in_window;  ///< the tissue in the region
 };
 
 /// A grid of `size` voxels whose first is voxel `low` (which may lie outside) of `grid`.
@@ -30,13 +31,17 @@ struct WorkingVolume {
 [[nodiscard]] std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& work,
                                                     const SegmentationSettings& settings);
 
-/// The voxels of the body beyond which tissue goes on outside the region, and those at the end of the volume, beyond
-/// which nobody knows. Skin that merely lies at the region's face is not among them. @pre all on one grid.
+/// Where the region, or the end of the volume, cuts through the tissue of which the body is made: the voxels of the
+/// body that tissue in the region joins, straight on, to such a place. Straight on: within `opening_mm`, which the
+/// opening has taken away. Skin that merely lies at the region's face is not among them: a voxel is cut where 4 of the
+/// 9 voxels of the layer beyond, round the next one, are tissue or outside the volume. @pre all on one grid.
 [[nodiscard]] std::vector<CutVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
-                                                    const SegmentationSettings& settings);
+                                                    double opening_mm);
 
-/// The step along the grid towards a CutVoxel's side.
-[[nodiscard]] std::array<int, 3> step_towards(std::int32_t side);
+/// The same, where the smoothed body begins beneath each of them, straight on: smoothing moves what is curved.
+/// @param smoothed  of `to`, a part of the voxels of `from`. @param reach_mm  farther in, nothing is looked for.
+[[nodiscard]] std::vector<CutVoxel> carried_to_surface(const std::vector<CutVoxel>& cut, const VolumeGrid& from,
+                                                       const Mask& smoothed, double reach_mm);
 
 /// The smallest index box, from low to below high, that holds the mask's voxels. @pre at least one.
 struct IndexBox {

@@ -165,7 +165,7 @@ ReportData experiment_report(const std::vector<Trial>& trials, const ReportJson&
   }
   const std::string refused = refused_specimens(trials);
   data.subtitle +=
-      refused.empty() ? "No step refused a specimen." : "Refused, with the step that did: " + refused + ".";
+      refused.empty() ? "No step refused a specimen." : "Refused, at the step in brackets: " + refused + ".";
   add_picture(
       data, folder / "comparison/box_plot.svg", "Errors before and after",
       "Absolute and signed errors along the contours of the virtual photographs, after the paper's Fig. 6 a, b.");

@@ -19,11 +19,12 @@ constexpr int kOffsetBisections = 48;
 constexpr double kFirstStepMm = 0.01;  // of the search for a waypoint's bracket, doubled each time
 constexpr int kMostDoublings = 7;
 
-[[noreturn]] void throw_outside(const Vec3& where, const std::string& why) {
+[[noreturn]] void throw_outside(double margin_mm, const Vec3& where, const std::string& why) {
   throw CaseError("plan", "lateral_margin_mm",
-                  fmt::format("a path outside the tissue: at {} mm {}", in_words(where), why),
+                  fmt::format("{:g}, a path outside the tissue: at {} mm {}", margin_mm, in_words(where), why),
                   "a ring that stays on the surface seen along the approach",
-                  "The tumour edge lies too close to the tissue's rim for this margin.");
+                  "Too close to the tumour's edge lie the tissue's rim, a fold, or another body over it, such as the "
+                  "palate. Use a smaller margin, or take away with the brush (ct.edits) what is not the specimen");
 }
 
 /// The margin as a function of the place in the picture: f = distance of the surface there from the tumour edge −
@@ -75,18 +76,19 @@ Contour margin_curve(const SurfaceView& view, const Contour& edge, const MarginF
     return frame.x.dot(a) < frame.x.dot(b);
   });
   const Vec2 inside = view.place_of(*rightmost);
-  if (!(field(inside) < 0.0)) throw_outside(*rightmost, "the tumour edge itself is not on the surface");
+  if (!(field(inside) < 0.0)) throw_outside(margin_mm, *rightmost, "the tumour edge itself is not on the surface");
   // A distance in space is never shorter than in the picture, so nothing lies beyond the margin's reach.
   const LevelLoop loop = trace_level_loop(field, inside, margin_mm, std::min(kGridMm, 0.25 * margin_mm));
   const auto in_space = [&](const Vec2& place) {
     const std::optional<SurfacePoint> seen = view.at(place);
     return seen ? seen->position_mm : frame.from_view(Vec3(place.x(), place.y(), frame.z.dot(*rightmost)));
   };
-  if (loop.undefined_at) throw_outside(in_space(*loop.undefined_at), "the surface ends");
+  if (loop.undefined_at) throw_outside(margin_mm, in_space(*loop.undefined_at), "the surface ends");
   Contour curve{.points = {}, .is_closed = true};
   for (const Vec2& place : loop.points) {
     curve.points.push_back(in_space(place));
-    if (!(std::abs(field(place)) <= kMarginToleranceMm)) throw_outside(curve.points.back(), "the surface is folded");
+    if (!(std::abs(field(place)) <= kMarginToleranceMm))
+      throw_outside(margin_mm, curve.points.back(), "the surface is folded");
   }
   return curve;
 }
@@ -111,7 +113,8 @@ ToolPath plan_ring(const SurfaceQuery& surface, const Contour& tumor_edge, const
   Contour entries{.points = {}, .is_closed = true};
   for (const Vec3& p : even.points) {
     const std::optional<Vec2> place = bring_to_margin(view.place_of(p), field);
-    if (!place || !(std::abs(field(*place)) <= kMarginToleranceMm)) throw_outside(p, "the margin cannot be kept");
+    if (!place || !(std::abs(field(*place)) <= kMarginToleranceMm))
+      throw_outside(settings.lateral_margin_mm, p, "the margin cannot be kept");
     entries.points.push_back(view.at(*place)->position_mm);
   }
   entries = start_farthest_along(entries, settings.start_direction);

@@ -90,7 +90,7 @@ StepResult assess_case(const CaseRequest& of, const CalibrationInput& calibratio
   if (study.corrected) {
     Verdict of_corrected = study.about_inputs;
     of_corrected.add(study.corrected->verdict);
-    if (!study.is_accepted) of_corrected.add("not_corrected", {}, kRejectedCorrection);
+    if (!study.is_accepted) of_corrected.add("not_corrected", {}, rejected_correction(study.correction_note));
     run.folder.verdicts({}, of_corrected);
   }
   result["folder"] = run.folder.root().string();

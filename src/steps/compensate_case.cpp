@@ -29,6 +29,8 @@ nlohmann::ordered_json summary_of(const Study& study) {
   json["outcome"] = to_string(study.outcome);
   json["verdict"] = to_json(study.verdict);
   json["accepted"] = study.is_accepted;
+  json["correction_note"] =
+      study.correction_note.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(study.correction_note);
   json["passes"] = simulations - 1;
   json["simulations"] = simulations;
   json["contraction"] = contraction_of(study);
@@ -122,9 +124,7 @@ StepResult compensate_case(const CaseRequest& request, const std::optional<Robus
   result["stages"] = to_json(study.stages);
   if (study.outcome == Outcome::Success && !study.is_accepted) {
     context.monitor.message(Severity::Warning,
-                            "the correction is not accepted: the mean error has to be below the electrode's radius and "
-                            "smaller than before, and "
-                            "depth and closure no worse");
+                            fmt::format("the correction is not accepted: {}", study.correction_note));
   }
   done.is_acceptable = study.is_accepted && is_robust_enough && study.verdict.status() != VerdictStatus::Refused;
   return done;

@@ -42,7 +42,11 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
   return path;
 }
 
-void require_of_case(const ToolPath& path, const ExportRequest& request) {
+void require_of_case(const ToolPath& path, const ExportRequest& request, Monitor& monitor) {
+  if (!request.case_file.empty() && path.specimen_id.empty()) {
+    monitor.message(Severity::Warning, fmt::format("{} names no specimen: it may be another one than that of {}",
+                                                   request.path.string(), request.case_file.string()));
+  }
   if (!are_of_different_specimens(path.specimen_id, request.case_specimen_id)) return;
   throw DataError(request.path, "specimen_id", path.specimen_id,
                   fmt::format("{}'s specimen, {}", request.case_file.string(), request.case_specimen_id),
@@ -212,6 +216,7 @@ void take_case(const CaseFile& file, ExportRequest& request) {
   request.thermal = settings.thermal;
   request.tool = settings.tool;
   request.case_file = file.file;
+  request.case_sha256 = sha256_of_file(file.file);
   request.case_specimen_id = specimen_id_of_case(file);
 }
 
@@ -228,7 +233,7 @@ StepResult export_program(const ExportRequest& given, const StepContext& context
   ToolPath path = read_robot_path(request.path);
   const PathKind kind_in_file = path.kind;
   if (request.kind) path.kind = *request.kind;
-  require_of_case(path, request);
+  require_of_case(path, request, context.monitor);
   if (path.kind == PathKind::Mark) {
     require_a_mark(request.overrides);
     // A case whose cut is open says nothing of the mark of its tumour's edge.
@@ -288,7 +293,7 @@ StepResult export_program(const ExportRequest& given, const StepContext& context
                            {"made_from_sha256", sha256_of_file(request.path)}};
   if (!request.case_file.empty()) {
     provenance.emplace_back("case", request.case_file.filename().string());
-    provenance.emplace_back("case_sha256", sha256_of_file(request.case_file));
+    provenance.emplace_back("case_sha256", request.case_sha256);
   }
   if (!path.specimen_id.empty()) provenance.emplace_back("specimen_id", path.specimen_id);
   if (path.is_virtual) provenance.emplace_back("specimen", kVirtualSpecimen);

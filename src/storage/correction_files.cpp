@@ -12,6 +12,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <string>
+#include <string_view>
 
 namespace incise {
 namespace {
@@ -19,21 +22,29 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kVerdicts = "verdicts";  // the cache's slot
+constexpr const char* kPlan = "plan";
+constexpr const char* kCorrection = "correction";
 
 /// The verdict of the cut along a product's path. A case that is changed and changed back finds it again.
 struct KeptVerdict {
-  std::string product;
   std::string path;  // as path_json
   Verdict verdict;
 };
 void describe(Visitor& v, KeptVerdict& k) {
-  v("product", k.product, "Whose path it is.");
   v("path", k.path, "The path that was cut, as its file has it.");
   v("verdict", k.verdict, "On the cut.");
 }
 
 bool is_of_a_cut(const Verdict& verdict) {
   return !verdict.has("not_simulated");
+}
+
+/// A verdict, and what another one refuses beside it.
+Verdict with_refusals_of(const Verdict& other, Verdict verdict) {
+  for (const VerdictReason& reason : other.reasons()) {
+    if (reason.severity == VerdictStatus::Refused && !verdict.has(reason.id)) verdict.add(reason);
+  }
+  return verdict;
 }
 
 /// One line per pass and waypoint.
@@ -95,42 +106,31 @@ Verdict RunFolder::advice_against(bool is_corrected) const {
 }
 
 void RunFolder::verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) {
-  const auto note = [this](const char* product, const std::optional<Verdict>& verdict, bool is_corrected) {
-    const std::filesystem::path file = folder(product) / "path.json";
-    if (!verdict || !std::filesystem::exists(file)) return;
-    Verdict whole = *verdict;
-    whole.add(advice_against(is_corrected));
-    const Verdict stated = read_path_verdict(file);
-    if (is_of_a_cut(stated) && !is_of_a_cut(whole)) return;
-    if (to_json(stated) != to_json(whole)) write_tool_path(file, read_tool_path(file), whole);
-  };
-  if (!of_planned && !of_corrected) return restore_verdicts();
-  note("plan", of_planned, false);
-  note("correction", of_corrected, true);
-  keep_verdicts();
-}
-
-void RunFolder::keep_verdicts() {
-  std::vector<KeptVerdict> kept;
-  for (const char* product : {"plan", "correction"}) {
-    const std::filesystem::path file = folder(product) / "path.json";
-    if (!std::filesystem::exists(file)) continue;
-    const Verdict verdict = read_path_verdict(file);
-    if (is_of_a_cut(verdict)) kept.push_back({product, path_json(read_tool_path(file)), verdict});
-  }
-  if (!kept.empty()) cache_.keep(kVerdicts, key_of_case(), kept);
-}
-
-void RunFolder::restore_verdicts() {
   Monitor quiet;
-  const auto kept = cache_.find<std::vector<KeptVerdict>>(kVerdicts, key_of_case(), quiet);
-  if (!kept) return;
-  for (const KeptVerdict& known : *kept) {
-    const std::filesystem::path file = folder(known.product) / "path.json";
-    if (!std::filesystem::exists(file) || is_of_a_cut(read_path_verdict(file))) continue;
-    const ToolPath path = read_tool_path(file);
-    if (path_json(path) == known.path) write_tool_path(file, path, known.verdict);
-  }
+  const CacheKey key = key_of_case();
+  auto kept = cache_.find<std::map<std::string, KeptVerdict>>(kVerdicts, key, quiet)
+                  .value_or(std::map<std::string, KeptVerdict>());
+  bool is_new = false;
+  const auto note = [&](const char* product, const std::optional<Verdict>& verdict) {
+    const std::filesystem::path file = folder(product) / "path.json";
+    if (!std::filesystem::exists(file)) return;
+    const std::string path = path_json(read_tool_path(file));
+    if (verdict && is_of_a_cut(*verdict)) {
+      kept[product] = {path, *verdict};
+      is_new = true;
+    }
+    Verdict whole = read_path_verdict(file);
+    const auto known = kept.find(product);
+    if (known != kept.end() && known->second.path == path) whole = known->second.verdict;
+    if (verdict && !is_of_a_cut(*verdict))
+      whole = is_of_a_cut(whole) ? with_refusals_of(*verdict, whole) : with_refusals_of(whole, *verdict);
+    if (is_of_a_cut(whole) && !whole.has("eligibility"))
+      whole.add(advice_against(product == std::string_view(kCorrection)));
+    if (to_json(read_path_verdict(file)) != to_json(whole)) write_tool_path(file, read_tool_path(file), whole);
+  };
+  note(kPlan, of_planned);
+  note(kCorrection, of_corrected);
+  if (is_new) cache_.keep(kVerdicts, key, kept);
 }
 
 }  // namespace incise

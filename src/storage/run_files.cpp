@@ -46,6 +46,7 @@ Json run_json(RunFolder& folder, const Run& run) {
   json["before"] = headline(study.as_planned);
   json["after"] = headline(study.corrected);
   json["accepted"] = study.is_accepted;
+  json["correction_note"] = study.correction_note.empty() ? Json(nullptr) : Json(study.correction_note);
   json["correction"] = study.correction ? correction_summary_json(*study.correction) : Json(nullptr);
   json["specimen_is"] = folder.case_file().settings.is_virtual ? "virtual" : "real";
   json["specimen_id"] = folder.specimen_id();

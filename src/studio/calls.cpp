@@ -502,6 +502,7 @@ Json Calls::run(const Json& arguments) {
     json["verdict"] = to_json(run.verdict);
     json["outcome"] = to_string(study.outcome);
     json["accepted"] = study.is_accepted;
+    json["correction_note"] = study.correction_note.empty() ? Json(nullptr) : Json(study.correction_note);
     json["gate"] = run.program ? to_json(run.gate) : Json(nullptr);
     json["checks"] = run.program ? to_json(run.program->checks.checks) : Json(nullptr);
     json["program"] = run.gate.is_open ? Json(read_text(output / "program" / "program.script")) : Json(nullptr);

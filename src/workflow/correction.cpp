@@ -72,15 +72,20 @@ VerdictStatus status_of_course(const Verdict& verdict) {
   return worst;
 }
 
-/// A correction may not buy the lateral error with depth or closure: it leaves no more layers open than the first cut, and is as deep
-/// everywhere as a cut has to be, or as the first one was.
-bool keeps_depth_and_closure(const Case& settings, const SimulatedCut& first, const SimulatedCut& corrected) {
-  if (open_layers_mm(corrected.incision).size() > open_layers_mm(first.incision).size()) return false;
+/// A correction may not buy the lateral error with depth or closure: it leaves no more layers open than the first cut,
+/// and is as deep everywhere as a cut has to be, or as the first one was. Why a correction buys its gain too dear;
+/// empty: it does not.
+std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& first, const SimulatedCut& corrected) {
+  const std::size_t open = open_layers_mm(corrected.incision).size(), before = open_layers_mm(first.incision).size();
+  if (open > before)
+    return fmt::format("layers of the planned depth that it leaves open: {}, the cut before: {}", open, before);
   const auto least = [&settings](const SimulatedCut& cut) {
     const std::vector<double> shares = depth_shares(settings, cut.incision.kerf.depth);
     return shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
   };
-  return least(corrected) >= std::min(*verdict_rule("depth").limit, least(first));
+  if (least(corrected) >= std::min(*verdict_rule("depth").limit, least(first))) return {};
+  return fmt::format("it is {:.0f} % of the planned depth deep at its shallowest, the cut before {:.0f} %",
+                     100.0 * least(corrected), 100.0 * least(first));
 }
 
 ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {
@@ -179,20 +184,64 @@ Correction correct_converging(const Case& settings, const ToolPath& followed, co
   return correction;
 }
 
-bool is_accepted(const Case& settings, const Correction& correction, const SimulatedCut& first,
-                 const SimulatedCut& corrected) {
-  if (corrected.outcome != Outcome::Success || !keeps_depth_and_closure(settings, first, corrected)) return false;
-  const double radius = radius_mm(settings.tool);
+namespace {
+
+/// Why no pass took the place of the first cut, where one came nearer; empty: none did.
+std::string why_none_was_kept(const ConvergedCompensation& done) {
+  const CompensationPass& first = done.passes.front();
+  const CompensationPass* nearest = nullptr;
+  for (const CompensationPass& pass : done.passes) {
+    if (!pass.mean_abs_error_mm || (first.mean_abs_error_mm && *pass.mean_abs_error_mm >= *first.mean_abs_error_mm))
+      continue;
+    if (nearest == nullptr || *pass.mean_abs_error_mm < *nearest->mean_abs_error_mm) nearest = &pass;
+  }
+  if (nearest == nullptr) return {};
+  const std::string worse =
+      nearest->open_layers > first.open_layers
+          ? fmt::format("leaves more layers open ({} in place of {})", nearest->open_layers, first.open_layers)
+      : nearest->is_success < first.is_success ? std::string("is no success")
+      : nearest->verdict > first.verdict
+          ? fmt::format("is {} in place of {}", to_string(nearest->verdict), to_string(first.verdict))
+          : fmt::format("falls {:.2f} mm short in depth in place of {:.2f} mm", nearest->shortfall_mm,
+                        first.shortfall_mm);
+  return fmt::format("; the pass that came nearest, with a mean |error| of {:.2f} mm, {}", *nearest->mean_abs_error_mm,
+                     worse);
+}
+
+}  // namespace
+
+std::string objection_to(const Case& settings, const Correction& correction, const SimulatedCut& first,
+                         const SimulatedCut& corrected) {
+  if (corrected.outcome != Outcome::Success) return fmt::format("its cut ended as {}", to_string(corrected.outcome));
+  if (std::string loss = loss_of_depth_or_closure(settings, first, corrected); !loss.empty()) return loss;
+  std::optional<double> before, after;
+  std::string none_kept;
+  bool is_at_first = false, is_first_measured = true;
   if (correction.iteration) {
     const ConvergedCompensation& done = *correction.iteration;
     const CompensationPass& best = done.result();
-    const bool is_nearer =
-        !done.passes.front().is_success || *best.mean_abs_error_mm < *done.passes.front().mean_abs_error_mm;
-    return best.is_success && *best.mean_abs_error_mm < radius && (done.best == 0 || is_nearer);
+    is_at_first = done.best == 0;
+    if (is_at_first) none_kept = why_none_was_kept(done);
+    if (!best.is_success) {
+      return is_at_first ? "no pass is better than the cut before it, which is no success itself" + none_kept
+                         : "its best pass is no success";
+    }
+    is_first_measured = done.passes.front().is_success;
+    before = done.passes.front().mean_abs_error_mm;
+    after = best.mean_abs_error_mm;
+  } else {
+    if (first.centerline.abs_error_mm) before = first.centerline.abs_error_mm->mean;
+    if (corrected.centerline.abs_error_mm) after = corrected.centerline.abs_error_mm->mean;
   }
-  const auto& before = first.centerline.abs_error_mm;
-  const auto& after = corrected.centerline.abs_error_mm;
-  return before && after && after->mean < radius && after->mean < before->mean;
+  if (!after || (is_first_measured && !before)) return "its error could not be measured";
+  const double radius = radius_mm(settings.tool);
+  if (!(*after < radius))
+    return fmt::format("{} mean |error| is {:.2f} mm, and has to be below the electrode's radius, {:.2f} mm{}",
+                       is_at_first ? "no pass is better than the cut before it, whose" : "its", *after, radius,
+                       none_kept);
+  if (!is_at_first && is_first_measured && !(*after < *before))
+    return fmt::format("its mean |error| is {:.2f} mm, not below the {:.2f} mm of the cut before it", *after, *before);
+  return {};
 }
 
 }  // namespace incise

@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
 
 namespace incise {
 namespace {
@@ -77,16 +80,16 @@ class WayOfTool {
   double deepest_mm_ = 0.0;
 };
 
-/// Tells which places of the stretched skin lie on a face where the region of interest cuts through the tissue.
-class ArtificialSkin {
+/// The skin at rest under places of the stretched skin.
+class SkinAtRest {
  public:
-  ArtificialSkin(const TissueModel& model, const CutFaces& faces, std::span<const Vec3> stretched)
-      : skin_(boundary_surface(model.mesh)), faces_(faces), search_(at(stretched)) {}
+  SkinAtRest(const TissueModel& model, std::span<const Vec3> stretched)
+      : skin_(boundary_surface(model.mesh)), search_(at(stretched)) {}
 
-  /// The face that made the nearest place of the skin; nothing: it is the specimen's own.
-  [[nodiscard]] std::optional<RegionFace> under(const Vec3& place) const {
+  /// The triangle under the nearest place of the stretched skin, where its corners lie at rest.
+  [[nodiscard]] std::array<Vec3, 3> under(const Vec3& place) const {
     const auto& [a, b, c] = skin_.triangles[search_.nearest(place).triangle.index()];
-    return faces_.under({skin_.vertices[a.index()], skin_.vertices[b.index()], skin_.vertices[c.index()]});
+    return {skin_.vertices[a.index()], skin_.vertices[b.index()], skin_.vertices[c.index()]};
   }
 
  private:
@@ -97,36 +100,61 @@ class ArtificialSkin {
   }
 
   TriMesh skin_;  // at rest, with all vertices of the mesh
-  const CutFaces& faces_;
   SurfaceQuery search_;
 };
 
-/// Places on artificial skin: above and around them lies tissue that the plan does not know.
-void add_cut_faces(const TissueModel& model, const CutFaces& faces, std::span<const Vec3> stretched,
-                   const ToolPath& path, Verdict& verdict) {
-  if (faces.empty()) return;
-  const ArtificialSkin skin(model, faces, stretched);
-  const auto add = [&](std::string_view what, std::span<const Vec3> places) {
-    std::optional<RegionFace> first;
-    std::size_t count = 0, at = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const std::optional<RegionFace> face = skin.under(places[i]);
-      if (!face) continue;
-      if (count++ == 0) {
-        first = face;
-        at = i;
-      }
-    }
-    if (!first) return;
-    verdict.add("cut_face", static_cast<double>(count),
-                fmt::format("{} of {} points of {} lie where the region of interest (ct.roi_box_mm) or the end of the "
-                            "scan cuts through the tissue, on its {} side. The skin there is artificial: the specimen "
-                            "continues beyond it. Move the box's face outwards, or cut elsewhere",
-                            count, places.size(), what, to_string(*first)),
-                VerdictPlace{{}, places[at], fmt::format("point {} of {}", at, what)});
+/// Whether all corners of a triangle lie on the border of a stroke: there, the brush made the skin.
+bool is_painted(const std::array<Vec3, 3>& corners, const TissueEdit& stroke) {
+  constexpr double kOnBorderMm = 1.0;  // the tissue is smoothed, and made of voxels
+  const Contour path{stroke.path_mm, false};
+  return std::ranges::all_of(corners, [&](const Vec3& corner) {
+    return std::abs(nearest_on(path, corner).distance_mm - stroke.radius_mm) < kOnBorderMm;
+  });
+}
+
+/// Counts the places of a list for which something holds, and adds a reason where it holds for any.
+template <class Holds, class Text>
+void add_places(std::string_view id, std::string_view what, std::span<const Vec3> places, const Holds& holds,
+                const Text& text, Verdict& verdict) {
+  std::size_t count = 0, first = 0;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (holds(places[i]) && count++ == 0) first = i;
+  }
+  if (count == 0) return;
+  verdict.add(id, static_cast<double>(count),
+              fmt::format("{} of {} points of {} {}", count, places.size(), what, text(places[first])),
+              VerdictPlace{{}, places[first], fmt::format("point {} of {}", first, what)});
+}
+
+/// Places on skin that is not the specimen's own, or that a person drew.
+void add_made_skin(const Case& settings, const TissueModel& model, const CutFaces& faces,
+                   std::span<const Vec3> stretched, const ToolPath& path, Verdict& verdict) {
+  const std::vector<TissueEdit> strokes = settings.segmentation.edits.value_or(std::vector<TissueEdit>());
+  if (faces.empty() && strokes.empty()) return;
+  const SkinAtRest skin(model, stretched);
+  const auto is_cut = [&](const Vec3& place) { return faces.under(skin.under(place)).has_value(); };
+  const auto is_drawn = [&](const Vec3& place) {
+    const std::array<Vec3, 3> corners = skin.under(place);
+    return std::ranges::any_of(strokes, [&](const TissueEdit& stroke) { return is_painted(corners, stroke); });
   };
-  add("the path", entry_contour(path).points);
-  add("the tumour's edge", path.tumor_edge.points);
+  const auto say_cut = [&](const Vec3& place) {  // above and around it lies tissue that the plan does not know
+    return fmt::format(
+        "lie where the region of interest (ct.roi_box_mm) or the end of the scan cuts through the tissue, "
+        "on its {} side. The skin there is artificial: the specimen continues beyond it. Move that face "
+        "of the box outwards, take a scan or labels that reach farther, or cut elsewhere",
+        to_string(*faces.under(skin.under(place))));
+  };
+  const auto say_drawn = [](const Vec3&) {
+    return std::string(
+        "lie on skin that strokes of the brush made (ct.edits): nothing but the strokes says where the "
+        "specimen's skin is there. Compare it with the scan");
+  };
+  const Points entries = entry_contour(path).points;
+  for (const auto& [what, places] : {std::pair{"the path", std::span<const Vec3>(entries)},
+                                     std::pair{"the tumour's edge", std::span<const Vec3>(path.tumor_edge.points)}}) {
+    add_places("cut_face", what, places, is_cut, say_cut, verdict);
+    add_places("painted_skin", what, places, is_drawn, say_drawn, verdict);
+  }
 }
 
 }  // namespace
@@ -196,7 +224,7 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const
                 fmt::format("the tool's tip goes {:.2f} mm below the platform that supports the tissue, at waypoint {}", -platform->height_mm, platform->waypoint),
                 VerdictPlace{{}, path.waypoints[platform->waypoint].position_mm, fmt::format("waypoint {}", platform->waypoint)});
   }
-  add_cut_faces(model, cut_faces, stretched, path, verdict);
+  add_made_skin(settings, model, cut_faces, stretched, path, verdict);
   return verdict;
 }
 

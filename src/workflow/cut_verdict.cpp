@@ -265,17 +265,24 @@ Verdict verdict_of_contour(const Contour& edge, const TriMesh& surface, const Ve
   return verdict;
 }
 
-Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const SimulatedCut* cut, bool was_correction_asked,
-                       bool is_corrected) {
+std::string uncorrected_path(const std::string& note) {
+  return fmt::format("the correction is not accepted: a program would follow the uncorrected path{}{}",
+                     note.empty() ? "" : ". The correction: ", note);
+}
+
+std::string rejected_correction(const std::string& note) {
+  return fmt::format("this is a correction that was not accepted{}{}", note.empty() ? "" : ": ", note);
+}
+
+Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const SimulatedCut* cut,
+                       const std::optional<std::string>& objection) {
   Verdict verdict = about_inputs;
   if (cut != nullptr) {
     verdict.add(cut->verdict);
   } else {
     verdict.add("outcome", {}, "no cut was simulated");
   }
-  if (cut != nullptr && was_correction_asked && !is_corrected) {
-    verdict.add("not_corrected", {}, kUncorrectedPath);
-  }
+  if (cut != nullptr && objection) verdict.add("not_corrected", {}, uncorrected_path(*objection));
   if (settings.T_robot_sim && !settings.is_virtual) {
     verdict.add("typed_transform", {},
                 "robot.T_robot_sim was typed into the case: no registration confirms that the specimen lies there "

@@ -117,7 +117,9 @@ class Runner {
     const bool was_correction_asked = options_.until >= Stage::Verify && settings_.plan.kind == PlanKind::Ring;
     hand_over_verdicts(was_correction_asked && !study_.is_accepted);
     if (options_.until == Stage::Plan && study_.plan) refuse_before_cut();
-    study_.verdict = verdict_of_run(settings_, study_.about_inputs, verifying_cut(study_), was_correction_asked, study_.is_accepted);
+    study_.verdict = verdict_of_run(
+        settings_, study_.about_inputs, verifying_cut(study_),
+        was_correction_asked && !study_.is_accepted ? std::optional(study_.correction_note) : std::nullopt);
     return std::move(study_);
   }
 
@@ -193,8 +195,12 @@ class Runner {
     if constexpr (std::is_same_v<T, StaticResult>) return fits(*study_.model, value.state);
     if constexpr (std::is_same_v<T, MeshProduct>) return are_of(value.meshing.mesh.vertices, value.meshing.mesh.tets);
     if constexpr (std::is_same_v<T, Segmentation>) {
-      return value.labels.voxels.size() == value.labels.grid.voxel_count() &&
-             value.occupancy.voxels.size() == value.occupancy.grid.voxel_count();
+      const std::size_t voxels = value.labels.grid.voxel_count();
+      return value.labels.voxels.size() == voxels &&
+             value.occupancy.voxels.size() == value.occupancy.grid.voxel_count() &&
+             std::ranges::all_of(value.cut, [&](const CutVoxel& cut) {
+               return cut.voxel >= 0 && static_cast<std::size_t>(cut.voxel) < voxels && cut.side >= 0 && cut.side < 6;
+             });
     }
     if constexpr (std::is_same_v<T, Correction>)
       return !value.iteration || value.iteration->best < value.iteration->passes.size();
@@ -328,15 +334,16 @@ class Runner {
 
   /// Whoever takes a path from its file finds there what its cut is worth.
   void hand_over_verdicts(bool is_correction_rejected) {
-    const auto of = [&](const std::optional<SimulatedCut>& cut, const char* rejection) -> std::optional<Verdict> {
+    const auto of = [&](const std::optional<SimulatedCut>& cut,
+                        const std::string& rejection) -> std::optional<Verdict> {
       if (!cut) return std::nullopt;
       Verdict verdict = study_.about_inputs;
       verdict.add(cut->verdict);
       if (is_correction_rejected) verdict.add("not_corrected", {}, rejection);
       return verdict;
     };
-    sink_.verdicts(given_path_ ? std::nullopt : of(study_.as_planned, kUncorrectedPath),
-                   of(study_.corrected, kRejectedCorrection));
+    sink_.verdicts(given_path_ ? std::nullopt : of(study_.as_planned, uncorrected_path(study_.correction_note)),
+                   of(study_.corrected, rejected_correction(study_.correction_note)));
   }
 
   /// A cut with what is held against it.
@@ -544,7 +551,8 @@ class Runner {
     }
     report("the corrected cut", study_.corrected->verdict);
     study_.outcome = study_.corrected->outcome;
-    study_.is_accepted = is_accepted(settings_, correction, *study_.as_planned, *study_.corrected);
+    study_.correction_note = objection_to(settings_, correction, *study_.as_planned, *study_.corrected);
+    study_.is_accepted = study_.correction_note.empty();
     return true;
   }
 

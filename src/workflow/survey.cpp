@@ -22,13 +22,18 @@ Contour carried_to_rest(const Contour& curve, const TetMesh& mesh, std::span<con
   return rest;
 }
 
-void require_equilibrium(const StaticResult& result, const char* which) {
+void require_equilibrium(const Case& settings, const StaticResult& result, const char* which) {
   if (result.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted and will start over");
   if (result.outcome != Outcome::Success) {
-    throw CaseError("case", "specimen.constraints",
-                    fmt::format("no equilibrium of the {} ({} after {} iterations, residual {:.1e})", which,
-                                to_string(result.outcome), result.iterations, result.relative_residual),
-                    "constraints that the tissue can follow", "Try a smaller displacement or a smaller Poisson's ratio");
+    throw CaseError(
+        "case", "specimen.constraints",
+        fmt::format("no equilibrium of the {} ({} after {} iterations, residual {:.1e})", which,
+                    to_string(result.outcome), result.iterations, result.relative_residual),
+        "constraints that the tissue can follow",
+        settings.constraints
+            ? "Try a smaller displacement or a smaller Poisson's ratio"
+            : "The case names none: by default 15 mm at the back are clamped, 10 mm at the front are pulled "
+              "by 20 mm, and a platform supports the lowest place. State constraints of its own");
   }
 }
 
@@ -64,7 +69,7 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
   MeshingResult survey = mesh_labels(occupancy, SizingField::uniform(survey_mm), MeshingSettings{}, monitor);
   const TissueModel coarse = tissue_of(settings, std::move(survey.mesh));
   const StaticResult stretched = stretch(coarse, workers, monitor);
-  require_equilibrium(stretched, "coarse survey mesh");
+  require_equilibrium(settings, stretched, "coarse survey mesh");
   const ToolPath plan = plan_on(settings, coarse, stretched.state.positions, tumor_edge, line);
 
   MeshProduct product;

@@ -241,6 +241,22 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await until(page, () => window.incise.state.brush.radius_mm === 3.5);
   });
 
+  await step("the brush is found again as it was left", async () => {
+    const take = page.locator("[data-do=brush-take]"),
+      ball = page.locator("[data-do=ball]");
+    await take.click();
+    await goTo(page, "edge");
+    assert.equal(await stateOf(page, "placing"), null);
+    await goTo(page, "see");
+    assert.equal(await take.getAttribute("aria-pressed"), "true");
+    assert.match(await ball.textContent(), /Take a ball away/);
+    await take.click();
+    await goTo(page, "edge");
+    await goTo(page, "see");
+    assert.match(await ball.textContent(), /Add a ball/);
+    await settle(page, "see");
+  });
+
   await step("a slice shows the scan's voxels, with the patient's left on the right", async () => {
     await page.click("button:text-is('All values')");
     await page.fill(".slider:has(label:text-is('Tissue overlay')) input", "0");
@@ -501,6 +517,14 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     assert.ok(moments.length > 2 && needle, `moments: ${moments}`);
     assertParts(parts);
     assertForwards(within);
+    // The same message is there once, with its number.
+    await goTo(page, "run");
+    const said = (await stateOf(page, "messages")).map(({severity, text}) => `${severity} ${text}`),
+      counts = await page.locator(".messages [data-count]").evaluateAll((all) => all.map((one) => one.dataset.count));
+    assert.equal(await page.locator(".messages li").count(), new Set(said).size);
+    assert.ok(counts.length > 0 && counts.every((count) => Number(count) > 1), `${counts}`);
+    await goTo(page, "compare");
+    await settle(page, "compare");
   });
 
   await step("verdict, reasons, numbers and program are those of the study", async () => {

@@ -9,10 +9,12 @@ import {
   coverage,
   goTo,
   idle,
+  inputIn,
   openedStudio,
   runCase,
   stateOf,
   temporaryFolder,
+  type,
   until,
   writeBlock,
 } from "./support.mjs";
@@ -63,4 +65,64 @@ test("a program is offered once every caution is accepted, and it is the one tha
   const kept = fs.readFileSync(path.join(inside, "out", "report.html"), "utf8");
   assert.equal(fs.readFileSync(await report.path(), "utf8"), kept);
   await assertAccessible(page, "program");
+});
+
+// Sets a setting of step Plan, and waits until the case has it.
+async function setPlan(page, label, key, value) {
+  await goTo(page, "plan");
+  await idle(page);
+  await type(inputIn(page, "plan", label), value);
+  await until(page, ([name, wanted]) => window.incise.state.case.settings.plan[name] === wanted, [key, value]);
+  await idle(page);
+}
+
+const kOfProgram = ["download", "play", "copy", "save-report", "accept"].map((name) => `[data-do=${name}]`);
+const kAllOfProgram = [...kOfProgram, "[data-program]", ".player", ".gate", ".panel :text('checks')"];
+
+// There is nothing to save, copy or play, and one sentence says what to do.
+async function assertWithdrawn(page) {
+  await goTo(page, "program");
+  await idle(page);
+  for (const selector of kAllOfProgram) assert.equal(await page.locator(selector).count(), 0, selector);
+  assert.match(await page.textContent("[data-withdrawn=run]"), /Run again/);
+  assert.deepEqual([await stateOf(page, "arm"), await stateOf(page, "run.program")], [null, null]);
+}
+
+test("a change of the case withdraws the program, its checks, its command and the arm", async (t) => {
+  const folder = temporaryFolder(t);
+  writeBlock(folder);
+  const {page} = await openedStudio(t, folder, "case"),
+    boxes = page.locator(".gate input[type=checkbox]"),
+    again = page.locator("[data-do=accept]");
+  await setPlan(page, "Power", "power_w", 20);
+  await runCase(page);
+  await goTo(page, "program");
+  assert.deepEqual([await again.textContent(), await again.isEnabled()], ["Run again", false], "nothing is ticked");
+  for (let k = 0; k < (await boxes.count()); ++k) await boxes.nth(k).check();
+  assert.match(await again.textContent(), /with these accepted/);
+  await again.click();
+  await page.waitForSelector("[data-arm=there]");
+  await idle(page);
+  const revision = await stateOf(page, "run.revision"),
+    margin = await stateOf(page, "case.settings.plan.lateral_margin_mm");
+  for (const selector of ["download", "play", "copy", "save-report"])
+    assert.equal(await page.locator(`[data-do=${selector}]`).count(), 1, selector);
+
+  await setPlan(page, "Power", "power_w", 25);
+  await assertWithdrawn(page);
+  await setPlan(page, "Lateral margin", "lateral_margin_mm", 40);
+  assert.ok(await stateOf(page, "problems.plan"), "no such path can be planned");
+  await assertWithdrawn(page);
+  await goTo(page, "compare");
+  assert.equal(await page.locator("[data-section=to-program] [data-withdrawn=run]").count(), 1);
+
+  // What was accepted is not accepted of the case when it is as it was: it has to be run again.
+  await setPlan(page, "Lateral margin", "lateral_margin_mm", margin);
+  await setPlan(page, "Power", "power_w", 20);
+  assert.equal(await stateOf(page, "case.revision"), revision);
+  await assertWithdrawn(page);
+  await page.click(".panel [data-do=run]");
+  await page.waitForSelector(".gate");
+  assert.deepEqual([await stateOf(page, "run.program"), await page.locator("[data-withdrawn]").count()], [null, 0]);
+  await assertAccessible(page, "program, run again");
 });

@@ -1,6 +1,7 @@
 // Constraints are added one after the other: what they lack meanwhile is said in a normal tone, and the last body stays.
 
 import assert from "node:assert/strict";
+import path from "node:path";
 import {test} from "node:test";
 import {
   assertAccessible,
@@ -10,6 +11,7 @@ import {
   idle,
   inputIn,
   openedStudio,
+  replaceIn,
   stateOf,
   temporaryFolder,
   type,
@@ -203,4 +205,46 @@ test("the default hold is said in words, and a pull that is too long as well", a
     await idle(page);
     assert.deepEqual(page.complaints.splice(0), ["answer 422: /api/call/change"]);
   });
+});
+
+test("where no body can be made, the default is said in words, and one's own constraint replaces it", async (t) => {
+  const folder = temporaryFolder(t),
+    inside = writeBlock(folder);
+  const {page} = await openedStudio(t, folder, "case");
+  await goTo(page, "hold");
+  await fresh(page, "body");
+  const [{setting: clamp}, {setting: pull}] = await stateOf(page, "body.constraints");
+  replaceIn(path.join(inside, "block.msh"), "$Elements", "$Nothing");
+  await page.reload();
+  await goTo(page, "hold");
+  const said = page.locator("[data-default=words]");
+  await said.waitFor();
+  const text = await said.textContent();
+  assert.ok(text.includes(`back end (${clamp.where.end.within_mm} mm)`), text);
+  assert.ok(text.includes(`front end (${pull.where.end.within_mm} mm)`), text);
+  assert.ok(text.includes(`pulled ${-pull.displacement_mm[1]} mm forwards`), text);
+  assert.equal(await page.locator("[data-do=own-constraints]").count(), 0);
+  await add(page, "fixed");
+  assert.equal(await said.count(), 0);
+  await assertAccessible(page, "no body");
+});
+
+test("the place under the robot begins with the stretched tissue on the table", async (t) => {
+  const folder = temporaryFolder(t);
+  writeBlock(folder);
+  const {page} = await openedStudio(t, folder, "case"),
+    state = page.locator("[data-do=place-robot]");
+  await goTo(page, "hold");
+  await fresh(page, "body");
+  const release = await holdBack(page, "stretch");
+  await goTo(page, "plan");
+  await page.click("[data-section=robot] button:text-is('Remove')");
+  await until(page, () => window.incise.state.busy.stretch && !Object.keys(window.incise.state.drafts).length);
+  await state.waitFor();
+  assert.equal(await state.isEnabled(), false, "nobody knows yet how the tissue lies");
+  await release();
+  await fresh(page, "stretch");
+  await state.click();
+  await page.waitForSelector("[data-height]");
+  assert.match(await page.textContent("[data-height]"), /lies on the table/);
 });

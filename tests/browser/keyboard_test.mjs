@@ -114,9 +114,17 @@ test("opening, seeing and planning by keyboard alone", async (t) => {
     await page.clock.install();
     await page.clock.pauseAt(Date.now() + 60_000); // until the test lets it go on, however long the keys take
     const calls = watchCalls(page);
-    for (let k = 0; k < kSteps; ++k) await page.keyboard.press("ArrowUp");
-    assert.equal(Number(await page.inputValue(low)), before + kSteps);
-    assert.equal(await x(), before);
+    const stepped = async () => {
+      for (let k = 0; k < kSteps; ++k) await page.keyboard.press("ArrowUp");
+      assert.equal(Number(await page.inputValue(low)), before + kSteps);
+      assert.equal(await x(), before);
+    };
+    await stepped();
+    await pressOn(page, "[data-section=box] [data-do=undo]"); // before they are sent
+    assert.equal(Number(await page.inputValue(low)), before);
+    await tabTo(page, low);
+    await stepped();
+    assert.deepEqual(await stateOf(page, "history.future"), [], "there is nothing to redo");
     await page.clock.resume();
     await isAt(before + kSteps);
     await fresh(page, "tissue");

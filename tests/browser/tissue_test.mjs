@@ -14,8 +14,11 @@ import {
   incise,
   inputIn,
   look,
+  newPage,
+  openStudio,
   openedStudio,
   pixelIn,
+  replaceIn,
   scenePixel,
   slicePixel,
   stateOf,
@@ -122,6 +125,21 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     const rim = await slicePixel(page, "axial", [at[0] - kRadius, at[1], at[2]]);
     assert.ok(rim[0] > 80 && rim[0] > rim[2] + 40, `orange: ${rim}`);
     assert.ok(Math.max(...(await slicePixel(page, "axial", at))) < 60, "nothing in its middle");
+  });
+
+  await step("a stroke that Escape breaks off is none, and the brush stays", async () => {
+    const calls = watchCalls(page),
+      height = (await stateOf(page, "cross"))[2];
+    await page.mouse.move(...(await pixelIn(page, "axial", [...kFrom, height])));
+    await page.mouse.down();
+    await page.mouse.move(...(await pixelIn(page, "axial", [...kTo, height])), {steps: 8});
+    assert.ok((await page.evaluate(() => window.incise.views.axial.model.stroke.length)) > 1);
+    await page.keyboard.press("Escape");
+    assert.equal(await page.evaluate(() => window.incise.views.axial.model.stroke.length), 0);
+    await page.mouse.up();
+    await idle(page);
+    assert.equal(await stateOf(page, "placing"), "brush-take");
+    assert.deepEqual(calls, []);
   });
 
   await step("a stroke takes tissue away, and is in the case", async () => {
@@ -289,6 +307,20 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     await boxed(kBox);
     await page.click("[data-section=box] [data-do=redo]");
     await boxed(dragged);
+
+    // Undone during another drag: what is under the pointer is nothing to redo.
+    const [x, y] = await pixelIn(page, "axial", [dragged[1][0], 0, (await stateOf(page, "cross"))[2]]);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 2 * pixels, y, {steps: 4});
+    await until(page, () => window.incise.state.preview["ct.roi_box_mm"]);
+    await page.keyboard.press("Control+z");
+    await boxed(kBox);
+    await page.keyboard.press("Escape");
+    await page.mouse.up();
+    await boxed(kBox);
+    await page.click("[data-section=box] [data-do=redo]");
+    await boxed(dragged);
     await page.click("[data-section=box] [data-do=undo]");
     await boxed(kBox);
     calls.length = 0;
@@ -296,12 +328,25 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     // Back where it was, or broken off: there is nothing to write.
     await dragBy(5, 0);
     await page.mouse.up();
-    await dragBy(5);
-    await page.locator("[data-view=axial] canvas").dispatchEvent("pointercancel", {pointerId: 1});
-    await until(page, (x) => window.incise.views.axial.model.box[1][0] === x, kBox[1][0]);
-    await page.mouse.up();
-    await idle(page);
-    assert.deepEqual(calls, []);
+    const canvas = page.locator("[data-view=axial] canvas");
+    const breaks = [
+      () => canvas.dispatchEvent("pointercancel", {pointerId: 1}),
+      () => canvas.evaluate((node) => node.releasePointerCapture(1)),
+      () => page.keyboard.press("Escape"),
+      () => page.evaluate(() => document.querySelector("[data-go=photograph]").click()), // where there are no slices
+    ];
+    for (const breakOff of breaks) {
+      await dragBy(5);
+      await breakOff();
+      await page.mouse.move(from[0] + 8 * pixels, from[1], {steps: 4});
+      await until(page, (high) => window.incise.views.axial.model.box[1][0] === high, kBox[1][0]);
+      await page.mouse.up();
+      await idle(page);
+      assert.deepEqual(await stateOf(page, "preview"), {});
+      assert.deepEqual(calls, [], `${breakOff}`);
+    }
+    await goTo(page, "see");
+    await fresh(page, "tissue");
     await page.click("button:text-is('Remove the box')");
     await boxed(null);
     assert.deepEqual(await stateOf(page, "tissue.summary"), found);
@@ -415,5 +460,138 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
 
   await step("nothing was complained of", async () => {
     assert.deepEqual(page.complaints, []);
+  });
+});
+
+test("what is set, typed, dragged or painted for a case never reaches another", async (t) => {
+  const folder = temporaryFolder(t),
+    step = chain(t),
+    first = writePhantom(folder, "--format", "nrrd"),
+    other = path.join(folder, "other");
+  replaceIn(path.join(first, "case.yaml"), /^ct:$/m, `ct:\n  roi_box_mm: ${JSON.stringify(kBox)}`);
+  fs.cpSync(first, other, {recursive: true});
+  replaceIn(path.join(other, "case.yaml"), /title: .*/, "title: Another one");
+  const texts = () => [first, other].map((inside) => fs.readFileSync(path.join(inside, "case.yaml"), "utf8")),
+    before = texts();
+  const {studio, browser, page} = await openedStudio(t, folder, "specimen"),
+    calls = watchCalls(page),
+    greatest = inputIn(page, "window", "greatest"),
+    x = page.locator("[data-section=box] fieldset input").first();
+  const isOpen = (name) =>
+    until(page, (text) => window.incise.state.case.file.includes(text) && window.incise.state.scan, `/${name}/`);
+  const settled = async (name) => {
+    await isOpen(name);
+    await fresh(page, "tissue");
+    assert.deepEqual(await stateOf(page, "preview"), {});
+  };
+  const openElsewhere = async (name) => {
+    const {answer} = await studio.call("files");
+    await studio.call("open", {file: answer.entries.find((entry) => entry.name === name).id});
+    await isOpen(name);
+  };
+  const openHere = async (name) => {
+    await goTo(page, "open");
+    await page.click(`[data-file="${name}"]`);
+    await until(page, () => window.incise.state.busy.open);
+    await goTo(page, "see");
+  };
+  const at = async (...place) => pixelIn(page, "axial", [...place, (await stateOf(page, "cross"))[2]]);
+  await settled("specimen");
+
+  await step("a face that is dragged while another client opens a case", async () => {
+    await page.mouse.move(...(await at(kBox[1][0], 0)));
+    await page.mouse.down();
+    await page.mouse.move(...(await at(kBox[1][0] + 5, 0)), {steps: 4});
+    await until(page, () => window.incise.state.preview["ct.roi_box_mm"]);
+    await openElsewhere("other");
+    await page.mouse.move(...(await at(kBox[1][0] + 9, 0)), {steps: 4});
+    await page.mouse.up();
+    await settled("other");
+    assert.deepEqual(texts(), before);
+  });
+
+  await step("a stroke that is painted meanwhile", async () => {
+    await page.click("[data-do=brush-take]");
+    await page.mouse.move(...(await at(...kFrom)));
+    await page.mouse.down();
+    await page.mouse.move(...(await at(...kTo)), {steps: 4});
+    await openElsewhere("specimen");
+    assert.equal(await page.evaluate(() => window.incise.views.axial.model.stroke.length), 0);
+    await page.mouse.up();
+    await settled("specimen");
+    assert.deepEqual(texts(), before);
+  });
+
+  await step("a number that is half typed", async () => {
+    await greatest.fill("171");
+    await openElsewhere("other");
+    assert.equal(Number(await greatest.inputValue()), await stateOf(page, "case.settings.ct.window_hu.1"));
+    assert.equal(await page.evaluate(() => document.activeElement.tagName), "H2", "the heading has the focus");
+    assert.deepEqual(texts(), before);
+    assert.ok(!calls.includes("change"));
+  });
+
+  await step("what waits for a change that is under way", async () => {
+    let held = null;
+    await page.route("**/api/call/change", (route) => (held ? route.continue() : (held = route)));
+    await type(greatest, 172);
+    await until(page, () => window.incise.state.busy.change);
+    await x.focus();
+    await page.keyboard.press("ArrowUp");
+    await type(greatest, 173);
+    await openElsewhere("specimen");
+    await held.continue();
+    await until(page, () => !window.incise.state.busy.change);
+    await settled("specimen");
+    assert.deepEqual(texts(), before);
+    assert.equal(calls.filter((name) => name === "change").length, 1);
+    assert.deepEqual(page.complaints.splice(0), ["answer 409: /api/call/change"]);
+    await page.unroute("**/api/call/change");
+  });
+
+  await step("what is set while the page opens another", async () => {
+    calls.length = 0;
+    const answer = new Promise((resolve) => {
+      page.route("**/api/call/open", async (route) => {
+        const response = await route.fetch(); // the server has opened it
+        resolve(() => route.fulfill({response}));
+      });
+    });
+    await openHere("other");
+    await type(greatest, 174);
+    await x.focus();
+    await page.keyboard.press("ArrowUp");
+    (await answer)();
+    await settled("other");
+    assert.ok(!calls.includes("change"), calls.join());
+    assert.deepEqual(texts(), before);
+    await page.unroute("**/api/call/open");
+  });
+
+  await step("but where that fails, it is sent to the case that stays", async () => {
+    let held = null;
+    await page.route("**/api/call/open", (route) => (held = route));
+    await openHere("specimen");
+    await type(greatest, 175);
+    assert.ok(!calls.includes("change"));
+    await held.fulfill({status: 422, json: {problem: {path: "", found: "", expected: "", hint: "", message: "No."}}});
+    await until(page, () => window.incise.state.case.settings.ct.window_hu[1] === 175);
+    await settled("other");
+    assert.equal(texts()[0], before[0]);
+    assert.deepEqual(page.complaints.splice(0), ["answer 422: /api/call/open"]);
+    await page.unroute("**/api/call/open");
+  });
+
+  await step("a value that was stepped just before the page goes away is kept", async () => {
+    const next = await newPage(browser);
+    await openStudio(next, studio);
+    await page.clock.install();
+    await page.clock.pauseAt(Date.now() + 60_000); // it would wait for ever
+    await x.focus();
+    await page.keyboard.press("ArrowUp");
+    await page.goto("about:blank");
+    await until(next, (low) => window.incise.state.case.settings.ct.roi_box_mm[0][0] === low, kBox[0][0] + 1);
+    await fresh(next, "tissue");
+    assert.deepEqual([...page.complaints, ...next.complaints], []);
   });
 });

@@ -376,7 +376,7 @@ class CaseTest(CommandTest):
         self.assert_path_refused(BAD_CASE, "path: waypoints", "waypoint 0", "above the surface", "expected at most 2 mm", z=25.0)
 
     def test_a_given_path_through_the_platform_is_refused(self):
-        self.assert_path_refused(BAD_CASE, "path: depth_mm", "13 mm at waypoint 0", "mm thick", "reach the platform", depth_mm=13)
+        self.assert_path_refused(BAD_CASE, "path: depth_mm", "13 mm at waypoint 0", "mm thick", "come out beneath", depth_mm=13)
 
     def test_a_given_path_without_depth_is_refused(self):
         self.assert_path_refused(BAD_CASE, "path: depth_mm", "0 mm at waypoint 0", "above 0 mm", depth_mm=0)

@@ -235,9 +235,9 @@ class TrackTest(CommandTest):
         self.assertEqual((result["mark"], result["cloud_points"]), ("none", marked["cloud_points"]))
         self.assertEqual(sorted(path.name for path in self.out.iterdir()), ["cloud.ply", "manifest.json"])
         done = self.incise(*self.scene(), "--mark", "none", "--camera", "mount.json", "--plan")
-        self.assert_refused(done, BAD_CASE, "--plan: found given with --mark none")
+        self.assert_refused(done, BAD_CASE, "--plan: found an option about the mark, with --mark none")
         for option in (("--open",), ("--edge", "inner"), ("--margin-mm", 4), ("--max-gap-mm", 2), ("--depth-mm", 3)):
-            self.assert_refused(self.incise(*self.scene(), "--mark", "none", *option), BAD_CASE, f"{option[0]}: found given with --mark none")
+            self.assert_refused(self.incise(*self.scene(), "--mark", "none", *option), BAD_CASE, f"{option[0]}: found an option about the mark")
 
     def test_a_hole_in_the_depth_is_bridged_or_told(self):
         ring_px = round(10.0 / PIXEL_MM)

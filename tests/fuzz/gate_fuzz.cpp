@@ -306,7 +306,7 @@ void try_variants(const std::string& where, const Finished& done, int count, Ran
     variant.incision.kerf.deep_margin = deep_margin(variant.incision.kerf.body, variant.incision.kerf.depth, incision);
     variant.verdict = verdict_of_cut(settings, variant);
     Verdict inputs = verdict_of_contour(edge, drawn, settings.plan.approach);
-    const Verdict verdict = verdict_of_run(settings, inputs, &variant, false, true);
+    const Verdict verdict = verdict_of_run(settings, inputs, &variant, {});
     const std::string place = fmt::format("{}, variant {} ({})", where, k, how);
     hold_to_oracle(place, verdict, oracle_mm(variant.incision.kerf.body.surface, tumor), settings.close_margin_mm, tally);
     // Depth and closure have oracles of a line each.

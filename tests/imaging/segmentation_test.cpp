@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/geometry/iso_surface.hpp>
 #include <incise/imaging/cut_faces.hpp>
 #include <incise/imaging/phantom.hpp>
 #include <incise/imaging/segmentation.hpp>
@@ -271,6 +272,71 @@ TEST(CutFaces, AreThoseOfABumpAloneWhereOnlyABumpReachesTheRegionsFace) {
   const CutFaces faces(run(ct, settings));
   EXPECT_EQ(faces.under(about(Vec3(12, 12, 20.0))), RegionFace::Superior);
   EXPECT_FALSE(faces.under(about(Vec3(28, 28, 20.0)))) << "sound skin at the same height";
+}
+
+/// A slab, or a column of radius 12 mm, that goes on beyond a box that ends at z = 20.
+CtVolume tissue_through_box(bool is_column, double hu_above_12 = 50.0) {
+  return scan_of(grid_of(40, 40, 34), [=](const Vec3& p) {
+    const bool is_wide = p.x() > 5 && p.x() < 35 && p.y() > 5 && p.y() < 35;
+    const bool is_in = is_column ? (p - Vec3(20, 20, p.z())).norm() < 12 : is_wide;
+    if (!is_in || p.z() < 4 || p.z() > 30) return -1000.0;
+    return p.z() > 12.5 ? hu_above_12 : 50.0;
+  });
+}
+
+/// The share of the skin between two radii about the column's axis, looking up at z > 10, that is artificial.
+double share_of_top(const Segmentation& found, double radius_mm) {
+  const CutFaces faces(found);
+  const TriMesh skin = iso_surface(found.occupancy, 0.5);
+  int top = 0, cut = 0;
+  for (const auto& [a, b, c] : skin.triangles) {
+    const std::array<Vec3, 3> corners{skin.vertices[a.index()], skin.vertices[b.index()], skin.vertices[c.index()]};
+    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    if (normal.z() < 0.6 || corners[0].z() < 10 || (corners[0] - Vec3(20, 20, corners[0].z())).norm() > radius_mm)
+      continue;
+    ++top;
+    cut += faces.under(corners) == RegionFace::Superior ? 1 : 0;
+  }
+  EXPECT_GT(top, 50);
+  return static_cast<double>(cut) / std::max(1, top);
+}
+
+TEST(CutFaces, AreSeenWhereTheTissueWasPainted) {
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
+  std::vector<TissueEdit> strokes;
+  for (const int y : {16, 20, 24})
+    strokes.push_back({.is_tissue = true, .radius_mm = 9.0, .path_mm = {Vec3(16, y, 20), Vec3(24, y, 20)}});
+  settings.edits = strokes;
+  const Segmentation found = run(tissue_through_box(false, 900.0), settings);
+  EXPECT_EQ(found.cut_faces(), 1);
+  EXPECT_GT(share_of_top(found, 10.0), 0.95);  // the strokes' ends are round
+  // A stroke that takes the tissue away on both sides of the face leaves nothing that is cut.
+  settings.edits = {{.is_tissue = false, .radius_mm = 40.0, .path_mm = {Vec3(20, 20, 55)}}};
+  EXPECT_EQ(run(tissue_through_box(false), settings).cut_faces(), 0);
+}
+
+TEST(CutFaces, AreFollowedWhereOpeningAndSmoothingMoveThem) {
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
+  for (const double opening_mm : {0.0, 4.0, 6.0}) {
+    for (const double smoothing_mm : {0.0, 1.2, 5.0}) {
+      settings.opening_radius_mm = opening_mm;
+      settings.smoothing_mm = smoothing_mm;
+      EXPECT_GT(share_of_top(run(tissue_through_box(true), settings), 10.0), 0.95) << opening_mm << " " << smoothing_mm;
+    }
+  }
+}
+
+TEST(CutFaces, AreNotMadeByNoiseAboveTheSkin) {
+  CtVolume ct = tissue_through_box(true);
+  for (std::size_t v = 0; v < ct.voxels.size(); ++v) {
+    const auto [i, j, k] = ct.grid.voxel_at(v);
+    if (k > 20) ct.voxels[v] = v % 37 == 0 ? 50 : -1000;  // above z = 20: air with specks
+  }
+  SegmentationSettings settings;
+  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
+  EXPECT_EQ(run(ct, settings).cut_faces(), 0);
 }
 
 TEST(CutFaces, LieAtTheScansEndWhereAnObliqueScanEndsWithinTheRegion) {

@@ -425,11 +425,43 @@ TEST_F(RunFolderTest, ACaseThatIsChangedAndChangedBackFindsTheVerdictOfItsCut) {
   other.waypoints[0].depth_mm += 1.0;
   std::filesystem::remove_all(folder_ / "out" / "plan");
   EXPECT_EQ(planned("", other), std::vector<std::string>{"not_simulated"}) << "a verdict is that of one path";
-  // Refusals that need no cut do not take the place of a cut's verdict, and are kept by nobody.
   std::filesystem::remove_all(folder_ / "out" / "plan");
   EXPECT_EQ(planned("", small_ring()), std::vector<std::string>{"depth"});
-  open().verdicts(refusals_of(verdict, "the run ended before it cut along the path"), std::nullopt);
+  // What is refused without a cut joins the verdict of the cut, and is not kept with it.
+  Verdict refused;
+  refused.add("cut_face", 1.0, "on a face");
+  open().verdicts(refusals_of(refused, "the run ended before it cut along the path"), std::nullopt);
   EXPECT_TRUE(read_path_verdict(file).has("depth"));
+  EXPECT_TRUE(read_path_verdict(file).has("cut_face"));
+  std::filesystem::remove_all(folder_ / "out" / "plan");
+  EXPECT_EQ(planned("", small_ring()), std::vector<std::string>{"depth"});
+  // The advice of an assessment that came later goes with a verdict that is found again.
+  std::filesystem::remove_all(folder_ / "out" / "plan");
+  RunFolder advised = open();
+  advised.plan(note("plan"), small_ring());
+  std::filesystem::create_directories(folder_ / "out" / "assessment");
+  std::ofstream(folder_ / "out" / "assessment" / "assess.json")
+      << R"({"advice": "do_not_use", "reasons": ["far off"]})";
+  advised.verdicts(std::nullopt, std::nullopt);
+  EXPECT_TRUE(read_path_verdict(file).has("depth"));
+  EXPECT_TRUE(read_path_verdict(file).has("eligibility"));
+}
+
+TEST_F(RunFolderTest, ARunThatOnlySimulatesLeavesTheVerdictOfTheCorrection) {
+  const ToolPath ring = small_ring();
+  open().plan(note("plan"), ring);
+  open().correction(note("correction"), small_correction(ring));
+  Verdict planned, corrected;
+  planned.add("depth", 0.5, "too shallow");
+  corrected.add("heat", -0.5, "warm");
+  open().verdicts(planned, corrected);
+  open().write_manifest_to(folder_ / "out", 1.0);
+  Monitor quiet;
+  RunFolder again = open();
+  again.remove_what_is_out_of_date(Stage::Simulate, quiet);
+  again.verdicts(planned, std::nullopt);
+  EXPECT_TRUE(read_path_verdict(folder_ / "out" / "correction" / "path.json").has("heat"));
+  EXPECT_FALSE(read_path_verdict(folder_ / "out" / "correction" / "path.json").has("not_simulated"));
 }
 
 TEST_F(RunFolderTest, ACorrectionIsWrittenPassByPass) {

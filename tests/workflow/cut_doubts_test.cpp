@@ -150,5 +150,20 @@ TEST(VerdictBeforeCut, RefusesAPathOrAnEdgeOnAFaceThatTheRegionMade) {
   EXPECT_EQ(verdict.reasons().front().at->position_mm, Vec3(25, 12, 8));
 }
 
+TEST(VerdictBeforeCut, NamesSkinThatStrokesOfTheBrushMade) {
+  const TissueModel model = block(24, 0.45);
+  const auto judged = [&](const TissueEdit& stroke) {
+    Case settings;
+    settings.segmentation.edits = {stroke};
+    return verdict_before_cut(settings, model, {}, model.mesh.vertices, ring());
+  };
+  const Verdict verdict = judged({false, 40.0, {Vec3(12, 12, 48)}});  // its border is the block's top
+  ASSERT_TRUE(verdict.has("painted_skin"));
+  EXPECT_EQ(verdict.status(), VerdictStatus::Caution);
+  EXPECT_THAT(verdict.reasons().front().message, HasSubstr("24 of 24 points of the path lie on skin that strokes"));
+  EXPECT_FALSE(judged({false, 30.0, {Vec3(12, 12, 48)}}).has("painted_skin")) << "a stroke in the air";
+  EXPECT_FALSE(judged({true, 2.0, {Vec3(12, 12, 3)}}).has("painted_skin")) << "a stroke within the tissue";
+}
+
 }  // namespace
 }  // namespace incise

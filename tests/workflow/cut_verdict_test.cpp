@@ -214,9 +214,9 @@ TEST(VerdictOfRun, CautionsOfATypedTransformOfABodyThatIsNotVirtual) {
   const SimulatedCut cut = sound_cut();
   Case settings;
   settings.T_robot_sim = Mat4::Identity();
-  EXPECT_THAT(ids_of(verdict_of_run(settings, {}, &cut, true, true)), ElementsAre("typed_transform"));
+  EXPECT_THAT(ids_of(verdict_of_run(settings, {}, &cut, {})), ElementsAre("typed_transform"));
   settings.is_virtual = true;
-  EXPECT_THAT(ids_of(verdict_of_run(settings, {}, &cut, true, true)), IsEmpty());
+  EXPECT_THAT(ids_of(verdict_of_run(settings, {}, &cut, {})), IsEmpty());
 }
 
 TEST(VerdictOfRun, IsThatOfTheCutWhichVerifiesThePathAndOfTheInputs) {
@@ -224,9 +224,9 @@ TEST(VerdictOfRun, IsThatOfTheCutWhichVerifiesThePathAndOfTheInputs) {
   inputs.add("contour_flipped", 60.0, "RAS");
   SimulatedCut cut = sound_cut();
   cut.verdict.add("depth", 0.5, "shallow");
-  EXPECT_THAT(ids_of(verdict_of_run(Case{}, inputs, &cut, true, true)), ElementsAre("contour_flipped", "depth"));
-  EXPECT_THAT(ids_of(verdict_of_run(Case{}, {}, &cut, true, false)), ElementsAre("depth", "not_corrected"));
-  EXPECT_THAT(ids_of(verdict_of_run(Case{}, {}, nullptr, false, false)), ElementsAre("outcome"));
+  EXPECT_THAT(ids_of(verdict_of_run(Case{}, inputs, &cut, {})), ElementsAre("contour_flipped", "depth"));
+  EXPECT_THAT(ids_of(verdict_of_run(Case{}, {}, &cut, "its cut is open")), ElementsAre("depth", "not_corrected"));
+  EXPECT_THAT(ids_of(verdict_of_run(Case{}, {}, nullptr, {})), ElementsAre("outcome"));
 }
 
 }  // namespace

@@ -144,11 +144,16 @@ TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
   };
   Correction paper;
   paper.method = CompensationMethod::Paper;
-  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 4.6, true))) << "shallower, and deep enough";
-  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.9, 3.6, true), cut_with(0.3, 2.6, true))) << "as in the head CT";
-  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.9, 2.6, true), cut_with(0.3, 3.6, true)));
-  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 5.0, false)));
-  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.9, 5.0, false), cut_with(0.3, 5.0, false))) << "no worse; the verdict refuses both";
+  EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 4.6, true)), "")
+      << "shallower, and deep enough";
+  EXPECT_THAT(objection_to(settings, paper, cut_with(1.9, 3.6, true), cut_with(0.3, 2.6, true)),
+              ::testing::HasSubstr("52 % of the planned depth deep at its shallowest, the cut before 72 %"))
+      << "as in the head CT";
+  EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 2.6, true), cut_with(0.3, 3.6, true)), "");
+  EXPECT_THAT(objection_to(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 5.0, false)),
+              ::testing::HasSubstr("layers of the planned depth that it leaves open: 1, the cut before: 0"));
+  EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 5.0, false), cut_with(0.3, 5.0, false)), "")
+      << "no worse; the verdict refuses both";
 }
 
 TEST(IsAccepted, ByThePapersRule) {
@@ -161,12 +166,15 @@ TEST(IsAccepted, ByThePapersRule) {
   };
   Correction paper;
   paper.method = CompensationMethod::Paper;
-  EXPECT_TRUE(is_accepted(settings, paper, cut_with(1.99), cut_with(0.33)));
-  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.99), cut_with(0.63))) << "the paper's own case that is not";
-  EXPECT_FALSE(is_accepted(settings, paper, cut_with(0.3), cut_with(0.4))) << "worse than before";
+  EXPECT_EQ(objection_to(settings, paper, cut_with(1.99), cut_with(0.33)), "");
+  EXPECT_THAT(objection_to(settings, paper, cut_with(1.99), cut_with(0.63)),
+              ::testing::HasSubstr("0.63 mm, and has to be below the electrode's radius, 0.50 mm"))
+      << "the paper's own case that is not";
+  EXPECT_THAT(objection_to(settings, paper, cut_with(0.3), cut_with(0.4)), ::testing::HasSubstr("0.40 mm, not below the 0.30 mm"))
+      << "worse than before";
   SimulatedCut open = cut_with(0.1);
   open.outcome = Outcome::OpenLoop;
-  EXPECT_FALSE(is_accepted(settings, paper, cut_with(1.0), open));
+  EXPECT_THAT(objection_to(settings, paper, cut_with(1.0), open), ::testing::HasSubstr("open_loop"));
 }
 
 TEST(RunStudy, ASecondRunTakesEveryProductFromTheCache) {

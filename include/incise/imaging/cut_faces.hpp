@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace incise {
@@ -15,7 +14,7 @@ namespace incise {
 
 /// Tells which places of a specimen's skin lie where the region of interest, or the end of the scan, has cut through
 /// its tissue. The skin there is artificial: the specimen continues beyond it. Labels that were drawn elsewhere are
-/// taken for whole, unless they reach the end of their volume.
+/// taken for whole, unless they reach the end of their volume; so is a scan that was padded with air.
 class CutFaces {
  public:
   CutFaces() = default;                          ///< nothing is cut: a specimen that was given as a mesh

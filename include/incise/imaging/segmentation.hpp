@@ -60,8 +60,8 @@ inline constexpr std::array<std::string_view, 6> kRegionFaceNames{"right",     "
   return kRegionFaceNames;
 }
 
-/// A voxel of the body beyond which the tissue goes on although the body ends there: the region of interest, or the
-/// volume, has cut it.
+/// A labelled voxel at a face of the body that the region of interest, or the end of the volume, has made by cutting
+/// through tissue.
 struct CutVoxel {
   std::int32_t voxel = 0;  ///< its place in the labels' array
   std::int32_t side = 0;   ///< where the tissue goes on, along the grid: 0 to 5 are -i, +i, -j, +j, -k, +k
@@ -86,7 +86,7 @@ struct Segmentation {
   std::size_t hole_voxels = 0;   ///< and their voxels
   /// Body voxels at each RegionFace beyond which tissue goes on: > 0 where the region or the volume cuts through it
   std::array<std::size_t, 6> cut_voxels{};
-  std::vector<CutVoxel> cut;            ///< these voxels, once for each side
+  std::vector<CutVoxel> cut;            ///< where the label begins beneath these, once for each side
   double smoothing_mm = 0.0;            ///< that was taken
   Verdict verdict;                      ///< what argues against this tissue: check_scan, and a body that the region cuts off
   [[nodiscard]] int cut_faces() const;  ///< how many of the six cut through tissue
@@ -103,7 +103,7 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("holes_filled", s.holes_filled, "Cavities.");
   v("hole_voxels", s.hole_voxels, "Voxels of the cavities.");
   v("cut_voxels", s.cut_voxels, "Voxels of the body at each face of the region, where tissue goes on beyond it.");
-  v.bulk("cut", s.cut, "These voxels.");
+  v.bulk("cut", s.cut, "Where the label begins beneath these voxels.");
   v.derived("cut_faces", s.cut_faces(), "How many faces of the region cut through tissue.");
   v("smoothing_mm", s.smoothing_mm, "Length that was taken.");
   v("verdict", s.verdict, "On this tissue.");

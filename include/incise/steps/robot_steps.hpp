@@ -42,6 +42,7 @@ struct ExportRequest {
   ThermalSettings thermal;             ///< of the tissue: a path does not say what it is cut into
   std::optional<Tool> tool;            ///< absent: a needle as long as `checks` has it
   std::filesystem::path case_file;     ///< whose settings these are; empty: no case's
+  std::string case_sha256;             ///< of that file
   std::string case_specimen_id;        ///< of that case; empty: not known
   std::vector<std::string> overrides;  ///< checks that a person takes on them
   std::vector<std::string> accepted;   ///< cautions of the verdict, likewise

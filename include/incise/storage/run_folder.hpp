@@ -82,8 +82,9 @@ class RunFolder : public Inputs, public ProductSink {
            const SimulatedCut& cut) override;
   void correction(const ProductNote& note, const Correction& correction) override;
   void absent(const std::string& name) override;
-  /// Writes each verdict beside its path. Without any, the path gets the verdict of its last cut back, if that cut was
-  /// made with the settings and inputs that the case has now.
+  /// Writes each verdict beside its path. Without any, a path gets the verdict of its last cut back, if the last run
+  /// that cut was made with the settings and inputs that the case has now. A verdict without a cut adds what it refuses
+  /// to that of a cut.
   void verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
 
   /// Before a run up to a stage: removes a program and a summary that were made with other settings or inputs than the
@@ -101,8 +102,6 @@ class RunFolder : public Inputs, public ProductSink {
   [[nodiscard]] Manifest manifest_now(double wall_s);
   /// Of everything that a verdict depends on beside its path.
   [[nodiscard]] CacheKey key_of_case();
-  void keep_verdicts();
-  void restore_verdicts();
   /// Whether a result's manifest has the settings, inputs, version and specimen that this case has now.
   [[nodiscard]] bool is_made_as_now(const std::filesystem::path& result);
   /// Writes the folder of a product, unless it is there already. @throws DataError where a file of it was changed

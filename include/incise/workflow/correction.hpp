@@ -42,10 +42,11 @@ using CutOfPass = std::function<SimulatedCut(int pass, const ToolPath& path)>;
                                             const SurfaceQuery& surface, std::optional<double> floor_mm,
                                             const CutOfPass& cut, Monitor& monitor);
 
-/// The paper's rule (II-C.5): a corrected cut is accepted when its mean |error| is below the electrode's radius. Ours
-/// adds that it has to succeed, to be nearer than the first cut, where that could be measured, and not to buy that with depth or closure:
-/// it leaves no more planned layers open than the first cut, and its least depth is that of the rule `depth`, or that of the first cut.
-[[nodiscard]] bool is_accepted(const Case& settings, const Correction& correction, const SimulatedCut& first,
-                               const SimulatedCut& corrected);
+/// Why a correction is not accepted, as the end of a sentence; empty: it is. The paper's rule (II-C.5): a corrected cut
+/// is accepted when its mean |error| is below the electrode's radius. Ours adds that it has to succeed, to be nearer
+/// than the first cut, where that could be measured, and not to buy that with depth or closure: it leaves no more
+/// planned layers open than the first cut, and its least depth is that of the rule `depth`, or that of the first cut.
+[[nodiscard]] std::string objection_to(const Case& settings, const Correction& correction, const SimulatedCut& first,
+                                       const SimulatedCut& corrected);
 
 }  // namespace incise

@@ -31,7 +31,8 @@ struct PlatformClearance {
 [[nodiscard]] std::optional<PlatformClearance> platform_clearance(const TissueModel& model, const ToolPath& path);
 
 /// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the
-/// tool, a tip that goes through the platform, an entry or an edge on a face that the region of interest made.
+/// tool, a tip that goes through the platform, an entry or an edge on a face that the region of interest made, or on
+/// skin that strokes of the brush made.
 /// @param cut_faces  of the tissue at rest; none for a specimen that was given as a mesh.
 [[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const CutFaces& cut_faces,
                                          std::span<const Vec3> stretched, const ToolPath& path);

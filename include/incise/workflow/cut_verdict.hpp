@@ -40,17 +40,18 @@ struct EdgeFit {
 /// drawn in RAS and saved without a stamp.
 [[nodiscard]] Verdict verdict_of_contour(const Contour& edge, const TriMesh& surface, const Vec3& approach);
 
-/// What `not_corrected` says of a path as planned.
-inline constexpr const char* kUncorrectedPath =
-    "the correction is not accepted: a program would follow the uncorrected path";
+/// What `not_corrected` says of a path as planned. @param note  see objection_to.
+[[nodiscard]] std::string uncorrected_path(const std::string& note);
 /// The same of a path that was corrected, where the correction was rejected.
-inline constexpr const char* kRejectedCorrection = "this is a correction that was not accepted";
+[[nodiscard]] std::string rejected_correction(const std::string& note);
 
-/// The verdict of a run: that of the cut that verifies the path which a program would follow, and what is known beside it.
+/// The verdict of a run: that of the cut that verifies the path which a program would follow, and what is known beside
+/// it.
 /// @param about_inputs  what was found before anything was cut.
 /// @param cut           along the path that a program would follow; null: none was made.
-/// @param is_corrected  that path is the corrected one.
-[[nodiscard]] Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const SimulatedCut* cut, bool was_correction_asked,
-                                     bool is_corrected);
+/// @param objection     to the correction that was asked for, see objection_to; nothing: none was asked for, or it is
+///                      accepted.
+[[nodiscard]] Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const SimulatedCut* cut,
+                                     const std::optional<std::string>& objection);
 
 }  // namespace incise

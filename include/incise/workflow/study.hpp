@@ -59,8 +59,8 @@ struct Study {
   std::optional<SimulatedCut> as_planned;
   std::optional<Correction> correction;
   std::optional<SimulatedCut> corrected;
-  /// See is_accepted.
-  bool is_accepted = false;
+  bool is_accepted = false;     ///< the correction: nothing speaks against it, see objection_to
+  std::string correction_note;  ///< why it is not, as the end of a sentence; empty: it is, or there is none
   Verdict about_inputs;   ///< what was found before anything was cut: scan, contour against surface
   Verdict verdict;        ///< of the run, see verdict_of_run; complete once the last stage asked for has run
   /// How it ended: that of the last simulated cut, or NotConverged/Cancelled of the stage that could not go on.

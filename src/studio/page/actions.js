@@ -59,26 +59,37 @@ async function takeFailure(name, error, isWanted) {
   if (error.kind === "lost") return update({link: "lost"});
   if (error.kind === "denied") return update({link: "denied"});
   if (error.kind === "changed") await reload();
+  if (!isWanted()) return;
   const revision = state.case ? state.case.revision : null;
   setProblem(name, {...error.problem, kind: error.kind || "crashed", message: error.message, revision});
 }
 
 async function reload() {
   const found = await ask("case");
-  if (found) update({case: found, drafts: {}});
+  if (!found) return;
+  if (isOpen(found.file)) update({case: found, drafts: {...pending}});
+  else takeCase(found, true);
+}
+
+function isOpen(file) {
+  return Boolean(state.case) && state.case.file === file;
 }
 
 /** Takes a case that the server gave; `isOther`: it is not the one that was open. */
 export function takeCase(found, isOther) {
+  if (isOther) document.activeElement?.blur(); // hands on what is half typed, now: it belongs to the case before
   // What a person accepted were cautions about the case as it was.
   const isSame = !isOther && state.case && state.case.revision === found.revision;
   update({case: found, problems: {}, ...(isSame ? {} : {accept: [], acceptLaid: [], acceptMark: []})});
   dropForeign();
   if (!isOther) return;
   for (const name of Object.keys(tickets)) tickets[name] += 1; // answers about the case before are of no use
+  pending = {}; // and what was set belongs to that case
   update({
     ...nothingMeasured(),
     preview: {},
+    drafts: {},
+    refused: {},
     brush: newBrush(),
     history: newHistory(),
     patch: newPatch(),
@@ -137,13 +148,20 @@ function firstPlace(grid) {
   return place && voxelAt(grid, place) >= 0 ? place : middleOf(grid);
 }
 
+let opening = null; // a promise while another case is being opened or made
+
 /** Opens, makes or virtually makes a case: the calls `open`, `create` and `demo`. */
 export async function begin(name, args) {
-  await sending; // what is set belongs to the case that is open
+  while (sending || opening) await (sending || opening); // what is set belongs to the case that is open
+  opening = open(name, args);
+  if (await opening) list(); // its folder may be in the one that is listed
+}
+
+async function open(name, args) {
   const found = await ask(name, args);
-  if (!found) return;
-  takeCase(found, true);
-  list(); // its folder may be in the one that is listed
+  if (found) takeCase(found, true);
+  opening = null;
+  return found;
 }
 
 /** Lists a folder of the server; without one that which is listed, as it is now, or the start's first. */
@@ -230,7 +248,7 @@ export async function stop(name) {
 
 const kPause = 300; // ms: of a value that is stepped, after its last step
 
-let pending = {};
+let pending = {}; // set for the case that is open
 let due = 0; // ms: when it may be sent
 let sending = null; // a promise while changes are under way
 
@@ -252,17 +270,42 @@ export function isWaiting(key) {
   return key in pending;
 }
 
+/** Sends what is pending while the page goes away, without waiting for the answer. */
+export function sendAtOnce() {
+  if (opening || state.busy.change || !isPending()) return;
+  call("change", {revision: state.case.revision, set: pending}, {keepalive: true}).catch(() => null);
+  pending = {};
+  update({drafts: {}}); // should the page come back, it is told what the case holds
+}
+
+function isPending() {
+  return Object.keys(pending).length > 0;
+}
+
 async function send() {
-  for (await pause(); Object.keys(pending).length; await pause()) {
-    await overtake();
-    const set = pending;
-    pending = {};
-    const found = await ask("change", {revision: state.case.revision, set});
-    update({drafts: withoutSent(state.drafts, set), refused: found ? {} : {...state.refused, ...set}});
-    if (found) takeCase(found, false);
-  }
+  let file = null; // of the case whose settings were sent last
+  while (await isDue()) file = await sendPending();
   sending = null;
-  refreshStep();
+  if (file && isOpen(file)) refreshStep();
+}
+
+// Waits until what is pending may be sent. @returns whether there is something
+async function isDue() {
+  await pause();
+  await opening;
+  if (isPending()) await overtake();
+  return isPending();
+}
+
+async function sendPending() {
+  const {file, revision} = state.case,
+    set = pending;
+  pending = {};
+  const found = await ask("change", {revision, set}, () => isOpen(file));
+  if (!isOpen(file)) return file;
+  update({drafts: withoutSent(state.drafts, set), refused: found ? {} : {...state.refused, ...set}});
+  if (found) takeCase(found, false);
+  return file;
 }
 
 async function pause() {
@@ -287,7 +330,8 @@ function withoutSent(drafts, set) {
 
 /** Stores the tumour's edge, mm. */
 export async function saveEdge(points, where) {
-  const found = await ask("edge", {revision: state.case.revision, points_mm: points, configuration: where});
+  const {file, revision} = state.case;
+  const found = await ask("edge", {revision, points_mm: points, configuration: where}, () => isOpen(file));
   if (!found) return;
   takeCase(found, false);
   update({edge: {...state.edge, isSaved: true, mode: "look"}, notice: "The tumour's edge is stored in the case."});
@@ -315,11 +359,13 @@ async function runWith(acceptance) {
   else refreshStep();
 }
 
-// A setting that was typed just now belongs to what is run next. @returns false where the server refused one
+// A setting that was typed just now belongs to what is run next. @returns false where the server refused one, or
+// another case came
 async function allSent() {
-  const waiting = Object.keys(state.drafts);
+  const waiting = Object.keys(state.drafts),
+    {file} = state.case;
   await sending;
-  return !waiting.some((key) => key in state.refused);
+  return isOpen(file) && !waiting.some((key) => key in state.refused);
 }
 
 // What was refused because a run was under way may be asked for once more.
@@ -488,20 +534,16 @@ export function takeState(data) {
   const wasRunning = state.running.some((job) => job.call === "run");
   update({version: data.version, running: data.running || []});
   setProblem("state", data.case_problem ? {kind: "problem", ...data.case_problem} : null);
-  if (data.case && !isBusySetting()) takeStored(data.case);
+  if (data.case && !opening) takeStored(data.case); // else the answer brings the case
   const isRunning = state.running.some((job) => job.call === "run");
   if (wasRunning && !isRunning && !state.busy.run)
     update({notice: "The run has ended. Run again to see what is there."});
 }
 
-// An answer that will bring the same case is on its way.
-function isBusySetting() {
-  return Boolean(sending) || ["open", "create", "demo", "edge", "change"].some((name) => state.busy[name]);
-}
-
 function takeStored(found) {
-  if (!state.case || state.case.file !== found.file) return takeCase(found, true);
-  if (found.revision === state.case.revision) return undefined;
+  if (!isOpen(found.file)) return takeCase(found, true);
+  const isComing = sending || state.busy.edge; // with an answer
+  if (isComing || found.revision === state.case.revision) return undefined;
   takeCase(found, false);
   return refreshStep();
 }

@@ -42,9 +42,11 @@ async function failureOf(response) {
 }
 
 /** Calls NAME with arguments. Arrays of the result stay references until load().
+ *  @param options  of fetch()
  *  @throws CallError */
-export async function call(name, args = {}) {
+export async function call(name, args = {}, options = {}) {
   const response = await ask(`/api/call/${name}`, {
+    ...options,
     method: "POST",
     headers: {"Content-Type": "application/json"},
     body: JSON.stringify(args),

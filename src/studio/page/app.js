@@ -3,8 +3,8 @@
 import {h, render} from "preact";
 import {useEffect, useReducer, useRef} from "preact/hooks";
 import {call, listen} from "./api.js";
-import {state, subscribe, update} from "./store.js";
-import {goTo, takeEvent, takeState} from "./actions.js";
+import {state, subscribe, update, isFresh} from "./store.js";
+import {goTo, sendAtOnce, takeEvent, takeState} from "./actions.js";
 import {connectViews, frameOn, makeView, views} from "./views.js";
 import {kViewNames} from "./scene.js";
 import {Button, Check, Status} from "./widgets.js";
@@ -67,7 +67,7 @@ function Head() {
     h("h1", null, "incise studio"),
     open ? h("span", {class: "title"}, open.title) : null,
     open && open.is_virtual ? h("span", {class: "badge"}, "virtual specimen") : null,
-    state.run ? h("span", {class: "head-verdict"}, h(Status, {status: state.run.verdict.status})) : null,
+    state.run && isFresh("run") ? h("span", {class: "head-verdict"}, h(Status, {status: state.run.verdict.status})) : null,
     h("span", {class: "space"}),
     h(Job),
     h(
@@ -136,22 +136,23 @@ function Steps() {
 function Panel() {
   const at = kSteps.findIndex(([name]) => name === state.step),
     [name, title, Step] = kSteps[at];
+  const key = `${name} ${state.case ? state.case.file : ""}`; // what is half typed belongs to this case
   const heading = useRef(null),
-    last = useRef(name);
+    last = useRef(key);
   useEffect(() => {
-    if (last.current !== name) {
+    if (last.current !== key) {
       heading.current.closest(".panel").scrollTop = 0;
       heading.current.focus({preventScroll: true});
       document.querySelector("[aria-current=step]").scrollIntoView({block: "nearest", inline: "nearest"});
     }
-    last.current = name;
-  }, [name]);
+    last.current = key;
+  }, [key]);
   const next = kSteps[at + 1];
   return h(
     "div",
     {class: "panel-inside"},
     h("h2", {tabIndex: -1, ref: heading}, title),
-    h(Step, {key: name}),
+    h(Step, {key}),
     next && state.case
       ? h("p", {class: "next"}, h(Button, {onClick: () => goTo(next[0]), "data-do": "next"}, `Next: ${next[1]} →`))
       : null,
@@ -301,6 +302,7 @@ listen(takeEvent, (link) => {
   update({link});
   if (isBack) catchUp();
 });
+window.addEventListener("pagehide", sendAtOnce);
 window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => update({}));
 
 /** For tests: what the page knows and its views, to be looked at. */

@@ -2,7 +2,7 @@
 
 import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
-import {state, setting, update} from "./store.js";
+import {state, setting, update, when} from "./store.js";
 import {
   addStroke,
   brush,
@@ -20,6 +20,19 @@ import {Button, NumberInput, Section, complaint, problemAt} from "./widgets.js";
 import {plain, whole} from "./words.js";
 
 const kModes = {"brush-add": "Add tissue", "brush-take": "Take tissue away"};
+
+let last = ""; // step
+
+// Whoever comes back to step See finds the brush as it was left there.
+when(
+  () => [state.step, state.placing],
+  ([step, placing]) => {
+    const isBack = step === "see" && last !== "see";
+    last = step;
+    if (isBack) update({placing: state.brush.mode});
+    else if (step === "see") update({brush: {...state.brush, mode: placing in kModes ? placing : null}});
+  },
+);
 
 /** The section. */
 export function Brush() {

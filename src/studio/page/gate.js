@@ -7,6 +7,7 @@ import {fixed, isNumber, spoken} from "./words.js";
 
 /** The section with the gate of a result, which holds `verdict`, `gate`, `checks`, `program`, `why_without_program`.
  *  @param accepted  ids that are ticked   @param onAccept  (ids)   @param onAgain  asks for the result with them
+ *  @param again  what the button for that says of a result without any
  *  @param call      that gives the result   @param isBusy  whether it cannot be asked for now
  *  @param fileName  under which the program is saved   @param title  of the section   @param note  above all else */
 export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, ...shown}) {
@@ -33,7 +34,11 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
               onChange: (isOn) => tick(id, isOn),
             }),
           ),
-          h(Button, {disabled: isBusy || !isOther(accepted, gate), onClick: onAgain, "data-do": "accept"}, again),
+          h(
+            Button,
+            {disabled: isBusy || !isOther(accepted, gate), onClick: onAgain, "data-do": "accept"},
+            accepted.length ? `${again} with these accepted` : again,
+          ),
         )
       : null,
     h(Problems, {calls: [call]}),

@@ -1,6 +1,6 @@
 // Results of the run that are kept on this page, to lay later ones over them: what they are called, how they are drawn.
 
-import {state, unitOf} from "./store.js";
+import {state, isSame, unitOf} from "./store.js";
 import {nameInText} from "./fields.js";
 import {minus, plus, length, pointsOf} from "./geometry.js";
 import {isDark} from "./colours.js";
@@ -108,6 +108,11 @@ export function contourOf(one, which, isClosed) {
   const cut = one[which];
   if (!cut || pointsOf(cut.centerline).length < 2) return null;
   return {label: titleOf(one), letter: one.letter, ...lookOf(one), width: 2, points: cut.centerline, isClosed};
+}
+
+/** The corrected cut of a result; null where there is none, and where its path is the planned one: it is that cut. */
+export function correctedOf({as_planned: before, corrected: after}) {
+  return after && before && isSame(after.path, before.path) ? null : after;
 }
 
 /** The cut that plots and 3D view show of a kept result. */

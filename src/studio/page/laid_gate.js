@@ -26,7 +26,7 @@ export function LaidGate({kind, title}) {
     onAgain: () => layAccepting(kind),
     title,
     fileName: kKinds[kind].fileName,
-    again: kind === "mark" ? "Lay the mark again with these accepted" : "Lay it again with these accepted",
+    again: kind === "mark" ? "Lay the mark again" : "Lay it again",
     call: state.layKind === kind ? "lay" : "", // the other one's problem is not this one's
     isBusy: Boolean(state.busy.lay),
   });

@@ -21,7 +21,7 @@ import {directionOf, pointsOf} from "./geometry.js";
 import {ink, intended, isDark, onBlack} from "./colours.js";
 import {cutLayer, tissueParts} from "./cut_faces.js";
 import {edgeAt} from "./stretched_edge.js";
-import {dashesOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
+import {correctedOf, dashesOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {setting} from "./store.js";
 
 const kTube = 0.28; // mm
@@ -233,7 +233,7 @@ function compared(state) {
     skinLayer((stretch && stretch.skin) || (body && body.skin)),
     ...pathLayers(plan).filter((layer) => layer && layer.name !== "depth"),
     line("before", "mid-line as planned", ink.kerf, run.as_planned),
-    line("after", "mid-line corrected", ink.corrected, run.corrected),
+    line("after", "mid-line corrected", ink.corrected, correctedOf(run)),
     ...keptLayers(state, isClosed),
     markerLayer(run.verdict, run),
     focusLayer(state),

@@ -50,6 +50,5 @@ export function showBox(box) {
 
 /** Sets the box to where a face was dragged. */
 export function dropBox(box) {
-  showBox(null);
   if (!isSame(box, regionBox())) putBox(box);
 }

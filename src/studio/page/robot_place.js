@@ -35,13 +35,22 @@ export function RobotPlace() {
       {class: "row"},
       pose
         ? h(Button, {onClick: () => change({[kPath]: null})}, "Remove")
-        : h(Button, {onClick: () => put(firstPose()), "data-do": "place-robot"}, "State the place"),
+        : h(
+            Button,
+            {disabled: isComing(), onClick: () => put(firstPose()), "data-do": "place-robot"},
+            "State the place",
+          ),
     ),
   );
 }
 
 function put(pose) {
   change({[kPath]: pose});
+}
+
+// The tissue that is to lie on the table is on its way.
+function isComing() {
+  return Boolean(state.busy.body || state.busy.stretch);
 }
 
 // --- A turn about the vertical, and where a point of the specimen lies. ---
@@ -83,10 +92,11 @@ function meanOf(points) {
   return [0, 1, 2].map((k) => points.reduce((sum, point) => sum + point[k], 0) / points.length);
 }
 
+// On the table; where the tissue cannot be stretched, as it lies at rest.
 function firstPose() {
-  const {point} = reference(),
-    pose = poseOf(0, point, [...kInFront, 0]);
-  return setDown(pose) || pose;
+  const pose = poseOf(0, reference().point, [...kInFront, 0]),
+    skin = stretchedSkin() || (state.body && state.body.skin);
+  return skin ? raised(pose, -heightOf(skin, pose)) : pose;
 }
 
 function Numbered({pose}) {
@@ -138,30 +148,30 @@ function tableZ() {
   return state.arm ? state.arm.table_z_mm : 0;
 }
 
-// How far the stretched tissue's lowest point lies above the table, mm; null before it is stretched.
-function heightOf(pose) {
+// Null before the tissue is stretched.
+function stretchedSkin() {
   const {stretch} = state;
-  if (!stretch || stretch.note) return null;
-  const {vertices} = stretch.skin;
+  return stretch && !stretch.note ? stretch.skin : null;
+}
+
+// How far the lowest point of a skin lies above the table, mm.
+function heightOf({vertices}, pose) {
   let lowest = Infinity;
   for (let i = 0; i < vertices.length; i += 3)
     lowest = Math.min(lowest, moved([vertices[i], vertices[i + 1], vertices[i + 2]], pose)[2]);
   return lowest - tableZ();
 }
 
-// The same pose, with the tissue on the table.
-function setDown(pose) {
-  const height = heightOf(pose);
-  if (height === null) return null;
-  const [x, y, [a, b, c, z], last] = pose;
-  return [x, y, [a, b, c, Number((z - height).toFixed(4))], last];
+// The same pose, so much higher, mm.
+function raised([x, y, [a, b, c, z], last], by) {
+  return [x, y, [a, b, c, Number((z + by).toFixed(4))], last];
 }
 
 function Height({pose}) {
-  const height = heightOf(pose),
+  const skin = stretchedSkin();
+  if (!skin) return h("p", {class: "soft"}, "Once the tissue is stretched, its height above the table is shown here.");
+  const height = heightOf(skin, pose),
     table = `the table (robot z = ${plain(tableZ())} mm)`;
-  if (height === null)
-    return h("p", {class: "soft"}, "Once the tissue is stretched, its height above the table is shown here.");
   const isOn = Math.abs(height) < kOnTable,
     isBelow = height <= -kOnTable;
   return h(
@@ -175,7 +185,7 @@ function Height({pose}) {
         : `The tissue's lowest point lies ${mm(Math.abs(height))} ${isBelow ? "below" : "above"} ${table}. `,
       isOn ? null : isBelow ? "It cannot lie there: raise z." : "Something has to hold it at this height.",
     ),
-    isOn ? null : h(Button, {onClick: () => put(setDown(pose)), "data-do": "set-down"}, "Put it on the table"),
+    isOn ? null : h(Button, {onClick: () => put(raised(pose, -height)), "data-do": "set-down"}, "Put it on the table"),
   );
 }
 

@@ -134,14 +134,24 @@ export class Scene extends Viewer {
   }
 
   release(event) {
+    if (!this.fingers.has(event.pointerId)) return;
+    if (event.type !== "pointerup") this.breakOff();
     super.release(event);
     if (this.isTaken && this.tool) this.tool.drop();
     else if (this.tool && event.button === 0 && this.isClick()) this.tool.click(event);
     this.isTaken = false;
   }
 
+  /** Ends what is done with the pointer: a stroke is not painted, and a point stays where it is. */
+  breakOff() {
+    if (this.isTaken && this.tool && this.tool.cancel) this.tool.cancel();
+    this.isTaken = false;
+    this.fingers.clear();
+  }
+
   key(event) {
-    if (this.tool && this.tool.key(event)) event.preventDefault();
+    if (event.key === "Escape" && this.isTaken) this.breakOff();
+    else if (this.tool && this.tool.key(event)) event.preventDefault();
     else super.key(event);
   }
 }

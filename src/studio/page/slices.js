@@ -97,6 +97,7 @@ export class SliceView {
     this.canvas.width = Math.max(1, Math.round(this.host.clientWidth * ratio));
     this.canvas.height = Math.max(1, Math.round(this.host.clientHeight * ratio));
     this.ratio = ratio;
+    if (!this.host.clientWidth) this.breakOff();
     if (this.ownPlane && (this.isFitted || !(this.zoom > 0))) this.fit();
     this.render();
   }
@@ -403,7 +404,8 @@ export class SliceView {
     canvas.addEventListener("contextmenu", (event) => event.preventDefault());
     canvas.addEventListener("pointerdown", (event) => this.press(event));
     canvas.addEventListener("pointermove", (event) => this.move(event));
-    for (const name of ["pointerup", "pointercancel"]) canvas.addEventListener(name, (event) => this.release(event));
+    for (const name of ["pointerup", "pointercancel", "lostpointercapture"])
+      canvas.addEventListener(name, (event) => this.release(event));
     canvas.addEventListener("pointerleave", () => {
       this.readout.textContent = "";
       this.pointer = null;
@@ -425,8 +427,7 @@ export class SliceView {
     this.canvas.setPointerCapture(event.pointerId);
     const {offsetX: x, offsetY: y} = event;
     this.fingers.set(event.pointerId, [x, y]);
-    this.model.stroke = [];
-    if (this.drag && this.drag.box) this.on.face(null);
+    this.breakOff();
     if (this.fingers.size > 1) this.drag = {kind: "pinch"};
     else this.drag = this.dragFor(event, x, y);
     if (this.drag.kind === "cross") this.point(x, y);
@@ -453,7 +454,7 @@ export class SliceView {
   }
 
   move(event) {
-    if (!this.plane()) return;
+    if (!this.plane() || !(this.zoom > 0)) return;
     const {offsetX: x, offsetY: y} = event;
     this.pointer = [x, y];
     this.tell(x, y);
@@ -482,14 +483,20 @@ export class SliceView {
   }
 
   release(event) {
+    if (!this.fingers.delete(event.pointerId) || this.fingers.size) return;
     const {stroke} = this.model,
-      {box} = this.drag || {},
-      isDone = event.type === "pointerup";
-    this.fingers.delete(event.pointerId);
+      {box} = this.drag || {};
+    this.breakOff();
+    if (event.type !== "pointerup") return;
+    if (stroke.length) this.on.stroke(stroke);
+    if (box) this.on.box(box);
+  }
+
+  /** Ends a drag without effect: the box goes back, and nothing is painted. */
+  breakOff() {
     this.model.stroke = [];
-    if (isDone && stroke.length) this.on.stroke(stroke);
-    if (box) (isDone ? this.on.box : this.on.face)(isDone ? box : null);
-    if (!this.fingers.size) this.drag = null;
+    if (this.drag && this.drag.box) this.on.face(null);
+    this.drag = null;
     this.render();
   }
 
@@ -568,6 +575,7 @@ export class SliceView {
     else if (event.key === "Home") this.fit();
     else if (event.key === "Enter" && this.model.isPlacing) this.on.seed(this.cross());
     else if (event.key === "Enter" && this.model.brush) this.on.stroke([this.cross()]);
+    else if (event.key === "Escape" && this.drag) this.breakOff();
     else if (event.key === "Escape" && this.model.brush) this.on.putAway();
     else return;
     event.preventDefault();

@@ -5,13 +5,14 @@ import {state, isFresh} from "./store.js";
 import {goTo, run} from "./actions.js";
 import {approach, showPlace} from "./views.js";
 import {isRunning} from "./step_run.js";
-import {contourOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
+import {Withdrawn, isCurrent} from "./programs.js";
+import {contourOf, correctedOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {KeptTable, WhatIf} from "./what_if.js";
 import {Button, Problems, Reasons, Section, Status} from "./widgets.js";
 import {ContourView, boundsOf} from "./contour_view.js";
 import {Plot} from "./plots.js";
 import {ink, intended, isDark} from "./colours.js";
-import {mm, spoken} from "./words.js";
+import {countText, mm, spoken} from "./words.js";
 
 const kNumbers = [
   ["nearest_to_tumor_mm", "Closest approach to the tumour"],
@@ -38,8 +39,10 @@ export function StepCompare() {
     h(
       Section,
       {title: "Verdict", id: "verdict"},
-      h("p", {class: "verdict"}, h(Status, {status: result.verdict.status}), ` ${sentence(result)}`),
+      h("p", {class: "verdict"}, h(Status, {status: result.verdict.status}), ` ${countText(result.verdict)}`),
       h(Reasons, {verdict: result.verdict, onPlace: showPlace}),
+      h("p", {"data-ended": result.outcome}, kEnds[result.outcome]),
+      result.corrected ? h("p", {"data-correction": String(result.accepted)}, correctionText(result)) : null,
     ),
     h(
       Section,
@@ -47,45 +50,55 @@ export function StepCompare() {
       laidOver().length ? h(KeptTable, {rows: kNumbers}) : h(Table, {result}),
     ),
     h(WhatIf),
-    h(Planned, {cut: result.as_planned}),
+    h(Unjudged, {result}),
     h(
       Section,
       {title: "Robot program", id: "to-program"},
-      h(
-        "p",
-        null,
-        result.program ? "The verdict allows a program." : result.why_without_program || "There is no program.",
-      ),
+      isCurrent("run")
+        ? h(
+            "p",
+            null,
+            result.program ? "The verdict allows a program." : result.why_without_program || "There is no program.",
+          )
+        : h(Withdrawn, {of: "run"}),
       h(Button, {onClick: () => goTo("program"), "data-do": "to-program"}, "Go to the program"),
     ),
   );
 }
 
-// What is known against the cut as planned, which the run's verdict does not judge once the correction is accepted.
-function Planned({cut}) {
-  if (!cut || !cut.verdict || cut.verdict.status === "ok") return null;
+// What is known against the cut that the run's verdict does not judge: as planned once the correction is accepted, else
+// the corrected one.
+function Unjudged({result}) {
+  const cut = result.accepted ? result.as_planned : correctedOf(result);
+  if (!cut || cut.verdict.status === "ok") return null;
   return h(
     Section,
-    {title: "Against the cut as planned", id: "against-planned"},
+    {title: result.accepted ? "Against the cut as planned" : "Against the corrected cut", id: "against-other"},
     h("p", {class: "verdict"}, h(Status, {status: cut.verdict.status})),
     h(Reasons, {verdict: cut.verdict, onPlace: showPlace}),
   );
 }
 
-function sentence(result) {
-  const count = (result.verdict.reasons || []).length;
-  const reasons = count
-    ? `${count} ${count === 1 ? "reason" : "reasons"}, worst first.`
-    : "No reason against the cut is known.";
-  const path =
-    result.corrected && result.accepted !== undefined
-      ? ` The correction is ${result.accepted ? "accepted" : "not accepted"}.`
-      : "";
-  return `Outcome: ${spoken(result.outcome).toLowerCase()}. ${reasons}${path}`;
+// How the simulation ended, by the run's outcome: another matter than what the cut is worth.
+const kEnds = {
+  success: "The cut was simulated to its end.",
+  positive_margin: "The cut was simulated to its end, and it touches the tumour's edge.",
+  open_loop: "The cut was simulated to its end, and its ring does not close.",
+  not_converged: "The simulation ended early: it found no position in which the tissue comes to rest.",
+  element_inverted: "The simulation ended early: somewhere the tissue was turned inside out.",
+  cancelled: "The simulation was stopped before its end.",
+};
+const kSamePath = "The corrected path is the planned one, so there is no second cut to compare.";
+
+function correctionText(result) {
+  const {accepted, correction_note: note} = result;
+  const outcome = accepted ? "The correction is accepted." : `The correction is not accepted${note ? `: ${note}` : ""}.`;
+  return correctedOf(result) ? outcome : `${outcome} ${kSamePath}`;
 }
 
 function Table({result}) {
-  const of = (cut, key) => mm(cut && cut.numbers ? cut.numbers[key] : null);
+  const of = (cut, key) => mm(cut && cut.numbers ? cut.numbers[key] : null),
+    hasOther = Boolean(correctedOf(result)) || !result.corrected;
   return h(
     "table",
     {class: "numbers-table"},
@@ -97,7 +110,7 @@ function Table({result}) {
         null,
         h("th", {scope: "col"}, "Simulated"),
         h("th", {scope: "col", class: "number"}, "As planned"),
-        h("th", {scope: "col", class: "number"}, "Corrected"),
+        hasOther ? h("th", {scope: "col", class: "number"}, "Corrected") : null,
       ),
     ),
     h(
@@ -109,7 +122,7 @@ function Table({result}) {
           {key, "data-number": key},
           h("th", {scope: "row"}, name),
           h("td", {class: "number"}, of(result.as_planned, key)),
-          h("td", {class: "number"}, of(result.corrected, key)),
+          hasOther ? h("td", {class: "number"}, of(result.corrected, key)) : null,
         ),
       ),
     ),
@@ -133,7 +146,7 @@ function makePictures(run, plan) {
   const over = (which) => others.map((one) => contourOf(one, which, isClosed)).filter(Boolean);
   const withOthers = (cut, colour, over) => (cut || over.length ? [...contoursOf(cut, colour, plan), ...over] : []);
   const before = withOthers(run.as_planned, ink.kerf, over("as_planned")),
-    after = withOthers(run.corrected, afterColour(), over("corrected"));
+    after = withOthers(correctedOf(run), afterColour(), over("corrected"));
   return {
     before,
     after,
@@ -177,16 +190,18 @@ function contoursOf(cut, colour, plan) {
   ];
 }
 
-function errorsOf({as_planned: before, corrected: after}, others) {
+function errorsOf(run, others) {
   const curve = (cut, look) => cut && cut.errors && {...look, x: cut.errors.arclength_mm, y: cut.errors.signed_mm};
   return [
-    curve(before, kBeforeLook),
-    curve(after, afterLook()),
+    curve(run.as_planned, kBeforeLook),
+    curve(correctedOf(run), afterLook()),
     ...others.map((one) => curve(shownCut(one), lookOver(one))),
   ].filter(Boolean);
 }
 
-function depthsOf({as_planned: before, corrected: after}, others) {
+function depthsOf(run, others) {
+  const before = run.as_planned,
+    after = correctedOf(run);
   const reached = (cut, look) => cut && cut.depth && {...look, x: cut.depth.arclength_mm, y: cut.depth.reached_mm};
   const first = (before && before.depth) || (after && after.depth);
   const planned = first && {
@@ -212,7 +227,8 @@ const lookOver = (one) => ({label: titleOf(one), ...lookOf(one)});
 export function ComparePictures() {
   const {run, plan, focus} = state;
   if (!run) return null;
-  const {before, after, bounds, errors, depths} = picturesOf(run, plan);
+  const {before, after, bounds, errors, depths} = picturesOf(run, plan),
+    corrected = correctedOf(run);
   const view = (id, title, curves, cut) =>
     h(ContourView, {
       key: id,
@@ -226,12 +242,12 @@ export function ComparePictures() {
   return [
     before.length ? view("before", "As planned", before, run.as_planned) : null,
     after.length
-      ? view("after", run.corrected ? "Corrected" : "Corrected: only of kept results", after, run.corrected)
+      ? view("after", corrected ? "Corrected" : "Corrected: only of kept results", after, corrected)
       : h(
           "figure",
           {class: "contours", key: "after"},
           h("figcaption", null, "Corrected"),
-          h("p", {class: "soft"}, "There is no corrected cut."),
+          h("p", {class: "soft"}, run.corrected ? kSamePath : "There is no corrected cut."),
         ),
     errors.length
       ? h(Plot, {

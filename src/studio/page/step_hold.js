@@ -140,6 +140,7 @@ function fresh(kind) {
 function ByDefault() {
   const found = (state.body && state.body.constraints) || [],
     isNow = isFresh("body");
+  if (!isNow && state.problems.body) return h(DefaultWithoutBody);
   return h(
     "div",
     null,
@@ -164,6 +165,26 @@ function ByDefault() {
       "Change these",
     ),
     h("p", {class: "soft below"}, "The first one that you add replaces the default."),
+  );
+}
+
+// As default_constraints() has it; without a body there is nothing from which to write it into the case.
+function DefaultWithoutBody() {
+  return h(
+    "div",
+    {"data-default": "words"},
+    h(
+      "p",
+      {class: "soft"},
+      "The case says nothing about it, so the body would be held by the default: The back end (15 mm) is clamped. The " +
+        "front end (10 mm) is pulled 20 mm forwards. The tissue rests on a plane under its lowest point.",
+    ),
+    h(
+      "p",
+      {class: "soft"},
+      "No body could be made with it. Add a clamp, a pull or a support of your own below: the first one replaces the " +
+        "default, and each has its own lengths to change, a pull also its displacement.",
+    ),
   );
 }
 

@@ -8,7 +8,7 @@ import {Problems, Reasons, Section, Setting, Status, Working} from "./widgets.js
 import {RobotPlace} from "./robot_place.js";
 import {Unstretched} from "./step_hold.js";
 import {pointsOf, length, minus} from "./geometry.js";
-import {mm} from "./words.js";
+import {countText, mm} from "./words.js";
 
 const kPlan = [
   "plan.lateral_margin_mm",
@@ -78,12 +78,8 @@ function Result() {
     h(
       "div",
       {class: isFresh("plan") ? null : "stale"},
-      h(
-        "p",
-        null,
-        plan.verdict ? h(Status, {status: plan.verdict.status}) : null,
-        ` ${points.length} waypoints, ${mm(along)} long, ${plan.path.closed ? "a ring" : "open"}.`,
-      ),
+      h("p", null, `${plan.path.closed ? "A ring" : "An open line"} of ${points.length} waypoints, ${mm(along)} long.`),
+      h("p", {class: "verdict"}, h(Status, {status: plan.verdict.status}), ` ${countText(plan.verdict)}`),
       h(Reasons, {verdict: plan.verdict, onPlace: showPlace}),
     ),
   );

@@ -1,21 +1,22 @@
 // Step 10: the gate, the robot's program, the arm that plays it, and what to save.
 
 import {h} from "preact";
-import {state, update, isFresh} from "./store.js";
+import {state, update} from "./store.js";
 import {ask, goTo, playProgram, programOf, run, runAccepting} from "./actions.js";
 import {isRunning} from "./step_run.js";
 import {Button, Choice, Problems, Section, Working} from "./widgets.js";
 import {Commands} from "./commands.js";
 import {Gate} from "./gate.js";
 import {LaidGate} from "./laid_gate.js";
+import {Withdrawn, isCurrent} from "./programs.js";
 import {saveFile} from "./save_file.js";
 import {duration, mm, spoken} from "./words.js";
 
-// Of the programs that there can be: the state's word, its heading, its name in a list.
+// Of the programs that there can be: the arm's word, the result that holds it, its heading, its name in a list.
 const kPrograms = [
-  ["tissue", "Incision on the measured tissue", "the incision on the measured tissue"],
-  ["mark", "Mark on the measured tissue", "the mark on the measured tissue"],
-  ["run", "Program of the run", "the program of the run"],
+  ["tissue", "lay", "Incision on the measured tissue", "the incision on the measured tissue"],
+  ["mark", "mark", "Mark on the measured tissue", "the mark on the measured tissue"],
+  ["run", "run", "Program of the run", "the program of the run"],
 ];
 
 /** The panel. */
@@ -29,31 +30,41 @@ export function StepProgram() {
       h(Button, {isMain: true, disabled: isRunning(), onClick: run, "data-do": "run"}, "Run"),
       h(Problems, {calls: ["run"]}),
     );
+  const lines = commandsOf(state).filter(Boolean);
   return h(
     "div",
     {"data-arm": state.arm ? "there" : "none"},
-    isFresh("run") ? null : h("p", {class: "warning"}, "The settings have changed since this run."),
     h(Programs, {result}),
-    h(Arm),
-    h(Save, {result}),
-    h(Section, {title: "Repeat", id: "repeat"}, h(Commands, {lines: commandsOf(state)})),
+    kPrograms.some(([, of]) => isCurrent(of)) ? h(Arm) : null,
+    isCurrent("run") ? h(Save, {result}) : null,
+    lines.length ? h(Section, {title: "Repeat", id: "repeat"}, h(Commands, {lines})) : null,
   );
 }
 
 // Of the run alone, or of it and what was laid, each with its own gate.
 function Programs({result}) {
-  if (!state.lay && !state.mark) return h(RunGate, {result});
+  if (!state.lay && !state.mark) return h(OneProgram, {of: "run", result, title: "Robot program"});
   return kPrograms
-    .filter(([of]) => of === "run" || (of === "mark" ? state.mark : state.lay))
-    .map(([of, title]) =>
+    .filter(([, of]) => state[of])
+    .map(([word, of, title]) =>
       h(
         "div",
-        {key: of, "data-program-of": of},
-        of === "run"
-          ? h(RunGate, {result, title, note: h(Elsewhere)})
-          : h(LaidGate, {kind: of === "mark" ? "mark" : "incise", title}),
+        {key: word, "data-program-of": word},
+        h(OneProgram, {of, result, title, note: of === "run" ? h(Elsewhere) : null}),
       ),
     );
+}
+
+function OneProgram({of, result, title, note}) {
+  if (!isCurrent(of)) return h(Section, {title, id: "gate"}, h(Withdrawn, {of}), of === "run" ? h(Again) : null);
+  return of === "run" ? h(RunGate, {result, title, note}) : h(LaidGate, {kind: of === "mark" ? of : "incise", title});
+}
+
+function Again() {
+  return [
+    h(Button, {key: "run", isMain: true, disabled: isRunning(), onClick: run, "data-do": "run"}, "Run again"),
+    h(Problems, {key: "problems", calls: ["run"]}),
+  ];
 }
 
 function Elsewhere() {
@@ -74,7 +85,7 @@ function RunGate({result, title, note}) {
     accepted: state.accept,
     onAccept: (accept) => update({accept}),
     onAgain: runAccepting,
-    again: "Run again with these accepted",
+    again: "Run again",
     call: "run",
     isBusy: isRunning(),
   });
@@ -82,7 +93,7 @@ function RunGate({result, title, note}) {
 
 function Arm() {
   const {arm} = state,
-    there = kPrograms.filter(([of]) => programOf(of));
+    there = kPrograms.filter(([word]) => programOf(word));
   return h(
     Section,
     {title: "Arm", id: "arm"},
@@ -90,10 +101,10 @@ function Arm() {
       ? h(Choice, {
           label: "It plays",
           value: state.armOf,
-          options: there.map(([of, , name]) => [of, name]),
+          options: there.map(([word, , , name]) => [word, name]),
           onChange: playProgram,
         })
-      : there.map(([of, , name]) => h("p", {key: of, class: "soft"}, `It plays ${name}.`)),
+      : there.map(([word, , , name]) => h("p", {key: word, class: "soft"}, `It plays ${name}.`)),
     h(Working, {call: "arm", text: "Playing the program"}),
     h(Problems, {calls: ["arm"]}),
     arm
@@ -132,14 +143,14 @@ function Save({result}) {
   );
 }
 
-// What gives the same results without the page, in the order in which it was done.
+// What gives the same results without the page, in the order in which it was done; none of what was withdrawn.
 function commandsOf({run: result, photograph, frame, cloud, register, lay, mark}) {
   return [
-    result.command,
+    isCurrent("run") && result.command,
     photograph && photograph.command,
     ...((cloud.isOfFrame && frame && frame.commands) || []),
     register && register.command,
-    ...((mark && mark.commands) || []),
-    ...((lay && lay.commands) || []),
+    ...(isCurrent("mark") ? mark.commands : []),
+    ...(isCurrent("lay") ? lay.commands : []),
   ];
 }

@@ -9,6 +9,7 @@ import {Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status
 import {FilePicker} from "./file_list.js";
 import {LaidGate, laidOf} from "./laid_gate.js";
 import {Commands} from "./commands.js";
+import {Withdrawn, isCurrent} from "./programs.js";
 import {registeredView} from "./registered.js";
 import {kUnseen, scaleColour} from "./colours.js";
 import {fixed, isNumber, mm, spoken} from "./words.js";
@@ -345,7 +346,6 @@ function Laid({kind}) {
     "div",
     {[kind === "mark" ? "data-marked" : "data-laid"]: result.program ? "program" : "none"},
     isMadeUp() ? h("p", {class: "warning"}, h(MadeUp), " No real tissue lies where this path leads.") : null,
-    isFresh(of) ? null : h("p", {class: "warning"}, "The settings have changed since this was laid."),
     h(
       Section,
       {title: kind === "mark" ? "Verdict on the mark" : "Verdict on the incision", id: `${of}-verdict`},
@@ -357,8 +357,9 @@ function Laid({kind}) {
       ),
       h(Reasons, {verdict: result.verdict}),
     ),
-    h(LaidGate, {kind}),
-    h(Commands, {lines: result.commands, files: result.files}),
+    isCurrent(of)
+      ? [h(LaidGate, {key: "gate", kind}), h(Commands, {key: "commands", lines: result.commands, files: result.files})]
+      : h(Withdrawn, {of}),
   );
 }
 

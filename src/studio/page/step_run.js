@@ -134,8 +134,20 @@ function Moment() {
 
 const kSigns = {error: "✕", warning: "!", notice: "·", info: "·"};
 
+// The newest first; one that came several times at its newest place, with their number.
+function distinct(messages) {
+  const found = new Map();
+  for (const one of messages) {
+    const key = `${one.severity} ${one.text}`,
+      count = found.has(key) ? found.get(key).count + 1 : 1;
+    found.delete(key);
+    found.set(key, {...one, count});
+  }
+  return [...found.values()].reverse();
+}
+
 function Messages() {
-  const list = [...state.messages].reverse();
+  const list = distinct(state.messages);
   return h(
     Section,
     {title: "Messages", id: "messages"},
@@ -150,6 +162,7 @@ function Messages() {
               h("span", {class: "sign", "aria-hidden": "true"}, kSigns[one.severity] || "·"),
               h("span", {class: "soft"}, `${spoken(one.severity)}: `),
               h(Explained, {text: one.text}),
+              one.count > 1 ? h("span", {class: "soft", "data-count": one.count}, ` (${one.count} times)`) : null,
             ),
           ),
         )

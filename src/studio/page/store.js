@@ -37,10 +37,11 @@ export function newFraming() {
   return {...files, isCloud: false, mark: "green", isOpen: false, planes: 1};
 }
 
-/** The brush before its first stroke. `refused`: how many points there would have been with a stroke that was not
- *  added, or 0; `idle`: "add" or "take" where the last stroke did so and changed nothing. */
+/** The brush before its first stroke. `mode`: what it does, as `placing` says it, or null where it is put away;
+ *  `refused`: how many points there would have been with a stroke that was not added, or 0; `idle`: "add" or "take"
+ *  where the last stroke did so and changed nothing. */
 export function newBrush() {
-  return {radius_mm: 2, refused: 0, idle: null};
+  return {radius_mm: 2, mode: null, refused: 0, idle: null};
 }
 
 /** Nothing to undo or to redo: {key, value} of the setting that each step changes, the next one last. */
@@ -165,10 +166,14 @@ export function valueAt(object, key) {
     .reduce((value, part) => (value === null || value === undefined ? undefined : value[part]), object);
 }
 
-/** A setting as the page shows it: what is under the pointer or on its way to the server, else what the case holds;
- *  null where absent. */
+/** A setting as the page shows it: what is under the pointer, else as it was set; null where absent. */
 export function setting(key) {
-  for (const shown of [state.preview, state.drafts]) if (key in shown) return shown[key];
+  return key in state.preview ? state.preview[key] : given(key);
+}
+
+/** A setting as it was set: what is on its way to the server, else what the case holds; null where absent. */
+export function given(key) {
+  if (key in state.drafts) return state.drafts[key];
   const value = state.case ? valueAt(state.case.settings, key) : undefined;
   return value === undefined ? null : value;
 }

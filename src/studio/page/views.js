@@ -264,6 +264,11 @@ export function fitBox(box) {
 
 /** Connects the views with the state. */
 export function connectViews() {
+  // What is dragged or painted belongs to the case and to the view that it was begun in.
+  when(
+    () => [state.case && state.case.file, state.step, state.large],
+    () => Object.values(views).forEach((view) => view.breakOff && view.breakOff()),
+  );
   when(shownInSlices, (shown) => {
     Object.assign(model, shown);
     renderSlices();

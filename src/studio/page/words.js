@@ -62,6 +62,12 @@ export function spoken(word) {
   return word ? nameOf(String(word)) : "";
 }
 
+/** How many reasons a verdict has, above their list. */
+export function countText({reasons = []}) {
+  if (!reasons.length) return "No reason against it is known.";
+  return `${reasons.length} ${reasons.length === 1 ? "reason" : "reasons"}, worst first.`;
+}
+
 /** The steps' titles by name, in their order. */
 export const kStepTitles = {
   open: "Open",
@@ -94,6 +100,7 @@ export const kWaysOut = {
     "see",
     "edge",
   ],
+  painted_skin: ["Draw the edge on skin that the scan shows, or remove the strokes of the brush there.", "edge", "see"],
   program_check: [
     "The program's checks name what failed. Most depend on the place under the robot, the depth or the speed.",
     "program",
