@@ -290,8 +290,12 @@ void add_remarks(const CaseFile& file, const Json& study, ReportData& data) {
     data.remarks.push_back(why_not_corrected(file, study));
     return;
   }
-  if (study.contains("accepted") && !study.at("accepted").get<bool>())
-    data.remarks.emplace_back("The correction is not accepted: the verdict is that of the cut as planned.");
+  if (study.contains("accepted") && !study.at("accepted").get<bool>()) {
+    const bool has_note = study.contains("correction_note") && study.at("correction_note").is_string();
+    data.remarks.push_back(
+        fmt::format("The correction is not accepted{}. The verdict is that of the cut as planned.",
+                    has_note ? ": " + study.at("correction_note").get<std::string>() : std::string()));
+  }
   const std::string why = why_moved(data.incisions.front(), data.incisions.back(), data.approach);
   if (!why.empty()) data.remarks.push_back(why);
 }

@@ -319,7 +319,13 @@ Json Calls::show_case(const Json&) {
   return case_json(read_case(file_));
 }
 
+void Calls::require_open(const Json& arguments) const {
+  if (arguments.contains("case_file") && text_argument(arguments, "case_file") != file_.string())
+    throw StaleRevision(file_);
+}
+
 Json Calls::change(const Json& arguments) {
+  require_open(arguments);
   const std::string revision = text_argument(arguments, "revision");
   CaseChanges changes = changes_of(arguments, "set");
   const CaseFile before = read_case(file_);
@@ -388,6 +394,7 @@ Json Calls::tissue(const Json&) {
 }
 
 Json Calls::edge(const Json& arguments) {
+  require_open(arguments);
   const CaseFile file = read_case(file_);
   Contour drawn{points_argument(arguments, "points_mm"), true};
   if (drawn.points.size() < 3 || drawn.points.size() > kMostEdgePoints)

@@ -44,6 +44,8 @@ class Calls {
   [[nodiscard]] Json make(const std::string& name, const std::filesystem::path& file, const Json& arguments);
 
  private:
+  /// @throws StaleRevision where the caller means another case than the one that is open.
+  void require_open(const Json& arguments) const;
   Json open(const Json& arguments);
   Json create(const Json& arguments);
   Json demo(const Json& arguments);

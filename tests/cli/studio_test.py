@@ -474,6 +474,18 @@ class Refusals(StudioTest):
         self.assertEqual(studio.call("change", {"revision": revision, "set": {"plan.depth_mm": 4}})[0], 409)
         self.assertEqual((case / "case.yaml").read_text(), text)
 
+    def test_a_change_of_one_case_does_not_reach_its_copy(self):
+        case = self.small()
+        studio = self.studio(case)
+        shown = studio.call("case")[1]
+        change = {"revision": shown["revision"], "case_file": str(case.parent / "copy" / "case.yaml"), "set": {"plan.depth_mm": 4}}
+        text = (case / "case.yaml").read_text()
+        self.assertEqual(studio.call("change", change)[0], 409)
+        edge = {**change, "points_mm": [[0, 0, 0], [5, 0, 0], [0, 5, 0]], "configuration": "rest"}
+        self.assertEqual(studio.call("edge", edge)[0], 409)
+        self.assertEqual((case / "case.yaml").read_text(), text)
+        self.assertEqual(studio.call("change", {**change, "case_file": shown["file"]})[0], 200)
+
     def test_the_command_refuses_what_it_cannot_serve(self):
         self.assert_refused(self.incise("studio", "nowhere"), BAD_DATA, "no such file")
         self.assert_refused(self.incise("studio", "--root", "nowhere"), BAD_DATA, "no such folder")

@@ -273,9 +273,14 @@ export function isWaiting(key) {
 /** Sends what is pending while the page goes away, without waiting for the answer. */
 export function sendAtOnce() {
   if (opening || state.busy.change || !isPending()) return;
-  call("change", {revision: state.case.revision, set: pending}, {keepalive: true}).catch(() => null);
+  call("change", {...ofCase(), set: pending}, {keepalive: true}).catch(() => null);
   pending = {};
   update({drafts: {}}); // should the page come back, it is told what the case holds
+}
+
+// What a change is of: two cases with the same text have the same revision.
+function ofCase() {
+  return {case_file: state.case.file, revision: state.case.revision};
 }
 
 function isPending() {
@@ -298,10 +303,10 @@ async function isDue() {
 }
 
 async function sendPending() {
-  const {file, revision} = state.case,
+  const {file} = state.case,
     set = pending;
   pending = {};
-  const found = await ask("change", {revision, set}, () => isOpen(file));
+  const found = await ask("change", {...ofCase(), set}, () => isOpen(file));
   if (!isOpen(file)) return file;
   update({drafts: withoutSent(state.drafts, set), refused: found ? {} : {...state.refused, ...set}});
   if (found) takeCase(found, false);
@@ -330,8 +335,8 @@ function withoutSent(drafts, set) {
 
 /** Stores the tumour's edge, mm. */
 export async function saveEdge(points, where) {
-  const {file, revision} = state.case;
-  const found = await ask("edge", {revision, points_mm: points, configuration: where}, () => isOpen(file));
+  const {file} = state.case;
+  const found = await ask("edge", {...ofCase(), points_mm: points, configuration: where}, () => isOpen(file));
   if (!found) return;
   takeCase(found, false);
   update({edge: {...state.edge, isSaved: true, mode: "look"}, notice: "The tumour's edge is stored in the case."});
