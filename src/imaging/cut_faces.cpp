@@ -1,7 +1,6 @@
 #include <incise/imaging/cut_faces.hpp>
 
 namespace incise {
-
 namespace {
 
 Vec3 outward(const VolumeGrid& grid, std::int32_t side) {

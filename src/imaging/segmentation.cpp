@@ -243,7 +243,7 @@ void note_cut_faces(const VolumeGrid& grid, Segmentation& result) {
   result.verdict.add(
       "scan", static_cast<double>(faces.size()),
       fmt::format("{} of 6 sides of the region of interest cut through the specimen: {}. Its skin is artificial "
-                  "there. If the specimen should end before, it leaks into its surroundings",
+                  "there. If the specimen does not reach that far, the tissue found includes its surroundings",
                   faces.size(), fmt::join(faces, ", ")));
 }
 

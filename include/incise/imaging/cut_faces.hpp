@@ -22,9 +22,9 @@ class CutFaces {
 
   [[nodiscard]] bool empty() const { return sides_.empty(); }
 
-  /// The face that made a triangle of the skin: its corners lie within a voxel of voxel faces that are cut, and it
-  /// looks the same way (within 60 degrees). Nothing where the skin is the specimen's own. @param corners  at rest
-  /// (LPS, mm), counter-clockwise seen from outside. O(1).
+  /// The face that made a triangle of the skin: its corners lie in cut voxels or next to them, and it looks the same
+  /// way (within 60 degrees). Nothing where the skin is the specimen's own. @param corners  at rest (LPS, mm),
+  /// counter-clockwise seen from outside. O(1).
   [[nodiscard]] std::optional<RegionFace> under(const std::array<Vec3, 3>& corners) const;
 
  private:
