@@ -49,8 +49,12 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
           {class: "warning", "data-program": "none"},
           h(Explained, {text: result.why_without_program || withoutProgram(gate)}),
         ),
-    result.checks && result.checks.length ? h(Checks, {checks: result.checks}) : null,
+    result.checks && result.checks.length ? h(Checks, {checks: result.checks, isRefused: isRefused(gate)}) : null,
   );
+}
+
+function isRefused({refused = []}) {
+  return refused.length > 0;
 }
 
 function withoutProgram({refused = [], missing = []}) {
@@ -88,9 +92,12 @@ function reasonText(result, id) {
   return `${spoken(id)}${reason ? `: ${reason.message}` : ""}`;
 }
 
-function Checks({checks}) {
+function Checks({checks, isRefused: isCutRefused}) {
   const failed = checks.filter((check) => !check.passed).length;
-  const title = failed ? `${failed} of ${checks.length} checks failed` : `All ${checks.length} checks passed`;
+  const passed = isCutRefused
+    ? `All ${checks.length} checks of the motion passed; the cut is refused all the same`
+    : `All ${checks.length} checks passed`;
+  const title = failed ? `${failed} of ${checks.length} checks failed` : passed;
   return h(
     "details",
     {open: failed > 0},
