@@ -182,8 +182,10 @@ function DefaultWithoutBody() {
     h(
       "p",
       {class: "soft"},
-      "No body could be made with it. Add a clamp, a pull or a support of your own below: the first one replaces the " +
-        "default, and each has its own lengths to change, a pull also its displacement.",
+      isAboutConstraints(state.problems.body)
+        ? "No body could be made with it. Add a clamp, a pull or a support of your own below: the first one replaces " +
+            "the default, and each has its own lengths to change, a pull also its displacement."
+        : "Whether the tissue can follow it shows once the body is made. Something else is in the way of that.",
     ),
   );
 }

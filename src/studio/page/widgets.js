@@ -270,7 +270,10 @@ export function Problems({calls, shown = []}) {
         problem.path &&
         (problem.path === key || problem.path.startsWith(`${key}[`) || problem.path.startsWith(`${key}.`)),
     );
-  const found = calls.map((name) => [name, state.problems[name]]).filter(([, problem]) => problem && !isShown(problem));
+  const messages = calls.map((name) => (state.problems[name] ? state.problems[name].message : null));
+  const found = calls
+    .map((name) => [name, state.problems[name]])
+    .filter(([, problem], k) => problem && !isShown(problem) && messages.indexOf(problem.message) === k); // calls may end alike
   return found.map(([name, problem]) =>
     h(
       "div",
