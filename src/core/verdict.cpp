@@ -44,8 +44,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "",
      "",
      "The path or the tumour's edge lies where the region of interest, or the end of the scan, cuts through the "
-     "tissue. "
-     "The specimen continues beyond that face."},
+     "tissue. The specimen continues beyond that face."},
     {"program_check", kRefused, {}, "", "", "A safety check of the robot program failed."},
     {"photo_oblique", kRefused, 0.03, "<=", "",
      "Change of scale along the ruler of a photograph: the camera does not look straight down."},

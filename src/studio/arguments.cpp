@@ -30,7 +30,7 @@ std::uint64_t seed_argument(const Json& arguments, const char* name) {
 int count_argument(const Json& arguments, const char* name) {
   constexpr std::uint64_t kMost = 1'000'000'000;
   const std::uint64_t count = seed_argument(arguments, name);
-  if (count > kMost) throw CaseError("request", name, fmt::format("{}", count), "a count");
+  if (count > kMost) throw CaseError("request", name, fmt::format("{}", count), fmt::format("at most {}", kMost));
   return static_cast<int>(count);
 }
 

@@ -72,9 +72,8 @@ VerdictStatus status_of_course(const Verdict& verdict) {
   return worst;
 }
 
-/// A correction may not buy the lateral error with depth or closure: it leaves no more layers open than the first cut,
-/// and is as deep everywhere as a cut has to be, or as the first one was. Why a correction buys its gain too dear;
-/// empty: it does not.
+/// What a correction loses in depth or closure; empty: nothing. It may leave no more layers open than the first cut, and
+/// has to be as deep everywhere as a cut has to be, or as the first one was.
 std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& first, const SimulatedCut& corrected) {
   const std::size_t open = open_layers_mm(corrected.incision).size(), before = open_layers_mm(first.incision).size();
   if (open > before)

@@ -162,7 +162,6 @@ test("results are kept, laid over the next one, and put back", async (t) => {
     await idle(page);
     assert.deepEqual(await stateOf(page, "kept"), []);
     await goTo(page, "compare");
-    await idle(page); // the body and the plan of the other case
     await page.click("[data-do=run]");
     await ran(page);
     assert.ok((await page.textContent("[data-section=what-if]")).includes("4 kept results were of another case"));

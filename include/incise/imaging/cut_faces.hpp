@@ -9,7 +9,7 @@
 
 namespace incise {
 
-/// The face of the region that a CutVoxel's side points at most.
+/// The face of the region that a CutVoxel's side faces most directly. @param side  0 to 5, see CutVoxel::side
 [[nodiscard]] RegionFace face_of(const VolumeGrid& grid, std::int32_t side);
 
 /// Tells which places of a specimen's skin lie where the region of interest, or the end of the scan, has cut through

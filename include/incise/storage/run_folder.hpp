@@ -82,9 +82,9 @@ class RunFolder : public Inputs, public ProductSink {
            const SimulatedCut& cut) override;
   void correction(const ProductNote& note, const Correction& correction) override;
   void absent(const std::string& name) override;
-  /// Writes each verdict beside its path. Without any, a path gets the verdict of its last cut back, if the last run
-  /// that cut was made with the settings and inputs that the case has now. A verdict without a cut adds what it refuses
-  /// to that of a cut.
+  /// Writes each verdict, with the advice of an assessment, beside its path. A path without one gets the verdict of its
+  /// last cut back, if the last run that cut was made with the settings and inputs that the case has now. A verdict
+  /// without a cut adds what it refuses to what is known.
   void verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
 
   /// Before a run up to a stage: removes a program and a summary that were made with other settings or inputs than the

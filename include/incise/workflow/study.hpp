@@ -59,7 +59,7 @@ struct Study {
   std::optional<SimulatedCut> as_planned;
   std::optional<Correction> correction;
   std::optional<SimulatedCut> corrected;
-  bool is_accepted = false;     ///< the correction: nothing speaks against it, see objection_to
+  bool is_accepted = false;     ///< whether the correction is accepted: objection_to finds nothing
   std::string correction_note;  ///< why it is not, as the end of a sentence; empty: it is, or there is none
   Verdict about_inputs;   ///< what was found before anything was cut: scan, contour against surface
   Verdict verdict;        ///< of the run, see verdict_of_run; complete once the last stage asked for has run

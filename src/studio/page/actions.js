@@ -36,7 +36,10 @@ export async function ask(name, args = {}, isWanted = () => true) {
   mark(name, (state.busy[name] || 0) + 1);
   setProblem(name, null);
   try {
-    const result = await call(name, args);
+    if (kWhole.includes(name)) await Promise.allSettled(planning);
+    const answer = call(name, args);
+    if (kPlanned.includes(name)) follow(answer);
+    const result = await answer;
     return isWanted() ? await load(result) : null;
   } catch (error) {
     await takeFailure(name, error, isWanted);
@@ -44,6 +47,16 @@ export async function ask(name, args = {}, isWanted = () => true) {
   } finally {
     mark(name, state.busy[name] - 1);
   }
+}
+
+// Requests on different connections may overtake each other, and the server refuses one of kPlanned during a run.
+const kWhole = ["run", "lay"];
+const planning = new Set(); // answers of kPlanned that are on their way
+
+function follow(answer) {
+  const end = () => planning.delete(answer);
+  planning.add(answer);
+  answer.then(end, end);
 }
 
 function mark(name, count) {
@@ -275,7 +288,7 @@ export function sendAtOnce() {
   if (opening || state.busy.change || !isPending()) return;
   call("change", {...ofCase(), set: pending}, {keepalive: true}).catch(() => null);
   pending = {};
-  update({drafts: {}}); // should the page come back, it is told what the case holds
+  update({drafts: {}}); // if the page comes back, the server's state brings the case
 }
 
 // What a change is of: two cases with the same text have the same revision.
