@@ -142,6 +142,7 @@ Json case_json(const CaseFile& file) {
   json["units"] = std::move(units);
   json["choices"] = choices_json();
   json["edge"] = edge_json(file);
+  json["default_hold"] = default_hold_in_words();
   return json;
 }
 

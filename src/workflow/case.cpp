@@ -122,10 +122,23 @@ std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& 
   return toughness;
 }
 
+namespace {
+
+// Of the default hold.
+constexpr double kClampMm = 15.0;    // what the posterior clamp of a specimen holder takes hold of
+constexpr double kSutureMm = 10.0;   // round the retraction suture
+constexpr double kStretchMm = 20.0;  // paper II-A
+
+}  // namespace
+
+std::string default_hold_in_words() {
+  return fmt::format(
+      "The back end ({:g} mm) is clamped, the front end ({:g} mm) is pulled {:g} mm forwards, and a plane "
+      "under its lowest point supports it",
+      kClampMm, kSutureMm, kStretchMm);
+}
+
 std::vector<Constraint> default_constraints(const TetMesh& mesh) {
-  constexpr double kClampMm = 15.0;    // what the posterior clamp of a specimen holder takes hold of
-  constexpr double kSutureMm = 10.0;   // round the retraction suture
-  constexpr double kStretchMm = 20.0;  // paper II-A
   constexpr double kShortestMm = 40.0;  // what lies between the two ends is then stretched to 2.3 times its length, and no more
   const Box3 box = bounding_box(mesh.vertices);
   const double length_mm = box.sizes().y(), lowest = box.min().z();

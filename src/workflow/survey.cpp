@@ -31,9 +31,9 @@ void require_equilibrium(const Case& settings, const StaticResult& result, const
                     to_string(result.outcome), result.iterations, result.relative_residual),
         "constraints that the tissue can follow",
         settings.constraints
-            ? "Try a smaller displacement or a smaller Poisson's ratio"
-            : "The case names none: by default 15 mm at the back are clamped, 10 mm at the front are pulled "
-              "by 20 mm, and a platform supports the lowest place. State constraints of its own");
+            ? std::string("Try a smaller displacement or a smaller Poisson's ratio")
+            : fmt::format("The case names none, so the default holds the body. {}. State constraints of its own",
+                          default_hold_in_words()));
   }
 }
 

@@ -162,5 +162,7 @@ struct Case {
 /// The paper's set-up (II-A) for a tongue in LPS: posterior 15 mm clamped, anterior 10 mm pulled 20 mm forward, underside resting on a platform
 /// at the mesh's lowest point. @throws CaseError for a body shorter than 40 mm along y, for which these lengths are not made.
 [[nodiscard]] std::vector<Constraint> default_constraints(const TetMesh& mesh);
+/// The same as a sentence without its full stop: "The back end (15 mm) is clamped, …".
+[[nodiscard]] std::string default_hold_in_words();
 
 }  // namespace incise

@@ -168,7 +168,7 @@ function ByDefault() {
   );
 }
 
-// As default_constraints() has it; without a body there is nothing from which to write it into the case.
+// Without a body there is nothing from which to write it into the case.
 function DefaultWithoutBody() {
   return h(
     "div",
@@ -176,8 +176,7 @@ function DefaultWithoutBody() {
     h(
       "p",
       {class: "soft"},
-      "The case says nothing about it, so the body would be held by the default: The back end (15 mm) is clamped. The " +
-        "front end (10 mm) is pulled 20 mm forwards. The tissue rests on a plane under its lowest point.",
+      `The case says nothing about it, so the body would be held by the default. ${state.case.default_hold}.`,
     ),
     h(
       "p",
