@@ -66,7 +66,7 @@ const PowerCut* find_greatest(const CutsOfOnePower& cuts, std::optional<double> 
 std::string reason_against(const PowerCut& cut) {
   if (!cut.problem.empty()) return fmt::format("{}: {}", cut.specimen, cut.problem);
   if (cut.outcome == Outcome::OpenLoop) return fmt::format("{}: the ring stays open", cut.specimen);
-  return fmt::format("{}: the cut ended as {}", cut.specimen, to_string(cut.outcome));
+  return fmt::format("{}: the cut {}", cut.specimen, in_words(cut.outcome));
 }
 
 PowerVerdict judge(double power_w, const CutsOfOnePower& cuts, const PowerLimits& limits) {

@@ -5,7 +5,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/expect.hpp>
 #include <incise/core/median.hpp>
-#include <incise/imaging/cut_faces.hpp>
+#include <incise/imaging/made_skin.hpp>
 #include <incise/imaging/scan_checks.hpp>
 #include <incise/imaging/segmentation.hpp>
 
@@ -234,7 +234,7 @@ IndexBox grown(IndexBox box, int voxels) {
 
 /// Counts the voxels that are cut, by the faces that cut them. @param grid  of the voxels
 void note_cut_faces(const VolumeGrid& grid, Segmentation& result) {
-  for (const CutVoxel& voxel : result.cut) ++result.cut_voxels.at(static_cast<std::size_t>(face_of(grid, voxel.side)));
+  for (const MadeVoxel& voxel : result.cut) ++result.cut_voxels.at(static_cast<std::size_t>(face_of(grid, voxel.side)));
   if (result.cut_faces() == 0) return;
   std::vector<std::string> faces;
   for (std::size_t f = 0; f < 6; ++f)
@@ -351,6 +351,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   report(0.4);
   if (settings.fill_holes) fill_holes(body, result);
   result.cut = find_cut_voxels(body, whole, ct.grid, settings.opening_radius_mm);
+  result.painted = find_painted_voxels(body, whole, settings.opening_radius_mm);
   note_cut_faces(body.grid, result);
   if (source == Source::Scan) result.verdict.add(of_scan ? *of_scan : check_scan(ct));
 
@@ -367,7 +368,8 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   const IndexBox kept = grown(box_of(label), settings.margin_voxels);
   result.labels = crop(label, kept);
   result.occupancy = crop(occupancy, kept);
-  result.cut = carried_to_surface(result.cut, body.grid, result.labels, kCarriedLengths * result.smoothing_mm);
+  for (std::vector<MadeVoxel>* made : {&result.cut, &result.painted})
+    *made = carried_to_surface(*made, body.grid, result.labels, kCarriedLengths * result.smoothing_mm);
   result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
   result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
   result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5);

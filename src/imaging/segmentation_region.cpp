@@ -110,6 +110,7 @@ void paint(const Contour& piece, const TissueEdit& edit, const SegmentationSetti
 
 void apply_edits(const SegmentationSettings& settings, WorkingVolume& work, Monitor& monitor) {
   if (!settings.edits) return;
+  work.unedited = work.in_window.voxels;
   for (const TissueEdit& edit : *settings.edits) {
     const Points& path = edit.path_mm;
     paint({{path.front()}, false}, edit, settings, work);
@@ -162,7 +163,8 @@ WorkingVolume cut_out(const CtVolume& ct, const SegmentationSettings& settings, 
   WorkingVolume work{{grid, std::vector<std::int16_t>(grid.voxel_count(), beyond)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
                      {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
-                     {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)}};
+                     {grid, std::vector<std::uint8_t>(grid.voxel_count(), 0)},
+                     {}};
   fill_working_volume(ct, settings, box, low, work);
   apply_edits(settings, work, monitor);
   require_tissue(work, settings);
@@ -237,39 +239,62 @@ bool goes_on(const WorkingVolume& work, const VolumeGrid& scan, const Place& fir
   return count >= kLeast;
 }
 
-}  // namespace
-
-std::vector<CutVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
-                                      double opening_mm) {
+/// The body's voxels that tissue in the region joins, straight on, to a voxel whose side was made.
+/// @param is_made  (voxel, the one beyond its side, side)
+template <class IsMade>
+std::vector<MadeVoxel> find_made(const Mask& body, const WorkingVolume& work, double opening_mm,
+                                 const IsMade& is_made) {
   const VolumeGrid& grid = body.grid;
-  const Eigen::Array3i low = scan.index_from_world(grid.origin_mm).array().round().cast<int>();
-  const Place first{low[0], low[1], low[2]};
-  std::vector<CutVoxel> cut;
+  std::vector<MadeVoxel> made;
   for (std::size_t v = 0; v < body.voxels.size(); ++v) {
     if (body.voxels[v] == 0 && work.in_window.voxels[v] == 0) continue;
     const Place at = grid.voxel_at(v);
     for (std::int32_t side = 0; side < 6; ++side) {
-      const Place step = step_towards(side), beyond = moved(at, step);
-      if (is_in(work.region, beyond) || !goes_on(work, scan, first, beyond, side)) continue;
+      const Place step = step_towards(side);
+      if (!is_made(at, moved(at, step), side)) continue;
       Place inwards = at;
       for (int left = voxels_within(opening_mm, grid, side); left > 0 && !is_in(body, inwards); --left) {
         if (!is_in(work.in_window, inwards)) break;
         inwards = moved(inwards, step, -1);
       }
       if (is_in(body, inwards))
-        cut.push_back({static_cast<std::int32_t>(grid.offset(inwards[0], inwards[1], inwards[2])), side});
+        made.push_back({static_cast<std::int32_t>(grid.offset(inwards[0], inwards[1], inwards[2])), side});
     }
   }
-  return cut;
+  return made;
 }
 
-std::vector<CutVoxel> carried_to_surface(const std::vector<CutVoxel>& cut, const VolumeGrid& from, const Mask& smoothed,
-                                         double reach_mm) {
+}  // namespace
+
+std::vector<MadeVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
+                                       double opening_mm) {
+  const Eigen::Array3i low = scan.index_from_world(body.grid.origin_mm).array().round().cast<int>();
+  const Place first{low[0], low[1], low[2]};
+  return find_made(body, work, opening_mm, [&](const Place&, const Place& beyond, std::int32_t side) {
+    return !is_in(work.region, beyond) && goes_on(work, scan, first, beyond, side);
+  });
+}
+
+std::vector<MadeVoxel> find_painted_voxels(const Mask& body, const WorkingVolume& work, double opening_mm) {
+  if (work.unedited.empty()) return {};
+  const VolumeGrid& grid = body.grid;
+  const auto is_changed = [&](const Place& at) {
+    const std::size_t v = grid.offset(at[0], at[1], at[2]);
+    return work.unedited[v] != work.in_window.voxels[v];
+  };
+  return find_made(body, work, opening_mm, [&](const Place& at, const Place& beyond, std::int32_t) {
+    return !is_in(work.in_window, beyond) && !is_in(body, beyond) &&
+           (is_changed(at) || (grid.contains(beyond[0], beyond[1], beyond[2]) && is_changed(beyond)));
+  });
+}
+
+std::vector<MadeVoxel> carried_to_surface(const std::vector<MadeVoxel>& made, const VolumeGrid& from,
+                                          const Mask& smoothed, double reach_mm) {
   const VolumeGrid& to = smoothed.grid;
   const Eigen::Array3i low = from.index_from_world(to.origin_mm).array().round().cast<int>();
   const Place origin{-low[0], -low[1], -low[2]};
-  std::vector<CutVoxel> carried;
-  for (const CutVoxel& voxel : cut) {
+  std::vector<MadeVoxel> carried;
+  for (const MadeVoxel& voxel : made) {
     const Place step = step_towards(voxel.side);
     Place at = moved(from.voxel_at(static_cast<std::size_t>(voxel.voxel)), origin);
     for (int left = 1 + voxels_within(reach_mm, to, voxel.side); left > 0 && !is_in(smoothed, at); --left)

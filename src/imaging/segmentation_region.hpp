@@ -14,6 +14,7 @@ struct WorkingVolume {
   Mask region;     ///< inside the CT's grid and the region of interest
   Mask tissue;     ///< HU in the window, or painted as tissue: outside the region, too
   Mask in_window;  ///< the tissue in the region
+  std::vector<std::uint8_t> unedited;  ///< in_window's voxels before the edits; empty: there are none
 };
 
 /// A grid of `size` voxels whose first is voxel `low` (which may lie outside) of `grid`.
@@ -35,13 +36,17 @@ struct WorkingVolume {
 /// body that tissue in the region joins, straight on, to such a place. Straight on: within `opening_mm`, which the
 /// opening has taken away. Skin that merely lies at the region's face is not among them: a voxel is cut where 4 of the
 /// 9 voxels of the layer beyond, round the next one, are tissue or outside the volume. @pre all on one grid.
-[[nodiscard]] std::vector<CutVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
-                                                    double opening_mm);
+[[nodiscard]] std::vector<MadeVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work,
+                                                     const VolumeGrid& scan, double opening_mm);
 
-/// The same, where the smoothed body begins beneath each of them, straight on: smoothing moves what is curved.
-/// @param smoothed  of `to`, a part of the voxels of `from`. @param reach_mm  farther in, nothing is looked for.
-[[nodiscard]] std::vector<CutVoxel> carried_to_surface(const std::vector<CutVoxel>& cut, const VolumeGrid& from,
-                                                       const Mask& smoothed, double reach_mm);
+/// Where the edits have made the body's surface, likewise: they made the voxel tissue, or took away the one beyond it.
+[[nodiscard]] std::vector<MadeVoxel> find_painted_voxels(const Mask& body, const WorkingVolume& work,
+                                                         double opening_mm);
+
+/// Where the smoothed body begins beneath each of such voxels, straight on: smoothing moves what is curved.
+/// @param smoothed  a part of the voxels of `from`. @param reach_mm  farther in, nothing is looked for.
+[[nodiscard]] std::vector<MadeVoxel> carried_to_surface(const std::vector<MadeVoxel>& made, const VolumeGrid& from,
+                                                        const Mask& smoothed, double reach_mm);
 
 /// The smallest index box, from low to below high, that holds the mask's voxels. @pre at least one.
 struct IndexBox {

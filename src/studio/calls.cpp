@@ -18,6 +18,7 @@
 #include <incise/storage/case_edit.hpp>
 #include <incise/storage/case_run.hpp>
 #include <incise/workflow/cut_doubts.hpp>
+#include <incise/workflow/margin_room.hpp>
 
 #include <fmt/format.h>
 
@@ -157,6 +158,19 @@ Json label_counts(const LabelVolume& labels) {
   return json;
 }
 
+/// A closed edge that a person draws.
+Contour edge_argument(const Json& arguments) {
+  Contour drawn{points_argument(arguments, "points_mm"), true};
+  if (drawn.points.size() < 3 || drawn.points.size() > kMostEdgePoints)
+    throw CaseError("request", "points_mm", fmt::format("{} points", drawn.points.size()),
+                    fmt::format("3 to {} points", kMostEdgePoints));
+  const double length = length_mm(drawn);
+  if (!(length > 1.0 && length < 1000.0))
+    throw CaseError("request", "points_mm", fmt::format("an edge of {:.1f} mm", length),
+                    "a closed edge of 1 to 1000 mm");
+  return drawn;
+}
+
 /// Where a drawn edge goes: a name that is free, so that no edge is ever lost.
 fs::path file_for_edge(const CaseFile& file) {
   for (int k = 1;; ++k) {
@@ -186,6 +200,10 @@ void require_known_files(const CaseFile& before, const CaseFile& after, const st
     throw CaseError("request", "set", "'" + file.string() + "', a file outside the case's folder",
                     "a file that was chosen from the list");
   }
+}
+
+MadeSkin made_skin_of(const Study& study) {
+  return study.segmentation ? MadeSkin(*study.segmentation) : MadeSkin();
 }
 
 /// A cut of a run, for a person. @param cut  as_planned, pass_1 …, corrected.
@@ -251,6 +269,7 @@ Json Calls::make(const std::string& name, const fs::path& file, const Json& argu
                                                    {"scan", &Calls::scan},
                                                    {"tissue", &Calls::tissue},
                                                    {"edge", &Calls::edge},
+                                                   {"room", &Calls::room},
                                                    {"body", &Calls::body},
                                                    {"stretch", &Calls::stretch},
                                                    {"plan", &Calls::plan},
@@ -373,41 +392,82 @@ Json Calls::scan(const Json&) {
           {"voxels", blobs_.put("scan.voxels", std::span<const std::int16_t>(ct.voxels))}};
 }
 
+const Calls::Found& Calls::found_in(const CaseFile& file) {
+  const SegmentationSettings& settings = file.settings.segmentation;
+  const bool is_drawn = !file.inputs.ct_labels.empty();  // read each time: it may lie in several files
+  if (!is_drawn) static_cast<void>(ct_of(file));         // likewise the CT, where it was changed
+  const std::string key = is_drawn ? std::string() : ct_key_ + to_json(settings).dump();
+  if (!key.empty() && key == found_key_) return found_;
+  found_key_.clear();
+  found_ = {};
+  if (is_drawn) {
+    const LabelVolume labels = read_labels(file.inputs.ct_labels);
+    found_.given_labels = label_counts(labels);
+    found_.tissue = segment_labels(labels, settings, monitor_);
+  } else {
+    found_.tissue = segment(ct_, settings, monitor_, of_scan_);
+  }
+  found_.skin = iso_surface(found_.tissue.occupancy, 0.5);
+  found_key_ = key;
+  return found_;
+}
+
 Json Calls::tissue(const Json&) {
   const CaseFile file = read_case(file_);
-  std::optional<LabelVolume> given;
-  if (!file.inputs.ct_labels.empty()) given = read_labels(file.inputs.ct_labels);
-  const SegmentationSettings& settings = file.settings.segmentation;
-  const CtVolume* const ct = given ? nullptr : &ct_of(file);
-  const Segmentation found =
-      given ? segment_labels(*given, settings, monitor_) : segment(*ct, settings, monitor_, of_scan_);
-  const TriMesh skin = iso_surface(found.occupancy, 0.5);
-  const std::vector<std::uint8_t> cut = cut_triangles(CutFaces(found), skin);
+  const auto& [found, skin, given_labels] = found_in(file);
+  const std::vector<std::uint8_t> cut = cut_triangles(MadeSkin(found), skin.vertices, skin.triangles);
   Json summary = to_json(found);
   summary.erase("verdict");
   return {{"grid", grid_json(found.labels.grid)},
           {"labels", blobs_.put("tissue.labels", std::span<const std::uint8_t>(found.labels.voxels))},
           {"skin", surface_json(blobs_, "tissue.skin", skin.vertices, skin.triangles)},
           {"cut", blobs_.put("tissue.cut", std::span<const std::uint8_t>(cut))},
-          {"given_labels", given ? label_counts(*given) : Json(nullptr)},
+          {"given_labels", given_labels},
           {"summary", std::move(summary)},
           {"verdict", to_json(found.verdict)}};
+}
+
+PlacedSkin Calls::skin_at_rest(const CaseFile& file) {
+  if (file.inputs.specimen_mesh.empty()) {
+    const Found& found = found_in(file);
+    return {found.skin, found.skin.vertices, MadeSkin(found.tissue)};
+  }
+  const TriMesh skin = boundary_surface(read_tet_mesh(file.inputs.specimen_mesh, monitor_));
+  return {skin, skin.vertices, MadeSkin()};
+}
+
+Json Calls::room(const Json& arguments) {
+  const CaseFile file = read_case(file_);
+  PlanSettings plan = file.settings.plan;
+  if (plan.kind == PlanKind::Line) plan.waypoints = PlanSettings{}.waypoints;
+  plan.kind = PlanKind::Ring;
+  const Contour drawn = edge_argument(arguments);
+  const PlacedSkin skin = skin_at_rest(file);
+  const auto is_cut = [&](const Vec3& place) { return skin.cut_under(place).has_value(); };
+  Json json{{"ring", nullptr}, {"on_cut_face", Json::array()}, {"edge_on_cut_face", 0}, {"problem", nullptr}};
+  add_room({}, json);
+  json["fits"] = false;
+  try {
+    const Contour edge = project_tumor_edge(drawn, skin.surface(), plan.approach, file.settings.surface_tolerance_mm);
+    json["edge_on_cut_face"] = std::ranges::count_if(edge.points, is_cut);
+    add_room(margin_room(skin, edge, plan, radius_mm(file.settings.tool)), json);
+    const Points ring = entry_contour(plan_ring(skin.surface(), edge, plan)).points;
+    json["ring"] = points_json(ring);
+    for (const Vec3& place : ring) json["on_cut_face"].push_back(is_cut(place) ? 1 : 0);
+    json["fits"] = std::ranges::none_of(ring, is_cut) && std::ranges::none_of(edge.points, is_cut);
+  } catch (const CaseError& error) {  // an answer, too: this margin, or this edge, does not fit
+    json["problem"] = sentence(error.problem());
+  }
+  return json;
 }
 
 Json Calls::edge(const Json& arguments) {
   require_open(arguments);
   const CaseFile file = read_case(file_);
-  Contour drawn{points_argument(arguments, "points_mm"), true};
-  if (drawn.points.size() < 3 || drawn.points.size() > kMostEdgePoints)
-    throw CaseError("request", "points_mm", fmt::format("{} points", drawn.points.size()),
-                    fmt::format("3 to {} points", kMostEdgePoints));
-  const double length = length_mm(drawn);
-  if (!(length > 1.0 && length < 1000.0))
-    throw CaseError("request", "points_mm", fmt::format("an edge of {:.1f} mm", length),
-                    "a closed edge of 1 to 1000 mm");
+  const Contour drawn = edge_argument(arguments);
   const std::string revision = text_argument(arguments, "revision");
   if (revision != case_revision(file_)) throw StaleRevision(file_);
-  const auto count = static_cast<std::size_t>(std::ceil(length / kEdgeStepMm));
+  const auto count = static_cast<std::size_t>(std::ceil(length_mm(drawn) / kEdgeStepMm));
   const fs::path target = file_for_edge(file);
   const CaseChanges changes{{"tumor.contour", target.lexically_proximate(file.folder).string()},
                             {"tumor.configuration", text_argument(arguments, "configuration")}};
@@ -437,8 +497,11 @@ Json Calls::body(const Json&) {
   const TissueModel& model = *study.model;
   const Skin skin = skin_of(model.mesh);
   const std::vector<std::uint8_t> held = held_by(skin, model);
+  const Points at_rest = positions_on(skin, model.mesh.vertices);
+  const std::vector<std::uint8_t> cut = cut_triangles(made_skin_of(study), at_rest, skin.triangles);
   return {{"tets", model.mesh.tets.size()},
-          {"skin", surface_json(blobs_, "body.skin", positions_on(skin, model.mesh.vertices), skin.triangles)},
+          {"skin", surface_json(blobs_, "body.skin", at_rest, skin.triangles)},
+          {"cut", blobs_.put("body.cut", std::span<const std::uint8_t>(cut))},
           {"held", blobs_.put("body.held", std::span<const std::uint8_t>(held))},
           {"constraints", constraints_json(model)}};
 }
@@ -462,11 +525,17 @@ Json Calls::plan(const Json&) {
     throw CaseError(file_.string(), "specimen.constraints", explain_stretch(*study.stretched),
                     "a stretch that comes to rest");
   Verdict verdict = study.about_inputs;
-  const CutFaces faces = study.segmentation ? CutFaces(*study.segmentation) : CutFaces();
-  verdict.add(verdict_before_cut(file.settings, *study.model, faces, study.stretched->state.positions, *study.plan));
-  return {{"path", tool_path_json(*study.plan)},
-          {"edge", points_json(study.plan->tumor_edge.points)},
-          {"verdict", to_json(verdict)}};
+  const MadeSkin made = made_skin_of(study);
+  const Points& stretched = study.stretched->state.positions;
+  verdict.add(verdict_before_cut(file.settings, *study.model, made, stretched, *study.plan));
+  Json json{{"path", tool_path_json(*study.plan)},
+            {"edge", points_json(study.plan->tumor_edge.points)},
+            {"verdict", to_json(verdict)}};
+  if (file.settings.plan.kind == PlanKind::Ring) {
+    const PlacedSkin skin(boundary_surface(study.model->mesh), stretched, made);
+    add_room(margin_room(skin, study.plan->tumor_edge, file.settings.plan, radius_mm(file.settings.tool)), json);
+  }
+  return json;
 }
 
 void Calls::show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress) {
@@ -509,6 +578,7 @@ Json Calls::run(const Json& arguments) {
     const Study& study = run.study;
     json["verdict"] = to_json(run.verdict);
     json["outcome"] = to_string(study.outcome);
+    json["ended"] = ended(study.outcome);
     json["accepted"] = study.is_accepted;
     json["correction_note"] = study.correction_note.empty() ? Json(nullptr) : Json(study.correction_note);
     json["gate"] = run.program ? to_json(run.gate) : Json(nullptr);

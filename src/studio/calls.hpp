@@ -8,6 +8,7 @@
 #include <incise/geometry/volume.hpp>
 #include <incise/storage/case_file.hpp>
 #include <incise/storage/run_folder.hpp>
+#include <incise/workflow/margin_room.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <nlohmann/json.hpp>
@@ -28,7 +29,7 @@ void remove_laid(const CaseFile& file);
 void remove_stale_laid(const CaseFile& file);
 
 /// What a browser asks for, each a few calls of the library: see docs/decisions/0009-studio.md. The state is in the
-/// case folder; only the CT that was read last is kept.
+/// case folder; only the CT that was read last, and the tissue that was found last, are kept.
 class Calls {
  public:
   using Json = nlohmann::ordered_json;
@@ -54,6 +55,7 @@ class Calls {
   Json scan(const Json& arguments);
   Json tissue(const Json& arguments);
   Json edge(const Json& arguments);
+  Json room(const Json& arguments);
   Json body(const Json& arguments);
   Json stretch(const Json& arguments);
   Json plan(const Json& arguments);
@@ -73,6 +75,15 @@ class Calls {
   /// Cautions that a person accepts, of the case as it is. @throws StaleRevision for those of another revision.
   [[nodiscard]] std::vector<std::string> accepted_in(const Json& arguments) const;
   [[nodiscard]] const CtVolume& ct_of(const CaseFile& file);
+  /// The tissue that a case's settings find in its scan or labels, its skin, and what the labels' values are.
+  struct Found {
+    Segmentation tissue;
+    TriMesh skin;
+    Json given_labels;
+  };
+  [[nodiscard]] const Found& found_in(const CaseFile& file);
+  /// The skin of a case's specimen at rest.
+  [[nodiscard]] PlacedSkin skin_at_rest(const CaseFile& file);
   /// A case of what cannot be read is of no use. @param is_made_later  its mesh. @throws DataError
   void require_readable(const CaseFile& made, bool is_made_later);
   /// Runs the case up to a stage, in its own output folder.
@@ -87,7 +98,9 @@ class Calls {
   std::filesystem::path file_;  ///< of the case
   std::string ct_key_;          ///< which CT is kept: its place, how it was read, and when it was changed
   CtVolume ct_;
-  Verdict of_scan_;  ///< what check_scan says of it
+  Verdict of_scan_;        ///< what check_scan says of it
+  std::string found_key_;  ///< in which case file, of which content, and in which scan or labels
+  Found found_;
   std::chrono::steady_clock::time_point last_moment_{};
   bool shows_moments_ = true;
 };

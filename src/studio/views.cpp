@@ -3,7 +3,10 @@
 #include <incise/core/described_json.hpp>
 #include <incise/workflow/cut_verdict.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace incise::studio {
@@ -44,6 +47,15 @@ Json numbers_json(const Case& settings, const SimulatedCut& cut) {
 
 }  // namespace
 
+void add_room(const MarginRoom& room, Json& json) {
+  json["greatest_margin_mm"] = or_null(room.greatest_mm);
+  json["margin_note"] = in_words(room) + ".";
+}
+
+std::string ended(Outcome outcome) {
+  return fmt::format("The cut {}.", in_words(outcome));
+}
+
 Skin skin_of(const TetMesh& mesh, std::span<const std::uint8_t> is_live) {
   std::vector<std::int32_t> place(mesh.vertices.size(), -1);
   const std::vector<BoundaryFace> faces = boundary_faces(mesh, is_live);
@@ -83,13 +95,13 @@ std::vector<std::uint8_t> held_by(const Skin& skin, const TissueModel& model) {
   return marks;
 }
 
-std::vector<std::uint8_t> cut_triangles(const CutFaces& faces, const TriMesh& skin) {
+std::vector<std::uint8_t> cut_triangles(const MadeSkin& made, std::span<const Vec3> vertices,
+                                        std::span<const Triangle> triangles) {
   std::vector<std::uint8_t> cut;
-  cut.reserve(skin.triangles.size());
-  for (const auto& [a, b, c] : skin.triangles) {
-    const bool is_cut =
-        faces.under({skin.vertices[a.index()], skin.vertices[b.index()], skin.vertices[c.index()]}).has_value();
-    cut.push_back(is_cut ? 1 : 0);
+  cut.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) {
+    const std::array<Vec3, 3> corners{vertices[a.index()], vertices[b.index()], vertices[c.index()]};
+    cut.push_back(made.cut_under(corners) ? 1 : made.is_painted(corners) ? 2 : 0);
   }
   return cut;
 }
@@ -107,6 +119,26 @@ Json as_written(const Constraint& constraint) {
   return kept.unflatten();
 }
 
+namespace {
+
+/// How far a constraint pulls, as a share of the body's length along the pull; nothing where it pulls nothing.
+std::optional<double> share_of_length(const Constraint& constraint, std::span<const Vec3> at_rest) {
+  const auto* const pulled = std::get_if<DisplacedConstraint>(&constraint);
+  if (pulled == nullptr || pulled->displacement_mm.isZero()) return std::nullopt;
+  const Vec3 along = pulled->displacement_mm.normalized();
+  const auto [low, high] = std::ranges::minmax(at_rest, {}, [&](const Vec3& p) { return along.dot(p); });
+  return pulled->displacement_mm.norm() / along.dot(high - low);
+}
+
+/// Where to begin with it is a matter of judgement: no law of the tissue has a limit there.
+Json note_on_pull(const std::optional<double>& share) {
+  constexpr double kMuch = 0.25;
+  if (!share || *share <= kMuch) return nullptr;
+  return "Much for a body of this length. A smaller pull deforms the tissue less.";
+}
+
+}  // namespace
+
 Json constraints_json(const TissueModel& model) {
   std::vector<std::size_t> counts(model.constraints.size(), 0);
   for (const auto& holders : model.holder) {
@@ -114,10 +146,14 @@ Json constraints_json(const TissueModel& model) {
       counts[c] += std::count(holders.begin(), holders.end(), static_cast<std::int32_t>(c)) > 0 ? 1 : 0;
   }
   Json list = Json::array();
-  for (std::size_t c = 0; c < counts.size(); ++c)
+  for (std::size_t c = 0; c < counts.size(); ++c) {
+    const std::optional<double> share = share_of_length(model.constraints[c], model.mesh.vertices);
     list.push_back({{"kind", names_of(model.constraints[c])[model.constraints[c].index()]},
                     {"vertices", counts[c]},
+                    {"share_of_length", or_null(share)},
+                    {"note", note_on_pull(share)},
                     {"setting", as_written(model.constraints[c])}});
+  }
   return list;
 }
 
@@ -160,6 +196,7 @@ Json cut_json(const Case& settings, const SimulatedCut& cut, const ToolPath& fol
   Json json;
   json["path"] = tool_path_json(followed);
   json["outcome"] = to_string(cut.outcome);
+  json["ended"] = ended(cut.outcome);
   json["centerline"] = contour_json(cut.incision.centerline);
   json["inner_edge"] = contour_json(cut.incision.inner_edge);
   json["errors"] = {{"arclength_mm", arclengths(errors.points.points)}, {"signed_mm", errors.signed_error_mm}};

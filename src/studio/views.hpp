@@ -2,8 +2,9 @@
 
 #include "blob_folder.hpp"
 
-#include <incise/imaging/cut_faces.hpp>
+#include <incise/imaging/made_skin.hpp>
 #include <incise/mechanics/tissue.hpp>
+#include <incise/workflow/margin_room.hpp>
 #include <incise/workflow/products.hpp>
 
 #include <nlohmann/json.hpp>
@@ -25,13 +26,15 @@ struct Skin {
 /// The skin's vertices where `positions` (of all vertices of the mesh) has them.
 [[nodiscard]] Points positions_on(const Skin& skin, std::span<const Vec3> positions);
 
-/// For each triangle of a found tissue's skin, 1 where the region of interest or the end of the scan made it.
-[[nodiscard]] std::vector<std::uint8_t> cut_triangles(const CutFaces& faces, const TriMesh& skin);
+/// For each triangle of the skin of a tissue at rest, 1 where the region of interest or the end of the scan made it, 2
+/// where strokes of the brush did.
+[[nodiscard]] std::vector<std::uint8_t> cut_triangles(const MadeSkin& made, std::span<const Vec3> vertices,
+                                                      std::span<const Triangle> triangles);
 
 /// Which constraints hold each vertex of the skin: bit c for constraint c of the first eight.
 [[nodiscard]] std::vector<std::uint8_t> held_by(const Skin& skin, const TissueModel& model);
-/// Of each constraint, those of the default included: kind, number of held vertices, and `setting` as a case file has
-/// it.
+/// Of each constraint, those of the default included: kind, number of held vertices, `setting` as a case file has it,
+/// `share_of_length`: its pull over the body's length along the pull, or null, and `note`: advice on it, or null.
 [[nodiscard]] nlohmann::ordered_json constraints_json(const TissueModel& model);
 
 /// Size, spacing_mm, origin_mm and axes: unit vectors along i, j and k.
@@ -41,6 +44,10 @@ struct Skin {
 [[nodiscard]] nlohmann::ordered_json surface_json(BlobFolder& blobs, const std::string& slot,
                                                   std::span<const Vec3> vertices, std::span<const Triangle> triangles);
 [[nodiscard]] nlohmann::ordered_json tool_path_json(const ToolPath& path);
+/// Adds `greatest_margin_mm` and `margin_note`, the same as a sentence.
+void add_room(const MarginRoom& room, nlohmann::ordered_json& json);
+/// How a cut ended, a sentence.
+[[nodiscard]] std::string ended(Outcome outcome);
 /// A cut as the interface gives it (docs/decisions/0009-studio.md). @param followed  the path that the tool followed.
 [[nodiscard]] nlohmann::ordered_json cut_json(const Case& settings, const SimulatedCut& cut, const ToolPath& followed);
 

@@ -65,8 +65,7 @@ std::string without_correction(const Study& done) {
     return "the specimen could not be stretched in simulation";
   if (!done.as_planned) return "the cut as planned was not simulated";
   if (!done.corrected || !done.correction)
-    return fmt::format("the cut as planned ended as {} and left nothing to correct",
-                       to_string(done.as_planned->outcome));
+    return fmt::format("the cut as planned left nothing to correct: it {}", in_words(done.as_planned->outcome));
   return "";
 }
 

@@ -5,6 +5,7 @@
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,8 @@
 namespace incise {
 
 namespace {
+
+constexpr std::string_view kNoSuccess = "is open, touches the tumour's edge or did not converge";
 
 /// Points of the inner edge, tool out, at their places in the stretched tissue before the cut.
 PathErrors inner_edge_errors(const SimulatedCut& cut) {
@@ -75,9 +78,12 @@ VerdictStatus status_of_course(const Verdict& verdict) {
 /// What a correction loses in depth or closure; empty: nothing. It may leave no more layers open than the first cut, and
 /// has to be as deep everywhere as a cut has to be, or as the first one was.
 std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& first, const SimulatedCut& corrected) {
-  const std::size_t open = open_layers_mm(corrected.incision).size(), before = open_layers_mm(first.incision).size();
-  if (open > before)
-    return fmt::format("layers of the planned depth that it leaves open: {}, the cut before: {}", open, before);
+  const std::vector<double> open = open_layers_mm(corrected.incision), before = open_layers_mm(first.incision);
+  if (open.size() > before.size())
+    return fmt::format(
+        "it leaves more of the planned depth open, where uncut tissue still holds the piece: {} of the measured layers "
+        "({} mm deep), the cut before {}",
+        open.size(), fmt::join(open, ", "), before.size());
   const auto least = [&settings](const SimulatedCut& cut) {
     const std::vector<double> shares = depth_shares(settings, cut.incision.kerf.depth);
     return shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
@@ -198,7 +204,7 @@ std::string why_none_was_kept(const ConvergedCompensation& done) {
   const std::string worse =
       nearest->open_layers > first.open_layers
           ? fmt::format("leaves more layers open ({} in place of {})", nearest->open_layers, first.open_layers)
-      : nearest->is_success < first.is_success ? std::string("is no success")
+      : nearest->is_success < first.is_success ? std::string(kNoSuccess)
       : nearest->verdict > first.verdict
           ? fmt::format("is {} in place of {}", to_string(nearest->verdict), to_string(first.verdict))
           : fmt::format("falls {:.2f} mm short in depth in place of {:.2f} mm", nearest->shortfall_mm,
@@ -211,7 +217,7 @@ std::string why_none_was_kept(const ConvergedCompensation& done) {
 
 std::string objection_to(const Case& settings, const Correction& correction, const SimulatedCut& first,
                          const SimulatedCut& corrected) {
-  if (corrected.outcome != Outcome::Success) return fmt::format("its cut ended as {}", to_string(corrected.outcome));
+  if (corrected.outcome != Outcome::Success) return fmt::format("its cut {}", in_words(corrected.outcome));
   if (std::string loss = loss_of_depth_or_closure(settings, first, corrected); !loss.empty()) return loss;
   std::optional<double> before, after;
   std::string none_kept;
@@ -222,8 +228,9 @@ std::string objection_to(const Case& settings, const Correction& correction, con
     is_at_first = done.best == 0;
     if (is_at_first) none_kept = why_none_was_kept(done);
     if (!best.is_success) {
-      return is_at_first ? "no pass is better than the cut before it, which is no success itself" + none_kept
-                         : "its best pass is no success";
+      return is_at_first
+                 ? fmt::format("no pass is better than the cut before it, which itself {}{}", kNoSuccess, none_kept)
+                 : fmt::format("its best pass {}", kNoSuccess);
     }
     is_first_measured = done.passes.front().is_success;
     before = done.passes.front().mean_abs_error_mm;

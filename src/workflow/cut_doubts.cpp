@@ -1,13 +1,12 @@
 #include <incise/core/error.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/workflow/cut_doubts.hpp>
+#include <incise/workflow/margin_room.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <utility>
 
 namespace incise {
 namespace {
@@ -80,38 +79,6 @@ class WayOfTool {
   double deepest_mm_ = 0.0;
 };
 
-/// The skin at rest under places of the stretched skin.
-class SkinAtRest {
- public:
-  SkinAtRest(const TissueModel& model, std::span<const Vec3> stretched)
-      : skin_(boundary_surface(model.mesh)), search_(at(stretched)) {}
-
-  /// The triangle under the nearest place of the stretched skin, where its corners lie at rest.
-  [[nodiscard]] std::array<Vec3, 3> under(const Vec3& place) const {
-    const auto& [a, b, c] = skin_.triangles[search_.nearest(place).triangle.index()];
-    return {skin_.vertices[a.index()], skin_.vertices[b.index()], skin_.vertices[c.index()]};
-  }
-
- private:
-  [[nodiscard]] TriMesh at(std::span<const Vec3> stretched) const {
-    TriMesh moved = skin_;
-    moved.vertices.assign(stretched.begin(), stretched.end());
-    return moved;
-  }
-
-  TriMesh skin_;  // at rest, with all vertices of the mesh
-  SurfaceQuery search_;
-};
-
-/// Whether all corners of a triangle lie on the border of a stroke: there, the brush made the skin.
-bool is_painted(const std::array<Vec3, 3>& corners, const TissueEdit& stroke) {
-  constexpr double kOnBorderMm = 1.0;  // the tissue is smoothed, and made of voxels
-  const Contour path{stroke.path_mm, false};
-  return std::ranges::all_of(corners, [&](const Vec3& corner) {
-    return std::abs(nearest_on(path, corner).distance_mm - stroke.radius_mm) < kOnBorderMm;
-  });
-}
-
 /// Counts the places of a list for which something holds, and adds a reason where it holds for any.
 template <class Holds, class Text>
 void add_places(std::string_view id, std::string_view what, std::span<const Vec3> places, const Holds& holds,
@@ -127,22 +94,24 @@ void add_places(std::string_view id, std::string_view what, std::span<const Vec3
 }
 
 /// Places on skin that is not the specimen's own, or that a person drew.
-void add_made_skin(const Case& settings, const TissueModel& model, const CutFaces& faces,
+void add_made_skin(const Case& settings, const TissueModel& model, const MadeSkin& made,
                    std::span<const Vec3> stretched, const ToolPath& path, Verdict& verdict) {
-  const std::vector<TissueEdit> strokes = settings.segmentation.edits.value_or(std::vector<TissueEdit>());
-  if (faces.empty() && strokes.empty()) return;
-  const SkinAtRest skin(model, stretched);
-  const auto is_cut = [&](const Vec3& place) { return faces.under(skin.under(place)).has_value(); };
-  const auto is_drawn = [&](const Vec3& place) {
-    const std::array<Vec3, 3> corners = skin.under(place);
-    return std::ranges::any_of(strokes, [&](const TissueEdit& stroke) { return is_painted(corners, stroke); });
-  };
+  if (made.empty()) return;
+  const PlacedSkin skin(boundary_surface(model.mesh), stretched, made);
+  const auto is_cut = [&](const Vec3& place) { return skin.cut_under(place).has_value(); };
+  const auto is_drawn = [&](const Vec3& place) { return skin.is_painted(place); };
   const auto say_cut = [&](const Vec3& place) {  // above and around it lies tissue that the plan does not know
     return fmt::format(
         "lie where the region of interest (ct.roi_box_mm) or the end of the scan cuts through the tissue, "
         "on its {} side. The skin there is artificial: the specimen continues beyond it. Move that face "
         "of the box outwards, take a scan or labels that reach farther, or cut elsewhere",
-        to_string(*faces.under(skin.under(place))));
+        to_string(*skin.cut_under(place)));
+  };
+  const auto say_cut_path = [&](const Vec3& place) {
+    const bool is_ring = settings.plan.kind == PlanKind::Ring && path.tumor_edge.points.size() >= 3;
+    const MarginRoom room =
+        is_ring ? margin_room(skin, path.tumor_edge, settings.plan, radius_mm(settings.tool)) : MarginRoom();
+    return say_cut(place) + (room.greatest_mm ? ". " + in_words(room) : "");
   };
   const auto say_drawn = [](const Vec3&) {
     return std::string(
@@ -150,11 +119,10 @@ void add_made_skin(const Case& settings, const TissueModel& model, const CutFace
         "specimen's skin is there. Compare it with the scan");
   };
   const Points entries = entry_contour(path).points;
-  for (const auto& [what, places] : {std::pair{"the path", std::span<const Vec3>(entries)},
-                                     std::pair{"the tumour's edge", std::span<const Vec3>(path.tumor_edge.points)}}) {
-    add_places("cut_face", what, places, is_cut, say_cut, verdict);
-    add_places("painted_skin", what, places, is_drawn, say_drawn, verdict);
-  }
+  add_places("cut_face", "the path", entries, is_cut, say_cut_path, verdict);
+  add_places("cut_face", "the tumour's edge", path.tumor_edge.points, is_cut, say_cut, verdict);
+  add_places("painted_skin", "the path", entries, is_drawn, say_drawn, verdict);
+  add_places("painted_skin", "the tumour's edge", path.tumor_edge.points, is_drawn, say_drawn, verdict);
 }
 
 }  // namespace
@@ -197,7 +165,7 @@ std::optional<PlatformClearance> platform_clearance(const TissueModel& model, co
   return least;
 }
 
-Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const CutFaces& cut_faces,
+Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const MadeSkin& made_skin,
                            std::span<const Vec3> stretched, const ToolPath& path) {
   Verdict verdict;
   const double ratio = greatest_ratio(model).ratio;
@@ -224,7 +192,7 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const
                 fmt::format("the tool's tip goes {:.2f} mm below the platform that supports the tissue, at waypoint {}", -platform->height_mm, platform->waypoint),
                 VerdictPlace{{}, path.waypoints[platform->waypoint].position_mm, fmt::format("waypoint {}", platform->waypoint)});
   }
-  add_made_skin(settings, model, cut_faces, stretched, path, verdict);
+  add_made_skin(settings, model, made_skin, stretched, path, verdict);
   return verdict;
 }
 

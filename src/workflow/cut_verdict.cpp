@@ -19,7 +19,7 @@ constexpr double kInvertedShare = 1e-4;  // of the tets: one or two slivers at t
 
 void judge_outcome(const SimulatedCut& cut, Verdict& verdict) {
   if (cut.outcome != Outcome::Success) {
-    verdict.add("outcome", {}, fmt::format("the simulated cut ended as {}", to_string(cut.outcome)));
+    verdict.add("outcome", {}, fmt::format("the cut {}", in_words(cut.outcome)));
   } else if (!cut.centerline.signed_error_mm) {
     verdict.add("outcome", {}, "the simulated cut left no mid-line to measure");
   }
@@ -29,10 +29,16 @@ void judge_layers(const SimulatedCut& cut, Verdict& verdict) {
   for (const KerfLayer& layer : cut.incision.kerf.layers) {
     const bool is_cut = cut.incision.is_closed_loop ? layer.is_closed.value_or(false) : layer.centerline.has_value();
     if (!layer.is_within_plan || is_cut) continue;
-    const std::string bridge = layer.gap_mm ? fmt::format(", its widest uncut bridge {:.1f} mm", *layer.gap_mm) : std::string();
-    verdict.add("open_layer", layer.gap_mm, fmt::format("the simulated cut is open at a depth of {} mm{}", layer.depth_mm, bridge),
+    const std::string bridge = layer.gap_mm ? fmt::format(", up to {:.1f} mm wide,", *layer.gap_mm) : std::string();
+    verdict.add("open_layer", layer.gap_mm,
+                fmt::format("the simulated cut is open at a depth of {} mm: uncut tissue{} still holds the piece there",
+                            layer.depth_mm, bridge),
                 VerdictPlace{{}, {}, fmt::format("{} mm below the skin", layer.depth_mm)});
   }
+}
+
+std::string share_in_words(double share) {
+  return share < 0.01 ? std::string("less than 1 %") : fmt::format("{:.0f} %", 100.0 * share);
 }
 
 void judge_depth(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
@@ -44,13 +50,15 @@ void judge_depth(const Case& settings, const SimulatedCut& cut, Verdict& verdict
   if (shares[least] >= limit) return;
   const auto shallow = std::count_if(shares.begin(), shares.end(), [limit](double share) { return share < limit; });
   const double reached_mm = depth.profile.depth_mm[least];
-  verdict.add("depth", shares[least],
-              fmt::format("the simulated kerf is {:.2g} mm deep at its shallowest, {:.0f} % of the planned {:.2g} mm, and too shallow on "
-                          "{:.0f} % of the path",
-                          reached_mm, 100.0 * shares[least], std::max(depth.planned_at_mm[least], settings.plan.depth_mm),
-                          100.0 * static_cast<double>(shallow) / static_cast<double>(shares.size())),
-              VerdictPlace{depth.profile.arclength_mm[least], depth.profile.course.points[least],
-                           fmt::format("{:.0f} mm along the path", depth.profile.arclength_mm[least])});
+  verdict.add(
+      "depth", shares[least],
+      fmt::format("the simulated kerf is {:.2g} mm deep at its shallowest, {:.0f} % of the planned {:.2g} mm, and too "
+                  "shallow on "
+                  "{} of the path",
+                  reached_mm, 100.0 * shares[least], std::max(depth.planned_at_mm[least], settings.plan.depth_mm),
+                  share_in_words(static_cast<double>(shallow) / static_cast<double>(shares.size()))),
+      VerdictPlace{depth.profile.arclength_mm[least], depth.profile.course.points[least],
+                   fmt::format("{:.0f} mm along the path", depth.profile.arclength_mm[least])});
 }
 
 /// The least tissue beside the tumour's edge in one line of the cut.
@@ -92,14 +100,28 @@ Tissue least_tissue(const Case& settings, const SimulatedCut& cut) {
   return least;
 }
 
+/// What a ring that errs as this one does would have to be planned with.
+std::string margin_that_would_do(const Case& settings, double left_mm) {
+  if (settings.plan.kind == PlanKind::Line) return {};
+  const double needed_mm = settings.plan.lateral_margin_mm + settings.close_margin_mm - left_mm;
+  return fmt::format(". Planned with a lateral margin of {:.1f} mm, a cut with the same error would leave that",
+                     std::floor(10.0 * needed_mm + 1.0) / 10.0);
+}
+
 void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
   const Tissue least = least_tissue(settings, cut);
   if (least.left_mm > settings.close_margin_mm) return;
   if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
+  int digits = 2;                             // as many as tell it from the limit
+  while (digits < 4 &&
+         fmt::format("{:.{}f}", least.left_mm, digits) == fmt::format("{:.{}f}", settings.close_margin_mm, digits))
+    ++digits;
+  const std::string found =
+      least.left_mm < 0.0 ? fmt::format("lies {:.2f} mm inside the tumour's edge", -least.left_mm)
+                          : fmt::format("leaves {:.{}f} mm of tissue beside the tumour's edge", least.left_mm, digits);
   verdict.add("lateral_margin", least.left_mm,
-              fmt::format("the simulated cut's {} leaves {:.2f} mm of tissue beside the tumour's edge; more than {} "
-                          "mm is required", least.of,
-                          least.left_mm, settings.close_margin_mm),
+              fmt::format("the simulated cut's {} {}; more than {} mm of tissue is required{}", least.of, found,
+                          settings.close_margin_mm, margin_that_would_do(settings, least.left_mm)),
               least.at, settings.close_margin_mm);
 }
 
@@ -134,8 +156,9 @@ void judge_convergence(const SimulatedCut& cut, Verdict& verdict) {
     verdict.add("convergence", {}, "the simulated tissue is not at rest after the tool is out: the inner edge may still move");
   }
   if (static_cast<double>(incision.inverted_tets) > kInvertedShare * static_cast<double>(cut.tets)) {
-    verdict.add("convergence", static_cast<double>(incision.inverted_tets),
-                fmt::format("{} tetrahedra of the simulated tissue are turned inside out", incision.inverted_tets));
+    verdict.add(
+        "convergence", static_cast<double>(incision.inverted_tets),
+        fmt::format("tetrahedra of the simulated tissue that are turned inside out: {}", incision.inverted_tets));
   }
   const double held_back = static_cast<double>(incision.held_back_vertices) / std::max(1.0, static_cast<double>(incision.steps.size() * cut.tets));
   if (held_back > kHeldBackShare) {

@@ -196,11 +196,12 @@ class Runner {
     if constexpr (std::is_same_v<T, MeshProduct>) return are_of(value.meshing.mesh.vertices, value.meshing.mesh.tets);
     if constexpr (std::is_same_v<T, Segmentation>) {
       const std::size_t voxels = value.labels.grid.voxel_count();
+      const auto is_of = [&](const MadeVoxel& made) {
+        return made.voxel >= 0 && static_cast<std::size_t>(made.voxel) < voxels && made.side >= 0 && made.side < 6;
+      };
       return value.labels.voxels.size() == voxels &&
              value.occupancy.voxels.size() == value.occupancy.grid.voxel_count() &&
-             std::ranges::all_of(value.cut, [&](const CutVoxel& cut) {
-               return cut.voxel >= 0 && static_cast<std::size_t>(cut.voxel) < voxels && cut.side >= 0 && cut.side < 6;
-             });
+             std::ranges::all_of(value.cut, is_of) && std::ranges::all_of(value.painted, is_of);
     }
     if constexpr (std::is_same_v<T, Correction>)
       return !value.iteration || value.iteration->best < value.iteration->passes.size();
@@ -229,7 +230,7 @@ class Runner {
     sink_.labels(note, *study_.segmentation);
     report("the scan", study_.segmentation->verdict);
     study_.about_inputs.add(study_.segmentation->verdict);
-    cut_faces_ = CutFaces(*study_.segmentation);
+    made_skin_ = MadeSkin(*study_.segmentation);
     return true;
   }
 
@@ -272,7 +273,8 @@ class Runner {
   /// The mesher tells what it cannot do with the lengths or the count as a broken precondition; here they came from the case.
   MeshProduct make_mesh() {
     try {
-      return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, tumor_edge_, line_, workers_, monitor_);
+      return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, tumor_edge_, line_, workers_, monitor_,
+                                     made_skin_);
     } catch (const InvalidArgument& error) {
       throw CaseError("case", "meshing", error.text(), "edge lengths and a count that the tissue can be meshed with");
     }
@@ -299,7 +301,7 @@ class Runner {
     add_plan(key);
     ProductNote note{"plan", {}, 0.0};
     study_.plan = product<ToolPath>(Stage::Plan, note, key, [&] {
-      return plan_on(settings_, *study_.model, study_.stretched->state.positions, tumor_edge_, line_);
+      return plan_on(settings_, *study_.model, study_.stretched->state.positions, tumor_edge_, line_, made_skin_);
     });
     sink_.plan(note, *study_.plan);
     CacheKey held = CacheKey("held").add(study_.model->mesh).add(study_.stretched->state).add(settings_.toughness);
@@ -326,7 +328,7 @@ class Runner {
   /// What refuses the plan already goes with its path, although no cut was made.
   void refuse_before_cut() {
     const Verdict early =
-        verdict_before_cut(settings_, *study_.model, cut_faces_, study_.stretched->state.positions, *study_.plan);
+        verdict_before_cut(settings_, *study_.model, made_skin_, study_.stretched->state.positions, *study_.plan);
     if (early.status() != VerdictStatus::Refused) return;
     report("the plan", early);
     sink_.verdicts(refusals_of(early, "the run ended before it cut along the path"), std::nullopt);
@@ -349,7 +351,7 @@ class Runner {
   /// A cut with what is held against it.
   SimulatedCut judged(IncisionResult incision, const ToolPath& path) const {
     SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size());
-    cut.verdict.add(verdict_before_cut(settings_, *study_.model, cut_faces_, study_.stretched->state.positions, path));
+    cut.verdict.add(verdict_before_cut(settings_, *study_.model, made_skin_, study_.stretched->state.positions, path));
     return cut;
   }
 
@@ -565,7 +567,7 @@ class Runner {
   ProductSink& sink_;
   bool must_resume_;  ///< nothing was gone on with yet, and something has to be
   std::optional<TetMesh> given_mesh_;
-  CutFaces cut_faces_;  ///< of the tissue at rest
+  MadeSkin made_skin_;
   std::optional<Contour> tumor_edge_;
   std::optional<TriMesh> tumor_surface_;
   std::optional<Contour> line_;

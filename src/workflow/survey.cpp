@@ -1,5 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/geometry/surface_query.hpp>
+#include <incise/workflow/margin_room.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
@@ -22,17 +23,23 @@ Contour carried_to_rest(const Contour& curve, const TetMesh& mesh, std::span<con
   return rest;
 }
 
+std::string_view why_no_equilibrium(Outcome outcome) {
+  return outcome == Outcome::ElementInverted ? "somewhere the tissue was turned inside out"
+                                             : "no position was found in which the tissue is at rest";
+}
+
 void require_equilibrium(const Case& settings, const StaticResult& result, const char* which) {
   if (result.outcome == Outcome::Cancelled) throw Cancelled("the stretch was interrupted and will start over");
   if (result.outcome != Outcome::Success) {
     throw CaseError(
         "case", "specimen.constraints",
-        fmt::format("no equilibrium of the {} ({} after {} iterations, residual {:.1e})", which,
-                    to_string(result.outcome), result.iterations, result.relative_residual),
+        fmt::format("no equilibrium of the {}: {} (after {} iterations)", which, why_no_equilibrium(result.outcome),
+                    result.iterations),
         "constraints that the tissue can follow",
         settings.constraints
             ? std::string("Try a smaller displacement or a smaller Poisson's ratio")
-            : fmt::format("The case names none, so the default holds the body. {}. State constraints of its own",
+            : fmt::format("The case names none, so the default holds the body. {}. State constraints of its own: for a "
+                          "block that was cut out of a scan, a clamp on the side where it was cut off",
                           default_hold_in_words()));
   }
 }
@@ -55,7 +62,7 @@ StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monito
 
 MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
                                     const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,
-                                    Workers& workers, Monitor& monitor) {
+                                    Workers& workers, Monitor& monitor, const MadeSkin& made_skin) {
   // The cut is planned on the stretched tissue, but the mesh is made of the unstretched body: a coarse mesh is stretched first to
   // find where the planned cut lies at rest.
   SizingSettings sizing = default_lengths(longest_side_mm(occupancy));
@@ -70,7 +77,7 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
   const TissueModel coarse = tissue_of(settings, std::move(survey.mesh));
   const StaticResult stretched = stretch(coarse, workers, monitor);
   require_equilibrium(settings, stretched, "coarse survey mesh");
-  const ToolPath plan = plan_on(settings, coarse, stretched.state.positions, tumor_edge, line);
+  const ToolPath plan = plan_on(settings, coarse, stretched.state.positions, tumor_edge, line, made_skin);
 
   MeshProduct product;
   product.planned_cut_rest =
@@ -101,10 +108,18 @@ Contour edge_on(const Case& settings, const TissueModel& model, std::span<const 
   return project_tumor_edge(edge, surface, settings.plan.approach, settings.surface_tolerance_mm);
 }
 
+/// The refusal of a margin, with the greatest one that fits.
+CaseError with_room(const CaseError& error, const MarginRoom& room) {
+  Problem problem = error.problem();
+  problem.hint = fmt::format("{}. {}", in_words(room), problem.hint);
+  return {"plan", std::move(problem)};
+}
+
 }  // namespace
 
 ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
-                 const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line) {
+                 const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,
+                 const MadeSkin& made_skin) {
   const SurfaceQuery surface(skin_of(model.mesh, stretched));
   if (settings.plan.kind == PlanKind::Line) {
     INCISE_REQUIRE(line.has_value(), "expected the curve of the open cut");
@@ -114,7 +129,14 @@ ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const
     return path;
   }
   INCISE_REQUIRE(tumor_edge.has_value(), "expected a tumour edge");
-  return plan_ring(surface, edge_on(settings, model, stretched, surface, *tumor_edge), settings.plan);
+  const Contour edge = edge_on(settings, model, stretched, surface, *tumor_edge);
+  try {
+    return plan_ring(surface, edge, settings.plan);
+  } catch (const CaseError& error) {
+    if (error.field() != "lateral_margin_mm") throw;
+    const PlacedSkin skin(boundary_surface(model.mesh), stretched, made_skin);
+    throw with_room(error, margin_room(skin, edge, settings.plan, radius_mm(settings.tool)));
+  }
 }
 
 }  // namespace incise

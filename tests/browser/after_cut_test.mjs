@@ -114,6 +114,19 @@ test("a cut that was made is measured, and one to be made is laid on a cloud", a
     assert.equal(await page.locator("[data-program-of]").count(), 3);
   });
 
+  await step("a command that registered an earlier case is no longer there to be repeated", async () => {
+    const commands = page.locator("[data-section=repeat] pre");
+    assert.match(await commands.textContent(), /incise register/);
+    await goTo(page, "plan");
+    await idle(page);
+    await type(inputIn(page, "plan", "Power"), 34);
+    await until(page, () => window.incise.state.case.settings.plan.power_w === 34);
+    await goTo(page, "program");
+    await idle(page);
+    assert.doesNotMatch(await commands.textContent(), /incise register/);
+    assert.match(await commands.textContent(), /incise evaluate/, "the photograph is as it was");
+  });
+
   await step("on a phone nothing has to be pushed sideways", async () => {
     await page.setViewportSize({width: 390, height: 844});
     for (const name of ["photograph", "register", "program"]) {

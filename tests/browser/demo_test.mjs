@@ -18,6 +18,7 @@ import {
   knownVoxels,
   look,
   openedStudio,
+  pixelIn,
   readPoints,
   scenePixel,
   settle,
@@ -331,6 +332,57 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     assert.equal(await stateOf(page, "case.settings.tumor.configuration"), "rest");
   });
 
+  await step("how much margin fits round it is said, and the ring is drawn", async () => {
+    const said = page.locator("[data-section=room] [role=status]"),
+      legend = () => page.locator(".legend-row label").allTextContents();
+    await page.waitForSelector("[data-fits=yes]");
+    const {ring, greatest_margin_mm: greatest, on_cut_face: onCut} = await stateOf(page, "room");
+    assert.ok(greatest >= 5, `${greatest} mm`);
+    const most = greatest < 20 ? "at most" : "at least",
+      note = `A lateral margin of ${most} ${greatest} mm fits here.`;
+    assert.equal(await said.textContent(), `The margin of 5 mm fits on this skin. ${note}`);
+    assert.deepEqual([onCut.length, onCut.includes(1)], [ring.length, false], "the demo's skin is all its own");
+    assert.ok((await legend()).includes("margin of 5 mm, before the stretch"), `${await legend()}`);
+    const edge = await stateOf(page, "edge.curve"),
+      greys = [];
+    for (const at of ring.filter((_, k) => k % 6 === 0)) {
+      const off = Math.min(...edge.map((point) => distance(point, at)));
+      assert.ok(off > 4 && off < 6, `${off} mm from the edge`);
+      greys.push(Math.max(...(await scenePixel(page, at)).slice(0, 3)));
+    }
+    assert.ok(Math.min(...greys) < 90, `black, where the thin line covers a pixel: ${greys}`);
+
+    const set = async (margin) => {
+      const revision = await stateOf(page, "case.revision");
+      await studio.call("change", {revision, set: {"plan.lateral_margin_mm": margin}});
+    };
+    await set(40);
+    await page.waitForSelector("[data-fits=no]");
+    const text = await said.textContent();
+    assert.match(text, /The margin of 40 mm does not fit on this skin. A lateral margin of at \w+ [\d.]+ mm fits/);
+    assert.ok(text.includes("Draw the edge elsewhere, or set a smaller margin in Plan."), text);
+    assert.ok(!(await legend()).some((label) => label.startsWith("margin of")), `${await legend()}`);
+    await assertAccessible(page, "edge, with a margin that does not fit");
+    await set(5);
+    await page.waitForSelector("[data-fits=yes]");
+  });
+
+  await step("a point that is dragged goes back with Escape", async () => {
+    await page.click("[data-do=draw]");
+    const before = await stateOf(page, "edge"),
+      [x, y] = await pixelIn(page, "scene", before.points[2]);
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 30, y + 10, {steps: 4});
+    await until(page, (was) => window.incise.state.edge.points[2][0] !== was, before.points[2][0]);
+    await page.keyboard.press("Escape");
+    assert.deepEqual(await stateOf(page, "edge"), {...before, selected: 2});
+    await page.mouse.up();
+    assert.deepEqual(await stateOf(page, "edge"), {...before, selected: 2});
+    await page.keyboard.press("Escape"); // ends drawing
+    assert.equal(await stateOf(page, "edge.mode"), "look");
+  });
+
   await step("the edge is drawn in its place, on the skin and in the slice", async () => {
     const stored = readPoints(path.join(inside, "tumor_edge.csv"));
     const at = stored[Math.round(stored.length / 8)];
@@ -422,7 +474,11 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
       const list = (value) => (Array.isArray(value) ? value : value.points_mm);
       return {points: list(planned), edge: list(around)};
     });
-    const margin = await stateOf(page, "case.settings.plan.lateral_margin_mm");
+    const margin = await stateOf(page, "case.settings.plan.lateral_margin_mm"),
+      greatest = await stateOf(page, "plan.greatest_margin_mm");
+    assert.ok(greatest >= margin, `${greatest} mm`);
+    const said = await page.textContent("[data-section=planned]");
+    assert.ok(said.includes(await stateOf(page, "plan.margin_note")), said);
     for (const point of points) {
       const off = Math.min(...edge.map((at) => Math.hypot(at[0] - point[0], at[1] - point[1])));
       assert.ok(off > 0.7 * margin && off < 1.3 * margin, `${off} mm from the edge`);
@@ -519,7 +575,8 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     assertForwards(within);
     // The same message is there once, with its number.
     await goTo(page, "run");
-    const said = (await stateOf(page, "messages")).map(({severity, text}) => `${severity} ${text}`),
+    const ofRun = (await stateOf(page, "messages")).filter(({call}) => call === "run"),
+      said = ofRun.map(({severity, text}) => `${severity} ${text}`),
       counts = await page.locator(".messages [data-count]").evaluateAll((all) => all.map((one) => one.dataset.count));
     assert.equal(await page.locator(".messages li").count(), new Set(said).size);
     assert.ok(counts.length > 0 && counts.every((count) => Number(count) > 1), `${counts}`);
@@ -530,6 +587,8 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
   await step("verdict, reasons, numbers and program are those of the study", async () => {
     study = readStudy(inside);
     await assertShows(page, study);
+    const ended = await page.textContent("[data-ended]");
+    assert.ok(ended.startsWith("The ") && ended === (await stateOf(page, "run.ended")), ended);
     for (const id of ["before", "after"]) await page.waitForSelector(`[data-contours=${id}] [data-ready=yes]`);
     for (const id of ["errors", "depths"]) await page.waitForSelector(`[data-plot=${id}] canvas`);
   });

@@ -23,6 +23,51 @@ function gateOf(folder) {
   return JSON.parse(fs.readFileSync(path.join(folder, "out", "study.json"), "utf8")).program;
 }
 
+const kSecond = "A second reason of the same caution.";
+
+/** Gives the run a second reason of its first missing caution, which is refused if asked for. @returns both messages */
+function giveSecondReason(page, isRefused) {
+  return page.evaluate(
+    async ([message, refuse]) => {
+      const {state, update} = await import("/page/store.js"),
+        {run} = state,
+        [id, ...missing] = run.gate.missing,
+        first = run.verdict.reasons.find((reason) => reason.id === id);
+      const verdict = {...run.verdict, reasons: [...run.verdict.reasons, {...first, message}]};
+      window.givenRun = run;
+      update({run: {...run, verdict, gate: refuse ? {...run.gate, refused: [id], missing} : run.gate}});
+      return [first.message, message];
+    },
+    [kSecond, isRefused],
+  );
+}
+
+/** Checks that both reasons of one id are to be read at it, and puts the run back as it was. */
+async function assertBothSeen(page, selector, isRefused) {
+  const messages = await giveSecondReason(page, isRefused);
+  const holder = page.locator(selector).filter({hasText: kSecond});
+  await holder.waitFor();
+  const text = await holder.textContent();
+  for (const message of messages) assert.ok(text.includes(message), `${message} in ${text}`);
+  await page.evaluate(async () => (await import("/page/store.js")).update({run: window.givenRun}));
+  await holder.waitFor({state: "detached"});
+}
+
+/** Accepts what is ticked, which is all, and reads what is said meanwhile. */
+async function acceptAll(page, said) {
+  assert.equal(
+    await said.textContent(),
+    "Accepted. Press “Run again with these accepted”: nothing that was cut is cut again.",
+  );
+  let held = null;
+  await page.route("**/api/call/run", (route) => (held = route));
+  await page.click("[data-do=accept]");
+  await until(page, () => document.querySelector("[data-program=none]").textContent === "Writing the program…");
+  while (!held) await page.waitForTimeout(20);
+  await page.unroute("**/api/call/run");
+  await held.continue();
+}
+
 test("a program is offered once every caution is accepted, and it is the one that was written", async (t) => {
   const folder = temporaryFolder(t),
     inside = writeBlock(folder),
@@ -37,13 +82,17 @@ test("a program is offered once every caution is accepted, and it is the one tha
   assert.ok(!fs.existsSync(script));
   const boxes = page.locator(".gate input[type=checkbox]");
   assert.equal(await boxes.count(), missing.length);
+  await assertBothSeen(page, ".gate label", false);
+  await assertBothSeen(page, ".refusal", true);
+  const said = page.locator("[data-program=none]");
+  assert.match(await said.textContent(), /a person has to accept each of the cautions above/);
 
   for (let k = 0; k < missing.length; ++k) {
     assert.ok(!gateOf(inside).written, `${k} of ${missing.length} accepted`);
     await boxes.nth(k).check();
     if (k === 0 || k === missing.length - 1) {
       const before = await stateOf(page, "run.gate.accepted");
-      await page.click("[data-do=accept]");
+      await (k === 0 ? page.click("[data-do=accept]") : acceptAll(page, said));
       await until(page, (count) => window.incise.state.run.gate.accepted.length > count, before.length);
       await idle(page);
     }
@@ -76,6 +125,20 @@ async function setPlan(page, label, key, value) {
   await idle(page);
 }
 
+// Where the correction is accepted, what is said against the planned path is no more about what a program follows.
+async function assertFollowed(page) {
+  await page.evaluate(async () => {
+    const {state, update} = await import("/page/store.js"),
+      {run} = state;
+    window.givenRun = run;
+    const verdict = {...run.verdict, status: "caution"};
+    update({run: {...run, accepted: true, as_planned: {...run.as_planned, verdict}}});
+  });
+  const said = await page.textContent("[data-section=against-other]");
+  assert.match(said, /^Against the cut as plannedNo program follows this path: the correction is accepted/);
+  await page.evaluate(async () => (await import("/page/store.js")).update({run: window.givenRun}));
+}
+
 const kOfProgram = ["download", "play", "copy", "save-report", "accept"].map((name) => `[data-do=${name}]`);
 const kAllOfProgram = [...kOfProgram, "[data-program]", ".player", ".gate", ".panel :text('checks')"];
 
@@ -96,6 +159,8 @@ test("a change of the case withdraws the program, its checks, its command and th
     again = page.locator("[data-do=accept]");
   await setPlan(page, "Power", "power_w", 20);
   await runCase(page);
+  assert.match(await page.textContent("[data-section=to-program]"), /step Program lists the cautions that a person has/);
+  await assertFollowed(page);
   await goTo(page, "program");
   assert.deepEqual([await again.textContent(), await again.isEnabled()], ["Run again", false], "nothing is ticked");
   for (let k = 0; k < (await boxes.count()); ++k) await boxes.nth(k).check();
@@ -112,6 +177,8 @@ test("a change of the case withdraws the program, its checks, its command and th
   await assertWithdrawn(page);
   await setPlan(page, "Lateral margin", "lateral_margin_mm", 40);
   assert.ok(await stateOf(page, "problems.plan"), "no such path can be planned");
+  const legend = await page.locator(".legend-row label").allTextContents();
+  assert.ok(legend.includes("path of earlier settings") && !legend.includes("planned path"), legend.join());
   await assertWithdrawn(page);
   await goTo(page, "compare");
   assert.equal(await page.locator("[data-section=to-program] [data-withdrawn=run]").count(), 1);

@@ -102,19 +102,28 @@ test("constraints that do not hold the body yet are no failure", async (t) => {
   });
 });
 
-/** Lets the server answer a call only once the returned function is called. */
+/** Where inputs and buttons are, px from the top of the panel's content. */
+function tops(page, ...selectors) {
+  return page.evaluate((list) => {
+    const {scrollTop} = document.querySelector(".panel");
+    return list.map((selector) => scrollTop + document.querySelector(selector).getBoundingClientRect().top);
+  }, selectors);
+}
+
+/** Keeps a call from the server until the returned function is called; what was held goes one after the other then, for
+ *  a newer answer's arrays take the place of an older one's. */
 async function holdBack(page, call) {
-  let release = null;
-  const released = new Promise((resolve) => {
-    release = resolve;
-  });
-  const address = `**/api/call/${call}`;
-  await page.route(address, async (route) => {
-    await released;
-    await route.continue();
-  });
+  const address = `**/api/call/${call}`,
+    held = [];
+  let isOpen = false;
+  await page.route(address, (route) => (isOpen ? route.continue() : held.push(route)));
   return async () => {
-    release();
+    isOpen = true;
+    for (const route of held) {
+      const answered = page.waitForResponse((response) => response.request() === route.request());
+      await route.continue();
+      await answered;
+    }
     await page.unroute(address, {behavior: "wait"});
   };
 }
@@ -136,6 +145,11 @@ test("the default hold is said in words, and a pull that is too long as well", a
     assert.ok(clamp.includes(`The back end (${clamped} mm) is clamped`), clamp);
     assert.ok(clamp.includes(`${found[0].vertices} vertices`), clamp);
     assert.ok(pull.includes(`is pulled ${-way[1]} mm forwards`), pull);
+    const share = found[1].share_of_length;
+    assert.ok(share > 0.25 && share < 0.5, `${share}: 20 mm of 60 mm`);
+    assert.ok(pull.includes(`A pull of ${-way[1]} mm: ${Math.round(100 * share)} % of the body's length`), pull);
+    assert.match(pull, /A smaller pull deforms the tissue less/);
+    assert.deepEqual([found[0], found[2]].map((one) => one.share_of_length), [null, null]);
     assert.match(support, /rests on a plane/);
   });
 
@@ -155,9 +169,30 @@ test("the default hold is said in words, and a pull that is too long as well", a
     assert.deepEqual((await stateOf(page, "body.constraints")).map((one) => one.vertices), counts);
   });
 
+  const pullOf = page.locator(".holds > li").nth(1),
+    way = pullOf.locator('fieldset:has(> legend:text-is("Displacement, mm")) input');
+
+  await step("a short pull is no reason for a hint, and nothing moves while the body is computed", async () => {
+    const places = () => tops(page, ".holds > li:last-child button", "[data-add=fixed]", "[data-do=stretch]");
+    await type(way.nth(1), -6);
+    await until(page, () => window.incise.state.case.settings.specimen.constraints[1].displacement_mm[1] === -6);
+    await fresh(page, "body");
+    const share = await stateOf(page, "body.constraints.1.share_of_length"),
+      said = pullOf.locator("[data-share]");
+    const text = `A pull of 6 mm: ${Math.round(100 * share)} % of the body's length that way.`;
+    assert.equal(await said.textContent(), text);
+    const before = await places(),
+      release = await holdBack(page, "body");
+    await type(way.nth(1), -7);
+    await page.waitForSelector("[data-section=constraints] [data-busy=body]");
+    assert.deepEqual(await places(), before);
+    await release();
+    await fresh(page, "body");
+    assert.match(await said.textContent(), /A pull of 7 mm/);
+    assert.deepEqual(await places(), before);
+  });
+
   await step("a pull that the mesh cannot follow is explained, with what to try and what incise reports", async () => {
-    const legend = '> legend:text-is("Displacement, mm")',
-      way = page.locator(".holds > li").nth(1).locator(`fieldset:has(${legend}) input`);
     await type(way.nth(1), -400);
     await until(page, () => window.incise.state.case.settings.specimen.constraints[1].displacement_mm[1] === -400);
     await fresh(page, "body");
@@ -247,4 +282,17 @@ test("the place under the robot begins with the stretched tissue on the table", 
   await state.click();
   await page.waitForSelector("[data-height]");
   assert.match(await page.textContent("[data-height]"), /lies on the table/);
+  await fresh(page, "plan");
+
+  // Nothing moves while the path is planned anew.
+  const places = () => tops(page, "[data-section=plan] input", "[data-section=cut] input", "[data-section=robot] input");
+  const before = await places(),
+    releasePlan = await holdBack(page, "plan");
+  await type(inputIn(page, "plan", "Depth"), 4);
+  await page.waitForSelector("[data-section=planned] [data-busy=plan]");
+  await page.waitForSelector("[data-section=planned] :text('Path of earlier settings')");
+  assert.deepEqual(await places(), before);
+  await releasePlan();
+  await fresh(page, "plan");
+  assert.deepEqual(page.complaints.filter((text) => !text.endsWith("/tissue") && !text.endsWith("/scan")), []);
 });

@@ -20,10 +20,12 @@ import {
   pixelIn,
   replaceIn,
   scenePixel,
+  settle,
   slicePixel,
   stateOf,
   temporaryFolder,
   type,
+  typeAll,
   until,
   watchCalls,
   writePhantom,
@@ -33,6 +35,8 @@ const kRadius = 4; // mm: of the brush
 const kFrom = [2, -4], // mm: a stroke from the middle of the tongue out of its left side; a cavity would be filled
   kTo = [36, -4];
 const kBox = [[-50, -90, -40], [8, 90, 40]]; // mm: its left face cuts through the tongue, the others are outside
+const kBackBox = [[-50, -90, -40], [50, 18, 40]]; // mm: its back face cuts through the tongue
+const kSmallBox = [[-50, -90, -40], [50, -5, 40]]; // mm: it leaves the tongue's front half
 const kLine = [[-8, -5], [-4, -8], [0, -10], [6, -8], [9, -2]]; // mm, as seen from above: of the patch
 
 /** Drags from place to place in a view, mm. */
@@ -242,6 +246,77 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     await strokes(page, 0);
   });
 
+  await step("a stroke that goes through the slices takes tissue from those beside it too, as one edit", async () => {
+    const labelsAt = (offset) =>
+      page.evaluate((mm) => {
+        const {tissue, cross} = window.incise.state,
+          {size, spacing_mm: spacing, origin_mm: origin} = tissue.grid,
+          area = size[0] * size[1],
+          k = Math.round((cross[2] + mm - origin[2]) / spacing[2]);
+        return tissue.labels.slice(k * area, (k + 1) * area).reduce((sum, label) => sum + (label ? 1 : 0), 0);
+      }, offset);
+    const offsets = [-2.5, 0, 2.5].map((share) => share * kRadius),
+      counts = () => Promise.all(offsets.map(labelsAt));
+    const through = inputIn(page, "brush", "Through"),
+      before = await counts(),
+      [x, y] = kFrom,
+      height = (await stateOf(page, "cross"))[2];
+    if ((await stateOf(page, "placing")) !== "brush-take") await page.click("[data-do=brush-take]");
+    await paint(page);
+    await strokes(page, 1);
+    const flat = await counts();
+    assert.ok(flat[0] === before[0] && flat[1] < before[1] && flat[2] === before[2], `${before}; ${flat}`);
+    await page.click("[data-do=undo]");
+    await strokes(page, 0);
+    await type(through, 90);
+    assert.equal(await stateOf(page, "brush.through_mm"), 60);
+    await type(through, 5 * kRadius);
+    await paint(page);
+    await strokes(page, 1);
+    const deep = await counts();
+    deep.forEach((count, k) => assert.ok(count < before[k], `${offsets[k]} mm: ${count} of ${before[k]}`));
+    const [{path_mm: points}] = await stateOf(page, "case.settings.ct.edits"),
+      heights = [...new Set(points.map((point) => point[2]))].sort((a, b) => a - b);
+    assert.ok(Math.abs(heights.at(-1) - heights[0] - 5 * kRadius) < 0.05, `${heights}`);
+    heights.slice(1).forEach((one, k) => assert.ok(one - heights[k] <= kRadius + 0.02, `${heights}`));
+    assert.ok(points.length < 60, `${points.length} points of a straight stroke`);
+    await page.click("[data-do=undo]");
+    assert.equal((await strokes(page, 0)).volume_mm3, found.volume_mm3);
+    const limited = await page.evaluate(
+      async ([box, from]) => {
+        const {update} = await import("/page/store.js"),
+          {strokeThrough} = await import("/page/brush.js");
+        update({preview: {"ct.roi_box_mm": box}});
+        const points = strokeThrough([from], {radius_mm: 2, through_mm: 40}, [0, 0, 1]).map((point) => point[2]);
+        update({preview: {}});
+        return [Math.min(...points), Math.max(...points)];
+      },
+      [[[-50, -90, height - 3], [50, 90, height + 90]], [x, y, height]],
+    );
+    assert.deepEqual(limited.map((z) => Number((z - height).toFixed(1))), [-3, 20], "the region box limits it");
+    await type(through, 0);
+  });
+
+  await step("skin that the brush made is a layer of its own", async () => {
+    const drawn = await page.evaluate(async () => {
+      const {state, update} = await import("/page/store.js"),
+        {tissue} = state;
+      update({tissue: {...tissue, cut: tissue.cut.map((_, k) => k % 3)}});
+      await new Promise(requestAnimationFrame);
+      const layers = ["tissue", "cut-faces", "painted-skin"].map((name) => window.incise.views.scene.layers.get(name)),
+        said = layers.map(({objects, label}) => [label, objects[0].geometry.index.count / 3]);
+      update({tissue});
+      return {said, all: tissue.skin.triangles.length / 3};
+    });
+    const part = (k) => Math.ceil((drawn.all - k) / 3);
+    assert.deepEqual(drawn.said, [
+      ["tissue", part(0)],
+      ["cut off by the region or scan", part(1)],
+      ["skin that the brush made", part(2)],
+    ]);
+    await until(page, () => !window.incise.views.scene.layers.get("painted-skin"));
+  });
+
   const box = () => stateOf(page, "case.settings.ct.roi_box_mm");
   const boxed = async (wanted) => {
     await until(
@@ -251,6 +326,30 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     );
     await fresh(page, "tissue");
   };
+
+  await step("tissue of another extent is shown whole, unless the camera sees the whole of it", async () => {
+    const camera = () =>
+      page.evaluate(() => {
+        const {scene} = window.incise.views,
+          isWhole = scene.sees(scene.centre, scene.radius);
+        return {scale: scene.pixelsPerMm(), target: scene.target.toArray(), isWhole};
+      });
+    const setBox = async (value) => {
+      await studio.call("change", {revision: await stateOf(page, "case.revision"), set: {"ct.roi_box_mm": value}});
+      await boxed(value);
+    };
+    await page.evaluate(() => window.incise.views.scene.goTo([0, 30, 0]));
+    assert.equal((await camera()).isWhole, false);
+    await setBox(kSmallBox);
+    assert.equal((await camera()).isWhole, true);
+    await page.evaluate(() => window.incise.views.scene.zoomBy(0.4));
+    const before = await camera();
+    await setBox(null);
+    const after = await camera();
+    assert.ok(Math.abs(after.scale / before.scale - 1) < 1e-6, `${after.scale} and ${before.scale} px per mm`);
+    assert.deepEqual([after.target, after.isWhole], [before.target, true]);
+    await look(page, "Oblique");
+  });
 
   await step("what the region box has cut off has a colour of its own", async () => {
     await studio.call("change", {revision: await stateOf(page, "case.revision"), set: {"ct.roi_box_mm": kBox}});
@@ -278,6 +377,64 @@ test("tissue is painted, labels become a case, and a patch of the skin holds", a
     const [red, green, blue] = await scenePixel(page, at);
     assert.ok(blue > red, `slate where the box cuts: ${[red, green, blue]}`);
     await look(page, "Oblique");
+  });
+
+  await step("an edge that lies on it is said to, and what of a margin does is a line of its own", async () => {
+    await goTo(page, "edge");
+    await settle(page, "edge");
+    await typeAll(page, "ellipse", "Middle, mm", [-1.2, -8, 20]); // 18 mm wide
+    await page.click("[data-do=drop]");
+    await page.waitForSelector("[data-edge-on-cut]");
+    const {edge_on_cut_face: count, greatest_margin_mm: greatest} = await stateOf(page, "room"),
+      text = await page.textContent("[data-section=room] [role=status]");
+    assert.ok(count > 1 && greatest === null, `${count} points, ${greatest} mm`);
+    assert.match(text, /The tumour's edge itself lies where .* Draw the edge elsewhere, or make the region box/);
+    assert.ok(text.includes(`${count} points of the edge lie where the region box`), text);
+    await page.click("button:text-is('Start again')");
+    const lines = await page.evaluate(async () => {
+      const {partsOfRing} = await import("/page/room.js"),
+        ring = [0, 1, 2, 3, 4, 5].map((x) => [x, 0, 0]);
+      const {free, cut} = partsOfRing({ring, on_cut_face: [0, 0, 1, 1, 0, 0]});
+      return [free, cut].map((list) => list.map((line) => line.map(([x]) => x)));
+    });
+    assert.deepEqual(lines, [[[0, 1], [4, 5, 0]], [[1, 2, 3, 4]]]);
+    await goTo(page, "see");
+  });
+
+  await step("and so it has in the steps after it, on the body at rest and stretched", async () => {
+    await studio.call("change", {revision: await stateOf(page, "case.revision"), set: {"ct.roi_box_mm": kBackBox}});
+    await boxed(kBackBox);
+    // {drawn, marked}: triangles of each layer, and of the body in all and on the cut; {least}: of the cut's y, mm.
+    const cutIn = (name) =>
+      page.evaluate((own) => {
+        const {body} = window.incise.state,
+          layers = [own, "cut-faces"].map((key) => window.incise.views.scene.layers.get(key));
+        const [, {geometry}] = layers.map(({objects}) => objects[0]),
+          at = geometry.getAttribute("position");
+        const marked = body.cut.reduce((sum, flag) => sum + flag, 0);
+        return {
+          drawn: layers.map(({objects}) => objects[0].geometry.index.count / 3),
+          marked: [body.cut.length - marked, marked],
+          least: geometry.index.array.reduce((low, v) => Math.min(low, at.getY(v)), Infinity),
+        };
+      }, name);
+    await goTo(page, "hold");
+    await fresh(page, "body");
+    await page.click("[data-do=stretch]");
+    await fresh(page, "stretch");
+    for (const [name, layer] of Object.entries({hold: "body", plan: "tissue", run: "tissue", compare: "tissue"})) {
+      await goTo(page, name);
+      await idle(page);
+      const {drawn, marked, least} = await cutIn(layer);
+      assert.ok(marked[1] > 4 && marked[1] < marked[0], `${name}: ${marked}`);
+      assert.deepEqual(drawn, marked, name);
+      assert.ok(Math.abs(least - kBackBox[1][1]) < 4, `${name}: from y = ${least} mm on, where the clamp holds it`);
+      assert.equal(await page.locator(".legend label:has-text('cut off by the region')").count(), 1, name);
+    }
+    await goTo(page, "see");
+    await studio.call("change", {revision: await stateOf(page, "case.revision"), set: {"ct.roi_box_mm": kBox}});
+    await boxed(kBox);
+    page.complaints.splice(0); // whether a path fits on this tissue is another matter
   });
 
   await step("a face of the box that is dragged is written once, when it is let go, and undone in one go", async () => {
@@ -580,6 +737,26 @@ test("what is set, typed, dragged or painted for a case never reaches another", 
     assert.equal(texts()[0], before[0]);
     assert.deepEqual(page.complaints.splice(0), ["answer 422: /api/call/open"]);
     await page.unroute("**/api/call/open");
+  });
+
+  await step("a cloud for practice that is made for the case before is not chosen", async () => {
+    const answer = new Promise((resolve) => {
+      page.route("**/api/call/virtual_cloud", (route) =>
+        resolve(() => route.fulfill({json: {file: "f1", name: "virtual_cloud.ply", points: 1}})),
+      );
+    });
+    await page.evaluate(async () => {
+      const {makeCloud} = await import("/page/actions.js");
+      window.cloudIsMade = makeCloud(1);
+    });
+    const give = await answer;
+    await openElsewhere("specimen");
+    await give();
+    await page.evaluate(() => window.cloudIsMade);
+    assert.equal(await stateOf(page, "cloud.file"), null);
+    await page.unroute("**/api/call/virtual_cloud");
+    await openElsewhere("other");
+    await settled("other");
   });
 
   await step("a value that was stepped just before the page goes away is kept", async () => {

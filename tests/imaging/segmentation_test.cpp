@@ -1,6 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/geometry/iso_surface.hpp>
-#include <incise/imaging/cut_faces.hpp>
+#include <incise/imaging/made_skin.hpp>
 #include <incise/imaging/phantom.hpp>
 #include <incise/imaging/segmentation.hpp>
 
@@ -238,30 +238,30 @@ std::array<Vec3, 3> about(const Vec3& place, const Vec3& normal = Vec3::UnitZ())
   return {place, place + along, place + normal.cross(along)};
 }
 
-TEST(CutFaces, LieWhereTheRegionCutsTheBody) {
+TEST(MadeSkin, LiesWhereTheRegionCutsTheBody) {
   SegmentationSettings settings;
-  EXPECT_TRUE(CutFaces(run(ball_of_tissue(), settings)).empty());
+  EXPECT_TRUE(MadeSkin(run(ball_of_tissue(), settings)).empty());
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
-  const CutFaces in_box(run(ball_of_tissue(), settings));
-  EXPECT_EQ(in_box.under(about(Vec3(15, 15, 15.5))), RegionFace::Superior);
-  EXPECT_FALSE(in_box.under(about(Vec3(15, 15, 5.4)))) << "the ball's own skin";
-  EXPECT_FALSE(in_box.under(about(Vec3(27, 15, 15.5)))) << "beside the disc, in the plane of the face";
-  EXPECT_FALSE(in_box.under(about(Vec3(25.2, 15, 15.2), Vec3::UnitX()))) << "the ball's own skin at the disc's rim";
+  const MadeSkin in_box(run(ball_of_tissue(), settings));
+  EXPECT_EQ(in_box.cut_under(about(Vec3(15, 15, 15.5))), RegionFace::Superior);
+  EXPECT_FALSE(in_box.cut_under(about(Vec3(15, 15, 5.4)))) << "the ball's own skin";
+  EXPECT_FALSE(in_box.cut_under(about(Vec3(27, 15, 15.5)))) << "beside the disc, in the plane of the face";
+  EXPECT_FALSE(in_box.cut_under(about(Vec3(25.2, 15, 15.2), Vec3::UnitX()))) << "the ball's own skin at the disc's rim";
   CtVolume turned = ball_of_tissue();
   turned.grid.direction << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   settings.roi_box_mm = Box3(Vec3(-15, -100, -100), Vec3(100, 100, 100));
-  EXPECT_EQ(CutFaces(run(turned, settings)).under(about(Vec3(-15.5, 15, 15), -Vec3::UnitX())), RegionFace::Right);
+  EXPECT_EQ(MadeSkin(run(turned, settings)).cut_under(about(Vec3(-15.5, 15, 15), -Vec3::UnitX())), RegionFace::Right);
 }
 
-TEST(CutFaces, AreNoneWhereTheRegionEndsJustAboveTheSkin) {
+TEST(MadeSkin, IsNoneWhereTheRegionEndsJustAboveTheSkin) {
   SegmentationSettings settings;  // the ball ends at z 25.4
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 25));
   const Segmentation touched = run(ball_of_tissue(), settings);
   EXPECT_EQ(touched.cut_faces(), 0);
-  EXPECT_TRUE(CutFaces(touched).empty());
+  EXPECT_TRUE(MadeSkin(touched).empty());
 }
 
-TEST(CutFaces, AreThoseOfABumpAloneWhereOnlyABumpReachesTheRegionsFace) {
+TEST(MadeSkin, IsThatOfABumpAloneWhereOnlyABumpReachesTheRegionsFace) {
   const CtVolume ct = scan_of(grid_of(40, 40, 30), [](const Vec3& p) {
     const bool is_slab = p.z() > 5 && p.z() < 20 && p.x() > 5 && p.x() < 35 && p.y() > 5 && p.y() < 35;
     return is_slab || (p - Vec3(12, 12, 19)).norm() < 5.0 ? 50.0 : -1000.0;
@@ -269,9 +269,9 @@ TEST(CutFaces, AreThoseOfABumpAloneWhereOnlyABumpReachesTheRegionsFace) {
   SegmentationSettings settings;
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
   settings.smoothing_mm = 0.0;
-  const CutFaces faces(run(ct, settings));
-  EXPECT_EQ(faces.under(about(Vec3(12, 12, 20.0))), RegionFace::Superior);
-  EXPECT_FALSE(faces.under(about(Vec3(28, 28, 20.0)))) << "sound skin at the same height";
+  const MadeSkin faces(run(ct, settings));
+  EXPECT_EQ(faces.cut_under(about(Vec3(12, 12, 20.0))), RegionFace::Superior);
+  EXPECT_FALSE(faces.cut_under(about(Vec3(28, 28, 20.0)))) << "sound skin at the same height";
 }
 
 /// A slab, or a column of radius 12 mm, that goes on beyond a box that ends at z = 20.
@@ -286,7 +286,7 @@ CtVolume tissue_through_box(bool is_column, double hu_above_12 = 50.0) {
 
 /// The share of the skin between two radii about the column's axis, looking up at z > 10, that is artificial.
 double share_of_top(const Segmentation& found, double radius_mm) {
-  const CutFaces faces(found);
+  const MadeSkin faces(found);
   const TriMesh skin = iso_surface(found.occupancy, 0.5);
   int top = 0, cut = 0;
   for (const auto& [a, b, c] : skin.triangles) {
@@ -295,13 +295,13 @@ double share_of_top(const Segmentation& found, double radius_mm) {
     if (normal.z() < 0.6 || corners[0].z() < 10 || (corners[0] - Vec3(20, 20, corners[0].z())).norm() > radius_mm)
       continue;
     ++top;
-    cut += faces.under(corners) == RegionFace::Superior ? 1 : 0;
+    cut += faces.cut_under(corners) == RegionFace::Superior ? 1 : 0;
   }
   EXPECT_GT(top, 50);
   return static_cast<double>(cut) / std::max(1, top);
 }
 
-TEST(CutFaces, AreSeenWhereTheTissueWasPainted) {
+TEST(MadeSkin, IsSeenWhereTheTissueWasPainted) {
   SegmentationSettings settings;
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
   std::vector<TissueEdit> strokes;
@@ -316,7 +316,26 @@ TEST(CutFaces, AreSeenWhereTheTissueWasPainted) {
   EXPECT_EQ(run(tissue_through_box(false), settings).cut_faces(), 0);
 }
 
-TEST(CutFaces, AreFollowedWhereOpeningAndSmoothingMoveThem) {
+TEST(MadeSkin, IsPaintedWhereAStrokeHasMadeItAndNowhereElse) {
+  const auto slab = [](const Vec3& p) { return p.z() > 5 && p.z() < 15 ? 50.0 : -1000.0; };
+  const CtVolume ct = scan_of(grid_of(40, 40, 30), slab);
+  SegmentationSettings settings;
+  // One stroke adds a mound at x = 10, one takes the slab's top away at x = 30; two change nothing.
+  settings.edits = {{true, 5.0, {Vec3(10, 20, 14)}},
+                    {false, 5.0, {Vec3(30, 20, 16)}},
+                    {true, 4.0, {Vec3(20, 20, 10.5)}},
+                    {false, 4.0, {Vec3(20, 20, 19.5)}}};
+  const MadeSkin skin(run(ct, settings));
+  EXPECT_TRUE(skin.is_painted(about(Vec3(10, 20, 19))));
+  EXPECT_TRUE(skin.is_painted(about(Vec3(30, 20, 11))));
+  EXPECT_FALSE(skin.is_painted(about(Vec3(20, 20, 15)))) << "both strokes end at the skin, and neither made it";
+  EXPECT_FALSE(skin.is_painted(about(Vec3(10, 30, 15)))) << "beside the strokes";
+  EXPECT_FALSE(skin.cut_under(about(Vec3(10, 20, 19))));
+  settings.edits = {{true, 4.0, {Vec3(20, 20, 10.5)}}};
+  EXPECT_TRUE(run(ct, settings).painted.empty()) << "a stroke within the tissue";
+}
+
+TEST(MadeSkin, IsFollowedWhereOpeningAndSmoothingMoveIt) {
   SegmentationSettings settings;
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
   for (const double opening_mm : {0.0, 4.0, 6.0}) {
@@ -328,7 +347,7 @@ TEST(CutFaces, AreFollowedWhereOpeningAndSmoothingMoveThem) {
   }
 }
 
-TEST(CutFaces, AreNotMadeByNoiseAboveTheSkin) {
+TEST(MadeSkin, IsNotMadeByNoiseAboveTheSkin) {
   CtVolume ct = tissue_through_box(true);
   for (std::size_t v = 0; v < ct.voxels.size(); ++v) {
     const auto [i, j, k] = ct.grid.voxel_at(v);
@@ -339,17 +358,17 @@ TEST(CutFaces, AreNotMadeByNoiseAboveTheSkin) {
   EXPECT_EQ(run(ct, settings).cut_faces(), 0);
 }
 
-TEST(CutFaces, LieAtTheScansEndWhereAnObliqueScanEndsWithinTheRegion) {
+TEST(MadeSkin, LiesAtTheScansEndWhereAnObliqueScanEndsWithinTheRegion) {
   CtVolume ct = ball_of_tissue();
   ct.grid.direction = Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   ct.grid.size[2] = 16;
   ct.voxels.resize(ct.grid.voxel_count());
   SegmentationSettings settings;
   settings.roi_box_mm = Box3(Vec3::Constant(-100), Vec3::Constant(100));
-  const CutFaces faces(run(ct, settings));
+  const MadeSkin faces(run(ct, settings));
   const Vec3 out = ct.grid.direction.col(2);
-  EXPECT_TRUE(faces.under(about(ct.grid.world_from_index(Vec3(15, 15, 15.5)), out)));
-  EXPECT_FALSE(faces.under(about(ct.grid.world_from_index(Vec3(15, 15, 5.4)), -out)));
+  EXPECT_TRUE(faces.cut_under(about(ct.grid.world_from_index(Vec3(15, 15, 15.5)), out)));
+  EXPECT_FALSE(faces.cut_under(about(ct.grid.world_from_index(Vec3(15, 15, 5.4)), -out)));
 }
 
 TEST(Segmentation, CutsHalfABallAtTheFaceOfTheLastVoxelInTheRegion) {

@@ -1,4 +1,5 @@
 #include "support/counted_entries.hpp"
+#include "support/portable_kernels.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/workflow/calibrate.hpp>
@@ -255,6 +256,7 @@ TEST_F(CalibrateBlocks, TheFitFindsTheDragLengthAndTheStiffnessIsThatOfTheForce)
 }
 
 TEST_F(CalibrateBlocks, LooksHalfWayToTheFirstFailureWhereTheAnswerMayLieThere) {
+  const testing::PortableKernels portable;
   subjects_.pop_back();
   subjects_[0].settings = sliding_case();
   // Photographed at 3 mm; simulated up to 2 mm, and then at 10 mm, where no ring is left.

@@ -1,11 +1,13 @@
 #include <incise/core/error.hpp>
 #include <incise/workflow/cut_doubts.hpp>
+#include <incise/workflow/margin_room.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace incise {
 namespace {
@@ -14,6 +16,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
 
 /// A block of 24 x 24 x 8 mm, held at its underside.
 TissueModel block(int cells_across, double poissons_ratio, VolumeTreatment volume = VolumeTreatment::PerTet) {
@@ -112,24 +115,35 @@ TEST(VerdictBeforeCut, RefusesATipThatGoesThroughThePlatform) {
   EXPECT_FALSE(platform_clearance(block(6, 0.45), path)) << "no platform";
 }
 
+/// The block as a scan of 1 mm shows it: its voxels lie at 0.5, 1.5, …
+Segmentation block_of_voxels() {
+  Segmentation found;
+  found.labels.grid.size = {24, 24, 8};
+  found.labels.grid.origin_mm = Vec3::Constant(0.5);
+  found.labels.voxels.assign(found.labels.grid.voxel_count(), 1);
+  return found;
+}
+
+/// Those of one layer.
+std::vector<std::int32_t> voxels_with(const Segmentation& found, std::size_t axis, int index) {
+  std::vector<std::int32_t> voxels;
+  for (std::size_t v = 0; v < found.labels.voxels.size(); ++v) {
+    if (found.labels.grid.voxel_at(v).at(axis) == index) voxels.push_back(static_cast<std::int32_t>(v));
+  }
+  return voxels;
+}
+
 TEST(VerdictBeforeCut, RefusesAPathOrAnEdgeOnAFaceThatTheRegionMade) {
   const TissueModel model = block(24, 0.45);
   Points stretched = model.mesh.vertices;
   for (Vec3& place : stretched) place.x() *= 1.5;  // faces are of the tissue at rest, a path is on the stretched tissue
-  // The block's voxels lie at 0.5, 1.5, ...: its top is cut, or its end at x = 24.
-  const auto cut_towards = [](std::int32_t side, int axis, int last) {
-    Segmentation found;
-    found.labels.grid.size = {24, 24, 8};
-    found.labels.grid.origin_mm = Vec3::Constant(0.5);
-    found.labels.voxels.assign(found.labels.grid.voxel_count(), 1);
-    for (std::size_t v = 0; v < found.labels.voxels.size(); ++v) {
-      if (found.labels.grid.voxel_at(v).at(static_cast<std::size_t>(axis)) == last)
-        found.cut.push_back({static_cast<std::int32_t>(v), side});
-    }
-    return CutFaces(found);
+  const auto cut_towards = [](std::int32_t side, std::size_t axis, int last) {  // its top, or its end at x = 24
+    Segmentation found = block_of_voxels();
+    for (const std::int32_t v : voxels_with(found, axis, last)) found.cut.push_back({v, side});
+    return MadeSkin(found);
   };
-  const CutFaces above = cut_towards(5, 2, 7), beside = cut_towards(1, 0, 23);
-  const auto judged = [&](const CutFaces& faces, double middle_mm) {
+  const MadeSkin above = cut_towards(5, 2, 7), beside = cut_towards(1, 0, 23);
+  const auto judged = [&](const MadeSkin& faces, double middle_mm) {
     ToolPath path = ring();
     for (Waypoint& waypoint : path.waypoints) waypoint.position_mm.x() += middle_mm - 12.0;
     path.tumor_edge.points = {Vec3(20, 10, 8), Vec3(18, 14, 8), Vec3(22, 14, 8)};
@@ -152,17 +166,63 @@ TEST(VerdictBeforeCut, RefusesAPathOrAnEdgeOnAFaceThatTheRegionMade) {
 
 TEST(VerdictBeforeCut, NamesSkinThatStrokesOfTheBrushMade) {
   const TissueModel model = block(24, 0.45);
-  const auto judged = [&](const TissueEdit& stroke) {
-    Case settings;
-    settings.segmentation.edits = {stroke};
-    return verdict_before_cut(settings, model, {}, model.mesh.vertices, ring());
+  const auto judged = [&](int last) {  // strokes made the top as far as x = last
+    Segmentation found = block_of_voxels();
+    for (const std::int32_t v : voxels_with(found, 2, 7)) {
+      if (found.labels.grid.voxel_at(static_cast<std::size_t>(v))[0] <= last) found.painted.push_back({v, 5});
+    }
+    return verdict_before_cut(Case{}, model, MadeSkin(found), model.mesh.vertices, ring());
   };
-  const Verdict verdict = judged({false, 40.0, {Vec3(12, 12, 48)}});  // its border is the block's top
+  const Verdict verdict = judged(23);
   ASSERT_TRUE(verdict.has("painted_skin"));
+  EXPECT_FALSE(verdict.has("cut_face"));
   EXPECT_EQ(verdict.status(), VerdictStatus::Caution);
   EXPECT_THAT(verdict.reasons().front().message, HasSubstr("24 of 24 points of the path lie on skin that strokes"));
-  EXPECT_FALSE(judged({false, 30.0, {Vec3(12, 12, 48)}}).has("painted_skin")) << "a stroke in the air";
-  EXPECT_FALSE(judged({true, 2.0, {Vec3(12, 12, 3)}}).has("painted_skin")) << "a stroke within the tissue";
+  EXPECT_FALSE(judged(2).has("painted_skin")) << "a stroke beside the path";
+}
+
+TEST(MarginRoom, EndsBeforeTheRimOrBeforeSkinThatTheRegionMade) {
+  const TetMesh mesh = make_block({24, 24, 8}, {48, 48, 16});
+  const auto greatest = [&](const MadeSkin& made, double middle_mm, double radius_mm) {
+    Contour edge{{}, true};
+    for (int i = 0; i < 48; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / 48;
+      edge.points.emplace_back(middle_mm + radius_mm * std::cos(angle), 12.0 + radius_mm * std::sin(angle), 8.0);
+    }
+    PlanSettings settings;
+    settings.depth_mm = 2.0;
+    return margin_room({boundary_surface(mesh), mesh.vertices, made}, edge, settings, 0.5);
+  };
+  // The rim lies 12 mm from the middle, and the path keeps 1 mm clear of it.
+  EXPECT_EQ(greatest({}, 12.0, 3.0).greatest_mm, 8.0) << "radius 3, margin 8: on the limit";
+  EXPECT_EQ(greatest({}, 12.0, 3.2).greatest_mm, 7.5);
+  EXPECT_EQ(greatest({}, 9.0, 3.2).greatest_mm, 4.5) << "the rim is nearer on one side";
+  EXPECT_EQ(in_words(greatest({}, 12.0, 10.2)), "No lateral margin fits here")
+      << "0.5 mm would, but is not above the radius";
+  EXPECT_EQ(greatest({}, 12.0, 9.8).greatest_mm, 1.0);
+  Segmentation found = block_of_voxels();
+  for (const std::int32_t v : voxels_with(found, 2, 7)) {
+    if (found.labels.grid.voxel_at(static_cast<std::size_t>(v))[0] >= 20) found.cut.push_back({v, 5});
+  }
+  // The cut skin begins at x = 20; a place counts up to a voxel before it.
+  const std::optional<double> before_cut_face = greatest(MadeSkin(found), 12.0, 3.2).greatest_mm;
+  ASSERT_TRUE(before_cut_face);
+  EXPECT_GE(*before_cut_face, 3.5);
+  EXPECT_LE(*before_cut_face, 4.5);
+  EXPECT_TRUE(greatest(MadeSkin(found), 12.0, 9.5).is_edge_cut);
+  EXPECT_THAT(in_words(greatest(MadeSkin(found), 12.0, 9.5)), HasSubstr("The tumour's edge itself lies where"));
+}
+
+TEST(PlanOn, NamesTheGreatestMarginThatFitsWhereTheSetOneDoesNot) {
+  const TissueModel model = block(24, 0.45);
+  Case settings;
+  settings.plan.depth_mm = 2.0;
+  settings.plan.lateral_margin_mm = 9.0;
+  Contour edge{{Vec3(9, 9, 8), Vec3(15, 9, 8), Vec3(15, 15, 8), Vec3(9, 15, 8)}, true};
+  EXPECT_THAT([&] { return plan_on(settings, model, model.mesh.vertices, edge, {}); },
+              ThrowsMessage<CaseError>(HasSubstr("A lateral margin of at most 8 mm fits here")));
+  settings.plan.lateral_margin_mm = 8.0;
+  EXPECT_EQ(plan_on(settings, model, model.mesh.vertices, edge, {}).waypoints.size(), 48U);
 }
 
 }  // namespace

@@ -20,4 +20,16 @@ inline constexpr std::array<std::string_view, 6> kOutcomeNames{"success",       
   return kOutcomeNames;
 }
 
+/// What an incision that ended so did, for a person: the end of a sentence that begins with "the cut".
+[[nodiscard]] constexpr std::string_view in_words(Outcome outcome) {
+  constexpr std::array<std::string_view, 6> kWords{
+      "was simulated to its end",
+      "was simulated to its end, and touches or enters the tumour's edge",
+      "was simulated to its end, and stays open: its ring does not close, or a line is not cut from end to end",
+      "did not converge: its equations were not solved well enough to be a result",
+      "did not converge: somewhere the tissue was turned inside out",
+      "was stopped before its end"};
+  return kWords[static_cast<std::size_t>(outcome)];
+}
+
 }  // namespace incise

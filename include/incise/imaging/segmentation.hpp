@@ -60,15 +60,15 @@ inline constexpr std::array<std::string_view, 6> kRegionFaceNames{"right",     "
   return kRegionFaceNames;
 }
 
-/// A labelled voxel at a face of the body that the region of interest, or the end of the volume, has made by cutting
-/// through tissue.
-struct CutVoxel {
+/// A labelled voxel at a face of the body that is not the specimen's own: the region of interest, or the end of the
+/// volume, has made it by cutting through tissue, or a stroke of the brush has.
+struct MadeVoxel {
   std::int32_t voxel = 0;  ///< its place in the labels' array
-  std::int32_t side = 0;   ///< where the tissue goes on, along the grid: 0 to 5 are -i, +i, -j, +j, -k, +k
+  std::int32_t side = 0;   ///< of the voxel that was made, along the grid: 0 to 5 are -i, +i, -j, +j, -k, +k
 };
-inline void describe(Visitor& v, CutVoxel& c) {
+inline void describe(Visitor& v, MadeVoxel& c) {
   v("voxel", c.voxel, "Its place in the labels' array.");
-  v("side", c.side, "Where the tissue goes on: 0 to 5 are -i, +i, -j, +j, -k, +k.");
+  v("side", c.side, "Of the voxel that was made: 0 to 5 are -i, +i, -j, +j, -k, +k.");
 }
 
 /// The specimen found in a CT. Both volumes share one grid: the body's box and a margin of air. It may reach beyond the
@@ -86,7 +86,8 @@ struct Segmentation {
   std::size_t hole_voxels = 0;   ///< and their voxels
   /// Body voxels at each RegionFace beyond which tissue goes on: > 0 where the region or the volume cuts through it
   std::array<std::size_t, 6> cut_voxels{};
-  std::vector<CutVoxel> cut;            ///< where the label begins beneath these, once for each side
+  std::vector<MadeVoxel> cut;           ///< where the label begins beneath these, once for each side
+  std::vector<MadeVoxel> painted;       ///< where it begins beneath a side that the edits made
   double smoothing_mm = 0.0;            ///< that was taken
   Verdict verdict;                      ///< what argues against this tissue: check_scan, and a body that the region cuts off
   [[nodiscard]] int cut_faces() const;  ///< how many of the six cut through tissue
@@ -104,6 +105,7 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("hole_voxels", s.hole_voxels, "Voxels of the cavities.");
   v("cut_voxels", s.cut_voxels, "Voxels of the body at each face of the region, where tissue goes on beyond it.");
   v.bulk("cut", s.cut, "Where the label begins beneath these voxels.");
+  v.bulk("painted", s.painted, "Where the label begins beneath a side that the edits made.");
   v.derived("cut_faces", s.cut_faces(), "How many faces of the region cut through tissue.");
   v("smoothing_mm", s.smoothing_mm, "Length that was taken.");
   v("verdict", s.verdict, "On this tissue.");

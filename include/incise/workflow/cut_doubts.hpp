@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/imaging/cut_faces.hpp>
+#include <incise/imaging/made_skin.hpp>
 #include <incise/mechanics/tissue.hpp>
 #include <incise/workflow/products.hpp>
 
@@ -33,8 +33,8 @@ struct PlatformClearance {
 /// What argues against a cut along a path before it is made: tissue that begins to lock, a mesh too coarse for the
 /// tool, a tip that goes through the platform, an entry or an edge on a face that the region of interest made, or on
 /// skin that strokes of the brush made.
-/// @param cut_faces  of the tissue at rest; none for a specimen that was given as a mesh.
-[[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const CutFaces& cut_faces,
+/// @param made_skin  of the tissue at rest; none for a specimen that was given as a mesh.
+[[nodiscard]] Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const MadeSkin& made_skin,
                                          std::span<const Vec3> stretched, const ToolPath& path);
 
 }  // namespace incise

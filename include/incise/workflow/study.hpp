@@ -5,6 +5,7 @@
 #include <incise/core/monitor.hpp>
 #include <incise/core/names.hpp>
 #include <incise/core/workers.hpp>
+#include <incise/imaging/made_skin.hpp>
 #include <incise/workflow/case.hpp>
 #include <incise/workflow/inputs.hpp>
 #include <incise/workflow/product_sink.hpp>
@@ -123,13 +124,17 @@ struct RunOptions {
 [[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
                                                   const std::optional<Contour>& tumor_edge,
                                                   const std::optional<Contour>& line, Workers& workers,
-                                                  Monitor& monitor);
+                                                  Monitor& monitor, const MadeSkin& made_skin = {});
 /// The specimen as the case holds it: material (label by label, where it varies), constraints (the default ones, where none are given)
 /// and gravity on a mesh. @throws CaseError as make_tissue_model and material_field.
 [[nodiscard]] TissueModel tissue_of(const Case& settings, TetMesh mesh);
 [[nodiscard]] StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor);
+/// The intended path on the stretched skin. A margin that does not fit is refused with the greatest that does.
+/// @param made_skin  of the tissue at rest; none for a specimen that was given as a mesh.
+/// @throws CaseError as project_tumor_edge, project_line, plan_ring and plan_line.
 [[nodiscard]] ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
-                               const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line);
+                               const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,
+                               const MadeSkin& made_skin = {});
 /// The tumour's surface in the stretched tissue: placed as its edge is (each vertex is moved along the approach by what the edge's points
 /// near it are moved when they are laid onto the skin) and, where it was drawn on the tissue as scanned, carried along with that.
 /// @param drawn_edge  as given, in the surface's configuration; absent: the surface is taken as it lies.

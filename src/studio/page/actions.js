@@ -18,7 +18,7 @@ import {argumentsOf} from "./photo_settings.js";
 import {basisOf, differences, freeLetter, isKept} from "./kept.js";
 import {middleOf, minus, plus, voxelAt} from "./geometry.js";
 
-const kDerived = ["tissue", "body", "stretch", "plan"];
+const kDerived = ["tissue", "body", "stretch", "plan", "room"];
 const kPlanned = ["body", "stretch", "plan"];
 const kNeeds = {
   see: ["tissue"],
@@ -111,6 +111,7 @@ export function takeCase(found, isOther) {
     body: null,
     stretch: null,
     plan: null,
+    room: null,
     run: null,
     moment: null,
     cross: null,
@@ -246,6 +247,11 @@ function needsOf(step) {
   if (step === "edge" && isFailed("tissue")) return ["body"];
   if (!hasVoxels() && (step === "see" || step === "edge")) return ["body"];
   return kNeeds[step] || [];
+}
+
+/** Whether a derived result is still to come for the settings as they are. */
+export function isAwaited(name) {
+  return !isFresh(name) && !isFailed(name);
 }
 
 // Asked again before a change, the server would give the same answer.
@@ -442,9 +448,10 @@ export async function measure() {
   if (await refresh("photograph", asked)) update({photograph: {...state.photograph, asked: JSON.stringify(asked)}});
 }
 
-/** Makes a cloud for practice, and chooses it. */
+/** Makes a cloud for practice, and chooses it; one of a case that was left meanwhile is not chosen. */
 export async function makeCloud(seed) {
-  const made = await ask("virtual_cloud", {seed});
+  const {file} = state.case;
+  const made = await ask("virtual_cloud", {seed}, () => isOpen(file));
   if (!made) return;
   chooseCloud({id: made.file, name: made.name}, true);
   if (state.files) list(state.files.folder.id); // it may be in the folder that is listed

@@ -67,7 +67,9 @@ function Head() {
     h("h1", null, "incise studio"),
     open ? h("span", {class: "title"}, open.title) : null,
     open && open.is_virtual ? h("span", {class: "badge"}, "virtual specimen") : null,
-    state.run && isFresh("run") ? h("span", {class: "head-verdict"}, h(Status, {status: state.run.verdict.status})) : null,
+    state.run && isFresh("run")
+      ? h("span", {class: "head-verdict"}, h(Status, {status: state.run.verdict.status}))
+      : null,
     h("span", {class: "space"}),
     h(Job),
     h(

@@ -2,10 +2,12 @@
 
 import {state, update, setting, isFresh, isSame} from "./store.js";
 import {put, redo, undo} from "./history.js";
-import {clamp, length, minus, thinned} from "./geometry.js";
+import {regionBox} from "./region_box.js";
+import {clamp, length, minus, plus, simplified, spanInBox, thinned} from "./geometry.js";
 
 const kPath = "ct.edits";
 const kRadii = [0.1, 50]; // mm: what a case takes
+const kMostThrough = 60; // mm
 const kFactor = 1.2; // from one radius to the next, by a key
 
 /** Points of all strokes together, or of one painted line: more would be a large request at every change. */
@@ -16,18 +18,47 @@ export function strokes() {
   return setting(kPath) || [];
 }
 
-/** What the chosen brush does, {tissue, radius_mm}; null: no brush is chosen. */
+/** What the chosen brush does, {tissue, radius_mm, through_mm}; null: no brush is chosen. */
 export function brush() {
   const tissue = {"brush-add": true, "brush-take": false}[state.placing];
-  return tissue === undefined ? null : {tissue, radius_mm: state.brush.radius_mm};
+  const {radius_mm, through_mm} = state.brush;
+  return tissue === undefined ? null : {tissue, radius_mm, through_mm};
 }
 
 /** Points of a stroke along a path, mm: about half a radius apart, to a hundredth of a millimetre. */
 export function strokeAlong(path, radius) {
-  const kept = thinned(path, 0.5 * radius),
+  return thinnedToEnd(path, 0.5 * radius).map(rounded);
+}
+
+function thinnedToEnd(path, least) {
+  const kept = thinned(path, least),
     last = path.at(-1);
-  const points = length(minus(last, kept.at(-1))) > 0 ? [...kept, last] : kept;
-  return points.map((point) => point.map((value) => Number(value.toFixed(2))));
+  return length(minus(last, kept.at(-1))) > 0 ? [...kept, last] : kept;
+}
+
+function rounded(point) {
+  return point.map((value) => Number(value.toFixed(2)));
+}
+
+/** Points of a stroke that goes through the slices as well: along the path, there and back, at offsets along the
+ *  slices' normal that are at most a radius apart. A region box limits the offsets: beyond it nothing is changed. */
+export function strokeThrough(path, {radius_mm: radius, through_mm: through}, normal) {
+  const line = simplified(thinnedToEnd(path, radius / 3), 0.1 * radius),
+    [from, to] = spanThrough(path, 0.5 * through, normal),
+    steps = Math.max(1, Math.ceil((to - from) / radius));
+  const pass = (k) => (k % 2 ? line.toReversed() : line),
+    offset = (k) => from + ((to - from) * k) / steps;
+  const passes = Array.from({length: steps + 1}, (_, k) => pass(k).map((point) => plus(point, normal, offset(k))));
+  return passes.flat().map(rounded);
+}
+
+// [least, greatest] offset, mm: as far as any point of the path stays in the region box.
+function spanThrough(path, half, normal) {
+  const box = regionBox(),
+    spans = box ? path.map((point) => spanInBox(box, point, normal)).filter(Boolean) : [[-half, half]];
+  const from = Math.max(-half, Math.min(...spans.map(([low]) => low))),
+    to = Math.min(half, Math.max(...spans.map(([, high]) => high)));
+  return from < to ? [from, to] : [0, 0];
 }
 
 /** The length of a stroke's path, mm. */
@@ -35,9 +66,11 @@ export function lengthOf(path) {
   return path.slice(1).reduce((sum, point, k) => sum + length(minus(point, path[k])), 0);
 }
 
-/** Adds a stroke along a path, mm. */
-export function addStroke({tissue, radius_mm}, path) {
-  const list = [...strokes(), {tissue, radius_mm, path_mm: strokeAlong(path, radius_mm)}];
+/** Adds a stroke along a path, mm. @param normal  of the slice that it was drawn in, through which it may go */
+export function addStroke(one, path, normal = null) {
+  const {tissue, radius_mm, through_mm} = one,
+    path_mm = normal && through_mm > 0 ? strokeThrough(path, one, normal) : strokeAlong(path, radius_mm);
+  const list = [...strokes(), {tissue, radius_mm, path_mm}];
   const points = list.reduce((sum, stroke) => sum + stroke.path_mm.length, 0);
   if (points > kMostPoints) return update({brush: {...state.brush, refused: points}});
   return putStrokes(list);
@@ -83,6 +116,11 @@ function isSameSkin({vertices: a}, {vertices: b}) {
 /** Sets the brush's radius, mm. */
 export function setRadius(radius) {
   update({brush: {...state.brush, radius_mm: clamp(Number(radius.toFixed(2)), ...kRadii)}});
+}
+
+/** Sets how far a stroke goes through the slices, mm. */
+export function setThrough(through) {
+  update({brush: {...state.brush, through_mm: clamp(Number(through.toFixed(2)), 0, kMostThrough)}});
 }
 
 /** Makes the brush larger or smaller by so many steps. */

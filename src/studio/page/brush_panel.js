@@ -11,6 +11,7 @@ import {
   removeStroke,
   removeStrokes,
   setRadius,
+  setThrough,
   strokes,
   takeKey,
 } from "./brush.js";
@@ -51,10 +52,11 @@ export function Brush() {
     ),
     h(Modes),
     h(Size),
+    h(Through),
     h(Ball),
+    h(Strokes),
     h(Refused),
     h(Idle),
-    h(Strokes),
   );
 }
 
@@ -84,6 +86,21 @@ function Size() {
   });
 }
 
+function Through() {
+  return h(NumberInput, {
+    label: "Through",
+    unit: "mm",
+    value: state.brush.through_mm,
+    step: 1,
+    min: 0,
+    max: 60,
+    onChange: setThrough,
+    hint:
+      "How far a stroke goes through the slices, half to each side. To part two bodies that touch, draw along the gap " +
+      "between them.",
+  });
+}
+
 // The way to paint without a mouse; without a brush it adds.
 function Ball() {
   const one = brush() || {tissue: true, radius_mm: state.brush.radius_mm},
@@ -107,7 +124,7 @@ function Refused() {
       "p",
       {class: "problem", role: "alert", "data-refused": refused},
       `This stroke was not added: with it the strokes would have ${whole(refused)} points, and ${whole(kMostPoints)} ` +
-        "is the most. Remove strokes that are not needed, or paint with a larger radius.",
+        "is the most. Remove strokes that are not needed, or paint with a larger radius, or less far through.",
     );
   return problem ? h("p", {class: "problem", role: "alert"}, complaint(problem)) : null;
 }

@@ -1,34 +1,57 @@
-// The found tissue's skin in two parts: its own surface, and where the region or the scan's end has cut through it.
+// A skin in parts: the tissue's own surface, where the region or the scan's end has cut through the tissue, and what
+// strokes of the brush have made.
 
 import {skinMesh} from "./things.js";
 
-const kColour = "#6f7b86"; // as a cut through stone: no tissue's colour
+/** The colour of the cut: as a cut through stone, no tissue's. */
+export const kCutColour = "#6f7b86";
 
-let memo = {skin: null, parts: null};
+/** The colour of skin that the brush made: light, so that the lines on it are seen; no colour vision mixes it up with
+ *  the tissue, the cut or refusals. */
+export const kPaintedColour = "#a8dcf8";
 
-/** The skin in two parts, {own, cut}: the same objects for as long as the skin is the same one. `cut` is null where
- *  nothing was cut. */
-export function tissueParts({skin, cut}) {
-  if (memo.skin !== skin) memo = {skin, parts: split(skin, cut)};
-  return memo.parts;
+const kOwn = 0,
+  kCut = 1,
+  kPainted = 2;
+const memo = new WeakMap(); // by skin: {cut, parts}
+
+/** A skin in parts, {own, cut, painted}: the same objects for as long as both arguments are the same. `cut` and
+ *  `painted` are null where there is nothing of the kind.   @param cut  of each triangle 1 where it was cut, 2 where the
+ *  brush made it, else 0; null where that is not known */
+export function partsOf(skin, cut) {
+  const known = memo.get(skin);
+  if (known && known.cut === cut) return known.parts;
+  const parts = split(skin, cut);
+  memo.set(skin, {cut, parts});
+  return parts;
 }
 
 /** The layer of the part that was cut. */
 export function cutLayer(cut) {
-  if (!cut) return null;
+  return partLayer(cut, "cut-faces", "cut off by the region or scan", kCutColour);
+}
+
+/** The layer of the part that the brush made. */
+export function paintedLayer(painted) {
+  return partLayer(painted, "painted-skin", "skin that the brush made", kPaintedColour);
+}
+
+function partLayer(part, name, label, colour) {
+  if (!part) return null;
   return {
-    name: "cut-faces",
-    label: "cut off by the region or scan",
-    colour: kColour,
+    name,
+    label,
+    colour,
     isArea: true,
-    parts: [cut],
-    build: () => [skinMesh(cut, {colour: kColour, opacity: 1})],
+    parts: [part],
+    build: () => [skinMesh(part, {colour, opacity: 1})],
   };
 }
 
-// @param isCut  1 for each triangle that was cut, else 0
-function split(skin, isCut) {
-  if (!isCut.includes(1)) return {own: skin, cut: null};
-  const part = (flag) => ({...skin, triangles: skin.triangles.filter((_, i) => isCut[Math.floor(i / 3)] === flag)});
-  return {own: part(0), cut: part(1)};
+function split(skin, made) {
+  if (!made || 3 * made.length !== skin.triangles.length || made.every((value) => value === kOwn))
+    return {own: skin, cut: null, painted: null};
+  const part = (value) => ({...skin, triangles: skin.triangles.filter((_, i) => made[Math.floor(i / 3)] === value)}),
+    partOrNone = (value) => (made.includes(value) ? part(value) : null);
+  return {own: part(kOwn), cut: partOrNone(kCut), painted: partOrNone(kPainted)};
 }

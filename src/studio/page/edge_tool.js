@@ -39,11 +39,12 @@ export function sideNearest(points, point) {
   return off.indexOf(Math.min(...off)) + 1;
 }
 
-/** The 3D view's tool for the edge. `get()` gives the edge, `set(edge)` takes it, `query()` gives the skin, or null,
- *  `onEllipse(point)` places one. */
+/** The 3D view's tool for the edge; a drag that is broken off puts its point back. `get()` gives the edge, `set(edge)`
+ *  takes it, `query()` gives the skin, or null, `onEllipse(point)` places one. */
 export class EdgeTool {
   constructor(scene, {get, set, query, onEllipse}) {
     Object.assign(this, {scene, get, set, query, onEllipse, held: -1, hasMoved: false});
+    Object.assign(this, {before: null, dragged: null}); // the edge before a drag, and its points as the drag left them
   }
 
   /** Number of the point under the pointer, the nearest to the observer first; -1: none. */
@@ -63,6 +64,7 @@ export class EdgeTool {
     if (this.get().mode !== "draw") return false;
     this.held = this.pointAt(event);
     this.hasMoved = false;
+    this.before = this.get();
     if (this.held >= 0) this.set({...this.get(), selected: this.held});
     return this.held >= 0;
   }
@@ -72,12 +74,21 @@ export class EdgeTool {
     if (!hit) return;
     this.hasMoved = true;
     this.put(this.held, hit);
+    this.dragged = this.get().points;
   }
 
   drop() {
     const edge = this.get();
     if (this.held === 0 && !this.hasMoved && !edge.isClosed) this.close();
     this.held = -1;
+  }
+
+  /** Puts the point that is dragged back, unless the edge has become another meanwhile. */
+  cancel() {
+    const edge = this.get(),
+      {points, curve, isSaved} = this.before;
+    if (this.hasMoved && edge.points === this.dragged) this.set({...edge, points, curve, isSaved});
+    Object.assign(this, {held: -1, hasMoved: false});
   }
 
   click(event) {

@@ -4,7 +4,7 @@ import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
 import {state, update} from "./store.js";
 import {frameArguments, readFrame} from "./actions.js";
-import {Button, Check, Choice, NumberInput, Problems, Working} from "./widgets.js";
+import {AsOf, Button, Check, Choice, NumberInput, Problems} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {imageOf} from "./photo_view.js";
 import {Commands} from "./commands.js";
@@ -90,7 +90,6 @@ export function Frame() {
       frame ? "Read the frame again" : "Read the frame",
     ),
     isReady ? null : h("p", {key: "why", class: "soft"}, "Choose the frame's files first."),
-    h(Working, {key: "working", call: "frame", text: "Looking for the mark"}),
     h(Problems, {key: "problems", calls: ["frame"]}),
     frame ? h(Found, {key: "found"}) : null,
   ];
@@ -119,9 +118,11 @@ function Found() {
   return h(
     "div",
     {"data-frame": frame.summary.outcome},
-    frame.asked === JSON.stringify(frameArguments(framing))
-      ? null
-      : h("p", {class: "warning"}, "Files or settings have changed since the frame was read."),
+    h(AsOf, {
+      isNow: frame.asked === JSON.stringify(frameArguments(framing)),
+      now: "For the files and settings as they are.",
+      past: "Files or settings have changed since.",
+    }),
     frame.found
       ? [h("h4", {key: "title"}, "The mark that was found"), h(Picture, {key: "picture", picture: frame.found})]
       : null,

@@ -6,14 +6,17 @@ import {saveFile} from "./save_file.js";
 import {fixed, isNumber, spoken} from "./words.js";
 
 /** The section with the gate of a result, which holds `verdict`, `gate`, `checks`, `program`, `why_without_program`.
+ *  All reasons of a caution stand beside its tick: who accepts it accepts each of them.
  *  @param accepted  ids that are ticked   @param onAccept  (ids)   @param onAgain  asks for the result with them
  *  @param again  what the button for that says of a result without any
  *  @param call      that gives the result   @param isBusy  whether it cannot be asked for now
- *  @param fileName  under which the program is saved   @param title  of the section   @param note  above all else */
+ *  @param fileName  under which the program is saved   @param title  of the section   @param note  above all else
+ *  @param aside     what else to say of the button once every caution is ticked */
 export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, ...shown}) {
-  const {fileName = "incise.script", title = "Robot program", note = null} = shown;
+  const {fileName = "incise.script", title = "Robot program", note = null, aside = ""} = shown;
   const gate = result.gate || {};
-  const open = cautionsOf(result, gate);
+  const open = cautionsOf(result, gate),
+    button = accepted.length ? `${again} with these accepted` : again;
   const tick = (id, isOn) => onAccept(isOn ? [...accepted, id] : accepted.filter((other) => other !== id));
   return h(
     Section,
@@ -29,7 +32,7 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
           open.map((id) =>
             h(Check, {
               key: id,
-              label: h(Explained, {text: reasonText(result, id)}),
+              label: h(ReasonsOf, {result, id}),
               isOn: accepted.includes(id),
               onChange: (isOn) => tick(id, isOn),
             }),
@@ -37,7 +40,7 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
           h(
             Button,
             {disabled: isBusy || !isOther(accepted, gate), onClick: onAgain, "data-do": "accept"},
-            accepted.length ? `${again} with these accepted` : again,
+            button,
           ),
         )
       : null,
@@ -46,8 +49,8 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
       ? h(Program, {text: result.program, fileName})
       : h(
           "p",
-          {class: "warning", "data-program": "none"},
-          h(Explained, {text: result.why_without_program || withoutProgram(gate)}),
+          {class: "warning", "data-program": "none", role: "status"},
+          h(Explained, {text: withoutProgram(result, {gate, accepted, isBusy, button, aside})}),
         ),
     result.checks && result.checks.length ? h(Checks, {checks: result.checks, isRefused: isRefused(gate)}) : null,
   );
@@ -57,10 +60,15 @@ function isRefused({refused = []}) {
   return refused.length > 0;
 }
 
-function withoutProgram({refused = [], missing = []}) {
-  if (missing.length && !refused.length)
-    return "There is no program yet: a person has to accept each of the cautions above.";
-  return "There is no program.";
+function withoutProgram({why_without_program: why}, {gate, accepted, isBusy, button, aside}) {
+  const {missing = []} = gate,
+    isWaiting = missing.length > 0 && !isRefused(gate);
+  if (isWaiting && missing.every((id) => accepted.includes(id)))
+    return isBusy ? "Writing the program…" : `Accepted. Press “${button}”${aside ? `: ${aside}` : ""}.`;
+  if (why) return why;
+  return isWaiting
+    ? "There is no program yet: a person has to accept each of the cautions above."
+    : "There is no program.";
 }
 
 function Refused({result, ids}) {
@@ -70,7 +78,7 @@ function Refused({result, ids}) {
     {"data-refused": ids.length},
     h("p", null, "The verdict refuses this cut. Nobody can accept it:"),
     ids.map((id) => [
-      h("p", {key: id, class: "refusal"}, h(Explained, {text: reasonText(result, id)})),
+      h("p", {key: id, class: "refusal"}, h(ReasonsOf, {result, id})),
       h(WayOut, {key: `${id}-out`, id}),
     ]),
   );
@@ -87,9 +95,22 @@ function isOther(accepted, gate) {
   return [...accepted].sort().join() !== [...(gate.accepted || [])].sort().join();
 }
 
-function reasonText(result, id) {
-  const reason = (result.verdict.reasons || []).find((one) => one.id === id);
-  return `${spoken(id)}${reason ? `: ${reason.message}` : ""}`;
+// All of them: a verdict may have several reasons of one id.
+function ReasonsOf({result, id}) {
+  const found = (result.verdict.reasons || []).filter((one) => one.id === id);
+  if (!found.length) return spoken(id);
+  if (found.length === 1) return h(ReasonText, {reason: found[0], before: `${spoken(id)}: `});
+  return [
+    `${spoken(id)}, ${found.length} reasons:`,
+    found.map((reason, k) => h("span", {key: k, class: "one-reason"}, h(ReasonText, {reason}))),
+  ];
+}
+
+function ReasonText({reason: {message, at}, before = ""}) {
+  return [
+    h(Explained, {key: "text", text: `${before}${message}`}),
+    at && at.text ? h("span", {key: "at", class: "soft"}, ` (${at.text})`) : null,
+  ];
 }
 
 function Checks({checks, isRefused: isCutRefused}) {

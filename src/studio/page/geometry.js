@@ -180,6 +180,35 @@ export function thinned(points, least) {
   return kept;
 }
 
+/** Those points of a line that keep it within `most` mm of what it was; its ends stay. */
+export function simplified(points, most) {
+  if (points.length < 3) return points;
+  const last = points.at(-1),
+    away = points.map((point) => distanceToLine(point, points[0], last)),
+    far = away.indexOf(Math.max(...away));
+  if (away[far] <= most) return [points[0], last];
+  return [...simplified(points.slice(0, far + 1), most), ...simplified(points.slice(far), most).slice(1)];
+}
+
+function distanceToLine(point, from, to) {
+  const along = minus(to, from),
+    whole = dot(along, along);
+  const share = whole > 0 ? clamp(dot(minus(point, from), along) / whole, 0, 1) : 0;
+  return length(minus(point, plus(from, along, share)));
+}
+
+/** [least, greatest] distance from a point along a direction within a box [low, high]; null where it misses the box. */
+export function spanInBox(box, point, direction) {
+  const span = [-Infinity, Infinity];
+  direction.forEach((part, axis) => {
+    const slope = Math.abs(part) < 1e-9 ? 1e-9 : part; // along a face: in the box all the way, or never
+    const ends = box.map((corner) => (corner[axis] - point[axis]) / slope);
+    span[0] = Math.max(span[0], Math.min(...ends));
+    span[1] = Math.min(span[1], Math.max(...ends));
+  });
+  return span[0] <= span[1] ? span : null;
+}
+
 /** Points on a line of points, at most `step` mm apart. */
 export function filled(points, step) {
   return points.flatMap((from, k) => {

@@ -19,13 +19,18 @@ import {
 import {moved, registeredView} from "./registered.js";
 import {directionOf, pointsOf} from "./geometry.js";
 import {ink, intended, isDark, onBlack} from "./colours.js";
-import {cutLayer, tissueParts} from "./cut_faces.js";
+import {cutLayer, kCutColour, kPaintedColour, paintedLayer, partsOf} from "./cut_faces.js";
 import {edgeAt} from "./stretched_edge.js";
+import {lookOfPlan} from "./planned_path.js";
+import {currentRoom, partsOfRing} from "./room.js";
 import {correctedOf, dashesOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
-import {setting} from "./store.js";
+import {isFresh, setting} from "./store.js";
+import {plain} from "./words.js";
 
 const kTube = 0.28; // mm
 const kWideTube = 0.36;
+const kThinTube = 0.2;
+const kDash = 0.35; // mm in 3D for a pixel of a dash in the pictures
 
 /** The layers of the state: {name, label, colour, isArea, parts, build}; a layer is built anew when one of its `parts`
  *  is another object. @param edge  {points, isClosed} */
@@ -43,6 +48,19 @@ function skinLayer(skin, name = "tissue", opacity = 1) {
     parts: [skin, opacity],
     build: () => [skinMesh(skin, {colour: ink.tissue, opacity})],
   };
+}
+
+// The skin with what the region or the scan's end has cut, and what the brush made.
+// @param cut  of each triangle, as partsOf() takes it
+function skinLayers(skin, cut, name) {
+  if (!skin) return [];
+  const parts = partsOf(skin, cut);
+  return [skinLayer(parts.own, name), cutLayer(parts.cut), paintedLayer(parts.painted)];
+}
+
+// The body, stretched where it is known: both skins have the same triangles in the same order.
+function bodyLayers({stretch, body}) {
+  return skinLayers((stretch && stretch.skin) || (body && body.skin), body && body.cut);
 }
 
 function curveLayer(name, label, colour, points, isClosed, parts, radius = kTube) {
@@ -68,10 +86,9 @@ function focusLayer(state) {
 function seen(state, edge) {
   const box = setting("ct.roi_box_mm"),
     seed = setting("ct.seed_mm");
-  const {own, cut} = state.tissue ? tissueParts(state.tissue) : {own: state.body && state.body.skin, cut: null};
+  const {skin, cut} = state.tissue || state.body || {};
   return [
-    skinLayer(own),
-    cutLayer(cut),
+    ...skinLayers(skin, cut),
     box && {
       name: "box",
       label: "region box",
@@ -87,15 +104,13 @@ function seen(state, edge) {
 
 function drawn(state, edge) {
   const {edge: own, tissue, body, stretch} = state;
-  const isPulled = own.where === "stretched",
-    parts = !isPulled && tissue ? tissueParts(tissue) : null;
-  const skin = isPulled ? stretch && stretch.skin : body && body.skin;
+  const {skin, cut} = own.where === "rest" ? tissue || body || {} : {...stretch, cut: body && body.cut};
   const others = own.points.filter((_, k) => k !== own.selected);
   const chosen = own.points.filter((_, k) => k === own.selected);
   return [
-    skinLayer(parts ? parts.own : skin),
-    parts && cutLayer(parts.cut),
+    ...skinLayers(skin, cut),
     edgeLayer(edge),
+    ...marginLayers(currentRoom(edge)),
     own.mode === "look" ? null : ballLayer("points", "points", ink.tumour, others, 0.7, [own.points, own.selected]),
     own.mode === "look"
       ? null
@@ -103,11 +118,43 @@ function drawn(state, edge) {
   ];
 }
 
+// The ring at rest; what of it leaves the specimen's own skin has the colour of refusals.
+function marginLayers(room) {
+  if (!room || !room.ring) return [];
+  const {free, cut, isClosed} = partsOfRing(room),
+    colour = intended();
+  return [
+    linesLayer("margin", `margin of ${plain(room.margin)} mm, before the stretch`, colour, free, isClosed, room),
+    linesLayer("margin-cut", "margin where the tissue is cut off", ink.reached, cut, false, room),
+  ];
+}
+
+function linesLayer(name, label, colour, lines, isClosed, part) {
+  if (!lines.length) return null;
+  const build = () => lines.flatMap((points) => tubes(points, isClosed, colour, kThinTube));
+  return {name, label, colour, parts: [part, colour], build};
+}
+
 function held(state, edge) {
   const {body, stretch, scrub} = state;
-  if (!body) return [skinLayer(state.tissue && state.tissue.skin)];
+  if (!body) return state.tissue ? skinLayers(state.tissue.skin, state.tissue.cut) : [];
   const isRest = !stretch || scrub < 0.005,
     shown = edgeAt(state, edge, stretch ? scrub : 0);
+  return [
+    ...heldLayers(body, stretch),
+    ...plateLayers(body.skin),
+    ...(isRest ? patchLayers(state.patch) : []),
+    curveLayer("tumour", shown.label, ink.tumour, shown.points, shown.isClosed, [shown.points, shown.label]),
+  ];
+}
+
+const kMadeShare = 0.5; // of the cut's colour, or the brush's, where such skin is held: both are to be seen
+
+// What is held has its colour on the cut as well, and on what the brush made. All parts are built anew with a
+// stretch: they move with the slider.
+function heldLayers(body, stretch) {
+  const {own, cut, painted} = partsOf(body.skin, body.cut);
+  const of = (skin, free, share) => [skinMesh(skin, {colours: heldColours(body.held, free, share)})];
   return [
     {
       name: "body",
@@ -115,11 +162,14 @@ function held(state, edge) {
       colour: ink.tissue,
       isArea: true,
       parts: [body, stretch],
-      build: () => [skinMesh(body.skin, {colours: heldColours(body.held)})],
+      build: () => of(own, ink.tissue, 0),
     },
-    ...plateLayers(body.skin),
-    ...(isRest ? patchLayers(state.patch) : []),
-    curveLayer("tumour", shown.label, ink.tumour, shown.points, shown.isClosed, [shown.points, shown.label]),
+    cut && {...cutLayer(cut), parts: [body, stretch], build: () => of(cut, kCutColour, kMadeShare)},
+    painted && {
+      ...paintedLayer(painted),
+      parts: [body, stretch],
+      build: () => of(painted, kPaintedColour, kMadeShare),
+    },
   ];
 }
 
@@ -157,13 +207,13 @@ function ballsAndLine(name, label, colour, points) {
 }
 
 function planned(state, edge) {
-  const {plan, stretch, body} = state,
+  const {plan, stretch} = state,
     shown = plan || !edge ? {points: []} : edgeAt(state, edge, stretch ? 1 : 0);
   return [
-    skinLayer((stretch && stretch.skin) || (body && body.skin)),
+    ...bodyLayers(state),
     ...pathLayers(plan),
     curveLayer("tumour", shown.label, ink.tumour, shown.points, shown.isClosed, [shown.points, shown.label]),
-    plan ? markerLayer(plan.verdict, plan) : null,
+    plan && isFresh("plan") ? markerLayer(plan.verdict, plan) : null,
     focusLayer(state),
   ];
 }
@@ -172,10 +222,11 @@ function pathLayers(plan) {
   if (!plan || !plan.path) return [];
   const {path} = plan,
     points = pointsOf(path),
-    colour = intended();
+    {isNow, label, colour, dash} = lookOfPlan();
+  if (!isNow) return pastLayers(plan, label, colour, dash);
   const hasTips = Array.isArray(path.axes) && path.axes.length && path.depth_mm;
   return [
-    curveLayer("path", "planned path", colour, points, path.closed, [plan, colour]),
+    curveLayer("path", label, colour, points, path.closed, [plan, colour]),
     hasTips
       ? {
           name: "depth",
@@ -187,6 +238,22 @@ function pathLayers(plan) {
       : null,
     ballLayer("start", "start", "#56b4e9", points.slice(0, 1), 0.7, [plan]),
     curveLayer("tumour", "tumour's edge", ink.tumour, pointsOf(plan.edge), true, [plan]),
+  ];
+}
+
+// Dashed, and without depth and start: a plan of settings that have changed.
+function pastLayers(plan, label, colour, dash) {
+  const pattern = dash.map((length) => kDash * length),
+    {path, edge} = plan;
+  return [
+    {
+      name: "path",
+      label,
+      colour,
+      parts: [plan, colour],
+      build: () => dashesOf(pointsOf(path), path.closed, pattern).flatMap((part) => tubes(part, false, colour, kTube)),
+    },
+    curveLayer("tumour", "tumour's edge of earlier settings", ink.tumour, pointsOf(edge), true, [plan, "past"]),
   ];
 }
 
@@ -203,7 +270,7 @@ function running(state) {
   const skin = moment && moment.skin;
   if (!skin && !moment) return planned(state);
   return [
-    skinLayer(skin || (state.stretch && state.stretch.skin), skin ? "cut-skin" : "tissue"),
+    ...(skin ? [skinLayer(skin, "cut-skin")] : bodyLayers(state)),
     moment.tip || moment.path ? toolLayer(moment) : null,
     curveLayer("line", "mid-line", ink.kerf, pointsOf(moment.line), false, [moment], kWideTube),
     ...pathLayers(plan),
@@ -224,13 +291,13 @@ function toolLayer(moment) {
 }
 
 function compared(state) {
-  const {run, plan, stretch, body} = state;
+  const {run, plan} = state;
   if (!run) return planned(state);
   const isClosed = !(plan && plan.path) || plan.path.closed !== false;
   const line = (name, label, colour, cut) =>
     curveLayer(name, label, colour, cut && pointsOf(cut.centerline), isClosed, [run, isClosed], kWideTube);
   return [
-    skinLayer((stretch && stretch.skin) || (body && body.skin)),
+    ...bodyLayers(state),
     ...pathLayers(plan).filter((layer) => layer && layer.name !== "depth"),
     line("before", "mid-line as planned", ink.kerf, run.as_planned),
     line("after", "mid-line corrected", ink.corrected, correctedOf(run)),
@@ -239,8 +306,6 @@ function compared(state) {
     focusLayer(state),
   ];
 }
-
-const kDash = 0.35; // mm in 3D for a pixel of a dash in the pictures
 
 // The mid-lines of kept results, with their dashes: a tube's colour alone is hard to tell.
 function keptLayers(state, isClosed) {
@@ -333,7 +398,7 @@ function played(state) {
     ...armLayers(arm),
     ...(state.armOf === "run"
       ? [
-          line("path", "planned path", intended(), plan && plan.path),
+          line("path", lookOfPlan().label, lookOfPlan().colour, plan && plan.path),
           line("after", "corrected path", ink.corrected, run && run.corrected && run.corrected.path),
         ]
       : [laidLayer(state)]),

@@ -14,7 +14,7 @@ function withdraw() {
   if (state.arm && !isFresh("arm")) update({arm: null});
 }
 
-/** Whether a result is of the case as it is and as it is about to be. @param of  "run", "lay" or "mark" */
+/** Whether a result is of the case as it is and as it is about to be. @param of  "run", "lay", "mark" or "register" */
 export function isCurrent(of) {
   return isFresh(of) && !state[of].isWithdrawn && !Object.keys(state.drafts).length;
 }

@@ -169,14 +169,15 @@ function raised([x, y, [a, b, c, z], last], by) {
 
 function Height({pose}) {
   const skin = stretchedSkin();
-  if (!skin) return h("p", {class: "soft"}, "Once the tissue is stretched, its height above the table is shown here.");
+  if (!skin)
+    return h("p", {class: "soft height"}, "Once the tissue is stretched, its height above the table is shown here.");
   const height = heightOf(skin, pose),
     table = `the table (robot z = ${plain(tableZ())} mm)`;
   const isOn = Math.abs(height) < kOnTable,
     isBelow = height <= -kOnTable;
   return h(
     "div",
-    {class: isFresh("stretch") ? null : "stale", "data-height": height.toFixed(3)},
+    {class: isFresh("stretch") ? "height" : "height stale", "data-height": height.toFixed(3)},
     h(
       "p",
       {class: isBelow ? "warning" : null},

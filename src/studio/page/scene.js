@@ -81,6 +81,28 @@ export class Scene extends Viewer {
     this.render();
   }
 
+  /** As `fit`, for something of another extent: a camera that was moved stays as it is where it sees the whole of it,
+   *  else the whole fills the view. */
+  frameWhole(centre, radius) {
+    const isMoved = this.zoom !== 1 || !this.target.equals(this.centre);
+    if (!isMoved) return this.fit(centre, radius);
+    if (!this.sees(centre, radius)) return this.frame(centre, radius);
+    const before = this.pixelsPerMm();
+    this.centre.set(...centre);
+    this.radius = radius;
+    this.zoom *= before / this.pixelsPerMm();
+    return this.render();
+  }
+
+  /** Whether a ball lies in the view as a whole. */
+  sees(centre, radius) {
+    const {right, up} = this.axes(),
+      off = new THREE.Vector3(...centre).sub(this.target),
+      mm = 0.5 / this.pixelsPerMm();
+    const isWithin = (axis, pixels) => Math.abs(off.dot(axis)) + 0.95 * radius <= pixels * mm;
+    return isWithin(right, this.host.clientWidth) && isWithin(up, this.host.clientHeight);
+  }
+
   /** Forgets what was fitted: the next fit is a first one. */
   forget() {
     this.radius = 0;
@@ -142,7 +164,7 @@ export class Scene extends Viewer {
     this.isTaken = false;
   }
 
-  /** Ends what is done with the pointer: a stroke is not painted, and a point stays where it is. */
+  /** Ends what is done with the pointer without effect: a stroke is not painted, and a point goes back. */
   breakOff() {
     if (this.isTaken && this.tool && this.tool.cancel) this.tool.cancel();
     this.isTaken = false;

@@ -488,7 +488,7 @@ export class SliceView {
       {box} = this.drag || {};
     this.breakOff();
     if (event.type !== "pointerup") return;
-    if (stroke.length) this.on.stroke(stroke);
+    if (stroke.length) this.on.stroke(stroke, this.plane().through);
     if (box) this.on.box(box);
   }
 
@@ -574,7 +574,7 @@ export class SliceView {
     else if (event.key === "-") this.zoomBy(1 / 1.2);
     else if (event.key === "Home") this.fit();
     else if (event.key === "Enter" && this.model.isPlacing) this.on.seed(this.cross());
-    else if (event.key === "Enter" && this.model.brush) this.on.stroke([this.cross()]);
+    else if (event.key === "Enter" && this.model.brush) this.on.stroke([this.cross()], this.plane().through);
     else if (event.key === "Escape" && this.drag) this.breakOff();
     else if (event.key === "Escape" && this.model.brush) this.on.putAway();
     else return;

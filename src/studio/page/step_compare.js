@@ -8,9 +8,10 @@ import {isRunning} from "./step_run.js";
 import {Withdrawn, isCurrent} from "./programs.js";
 import {contourOf, correctedOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {KeptTable, WhatIf} from "./what_if.js";
-import {Button, Problems, Reasons, Section, Status} from "./widgets.js";
+import {AsOf, Button, Problems, Reasons, Section, Status} from "./widgets.js";
 import {ContourView, boundsOf} from "./contour_view.js";
 import {Plot} from "./plots.js";
+import {lookOfPlan} from "./planned_path.js";
 import {ink, intended, isDark} from "./colours.js";
 import {countText, mm, spoken} from "./words.js";
 
@@ -35,13 +36,13 @@ export function StepCompare() {
   return h(
     "div",
     {"data-run": result.outcome},
-    isFresh("run") ? null : h("p", {class: "warning"}, "The settings have changed since this run."),
+    h(AsOf, {isNow: isFresh("run"), past: "The settings have changed since this run."}),
     h(
       Section,
       {title: "Verdict", id: "verdict"},
       h("p", {class: "verdict"}, h(Status, {status: result.verdict.status}), ` ${countText(result.verdict)}`),
       h(Reasons, {verdict: result.verdict, onPlace: showPlace}),
-      h("p", {"data-ended": result.outcome}, kEnds[result.outcome]),
+      h("p", {"data-ended": result.outcome}, result.ended),
       result.corrected ? h("p", {"data-correction": String(result.accepted)}, correctionText(result)) : null,
     ),
     h(
@@ -55,16 +56,15 @@ export function StepCompare() {
       Section,
       {title: "Robot program", id: "to-program"},
       isCurrent("run")
-        ? h(
-            "p",
-            null,
-            result.program ? "The verdict allows a program." : result.why_without_program || "There is no program.",
-          )
+        ? h("p", null, programText(result))
         : h(Withdrawn, {of: "run"}),
       h(Button, {onClick: () => goTo("program"), "data-do": "to-program"}, "Go to the program"),
     ),
   );
 }
+
+const kFollowed =
+  "No program follows this path: the correction is accepted, and the verdict above is that of the corrected cut.";
 
 // What is known against the cut that the run's verdict does not judge: as planned once the correction is accepted, else
 // the corrected one.
@@ -74,20 +74,20 @@ function Unjudged({result}) {
   return h(
     Section,
     {title: result.accepted ? "Against the cut as planned" : "Against the corrected cut", id: "against-other"},
+    result.accepted ? h("p", {"data-followed": "corrected"}, kFollowed) : null,
     h("p", {class: "verdict"}, h(Status, {status: cut.verdict.status})),
     h(Reasons, {verdict: cut.verdict, onPlace: showPlace}),
   );
 }
 
-// How the simulation ended, by the run's outcome: another matter than what the cut is worth.
-const kEnds = {
-  success: "The cut was simulated to its end.",
-  positive_margin: "The cut was simulated to its end, and it touches the tumour's edge.",
-  open_loop: "The cut was simulated to its end, and its ring does not close.",
-  not_converged: "The simulation ended early: it found no position in which the tissue comes to rest.",
-  element_inverted: "The simulation ended early: somewhere the tissue was turned inside out.",
-  cancelled: "The simulation was stopped before its end.",
-};
+function programText({program, gate, why_without_program: why}) {
+  const {missing = [], refused = []} = gate || {};
+  if (program) return "The verdict allows a program.";
+  if (missing.length && !refused.length)
+    return "There is no program yet: step Program lists the cautions that a person has to accept.";
+  return why || "There is no program.";
+}
+
 const kSamePath = "The corrected path is the planned one, so there is no second cut to compare.";
 
 function correctionText(result) {
@@ -167,9 +167,10 @@ export function afterColour() {
 
 function contoursOf(cut, colour, plan) {
   const isClosed = isRing(plan),
-    {path, centerline, inner_edge: innerEdge} = cut || {};
+    {path, centerline, inner_edge: innerEdge} = cut || {},
+    {label, colour: planColour, dash} = lookOfPlan();
   return [
-    {label: "planned path", colour: intended(), width: 1.5, points: plan && plan.path, isClosed},
+    {label, colour: planColour, dash, width: 1.5, points: plan && plan.path, isClosed},
     {
       label: "path of the tool",
       colour: isDark() ? "#9aa3ab" : "#6b6b6b",

@@ -3,11 +3,12 @@
 import {h} from "preact";
 import {state, update, setting} from "./store.js";
 import {change, refresh, saveEdge} from "./actions.js";
-import {approach, dropEllipse, shownSkin, skinQuery, views} from "./views.js";
-import {Button, Choice, NumberInput, Numbers, Problems, Section, Working} from "./widgets.js";
+import {approach, dropEllipse, shownEdge, shownSkin, skinQuery, views} from "./views.js";
+import {currentRoom, hasRoom} from "./room.js";
+import {Button, Choice, Explained, NumberInput, Numbers, Problems, Section, StepLinks, Working} from "./widgets.js";
 import {pointsOf, length, minus} from "./geometry.js";
 import {ballAbout} from "./things.js";
-import {mm, place} from "./words.js";
+import {mm, place, plain} from "./words.js";
 
 const kModes = {
   look: "Turning the view. Nothing is drawn.",
@@ -17,19 +18,24 @@ const kModes = {
 
 const kWhere = {rest: "the tissue as scanned", stretched: "the stretched tissue"};
 
+const kDoing = [
+  ["tissue", "Finding the tissue"],
+  ["body", "Meshing the body"],
+  ["stretch", "Stretching"],
+];
+
 /** The panel. */
 export function StepEdge() {
   const {edge} = state;
   return h(
     "div",
     null,
-    h(Problems, {calls: state.body ? ["body"] : ["tissue", "body"]}),
-    h(Working, {call: "tissue", text: "Finding the tissue"}),
     h(Where),
     h(Draw),
     h(Ellipse),
     edge.points.length ? h(Points) : null,
     h(Keep),
+    h(Margin),
   );
 }
 
@@ -45,16 +51,16 @@ function Where() {
   };
   return h(
     Section,
-    {title: "Drawn on", id: "where"},
+    {title: "Drawn on", id: "where", doing: kDoing},
     h(Choice, {
       label: "Configuration",
       value: edge.where,
       onChange: choose,
       options: Object.entries(kWhere),
     }),
-    h(Working, {call: "stretch", text: "Stretching"}),
-    edge.where === "stretched" ? h(Problems, {calls: ["stretch"]}) : null,
     h(Stored),
+    h(Problems, {calls: state.body ? ["body"] : ["tissue", "body"]}),
+    edge.where === "stretched" ? h(Problems, {calls: ["stretch"]}) : null,
   );
 }
 
@@ -194,20 +200,80 @@ function Keep() {
           edge.points.length ? "An edge has to be closed before it can be stored." : "Nothing is drawn.",
         ),
     h(
-      Button,
-      {
-        isMain: true,
-        disabled: !edge.isClosed || edge.isSaved || Boolean(state.busy.edge),
-        "data-do": "save-edge",
-        onClick: () => saveEdge(edge.curve, edge.where),
-      },
-      "Store the edge in the case",
+      "div",
+      {class: "row"},
+      h(
+        Button,
+        {
+          isMain: true,
+          disabled: !edge.isClosed || edge.isSaved || Boolean(state.busy.edge),
+          "data-do": "save-edge",
+          onClick: () => saveEdge(edge.curve, edge.where),
+        },
+        "Store the edge in the case",
+      ),
+      h(Working, {call: "edge", text: "Storing"}),
     ),
-    h(Working, {call: "edge", text: "Storing"}),
     h(Problems, {calls: ["change", "edge"]}),
     state.notice ? h("p", {role: "status", class: "notice"}, state.notice) : null,
     h(Surface),
   );
+}
+
+/** How much margin fits round the edge, before the stretch. */
+function Margin() {
+  const edge = shownEdge(),
+    room = hasRoom(edge) ? currentRoom(edge) : null;
+  return h(
+    Section,
+    {title: "Margin", id: "room", doing: [["room", "Looking what fits"]]},
+    h("div", {role: "status", class: "lines-3"}, room ? h(Room, {room}) : h("p", {class: "soft"}, withoutRoom(edge))),
+    h(Problems, {calls: ["room"]}),
+  );
+}
+
+function withoutRoom(edge) {
+  if (hasRoom(edge)) return "How much margin fits on this skin is being found.";
+  if (edge.isClosed && state.edge.where === "rest" && edge.isRest) return "The case has a line to cut along.";
+  if (edge.isClosed && edge.points.length) return "Step Plan says how much margin fits on the stretched tissue.";
+  return "Once the edge is closed, this says how much margin fits on the skin round it.";
+}
+
+function Room({room}) {
+  const count = room.edge_on_cut_face,
+    isFitting = room.fits;
+  return [
+    h(
+      "p",
+      {key: "fits", class: isFitting ? null : "warning", "data-fits": isFitting ? "yes" : "no"},
+      isFitting ? fittingText(room) : tooLargeText(room),
+      isFitting ? null : h(StepLinks, {steps: ["see", "plan"]}),
+    ),
+    count
+      ? h(
+          "p",
+          {key: "cut", class: "warning", "data-edge-on-cut": count},
+          count === 1 ? "1 point of the edge lies" : `${count} points of the edge lie`,
+          " where the region box or the end of the scan cuts the tissue.",
+        )
+      : h(Why, {key: "why", room}),
+  ];
+}
+
+// Why not even the least margin fits, in the library's words.
+function Why({room: {problem, greatest_margin_mm: greatest}}) {
+  if (!problem || greatest !== null) return null;
+  return h("p", {class: "soft"}, "incise reports: ", h(Explained, {text: problem}), ".");
+}
+
+function fittingText({margin, margin_note: note}) {
+  return `The margin of ${plain(margin)} mm fits on this skin. ${note}`;
+}
+
+function tooLargeText({margin, margin_note: note, greatest_margin_mm: greatest}) {
+  const box = setting("ct.roi_box_mm") ? ", or make the region box larger" : "",
+    less = greatest === null ? "" : ", or set a smaller margin in Plan";
+  return `The margin of ${plain(margin)} mm does not fit on this skin. ${note} Draw the edge elsewhere${box}${less}.`;
 }
 
 /** What a new edge leaves as it was: the case's surface of the tumour, which may belong to the edge before. */

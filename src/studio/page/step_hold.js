@@ -1,8 +1,9 @@
 // Step 4: how the specimen is held, and what the pull does to it.
 
 import {h} from "preact";
+import {useRef} from "preact/hooks";
 import {state, update, isFresh} from "./store.js";
-import {refresh} from "./actions.js";
+import {isAwaited, refresh} from "./actions.js";
 import {rowsOf} from "./fields.js";
 import {
   Button,
@@ -13,6 +14,7 @@ import {
   Problems,
   Section,
   Setting,
+  Steady,
   StepLinks,
   TextInput,
   Working,
@@ -32,10 +34,10 @@ import {
 } from "./constraints.js";
 import {Patch} from "./patch_panel.js";
 import {beginPatch, leavePatch, shownRegion} from "./patch.js";
-import {kDirections} from "./geometry.js";
+import {kDirections, length} from "./geometry.js";
 import {crosshair} from "./views.js";
 import {holds} from "./colours.js";
-import {mm, spoken, whole} from "./words.js";
+import {fixed, isNumber, mm, plain, spoken, whole} from "./words.js";
 
 const kMostColoured = 8; // of the constraints: as many as the body's `held` has bits
 const kAxes = ["x", "y", "z"];
@@ -61,7 +63,7 @@ export function StepHold() {
     null,
     h(
       Section,
-      {title: "Held by", id: "constraints"},
+      {title: "Held by", id: "constraints", doing: [["body", "Meshing the body"]]},
       list
         ? h(
             "ul",
@@ -84,9 +86,12 @@ export function StepHold() {
       list && list.length > kMostColoured
         ? h("p", {class: "soft"}, `The 3D view colours what the first ${kMostColoured} of them hold.`)
         : null,
-      h(Problems, {calls: ["change"], shown: shownKeys(list)}),
-      h(Missing),
-      h(Working, {call: "body", text: "Meshing the body"}),
+      h(
+        Steady,
+        {isWaiting: isAwaited("body") || Boolean(state.busy.change)},
+        h(Problems, {calls: ["change"], shown: shownKeys(list)}),
+        h(Missing),
+      ),
     ),
     h(Body),
     h(Tissue),
@@ -138,23 +143,30 @@ function fresh(kind) {
 }
 
 function ByDefault() {
-  const found = (state.body && state.body.constraints) || [],
-    isNow = isFresh("body");
+  const isNow = isFresh("body"),
+    last = useRef([]), // what the default was, while it is computed anew
+    found = isNow ? state.body.constraints || [] : last.current;
+  last.current = found;
   if (!isNow && state.problems.body) return h(DefaultWithoutBody);
   return h(
     "div",
     null,
     h("p", {class: "soft"}, "The case says nothing about it, so the body is held by the default:"),
-    isNow ? null : h("p", {class: "soft"}, "It is computed for the body as it is now."),
-    isNow
-      ? h(
-          "ul",
-          {class: "facts", "data-default": found.length},
-          found.map((one, k) =>
-            h("li", {key: k}, h(Dot, {k}), inWords(one.setting), h("span", {class: "soft"}, ` ${countText(one)}`)),
-          ),
-        )
-      : null,
+    h(
+      "ul",
+      {class: isNow ? "facts default" : "facts default stale", "data-default": found.length},
+      found.map((one, k) =>
+        h(
+          "li",
+          {key: k},
+          h(Dot, {k}),
+          inWords(one.setting),
+          h("span", {class: "soft"}, ` ${countText(one)}`),
+          h(Share, {found: one}),
+        ),
+      ),
+      found.length ? null : h("li", {class: "soft"}, "It is computed for the body as it is now."),
+    ),
     h(
       Button,
       {
@@ -170,13 +182,14 @@ function ByDefault() {
 
 // Without a body there is nothing from which to write it into the case.
 function DefaultWithoutBody() {
+  const said = ` ${state.case.default_hold}.`;
   return h(
     "div",
     {"data-default": "words"},
     h(
       "p",
       {class: "soft"},
-      `The case says nothing about it, so the body would be held by the default. ${state.case.default_hold}.`,
+      `The case says nothing about it, so the body would be held by the default.${isDefaultSaid() ? "" : said}`,
     ),
     h(
       "p",
@@ -189,6 +202,13 @@ function DefaultWithoutBody() {
   );
 }
 
+// By the problem, which stands below.
+function isDefaultSaid() {
+  const {path, message, hint} = state.problems.body,
+    isWhole = path === kConstraints || !isAboutConstraints(state.problems.body);
+  return isWhole && `${message} ${hint}`.includes(state.case.default_hold);
+}
+
 // A plane found under the body has more decimals than a person would type.
 function rounded(one) {
   if (!one.plane) return one;
@@ -198,6 +218,23 @@ function rounded(one) {
 // A support holds what comes to rest on it, which is not known before.
 function countText({kind, vertices}) {
   return kind === "support" ? "" : `${whole(vertices)} vertices of the mesh.`;
+}
+
+/** How long a pull is beside the body; nothing for what pulls at nothing. */
+function Share({found, isStale = false}) {
+  const {share_of_length: share, note, setting: one} = found;
+  if (!isNumber(share)) return null;
+  const pull = length(one.displacement_mm);
+  return h(
+    "div",
+    {class: isStale ? "share stale" : "share", "data-share": share.toFixed(3)},
+    h(
+      "p",
+      {class: "soft"},
+      `A pull of ${plain(Number(pull.toFixed(1)))} mm: ${fixed(100 * share, 0)} % of the body's length that way.`,
+    ),
+    note ? h("p", {class: "warning"}, note) : null,
+  );
 }
 
 function Dot({k}) {
@@ -229,6 +266,7 @@ function Constraint({one, k}) {
     ),
     one.where ? h(Region, {k, where: shownRegion(one, k), onChange: (where) => set({where})}) : null,
     h(Own, {one, set}),
+    found && one.kind === "displaced" ? h(Share, {found, isStale: !isFresh("body")}) : null,
     problem
       ? h(
           "p",
@@ -408,23 +446,23 @@ function RegionInputs({kind, value, onChange}) {
 
 function Body() {
   const {body} = state;
-  if (!body) return null;
-  const isNow = isFresh("body");
   return h(
     Section,
     {title: "Body", id: "body"},
-    h(
-      "p",
-      {class: isNow ? null : "stale", "data-tets": body.tets},
-      `The mesh has ${whole(body.tets)} tetrahedra, and ${whole(body.skin.vertices.length / 3)} vertices on its skin`,
-      isNow ? "." : ", with earlier settings.",
-    ),
+    body
+      ? h("p", {class: isFresh("body") ? "lines-2" : "lines-2 stale", "data-tets": body.tets}, sizeText(body))
+      : h("p", {class: "lines-2 soft"}, "There is no mesh yet."),
     h(Rows, {
       title: "Mesh",
       group: "meshing",
       about: "The body is filled with tetrahedra. 0: as many as the lengths of their edges give.",
     }),
   );
+}
+
+function sizeText({tets, skin}) {
+  const text = `The mesh has ${whole(tets)} tetrahedra, and ${whole(skin.vertices.length / 3)} vertices on its skin`;
+  return isFresh("body") ? `${text}.` : `${text}, with earlier settings.`;
 }
 
 /** What the tissue is, as far as one input each can say it. */
@@ -497,13 +535,15 @@ function Stretch() {
     Section,
     {title: "Stretch", id: "stretch"},
     h(
-      Button,
-      {isMain: !stretch || isStale, disabled: Boolean(busy.stretch), "data-do": "stretch", onClick: stretchAndLook},
-      stretch ? "Stretch again" : "Stretch",
+      "div",
+      {class: "row"},
+      h(
+        Button,
+        {isMain: !stretch || isStale, disabled: Boolean(busy.stretch), "data-do": "stretch", onClick: stretchAndLook},
+        stretch ? "Stretch again" : "Stretch",
+      ),
+      h(Working, {call: "stretch", text: "Stretching"}),
     ),
-    h(Working, {call: "stretch", text: "Stretching"}),
-    h(Problems, {calls: ["stretch"]}),
-    isStale ? h("p", {class: "warning"}, "The settings have changed since this stretch.") : h(Unstretched, {stretch}),
     stretch
       ? h(
           "div",
@@ -522,6 +562,8 @@ function Stretch() {
         )
       : null,
     stretch ? h("p", null, `Greatest displacement: ${mm(stretch.greatest_mm)}`) : null,
+    isStale ? h("p", {class: "warning"}, "The settings have changed since this stretch.") : h(Unstretched, {stretch}),
+    h(Problems, {calls: ["stretch"]}),
   );
 }
 

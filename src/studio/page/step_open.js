@@ -42,7 +42,11 @@ export function StepOpen() {
     "div",
     null,
     state.case ? h(OpenCase) : null,
-    h(Section, {title: "Files on this computer", id: "files"}, h(Listing, {source, setSource})),
+    h(
+      Section,
+      {title: "Files on this computer", id: "files", doing: [["open", "Opening the case"]]},
+      h(Listing, {source, setSource}),
+    ),
     source && state.files ? h(NewCase, {key: source.id, file: source}) : null,
     h(Demo),
   );
@@ -85,7 +89,6 @@ function Listing({source, setSource}) {
     null,
     h(FileList, {actOf, isChosen, empty: "There is nothing in this folder that can be opened."}),
     h(Problems, {calls: ["open", "state"]}),
-    h(Working, {call: "open", text: "Opening the case"}),
   );
 }
 
@@ -120,6 +123,7 @@ function usePlace() {
   return {chosen: chosen || places[0], onChoose: setChosen, places};
 }
 
+/** What a file becomes a case with. Of a folder the form comes once it is known what lies in it. */
 function NewCase({file}) {
   const [name, setName] = useState(file.name.replace(/\.[^/]*$/, "") + "_case");
   const [settings, setSettings] = useState({});
@@ -127,9 +131,11 @@ function NewCase({file}) {
     [as, setAs] = useState(beginnings[0]);
   const place = usePlace(),
     folder = place.chosen.id;
-  const [pictures, setPictures] = useState(0),
+  const isFolder = as === "scan" && !file.bytes,
+    [pictures, setPictures] = useState(null),
     isReading = as === "scan" && pictures > 0;
   const make = () => begin("create", {[as]: file.id, folder, name, settings: isReading ? settings : {}});
+  const own = ["name", "folder", ...(isReading ? ["ct.spacing_mm", "ct.hu"] : [])];
   return h(
     Section,
     {title: `New case from ${file.name}`, id: "create"},
@@ -142,17 +148,32 @@ function NewCase({file}) {
         })
       : null,
     h("p", {class: "soft"}, kBeginnings[as][1]),
-    as === "scan" && !file.bytes ? h(Inside, {file, setPictures}) : null,
+    isFolder ? h(Inside, {file, setPictures}) : null,
     isReading ? h(Reading, {pictures, settings, setSettings}) : null,
-    h(TextInput, {label: "Name of its folder", value: name, onChange: setName, problem: problemAt("name")}),
-    h(MadeIn, {...place, name}),
-    h(
-      Button,
-      {isMain: true, disabled: !name || Boolean(state.busy.create), onClick: make, "data-do": "create"},
-      "Make the case",
-    ),
-    h(Working, {call: "create", text: "Reading the file"}),
-    h(Problems, {calls: ["create"], shown: ["name", "folder", ...(isReading ? ["ct.spacing_mm", "ct.hu"] : [])]}),
+    isFolder && pictures === null
+      ? null
+      : [
+          h(TextInput, {
+            key: "name",
+            label: "Name of its folder",
+            value: name,
+            onChange: setName,
+            problem: problemAt("name"),
+          }),
+          h(MadeIn, {key: "in", ...place, name}),
+          h(
+            "div",
+            {key: "row", class: "row"},
+            h(
+              Button,
+              {isMain: true, disabled: !name || Boolean(state.busy.create), onClick: make, "data-do": "create"},
+              "Make the case",
+            ),
+            h(Working, {call: "create", text: "Reading the file"}),
+          ),
+          isReading ? h(OddHeight, {key: "odd", pictures, spacing: settings["ct.spacing_mm"]}) : null,
+          h(Problems, {key: "problems", calls: ["create"], shown: own}),
+        ],
   );
 }
 
@@ -191,31 +212,30 @@ function Reading({pictures, settings, setSettings}) {
       unit: "mm",
       names: ["column", "row", "slice"],
       step: 0.1,
+      hint: heightText(pictures, settings["ct.spacing_mm"]),
+      hintLines: 1,
       ...about("ct.spacing_mm"),
     }),
-    h(Height, {key: "height", pictures, spacing: settings["ct.spacing_mm"]}),
     h(Numbers, {
       key: "hu",
       label: "HU from grey value",
       names: ["slope", "intercept"],
       step: 1,
       hint: greysText(settings["ct.hu"]),
+      hintLines: 3,
       ...about("ct.hu"),
     }),
   ];
 }
 
-function Height({pictures, spacing}) {
-  if (!spacing) return null;
-  const height = pictures * spacing[2];
-  return [
-    h(
-      "p",
-      {key: "is", class: "soft"},
-      `${pictures} slices of ${plain(spacing[2])} mm: ${plain(height)} mm from foot to head.`,
-    ),
-    h(OddSize, {key: "odd", sizes: [height]}),
-  ];
+function heightText(pictures, spacing) {
+  if (!spacing) return "The spacing of the slices gives their height.";
+  return `${pictures} slices of ${plain(spacing[2])} mm: ${plain(pictures * spacing[2])} mm from foot to head.`;
+}
+
+// Below the inputs: it comes while the next one is about to be clicked.
+function OddHeight({pictures, spacing}) {
+  return spacing ? h(OddSize, {sizes: [pictures * spacing[2]]}) : null;
 }
 
 function greysText(hu) {
@@ -234,15 +254,19 @@ function Demo() {
     h(NumberInput, {label: "Seed", value: seed, step: 1, min: 0, onChange: setSeed}),
     place.chosen ? h(MadeIn, {...place, name: `virtual_tongue_${seed}`}) : null,
     h(
-      Button,
-      {
-        disabled: !place.chosen || Boolean(state.busy.demo),
-        onClick: () => begin("demo", {folder: place.chosen.id, seed}),
-        "data-do": "demo",
-      },
-      "Make the demo specimen",
+      "div",
+      {class: "row"},
+      h(
+        Button,
+        {
+          disabled: !place.chosen || Boolean(state.busy.demo),
+          onClick: () => begin("demo", {folder: place.chosen.id, seed}),
+          "data-do": "demo",
+        },
+        "Make the demo specimen",
+      ),
+      h(Working, {call: "demo", text: "Making it"}),
     ),
-    h(Working, {call: "demo", text: "Making the specimen"}),
     h(Problems, {calls: ["demo"]}),
   );
 }

@@ -4,7 +4,7 @@ import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
 import {state} from "./store.js";
 import {measure, openPicture} from "./actions.js";
-import {Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status, Working} from "./widgets.js";
+import {AsOf, Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {Commands} from "./commands.js";
 import {
@@ -47,11 +47,10 @@ export function StepPhotograph() {
     {"data-photograph": photograph ? photograph.evaluation.outcome : picture ? "loaded" : "none"},
     h(
       Section,
-      {title: "Photograph", id: "photo-file"},
+      {title: "Photograph", id: "photo-file", doing: [["picture", "Reading the photograph"]]},
       h("p", {class: "soft"}, "A top view of the cut: the tumour's edge in green, the incision in red."),
       photo.file ? h("p", {class: "path"}, photo.file.name) : null,
       h(FilePicker, {label: "photograph", endings: kEndings, chosen: photo.file, onChoose: openPicture, id: "photo"}),
-      h(Working, {call: "picture", text: "Reading the photograph"}),
       h(Problems, {calls: ["picture"]}),
     ),
     picture ? [h(Scale, {key: "scale"}), h(Find, {key: "find"})] : null,
@@ -168,7 +167,7 @@ function Find() {
   const isReady = scaleArgument(photo) !== null && isHandComplete(photo);
   return h(
     Section,
-    {title: "Contours", id: "find"},
+    {title: "Contours", id: "find", doing: [["photograph", "Looking for the contours"]]},
     h(Choice, {label: "The red line is", value: photo.red, options: kReds, onChange: (red) => setPhoto({red})}),
     h(
       "details",
@@ -189,14 +188,11 @@ function Find() {
       {isMain: true, disabled: !isReady || Boolean(busy.photograph), onClick: measure, "data-do": "measure"},
       photograph ? "Measure again" : "Find the contours and measure",
     ),
-    isReady
-      ? null
-      : h(
-          "p",
-          {class: "soft"},
-          "The scale, or a line drawn by hand, is not complete. The tumour's edge has to be closed.",
-        ),
-    h(Working, {call: "photograph", text: "Looking for the contours"}),
+    h(
+      "p",
+      {class: "soft lines-2"},
+      isReady ? "" : "The scale, or a line drawn by hand, is not complete. The tumour's edge has to be closed.",
+    ),
     h(Problems, {calls: ["photograph"]}),
   );
 }
@@ -209,9 +205,11 @@ function Result() {
   return h(
     Section,
     {title: "Result", id: "photo-result"},
-    photograph.asked === JSON.stringify(argumentsOf(state.photo))
-      ? null
-      : h("p", {class: "warning"}, "Scale, settings or lines have changed since this measurement."),
+    h(AsOf, {
+      isNow: photograph.asked === JSON.stringify(argumentsOf(state.photo)),
+      now: "For the scale and lines as they are.",
+      past: "Scale or lines have changed since.",
+    }),
     byHand.length ? h("p", {class: "warning", "data-by-hand": byHand.join(" ")}, byHandText(byHand)) : null,
     h(Verdict, {evaluation, isDrawn: isAllDrawn(byHand)}),
     h("p", {class: "soft"}, `${scaleText(photograph)} 12 o'clock is marked on the incision.`),

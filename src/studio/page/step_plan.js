@@ -2,9 +2,10 @@
 
 import {h} from "preact";
 import {state, isFresh} from "./store.js";
+import {isAwaited} from "./actions.js";
 import {showPlace} from "./views.js";
 import {rowsOf} from "./fields.js";
-import {Problems, Reasons, Section, Setting, Status, Working} from "./widgets.js";
+import {Problems, Reasons, Section, Setting, Status, Steady, problemAt} from "./widgets.js";
 import {RobotPlace} from "./robot_place.js";
 import {Unstretched} from "./step_hold.js";
 import {pointsOf, length, minus} from "./geometry.js";
@@ -15,26 +16,23 @@ const kPlan = [
   "plan.depth_mm",
   "plan.speed_mm_s",
   "plan.power_w",
-  "plan.approach",
-  "plan.start_direction",
   "plan.close_margin_mm",
 ];
 const kCut = ["cut.speed_mm_s", "cut.dullness", "cut.overlap_mm"];
 
+const kStages = [
+  ["body", "Meshing the body"],
+  ["stretch", "Stretching"],
+  ["plan", "Planning the path"],
+];
+
 /** The panel. */
 export function StepPlan() {
-  const shown = [...["plan", "cut", "tool", "thermal"].flatMap(rowsOf), "robot.T_robot_sim"];
-  const isUnstretched = isFresh("stretch") && Boolean(state.stretch.note); // the plan's problem says the same again
   return h(
     "div",
     null,
-    h(Problems, {calls: ["change", "body", "stretch", ...(isUnstretched ? [] : ["plan"])], shown}),
-    isUnstretched ? h(Unstretched, {stretch: state.stretch}) : null,
-    h(Working, {call: "body", text: "Meshing the body"}),
-    h(Working, {call: "stretch", text: "Stretching"}),
-    h(Working, {call: "plan", text: "Planning the path"}),
-    h(Result),
     h(Section, {title: "Path", id: "plan"}, h(Rows, {keys: present(kPlan)}), h(More, {group: "plan", known: kPlan})),
+    h(Planned),
     h(
       Section,
       {title: "Simulated cut", id: "cut"},
@@ -63,24 +61,44 @@ function Rows({keys}) {
 function More({group, known, title = "More settings"}) {
   const rest = rowsOf(group).filter((key) => !known.includes(key));
   if (!rest.length) return null;
-  return h("details", {"data-group": group}, h("summary", null, title), h(Rows, {keys: rest}));
+  const open = rest.some((key) => problemAt(key)) || undefined;
+  return h("details", {"data-group": group, open}, h("summary", null, title), h(Rows, {keys: rest}));
+}
+
+/** What the settings give: the path, or why there is none. */
+function Planned() {
+  const shown = [...["plan", "cut", "tool", "thermal"].flatMap(rowsOf), "robot.T_robot_sim"],
+    isUnstretched = isFresh("stretch") && Boolean(state.stretch.note); // the plan's problem says the same again
+  return h(
+    Section,
+    {title: "Planned path", id: "planned", doing: kStages},
+    h(
+      Steady,
+      {isWaiting: isComing()},
+      h(Problems, {calls: ["change", "body", "stretch", ...(isUnstretched ? [] : ["plan"])], shown}),
+      isUnstretched ? h(Unstretched, {stretch: state.stretch}) : null,
+      state.plan ? h(Result) : h("p", {class: "soft"}, "There is no path yet."),
+    ),
+  );
+}
+
+// Whether one of the stages is still to answer, the last one at most.
+function isComing() {
+  const next = kStages.map(([name]) => name).find((name) => !isFresh(name));
+  return Boolean(state.busy.change) || (next !== undefined && isAwaited(next));
 }
 
 function Result() {
   const {plan} = state;
-  if (!plan) return null;
   const points = pointsOf(plan.path);
   const along = points.reduce((sum, point, k) => sum + (k ? length(minus(point, points[k - 1])) : 0), 0);
   return h(
-    Section,
-    {title: "Planned path", id: "planned"},
-    isFresh("plan") ? null : h("p", {class: "soft"}, "With earlier settings:"),
-    h(
-      "div",
-      {class: isFresh("plan") ? null : "stale"},
-      h("p", null, `${plan.path.closed ? "A ring" : "An open line"} of ${points.length} waypoints, ${mm(along)} long.`),
-      h("p", {class: "verdict"}, h(Status, {status: plan.verdict.status}), ` ${countText(plan.verdict)}`),
-      h(Reasons, {verdict: plan.verdict, onPlace: showPlace}),
-    ),
+    "div",
+    {class: isFresh("plan") ? null : "stale"},
+    h("p", {class: "soft"}, isFresh("plan") ? "For the current settings:" : "Path of earlier settings:"),
+    h("p", null, `${plan.path.closed ? "A ring" : "An open line"} of ${points.length} waypoints, ${mm(along)} long.`),
+    plan.margin_note ? h("p", null, plan.margin_note) : null,
+    h("p", {class: "verdict"}, h(Status, {status: plan.verdict.status}), ` ${countText(plan.verdict)}`),
+    h(Reasons, {verdict: plan.verdict, onPlace: showPlace}),
   );
 }

@@ -86,6 +86,7 @@ function RunGate({result, title, note}) {
     onAccept: (accept) => update({accept}),
     onAgain: runAccepting,
     again: "Run again",
+    aside: "nothing that was cut is cut again",
     call: "run",
     isBusy: isRunning(),
   });
@@ -96,7 +97,7 @@ function Arm() {
     there = kPrograms.filter(([word]) => programOf(word));
   return h(
     Section,
-    {title: "Arm", id: "arm"},
+    {title: "Arm", id: "arm", doing: [["arm", "Playing the program"]]},
     there.length > 1
       ? h(Choice, {
           label: "It plays",
@@ -105,27 +106,27 @@ function Arm() {
           onChange: playProgram,
         })
       : there.map(([word, , , name]) => h("p", {key: word, class: "soft"}, `It plays ${name}.`)),
-    h(Working, {call: "arm", text: "Playing the program"}),
-    h(Problems, {calls: ["arm"]}),
-    arm
-      ? [
-          h("p", {key: "outcome"}, `Outcome: ${spoken(arm.outcome).toLowerCase()}.`),
-          arm.reason ? h("p", {key: "reason", class: "warning"}, arm.reason) : null,
-          h(
-            "dl",
-            {key: "facts", class: "facts"},
-            h("dt", null, "Duration"),
-            h("dd", null, duration(arm.duration_s)),
-            h("dt", null, "Greatest deviation of the tip"),
-            h("dd", null, mm(arm.max_deviation_mm)),
-          ),
-          h("p", {key: "about", class: "soft"}, "A simulation of the arm and its controller. No robot moves."),
-        ]
-      : null,
+    h("div", {class: there.length ? "arm-facts" : null}, h(Problems, {calls: ["arm"]}), arm ? h(Played, {arm}) : null),
     there.length
       ? null
       : h("p", {class: "soft", "data-arm-reason": "yes"}, "Without a program the arm has nothing to play."),
   );
+}
+
+function Played({arm}) {
+  return [
+    h("p", {key: "outcome"}, `Outcome: ${spoken(arm.outcome).toLowerCase()}.`),
+    arm.reason ? h("p", {key: "reason", class: "warning"}, arm.reason) : null,
+    h(
+      "dl",
+      {key: "facts", class: "facts"},
+      h("dt", null, "Duration"),
+      h("dd", null, duration(arm.duration_s)),
+      h("dt", null, "Greatest deviation of the tip"),
+      h("dd", null, mm(arm.max_deviation_mm)),
+    ),
+    h("p", {key: "about", class: "soft"}, "A simulation of the arm and its controller. No robot moves."),
+  ];
 }
 
 function Save({result}) {
@@ -136,8 +137,12 @@ function Save({result}) {
   return h(
     Section,
     {title: "Report", id: "report"},
-    h(Button, {disabled: Boolean(state.busy.report), onClick: save, "data-do": "save-report"}, "Save the report"),
-    h(Working, {call: "report", text: "Reading the report"}),
+    h(
+      "div",
+      {class: "row"},
+      h(Button, {disabled: Boolean(state.busy.report), onClick: save, "data-do": "save-report"}, "Save the report"),
+      h(Working, {call: "report", text: "Reading the report"}),
+    ),
     h(Problems, {calls: ["report"]}),
     result.report ? h("p", {class: "soft path"}, `It is kept as ${result.report}`) : null,
   );
@@ -149,7 +154,7 @@ function commandsOf({run: result, photograph, frame, cloud, register, lay, mark}
     isCurrent("run") && result.command,
     photograph && photograph.command,
     ...((cloud.isOfFrame && frame && frame.commands) || []),
-    register && register.command,
+    isCurrent("register") && register.command,
     ...(isCurrent("mark") ? mark.commands : []),
     ...(isCurrent("lay") ? lay.commands : []),
   ];

@@ -5,7 +5,7 @@ import {useEffect, useRef, useState} from "preact/hooks";
 import {state, update, isFresh} from "./store.js";
 import {chooseCloud, goTo, lay, makeCloud, refuseRegistration, register} from "./actions.js";
 import {Frame} from "./frame_panel.js";
-import {Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status, Working} from "./widgets.js";
+import {AsOf, Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status, Working} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {LaidGate, laidOf} from "./laid_gate.js";
 import {Commands} from "./commands.js";
@@ -29,16 +29,16 @@ const kFrames = [
   ["camera", "in a camera's frame"],
 ];
 
+const kBody = ["body", "stretch"];
+
 /** The panel. */
 export function StepRegister() {
   const {cloud, register: found} = state;
   return h(
     "div",
     {"data-register": found ? found.registration.outcome : "none"},
-    h(Problems, {calls: ["body", "stretch"]}),
-    h(Working, {call: "stretch", text: "Stretching"}),
     h(Cloud),
-    cloud.file ? h(Settings) : null,
+    cloud.file ? h(Settings) : h(Problems, {calls: kBody}),
     found ? h(Result, {found}) : null,
     found ? h(Decision) : null,
     state.lay ? h(Laid, {kind: "incise"}) : null,
@@ -46,6 +46,13 @@ export function StepRegister() {
     h("p", {role: "status", class: state.notice ? "notice" : undefined}, state.notice),
   );
 }
+
+const kDoing = [
+  ["body", "Meshing the body"],
+  ["stretch", "Stretching"],
+  ["virtual_cloud", "Making the cloud"],
+  ["frame", "Looking for the mark"],
+];
 
 /** Says of a cloud that nobody measured it. */
 function MadeUp() {
@@ -60,7 +67,7 @@ function Cloud() {
   const {cloud} = state;
   return h(
     Section,
-    {title: "What the camera sees", id: "cloud"},
+    {title: "What the camera sees", id: "cloud", doing: kDoing},
     h(Choice, {label: "Given as", value: cloud.from, options: kSources, onChange: (from) => setCloud({from})}),
     h("p", {class: "soft"}, "The tissue on the table, stretched as it is simulated."),
     cloud.from === "frame" ? h(Frame) : h(Points),
@@ -93,7 +100,6 @@ function Points() {
         "Make a virtual cloud",
       ),
     ),
-    h(Working, {key: "working", call: "virtual_cloud", text: "Making the cloud"}),
     h(Problems, {key: "problems", calls: ["virtual_cloud"]}),
   ];
 }
@@ -127,12 +133,16 @@ function Settings() {
       onChange: (settling_mm) => setCloud({settling_mm}),
     }),
     h(
-      Button,
-      {isMain: true, disabled: Boolean(state.busy.register), onClick: register, "data-do": "register"},
-      state.register ? "Register again" : "Register",
+      "div",
+      {class: "row"},
+      h(
+        Button,
+        {isMain: true, disabled: Boolean(state.busy.register), onClick: register, "data-do": "register"},
+        state.register ? "Register again" : "Register",
+      ),
+      h(Working, {call: "register", text: "Registering"}),
     ),
-    h(Working, {call: "register", text: "Registering"}),
-    h(Problems, {calls: ["register"]}),
+    h(Problems, {calls: [...kBody, "register"]}),
   );
 }
 
@@ -144,7 +154,7 @@ function Result({found}) {
   return h(
     Section,
     {title: "Result", id: "registration-result"},
-    isFresh("register") ? null : h("p", {class: "warning"}, "The settings have changed since this registration."),
+    h(AsOf, {isNow: isFresh("register"), past: "The settings have changed since this registration."}),
     h(
       "p",
       {class: "verdict"},
@@ -272,7 +282,7 @@ function Decision() {
   const isReady = Boolean(run) && (cloud.frame === "robot" || cloud.camera);
   return h(
     Section,
-    {title: "Decision", id: "decision"},
+    {title: "Decision", id: "decision", doing: [["lay", "Laying the path"]]},
     cloud.isOfFrame
       ? h("p", null, "The frame's cloud is where the camera sees it. To lay a path, say where the camera is.")
       : h(Choice, {
@@ -308,7 +318,6 @@ function Decision() {
           "There is no path to lay: the case has not been run in this session. ",
           h(Button, {onClick: () => goTo("run")}, "Go to the run"),
         ),
-    h(Working, {call: "lay", text: "Laying the path"}),
     laidOf(state.layKind).result ? null : h(Problems, {calls: ["lay"]}),
   );
 }

@@ -146,8 +146,9 @@ function distinct(messages) {
   return [...found.values()].reverse();
 }
 
+// Of runs alone: what the scan and the tissue have to say stands in their steps.
 function Messages() {
-  const list = distinct(state.messages);
+  const list = distinct(state.messages.filter(({call}) => call === "run"));
   return h(
     Section,
     {title: "Messages", id: "messages"},

@@ -17,7 +17,6 @@ import {
   Section,
   Setting,
   Status,
-  Working,
   problemAt,
   useId,
 } from "./widgets.js";
@@ -43,11 +42,10 @@ export function StepSee() {
   return h(
     "div",
     null,
-    h(Problems, {calls: ["scan"]}),
-    h(Working, {call: "scan", text: "Reading the scan"}),
     h(Picture),
     state.case.inputs["ct.labels"] ? h(LabelValues) : h(Values),
     h(Box),
+    h(Brush),
     h(Seed),
     h(
       Section,
@@ -59,7 +57,6 @@ export function StepSee() {
         h(Setting, {path: "ct.smoothing_mm", step: 0.1, hint: takenText()}),
       ),
     ),
-    h(Brush),
     h(Found),
   );
 }
@@ -76,14 +73,13 @@ function MeshOnly() {
   const {body} = state;
   return h(
     Section,
-    {title: "Body", id: "mesh"},
+    {title: "Body", id: "mesh", doing: [["body", "Reading the mesh"]]},
     h(
       "p",
       {class: "soft"},
       "The case begins with a mesh: there are no slices, and no tissue has to be found. Step Hold sets how it is held.",
     ),
     h(Problems, {calls: ["body"]}),
-    h(Working, {call: "body", text: "Reading the mesh"}),
     body ? h(Facts, {facts: {tets: body.tets, vertices_of_the_skin: body.skin.vertices.length / 3}}) : null,
   );
 }
@@ -98,36 +94,39 @@ function Values() {
 
 function Picture() {
   const {scan} = state,
+    hasScan = Boolean(state.case.inputs["ct.volume"]),
     here = crosshair(),
     at = here && scan ? voxelAt(scan.grid, here) : -1;
   return h(
     Section,
-    {title: "Picture", id: "picture"},
-    scan ? h(Extent, {scan}) : null,
-    scan ? h(Greys) : null,
+    {title: "Picture", id: "picture", doing: [["scan", "Reading the scan"]]},
+    hasScan ? h(Extent, {scan}) : null,
+    hasScan ? h(Greys) : null,
     h(Overlay),
-    here
-      ? h(Numbers, {
-          label: "Crosshair",
-          unit: "mm",
-          names: kAxes,
-          value: here.map((value) => Number(value.toFixed(1))),
-          step: 1,
-          onChange: (point) => showPlace(point),
-          hint: at >= 0 ? `${scan.voxels[at]} HU here` : null,
-        })
-      : null,
+    h(Numbers, {
+      label: "Crosshair",
+      unit: "mm",
+      names: kAxes,
+      value: here && here.map((value) => Number(value.toFixed(1))),
+      step: 1,
+      onChange: (point) => showPlace(point),
+      hint: at >= 0 ? `${scan.voxels[at]} HU here` : scan ? "Outside the scan" : null,
+      hintLines: hasScan ? 1 : 0,
+    }),
+    h(Problems, {calls: ["scan"]}),
   );
 }
 
+// Before the scan is there its lines have their room.
 function Extent({scan}) {
+  if (!scan) return h("p", {class: "soft lines-2"});
   const {size, spacing_mm: spacing} = scan.grid,
     lengths = size.map((count, k) => count * spacing[k]);
   const range = [scan.least_hu, scan.greatest_hu].map((value) => fixed(value, 0)).join(" to ");
   return [
     h(
       "p",
-      {key: "is", class: "soft", "data-extent": lengths.map(plain).join(" ")},
+      {key: "is", class: "soft lines-2", "data-extent": lengths.map(plain).join(" ")},
       `${size.join(" × ")} voxels: ${lengths.map((length) => fixed(length, 1)).join(" × ")} mm, ${range} HU.`,
     ),
     h(OddSize, {key: "odd", sizes: lengths}),
@@ -162,7 +161,7 @@ function Greys() {
       {key: "presets", class: "row"},
       h(Button, {onClick: () => put({width: 400, level: 40})}, "Soft tissue"),
       h(Button, {onClick: () => put({width: 2000, level: 400})}, "Bone"),
-      h(Button, {onClick: () => put(rangeOf(scan))}, "All values"),
+      h(Button, {disabled: !scan, onClick: () => put(rangeOf(scan))}, "All values"),
     ),
   ];
 }
@@ -278,8 +277,7 @@ function Found() {
   const {tissue} = state;
   return h(
     Section,
-    {title: "Tissue found", id: "found"},
-    h(Working, {call: "tissue", text: "Finding the tissue"}),
+    {title: "Tissue found", id: "found", doing: [["tissue", "Finding the tissue"]]},
     h(Problems, {calls: ["change", "tissue"], shown: kKeys}),
     tissue
       ? h(

@@ -37,11 +37,11 @@ export function newFraming() {
   return {...files, isCloud: false, mark: "green", isOpen: false, planes: 1};
 }
 
-/** The brush before its first stroke. `mode`: what it does, as `placing` says it, or null where it is put away;
- *  `refused`: how many points there would have been with a stroke that was not added, or 0; `idle`: "add" or "take"
- *  where the last stroke did so and changed nothing. */
+/** The brush before its first stroke. `through_mm`: how far a stroke goes through the slices; `mode`: what it does, as
+ *  `placing` says it, or null where it is put away; `refused`: how many points there would have been with a stroke that
+ *  was not added, or 0; `idle`: "add" or "take" where the last stroke did so and changed nothing. */
 export function newBrush() {
-  return {radius_mm: 2, mode: null, refused: 0, idle: null};
+  return {radius_mm: 2, through_mm: 0, mode: null, refused: 0, idle: null};
 }
 
 /** Nothing to undo or to redo: {key, value} of the setting that each step changes, the next one last. */
@@ -58,6 +58,7 @@ export function newPatch() {
 
 /** The state. `preview`: settings under the pointer, which are not sent before it lets go; `drafts`: settings on
  *  their way to the server; `refused`: settings that it refused; `problems`: the last problem of each call;
+ *  `room`: how much margin fits round an edge, as room.js asks for it;
  *  `kept`: results of earlier runs, as kept.js has them; `keptDropped`: how many of them were of something else;
  *  `keptCut`: which of their cuts the plots and the 3D view show; `mark`: the edge as `lay` laid it; `layKind`:
  *  what `lay` was asked for last. */
@@ -81,6 +82,7 @@ export const state = {
   body: null,
   stretch: null,
   plan: null,
+  room: null,
   run: null,
   accept: [],
   kept: [],

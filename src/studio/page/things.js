@@ -41,9 +41,11 @@ export function blend(mesh, rest, stretched, share) {
   mesh.geometry.computeVertexNormals();
 }
 
-/** Colours of a body's vertices: bit c of `held` is set where constraint c holds one. The lowest bit wins. */
-export function heldColours(held) {
-  const palette = [ink.tissue, ...holds].map((colour) => new THREE.Color(colour).toArray());
+/** Colours of a body's vertices: bit c of `held` is set where constraint c holds one. The lowest bit wins.
+ *  @param free  the colour of those that nothing holds   @param share  of it in all the others, 0..1 */
+export function heldColours(held, free, share = 0) {
+  const ground = new THREE.Color(free),
+    palette = [free, ...holds].map((colour) => new THREE.Color(colour).lerp(ground, share).toArray());
   const colours = new Float32Array(3 * held.length);
   for (let v = 0; v < held.length; ++v) {
     const bit = held[v] ? 31 - Math.clz32(held[v] & -held[v]) : -1;

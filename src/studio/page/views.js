@@ -13,6 +13,7 @@ import {growPatch, isAtRest, paintPatch, paintedPatch} from "./patch.js";
 import {directionOf, kPlanes, middleOf, pointsOf} from "./geometry.js";
 import {isDark} from "./colours.js";
 import {layersOf} from "./layers.js";
+import {watchRoom} from "./room.js";
 import {ballAbout, blend, poseArm, showTrace} from "./things.js";
 import {moved} from "./registered.js";
 import {endsAt, onPlayer, player, rewind, sampleAt} from "./arm_player.js";
@@ -40,7 +41,7 @@ const kOn = {
     update({placing: null});
   },
   painting: renderSlices,
-  stroke: (path) => brush() && addStroke(brush(), path),
+  stroke: (path, normal) => brush() && addStroke(brush(), path, normal),
   putAway: () => update({placing: null}),
 };
 
@@ -164,8 +165,24 @@ function fitScene() {
   const shift = isOther ? Infinity : Math.hypot(...ball.centre.map((value, k) => value - fitted.centre[k]));
   if (shift < 0.06 * ball.radius && Math.abs(ball.radius - fitted.radius) < 0.06 * ball.radius) return;
   fitted = {of, room, ...ball};
+  const isMuch = isOtherTissue(of, ball);
   if (isOther) views.scene.forget();
-  views.scene.fit(ball.centre, ball.radius);
+  if (isMuch && !isOther) views.scene.frameWhole(ball.centre, ball.radius);
+  else views.scene.fit(ball.centre, ball.radius);
+}
+
+const kMuch = 0.2; // of the radius
+let found = {centre: null, radius: 0}; // the ball about the tissue that was found last
+
+// Whether this is the tissue that was found, with another extent than the one before it. With its camera as it was,
+// one might look past it.
+function isOtherTissue(skin, ball) {
+  if (!state.tissue || skin !== state.tissue.skin) return false;
+  const {centre, radius} = found;
+  found = ball;
+  if (!centre) return false;
+  const shift = Math.hypot(...ball.centre.map((value, k) => value - centre[k]));
+  return Math.max(shift, Math.abs(ball.radius - radius)) > kMuch * radius;
 }
 
 // --- The arm, in the robot's frame. ---
@@ -210,12 +227,15 @@ export function shownSkin() {
 }
 
 function scrub() {
-  const layer = views.scene.layers.get("body");
   const {body, stretch} = state;
-  if (state.step !== "hold" || !layer || !body || !stretch) return;
+  if (state.step !== "hold" || !body || !stretch) return;
   const rest = stretch.rest || body.skin.vertices;
   if (rest.length !== body.skin.vertices.length || stretch.skin.vertices.length !== rest.length) return;
-  if (layer.share === state.scrub && layer.of === stretch) return;
+  for (const name of ["body", "cut-faces", "painted-skin"]) scrubLayer(views.scene.layers.get(name), rest, stretch);
+}
+
+function scrubLayer(layer, rest, stretch) {
+  if (!layer || (layer.share === state.scrub && layer.of === stretch)) return;
   blend(layer.objects[0], rest, stretch.skin.vertices, state.scrub);
   Object.assign(layer, {share: state.scrub, of: stretch});
   views.scene.render();
@@ -273,6 +293,7 @@ export function connectViews() {
     Object.assign(model, shown);
     renderSlices();
   });
+  watchRoom(shownEdge);
   onPlayer(placeArm);
   when(() => [state.arm], rewind);
   when(() => [state.tissue], noteTissue);
@@ -283,6 +304,7 @@ export function connectViews() {
       state.body,
       state.stretch,
       state.plan,
+      state.room,
       state.run,
       isDark(),
       state.kept,

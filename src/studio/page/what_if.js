@@ -74,8 +74,12 @@ function Buttons() {
       h(Button, {disabled: isOn, onClick: run, "data-do": "run"}, "Run again"),
       isOn ? h(Button, {onClick: () => stop("run"), "data-do": "stop"}, "Stop") : null,
     ),
-    why && !isOn ? h("p", {class: "soft", key: "why", "data-why": "yes"}, why) : null,
-    isOn ? h(RunNow, {key: "now"}) : null,
+    h(
+      "div",
+      {key: "now", class: "lines-3"},
+      why && !isOn ? h("p", {class: "soft", "data-why": "yes"}, why) : null,
+      isOn ? h(RunNow) : null,
+    ),
     h(Problems, {key: "problems", calls: ["run"]}),
   ];
 }

@@ -1,7 +1,7 @@
 // The parts of the panels: inputs for settings, problems, verdicts, numbers.
 
 import {h} from "preact";
-import {useState} from "preact/hooks";
+import {useLayoutEffect, useRef, useState} from "preact/hooks";
 import {state, setting, unitOf} from "./store.js";
 import {change, goTo} from "./actions.js";
 import {fieldOf, fieldOfProblem, fieldText, partsOf} from "./fields.js";
@@ -143,8 +143,8 @@ export function Button({onClick, isMain, isPressed, disabled, title, children, .
   );
 }
 
-/** Numbers side by side: a point, a direction, a window. `names`: one label for each. */
-export function Numbers({label, names, unit, value, step, onChange, problem, hint}) {
+/** Numbers side by side: a point, a direction, a window. `names`: one label for each; `hintLines`: room for so many. */
+export function Numbers({label, names, unit, value, step, onChange, problem, hint, hintLines}) {
   const id = useId("numbers"),
     [draft, setDraft] = useState(null); // until every number is there; none is made up
   const shown = draft || names.map((_, i) => (value && isNumber(value[i]) ? value[i] : null));
@@ -173,7 +173,7 @@ export function Numbers({label, names, unit, value, step, onChange, problem, hin
         }),
       ),
     ),
-    h("span", {id, class: "about"}, hint, h(ProblemText, {problem})),
+    h("span", {id, class: hintLines ? `about lines-${hintLines}` : "about"}, hint, h(ProblemText, {problem})),
   );
 }
 
@@ -270,10 +270,11 @@ export function Problems({calls, shown = []}) {
         problem.path &&
         (problem.path === key || problem.path.startsWith(`${key}[`) || problem.path.startsWith(`${key}.`)),
     );
-  const messages = calls.map((name) => (state.problems[name] ? state.problems[name].message : null));
+  const messages = calls.map((name) => (state.problems[name] ? state.problems[name].message : null)),
+    isFirst = (problem, k) => messages.indexOf(problem.message) === k; // calls may end alike
   const found = calls
     .map((name) => [name, state.problems[name]])
-    .filter(([, problem], k) => problem && !isShown(problem) && messages.indexOf(problem.message) === k); // calls may end alike
+    .filter(([, problem], k) => problem && !isShown(problem) && isFirst(problem, k));
   return found.map(([name, problem]) =>
     h(
       "div",
@@ -393,12 +394,42 @@ function factText(key, value) {
   return unit ? `${number} ${unit}` : number;
 }
 
-/** A section of a panel with its heading. */
-export function Section({title, children, id}) {
-  return h("section", {"data-section": id}, h("h3", null, title), children);
+/** A section of a panel with its heading, and beside that what goes on: nothing moves when it comes or goes.
+ *  @param doing  [[call, text]], as of Working */
+export function Section({title, children, id, doing = []}) {
+  return h(
+    "section",
+    {"data-section": id},
+    h(
+      "div",
+      {class: "section-head"},
+      h("h3", null, title),
+      doing.map(([call, text]) => h(Working, {key: call, call, text})),
+    ),
+    children,
+  );
 }
 
-/** What a call is doing, while it is: a bar where the share is known. */
+/** What comes and goes with answers. While one is on its way this part becomes no lower, so that what is below it
+ *  stays where it is. */
+export function Steady({isWaiting, children}) {
+  const node = useRef(null),
+    last = useRef(0);
+  useLayoutEffect(() => {
+    const {style} = node.current;
+    style.minHeight = isWaiting ? `${last.current}px` : "";
+    if (!isWaiting) last.current = node.current.getBoundingClientRect().height;
+  });
+  return h("div", {class: "steady", ref: node}, children);
+}
+
+/** Says whether a result is of what is set now, in one line either way. */
+export function AsOf({isNow, now = "Result for the current settings.", past}) {
+  const look = isNow ? "as-of soft" : "as-of warning";
+  return h("p", {class: look, "data-as-of": isNow ? "now" : "past"}, isNow ? now : past);
+}
+
+/** What a call is doing, while it is: a bar where the share is known. In a row or a heading, where it moves nothing. */
 export function Working({call, text}) {
   if (!state.busy[call]) return null;
   const progress = state.progress[call];

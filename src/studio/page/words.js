@@ -90,15 +90,26 @@ export const kWaysOut = {
     "plan",
     "edge",
   ],
-  lateral_margin: ["Raise the lateral margin, so that the cut keeps farther away.", "plan"],
-  open_layer: ["Raise the overlap, or lower the speed or the dullness of the simulated cut.", "plan"],
+  lateral_margin: [
+    "Raise the lateral margin: step Plan says how much fits on this skin. A smaller pull deforms the tissue less.",
+    "plan",
+    "hold",
+  ],
+  open_layer: [
+    "An open layer: at that depth the ring does not close, so a bridge of tissue still holds the piece. Raise the " +
+      "overlap, or make the mesh finer.",
+    "plan",
+    "hold",
+  ],
   contour_surface: ["Draw the tumour's edge again, or remove the tumour's surface from the case.", "edge"],
   contour_flipped: ["Draw the tumour's edge here, or save its file again with its coordinate system.", "edge"],
   platform: ["Plan a smaller depth, or lower the support under the tissue.", "plan", "hold"],
   cut_face: [
-    "Move the region box outwards, take away what lies behind its face with the brush, or draw the edge elsewhere.",
+    "Move the region box outwards, take away what lies behind its face with the brush, draw the edge elsewhere, or " +
+      "use a smaller margin.",
     "see",
     "edge",
+    "plan",
   ],
   painted_skin: ["Draw the edge on skin that the scan shows, or remove the strokes of the brush there.", "edge", "see"],
   program_check: [
@@ -122,7 +133,9 @@ export const kWaysOut = {
   photo_specimen: ["Choose the photograph of this specimen, or draw the tumour's edge on it by hand.", "photograph"],
   photo_ring: ["Draw the tumour's edge on the photograph by hand.", "photograph"],
   scan: [
-    "Check the region box, the seed and the brush. Values on a wrong scale need a new case with other numbers.",
+    "Check the region box, the seed and the brush. If the specimen touches another body, as the tongue touches the " +
+      "palate, run the brush along the gap between them: take tissue away with a large radius. Values on a wrong " +
+      "scale need a new case with other numbers.",
     "see",
     "open",
   ],
