@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace incise {
@@ -122,13 +123,15 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   const double limit = touching_distance_mm(tool, settings);
   const ToolCore core(tool, state.tool);
   const Mat3 held = held_directions(tool, state.tool);
+  // A hold is limited by what the tissue beneath it resists while it lasts.
+  const double stiffer = shear_ratio(model.material, settings.tissue_s(1.0 / settings.dwell_rate_per_s()));
   for (const Bond& bond : state.bonds) {
     const auto corners = corners_of(model.mesh, state.tissue.positions, bond.tet.index());
     const double share = share_within(corners, core, limit);
     const double edge_mm = mean_edge_mm(corners_of(model.mesh, model.mesh.vertices, bond.tet.index()));
-    const double stiffness =
-        resolved_bond_stiffness(settings.bond_stiffness_kpa_mm2, model.lame[bond.tet.index()].mu_kpa, edge_mm) *
-        model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
+    const double stiffness = resolved_bond_stiffness(settings.bond_stiffness_kpa_mm2,
+                                                     stiffer * model.lame[bond.tet.index()].mu_kpa, edge_mm) *
+                             model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
     const Vec3 pull = -stiffness * (held * (centroid(corners) - state.tool.tip_mm - bond.offset_mm));
     stiffnesses.push_back(stiffness);
     const Mat3 block = stiffness / 16.0 * held;
@@ -230,18 +233,20 @@ double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_
 /// own time would be a resistance that grows with the tool's speed, and without bound in short steps.
 constexpr double kSteadyingS = 0.02;
 
-/// Moves the tissue by one linearised quasi-static step; how long it takes is nothing to it.
+/// Moves the tissue by one linearised quasi-static step. How long it takes matters to viscous tissue alone. Once the
+/// tool is out, that is looked at when it has relaxed.
 /// @returns the stiffness of each bond, mN/mm, in their order.
 std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool,
                                 CutState& state, CutWorkspace::Data& scratch, const std::optional<ToolPose>& next,
-                                Workers& workers, CutStepReport& report) {
+                                double step_s, Workers& workers, CutStepReport& report) {
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
   // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension
   // overshoots by more than it was off and swings for ever.
   const Tangent tangent = next ? Tangent::FrozenRotations : Tangent::Projected;
-  scratch.stiffness.begin(model, state.tissue, kSteadyingS, is_fresh, tangent, scratch.right_side, workers);
+  const std::optional<double> viscous_s = next ? std::optional(settings.tissue_s(step_s)) : std::nullopt;
+  scratch.stiffness.begin(model, state.tissue, kSteadyingS, is_fresh, tangent, scratch.right_side, workers, viscous_s);
   double bond_scale = 0.0;
   std::vector<double> stiffnesses;
   if (next) {
@@ -403,7 +408,11 @@ CutStepReport advance(const TissueModel& model, const CutSettings& settings, con
   CutStepReport report;
   scratch.before = state.tissue.positions;
   if (!next) state.bonds.clear();
-  const std::vector<double> stiffnesses = move_tissue(model, settings, tool, state, scratch, next, workers, report);
+  const std::vector<double> stiffnesses =
+      move_tissue(model, settings, tool, state, scratch, next, step_s, workers, report);
+  if (report.is_finite)
+    end_viscous_step(model, state.tissue, next ? settings.tissue_s(step_s) : std::numeric_limits<double>::infinity(),
+                     workers);
   state.time_s += step_s;
   ++state.step;
   if (!next || !report.is_finite) return report;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace incise {
 namespace {
@@ -35,6 +36,9 @@ void require_valid(const IncisionSettings& settings) {
     if (std::isfinite(depth) && depth >= 0.5 * kLayerThicknessMm && is_ascending) continue;
     violations.push_back({fmt::format("layer_depths_mm[{}]", i), fmt::format("{}", depth),
                           fmt::format("{} mm or more, ascending", 0.5 * kLayerThicknessMm)});
+  }
+  if (settings.time_since_stretch_s && !(*settings.time_since_stretch_s >= 0.0)) {
+    violations.push_back({"time_since_stretch_s", fmt::format("{}", *settings.time_since_stretch_s), "0 s or more"});
   }
   if (settings.frames < 0) violations.push_back({"frames", std::to_string(settings.frames), "0 or more"});
   require_none(violations);
@@ -169,8 +173,8 @@ class IncisionRun {
 
   void tell_size() const {
     const std::size_t tets = model_.mesh.tets.size();
-    const double bytes = static_cast<double>(
-        expected_memory_bytes(model_.mesh.vertices.size(), tets, model_.material.volume, settings_.frames));
+    const double bytes = static_cast<double>(expected_memory_bytes(
+        model_.mesh.vertices.size(), tets, model_.material.volume, settings_.frames, viscous_terms(model_.material)));
     monitor_.message(
         Severity::Notice,
         fmt::format("cutting {} tets in {} steps and at most {} until they are at rest, with about {:.0f} MB", tets,
@@ -270,6 +274,8 @@ IncisionProgress begin_incision(const TissueModel& model, const TissueState& str
   const ToolProgram program(path, settings.cut, settings.tool);
   IncisionProgress progress;
   progress.state = begin_cut(model, stretched, program.pose_at(0.0));
+  remember_deformation(model, progress.state.tissue,
+                       settings.time_since_stretch_s.value_or(std::numeric_limits<double>::infinity()));
   FrameKeeper(settings.frames, program.duration_s(), progress.frames).offer(progress.state, true);
   return progress;
 }

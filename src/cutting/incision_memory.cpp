@@ -24,14 +24,18 @@ constexpr std::size_t kMostAggregatesWithInverse = 192;  // more have a third le
 
 }  // namespace
 
-std::uint64_t expected_memory_bytes(std::size_t vertices, std::size_t tets, VolumeTreatment volume, int frames) {
+std::uint64_t expected_memory_bytes(std::size_t vertices, std::size_t tets, VolumeTreatment volume, int frames,
+                                    std::optional<std::size_t> viscous_terms) {
   // By Euler's formula a body has about as many edges as vertices and tets; each stands twice in the matrix.
   const std::size_t blocks =
       volume == VolumeTreatment::Averaged ? kBlocksPerVertexAveraged * vertices : 3 * vertices + 2 * tets;
+  // A tensor for each term and one for the strain, in the stretched tissue and in the cut; three while a step is
+  // assembled.
+  const std::size_t per_viscous_tet = viscous_terms ? 72 * (2 * (*viscous_terms + 1) + 3) : 0;
   const std::size_t aggregates = vertices / kVerticesOfAggregate + 1;
   const std::size_t coarse = aggregates <= kMostAggregatesWithInverse ? 6 * aggregates : 0;
   return kPerTet * tets + kPerVertex * vertices + kPerBlock * blocks + kPerCoarseNumber * coarse * coarse +
-         static_cast<std::size_t>(frames) * (24 * vertices + tets);
+         static_cast<std::size_t>(frames) * (24 * vertices + tets) + per_viscous_tet * tets;
 }
 
 }  // namespace incise

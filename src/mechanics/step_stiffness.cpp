@@ -36,6 +36,7 @@ struct StepStiffness::Data {
   std::vector<std::uint8_t> is_supported;   // per row: has one of them
   std::vector<std::uint8_t> held;
   double step_s = 0.0;
+  bool had_viscosity = false;
   Tangent tangent = Tangent::FrozenRotations;
 
   explicit Data(const TissueModel& model)
@@ -136,17 +137,20 @@ void StepStiffness::Data::renew(const TissueModel& model, TissueState& state, st
 }
 
 void StepStiffness::begin(const TissueModel& model, TissueState& state, double step_s, bool is_fresh, Tangent tangent,
-                          std::span<Vec3> forces, Workers& workers) {
+                          std::span<Vec3> forces, Workers& workers, const std::optional<double>& viscous_s) {
   Data& d = *data_;
   d.take_back();
-  if (is_fresh || tangent != Tangent::FrozenRotations || d.tangent != Tangent::FrozenRotations || step_s != d.step_s ||
-      d.is_in.empty()) {
+  const bool has_viscosity = viscous_s && is_viscous(model.material);
+  if (is_fresh || has_viscosity || d.had_viscosity || tangent != Tangent::FrozenRotations ||
+      d.tangent != Tangent::FrozenRotations || step_s != d.step_s || d.is_in.empty()) {
     d.step_s = step_s;
     d.tangent = tangent;
     d.assemble_all(model, state, forces, workers);
   } else {
     d.renew(model, state, forces, workers);
   }
+  d.had_viscosity = has_viscosity;
+  if (has_viscosity) add_viscous_response(model, state, *viscous_s, forces, &d.matrix, tangent, workers);
   std::fill(d.next_changed.begin(), d.next_changed.end(), 0);
   for (const std::int32_t slot : d.support_slots) d.lend(slot);
   add_support_response(model, state, forces, &d.matrix);

@@ -124,8 +124,8 @@ void check(const TissueModel& model, const TissueState& state, double step_s) {
 
 }  // namespace
 
-bool is_viscous(const Material& material) {
-  return !material.prony.empty() || material.kelvin_voigt_time_s > 0.0;
+double shear_ratio(const Material& material, double during_s) {
+  return 1.0 + ViscousStep(material, during_s).stiffness;
 }
 
 ViscousMemory rest_memory(const Material& material, std::size_t tets) {
@@ -192,6 +192,19 @@ double viscous_potential_uj(const TissueModel& model, const TissueState& state, 
     if (state.is_live[tet] != 0) sum += model.volumes_mm3[tet] * tets.potential(tet);
   }
   return sum;
+}
+
+void remember_deformation(const TissueModel& model, TissueState& state, double since_s) {
+  if (!is_viscous(model.material)) return;
+  INCISE_REQUIRE(since_s >= 0.0, fmt::format("expected a time of 0 s or more, found {}", since_s));
+  const std::vector<PronyTerm>& terms = model.material.prony;
+  state.memory = rest_memory(model.material, model.mesh.tets.size());
+  for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
+    const Mat3 strain = strain_deviator(deformation_gradient(model, state.positions, tet));
+    state.memory.strains[tet] = strain;
+    for (std::size_t i = 0; i < terms.size(); ++i)
+      state.memory.branches[tet * terms.size() + i] = std::exp(-since_s / terms[i].time_s) * strain;
+  }
 }
 
 void end_viscous_step(const TissueModel& model, TissueState& state, double step_s, Workers& workers) {

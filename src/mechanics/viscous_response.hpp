@@ -4,8 +4,6 @@
 
 namespace incise {
 
-[[nodiscard]] bool is_viscous(const Material& material);
-
 /// The memory of a body at rest; empty without viscosity.
 [[nodiscard]] ViscousMemory rest_memory(const Material& material, std::size_t tets);
 

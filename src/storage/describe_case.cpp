@@ -38,6 +38,8 @@ void describe(Visitor& v, CaseFile& file) {
      "mm"},
     c.constraints);
   v({"gravity_mm_s2", "Acceleration of gravity.", "mm/s2"}, c.gravity_mm_s2);
+  v({"time_since_stretch_s", "Between the stretch and the cut, for viscous tissue; absent: it has relaxed.", "s"},
+    c.time_since_stretch_s, kNotNegative);
   v.end();
 
   v.begin({"tumor", "The edge that a ring keeps clear of."});

@@ -59,6 +59,13 @@ LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const Too
   return errors;
 }
 
+/// Of the real tool, waypoint by waypoint.
+double mean_speed_mm_s(const ToolPath& path) {
+  double sum = 0.0;
+  for (const Waypoint& waypoint : path.waypoints) sum += waypoint.speed_mm_s;
+  return sum / static_cast<double>(path.waypoints.size());
+}
+
 /// Layers every millimetre below those that are looked at by default, down to the path's deepest place.
 void add_layers_down_to(const ToolPath& path, const Vec3& approach, std::vector<double>& layer_depths_mm) {
   double deepest_mm = 0.0;
@@ -130,6 +137,10 @@ IncisionSettings incision_settings(const Case& settings) {
   IncisionSettings incision;
   incision.cut = settings.cut;
   incision.cut.power_w = settings.plan.power_w;
+  if (is_viscous(settings.material)) {
+    incision.cut.real_speed_mm_s = settings.plan.speed_mm_s;
+    incision.time_since_stretch_s = settings.time_since_stretch_s;
+  }
   incision.tool = settings.tool;
   incision.approach = settings.plan.approach.normalized();
   incision.frames = settings.frames;
@@ -138,6 +149,7 @@ IncisionSettings incision_settings(const Case& settings) {
 
 IncisionSettings incision_settings_for(const Case& settings, const ToolPath& path, const TriMesh& tumor_surface) {
   IncisionSettings incision = incision_settings(settings);
+  if (incision.cut.real_speed_mm_s) incision.cut.real_speed_mm_s = mean_speed_mm_s(path);
   incision.tumor_surface = tumor_surface;
   add_layers_down_to(path, incision.approach, incision.layer_depths_mm);
   return incision;

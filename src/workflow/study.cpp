@@ -257,7 +257,8 @@ class Runner {
   /// States what the rest will take, and refuses it where there is not so much.
   void require_memory(const TetMesh& mesh) {
     const std::uint64_t needed =
-        expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, settings_.frames);
+        expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, settings_.frames,
+                              viscous_terms(settings_.material));
     const std::optional<std::uint64_t> held = held_memory_bytes();
     monitor_.message(Severity::Notice,
                      fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB{}", mesh.tets.size(), mesh.vertices.size(),

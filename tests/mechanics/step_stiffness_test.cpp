@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace incise {
 namespace {
@@ -168,6 +170,38 @@ TEST(StepStiffness, AssemblesOtherLawsAnewInEachStep) {
   kept.begin(model, state, kStepS, false, Tangent::FrozenRotations, forces, workers);
   fresh.begin(model, state, kStepS, true, Tangent::FrozenRotations, forces, workers);
   EXPECT_EQ(kept.matrix().values, fresh.matrix().values);
+}
+
+/// Of viscous tissue, steps that take time have the elastic and the viscous response, others the elastic one alone.
+TEST(StepStiffness, AddsTheViscousResponseInAStepThatTakesTime) {
+  Material material;
+  material.prony = {{1.5, 0.3}};
+  material.kelvin_voigt_time_s = 0.01;
+  const TissueModel model =
+      make_tissue_model(make_block(Vec3(20, 12, 9), {6, 5, 4}), material, {FixedConstraint{testing::plane_x(0.0)}});
+  TissueState state = shaken(model, 0.3, 3);
+  remember_deformation(model, state, 0.1);
+  StepStiffness stiffness(model);
+  Workers workers(1);
+  for (const std::optional<double>& viscous_s : {std::optional(0.05), std::optional<double>(), std::optional(0.2)}) {
+    for (Vec3& place : state.positions) place.y() *= 1.05;
+    TissueState copy = state;
+    Points forces(model.mesh.vertices.size(), Vec3::Zero()), expected = forces;
+    stiffness.begin(model, state, kStepS, false, Tangent::FrozenRotations, forces, workers, viscous_s);
+    BlockMatrix whole(model.pattern);
+    add_elastic_response(model, copy, expected, &whole, workers);
+    if (viscous_s) add_viscous_response(model, copy, *viscous_s, expected, &whole, workers);
+    double scale = 0.0, worst = 0.0;
+    for (const double value : whole.values) scale = std::max(scale, std::abs(value));
+    for (std::size_t v = 0; v < expected.size(); ++v) {
+      EXPECT_LT((forces[v] - expected[v]).norm(), 1e-9 * scale);
+      for (const int i : {0, 4, 8})
+        whole.block(model.pattern->diagonal[v])[i] += model.vertex_mass_kg[v] / (kStepS * kStepS);
+    }
+    for (std::size_t i = 0; i < whole.values.size(); ++i)
+      worst = std::max(worst, std::abs(whole.values[i] - stiffness.matrix().values[i]));
+    EXPECT_LT(worst, 1e-9 * scale) << viscous_s.value_or(0.0);
+  }
 }
 
 }  // namespace

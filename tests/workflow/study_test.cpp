@@ -179,6 +179,19 @@ TEST(IsAccepted, ByThePapersRule) {
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.0), open), ::testing::HasSubstr("its ring does not close"));
 }
 
+TEST(IncisionSettings, OfViscousTissueHaveThePaceOfTheRealToolAndTheTimeSinceTheStretch) {
+  Case settings;
+  settings.time_since_stretch_s = 90.0;
+  ToolPath path;
+  path.waypoints = {{.depth_mm = 5.0, .speed_mm_s = 4.0}, {.depth_mm = 5.0, .speed_mm_s = 8.0}};
+  EXPECT_FALSE(incision_settings_for(settings, path, {}).cut.real_speed_mm_s) << "elastic tissue: they change no key";
+  EXPECT_FALSE(incision_settings_for(settings, path, {}).time_since_stretch_s);
+  settings.material.kelvin_voigt_time_s = 0.1;
+  EXPECT_EQ(incision_settings_for(settings, path, {}).cut.real_speed_mm_s, 6.0);
+  EXPECT_EQ(incision_settings_for(settings, path, {}).time_since_stretch_s, 90.0);
+  EXPECT_EQ(incision_settings(settings).cut.real_speed_mm_s, settings.plan.speed_mm_s);
+}
+
 TEST(RunStudy, ASecondRunTakesEveryProductFromTheCache) {
   Block block;
   Workers workers(2);

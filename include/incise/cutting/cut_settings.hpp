@@ -21,6 +21,8 @@ struct CutSettings {
   double power_exponent = 1.0;        ///< contact cuts (power / reference power) to this times as fast, [0, 10]; 0: power has no effect
   std::optional<double> tear_energy_kpa;  ///< work per rest volume at which held tissue tears, kPa (= µJ/mm³), > 0; none: it does not
   std::optional<double> slip_mm;      ///< tissue that the tool has left this far behind slips, > 0; none: never
+  /// Of the real tool, > 0: viscous tissue relaxes at its pace; a study takes that of its plan. Absent: speed_mm_s.
+  std::optional<double> real_speed_mm_s;
   double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step; (0, the tool's diameter or thickness]
   double reach_mm = 0.25;             ///< a tet is in contact within the tool's radius + reach of its core, >= 0
   double bond_stiffness_kpa_mm2 = 1500.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag; finite meshes hold with less
@@ -32,6 +34,10 @@ struct CutSettings {
   [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
   /// Dose per second of contact with the reference tissue, 1/s: (P / P_ref)^n / (d τ₀).
   [[nodiscard]] double dwell_rate_per_s() const;
+  /// How long a step of the simulated tool takes for the tissue, s.
+  [[nodiscard]] double tissue_s(double step_s) const {
+    return step_s * speed_mm_s / real_speed_mm_s.value_or(speed_mm_s);
+  }
   /// Duration of one simulation step, s.
   [[nodiscard]] double step_s() const { return advance_per_step_mm / speed_mm_s; }
 };
@@ -45,6 +51,7 @@ inline void describe_effect(Visitor& v, CutSettings& s) {
   v({"reference_power_w", "Power for which dullness holds.", "W"}, s.reference_power_w, {0.0, 120.0, true});
   v("power_exponent", s.power_exponent,
     "Contact cuts (plan.power_w / reference_power_w) to this times as fast; 0: power has no effect.", {0.0, 10.0});
+  v.internal("real_speed_mm_s", s.real_speed_mm_s, "Of the real tool: viscous tissue relaxes at its pace.", kPositive);
   v({"tear_energy_kpa", "Work of the tool per volume at which held tissue tears; absent: it does not.", "kPa"},
     s.tear_energy_kpa, {1e-3, 1e6});
   v({"slip_mm", "Tissue that the tool has left this far behind slips; absent: never.", "mm"}, s.slip_mm, kPositive);

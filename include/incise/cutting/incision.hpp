@@ -24,6 +24,8 @@ struct IncisionSettings {
   std::vector<double> layer_depths_mm{
       1.0, 2.5, 4.0, 5.0};  ///< middles of the layers with a mid-line of their own; each >= 0.5, ascending
   TriMesh tumor_surface;    ///< closed, stretched tissue before the cut, mm; without triangles: not known
+  /// Between the stretch and the cut, >= 0; for viscous tissue alone. Absent: it has relaxed.
+  std::optional<double> time_since_stretch_s;
   int frames = 0;           ///< moments to keep for pictures, evenly spaced over the cut; 0: none
 };
 inline void describe(Visitor& v, IncisionSettings& s) {
@@ -33,6 +35,8 @@ inline void describe(Visitor& v, IncisionSettings& s) {
   v("midline_layer_mm", s.midline_layer_mm, "The mid-line is that of the kerf down to this depth.", kPositive);
   v("layer_depths_mm", s.layer_depths_mm, "Middles of the layers with a mid-line of their own.");
   v("tumor_surface", s.tumor_surface, "Stretched tissue before the cut; without triangles: not known.");
+  v({"time_since_stretch_s", "Between the stretch and the cut; absent: viscous tissue has relaxed.", "s"},
+    s.time_since_stretch_s, kNotNegative);
   v("frames", s.frames, "Moments to keep for pictures.", kNotNegative);
 }
 

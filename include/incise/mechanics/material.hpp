@@ -36,7 +36,7 @@ struct PronyTerm {
   double time_s = 1.0;       ///< relaxation time, > 0
 };
 inline void describe(Visitor& v, PronyTerm& t) {
-  v("shear_share", t.shear_share, "Shear modulus of the branch over the long-time one.", kPositive);
+  v("shear_share", t.shear_share, "Shear modulus of the branch over the long-time one.", {0.0, 1e6, true});
   v({"time_s", "Relaxation time.", "s"}, t.time_s, kPositive);
 }
 
@@ -72,9 +72,19 @@ inline void describe(Visitor& v, Material& m) {
   v({"fibre_modulus_kpa", "Stiffness added along the fibres; 0: none.", "kPa"}, m.fibre_modulus_kpa,
     {0.0, kYoungsModulusLimits.most});
   v.direction("fibre_direction", m.fibre_direction, "Of the fibres at rest, where the mesh gives none.");
-  v("prony", m.prony, "Branches that relax with time, in steps of time only; absent: none.");
-  v({"kelvin_voigt_time_s", "Shear viscosity over long-time shear modulus, in steps of time only; 0: none.", "s"},
-    m.kelvin_voigt_time_s, kNotNegative);
+  v("prony", m.prony,
+    "Branches that relax with time, during the cut; the stretch is their long-time limit. Absent: none.");
+  v({"kelvin_voigt_time_s", "Shear viscosity over long-time shear modulus, during the cut; 0: none.", "s"},
+    m.kelvin_voigt_time_s, {0.0, 1e6});
+}
+
+/// Whether a material has Prony terms or a damper.
+[[nodiscard]] inline bool is_viscous(const Material& m) {
+  return !m.prony.empty() || m.kelvin_voigt_time_s > 0.0;
+}
+/// How many Prony terms a viscous material has; nothing of another.
+[[nodiscard]] inline std::optional<std::size_t> viscous_terms(const Material& m) {
+  return is_viscous(m) ? std::optional(m.prony.size()) : std::nullopt;
 }
 
 /// What differs from tet to tet, one item per tet each; an empty list takes the material's own value everywhere.

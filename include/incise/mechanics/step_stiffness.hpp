@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace incise {
@@ -22,11 +23,13 @@ class StepStiffness {
 
   /// Adds the elastic and support forces at state.positions to `forces`, mN, and brings the matrix up to date. Updates
   /// state.rotations.
+  /// @param viscous_s  how long the step takes for viscous tissue, s: its viscous forces are added, and it is assembled
+  /// anew in each step; absent: the long-time response.
   /// @param is_fresh  every tet is assembled anew, so that nothing depends on earlier steps. So it is at the first
   /// step, and where
   ///                  step_s is not that of the last.
   void begin(const TissueModel& model, TissueState& state, double step_s, bool is_fresh, Tangent tangent,
-             std::span<Vec3> forces, Workers& workers);
+             std::span<Vec3> forces, Workers& workers, const std::optional<double>& viscous_s = {});
   /// Allows the caller to add to the sixteen blocks of a tet: what it adds is taken back at the next begin().
   void lend(const TissueModel& model, TetId tet);
   /// Identity rows for held axes, as hold_constrained.

@@ -121,6 +121,13 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
 /// static solution.
 void end_viscous_step(const TissueModel& model, TissueState& state, double step_s, Workers& workers);
 
+/// How stiff tissue is against a shear that goes on for `during_s` (> 0), over its long-time response; 1 without
+/// viscosity.
+[[nodiscard]] double shear_ratio(const Material& material, double during_s);
+/// Sets state.memory to that of tissue that was brought from rest to state.positions at once, some time ago.
+/// @param since_s  >= 0; infinite: every branch has relaxed. Nothing without viscosity.
+void remember_deformation(const TissueModel& model, TissueState& state, double since_s);
+
 /// Adds the push of the supports (no pull) and, with `stiffness`, its tangent k n nᵀ: exact on a plane and on the flat
 /// parts of a holder, without the turn of the normal where the nearest place is an edge or a corner.
 void add_support_response(const TissueModel& model, const TissueState& state, std::span<Vec3> forces,

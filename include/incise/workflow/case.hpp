@@ -135,6 +135,7 @@ struct Case {
   MaterialVariation variation;
   std::optional<std::vector<Constraint>> constraints;  ///< absent: see default_constraints
   Vec3 gravity_mm_s2{0.0, 0.0, -9810.0};
+  std::optional<double> time_since_stretch_s;  ///< until the cut, for viscous tissue; absent: it has relaxed
   TumorConfiguration tumor_configuration = TumorConfiguration::Stretched;
   double surface_tolerance_mm = 5.0;        ///< farthest that a tumour edge may lie off the surface, along the approach
   PlanSettings plan;
