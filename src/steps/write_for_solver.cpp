@@ -2,6 +2,7 @@
 #include <incise/interchange/interchange.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/steps/case_steps.hpp>
+#include <incise/workflow/material_sources.hpp>
 
 #include <fmt/format.h>
 
@@ -10,8 +11,14 @@ namespace {
 
 /// The held specimen: on the case's own mesh, or on the one that its run makes of the CT.
 std::shared_ptr<const TissueModel> specimen_of(const CaseFile& file, const StepContext& context) {
-  if (!file.inputs.specimen_mesh.empty())
-    return std::make_shared<TissueModel>(tissue_of(file.settings, read_specimen_mesh(file, context.monitor)));
+  if (!file.inputs.specimen_mesh.empty()) {
+    TetMesh mesh = read_specimen_mesh(file, context.monitor);
+    if (!file.inputs.elasticity_map.empty() || file.settings.variation.tumor_modulus_kpa) {
+      RunFolder inputs(file, output_beside(file.file), context.run);
+      lay_on_mesh(file.settings, read_material_sources(file.settings, inputs, context.monitor), mesh);
+    }
+    return std::make_shared<TissueModel>(tissue_of(file.settings, std::move(mesh)));
+  }
   CaseRun run(file, output_beside(file.file), {.until = Stage::Mesh}, context.run);
   return run.study(context.workers, context.monitor).model;
 }

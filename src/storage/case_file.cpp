@@ -210,7 +210,7 @@ CaseFile parse_case(const std::string& text, const std::filesystem::path& case_p
   reader.finish();
   for (std::filesystem::path* path :
        {&file.inputs.ct_volume, &file.inputs.ct_labels, &file.inputs.specimen_mesh, &file.inputs.tumor_contour,
-        &file.inputs.tumor_surface, &file.inputs.line_contour, &file.inputs.tool_path}) {
+        &file.inputs.tumor_surface, &file.inputs.elasticity_map, &file.inputs.line_contour, &file.inputs.tool_path}) {
     if (!path->empty()) *path = (file.folder / *path).lexically_normal();
   }
   require_consistent(file, name);
@@ -246,13 +246,11 @@ TetMesh read_specimen_mesh(const CaseFile& file, Monitor& monitor) {
 
 void require_input_files(const CaseFile& file) {
   const CaseInputs& in = file.inputs;
-  const std::pair<const char*, const std::filesystem::path&> inputs[] = {{"ct.volume", in.ct_volume},
-                                                                         {"ct.labels", in.ct_labels},
-                                                                         {"specimen.mesh", in.specimen_mesh},
-                                                                         {"tumor.contour", in.tumor_contour},
-                                                                         {"tumor.surface", in.tumor_surface},
-                                                                         {"plan.line", in.line_contour},
-                                                                         {"path", in.tool_path}};
+  const std::pair<const char*, const std::filesystem::path&> inputs[] = {
+      {"ct.volume", in.ct_volume},         {"ct.labels", in.ct_labels},
+      {"specimen.mesh", in.specimen_mesh}, {"tumor.contour", in.tumor_contour},
+      {"tumor.surface", in.tumor_surface}, {"specimen.material.elasticity_map", in.elasticity_map},
+      {"plan.line", in.line_contour},      {"path", in.tool_path}};
   for (const auto& [field, path] : inputs) {
     if (path.empty() || std::filesystem::exists(path)) continue;
     throw DataError(path, "", "no such file or folder", fmt::format("what {} names as {}", file.file.string(), field));

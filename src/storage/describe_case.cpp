@@ -31,6 +31,9 @@ void describe(Visitor& v, CaseFile& file) {
   v.begin({"material", "The tissue's law."});
   describe(v, c.material);
   describe(v, c.variation);
+  v("elasticity_map", in.elasticity_map,
+    "Young's modulus in kPa, voxel by voxel, as 32-bit floats (.nrrd, .nii[.gz], .mhd/.mha) in the frame of the scan; "
+    "where it is not above 0, youngs_modulus_kpa holds. Absent: it holds everywhere.");
   v.end();
   v({"constraints",
      "List of fixed, displaced, support and traction; absent: posterior 15 mm clamped, anterior 10 mm pulled 20 mm "

@@ -152,8 +152,9 @@ Manifest RunFolder::manifest_now(double wall_s) {
   manifest.wall_s = wall_s;
   manifest.machine = machine_description();
   const CaseInputs& in = file_.inputs;
-  std::vector<std::filesystem::path> inputs{file_.file,       in.ct_volume,     in.ct_labels,    in.specimen_mesh,
-                                            in.tumor_contour, in.tumor_surface, in.line_contour, in.tool_path};
+  std::vector<std::filesystem::path> inputs{file_.file,        in.ct_volume,     in.ct_labels,
+                                            in.specimen_mesh,  in.tumor_contour, in.tumor_surface,
+                                            in.elasticity_map, in.line_contour,  in.tool_path};
   inputs.insert(inputs.end(), in.holders.begin(), in.holders.end());
   for (const std::filesystem::path& path : inputs) {
     if (!path.empty())
@@ -302,6 +303,11 @@ std::optional<TriMesh> RunFolder::read_tumor_surface() {
   TriMesh surface = read_surface(file_.inputs.tumor_surface);
   require_closed_manifold(surface, file_.inputs.tumor_surface);
   return surface;
+}
+
+std::optional<GrayVolume> RunFolder::read_elasticity_map() {
+  if (file_.inputs.elasticity_map.empty()) return std::nullopt;
+  return read_gray(file_.inputs.elasticity_map);
 }
 
 std::optional<Contour> RunFolder::read_line() {

@@ -661,8 +661,9 @@ Json Calls::lay(const Json& arguments) {
   json["why_without_program"] = std::move(why);
   json["registration_sha256"] = registration_sha256;
   Json read_from = Json::object();
-  for (const fs::path& input : {file.inputs.tumor_contour, file.inputs.tumor_surface, file.inputs.line_contour,
-                                file.inputs.tool_path, registration, laying.surface, laying.camera}) {
+  for (const fs::path& input :
+       {file.inputs.tumor_contour, file.inputs.tumor_surface, file.inputs.elasticity_map, file.inputs.line_contour,
+        file.inputs.tool_path, registration, laying.surface, laying.camera}) {
     if (!input.empty()) read_from[input.string()] = sha256_of_file(input);
   }
   write_json(target.path() / "laid.json", {{"case_sha256", revision}, {"inputs", read_from}});

@@ -74,7 +74,8 @@ Json inputs_json(const CaseFile& file) {
   for (const auto& [key, path] :
        {std::pair{"ct.volume", &in.ct_volume}, std::pair{"ct.labels", &in.ct_labels},
         std::pair{"specimen.mesh", &in.specimen_mesh}, std::pair{"tumor.contour", &in.tumor_contour},
-        std::pair{"tumor.surface", &in.tumor_surface}, std::pair{"plan.line", &in.line_contour},
+        std::pair{"tumor.surface", &in.tumor_surface},
+        std::pair{"specimen.material.elasticity_map", &in.elasticity_map}, std::pair{"plan.line", &in.line_contour},
         std::pair{"path", &in.tool_path}}) {
     json[key] = path->empty() ? Json(nullptr) : Json(path->lexically_proximate(file.folder).string());
   }
@@ -182,8 +183,8 @@ fs::path file_for_edge(const CaseFile& file) {
 
 std::set<fs::path> files_of(const CaseFile& file) {
   const CaseInputs& in = file.inputs;
-  std::set<fs::path> files{in.ct_volume,     in.ct_labels,    in.specimen_mesh, in.tumor_contour,
-                           in.tumor_surface, in.line_contour, in.tool_path};
+  std::set<fs::path> files{in.ct_volume,     in.ct_labels,      in.specimen_mesh, in.tumor_contour,
+                           in.tumor_surface, in.elasticity_map, in.line_contour,  in.tool_path};
   files.insert(in.holders.begin(), in.holders.end());
   return files;
 }

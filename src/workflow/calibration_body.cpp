@@ -24,9 +24,11 @@ double pull_n(const TissueModel& model, const StaticResult& stretched) {
 
 /// Where the mesh says how stiff each tet is, that is scaled, too.
 TetMesh stiffened(TetMesh mesh, double factor) {
-  const auto array = mesh.cell_data.find("youngs_modulus_kpa");
-  if (array == mesh.cell_data.end()) return mesh;
-  for (double& value : array->second.values) value *= factor;
+  for (const char* name : {"youngs_modulus_kpa", kLaidModulusArray}) {
+    const auto array = mesh.cell_data.find(name);
+    if (array == mesh.cell_data.end()) continue;
+    for (double& value : array->second.values) value *= factor;
+  }
   return mesh;
 }
 

@@ -48,7 +48,7 @@ const std::vector<double>& labels_of(const TetMesh& mesh, const char* field) {
                     fmt::format("one number for each of {} tets", mesh.tets.size()));
   }
   throw CaseError(kWhere, field, cell_arrays(mesh), "the cell array 'label', one number for each tet",
-                  "A mesh that is made from a CT carries none: give specimen.mesh");
+                  "A mesh that is made from a CT has the labels of ct.labels: give these, or specimen.mesh");
 }
 
 /// @param field  of the case that names the label.
@@ -72,6 +72,10 @@ void lay_over(std::vector<double>& values, const std::vector<double>& labels, in
 MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation) {
   MaterialField field;
   if (variation.from_mesh) field = field_from(mesh);
+  const auto laid = mesh.cell_data.find(kLaidModulusArray);
+  INCISE_REQUIRE(!variation.tumor_modulus_kpa || laid != mesh.cell_data.end(),
+                 "expected a mesh on which lay_on_mesh has laid the tumour's stiffness");
+  if (laid != mesh.cell_data.end()) field.youngs_modulus_kpa = laid->second.values;
   const bool has_only_fibres = variation.from_mesh && field.youngs_modulus_kpa.empty() && field.poissons_ratio.empty();
   if (has_only_fibres && material.fibre_modulus_kpa == 0.0) {
     throw CaseError(kWhere, "specimen.material.fibre_modulus_kpa", "0 kPa, so that the mesh's fibre_direction changes nothing",

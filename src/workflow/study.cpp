@@ -235,6 +235,7 @@ class Runner {
   }
 
   bool mesh() {
+    sources_ = read_material_sources(settings_, inputs_, monitor_);
     TetMesh mesh;
     if (given_mesh_) {
       mesh = std::move(*given_mesh_);
@@ -243,11 +244,20 @@ class Runner {
       CacheKey key = CacheKey("mesh").add(study_.segmentation->occupancy).add(settings_.meshing);
       add_specimen(key);
       add_plan(key);
+      key.add_text(digest_of(sources_));
       ProductNote note{"mesh", {}, 0.0};
       MeshProduct made = product<MeshProduct>(Stage::Mesh, note, key, [&] { return make_mesh(); });
       sink_.mesh(note, made);
       mesh = std::move(made.meshing.mesh);
     }
+    if (const std::optional<MapCoverage> map = lay_on_mesh(settings_, sources_, mesh)) {
+      monitor_.message(Severity::Notice,
+                       fmt::format("elasticity map: {:.4g} to {:.4g} kPa, known in {:.0f} % of the specimen",
+                                   map->least_kpa, map->greatest_kpa, 100.0 * map->share));
+      report("the elasticity map", verdict_of_map(*map));
+      study_.about_inputs.add(verdict_of_map(*map));
+    }
+    sources_ = {};  // they may be large
     require_memory(mesh);
     study_.model = std::make_shared<TissueModel>(tissue_of(settings_, std::move(mesh)));
     if (options_.until >= Stage::Simulate) require_no_locking(*study_.model);
@@ -275,7 +285,7 @@ class Runner {
   MeshProduct make_mesh() {
     try {
       return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, tumor_edge_, line_, workers_, monitor_,
-                                     made_skin_);
+                                     made_skin_, sources_);
     } catch (const InvalidArgument& error) {
       throw CaseError("case", "meshing", error.text(), "edge lengths and a count that the tissue can be meshed with");
     }
@@ -569,6 +579,7 @@ class Runner {
   bool must_resume_;  ///< nothing was gone on with yet, and something has to be
   std::optional<TetMesh> given_mesh_;
   MadeSkin made_skin_;
+  MaterialSources sources_;
   std::optional<Contour> tumor_edge_;
   std::optional<TriMesh> tumor_surface_;
   std::optional<Contour> line_;

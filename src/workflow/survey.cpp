@@ -62,7 +62,8 @@ StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monito
 
 MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
                                     const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,
-                                    Workers& workers, Monitor& monitor, const MadeSkin& made_skin) {
+                                    Workers& workers, Monitor& monitor, const MadeSkin& made_skin,
+                                    const MaterialSources& sources) {
   // The cut is planned on the stretched tissue, but the mesh is made of the unstretched body: a coarse mesh is stretched first to
   // find where the planned cut lies at rest.
   SizingSettings sizing = default_lengths(longest_side_mm(occupancy));
@@ -74,6 +75,7 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
                     fmt::format("at most coarse_mm, {:.3g} mm for a body of this size", sizing.coarse_mm));
   }
   MeshingResult survey = mesh_labels(occupancy, SizingField::uniform(survey_mm), MeshingSettings{}, monitor);
+  lay_on_mesh(settings, sources, survey.mesh);
   const TissueModel coarse = tissue_of(settings, std::move(survey.mesh));
   const StaticResult stretched = stretch(coarse, workers, monitor);
   require_equilibrium(settings, stretched, "coarse survey mesh");

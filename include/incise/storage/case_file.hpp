@@ -18,6 +18,7 @@ struct CaseInputs {
   std::filesystem::path tumor_contour;
   std::filesystem::path tumor_surface;    ///< closed, in the configuration of the contour
   std::filesystem::path line_contour;     ///< the curve of an open cut
+  std::filesystem::path elasticity_map;   ///< Young's modulus, kPa, in the frame of the scan
   std::filesystem::path tool_path;        ///< a path to follow in place of the planned one
   std::vector<std::filesystem::path> holders;  ///< surfaces of supports, in the order of the constraints that name them
 };

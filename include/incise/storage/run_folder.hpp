@@ -61,6 +61,7 @@ class RunFolder : public Inputs, public ProductSink {
   std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) override;
   std::optional<Contour> read_tumor_edge() override;
   std::optional<TriMesh> read_tumor_surface() override;
+  std::optional<GrayVolume> read_elasticity_map() override;
   std::optional<Contour> read_line() override;
   std::optional<ToolPath> read_given_path() override;
   /// Of the case, or of its scan or mesh. @throws DataError where that cannot be read.

@@ -52,22 +52,31 @@ struct LabelMaterial {
   std::optional<double> poissons_ratio;
 };
 inline void describe(Visitor& v, LabelMaterial& m) {
-  v("label", m.label, "Value of the mesh's cell array 'label'.", kLabelRange);
+  v("label", m.label, "Value of the mesh's cell array 'label', or of ct.labels.", kLabelRange);
   v({"youngs_modulus_kpa", "Young's modulus there; absent: as elsewhere.", "kPa"}, m.youngs_modulus_kpa,
     kYoungsModulusLimits);
   v("poissons_ratio", m.poissons_ratio, "Poisson's ratio there; absent: as elsewhere.", kPoissonsRatioLimits);
 }
 
-/// Which differences of material within the specimen a study takes from its mesh.
+/// Which differences of material within the specimen a study takes from its mesh, or from what is laid on it
+/// (material_sources.hpp).
 struct MaterialVariation {
   bool from_mesh = false;             ///< cell data youngs_modulus_kpa, poissons_ratio, fibre_direction (those that are there)
-  std::vector<LabelMaterial> labels;  ///< laid over `from_mesh`; tets with a label that is not listed keep what they have
+  std::optional<double> tumor_modulus_kpa;  ///< Young's modulus in the tumour's surface; absent: as elsewhere
+  std::vector<LabelMaterial>
+      labels;  ///< laid over the others; tets with a label that is not listed keep what they have
 };
 inline void describe(Visitor& v, MaterialVariation& m) {
   v("from_mesh", m.from_mesh,
     "Whether the mesh's cell data youngs_modulus_kpa, poissons_ratio and fibre_direction hold, as far as they are "
     "there.");
-  v("labels", m.labels, "Parts of the mesh with another stiffness, by the cell array 'label'; absent: none.");
+  v({"tumor_modulus_kpa",
+     "Young's modulus within tumor.surface, which is drawn on the tissue as scanned; absent: as elsewhere.", "kPa"},
+    m.tumor_modulus_kpa, kYoungsModulusLimits);
+  v("labels", m.labels,
+    "Parts with another stiffness, by the mesh's cell array 'label' or, of a specimen from ct.labels, by these; "
+    "absent: "
+    "none.");
 }
 
 /// How tough the tets with one value of the mesh's cell array `label` are.
@@ -87,7 +96,8 @@ struct ToughnessVariation {
 };
 inline void describe(Visitor& v, ToughnessVariation& m) {
   v("toughness", m.labels,
-    "Parts of the mesh that take more or less dose to cut, by the cell array 'label'; absent: 1 everywhere.");
+    "Parts that take more or less dose to cut, by the mesh's cell array 'label' or by ct.labels; absent: 1 "
+    "everywhere.");
   v("toughness_from_mesh", m.from_mesh, "Whether the mesh's cell data toughness hold.");
 }
 
@@ -151,8 +161,14 @@ struct Case {
   std::optional<Mat4> T_flange_tool;        ///< the needle's tip (z along the needle) on the arm's flange; absent: 150 mm in front of it
 };
 
-/// The material of each tet, as far as the study lets it vary; nothing does: empty lists.
-/// @throws CaseError (field specimen.material.from_mesh or .labels[i]) when the mesh does not carry what the study asks for.
+/// The cell array of Young's modulus that lay_on_mesh (material_sources.hpp) lays on a mesh, kPa.
+inline constexpr const char* kLaidModulusArray = "laid_modulus_kpa";
+
+/// The material of each tet, as far as the study lets it vary; nothing does: empty lists. What was laid on the mesh
+/// holds over what it carries, and labels over both.
+/// @throws InvalidArgument for a stiff tumour that was not laid on the mesh;
+/// @throws CaseError (field specimen.material.from_mesh or .labels[i]) when the mesh does not carry what the study asks
+/// for.
 [[nodiscard]] MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation);
 
 /// The toughness of each tet, as far as the study lets it vary; it does not: an empty list.

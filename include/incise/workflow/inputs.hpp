@@ -29,6 +29,8 @@ class Inputs {
   virtual std::optional<Contour> read_tumor_edge() { return std::nullopt; }
   /// The tumour's closed surface, in the configuration of its edge; nothing: only the edge is known.
   virtual std::optional<TriMesh> read_tumor_surface() { return std::nullopt; }
+  /// Young's modulus, kPa, in the frame of the scan; nothing: the settings have it.
+  virtual std::optional<GrayVolume> read_elasticity_map() { return std::nullopt; }
   virtual std::optional<Contour> read_line() { return std::nullopt; }  ///< the curve of an open cut
   virtual std::optional<ToolPath> read_given_path() {
     return std::nullopt;

@@ -8,6 +8,7 @@
 #include <incise/imaging/made_skin.hpp>
 #include <incise/workflow/case.hpp>
 #include <incise/workflow/inputs.hpp>
+#include <incise/workflow/material_sources.hpp>
 #include <incise/workflow/product_sink.hpp>
 #include <incise/workflow/products.hpp>
 
@@ -124,7 +125,8 @@ struct RunOptions {
 [[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
                                                   const std::optional<Contour>& tumor_edge,
                                                   const std::optional<Contour>& line, Workers& workers,
-                                                  Monitor& monitor, const MadeSkin& made_skin = {});
+                                                  Monitor& monitor, const MadeSkin& made_skin = {},
+                                                  const MaterialSources& sources = {});
 /// The specimen as the case holds it: material (label by label, where it varies), constraints (the default ones, where none are given)
 /// and gravity on a mesh. @throws CaseError as make_tissue_model and material_field.
 [[nodiscard]] TissueModel tissue_of(const Case& settings, TetMesh mesh);
