@@ -59,13 +59,18 @@ async function acceptAll(page, said) {
     await said.textContent(),
     "Accepted. Press “Run again with these accepted”: nothing that was cut is cut again.",
   );
-  let held = null;
-  await page.route("**/api/call/run", (route) => (held = route));
+  let isHeld = false,
+    release = null;
+  const released = new Promise((resolve) => (release = resolve));
+  await page.route("**/api/call/run", async (route) => {
+    isHeld = true;
+    await released;
+    await route.continue();
+  });
   await page.click("[data-do=accept]");
   await until(page, () => document.querySelector("[data-program=none]").textContent === "Writing the program…");
-  while (!held) await page.waitForTimeout(20);
-  await page.unroute("**/api/call/run");
-  await held.continue();
+  while (!isHeld) await page.waitForTimeout(20);
+  release();
 }
 
 test("a program is offered once every caution is accepted, and it is the one that was written", async (t) => {
