@@ -40,13 +40,6 @@ class Nearest {
   Vec3 approach_;
 };
 
-/// Whether a ray along the approach leaves the closed surface before it enters it.
-bool is_within(const Vec3& p, const SurfaceQuery& surface, const Box3& bounds, const Vec3& approach) {
-  if (!bounds.contains(p)) return false;
-  const std::optional<SurfacePoint> hit = surface.first_hit(p, approach);
-  return hit && hit->normal.dot(approach) > 0.0;
-}
-
 }  // namespace
 
 namespace {
@@ -94,17 +87,15 @@ std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& 
   const Vec3& approach = settings.approach;
   const SurfaceQuery tumor_query(tumor);
   const SurfaceQuery kerf_query(body.surface);
-  const Box3 tumor_box = bounding_box(tumor.vertices);
-  const Box3 kerf_box = bounding_box(body.surface.vertices);
   Nearest nearest(approach);
   for (const Vec3& p : body.surface.vertices) {
     const Vec3 from_tumor = p - tumor_query.nearest(p).position_mm;
-    const bool is_inside = is_within(p, tumor_query, tumor_box, approach);
+    const bool is_inside = tumor_query.contains(p, approach);
     nearest.add(is_inside ? Vec3(-from_tumor) : from_tumor, is_inside);
   }
   // The corners of the one against the faces of the other, both ways: a small tumour may face the middle of a wall.
   for (const Vec3& t : tumor.vertices) {
-    if (is_within(t, kerf_query, kerf_box, approach)) continue;  // the kerf's corners have said so
+    if (kerf_query.contains(t, approach)) continue;  // the kerf's corners have said so
     nearest.add(kerf_query.nearest(t).position_mm - t, false);
   }
   DeepMargin margin{nearest.nearest, nearest.beside, nearest.beneath, {}};

@@ -166,4 +166,10 @@ std::optional<SurfacePoint> SurfaceQuery::seen_at(const Vec3& p, const Vec3& app
   return hit;
 }
 
+bool SurfaceQuery::contains(const Vec3& p, const Vec3& direction) const {
+  if (!tree_->boxes.box().contains(p)) return false;
+  const std::optional<SurfacePoint> hit = first_hit(p, direction);
+  return hit && hit->normal.dot(direction) > 0.0;
+}
+
 }  // namespace incise

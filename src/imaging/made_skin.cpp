@@ -41,25 +41,23 @@ unsigned MadeSkin::sides_near(const Sides& sides, const Vec3& place) const {
   return near;
 }
 
-std::optional<std::int32_t> MadeSkin::side_under(const Sides& sides, const std::array<Vec3, 3>& corners) const {
+std::optional<std::int32_t> MadeSkin::side_at(const Sides& sides, const Vec3& place, const Vec3& normal) const {
   if (sides.empty()) return std::nullopt;
-  const unsigned near = sides_near(sides, corners[0]) & sides_near(sides, corners[1]) & sides_near(sides, corners[2]);
-  if (near == 0) return std::nullopt;
   constexpr double kAlike = 0.5;  // skin beside a face, at a right angle to it, is the specimen's own
-  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).stableNormalized();
+  const unsigned near = sides_near(sides, place);
   for (std::int32_t side = 0; side < 6; ++side) {
     if ((near & 1U << side) != 0 && normal.dot(outward(grid_, side)) >= kAlike) return side;
   }
   return std::nullopt;
 }
 
-std::optional<RegionFace> MadeSkin::cut_under(const std::array<Vec3, 3>& corners) const {
-  const std::optional<std::int32_t> side = side_under(cut_, corners);
+std::optional<RegionFace> MadeSkin::cut_at(const Vec3& place, const Vec3& normal) const {
+  const std::optional<std::int32_t> side = side_at(cut_, place, normal);
   return side ? std::optional(face_of(grid_, *side)) : std::nullopt;
 }
 
-bool MadeSkin::is_painted(const std::array<Vec3, 3>& corners) const {
-  return side_under(painted_, corners).has_value();
+bool MadeSkin::is_painted(const Vec3& place, const Vec3& normal) const {
+  return side_at(painted_, place, normal).has_value();
 }
 
 }  // namespace incise

@@ -380,12 +380,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
 
 /// 1 where the label is one of the tissue's.
 LabelVolume tissue_of(const LabelVolume& labels, const SegmentationSettings& settings) {
-  std::array<bool, 256> is_tissue{};
-  if (settings.label_values) {
-    for (const std::int32_t value : *settings.label_values) is_tissue.at(static_cast<std::size_t>(value)) = true;
-  } else {
-    std::fill(is_tissue.begin() + 1, is_tissue.end(), true);
-  }
+  const std::array<bool, 256> is_tissue = tissue_labels(settings);
   LabelVolume tissue{labels.grid, std::vector<std::uint8_t>(labels.voxels.size())};
   std::ranges::transform(labels.voxels, tissue.voxels.begin(),
                          [&](std::uint8_t label) { return static_cast<std::uint8_t>(is_tissue[label]); });
@@ -411,6 +406,16 @@ void require_labels(const LabelVolume& labels, const SegmentationSettings& setti
 }
 
 }  // namespace
+
+std::array<bool, 256> tissue_labels(const SegmentationSettings& settings) {
+  std::array<bool, 256> is_tissue{};
+  if (settings.label_values) {
+    for (const std::int32_t value : *settings.label_values) is_tissue.at(static_cast<std::size_t>(value)) = true;
+  } else {
+    std::fill(is_tissue.begin() + 1, is_tissue.end(), true);
+  }
+  return is_tissue;
+}
 
 Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor,
                      const std::optional<Verdict>& of_scan) {

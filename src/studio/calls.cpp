@@ -444,10 +444,11 @@ Json Calls::room(const Json& arguments) {
   plan.kind = PlanKind::Ring;
   const Contour drawn = edge_argument(arguments);
   const PlacedSkin skin = skin_at_rest(file);
-  const auto is_cut = [&](const Vec3& place) { return skin.cut_under(place).has_value(); };
+  const auto is_cut = [&](const Vec3& place) { return skin.cut_at(place).has_value(); };
   Json json{{"ring", nullptr}, {"on_cut_face", Json::array()}, {"edge_on_cut_face", 0}, {"problem", nullptr}};
   add_room({}, json);
   json["fits"] = false;
+  json["painted"] = 0;
   try {
     const Contour edge = project_tumor_edge(drawn, skin.surface(), plan.approach, file.settings.surface_tolerance_mm);
     json["edge_on_cut_face"] = std::ranges::count_if(edge.points, is_cut);
@@ -455,6 +456,7 @@ Json Calls::room(const Json& arguments) {
     const Points ring = entry_contour(plan_ring(skin.surface(), edge, plan)).points;
     json["ring"] = points_json(ring);
     for (const Vec3& place : ring) json["on_cut_face"].push_back(is_cut(place) ? 1 : 0);
+    json["painted"] = std::ranges::count_if(ring, [&](const Vec3& place) { return skin.is_painted(place); });
     json["fits"] = std::ranges::none_of(ring, is_cut) && std::ranges::none_of(edge.points, is_cut);
   } catch (const CaseError& error) {  // an answer, too: this margin, or this edge, does not fit
     json["problem"] = sentence(error.problem());

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 namespace incise::studio {
@@ -100,8 +99,9 @@ std::vector<std::uint8_t> cut_triangles(const MadeSkin& made, std::span<const Ve
   std::vector<std::uint8_t> cut;
   cut.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) {
-    const std::array<Vec3, 3> corners{vertices[a.index()], vertices[b.index()], vertices[c.index()]};
-    cut.push_back(made.cut_under(corners) ? 1 : made.is_painted(corners) ? 2 : 0);
+    const Vec3 &p = vertices[a.index()], &q = vertices[b.index()], &r = vertices[c.index()];
+    const Vec3 middle = (p + q + r) / 3.0, normal = (q - p).cross(r - p).stableNormalized();
+    cut.push_back(made.cut_at(middle, normal) ? 1 : made.is_painted(middle, normal) ? 2 : 0);
   }
   return cut;
 }

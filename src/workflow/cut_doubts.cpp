@@ -98,14 +98,14 @@ void add_made_skin(const Case& settings, const TissueModel& model, const MadeSki
                    std::span<const Vec3> stretched, const ToolPath& path, Verdict& verdict) {
   if (made.empty()) return;
   const PlacedSkin skin(boundary_surface(model.mesh), stretched, made);
-  const auto is_cut = [&](const Vec3& place) { return skin.cut_under(place).has_value(); };
+  const auto is_cut = [&](const Vec3& place) { return skin.cut_at(place).has_value(); };
   const auto is_drawn = [&](const Vec3& place) { return skin.is_painted(place); };
   const auto say_cut = [&](const Vec3& place) {  // above and around it lies tissue that the plan does not know
     return fmt::format(
         "lie where the region of interest (ct.roi_box_mm) or the end of the scan cuts through the tissue, "
         "on its {} side. The skin there is artificial: the specimen continues beyond it. Move that face "
         "of the box outwards, take a scan or labels that reach farther, or cut elsewhere",
-        to_string(*skin.cut_under(place)));
+        to_string(*skin.cut_at(place)));
   };
   const auto say_cut_path = [&](const Vec3& place) {
     const bool is_ring = settings.plan.kind == PlanKind::Ring && path.tumor_edge.points.size() >= 3;

@@ -16,7 +16,7 @@ TriMesh moved(const TriMesh& surface, std::span<const Vec3> now) {
 }
 
 bool has_cut_skin(const PlacedSkin& skin, const Points& places) {
-  return std::ranges::any_of(places, [&](const Vec3& place) { return skin.cut_under(place).has_value(); });
+  return std::ranges::any_of(places, [&](const Vec3& place) { return skin.cut_at(place).has_value(); });
 }
 
 bool fits(const PlacedSkin& skin, const Contour& edge, PlanSettings settings, double margin_mm) {
@@ -33,17 +33,24 @@ bool fits(const PlacedSkin& skin, const Contour& edge, PlanSettings settings, do
 PlacedSkin::PlacedSkin(TriMesh at_rest, std::span<const Vec3> now, MadeSkin made)
     : at_rest_(std::move(at_rest)), made_(std::move(made)), surface_(moved(at_rest_, now)) {}
 
-std::array<Vec3, 3> PlacedSkin::at_rest_under(const Vec3& place) const {
-  const auto& [a, b, c] = at_rest_.triangles[surface_.nearest(place).triangle.index()];
-  return {at_rest_.vertices[a.index()], at_rest_.vertices[b.index()], at_rest_.vertices[c.index()]};
+PlacedSkin::AtRest PlacedSkin::at_rest(const Vec3& place) const {
+  const SurfacePoint nearest = surface_.nearest(place);
+  const auto& [i, j, k] = at_rest_.triangles[nearest.triangle.index()];
+  const Vec3 &a = at_rest_.vertices[i.index()], &b = at_rest_.vertices[j.index()], &c = at_rest_.vertices[k.index()];
+  const Vec3& share = nearest.barycentric;
+  return {share[0] * a + share[1] * b + share[2] * c, (b - a).cross(c - a).stableNormalized()};
 }
 
-std::optional<RegionFace> PlacedSkin::cut_under(const Vec3& place) const {
-  return made_.empty() ? std::nullopt : made_.cut_under(at_rest_under(place));
+std::optional<RegionFace> PlacedSkin::cut_at(const Vec3& place) const {
+  if (made_.empty()) return std::nullopt;
+  const AtRest rest = at_rest(place);
+  return made_.cut_at(rest.place, rest.normal);
 }
 
 bool PlacedSkin::is_painted(const Vec3& place) const {
-  return !made_.empty() && made_.is_painted(at_rest_under(place));
+  if (made_.empty()) return false;
+  const AtRest rest = at_rest(place);
+  return made_.is_painted(rest.place, rest.normal);
 }
 
 MarginRoom margin_room(const PlacedSkin& skin, const Contour& edge, const PlanSettings& settings, double above_mm) {

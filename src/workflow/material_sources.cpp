@@ -26,15 +26,6 @@ Points centroids_of(const TetMesh& mesh) {
   return centroids;
 }
 
-/// Which values of a label volume are tissue.
-std::array<bool, 256> tissue_labels(const SegmentationSettings& settings) {
-  std::array<bool, 256> is_tissue{};
-  if (!settings.label_values) std::fill(is_tissue.begin() + 1, is_tissue.end(), true);
-  for (const std::int32_t value : settings.label_values.value_or(std::vector<std::int32_t>()))
-    is_tissue.at(static_cast<std::size_t>(value)) = true;
-  return is_tissue;
-}
-
 /// The label of the nearest voxel of tissue of the 27 round a place: the skin reaches beyond the voxels' middles.
 /// 0: none.
 std::uint8_t label_at(const LabelVolume& labels, const std::array<bool, 256>& is_tissue, const Vec3& place) {
@@ -70,15 +61,6 @@ std::optional<double> known_at(const GrayVolume& map, const Vec3& place) {
   return weights > 0.0 ? std::optional(sum / weights) : std::nullopt;
 }
 
-/// Whether a closed surface, oriented outwards, holds a place: how a ray leaves it. A ray along an odd direction meets
-/// no edge of a surface made of a grid.
-bool holds(const SurfaceQuery& surface, const Box3& box, const Vec3& place) {
-  static const Vec3 kOdd = Vec3(0.31, 0.53, 0.79).normalized();
-  if (!box.contains(place)) return false;
-  const std::optional<SurfacePoint> hit = surface.first_hit(place, kOdd);
-  return hit && hit->normal.dot(kOdd) > 0.0;
-}
-
 void lay_labels(const LabelVolume& labels, const SegmentationSettings& settings, const Points& centroids,
                 TetMesh& mesh) {
   const std::array<bool, 256> is_tissue = tissue_labels(settings);
@@ -110,10 +92,10 @@ MapCoverage lay_map(const GrayVolume& map, const Points& centroids, std::vector<
 
 void lay_tumor(const TriMesh& tumor, double value_kpa, const Points& centroids, std::vector<double>& modulus_kpa) {
   const SurfaceQuery surface(tumor);
-  const Box3 box = bounding_box(tumor.vertices);
+  const Vec3 along = Vec3(0.31, 0.53, 0.79).normalized();
   std::size_t inside = 0;
   for (std::size_t t = 0; t < centroids.size(); ++t) {
-    if (!holds(surface, box, centroids[t])) continue;
+    if (!surface.contains(centroids[t], along)) continue;
     modulus_kpa[t] = value_kpa;
     ++inside;
   }

@@ -134,7 +134,7 @@ class AssessTest(CommandTest):
         found = self.assessed(status=NOT_ACCEPTABLE)
         self.assertEqual(found["advice"], "do_not_use")
         self.assertIsNone(found["expected_gain_mm"])
-        self.assertTrue(any("open_loop" in reason for reason in found["reasons"]), found["reasons"])
+        self.assertTrue(any("stays open" in reason for reason in found["reasons"]), found["reasons"])
         self.assertTrue(any("over 234.00 mm, those that the calibration chose over 1.30 mm" in note for note in found["notes"]), found["notes"])
 
     def test_what_cannot_be_is_refused_before_anything_is_written(self):

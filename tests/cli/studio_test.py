@@ -107,6 +107,15 @@ class Calls(StudioTest):
         self.assertEqual((status, drawn["inputs"]["tumor.contour"]), (200, "tumor_edge.csv"), drawn)
         self.assertEqual((drawn["edge"]["configuration"], drawn["edge"]["points_mm"][0]), ("rest", square[0]))
         self.assertEqual((drawn["choices"]["tumor.configuration"], drawn["units"]["plan.depth_mm"]), (["stretched", "rest"], "mm"))
+        room = studio.call("room", {"points_mm": square})[1]
+        self.assertEqual((room["fits"], room["painted"], room["edge_on_cut_face"], room["problem"]), (True, 0, 0, None))
+        self.assertIn(f"{room['greatest_margin_mm']:g} mm fits here", room["margin_note"])
+        stroke = {"tissue": False, "radius_mm": 50, "path_mm": [[x, y, z + 47]]}  # it takes 3 mm of the top away
+        status, edited = studio.call("change", {"revision": drawn["revision"], "set": {"ct.edits": [stroke]}})
+        self.assertEqual(status, 200, edited)
+        self.assertGreater(studio.call("room", {"points_mm": square})[1]["painted"], 20)
+        self.assertIn(2, studio.array(studio.call("tissue")[1]["cut"]))
+        status, drawn = studio.call("change", {"revision": edited["revision"], "set": {"ct.edits": None}})
         status, changed = studio.call("change", {"revision": drawn["revision"], "set": {"meshing.tets": 6000, "plan.depth_mm": 4}})
         self.assertEqual((status, changed["settings"]["plan"]["depth_mm"]), (200, 4.0))
         body = studio.call("body")[1]

@@ -17,7 +17,6 @@ class ViscousCut : public testing::RingInABlock {
     settings_.cut.advance_per_step_mm = 0.4;
   }
 
-  /// A block of 12 kPa at ν 0.3 unless told otherwise.
   [[nodiscard]] TissueModel block(const Material& material) const {
     return make_tissue_model(make_block({32, 32, 8}, {kCells, kCells, kCells / 4}), material,
                              {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});

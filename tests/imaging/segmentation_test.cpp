@@ -232,25 +232,19 @@ TEST(Segmentation, LeavesAMarginOfAirAllAroundEvenWhereTheRegionCutsThroughTissu
   EXPECT_EQ(grid.origin_mm, (grid.world_from_index(Vec3::Zero())));
 }
 
-/// A small triangle about a place, seen from where it looks.
-std::array<Vec3, 3> about(const Vec3& place, const Vec3& normal = Vec3::UnitZ()) {
-  const Vec3 along = 0.2 * normal.unitOrthogonal();
-  return {place, place + along, place + normal.cross(along)};
-}
-
 TEST(MadeSkin, LiesWhereTheRegionCutsTheBody) {
   SegmentationSettings settings;
   EXPECT_TRUE(MadeSkin(run(ball_of_tissue(), settings)).empty());
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
   const MadeSkin in_box(run(ball_of_tissue(), settings));
-  EXPECT_EQ(in_box.cut_under(about(Vec3(15, 15, 15.5))), RegionFace::Superior);
-  EXPECT_FALSE(in_box.cut_under(about(Vec3(15, 15, 5.4)))) << "the ball's own skin";
-  EXPECT_FALSE(in_box.cut_under(about(Vec3(27, 15, 15.5)))) << "beside the disc, in the plane of the face";
-  EXPECT_FALSE(in_box.cut_under(about(Vec3(25.2, 15, 15.2), Vec3::UnitX()))) << "the ball's own skin at the disc's rim";
+  EXPECT_EQ(in_box.cut_at(Vec3(15, 15, 15.5), Vec3::UnitZ()), RegionFace::Superior);
+  EXPECT_FALSE(in_box.cut_at(Vec3(15, 15, 5.4), Vec3::UnitZ())) << "the ball's own skin";
+  EXPECT_FALSE(in_box.cut_at(Vec3(27, 15, 15.5), Vec3::UnitZ())) << "beside the disc, in the plane of the face";
+  EXPECT_FALSE(in_box.cut_at(Vec3(25.2, 15, 15.2), Vec3::UnitX())) << "the ball's own skin at the disc's rim";
   CtVolume turned = ball_of_tissue();
   turned.grid.direction << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   settings.roi_box_mm = Box3(Vec3(-15, -100, -100), Vec3(100, 100, 100));
-  EXPECT_EQ(MadeSkin(run(turned, settings)).cut_under(about(Vec3(-15.5, 15, 15), -Vec3::UnitX())), RegionFace::Right);
+  EXPECT_EQ(MadeSkin(run(turned, settings)).cut_at(Vec3(-15.5, 15, 15), -Vec3::UnitX()), RegionFace::Right);
 }
 
 TEST(MadeSkin, IsNoneWhereTheRegionEndsJustAboveTheSkin) {
@@ -270,8 +264,8 @@ TEST(MadeSkin, IsThatOfABumpAloneWhereOnlyABumpReachesTheRegionsFace) {
   settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
   settings.smoothing_mm = 0.0;
   const MadeSkin faces(run(ct, settings));
-  EXPECT_EQ(faces.cut_under(about(Vec3(12, 12, 20.0))), RegionFace::Superior);
-  EXPECT_FALSE(faces.cut_under(about(Vec3(28, 28, 20.0)))) << "sound skin at the same height";
+  EXPECT_EQ(faces.cut_at(Vec3(12, 12, 20.0), Vec3::UnitZ()), RegionFace::Superior);
+  EXPECT_FALSE(faces.cut_at(Vec3(28, 28, 20.0), Vec3::UnitZ())) << "sound skin at the same height";
 }
 
 /// A slab, or a column of radius 12 mm, that goes on beyond a box that ends at z = 20.
@@ -290,12 +284,11 @@ double share_of_top(const Segmentation& found, double radius_mm) {
   const TriMesh skin = iso_surface(found.occupancy, 0.5);
   int top = 0, cut = 0;
   for (const auto& [a, b, c] : skin.triangles) {
-    const std::array<Vec3, 3> corners{skin.vertices[a.index()], skin.vertices[b.index()], skin.vertices[c.index()]};
-    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-    if (normal.z() < 0.6 || corners[0].z() < 10 || (corners[0] - Vec3(20, 20, corners[0].z())).norm() > radius_mm)
-      continue;
+    const Vec3 &p = skin.vertices[a.index()], &q = skin.vertices[b.index()], &r = skin.vertices[c.index()];
+    const Vec3 normal = (q - p).cross(r - p).normalized();
+    if (normal.z() < 0.6 || p.z() < 10 || (p - Vec3(20, 20, p.z())).norm() > radius_mm) continue;
     ++top;
-    cut += faces.cut_under(corners) == RegionFace::Superior ? 1 : 0;
+    cut += faces.cut_at((p + q + r) / 3.0, normal) == RegionFace::Superior ? 1 : 0;
   }
   EXPECT_GT(top, 50);
   return static_cast<double>(cut) / std::max(1, top);
@@ -326,11 +319,11 @@ TEST(MadeSkin, IsPaintedWhereAStrokeHasMadeItAndNowhereElse) {
                     {true, 4.0, {Vec3(20, 20, 10.5)}},
                     {false, 4.0, {Vec3(20, 20, 19.5)}}};
   const MadeSkin skin(run(ct, settings));
-  EXPECT_TRUE(skin.is_painted(about(Vec3(10, 20, 19))));
-  EXPECT_TRUE(skin.is_painted(about(Vec3(30, 20, 11))));
-  EXPECT_FALSE(skin.is_painted(about(Vec3(20, 20, 15)))) << "both strokes end at the skin, and neither made it";
-  EXPECT_FALSE(skin.is_painted(about(Vec3(10, 30, 15)))) << "beside the strokes";
-  EXPECT_FALSE(skin.cut_under(about(Vec3(10, 20, 19))));
+  EXPECT_TRUE(skin.is_painted(Vec3(10, 20, 19), Vec3::UnitZ()));
+  EXPECT_TRUE(skin.is_painted(Vec3(30, 20, 11), Vec3::UnitZ()));
+  EXPECT_FALSE(skin.is_painted(Vec3(20, 20, 15), Vec3::UnitZ())) << "both strokes end at the skin, and neither made it";
+  EXPECT_FALSE(skin.is_painted(Vec3(10, 30, 15), Vec3::UnitZ())) << "beside the strokes";
+  EXPECT_FALSE(skin.cut_at(Vec3(10, 20, 19), Vec3::UnitZ()));
   settings.edits = {{true, 4.0, {Vec3(20, 20, 10.5)}}};
   EXPECT_TRUE(run(ct, settings).painted.empty()) << "a stroke within the tissue";
 }
@@ -367,8 +360,8 @@ TEST(MadeSkin, LiesAtTheScansEndWhereAnObliqueScanEndsWithinTheRegion) {
   settings.roi_box_mm = Box3(Vec3::Constant(-100), Vec3::Constant(100));
   const MadeSkin faces(run(ct, settings));
   const Vec3 out = ct.grid.direction.col(2);
-  EXPECT_TRUE(faces.cut_under(about(ct.grid.world_from_index(Vec3(15, 15, 15.5)), out)));
-  EXPECT_FALSE(faces.cut_under(about(ct.grid.world_from_index(Vec3(15, 15, 5.4)), -out)));
+  EXPECT_TRUE(faces.cut_at(ct.grid.world_from_index(Vec3(15, 15, 15.5)), out));
+  EXPECT_FALSE(faces.cut_at(ct.grid.world_from_index(Vec3(15, 15, 5.4)), -out));
 }
 
 TEST(Segmentation, CutsHalfABallAtTheFaceOfTheLastVoxelInTheRegion) {

@@ -213,6 +213,17 @@ TEST(MarginRoom, EndsBeforeTheRimOrBeforeSkinThatTheRegionMade) {
   EXPECT_THAT(in_words(greatest(MadeSkin(found), 12.0, 9.5)), HasSubstr("The tumour's edge itself lies where"));
 }
 
+TEST(PlacedSkin, GoesByThePlaceWhereOneTriangleLiesOnTheFaceAndBesideIt) {
+  const TetMesh coarse = make_block({24, 24, 8}, {1, 1, 1});  // two triangles are its top
+  Segmentation found = block_of_voxels();
+  for (const std::int32_t v : voxels_with(found, 2, 7)) {
+    if (found.labels.grid.voxel_at(static_cast<std::size_t>(v))[0] >= 12) found.cut.push_back({v, 5});
+  }
+  const PlacedSkin skin(boundary_surface(coarse), coarse.vertices, MadeSkin(found));
+  EXPECT_EQ(skin.cut_at(Vec3(18, 10, 8)), RegionFace::Superior);
+  EXPECT_FALSE(skin.cut_at(Vec3(6, 10, 8)));
+}
+
 TEST(PlanOn, NamesTheGreatestMarginThatFitsWhereTheSetOneDoesNot) {
   const TissueModel model = block(24, 0.45);
   Case settings;

@@ -36,6 +36,10 @@ class SurfaceQuery {
   /// passes through p. `distance_mm` is signed: how far p lies above (+, on the observer's side) the surface.
   [[nodiscard]] std::optional<SurfacePoint> seen_at(const Vec3& p, const Vec3& approach) const;
 
+  /// Whether the surface, closed and oriented outwards, holds a point: a ray from there leaves it before it enters it.
+  /// @param direction  unit; one along which the ray meets no edge.
+  [[nodiscard]] bool contains(const Vec3& p, const Vec3& direction) const;
+
  private:
   struct Tree;
   std::unique_ptr<Tree> tree_;

@@ -111,6 +111,9 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("verdict", s.verdict, "On this tissue.");
 }
 
+/// Which values of a label volume are tissue: every one but 0, or those of `label_values`.
+[[nodiscard]] std::array<bool, 256> tissue_labels(const SegmentationSettings& settings);
+
 /// CT -> one clean tissue label and its sub-voxel occupancy.
 /// Steps: window and region -> edits by hand -> pieces (face-connected; separated by erosion with a ball, grown back
 /// within the window)

@@ -74,9 +74,7 @@ inline void describe(Visitor& v, MaterialVariation& m) {
      "Young's modulus within tumor.surface, which is drawn on the tissue as scanned; absent: as elsewhere.", "kPa"},
     m.tumor_modulus_kpa, kYoungsModulusLimits);
   v("labels", m.labels,
-    "Parts with another stiffness, by the mesh's cell array 'label' or, of a specimen from ct.labels, by these; "
-    "absent: "
-    "none.");
+    "Parts with another stiffness, by the mesh's cell array 'label' or by ct.labels; absent: none.");
 }
 
 /// How tough the tets with one value of the mesh's cell array `label` are.

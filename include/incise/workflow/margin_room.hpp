@@ -17,13 +17,15 @@ class PlacedSkin {
   PlacedSkin(TriMesh at_rest, std::span<const Vec3> now, MadeSkin made);
 
   [[nodiscard]] const SurfaceQuery& surface() const { return surface_; }
-  /// As MadeSkin, for the triangle that is nearest to a place.
-  [[nodiscard]] std::optional<RegionFace> cut_under(const Vec3& place) const;
+  /// As MadeSkin, for the point of the skin that is nearest to a place as it lies now.
+  [[nodiscard]] std::optional<RegionFace> cut_at(const Vec3& place) const;
   [[nodiscard]] bool is_painted(const Vec3& place) const;
 
  private:
-  /// The corners, at rest, of the triangle that is nearest to a place.
-  [[nodiscard]] std::array<Vec3, 3> at_rest_under(const Vec3& place) const;
+  struct AtRest {
+    Vec3 place, normal;
+  };
+  [[nodiscard]] AtRest at_rest(const Vec3& place) const;
 
   TriMesh at_rest_;
   MadeSkin made_;
@@ -49,7 +51,7 @@ struct MarginRoom {
 [[nodiscard]] MarginRoom margin_room(const PlacedSkin& skin, const Contour& edge, const PlanSettings& settings,
                                      double above_mm);
 
-/// The same as a sentence without its full stop: "At most 3.5 mm of lateral margin fits here".
+/// The same as a sentence without its full stop: "A lateral margin of at most 3.5 mm fits here".
 [[nodiscard]] std::string in_words(const MarginRoom& room);
 
 }  // namespace incise

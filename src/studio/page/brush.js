@@ -7,7 +7,6 @@ import {clamp, length, minus, plus, simplified, spanInBox, thinned} from "./geom
 
 const kPath = "ct.edits";
 const kRadii = [0.1, 50]; // mm: what a case takes
-const kMostThrough = 60; // mm
 const kFactor = 1.2; // from one radius to the next, by a key
 
 /** Points of all strokes together, or of one painted line: more would be a large request at every change. */
@@ -69,7 +68,9 @@ export function lengthOf(path) {
 /** Adds a stroke along a path, mm. @param normal  of the slice that it was drawn in, through which it may go */
 export function addStroke(one, path, normal = null) {
   const {tissue, radius_mm, through_mm} = one,
-    path_mm = normal && through_mm > 0 ? strokeThrough(path, one, normal) : strokeAlong(path, radius_mm);
+    passes = through_mm / radius_mm;
+  if (normal && passes > kMostPoints) return update({brush: {...state.brush, refused: Math.ceil(passes)}});
+  const path_mm = normal && through_mm > 0 ? strokeThrough(path, one, normal) : strokeAlong(path, radius_mm);
   const list = [...strokes(), {tissue, radius_mm, path_mm}];
   const points = list.reduce((sum, stroke) => sum + stroke.path_mm.length, 0);
   if (points > kMostPoints) return update({brush: {...state.brush, refused: points}});
@@ -118,9 +119,9 @@ export function setRadius(radius) {
   update({brush: {...state.brush, radius_mm: clamp(Number(radius.toFixed(2)), ...kRadii)}});
 }
 
-/** Sets how far a stroke goes through the slices, mm. */
+/** Sets how far a stroke goes through the slices, mm: as far as the input takes. */
 export function setThrough(through) {
-  update({brush: {...state.brush, through_mm: clamp(Number(through.toFixed(2)), 0, kMostThrough)}});
+  update({brush: {...state.brush, through_mm: Number(through.toFixed(2))}});
 }
 
 /** Makes the brush larger or smaller by so many steps. */

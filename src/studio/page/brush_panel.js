@@ -93,7 +93,6 @@ function Through() {
     value: state.brush.through_mm,
     step: 1,
     min: 0,
-    max: 60,
     onChange: setThrough,
     hint:
       "How far a stroke goes through the slices, half to each side. To part two bodies that touch, draw along the gap " +

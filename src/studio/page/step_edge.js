@@ -257,6 +257,14 @@ function Room({room}) {
           " where the region box or the end of the scan cuts the tissue.",
         )
       : h(Why, {key: "why", room}),
+    room.painted
+      ? h(
+          "p",
+          {key: "painted", class: "warning", "data-painted": room.painted},
+          `${room.painted} of the ring's ${room.ring.length} points lie on skin that the brush made: ` +
+            "compare it with the scan.",
+        )
+      : null,
   ];
 }
 
