@@ -34,7 +34,7 @@ class FebioInput {
       : specimen_(specimen), model_(specimen.model), skin_(boundary_faces(model_.mesh)), held_(held_sets(model_)) {}
 
   std::string text() {
-    require_no_fibres(model_, "febio");
+    require_known_law(model_, "febio");
     pugi::xml_document document;
     pugi::xml_node declaration = document.append_child(pugi::node_declaration);
     declaration.append_attribute("version") = "1.0";

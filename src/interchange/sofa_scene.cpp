@@ -24,7 +24,7 @@ class SofaScene {
   explicit SofaScene(const InterchangeCase& specimen) : specimen_(specimen), model_(specimen.model) {}
 
   std::string text() {
-    require_no_fibres(model_, "sofa");
+    require_known_law(model_, "sofa");
     pugi::xml_document document;
     add_comments(document);
     pugi::xml_node root = document.append_child("Node");

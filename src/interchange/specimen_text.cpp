@@ -63,7 +63,12 @@ std::string text_of(const Vec3& v, const char* separator) {
   return fmt::format("{}{}{}{}{}", v[0], separator, v[1], separator, v[2]);
 }
 
-void require_no_fibres(const TissueModel& model, const char* format) {
+void require_known_law(const TissueModel& model, const char* format) {
+  if (model.material.stiffening > 0.0) {
+    throw CaseError("case", "specimen.material.stiffening", fmt::format("{}", model.material.stiffening),
+                    fmt::format("0 for an export as {}", format),
+                    "Neither format has a law that stiffens like this one");
+  }
   if (model.fibres.empty()) return;
   throw CaseError("case", "specimen.material.fibre_modulus_kpa",
                   fmt::format("{} kPa", model.material.fibre_modulus_kpa), fmt::format("0 for an export as {}", format),

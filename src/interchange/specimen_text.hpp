@@ -34,8 +34,8 @@ struct Stiffness {
 /// "1.5 -2 0" with the fewest digits that read back as the same doubles.
 [[nodiscard]] std::string text_of(const Vec3& v, const char* separator = " ");
 
-/// @throws CaseError for what neither format has: fibres.
-void require_no_fibres(const TissueModel& model, const char* format);
+/// @throws CaseError for what neither format has: fibres, and Yeoh's stiffening.
+void require_known_law(const TissueModel& model, const char* format);
 
 void add_comment(pugi::xml_node parent, const std::string& text);
 /// An element with a text.

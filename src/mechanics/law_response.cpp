@@ -41,11 +41,10 @@ class TetResponses {
     if (!model_.fibres.empty()) fibre_tangents_.resize(deformations_.size());
     for_live_tets([&](std::size_t tet) {
       const Deformation& d = deformations_[tet];
-      const LameParameters& lame = model_.lame[tet];
-      tangents_[tet] = principal_tangent(model_.material.model, lame.mu_kpa, pressure_kpa(tet),
-                                         averages_ ? 0.0 : lame.lambda_kpa, d, tangent);
+      tangents_[tet] = principal_tangent(shape_law(tet), pressure_kpa(tet),
+                                         averages_ ? 0.0 : model_.lame[tet].lambda_kpa, d, tangent);
       if (model_.fibres.empty()) return;
-      fibre_tangents_[tet] = fibre_tangent_kpa(model_.material.fibre_modulus_kpa, model_.fibres[tet], d.f, tangent);
+      fibre_tangents_[tet] = fibre_tangent_kpa(fibre_law(), model_.fibres[tet], d.f, tangent);
     });
   }
 
@@ -86,12 +85,12 @@ class TetResponses {
     for (std::size_t tet = 0; tet < deformations_.size(); ++tet) {
       if (state_.is_live[tet] == 0) continue;
       const Deformation& d = deformations_[tet];
-      double density = shape_energy_kpa(material.model, model_.lame[tet].mu_kpa, d);
+      double density = shape_energy_kpa(shape_law(tet), d);
       if (!averages_) {
         const double theta = dilation(material.model, d);
         density += 0.5 * model_.lame[tet].lambda_kpa * theta * theta;
       }
-      if (!model_.fibres.empty()) density += fibre_energy_kpa(material.fibre_modulus_kpa, model_.fibres[tet], d.f);
+      if (!model_.fibres.empty()) density += fibre_energy_kpa(fibre_law(), model_.fibres[tet], d.f);
       energy += model_.volumes_mm3[tet] * density;
     }
     return energy;
@@ -105,17 +104,23 @@ class TetResponses {
     });
   }
 
+  [[nodiscard]] ShapeLaw shape_law(std::size_t tet) const {
+    return {model_.material.model, model_.lame[tet].mu_kpa, model_.material.stiffening};
+  }
+
+  [[nodiscard]] FibreLaw fibre_law() const {
+    return {model_.material.fibre_modulus_kpa, model_.material.fibre_stiffening};
+  }
+
   [[nodiscard]] double pressure_kpa(std::size_t tet) const {
     if (averages_) return averages_->pressure_kpa(model_.mesh.tets[tet]);
     return model_.lame[tet].lambda_kpa * dilation(model_.material.model, deformations_[tet]);
   }
 
   [[nodiscard]] Mat3 stress(std::size_t tet) const {
-    const Material& material = model_.material;
     const Deformation& d = deformations_[tet];
-    Mat3 p = shape_stress_kpa(material.model, model_.lame[tet].mu_kpa, d) +
-             pressure_kpa(tet) * dilation_gradient(material.model, d);
-    if (!model_.fibres.empty()) p += fibre_stress_kpa(material.fibre_modulus_kpa, model_.fibres[tet], d.f);
+    Mat3 p = shape_stress_kpa(shape_law(tet), d) + pressure_kpa(tet) * dilation_gradient(model_.material.model, d);
+    if (!model_.fibres.empty()) p += fibre_stress_kpa(fibre_law(), model_.fibres[tet], d.f);
     return p;
   }
 

@@ -11,6 +11,9 @@ namespace {
 constexpr double kLeastStretchSum = 1e-6;
 /// A fibre shortened below this share has lost its direction.
 constexpr double kLeastFibreStretch = 1e-6;
+/// Change of shape w at which the stiffening is half of Yeoh's: far beyond what tissue survives, and low enough that
+/// the energy stays finite for tets that are turned inside out.
+constexpr double kMostStiffenedShape = 100.0;
 
 Mat3 cofactors(const Mat3& f) {
   Mat3 c;
@@ -33,6 +36,27 @@ struct NeoHookean {
         f2(2.0 / 3.0 * mu / ((i + 1.0) * (i + 1.0))),
         h1(mu * (5.0 / 6.0 * (j - 1.0) - 1.0)),
         h2(5.0 / 6.0 * mu) {}
+};
+
+/// 2 Ψ_shape/μ of the stable Neo-Hookean law alone; 0 or more. Tends to I₁ − 3 where the volume is kept.
+double shape_measure(const Deformation& d) {
+  const double stretch = d.f.squaredNorm() - 3.0;
+  const double dilation = determinant(d.f) - 1.0;
+  return 2.0 * (2.0 / 3.0 * (stretch - std::log1p(0.25 * stretch)) - dilation + 5.0 / 12.0 * dilation * dilation);
+}
+
+/// Yeoh's stiffening of the stable Neo-Hookean shape energy Ψ₀: g(Ψ₀) = Ψ₀ + c μ/2 w²/(1 + w/w_m), w = 2 Ψ₀/μ.
+struct Stiffening {
+  double energy_kpa;  // g − Ψ₀
+  double slope;       // g'
+  double root_of_g2;  // √g'', per √kPa: in a product with a large stress, where g'' alone would be lost
+  Stiffening(const ShapeLaw& law, double w) {
+    const double u = w / kMostStiffenedShape;
+    const double q = 1.0 / (1.0 + u);
+    energy_kpa = 0.5 * law.mu_kpa * law.stiffening * (w * (w * q));
+    slope = 1.0 + law.stiffening * (w * q * (1.0 + q));
+    root_of_g2 = 2.0 * std::sqrt(law.stiffening / law.mu_kpa * q) * q;
+  }
 };
 
 /// Without its negative eigenvalues.
@@ -59,6 +83,25 @@ PairCurvatures corotational_pairs(double mu, double p, const Vec3& sigma, bool i
   return pairs;
 }
 
+/// How much more energy, force and slope of the force a fibre has than the linear one, E_f/2 e².
+struct FibreGrowth {
+  double energy = 1.0, force = 1.0, slope = 1.0;
+  FibreGrowth(double stiffening, double strain) {
+    if (stiffening == 0.0 || !(strain > 0.0)) return;
+    const double exponent = stiffening * strain * strain;
+    const double x = std::min(exponent, kMostFibreExponent);
+    force = std::exp(x);
+    slope = force * (1.0 + 2.0 * x);
+    energy = x > 0.0 ? std::expm1(x) / x : 1.0;
+    if (x == exponent) return;
+    // Onwards with the slope of the limit, whose strain is this share of the fibre's.
+    const double share = std::sqrt(kMostFibreExponent / stiffening) / strain;
+    const double beyond = 1.0 - share;
+    energy = share * share * energy + 2.0 * share * beyond * force + beyond * beyond * slope;
+    force = share * force + beyond * slope;
+  }
+};
+
 }  // namespace
 
 double dilation(MaterialModel model, const Deformation& d) {
@@ -69,20 +112,22 @@ Mat3 dilation_gradient(MaterialModel model, const Deformation& d) {
   return model == MaterialModel::Corotational ? d.r : cofactors(d.f);
 }
 
-double shape_energy_kpa(MaterialModel model, double mu_kpa, const Deformation& d) {
-  if (model == MaterialModel::Corotational) return mu_kpa * (d.f - d.r).squaredNorm();
-  const double stretch = d.f.squaredNorm() - 3.0;
-  const double dilation = determinant(d.f) - 1.0;
-  return mu_kpa * (2.0 / 3.0 * (stretch - std::log1p(0.25 * stretch)) - dilation + 5.0 / 12.0 * dilation * dilation);
+double shape_energy_kpa(const ShapeLaw& law, const Deformation& d) {
+  if (law.model == MaterialModel::Corotational) return law.mu_kpa * (d.f - d.r).squaredNorm();
+  const double w = shape_measure(d);
+  const double energy = law.mu_kpa * (0.5 * w);
+  return law.stiffening > 0.0 ? energy + Stiffening(law, w).energy_kpa : energy;
 }
 
-Mat3 shape_stress_kpa(MaterialModel model, double mu_kpa, const Deformation& d) {
-  if (model == MaterialModel::Corotational) return 2.0 * mu_kpa * (d.f - d.r);
-  const NeoHookean law(mu_kpa, d.f.squaredNorm(), determinant(d.f));
-  return 2.0 * law.f1 * d.f + law.h1 * cofactors(d.f);
+Mat3 shape_stress_kpa(const ShapeLaw& law, const Deformation& d) {
+  if (law.model == MaterialModel::Corotational) return 2.0 * law.mu_kpa * (d.f - d.r);
+  const NeoHookean plain(law.mu_kpa, d.f.squaredNorm(), determinant(d.f));
+  Mat3 stress = 2.0 * plain.f1 * d.f + plain.h1 * cofactors(d.f);
+  if (law.stiffening > 0.0) stress *= Stiffening(law, shape_measure(d)).slope;
+  return stress;
 }
 
-PrincipalTangent principal_tangent(MaterialModel model, double mu_kpa, double p_kpa, double k_kpa, const Deformation& d,
+PrincipalTangent principal_tangent(const ShapeLaw& shape, double p_kpa, double k_kpa, const Deformation& d,
                                    Tangent tangent) {
   const Mat3 s = d.r.transpose() * d.f;
   const Eigen::SelfAdjointEigenSolver<Mat3> stretches(0.5 * (s + s.transpose()));
@@ -92,26 +137,32 @@ PrincipalTangent principal_tangent(MaterialModel model, double mu_kpa, double p_
   result.u = d.r * result.v;
 
   PairCurvatures pairs;
-  if (model == MaterialModel::Corotational) {
+  if (shape.model == MaterialModel::Corotational) {
     result.stretch = Mat3::Constant(k_kpa);
-    result.stretch.diagonal().array() += 2.0 * mu_kpa;
-    pairs = corotational_pairs(mu_kpa, p_kpa, sigma, tangent == Tangent::FrozenRotations);
+    result.stretch.diagonal().array() += 2.0 * shape.mu_kpa;
+    pairs = corotational_pairs(shape.mu_kpa, p_kpa, sigma, tangent == Tangent::FrozenRotations);
   } else {
-    NeoHookean law(mu_kpa, sigma.squaredNorm(), sigma.prod());
+    NeoHookean law(shape.mu_kpa, sigma.squaredNorm(), sigma.prod());
+    const Vec3 dj(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
+    if (shape.stiffening > 0.0) {  // g' ∂²Ψ₀ + g'' ∂Ψ₀ ∂Ψ₀ᵀ; the second part changes stretches alone
+      const Stiffening growth(shape, shape_measure(d));
+      const Vec3 slope = growth.root_of_g2 * (2.0 * law.f1 * sigma + law.h1 * dj);
+      result.stretch = slope * slope.transpose();
+      for (double* part : {&law.f1, &law.f2, &law.h1, &law.h2}) *part *= growth.slope;
+    }
     law.h1 += p_kpa;
     law.h2 += k_kpa;
-    const Vec3 dj(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
-        result.stretch(i, j) = 4.0 * law.f2 * (sigma[i] * sigma[j]) + law.h2 * (dj[i] * dj[j]) +
-                               (i == j ? 2.0 * law.f1 : law.h1 * sigma[3 - i - j]);
+        result.stretch(i, j) += 4.0 * law.f2 * (sigma[i] * sigma[j]) + law.h2 * (dj[i] * dj[j]) +
+                                (i == j ? 2.0 * law.f1 : law.h1 * sigma[3 - i - j]);
       }
     }
     pairs.symmetric = Vec3::Constant(2.0 * law.f1) - law.h1 * sigma;
     pairs.skew = Vec3::Constant(2.0 * law.f1) + law.h1 * sigma;
   }
   if (tangent != Tangent::Exact) {
-    if (model != MaterialModel::Corotational) result.stretch = projected(result.stretch);  // else 2μ I + k 11ᵀ
+    if (shape.model != MaterialModel::Corotational) result.stretch = projected(result.stretch);  // else 2μ I + k 11ᵀ
     pairs.symmetric = pairs.symmetric.cwiseMax(0.0);
     pairs.skew = pairs.skew.cwiseMax(0.0);
   }
@@ -132,25 +183,27 @@ Mat3 stiffness_block(const PrincipalTangent& t, const Vec3& a, const Vec3& b) {
   return t.u * block * t.u.transpose();
 }
 
-double fibre_energy_kpa(double modulus_kpa, const Vec3& fibre, const Mat3& f) {
+double fibre_energy_kpa(const FibreLaw& law, const Vec3& fibre, const Mat3& f) {
   const double strain = (f * fibre).norm() - 1.0;
-  return 0.5 * modulus_kpa * strain * strain;
+  return 0.5 * law.modulus_kpa * strain * strain * FibreGrowth(law.stiffening, strain).energy;
 }
 
-Mat3 fibre_stress_kpa(double modulus_kpa, const Vec3& fibre, const Mat3& f) {
+Mat3 fibre_stress_kpa(const FibreLaw& law, const Vec3& fibre, const Mat3& f) {
   const Vec3 along = f * fibre;
   const double length = along.norm();
-  return modulus_kpa * (1.0 - 1.0 / std::max(length, kLeastFibreStretch)) * along * fibre.transpose();
+  const double growth = FibreGrowth(law.stiffening, length - 1.0).force;
+  return law.modulus_kpa * growth * (1.0 - 1.0 / std::max(length, kLeastFibreStretch)) * along * fibre.transpose();
 }
 
-Mat3 fibre_tangent_kpa(double modulus_kpa, const Vec3& fibre, const Mat3& f, Tangent tangent) {
+Mat3 fibre_tangent_kpa(const FibreLaw& law, const Vec3& fibre, const Mat3& f, Tangent tangent) {
   const Vec3 along = f * fibre;
   const double length = std::max(along.norm(), kLeastFibreStretch);
-  double across = 1.0 - 1.0 / length;
+  const FibreGrowth growth(law.stiffening, length - 1.0);
+  double across = growth.force * (1.0 - 1.0 / length);
   if (tangent != Tangent::Exact) across = std::max(across, 0.0);
   const Vec3 n = along / length;
-  Mat3 h = (modulus_kpa * (1.0 - across)) * (n * n.transpose());
-  h.diagonal().array() += modulus_kpa * across;
+  Mat3 h = (law.modulus_kpa * (growth.slope - across)) * (n * n.transpose());
+  h.diagonal().array() += law.modulus_kpa * across;
   return h;
 }
 

@@ -19,6 +19,19 @@ constexpr const char* kYoungsModulusRange = "a number in [1e-6, 1e9] kPa";
 
 }  // namespace
 
+std::vector<Problem> validate(const Material& m) {
+  std::vector<Problem> violations = problems_of(m);
+  if (m.stiffening > 0.0 && m.model != MaterialModel::StableNeoHookean) {
+    violations.push_back({"stiffening", fmt::format("{} with model {}", m.stiffening, to_string(m.model)),
+                          "0, or model: stable_neo_hookean", "The corotational law is linear"});
+  }
+  if (m.fibre_stiffening > 0.0 && m.fibre_modulus_kpa == 0.0) {
+    violations.push_back(
+        {"fibre_stiffening", fmt::format("{} without fibres", m.fibre_stiffening), "0, or fibre_modulus_kpa above 0"});
+  }
+  return violations;
+}
+
 std::vector<Problem> validate(const MaterialField& field, std::size_t tets) {
   std::vector<Problem> violations;
   const auto check = [&](const char* name, const auto& values, const auto& is_good, const auto& text, const char* expected) {

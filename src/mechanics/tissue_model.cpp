@@ -1,4 +1,5 @@
 #include "mechanics/loads.hpp"
+#include "mechanics/shape_gradients.hpp"
 #include "mechanics/tet_batches.hpp"
 #include "mechanics/topology.hpp"
 #include "mechanics/viscous_response.hpp"
@@ -7,8 +8,6 @@
 #include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 #include <incise/mechanics/tissue.hpp>
-
-#include <Eigen/LU>
 
 namespace incise {
 namespace {
@@ -21,7 +20,7 @@ void require_sound(const TetMesh& mesh) {
 }
 
 void require_valid(const Material& material) {
-  const std::vector<Problem> violations = problems_of(material);
+  const std::vector<Problem> violations = validate(material);
   if (violations.empty()) return;
   std::string others;
   for (std::size_t i = 1; i < violations.size(); ++i) others += (i > 1 ? "; also " : "Also ") + sentence(violations[i]);
@@ -49,16 +48,11 @@ void add_elements(TissueModel& model, const MaterialField& field) {
         field.youngs_modulus_kpa.empty() ? model.material.youngs_modulus_kpa : field.youngs_modulus_kpa[t],
         field.poissons_ratio.empty() ? model.material.poissons_ratio : field.poissons_ratio[t]);
     if (!model.fibres.empty() && !field.fibre_directions.empty()) model.fibres[t] = field.fibre_directions[t].normalized();
-    const Tet& tet = model.mesh.tets[t];
-    Mat3 edges;
-    for (std::size_t c = 1; c < 4; ++c) {
-      edges.col(static_cast<int>(c) - 1) = vertex(model.mesh.vertices, tet[c]) - vertex(model.mesh.vertices, tet[0]);
-    }
-    const Mat3 inverse = edges.inverse();
-    for (std::size_t c = 1; c < 4; ++c) model.gradients[t][c] = inverse.row(static_cast<int>(c) - 1).transpose();
-    model.gradients[t][0] = -(model.gradients[t][1] + model.gradients[t][2] + model.gradients[t][3]);
-    model.volumes_mm3[t] = edges.determinant() / 6.0;
-    for (const VertexId v : tet) model.vertex_mass_kg[v.index()] += 0.25 * density * model.volumes_mm3[t];
+    const ShapeGradients shape = shape_gradients(model.mesh, t);
+    model.gradients[t] = shape.gradients;
+    model.volumes_mm3[t] = shape.volume_mm3;
+    for (const VertexId v : model.mesh.tets[t])
+      model.vertex_mass_kg[v.index()] += 0.25 * density * model.volumes_mm3[t];
   }
 }
 

@@ -97,7 +97,7 @@ void require_consistent(const CaseFile& file, const std::string& name) {
     throw CaseError(name, "specimen_id", fmt::format("'{}'", c.specimen_id),
                     std::string(kSpecimenIdForm));
   refuse("ct", validate(c.segmentation), "a usable segmentation");
-  refuse("specimen.material", problems_of(c.material), "a usable material");
+  refuse("specimen.material", validate(c.material, c.variation), "a usable material");
   refuse("plan", validate(c.plan), "a usable plan");
   refuse("tool", validate(c.tool), "a usable tool");
   CutSettings cut = c.cut;

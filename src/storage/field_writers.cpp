@@ -67,7 +67,7 @@ SchemaWriter::Level& SchemaWriter::open(const Field& field) {
   Level inner;
   inner.field = field;
   inner.is_optional = is_there_.has_value();
-  inner.is_of_item = levels_.back().is_of_item;
+  inner.is_of_item = levels_.back().is_of_item || inner.is_optional;
   is_there_.reset();
   return levels_.emplace_back(std::move(inner));
 }

@@ -9,8 +9,8 @@
 
 namespace incise {
 
-/// Builds the JSON Schema of what is described: the values found are the defaults. Items of a list have no defaults but
-/// for optional fields.
+/// Builds the JSON Schema of what is described: the values found are the defaults. Items of a list, and
+/// groups that may be absent, have no defaults but for optional fields.
 class SchemaWriter : public Visitor {
  public:
   [[nodiscard]] bool sets() const override { return false; }
@@ -34,7 +34,7 @@ class SchemaWriter : public Visitor {
   struct Level {
     Field field;
     bool is_optional = false;
-    bool is_of_item = false;  ///< an item of a list, or in one
+    bool is_of_item = false;  ///< an item of a list, a group that may be absent, or in one
     nlohmann::ordered_json properties = nlohmann::ordered_json::object();
     nlohmann::ordered_json items = nlohmann::ordered_json::array();  ///< of a list: one of each kind
     std::vector<std::string> required;

@@ -107,7 +107,8 @@ YAML::Node YamlReader::take(const Field& field) {
 }
 
 void YamlReader::begin(const Field& field) {
-  Level inner{.node = take(field), .name = path_of(field.name), .is_of_item = levels_.back().is_of_item};
+  const bool is_of_item = levels_.back().is_of_item || is_optional_;
+  Level inner{.node = take(field), .name = path_of(field.name), .is_of_item = is_of_item};
   if (inner.node.IsDefined()) require_map(inner.node, inner.name);
   levels_.push_back(std::move(inner));
 }

@@ -43,7 +43,7 @@ class YamlReader : public Visitor {
     YAML::Node node;   ///< a map or list, or undefined where it is absent
     std::string name;  ///< dotted, "" for the outermost
     bool is_list = false;
-    bool is_of_item = false;            ///< an item of a list, or in one
+    bool is_of_item = false;            ///< an item of a list, a group that may be absent, or in one
     std::size_t next = 0;               ///< item
     std::vector<std::string> known;     ///< fields that were asked for
     std::vector<std::string> required;  ///< of them, those without a meaning

@@ -48,6 +48,7 @@ Vec3 isotropic_stress_kpa(const Material& material, const Vec3& s) {
 Vec3 principal_stress_kpa(const Material& material, const Vec3& s) {
   INCISE_REQUIRE(material.fibre_modulus_kpa == 0.0 || material.fibre_direction.normalized() == Vec3::UnitX(),
                  "expected fibres along the first principal direction");
+  INCISE_REQUIRE(material.stiffening == 0.0 && material.fibre_stiffening == 0.0, "expected no stiffening");
   return isotropic_stress_kpa(material, s) + material.fibre_modulus_kpa * (s[0] - 1.0) * Vec3::UnitX();
 }
 

@@ -67,11 +67,39 @@ void lay_over(std::vector<double>& values, const std::vector<double>& labels, in
   }
 }
 
+/// The directions of the field that the study describes, one for each tet.
+std::vector<Vec3> directions_of(const FibreField& field, const TetMesh& mesh) {
+  FibreDirections found = fibre_directions(mesh, field);
+  if (found.outcome == Outcome::Success) return std::move(found.directions);
+  throw CaseError(kWhere, "specimen.material.fibre_field",
+                  fmt::format("a potential that has not converged after {} iterations (residual {:.1e})",
+                              found.iterations, found.residual),
+                  "one that converges", "Tetrahedra of a very bad shape may be why");
+}
+
 }  // namespace
 
+std::vector<Problem> validate(const Material& material, const MaterialVariation& variation) {
+  std::vector<Problem> violations = validate(material);
+  if (variation.fibre_field && material.fibre_modulus_kpa == 0.0) {
+    violations.push_back({"fibre_modulus_kpa", "0 kPa, so that fibre_field changes nothing", "a number above 0",
+                          "Without fibres leave out fibre_field"});
+  }
+  return violations;
+}
+
 MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation) {
+  if (const std::vector<Problem> violations = validate(material, variation); !violations.empty()) {
+    const Problem& first = violations.front();
+    throw CaseError(kWhere, "specimen.material." + first.path, first.found, first.expected, first.hint);
+  }
   MaterialField field;
   if (variation.from_mesh) field = field_from(mesh);
+  if (variation.fibre_field && !field.fibre_directions.empty()) {
+    throw CaseError(kWhere, "specimen.material.fibre_field",
+                    "directions of fibres from the mesh, too: from_mesh, and its cell array 'fibre_direction'",
+                    "one of the two");
+  }
   const auto laid = mesh.cell_data.find(kLaidModulusArray);
   INCISE_REQUIRE(!variation.tumor_modulus_kpa || laid != mesh.cell_data.end(),
                  "expected a mesh on which lay_on_mesh has laid the tumour's stiffness");
@@ -81,6 +109,7 @@ MaterialField material_field(const TetMesh& mesh, const Material& material, cons
     throw CaseError(kWhere, "specimen.material.fibre_modulus_kpa", "0 kPa, so that the mesh's fibre_direction changes nothing",
                     "a number above 0", "Without fibres leave out from_mesh");
   }
+  if (variation.fibre_field) field.fibre_directions = directions_of(*variation.fibre_field, mesh);
   if (variation.labels.empty()) return field;
   const std::vector<double>& labels = labels_of(mesh, "specimen.material.labels");
   for (std::size_t i = 0; i < variation.labels.size(); ++i) {

@@ -245,6 +245,17 @@ TEST_F(FebioInput, ATitleWithControlCharactersAndHyphensStaysXml) {
   EXPECT_TRUE(std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 && c != '\t' && c != '\n'; }));
 }
 
+TEST_F(FebioInput, StiffeningTissueIsRefused) {
+  Material stiffening;
+  stiffening.model = MaterialModel::StableNeoHookean;
+  stiffening.stiffening = 0.469;
+  const TissueModel model = specimen(stiffening);
+  EXPECT_EQ(refused_field([&] {
+              return febio_input_xml({model, Vec3::Zero(), "", ""});
+            }),
+            "specimen.material.stiffening");
+}
+
 TEST_F(FebioInput, FibresAreRefused) {
   Material fibrous;
   fibrous.fibre_modulus_kpa = 30.0;

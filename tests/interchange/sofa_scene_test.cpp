@@ -161,6 +161,9 @@ TEST_F(SofaScene, WhatSofaCannotSayIsRefused) {
   field.youngs_modulus_kpa[0] = 7.0;
   const TissueModel varied = specimen(neo, testing::every_kind(), field);
   EXPECT_EQ(refused_field(scene(varied)), "specimen.material.model");
+  neo.stiffening = 0.469;
+  const TissueModel stiffening = specimen(neo);
+  EXPECT_EQ(refused_field(scene(stiffening)), "specimen.material.stiffening");
 }
 
 }  // namespace

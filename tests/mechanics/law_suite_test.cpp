@@ -31,6 +31,7 @@ struct LawCase {
   VolumeTreatment volume;
   bool has_fibres;
   bool is_viscous;
+  bool stiffens = false;
 };
 
 Material material_of(const LawCase& law) {
@@ -42,6 +43,8 @@ Material material_of(const LawCase& law) {
     material.fibre_modulus_kpa = 120.0;
     material.fibre_direction = Vec3(3.0, 1.0, -2.0);
   }
+  if (law.stiffens && law.has_fibres) material.fibre_stiffening = 8.0;
+  if (law.stiffens && law.model == MaterialModel::StableNeoHookean) material.stiffening = 0.8;
   if (law.is_viscous) {
     material.prony = {{0.8, 0.05}, {0.3, 1.0}};
     material.kelvin_voigt_time_s = 0.02;
@@ -340,19 +343,22 @@ constexpr auto kNeoHookean = MaterialModel::StableNeoHookean;
 constexpr auto kPerTet = VolumeTreatment::PerTet;
 constexpr auto kAveraged = VolumeTreatment::Averaged;
 
-INSTANTIATE_TEST_SUITE_P(Laws, EveryLaw,
-                         ::testing::Values(LawCase{"Corotational", kCorotational, kPerTet, false, false},
-                                           LawCase{"CorotationalFibres", kCorotational, kPerTet, true, false},
-                                           LawCase{"CorotationalAveraged", kCorotational, kAveraged, false, false},
-                                           LawCase{"CorotationalAveragedFibres", kCorotational, kAveraged, true, false},
-                                           LawCase{"CorotationalViscous", kCorotational, kPerTet, false, true},
-                                           LawCase{"NeoHookean", kNeoHookean, kPerTet, false, false},
-                                           LawCase{"NeoHookeanFibres", kNeoHookean, kPerTet, true, false},
-                                           LawCase{"NeoHookeanAveraged", kNeoHookean, kAveraged, false, false},
-                                           LawCase{"NeoHookeanAveragedFibres", kNeoHookean, kAveraged, true, false},
-                                           LawCase{"NeoHookeanAveragedFibresViscous", kNeoHookean, kAveraged, true,
-                                                   true}),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Laws, EveryLaw,
+    ::testing::Values(LawCase{"Corotational", kCorotational, kPerTet, false, false},
+                      LawCase{"CorotationalFibres", kCorotational, kPerTet, true, false},
+                      LawCase{"CorotationalAveraged", kCorotational, kAveraged, false, false},
+                      LawCase{"CorotationalAveragedFibres", kCorotational, kAveraged, true, false},
+                      LawCase{"CorotationalViscous", kCorotational, kPerTet, false, true},
+                      LawCase{"NeoHookean", kNeoHookean, kPerTet, false, false},
+                      LawCase{"NeoHookeanFibres", kNeoHookean, kPerTet, true, false},
+                      LawCase{"NeoHookeanAveraged", kNeoHookean, kAveraged, false, false},
+                      LawCase{"NeoHookeanAveragedFibres", kNeoHookean, kAveraged, true, false},
+                      LawCase{"NeoHookeanAveragedFibresViscous", kNeoHookean, kAveraged, true, true},
+                      LawCase{"CorotationalStiffeningFibres", kCorotational, kPerTet, true, false, true},
+                      LawCase{"NeoHookeanStiffening", kNeoHookean, kPerTet, false, false, true},
+                      LawCase{"NeoHookeanAveragedStiffeningFibresViscous", kNeoHookean, kAveraged, true, true, true}),
+    [](const auto& instance) { return std::string(instance.param.name); });
 
 }  // namespace
 }  // namespace incise

@@ -38,6 +38,24 @@ TEST(Material, NamesEveryViolation) {
                           HasSubstr("density_kg_m3: found nan")));
 }
 
+TEST(Material, StiffeningThatWouldNotActIsRefused) {
+  Material material;
+  EXPECT_THAT(validate(material), IsEmpty());
+  material.stiffening = 0.469;
+  material.fibre_stiffening = 5.0;
+  EXPECT_THAT(
+      sentences(validate(material)),
+      ElementsAre(HasSubstr("stiffening: found 0.469 with model corotational, expected 0, or model: stable_neo"),
+                  HasSubstr("fibre_stiffening: found 5 without fibres, expected 0, or fibre_modulus_kpa")));
+  material.model = MaterialModel::StableNeoHookean;
+  material.fibre_modulus_kpa = 10.0;
+  EXPECT_THAT(validate(material), IsEmpty());
+  material.stiffening = 101.0;
+  material.fibre_stiffening = -1.0;
+  EXPECT_THAT(sentences(validate(material)),
+              ElementsAre(HasSubstr("expected a number in [0, 100]"), HasSubstr("expected a number in [0, 1000]")));
+}
+
 TEST(Material, StiffnessAndDensityHaveARange) {
   Material material;
   for (const double e : {0.99e-6, 1.01e9, 1e300}) {

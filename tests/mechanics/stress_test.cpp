@@ -11,10 +11,10 @@ using testing::irregular_block;
 using testing::plane_x;
 using testing::some_rotation;
 
-const Vec3 kSize(20, 12, 9);
+const Vec3 kStressedMm(20, 12, 9);
 
-TissueModel block(const Material& material) {
-  return make_tissue_model(irregular_block(kSize, {2, 2, 2}, 0.2, 7), material, {FixedConstraint{plane_x(0.0)}});
+TissueModel stressed_block(const Material& material) {
+  return make_tissue_model(irregular_block(kStressedMm, {2, 2, 2}, 0.2, 7), material, {FixedConstraint{plane_x(0.0)}});
 }
 
 TissueState mapped(const TissueModel& model, const Mat3& f) {
@@ -31,7 +31,7 @@ double by_energy(const TissueModel& model, const Vec3& stretch) {
     const auto density = [&](double change) {
       Vec3 s = stretch;
       s[i] += change;
-      return elastic_energy_uj(model, mapped(model, s.asDiagonal())) / kSize.prod();
+      return elastic_energy_uj(model, mapped(model, s.asDiagonal())) / kStressedMm.prod();
     };
     sigma[i] = (density(1e-5) - density(-1e-5)) / 2e-5;
     if (model.material.model == MaterialModel::StableNeoHookean) sigma[i] *= stretch[i] / stretch.prod();
@@ -49,7 +49,7 @@ TEST(VonMises, FollowsFromTheEnergyForEveryLaw) {
         material.volume = volume;
         material.fibre_modulus_kpa = fibre_modulus;
         material.fibre_direction = Vec3::UnitX();  // a principal direction: the stress has no shear
-        const TissueModel model = block(material);
+        const TissueModel model = stressed_block(material);
         const Vec3 stretch(1.3, 0.85, 0.95);
         const TissueState state = mapped(model, some_rotation() * stretch.asDiagonal());
         const double expected = by_energy(model, stretch);
@@ -62,7 +62,7 @@ TEST(VonMises, FollowsFromTheEnergyForEveryLaw) {
 TEST(VonMises, IsZeroUnderPressureAlone) {
   Material material;
   material.model = MaterialModel::StableNeoHookean;
-  const TissueModel model = block(material);
+  const TissueModel model = stressed_block(material);
   for (const double found : von_mises_kpa(model, mapped(model, 0.9 * some_rotation()))) EXPECT_LT(found, 1e-10);
 }
 

@@ -340,10 +340,13 @@ TEST_F(CaseFileTest, AnIncisionNeedsATumorEdgeOrACurveAndADeformationDoesNot) {
 }
 
 TEST_F(CaseFileTest, EveryKeyOfTheMaterialIsRead) {
-  const CaseFile file = read("schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen:\n  mesh: block.msh\n  material:" + std::string(R"(
+  const CaseFile file = read(
+      "schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen:\n  mesh: block.msh\n  material:" + std::string(R"(
     model: stable_neo_hookean
     volume: averaged
+    stiffening: 0.469
     fibre_modulus_kpa: 30
+    fibre_stiffening: 2.5
     fibre_direction: [0, 3, 4]
     prony: [{shear_share: 0.5, time_s: 2}, {shear_share: 0.25, time_s: 20}]
     kelvin_voigt_time_s: 0.01
@@ -353,7 +356,10 @@ TEST_F(CaseFileTest, EveryKeyOfTheMaterialIsRead) {
   const Material& m = file.settings.material;
   EXPECT_EQ(m.model, MaterialModel::StableNeoHookean);
   EXPECT_EQ(m.volume, VolumeTreatment::Averaged);
+  EXPECT_EQ(m.stiffening, 0.469);
   EXPECT_EQ(m.fibre_modulus_kpa, 30.0);
+  EXPECT_EQ(m.fibre_stiffening, 2.5);
+  EXPECT_FALSE(file.settings.variation.fibre_field.has_value());
   EXPECT_LT((m.fibre_direction - Vec3(0.0, 0.6, 0.8)).norm(), 1e-15);
   ASSERT_EQ(m.prony.size(), 2U);
   EXPECT_EQ(m.prony[1].shear_share, 0.25);
@@ -384,6 +390,10 @@ TEST_F(CaseFileTest, AMaterialThatIsNoneIsRefusedNamingItsField) {
       {"volume: mean", "specimen.material.volume"},
       {"fibre_modulus_kpa: -1", "specimen.material.fibre_modulus_kpa"},
       {"fibre_direction: [0, 0, 0]", "specimen.material.fibre_direction"},
+      {"stiffening: 0.469", "specimen.material.stiffening: found 0.469 with model corotational"},
+      {"model: stable_neo_hookean, stiffening: 101", "specimen.material.stiffening: found 101, expected a number in"},
+      {"fibre_stiffening: 5", "specimen.material.fibre_stiffening: found 5 without fibres"},
+      {"fibre_modulus_kpa: 9, fibre_stiffening: -1", "specimen.material.fibre_stiffening: found -1"},
       {"prony: {shear_share: 1, time_s: 1}", "specimen.material.prony"},
       {"prony: [{shear_share: 1}]", "no `time_s`"},
       {"prony: [{shear_share: 0, time_s: 1}]", "specimen.material.prony[0].shear_share"},
@@ -395,6 +405,48 @@ TEST_F(CaseFileTest, AMaterialThatIsNoneIsRefusedNamingItsField) {
       {"labels: [{label: 1, poissons_ratio: 0.5}]", "specimen.material.labels[0].poissons_ratio"},
       {"labels: [{label: 1}]", "label 1 without a value"},
       {"labels: [{label: 1, youngs_modulus_kpa: 7}, {label: 1, youngs_modulus_kpa: 8}]", "specimen.material.labels[1]"},
+  };
+  for (const auto& [text, words] : bad) EXPECT_THAT(refusal(with(text)), HasSubstr(words)) << text;
+}
+
+TEST_F(CaseFileTest, TheRegionsOfAFibreFieldAreReadAndListed) {
+  const CaseFile file = read("schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen:\n  mesh: block.msh\n" +
+                             std::string(R"(  material:
+    fibre_modulus_kpa: 30
+    fibre_field:
+      from: {end: {direction: posterior, within_mm: 6}}
+      to: {patch: {path_mm: [[1, 2, 3], [4, 5, 6]], radius_mm: 2.5}}
+)"));
+  ASSERT_TRUE(file.settings.variation.fibre_field);
+  const FibreField& field = *file.settings.variation.fibre_field;
+  EXPECT_EQ(std::get<EndRegion>(field.from).direction, Vec3(0, 1, 0));
+  EXPECT_EQ(std::get<EndRegion>(field.from).within_mm, 6.0);
+  EXPECT_EQ(std::get<PatchRegion>(field.to).path_mm, (Points{Vec3(1, 2, 3), Vec3(4, 5, 6)}));
+  EXPECT_EQ(std::get<PatchRegion>(field.to).radius_mm, 2.5);
+  const auto settings = settings_by_key(file);
+  EXPECT_EQ(settings.at("specimen.material.fibre_field.from.end.within_mm"), "6");
+  EXPECT_EQ(settings.at("specimen.material.fibre_field.to.patch.radius_mm"), "2.5");
+}
+
+TEST_F(CaseFileTest, AFibreFieldThatIsNoneIsRefusedNamingItsField) {
+  const auto with = [](const std::string& material) {
+    return "schema: incise.case/1\ntumor: {contour: tumor.csv}\nspecimen: {mesh: block.msh, material: {" + material +
+           "}}\n";
+  };
+  const std::string end = "{end: {direction: posterior, within_mm: 6}}";
+  const std::pair<std::string, const char*> bad[] = {
+      {"fibre_field: {from: " + end + ", to: " + end + "}", "specimen.material.fibre_modulus_kpa: found 0 kPa"},
+      {"fibre_modulus_kpa: 9, fibre_field: {from: " + end + "}", "specimen.material.fibre_field: found no `to`"},
+      {"fibre_modulus_kpa: 9, fibre_field: {to: " + end + "}", "expected the region where the fibres begin"},
+      {"fibre_modulus_kpa: 9, fibre_field: {}", "specimen.material.fibre_field: found no `from`"},
+      {"fibre_modulus_kpa: 9, fibre_field: along", "specimen.material.fibre_field: found 'along'"},
+      {"fibre_modulus_kpa: 9, fibre_field: {from: {}, to: " + end + "}",
+       "specimen.material.fibre_field.from: found an empty group"},
+      {"fibre_modulus_kpa: 9, fibre_field: {from: {end: {direction: posterior}}, to: " + end + "}",
+       "specimen.material.fibre_field.from.end: found no `within_mm`"},
+      {"fibre_modulus_kpa: 9, fibre_field: {from: " + end + ", to: {end: {direction: up, within_mm: 6}}}",
+       "specimen.material.fibre_field.to.end.direction: found 'up'"},
+      {"fibre_modulus_kpa: 9, fibre_field: {from: " + end + ", to: " + end + ", via: " + end + "}", "an unknown key"},
   };
   for (const auto& [text, words] : bad) EXPECT_THAT(refusal(with(text)), HasSubstr(words)) << text;
 }
@@ -627,6 +679,18 @@ TEST(CaseSchema, DefaultsHaveTheShapeThatTheSchemaAsksFor) {
       EXPECT_TRUE(value.is_string()) << line.key;
     }
   }
+}
+
+TEST(CaseSchema, AFibreFieldNeedsBothOfItsRegionsAndHasNoDefaults) {
+  const Json schema = Json::parse(case_schema_json());
+  const Json& field = *schema_of(schema, "specimen.material.fibre_field");
+  EXPECT_EQ(field.at("required"), Json({"from", "to"}));
+  EXPECT_EQ(field.dump().find("default"), std::string::npos);
+  EXPECT_EQ(field.dump().find("null"), std::string::npos);
+  const Json& end = field.at("properties").at("to").at("properties").at("end");
+  EXPECT_EQ(end.at("required"), Json({"direction", "within_mm"}));
+  const Json& material = *schema_of(schema, "specimen.material");
+  EXPECT_FALSE(material.contains("required")) << "a case may be without";
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include <incise/core/cache.hpp>
 #include <incise/core/error.hpp>
 #include <incise/workflow/study.hpp>
 
@@ -88,6 +89,100 @@ TEST(MaterialField, RefusesDirectionsOfFibresThatHaveNoStiffness) {
   Material with_fibres;
   with_fibres.fibre_modulus_kpa = 30.0;
   EXPECT_EQ(material_field(mesh, with_fibres, from_mesh).fibre_directions.size(), 12U);
+}
+
+/// Fibres from the end at x = 0 to that at x = 20.
+MaterialVariation along_the_block() {
+  MaterialVariation variation;
+  variation.fibre_field = {EndRegion{-Vec3::UnitX(), 0.1}, EndRegion{Vec3::UnitX(), 0.1}};
+  return variation;
+}
+
+TEST(MaterialField, HasTheDirectionsOfItsFibreField) {
+  Material fibrous;
+  fibrous.fibre_modulus_kpa = 30.0;
+  const MaterialField field = material_field(labelled_block(), fibrous, along_the_block());
+  ASSERT_EQ(field.fibre_directions.size(), 12U);
+  for (const Vec3& direction : field.fibre_directions) EXPECT_LT((direction - Vec3::UnitX()).norm(), 1e-8);
+  EXPECT_THAT(field.youngs_modulus_kpa, IsEmpty());
+}
+
+TEST(MaterialField, RefusesAFibreFieldThatWouldNotActOrIsNotAlone) {
+  EXPECT_THAT(refusal(labelled_block(), along_the_block()),
+              AllOf(HasSubstr("specimen.material.fibre_modulus_kpa: found 0 kPa, so that fibre_field changes nothing"),
+                    HasSubstr("above 0")));
+  EXPECT_EQ(validate(Material{}, along_the_block()).size(), 1U);
+  Material fibrous;
+  fibrous.fibre_modulus_kpa = 30.0;
+  EXPECT_THAT(validate(fibrous, along_the_block()), IsEmpty());
+  const auto refusal_of_fibrous = [&](const TetMesh& mesh, const MaterialVariation& variation) -> std::string {
+    try {
+      static_cast<void>(material_field(mesh, fibrous, variation));
+    } catch (const CaseError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  TetMesh mesh = labelled_block();
+  MaterialVariation both = along_the_block();
+  both.from_mesh = true;
+  mesh.cell_data["youngs_modulus_kpa"] = {1, std::vector<double>(12, 30.0)};
+  EXPECT_EQ(refusal_of_fibrous(mesh, both), "accepted") << "from_mesh alone gives no directions";
+  mesh.cell_data["fibre_direction"] = {3, std::vector<double>(36, 1.0)};
+  EXPECT_THAT(refusal_of_fibrous(mesh, both),
+              AllOf(HasSubstr("specimen.material.fibre_field: found directions of fibres"),
+                    HasSubstr("expected one of the two")));
+  MaterialVariation beside = along_the_block();
+  beside.fibre_field->to = PlaneRegion{Vec3(50, 0, 0), Vec3::UnitX(), std::nullopt};
+  EXPECT_THAT(refusal_of_fibrous(labelled_block(), beside),
+              HasSubstr("specimen.material.fibre_field.to: found a region without any vertex of the mesh"));
+}
+
+TEST(TissueOf, HasTheFibresOfTheCase) {
+  Case settings;
+  settings.constraints = std::vector<Constraint>{FixedConstraint{EndRegion{Vec3::UnitX(), 1.0}}};
+  settings.material.fibre_modulus_kpa = 30.0;
+  settings.material.fibre_stiffening = 4.0;
+  settings.variation = along_the_block();
+  const TissueModel model = tissue_of(settings, labelled_block());
+  ASSERT_EQ(model.fibres.size(), 12U);
+  for (const Vec3& fibre : model.fibres) EXPECT_LT((fibre - Vec3::UnitX()).norm(), 1e-8) << "in place of y";
+}
+
+/// The mesh for the cut is made round where a coarse one says that the cut lies: its fibres count, too.
+TEST(MeshAroundPlannedCut, TakesTheFibreFieldOnItsSurveyMesh) {
+  Case settings;
+  settings.meshing.survey_mm = 8.0;
+  settings.material.fibre_modulus_kpa = 30.0;
+  settings.variation.fibre_field = {EndRegion{Vec3::UnitY(), 5.0},
+                                    PlaneRegion{Vec3(0, -40, 0), -Vec3::UnitY(), std::nullopt}};
+  GrayVolume occupancy;  // 24 x 44 x 10 mm
+  occupancy.grid.size = {28, 48, 14};
+  occupancy.grid.origin_mm = Vec3::Constant(-2.0);
+  for (std::size_t v = 0; v < occupancy.grid.voxel_count(); ++v) {
+    const auto [i, j, k] = occupancy.grid.voxel_at(v);
+    const bool is_tissue = i >= 2 && i < 26 && j >= 2 && j < 46 && k >= 2 && k < 12;
+    occupancy.voxels.push_back(is_tissue ? 1.0F : 0.0F);
+  }
+  Workers workers(1);
+  Monitor silent;
+  try {
+    static_cast<void>(mesh_around_planned_cut(settings, occupancy, std::nullopt, std::nullopt, workers, silent));
+    FAIL() << "expected a CaseError";
+  } catch (const CaseError& error) {
+    EXPECT_EQ(error.field(), "specimen.material.fibre_field.to");
+  }
+}
+
+/// Stages are kept under a key of the settings.
+TEST(MaterialVariation, ChangesTheKeyOfAStageByWhereItsFibresRun) {
+  const auto key = [](const MaterialVariation& variation) { return CacheKey("mesh").add(variation).digest(); };
+  const MaterialVariation along = along_the_block();
+  MaterialVariation other = along;
+  EXPECT_EQ(key(along), key(other));
+  std::get<EndRegion>(other.fibre_field->to).within_mm = 0.2;
+  EXPECT_NE(key(along), key(other));
+  EXPECT_NE(key(along), key({}));
 }
 
 TEST(MaterialField, RefusesCellDataThatAreNoMaterial) {

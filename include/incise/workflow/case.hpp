@@ -9,6 +9,7 @@
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/imaging/segmentation.hpp>
 #include <incise/mechanics/constraints.hpp>
+#include <incise/mechanics/fibre_field.hpp>
 #include <incise/mechanics/material.hpp>
 #include <incise/planning/plan_path.hpp>
 
@@ -63,6 +64,7 @@ inline void describe(Visitor& v, LabelMaterial& m) {
 struct MaterialVariation {
   bool from_mesh = false;             ///< cell data youngs_modulus_kpa, poissons_ratio, fibre_direction (those that are there)
   std::optional<double> tumor_modulus_kpa;  ///< Young's modulus in the tumour's surface; absent: as elsewhere
+  std::optional<FibreField> fibre_field;    ///< absent: directions are the mesh's or the material's
   std::vector<LabelMaterial>
       labels;  ///< laid over the others; tets with a label that is not listed keep what they have
 };
@@ -73,6 +75,9 @@ inline void describe(Visitor& v, MaterialVariation& m) {
   v({"tumor_modulus_kpa",
      "Young's modulus within tumor.surface, which is drawn on the tissue as scanned; absent: as elsewhere.", "kPa"},
     m.tumor_modulus_kpa, kYoungsModulusLimits);
+  v("fibre_field", m.fibre_field,
+    "Fibres run from one region to another, through the body at rest; regions as in constraints. Absent: along "
+    "fibre_direction.");
   v("labels", m.labels,
     "Parts with another stiffness, by the mesh's cell array 'label' or by ct.labels; absent: none.");
 }
@@ -162,11 +167,15 @@ struct Case {
 /// The cell array of Young's modulus that lay_on_mesh (material_sources.hpp) lays on a mesh, kPa.
 inline constexpr const char* kLaidModulusArray = "laid_modulus_kpa";
 
+/// Of the material and what varies in it: every number out of its range, and what would not act.
+[[nodiscard]] std::vector<Problem> validate(const Material& material, const MaterialVariation& variation);
+
 /// The material of each tet, as far as the study lets it vary; nothing does: empty lists. What was laid on the mesh
 /// holds over what it carries, and labels over both.
 /// @throws InvalidArgument for a stiff tumour that was not laid on the mesh;
 /// @throws CaseError (field specimen.material.from_mesh or .labels[i]) when the mesh does not carry what the study asks
-/// for.
+/// for; (.fibre_field…) when it has fibres already, or the field's regions do not fit the mesh (fibre_directions), or
+/// its potential does not converge.
 [[nodiscard]] MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation);
 
 /// The toughness of each tet, as far as the study lets it vary; it does not: an empty list.

@@ -50,7 +50,9 @@ const kLabels = {
   "specimen.material.youngs_modulus_kpa": {label: "Young's modulus"},
   "specimen.material.poissons_ratio": {label: "Poisson's ratio"},
   "specimen.material.density_kg_m3": {label: "Density"},
+  "specimen.material.stiffening": {label: "Stiffening of the tissue"},
   "specimen.material.fibre_modulus_kpa": {label: "Fibre stiffness"},
+  "specimen.material.fibre_stiffening": {label: "Stiffening of the fibres"},
   "specimen.material.kelvin_voigt_time_s": {label: "Viscosity"},
   "plan.lateral_margin_mm": {hint: "From the tumour's edge to the middle of the cut."},
   "plan.depth_mm": {hint: "Of the tool's tip below the skin."},
@@ -105,10 +107,12 @@ export function rowsOf(group) {
   return Object.entries(valueAt(settings, group) || {})
     .map(([name, value]) => [`${group}.${name}`, value])
     .filter(([key, value]) => !(key in inputs) && isSimple(value) && (Boolean(unitOf(key)) || !hasUnitInName(key)))
+    .filter(([key]) => !kGroupsThatMayBeAbsent.includes(key))
     .filter(([key]) => (hasMesh || !key.endsWith("from_mesh")) && (isBlade || !kOfBlade.includes(key)))
     .map(([key]) => key);
 }
 
+const kGroupsThatMayBeAbsent = ["specimen.material.fibre_field"];
 const kOfBlade = ["tool.thickness_mm", "tool.width_mm"];
 
 // Whether one input can hold a value.

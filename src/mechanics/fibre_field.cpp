@@ -1,0 +1,221 @@
+#include "mechanics/shape_gradients.hpp"
+#include "mechanics/vector_text.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
+#include <incise/mechanics/fibre_field.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+namespace incise {
+namespace {
+
+constexpr const char* kField = "specimen.material.fibre_field";
+/// Of the residual. Gradients of a flat potential are then noise far below kLeastGradient.
+constexpr double kTolerance = 1e-12;
+/// Share of the body's mean gradient below which the potential counts as flat.
+constexpr double kLeastGradient = 1e-6;
+
+/// The vertices of one of the two regions.
+std::vector<VertexId> selected(const TetMesh& mesh, const Region& region, const char* name) {
+  const std::string field = fmt::format("{}.{}", kField, name);
+  std::vector<VertexId> vertices;
+  try {
+    vertices = select(mesh, region);
+  } catch (const InvalidArgument& problem) {
+    throw CaseError("case", field, "an unusable region", "one that can be applied to this mesh", problem.as_hint());
+  }
+  if (!vertices.empty()) return vertices;
+  const Box3 box = bounding_box(mesh.vertices);
+  throw CaseError("case", field, "a region without any vertex of the mesh", "one with at least one vertex",
+                  fmt::format("The mesh fills the box {} to {} mm", text_of(box.min()), text_of(box.max())));
+}
+
+void require_disjoint(const TetMesh& mesh, std::span<const VertexId> from, std::span<const VertexId> to) {
+  std::vector<std::uint8_t> is_from(mesh.vertices.size(), 0);
+  for (const VertexId v : from) is_from[v.index()] = 1;
+  const auto common = std::find_if(to.begin(), to.end(), [&](VertexId v) { return is_from[v.index()] != 0; });
+  if (common == to.end()) return;
+  throw CaseError(
+      "case", fmt::format("{}.to", kField),
+      fmt::format("vertex {} at {} mm, which `from` has, too", common->value, text_of(mesh.vertices[common->index()])),
+      "two regions apart from each other", "Make one of them smaller");
+}
+
+/// Laplace's equation for the potential of the vertices: some have theirs, the others find it.
+class Potential {
+ public:
+  Potential(const TetMesh& mesh, std::span<const VertexId> from, std::span<const VertexId> to)
+      : mesh_(mesh), values_(mesh.vertices.size(), 0.0), unknown_(mesh.vertices.size(), 0) {
+    constexpr std::int32_t kHeld = -1;
+    for (const VertexId v : from) unknown_[v.index()] = kHeld;
+    for (const VertexId v : to) {
+      unknown_[v.index()] = kHeld;
+      values_[v.index()] = 1.0;
+    }
+    std::int32_t count = 0;
+    for (std::int32_t& place : unknown_) {
+      if (place != kHeld) place = count++;
+    }
+    load_ = Eigen::VectorXd::Zero(count);
+  }
+
+  void solve(int most_iterations, FibreDirections& result) {
+    if (load_.size() == 0) return;
+    const Eigen::SparseMatrix<double> matrix = assembled();
+    Eigen::ConjugateGradient<Eigen::SparseMatrix<double>, Eigen::Lower> solver;
+    solver.setTolerance(kTolerance);
+    solver.setMaxIterations(most_iterations);
+    solver.compute(matrix);
+    const Eigen::VectorXd found = solver.solve(load_);
+    result.iterations = static_cast<int>(solver.iterations());
+    result.residual = solver.error();
+    // A residual that is not a number compares as not converged.
+    if (!(result.residual <= kTolerance) || !found.allFinite()) result.outcome = Outcome::NotConverged;
+    for (std::size_t v = 0; v < values_.size(); ++v) {
+      if (unknown_[v] >= 0) values_[v] = found[unknown_[v]];
+    }
+  }
+
+  /// 1/mm. The constant part is taken off first, so that a potential that does not change has the gradient 0.
+  [[nodiscard]] Vec3 gradient(std::size_t t, const ShapeGradients& shape) const {
+    const Tet& tet = mesh_.tets[t];
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 1; c < 4; ++c) sum += (values_[tet[c].index()] - values_[tet[0].index()]) * shape.gradients[c];
+    return sum;
+  }
+
+ private:
+  /// The matrix of the unknown vertices, lower half; the known ones go to the load.
+  Eigen::SparseMatrix<double> assembled() {
+    std::vector<Eigen::Triplet<double, std::int32_t>> entries;
+    entries.reserve(10 * mesh_.tets.size());
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+      const ShapeGradients shape = shape_gradients(mesh_, t);
+      for (std::size_t a = 0; a < 4; ++a) {
+        const std::size_t row_vertex = mesh_.tets[t][a].index();
+        const std::int32_t row = unknown_[row_vertex];
+        if (row < 0) continue;
+        for (std::size_t b = 0; b < 4; ++b) {
+          const std::size_t column_vertex = mesh_.tets[t][b].index();
+          const std::int32_t column = unknown_[column_vertex];
+          const double conductance = shape.volume_mm3 * shape.gradients[a].dot(shape.gradients[b]);
+          if (column < 0) {
+            load_[row] -= conductance * values_[column_vertex];
+          } else if (column <= row) {
+            entries.emplace_back(row, column, conductance);
+          }
+        }
+      }
+    }
+    Eigen::SparseMatrix<double> matrix(load_.size(), load_.size());
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+  }
+
+  const TetMesh& mesh_;
+  std::vector<double> values_;
+  std::vector<std::int32_t> unknown_;  ///< the place of each vertex among the unknown ones; negative: held
+  Eigen::VectorXd load_;
+};
+
+constexpr std::int32_t kSkin = -1;
+
+/// The tets across the faces of each tet.
+std::vector<std::array<std::int32_t, 4>> neighbours_of(const TetMesh& mesh) {
+  struct Side {
+    Triangle corners;
+    std::int32_t tet;
+    int face;
+  };
+  std::vector<Side> sides;
+  sides.reserve(4 * mesh.tets.size());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    for (int face = 0; face < 4; ++face) {
+      Triangle corners = face_of(mesh.tets[t], face);
+      std::sort(corners.begin(), corners.end());
+      sides.push_back({corners, static_cast<std::int32_t>(t), face});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.corners < b.corners; });
+  std::vector<std::array<std::int32_t, 4>> neighbours(mesh.tets.size(), {kSkin, kSkin, kSkin, kSkin});
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Side& a = sides[i - 1];
+    const Side& b = sides[i];
+    if (a.corners != b.corners) continue;
+    neighbours[static_cast<std::size_t>(a.tet)][static_cast<std::size_t>(a.face)] = b.tet;
+    neighbours[static_cast<std::size_t>(b.tet)][static_cast<std::size_t>(b.face)] = a.tet;
+  }
+  return neighbours;
+}
+
+/// Gives flat tets the mean direction of those neighbours that have one, by volume, layer after layer. A fibre has no
+/// sense: each neighbour's direction is turned to the side of the first, so that the mean is never zero.
+void spread(const TetMesh& mesh, std::span<const double> volumes_mm3, std::vector<std::size_t> flat,
+            std::vector<Vec3>& directions) {
+  const std::vector<std::array<std::int32_t, 4>> neighbours = neighbours_of(mesh);
+  std::vector<std::uint8_t> has_direction(mesh.tets.size(), 1);
+  for (const std::size_t t : flat) has_direction[t] = 0;
+  while (!flat.empty()) {
+    std::vector<std::size_t> done;
+    for (const std::size_t t : flat) {
+      Vec3 sum = Vec3::Zero();
+      for (const std::int32_t neighbour : neighbours[t]) {
+        if (neighbour == kSkin || has_direction[static_cast<std::size_t>(neighbour)] == 0) continue;
+        const Vec3& own = directions[static_cast<std::size_t>(neighbour)];
+        sum += (own.dot(sum) < 0.0 ? -1.0 : 1.0) * volumes_mm3[static_cast<std::size_t>(neighbour)] * own;
+      }
+      if (sum.isZero(0.0)) continue;
+      directions[t] = sum.normalized();
+      done.push_back(t);
+    }
+    INCISE_REQUIRE(!done.empty(), "expected tets that are joined by their faces");
+    for (const std::size_t t : done) has_direction[t] = 1;
+    std::erase_if(flat, [&](std::size_t t) { return has_direction[t] != 0; });
+  }
+}
+
+}  // namespace
+
+FibreDirections fibre_directions(const TetMesh& mesh, const FibreField& field, int most_iterations) {
+  INCISE_REQUIRE(find_problems(mesh).empty(), "expected a sound mesh");
+  const std::vector<VertexId> from = selected(mesh, field.from, "from");
+  const std::vector<VertexId> to = selected(mesh, field.to, "to");
+  require_disjoint(mesh, from, to);
+
+  FibreDirections result;
+  Potential potential(mesh, from, to);
+  potential.solve(most_iterations, result);
+  if (result.outcome != Outcome::Success) return result;
+
+  std::vector<double> volumes_mm3(mesh.tets.size());
+  result.directions.resize(mesh.tets.size());
+  double sum = 0.0, volume_mm3 = 0.0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const ShapeGradients shape = shape_gradients(mesh, t);
+    result.directions[t] = potential.gradient(t, shape);
+    volumes_mm3[t] = shape.volume_mm3;
+    volume_mm3 += shape.volume_mm3;
+    sum += shape.volume_mm3 * result.directions[t].norm();
+  }
+  const double least = kLeastGradient * sum / volume_mm3;
+  std::vector<std::size_t> flat;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    if (result.directions[t].norm() < least) {
+      flat.push_back(t);
+    } else {
+      result.directions[t].normalize();
+    }
+  }
+  result.flat_tets = flat.size();
+  spread(mesh, volumes_mm3, std::move(flat), result.directions);
+  return result;
+}
+
+}  // namespace incise
