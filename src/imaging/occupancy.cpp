@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -24,7 +25,7 @@ VolumeGrid in_voxels(VolumeGrid grid) {
 }
 
 // Mean HU of the chosen voxels near every voxel; NaN where there are none.
-std::vector<float> local_mean(const CtVolume& hu, const std::vector<std::uint8_t>& chosen) {
+std::vector<float> local_mean(const CtVolume& hu, const std::vector<std::uint8_t>& chosen, Workers& workers) {
   const VolumeGrid grid = in_voxels(hu.grid);
   GrayVolume weight{grid, std::vector<float>(chosen.size())};
   GrayVolume sum{grid, std::vector<float>(chosen.size())};
@@ -32,8 +33,8 @@ std::vector<float> local_mean(const CtVolume& hu, const std::vector<std::uint8_t
     weight.voxels[v] = chosen[v] != 0 ? 1.0F : 0.0F;
     sum.voxels[v] = chosen[v] != 0 ? static_cast<float>(hu.voxels[v]) : 0.0F;
   }
-  weight = gaussian(std::move(weight), kMeanRadius);
-  sum = gaussian(std::move(sum), kMeanRadius);
+  weight = gaussian(std::move(weight), kMeanRadius, workers);
+  sum = gaussian(std::move(sum), kMeanRadius, workers);
   for (std::size_t v = 0; v < chosen.size(); ++v)
     sum.voxels[v] =
         weight.voxels[v] > kLeastWeight ? sum.voxels[v] / weight.voxels[v] : std::numeric_limits<float>::quiet_NaN();
@@ -66,7 +67,7 @@ struct Surroundings {
 };
 
 Surroundings find_surroundings(const CtVolume& hu, const Mask& body, const GrayVolume& to_body,
-                               const GrayVolume& to_outside, const SegmentationSettings& settings) {
+                               const GrayVolume& to_outside, const SegmentationSettings& settings, Workers& workers) {
   const std::size_t count = hu.voxels.size();
   std::vector<std::uint8_t> inside(count), low(count), high(count);
   for (std::size_t v = 0; v < count; ++v) {
@@ -79,7 +80,7 @@ Surroundings find_surroundings(const CtVolume& hu, const Mask& body, const GrayV
     low[v] = around && value < settings.window_low_hu;
     high[v] = around && value > settings.window_high_hu;
   }
-  return {local_mean(hu, inside), local_mean(hu, low), local_mean(hu, high)};
+  return {local_mean(hu, inside, workers), local_mean(hu, low, workers), local_mean(hu, high, workers)};
 }
 
 // Share of tissue in a voxel of gray value `hu` between pure tissue and pure surroundings; `otherwise` if they look
@@ -92,11 +93,11 @@ float share(float hu, float inside, float outside, float otherwise) {
 }  // namespace
 
 GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mask& body,
-                               const SegmentationSettings& settings) {
+                               const SegmentationSettings& settings, Workers& workers) {
   const Mask body_in_voxels{in_voxels(body.grid), body.voxels};
-  const GrayVolume to_body = distance_to(body_in_voxels);
-  const GrayVolume to_outside = distance_to(complement(body_in_voxels));
-  const Surroundings near = find_surroundings(hu, body, to_body, to_outside, settings);
+  const GrayVolume to_body = distance_to(body_in_voxels, workers);
+  const GrayVolume to_outside = distance_to(complement(body_in_voxels), workers);
+  const Surroundings near = find_surroundings(hu, body, to_body, to_outside, settings, workers);
 
   GrayVolume occupancy{hu.grid, std::vector<float>(hu.voxels.size(), 0.0F)};
   for (int k = 0; k < hu.grid.size[2]; ++k)
@@ -123,39 +124,57 @@ GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mas
   return occupancy;
 }
 
-double iso_volume_mm3(const GrayVolume& values, double level) {
-  constexpr int kSamples = 6;  // along each edge of a cell that the surface crosses
+namespace {
+
+constexpr int kSamples = 6;  // along each edge of a cell that the surface crosses
+
+/// How many of the samples in a cell have at least the level.
+int samples_within(const std::array<double, 8>& corner, double level) {
+  int count = 0;
+  for (int c = 0; c < kSamples; ++c)
+    for (int b = 0; b < kSamples; ++b) {
+      const double z = (c + 0.5) / kSamples;
+      const double y = (b + 0.5) / kSamples;
+      const auto at_x = [&](std::size_t x) {
+        return (1 - z) * ((1 - y) * corner[x] + y * corner[x + 2]) + z * ((1 - y) * corner[x + 4] + y * corner[x + 6]);
+      };
+      const double first = at_x(0);
+      const double last = at_x(1);
+      for (int a = 0; a < kSamples; ++a) count += first + (last - first) * (a + 0.5) / kSamples >= level ? 1 : 0;
+    }
+  return count;
+}
+
+}  // namespace
+
+double iso_volume_mm3(const GrayVolume& values, double level, Workers& workers) {
   const VolumeGrid& grid = values.grid;
-  std::size_t whole = 0;
-  std::size_t samples = 0;
-  for (int k = 0; k + 1 < grid.size[2]; ++k)
-    for (int j = 0; j + 1 < grid.size[1]; ++j)
+  const auto layers = static_cast<std::size_t>(std::max(0, grid.size[2] - 1));
+  std::vector<std::size_t> whole(layers, 0), samples(layers, 0);
+  workers.for_each(layers, 1, [&](std::size_t layer) {
+    const int k = static_cast<int>(layer);
+    for (int j = 0; j + 1 < grid.size[1]; ++j) {
+      std::array<const float*, 4> rows{};  // of the corners (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)
+      for (int r = 0; r < 4; ++r)
+        rows[static_cast<std::size_t>(r)] = values.voxels.data() + grid.offset(0, j + (r & 1), k + (r >> 1));
       for (int i = 0; i + 1 < grid.size[0]; ++i) {
-        std::array<double, 8> corner;
-        for (int c = 0; c < 8; ++c)
-          corner[static_cast<std::size_t>(c)] = values.at(i + (c & 1), j + ((c >> 1) & 1), k + ((c >> 2) & 1));
-        const auto [least, greatest] = std::minmax_element(corner.begin(), corner.end());
-        if (*greatest < level) continue;
-        if (*least >= level) {
-          ++whole;
+        int within = 0;
+        for (const float* row : rows) within += (row[i] >= level ? 1 : 0) + (row[i + 1] >= level ? 1 : 0);
+        if (within == 0) continue;
+        if (within == 8) {
+          ++whole[layer];
           continue;
         }
-        for (int c = 0; c < kSamples; ++c)
-          for (int b = 0; b < kSamples; ++b) {
-            const double z = (c + 0.5) / kSamples;
-            const double y = (b + 0.5) / kSamples;
-            const auto at_x = [&](std::size_t x) {
-              return (1 - z) * ((1 - y) * corner[x] + y * corner[x + 2]) +
-                     z * ((1 - y) * corner[x + 4] + y * corner[x + 6]);
-            };
-            const double first = at_x(0);
-            const double last = at_x(1);
-            for (int a = 0; a < kSamples; ++a)
-              samples += first + (last - first) * (a + 0.5) / kSamples >= level ? 1 : 0;
-          }
+        std::array<double, 8> corner{};
+        for (std::size_t c = 0; c < 8; ++c) corner[c] = rows[c / 2][static_cast<std::size_t>(i) + c % 2];
+        samples[layer] += static_cast<std::size_t>(samples_within(corner, level));
       }
-  return grid.voxel_volume_mm3() *
-         (static_cast<double>(whole) + static_cast<double>(samples) / (kSamples * kSamples * kSamples));
+    }
+  });
+  const auto sum = [](const std::vector<std::size_t>& of) {
+    return static_cast<double>(std::accumulate(of.begin(), of.end(), std::size_t{0}));
+  };
+  return grid.voxel_volume_mm3() * (sum(whole) + sum(samples) / (kSamples * kSamples * kSamples));
 }
 
 }  // namespace incise

@@ -215,7 +215,8 @@ Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor) {
   GrayVolume ideal = mix(tissue_share(phantom.shape, grid, monitor), board, texture, settings);
   monitor.progress(kPhantomStage, 0.7);
   throw_if_cancelled(monitor, kPhantomStage);
-  ideal = gaussian(std::move(ideal), settings.blur_mm);
+  Workers alone(1);
+  ideal = gaussian(std::move(ideal), settings.blur_mm, alone);
   phantom.ct = scan(ideal, settings, random);
   monitor.progress(kPhantomStage, 1.0);
   return phantom;

@@ -38,9 +38,9 @@ void require_sound_volume(const CtVolume& ct) {
 }
 
 // Voxels of a mask that a ball around them keeps inside the mask.
-Mask erode(const Mask& mask, double radius_mm) {
+Mask erode(const Mask& mask, double radius_mm, Workers& workers) {
   if (radius_mm == 0.0) return mask;
-  const GrayVolume depth = distance_to(complement(mask));
+  const GrayVolume depth = distance_to(complement(mask), workers);
   Mask core{mask.grid, std::vector<std::uint8_t>(mask.voxels.size())};
   for (std::size_t v = 0; v < core.voxels.size(); ++v) core.voxels[v] = depth.voxels[v] > radius_mm ? 1 : 0;
   return core;
@@ -48,9 +48,9 @@ Mask erode(const Mask& mask, double radius_mm) {
 
 // The balls around the voxels of an eroded set: they fill the opened set and, by its definition, stay inside the
 // original.
-Mask grow_back(Mask core, double radius_mm) {
+Mask grow_back(Mask core, double radius_mm, Workers& workers) {
   if (radius_mm == 0.0) return core;
-  const GrayVolume distance = distance_to(core);
+  const GrayVolume distance = distance_to(core, workers);
   for (std::size_t v = 0; v < core.voxels.size(); ++v) core.voxels[v] = distance.voxels[v] <= radius_mm ? 1 : 0;
   return core;
 }
@@ -129,10 +129,10 @@ Vec3 middle_of(const Mask& mask) {
 
 /// Which of two bodies is the specimen cannot be seen from their sizes where these are alike.
 void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, const SegmentationSettings& settings,
-                Segmentation& result) {
+                Workers& workers, Segmentation& result) {
   const std::int32_t second = second_largest(pieces, chosen);
   if (second == 0) return;
-  const Mask rival = grow_back(piece_of(pieces, second), settings.opening_radius_mm);
+  const Mask rival = grow_back(piece_of(pieces, second), settings.opening_radius_mm, workers);
   const double kept_mm3 = volume_mm3(body), rival_mm3 = volume_mm3(rival), share = rival_mm3 / kept_mm3;
   if (share < kLeastRivalShare) return;
   const Vec3 kept = middle_of(body), other = middle_of(rival);
@@ -146,16 +146,16 @@ void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, con
 }
 
 Mask find_body(const WorkingVolume& work, const std::vector<std::size_t>& seeds, const SegmentationSettings& settings,
-               Segmentation& result) {
-  const Pieces pieces = find_pieces(erode(work.in_window, settings.opening_radius_mm));
+               Workers& workers, Segmentation& result) {
+  const Pieces pieces = find_pieces(erode(work.in_window, settings.opening_radius_mm, workers));
   if (pieces.count == 0)
     throw CaseError("segmentation", "opening_radius_mm",
                     fmt::format("{:g}, which leaves nothing", settings.opening_radius_mm),
                     "a radius smaller than half the specimen's thickness");
   result.components = static_cast<std::size_t>(pieces.count);
   const std::int32_t chosen = choose_piece(pieces, seeds, settings);
-  Mask body = grow_back(piece_of(pieces, chosen), settings.opening_radius_mm);
-  if (seeds.empty()) note_rival(pieces, chosen, body, settings, result);
+  Mask body = grow_back(piece_of(pieces, chosen), settings.opening_radius_mm, workers);
+  if (seeds.empty()) note_rival(pieces, chosen, body, settings, workers, result);
   return body;
 }
 
@@ -177,9 +177,9 @@ void fill_holes(Mask& body, Segmentation& result) {
 
 // Convolution with 2 G - G * G: it averages noise as a Gaussian G does, but shrinks what is round less than half as
 // much. It can overshoot beside a sharp step, hence the limits.
-GrayVolume smoothed(const GrayVolume& occupancy, double sigma_mm) {
-  GrayVolume once = gaussian(occupancy, sigma_mm);
-  const GrayVolume twice = gaussian(once, sigma_mm);
+GrayVolume smoothed(const GrayVolume& occupancy, double sigma_mm, Workers& workers) {
+  GrayVolume once = gaussian(occupancy, sigma_mm, workers);
+  const GrayVolume twice = gaussian(once, sigma_mm, workers);
   for (std::size_t v = 0; v < once.voxels.size(); ++v)
     once.voxels[v] = std::clamp(2.0F * once.voxels[v] - twice.voxels[v], 0.0F, 1.0F);
   return once;
@@ -327,8 +327,8 @@ namespace {
 
 enum class Source { Scan, Labels };
 
-Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Monitor& monitor,
-                      const std::optional<Verdict>& of_scan = {}) {
+Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Workers& workers,
+                      Monitor& monitor, const std::optional<Verdict>& of_scan = {}) {
   const std::vector<Problem> problems = validate(settings);
   if (!problems.empty())
     throw CaseError("segmentation", "settings",
@@ -347,7 +347,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   const std::vector<std::size_t> seeds = locate_seeds(ct, whole, settings);
   report(0.1);
   Segmentation result;
-  Mask body = find_body(whole, seeds, settings, result);
+  Mask body = find_body(whole, seeds, settings, workers, result);
   report(0.4);
   if (settings.fill_holes) fill_holes(body, result);
   result.cut = find_cut_voxels(body, whole, ct.grid, settings.opening_radius_mm);
@@ -358,9 +358,9 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   const IndexBox around = grown(box_of(body), pad);
   const CtVolume hu = crop(whole.hu, around);
   report(0.5);
-  const GrayVolume sharp = occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings);
+  const GrayVolume sharp = occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings, workers);
   result.smoothing_mm = smoothing_length_mm(settings, ct.grid.spacing_mm);
-  GrayVolume occupancy = smoothed(sharp, result.smoothing_mm);
+  GrayVolume occupancy = smoothed(sharp, result.smoothing_mm, workers);
   report(0.9);
   const Mask label = make_one_piece(occupancy, settings.fill_holes, result.smoothing_mm);
   if (source == Source::Scan) result.tissue_hu = median_hu(hu, label, settings, result.smoothing_mm);
@@ -372,8 +372,8 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
     *made = carried_to_surface(*made, body.grid, result.labels, kCarriedLengths * result.smoothing_mm);
   result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
   result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
-  result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5);
-  note_lost_volume(iso_volume_mm3(sharp, 0.5), result);
+  result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5, workers);
+  note_lost_volume(iso_volume_mm3(sharp, 0.5, workers), result);
   report(1.0);
   return result;
 }
@@ -417,12 +417,13 @@ std::array<bool, 256> tissue_labels(const SegmentationSettings& settings) {
   return is_tissue;
 }
 
-Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Monitor& monitor,
+Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Workers& workers, Monitor& monitor,
                      const std::optional<Verdict>& of_scan) {
-  return found_in(ct, Source::Scan, settings, monitor, of_scan);
+  return found_in(ct, Source::Scan, settings, workers, monitor, of_scan);
 }
 
-Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings, Monitor& monitor) {
+Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings, Workers& workers,
+                            Monitor& monitor) {
   INCISE_REQUIRE(
       labels.voxels.size() == labels.grid.voxel_count(),
       fmt::format("expected {} voxels for the grid, found {}", labels.grid.voxel_count(), labels.voxels.size()));
@@ -434,7 +435,7 @@ Segmentation segment_labels(const LabelVolume& labels, const SegmentationSetting
   SegmentationSettings between = settings;
   between.window_low_hu = 0.5;
   between.window_high_hu = 1.5;
-  return found_in(two_valued, Source::Labels, between, monitor);
+  return found_in(two_valued, Source::Labels, between, workers, monitor);
 }
 
 }  // namespace incise

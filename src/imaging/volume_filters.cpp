@@ -14,6 +14,8 @@
 namespace incise {
 namespace {
 
+constexpr std::size_t kLinesPerChunk = 64;
+
 template <class Value>
 using Image = itk::Image<Value, 3>;
 
@@ -86,34 +88,31 @@ void sum_up(const std::vector<double>& kernel, const Line& line, std::vector<dou
   }
 }
 
-/// Convolves along one axis. A voxel and its neighbours along it lie `stride` apart; `stride` lines run side by side,
-/// and there are `blocks` of such lines. Values repeat beyond the border. Sums run from end to end of the kernel in
-/// double, as ITK's filter has them.
-void convolve(std::vector<float>& values, std::size_t blocks, std::size_t count, std::size_t stride,
+/// Convolves along one axis `wide` lines that run side by side. A voxel and its neighbours along it lie `stride` apart.
+/// Values repeat beyond the border. Sums run from end to end of the kernel in double, as ITK's filter has them.
+void convolve(float* first, std::size_t wide, std::size_t count, std::size_t stride,
               const std::vector<double>& kernel) {
   const auto reach = static_cast<std::ptrdiff_t>(kernel.size() / 2), last = static_cast<std::ptrdiff_t>(count) - 1;
-  std::vector<double> source(count * stride), sums(stride);
-  for (std::size_t block = 0; block < blocks; ++block) {
-    float* const lines = values.data() + block * count * stride;
-    std::copy(lines, lines + count * stride, source.begin());
-    for (std::ptrdiff_t at = 0; at <= last; ++at) {
-      const auto line = [&](std::size_t k) {
-        const std::ptrdiff_t other = std::clamp(at + static_cast<std::ptrdiff_t>(k) - reach, std::ptrdiff_t{0}, last);
-        return source.data() + static_cast<std::size_t>(other) * stride;
-      };
-      sum_up(kernel, line, sums);
-      float* const target = lines + static_cast<std::size_t>(at) * stride;
-      for (std::size_t i = 0; i < stride; ++i) target[i] = static_cast<float>(sums[i]);
-    }
+  std::vector<double> source(count * wide), sums(wide);
+  for (std::size_t at = 0; at < count; ++at)
+    std::copy_n(first + at * stride, wide, source.begin() + static_cast<std::ptrdiff_t>(at * wide));
+  for (std::ptrdiff_t at = 0; at <= last; ++at) {
+    const auto line = [&](std::size_t k) {
+      const std::ptrdiff_t other = std::clamp(at + static_cast<std::ptrdiff_t>(k) - reach, std::ptrdiff_t{0}, last);
+      return source.data() + static_cast<std::size_t>(other) * wide;
+    };
+    sum_up(kernel, line, sums);
+    float* const target = first + static_cast<std::size_t>(at) * stride;
+    for (std::size_t i = 0; i < wide; ++i) target[i] = static_cast<float>(sums[i]);
   }
 }
 
 /// The same along x, where neighbours lie side by side: each row with its border repeated, shifted by each weight.
-void convolve_rows(std::vector<float>& values, std::size_t rows, std::size_t count, const std::vector<double>& kernel) {
+void convolve_rows(float* first, std::size_t rows, std::size_t count, const std::vector<double>& kernel) {
   const std::size_t reach = kernel.size() / 2;
   std::vector<double> padded(count + 2 * reach), sums(count);
   for (std::size_t row = 0; row < rows; ++row) {
-    float* const line = values.data() + row * count;
+    float* const line = first + row * count;
     std::copy(line, line + count, padded.begin() + static_cast<std::ptrdiff_t>(reach));
     std::fill_n(padded.begin(), reach, line[0]);
     std::fill_n(padded.end() - static_cast<std::ptrdiff_t>(reach), reach, line[count - 1]);
@@ -136,24 +135,26 @@ Pieces find_pieces(const Mask& mask) {
   return pieces;
 }
 
-GrayVolume distance_to(const Mask& mask) {
+GrayVolume distance_to(const Mask& mask, Workers& workers) {
   const VolumeGrid& grid = mask.grid;
   std::vector<double> squared(mask.voxels.size(), std::numeric_limits<double>::infinity());
   for (std::size_t v = 0; v < squared.size(); ++v) {
     if (mask.voxels[v] != 0) squared[v] = 0.0;
   }
-  DistanceLine line;
   std::size_t stride = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const auto count = static_cast<std::size_t>(grid.size[static_cast<std::size_t>(axis)]);
-    line.values.resize(count);
-    for (std::size_t first = 0; first < squared.size(); first += stride * count) {
-      for (std::size_t start = first; start < first + stride; ++start) {
+    const std::size_t lines = count > 0 ? squared.size() / count : 0;
+    workers.for_chunks(lines, kLinesPerChunk, [&](std::size_t, std::size_t begin, std::size_t end) {
+      DistanceLine line;
+      line.values.resize(count);
+      for (std::size_t number = begin; number < end; ++number) {
+        const std::size_t start = number / stride * stride * count + number % stride;
         for (std::size_t i = 0; i < count; ++i) line.values[i] = squared[start + i * stride];
         line.transform(grid.spacing_mm[axis]);
         for (std::size_t i = 0; i < count; ++i) squared[start + i * stride] = line.result[i];
       }
-    }
+    });
     stride *= count;
   }
   GrayVolume distance{grid, std::vector<float>(squared.size())};
@@ -161,7 +162,7 @@ GrayVolume distance_to(const Mask& mask) {
   return distance;
 }
 
-GrayVolume gaussian(GrayVolume volume, double sigma) {
+GrayVolume gaussian(GrayVolume volume, double sigma, Workers& workers) {
   if (sigma == 0.0 || volume.voxels.empty()) return volume;
   const auto kernel = [&](int axis) {
     const double spacing = volume.grid.spacing_mm[axis];
@@ -170,9 +171,13 @@ GrayVolume gaussian(GrayVolume volume, double sigma) {
   const auto nx = static_cast<std::size_t>(volume.grid.size[0]);
   const auto ny = static_cast<std::size_t>(volume.grid.size[1]);
   const auto nz = static_cast<std::size_t>(volume.grid.size[2]);
-  convolve(volume.voxels, 1, nz, nx * ny, kernel(2));
-  convolve(volume.voxels, nz, ny, nx, kernel(1));
-  convolve_rows(volume.voxels, ny * nz, nx, kernel(0));
+  float* const voxels = volume.voxels.data();
+  const std::vector<double> along_x = kernel(0), along_y = kernel(1), along_z = kernel(2);
+  workers.for_each(ny, 1, [&](std::size_t j) { convolve(voxels + j * nx, nx, nz, nx * ny, along_z); });
+  workers.for_each(nz, 1, [&](std::size_t k) {
+    convolve(voxels + k * nx * ny, nx, ny, nx, along_y);
+    convolve_rows(voxels + k * nx * ny, ny, nx, along_x);
+  });
   return volume;
 }
 

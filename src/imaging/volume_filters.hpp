@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/workers.hpp>
 #include <incise/geometry/volume.hpp>
 
 #include <cstdint>
@@ -19,11 +20,11 @@ struct Pieces {
 
 /// Distance, in units of the grid's spacing, of every voxel's centre to the nearest centre in the mask (0 inside);
 /// +infinity everywhere for an empty mask. Exact; O(voxels).
-[[nodiscard]] GrayVolume distance_to(const Mask& mask);
+[[nodiscard]] GrayVolume distance_to(const Mask& mask, Workers& workers);
 
 /// Convolution with a Gaussian of standard deviation `sigma`, in units of the grid's spacing; values repeat beyond the
 /// border. 0 returns the input.
-[[nodiscard]] GrayVolume gaussian(GrayVolume volume, double sigma);
+[[nodiscard]] GrayVolume gaussian(GrayVolume volume, double sigma, Workers& workers);
 
 /// The voxels that are not in the mask.
 [[nodiscard]] Mask complement(const Mask& mask);

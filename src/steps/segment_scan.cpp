@@ -32,8 +32,8 @@ nlohmann::json settings_json(const SegmentRequest& request, double smoothing_mm)
 StepResult segment_scan(const SegmentRequest& request, const StepContext& context) {
   require_volume_name(request.output);
   require_own_manifest_beside(request.output);
-  const Segmentation found =
-      segment(read_ct(request.ct, request.reading, context.monitor).volume, request.settings, context.monitor);
+  const Segmentation found = segment(read_ct(request.ct, request.reading, context.monitor).volume, request.settings,
+                                     context.workers, context.monitor);
   report_reasons(found.verdict, context.monitor);
   Manifest manifest =
       manifest_of(context.run, settings_json(request, found.smoothing_mm).dump(), {request.ct}, context.wall_s());

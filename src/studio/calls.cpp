@@ -404,9 +404,9 @@ const Calls::Found& Calls::found_in(const CaseFile& file) {
   if (is_drawn) {
     const LabelVolume labels = read_labels(file.inputs.ct_labels);
     found_.given_labels = label_counts(labels);
-    found_.tissue = segment_labels(labels, settings, monitor_);
+    found_.tissue = segment_labels(labels, settings, workers_, monitor_);
   } else {
-    found_.tissue = segment(ct_, settings, monitor_, of_scan_);
+    found_.tissue = segment(ct_, settings, workers_, monitor_, of_scan_);
   }
   found_.skin = iso_surface(found_.tissue.occupancy, 0.5);
   found_key_ = key;

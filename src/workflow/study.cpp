@@ -224,8 +224,8 @@ class Runner {
     ProductNote note{"labels", {}, 0.0};
     study_.segmentation = product<Segmentation>(Stage::Segment, note, key, [&] {
       if (const auto labels = inputs_.read_labels(monitor_))
-        return segment_labels(*labels, settings_.segmentation, monitor_);
-      return incise::segment(inputs_.read_ct(monitor_), settings_.segmentation, monitor_);
+        return segment_labels(*labels, settings_.segmentation, workers_, monitor_);
+      return incise::segment(inputs_.read_ct(monitor_), settings_.segmentation, workers_, monitor_);
     });
     sink_.labels(note, *study_.segmentation);
     report("the scan", study_.segmentation->verdict);

@@ -51,8 +51,9 @@ class HeadCt : public ::testing::Test {
   void SetUp() override {
     INCISE_NEEDS_DATA_DIR();
     Monitor monitor;
+    Workers workers(2);
     ct_ = read_head(30, 90);
-    result_ = segment(ct_, head_settings(), monitor);
+    result_ = segment(ct_, head_settings(), workers, monitor);
   }
   CtVolume ct_;
   Segmentation result_;
@@ -69,9 +70,10 @@ TEST_F(HeadCt, YieldsOneConnectedBodyOfATonguesSize) {
   EXPECT_NEAR(result_.tissue_hu.value(), 48.0, 16.0);
 
   Monitor monitor;
+  Workers workers(2);
   CtVolume of_label{result_.labels.grid, {}};
   for (const std::uint8_t label : result_.labels.voxels) of_label.voxels.push_back(label != 0 ? 50 : -1000);
-  EXPECT_EQ(segment(of_label, {}, monitor).components, 1U);
+  EXPECT_EQ(segment(of_label, {}, workers, monitor).components, 1U);
 }
 
 TEST_F(HeadCt, FreesTheBackWhereAirLiesOnIt) {

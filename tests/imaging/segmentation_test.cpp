@@ -48,7 +48,8 @@ double ball(const Vec3& p, const Vec3& center, double radius) {
 
 Segmentation run(const CtVolume& ct, const SegmentationSettings& settings = {}) {
   Monitor monitor;
-  return segment(ct, settings, monitor);
+  Workers workers(2);
+  return segment(ct, settings, workers, monitor);
 }
 
 std::string message_of(const CtVolume& ct, const SegmentationSettings& settings) {
@@ -88,9 +89,10 @@ LabelVolume labels_of(const CtVolume& ct, std::int16_t least_hu, std::uint8_t la
 
 TEST(Segmentation, TakesEveryLabelButZeroInPlaceOfThresholds) {
   Monitor monitor;
+  Workers workers(2);
   LabelVolume labels = labels_of(ball_of_tissue(), -475, 3);
   labels.at(15, 15, 15) = 7;  // a tumour's label is tissue as well
-  const Segmentation result = segment_labels(labels, {}, monitor);
+  const Segmentation result = segment_labels(labels, {}, workers, monitor);
   EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.02);
   EXPECT_EQ(
       result.labels.at(result.labels.grid.size[0] / 2, result.labels.grid.size[1] / 2, result.labels.grid.size[2] / 2),
@@ -160,9 +162,10 @@ TEST(Segmentation, TakesLabelsNearTheEdgeOfTheirGridAsTheyAre) {
   }
   const auto drawn = static_cast<double>(std::ranges::count(labels.voxels, 1));
   Monitor monitor;
+  Workers workers(2);
   SegmentationSettings settings;
   settings.smoothing_mm = 0.0;
-  EXPECT_EQ(segment_labels(labels, settings, monitor).volume_mm3, drawn);
+  EXPECT_EQ(segment_labels(labels, settings, workers, monitor).volume_mm3, drawn);
 }
 
 TEST(Segmentation, TakesTheLabelsThatAreNamed) {
@@ -172,23 +175,25 @@ TEST(Segmentation, TakesTheLabelsThatAreNamed) {
     if (j > 5 && j < 25 && k > 5 && k < 25 && i > 5 && i < 35) labels.voxels[v] = i < 20 ? 3 : 7;
   }
   Monitor monitor;
+  Workers workers(2);
   SegmentationSettings settings;
-  const double both = segment_labels(labels, settings, monitor).volume_mm3;
+  const double both = segment_labels(labels, settings, workers, monitor).volume_mm3;
   settings.label_values = {7};
-  const double one = segment_labels(labels, settings, monitor).volume_mm3;
+  const double one = segment_labels(labels, settings, workers, monitor).volume_mm3;
   EXPECT_NEAR(one, 15.0 / 29.0 * both, 0.02 * both);
   settings.label_values = {4};
-  EXPECT_THROW(static_cast<void>(segment_labels(labels, settings, monitor)), CaseError);
+  EXPECT_THROW(static_cast<void>(segment_labels(labels, settings, workers, monitor)), CaseError);
   settings.label_values = {256};
-  EXPECT_THROW(static_cast<void>(segment_labels(labels, settings, monitor)), CaseError);
+  EXPECT_THROW(static_cast<void>(segment_labels(labels, settings, workers, monitor)), CaseError);
 }
 
 TEST(Segmentation, RefusesARegionOrASeedWithoutALabel) {
   Monitor monitor;
+  Workers workers(2);
   const LabelVolume labels = labels_of(ball_of_tissue(), -475, 1);
   const auto refusal = [&](const LabelVolume& of, const SegmentationSettings& settings) -> std::string {
     try {
-      static_cast<void>(segment_labels(of, settings, monitor));
+      static_cast<void>(segment_labels(of, settings, workers, monitor));
     } catch (const CaseError& error) {
       return error.what();
     }
@@ -212,6 +217,18 @@ TEST(Segmentation, ShrinksABallLessThanHalfAsMuchAsAGaussianWould) {
   // A Gaussian takes 3 σ²/R² = 4.3 % of the volume; 2 G - G * G the share (2 - √2)/(2 - 1/√2) = 0.45 of it, in the
   // first order of σ/R.
   EXPECT_NEAR(smooth / sharp - 1.0, -0.45 * 3.0 * 1.44 / 100.0, 0.005);
+}
+
+TEST(Segmentation, HasTheSameBitsAtAnyThreadCount) {
+  SegmentationSettings settings;
+  settings.opening_radius_mm = 1.5;
+  Monitor monitor;
+  Workers alone(1), three(3);
+  const Segmentation expected = segment(ball_of_tissue(), settings, alone, monitor);
+  const Segmentation found = segment(ball_of_tissue(), settings, three, monitor);
+  EXPECT_EQ(found.labels.voxels, expected.labels.voxels);
+  EXPECT_EQ(found.occupancy.voxels, expected.occupancy.voxels);
+  EXPECT_EQ(found.occupancy_volume_mm3, expected.occupancy_volume_mm3);
 }
 
 TEST(Segmentation, LeavesAMarginOfAirAllAroundEvenWhereTheRegionCutsThroughTissue) {
@@ -527,9 +544,10 @@ TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
       last = fraction;
     }
   } monitor;
+  Workers workers(2);
   SegmentationSettings settings;
   settings.roi_box_mm = Box3(Vec3(10, 0, 0), Vec3(30, 30, 20));
-  const Segmentation found = segment(ball_of_tissue(), settings, monitor);
+  const Segmentation found = segment(ball_of_tissue(), settings, workers, monitor);
   ASSERT_EQ(found.verdict.reasons().size(), 1U);
   EXPECT_EQ(found.verdict.reasons()[0].id, "scan");
   EXPECT_THAT(found.verdict.reasons()[0].message, testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
@@ -607,11 +625,12 @@ class SegmentationOfPhantoms : public testing::TestWithParam<PhantomCase> {};
 
 TEST_P(SegmentationOfPhantoms, FindsTheTrueVolumeAndTheTrueSkin) {
   Monitor monitor;
+  Workers workers(2);
   PhantomSettings settings;
   settings.seed = GetParam().seed;
   settings.spacing_mm = GetParam().spacing_mm;
   const Phantom phantom = make_phantom(settings, monitor);
-  const Segmentation result = segment(phantom.ct, {}, monitor);
+  const Segmentation result = segment(phantom.ct, {}, workers, monitor);
   RecordProperty("occupancy_error_percent",
                  std::to_string(100.0 * (result.occupancy_volume_mm3 / phantom.true_volume_mm3 - 1.0)));
   RecordProperty("label_error_percent", std::to_string(100.0 * (result.volume_mm3 / phantom.true_volume_mm3 - 1.0)));
