@@ -1,6 +1,7 @@
 // What the simulated cut depends on. Cuts run side by side, one thread each; errors of the mid-line against the lateral margin stand beside the cost.
 //   incise_cut_study step  [--threads N] [--csv FILE] [--figure FILE]   the simulation step: 0.13, 0.26, 0.52 mm
 //   incise_cut_study mesh  ...                                          edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move
+//   incise_cut_study law   ...                                          the cut by points (docs/decisions/0010-cutting-law.md): 6, 12 and 70 kPa on two meshes of each of three sizes
 //   incise_cut_study table ...                                          the paper's Table I: 25 pairs of speed and dullness on two virtual specimens
 #include "cost_table.hpp"
 #include "support/phantom_inputs.hpp"
@@ -30,10 +31,11 @@ struct Options {
 
 Options parse(int argc, char** argv) {
   Options options;
-  INCISE_REQUIRE(argc > 1, "expected step, mesh or table");
+  INCISE_REQUIRE(argc > 1, "expected step, mesh, law or table");
   options.study = argv[1];
-  INCISE_REQUIRE(options.study == "step" || options.study == "mesh" || options.study == "table",
-                 fmt::format("expected step, mesh or table, found {}", options.study));
+  INCISE_REQUIRE(options.study == "step" || options.study == "mesh" || options.study == "law" ||
+                     options.study == "table",
+                 fmt::format("expected step, mesh, law or table, found {}", options.study));
   for (int i = 2; i < argc; i += 2) {
     const std::string_view name = argv[i];
     INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a value after {}", name));
@@ -59,10 +61,12 @@ struct Body {
   Study study;
 };
 
-Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& meshing, Workers& workers) {
+Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& meshing, Workers& workers,
+               const Material& material = {}) {
   Body body{std::move(name), meshing.fine_mm.value(), {}, {}};
   body.settings.is_virtual = true;
   body.settings.meshing = meshing;
+  body.settings.material = material;
   body.settings.frames = 0;
   testing::PhantomInputs inputs(phantom);
   Cache cache;
@@ -97,7 +101,7 @@ SimulatedCut carry_out(const Job& job) {
   Monitor silent;
   Case settings = job.body->settings;
   settings.cut = job.cut;
-  if (job.tissue != Tissue::Held) settings.cut.bond_stiffness_kpa_mm2 = 0.0;
+  if (job.tissue != Tissue::Held) settings.cut.bond_stiffness_kpa_mm2 = settings.cut.hold_kpa = 0.0;
   const Study& study = job.body->study;
   if (job.tissue != Tissue::Frozen) {
     return cut_and_judge(settings, *study.model, study.stretched->state, *study.plan, *study.plan, alone, silent);
@@ -204,6 +208,34 @@ Result study_meshes(Workers& workers) {
   return result;
 }
 
+/// Whether a cut by points depends on its mesh: two meshes of each size, whose edges differ by half a percent.
+Result study_law(Workers& workers) {
+  Monitor silent;
+  const Phantom phantom = make_phantom(PhantomSettings{}, silent);
+  std::vector<Body> bodies;
+  for (const double modulus_kpa : {6.0, 12.0, 70.0}) {
+    for (const double edge : {1.0, 0.8, 0.6}) {
+      for (const double share : {1.0, 1.005}) {
+        MeshingChoice meshing;
+        meshing.fine_mm = edge * share;
+        const Material material{.youngs_modulus_kpa = modulus_kpa, .poissons_ratio = 0.45};
+        bodies.push_back(make_body(phantom, fmt::format("seed 1 of {} kPa", modulus_kpa), meshing, workers, material));
+      }
+    }
+  }
+  std::vector<Job> jobs;
+  for (const Body& body : bodies) {
+    jobs.push_back({&body, Tissue::Held, {}});
+    jobs.back().cut.rule = CutRule::Lattice;
+    jobs.back().cut.dullness = 5.4;
+    jobs.back().cut.residual_tolerance = 0.03;
+  }
+  Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh, cut by points", "edge length in the band, mm",
+                                           "mean signed error, mm", true, false, {}}};
+  for (std::size_t i = 0; i < jobs.size(); ++i) add_point(result.plot, jobs[i].body->name, jobs[i].body->edge_mm, result.done[i]);
+  return result;
+}
+
 /// The 25 pairs of the paper's Table I.
 Result study_table(Workers& workers) {
   static constexpr std::array<double, 5> kValues{1.0, 5.0, 9.0, 13.0, 17.0};
@@ -239,6 +271,7 @@ int run(const Options& options) {
   Workers workers(options.threads);
   const Result result = options.study == "step"   ? study_steps(workers)
                         : options.study == "mesh" ? study_meshes(workers)
+                        : options.study == "law"  ? study_law(workers)
                                                   : study_table(workers);
   std::string table = origin_line("simulations of virtual specimens");
   table += kHeader;

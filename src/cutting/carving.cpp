@@ -1,6 +1,7 @@
 #include "bond_stiffness.hpp"
 #include "contact.hpp"
 #include "fragments.hpp"
+#include "point_rule.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/cutting/carving.hpp>
@@ -42,6 +43,7 @@ struct CutWorkspace::Data {
   int next_step = -1;                   // the one that may build on what is kept here
   std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they stay where they are
   std::size_t carved_then = 0;          // tets carved when that was found
+  std::optional<PointLattice> lattice;  // of a cut by points
 
   Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
       : neighbours(face_neighbours(model.mesh)),
@@ -238,7 +240,7 @@ constexpr double kSteadyingS = 0.02;
 /// @returns the stiffness of each bond, mN/mm, in their order.
 std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool,
                                 CutState& state, CutWorkspace::Data& scratch, const std::optional<ToolPose>& next,
-                                double step_s, Workers& workers, CutStepReport& report) {
+                                const PointHold* hold, double step_s, Workers& workers, CutStepReport& report) {
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
@@ -249,7 +251,9 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   scratch.stiffness.begin(model, state.tissue, kSteadyingS, is_fresh, tangent, scratch.right_side, workers, viscous_s);
   double bond_scale = 0.0;
   std::vector<double> stiffnesses;
-  if (next) {
+  if (next && hold != nullptr) {
+    bond_scale = add_pull(*hold, scratch.right_side);
+  } else if (next) {
     for (const Bond& bond : state.bonds) scratch.stiffness.lend(model, bond.tet);
     stiffnesses = add_bonds(model, settings, tool, state, scratch.right_side, scratch.stiffness.matrix(), bond_scale);
   }
@@ -260,6 +264,7 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   pcg.relative_tolerance = settings.residual_tolerance;
   pcg.reference_mn = std::max(bond_scale, kForceFloorMn);
   pcg.starts_from_last = true;
+  if (hold != nullptr) pcg.means = &hold->means;
   report.solve = scratch.solver.solve(scratch.stiffness.matrix(), scratch.right_side, scratch.increment, pcg, workers);
 
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) {
@@ -317,6 +322,14 @@ std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, c
   return contacts;
 }
 
+/// The tool's core at evenly spaced moments of a step.
+std::vector<ToolCore> cores_on_the_way(const Tool& tool, const ToolPose& from, const ToolPose& to) {
+  std::vector<ToolCore> cores;
+  for (int m = 0; m <= kIntervalsPerStep; ++m)
+    cores.emplace_back(tool, between(from, to, static_cast<double>(m) / kIntervalsPerStep));
+  return cores;
+}
+
 /// Follows the contact of the tissue with the tool through the step: adds to the dose of what is touched, makes bonds
 /// where contact begins and drops them where it ends. @param works_kpa  per bond: the tool's work in this step per rest
 /// volume.
@@ -325,10 +338,7 @@ std::vector<TetId> follow_contact(const TissueModel& model, const CutSettings& s
                                   CutState& state, std::span<const Vec3> before, const ToolPose& next, double step_s,
                                   std::span<const double> works_kpa, Workers& workers, CutStepReport& report) {
   const double limit = touching_distance_mm(tool, settings);
-  std::vector<ToolCore> cores;
-  for (int m = 0; m <= kIntervalsPerStep; ++m) {
-    cores.emplace_back(tool, between(state.tool, next, static_cast<double>(m) / kIntervalsPerStep));
-  }
+  const std::vector<ToolCore> cores = cores_on_the_way(tool, state.tool, next);
   const std::vector<TetId> candidates =
       contact_candidates(model, state.tissue.is_live, before, state.tissue.positions, cores, limit, workers);
   const std::vector<Contact> contacts =
@@ -401,15 +411,77 @@ std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace&
   return due.size() + carve(model, state, workspace.data(), due);
 }
 
+namespace {
+
+/// Live tets that come within a distance of the tool at one of the moments that its cores are of, ascending.
+std::vector<TetId> tets_near(const TissueModel& model, std::span<const std::uint8_t> is_live,
+                             std::span<const Vec3> before, std::span<const Vec3> after, std::span<const ToolCore> cores,
+                             double distance_mm, Workers& workers) {
+  const std::vector<TetId> candidates = contact_candidates(model, is_live, before, after, cores, distance_mm, workers);
+  std::vector<std::uint8_t> is_near(candidates.size(), 0);
+  workers.for_each(candidates.size(), 64, [&](std::size_t c) {
+    const auto from = corners_of(model.mesh, before, candidates[c].index());
+    const auto to = corners_of(model.mesh, after, candidates[c].index());
+    for (std::size_t m = 0; m < cores.size(); ++m) {
+      const double t = cores.size() > 1 ? static_cast<double>(m) / static_cast<double>(cores.size() - 1) : 0.0;
+      std::array<Vec3, 4> corners;
+      for (std::size_t i = 0; i < 4; ++i) corners[i] = from[i] + t * (to[i] - from[i]);
+      if (distance_to_core(corners, cores[m]) <= distance_mm) is_near[c] = 1;
+    }
+  });
+  std::vector<TetId> near;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (is_near[c] != 0) near.push_back(candidates[c]);
+  }
+  return near;
+}
+
+/// A step of a cut by points, the tool in.
+CutStepReport advance_points(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
+                             CutWorkspace::Data& scratch, const ToolPose& next, double step_s, Workers& workers) {
+  CutStepReport report;
+  // A state that is not the next of the last one may have met other tets.
+  if (!scratch.lattice || state.step != scratch.next_step) scratch.lattice.emplace(model, state.points.tets);
+  const std::vector<ToolCore> here{ToolCore(tool, state.tool)};
+  const std::vector<TetId> held =
+      tets_near(model, state.tissue.is_live, scratch.before, scratch.before, here, settings.kernel_radius_mm, workers);
+  meet_points(held, *scratch.lattice, state.points);
+  const PointHold hold = hold_points(model, settings, tool, state, next, step_s, *scratch.lattice, held, workers);
+  move_tissue(model, settings, tool, state, scratch, next, &hold, step_s, workers, report);
+  if (report.is_finite) end_viscous_step(model, state.tissue, settings.tissue_s(step_s), workers);
+  state.time_s += step_s;
+  ++state.step;
+  if (!report.is_finite) return report;
+  const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, next);
+  for (std::size_t i = 0; i < state.points.is_held.size(); ++i) {
+    if (state.points.is_held[i] != 0) state.points.offset_mm[i] = turn * state.points.offset_mm[i];
+  }
+  load_tool(settings, tool, next, hold, *scratch.lattice, state, report);
+  const std::vector<ToolCore> cores = cores_on_the_way(tool, state.tool, next);
+  const std::vector<TetId> candidates = tets_near(model, state.tissue.is_live, scratch.before, state.tissue.positions,
+                                                  cores, settings.kernel_radius_mm, workers);
+  meet_points(candidates, *scratch.lattice, state.points);
+  const std::vector<TetId> due = dose_points(model, settings, state, *scratch.lattice, scratch.before, next, cores,
+                                             step_s, candidates, workers, report);
+  state.tool = next;
+  report.loose_removed = carve(model, state, scratch, due);
+  report.removed = due.size();
+  return report;
+}
+
+}  // namespace
+
 CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers) {
   INCISE_REQUIRE(step_s > 0.0 && std::isfinite(step_s), "expected a step above 0 s");
   CutWorkspace::Data& scratch = workspace.data();
   CutStepReport report;
   scratch.before = state.tissue.positions;
+  if (next && settings.rule == CutRule::Lattice)
+    return advance_points(model, settings, tool, state, scratch, *next, step_s, workers);
   if (!next) state.bonds.clear();
   const std::vector<double> stiffnesses =
-      move_tissue(model, settings, tool, state, scratch, next, step_s, workers, report);
+      move_tissue(model, settings, tool, state, scratch, next, nullptr, step_s, workers, report);
   if (report.is_finite)
     end_viscous_step(model, state.tissue, next ? settings.tissue_s(step_s) : std::numeric_limits<double>::infinity(),
                      workers);

@@ -1,3 +1,5 @@
+#include "point_lattice.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/cutting/cut_invariants.hpp>
@@ -109,6 +111,26 @@ void check_positions(const TissueModel& model, const CutState& state, Violations
   }
 }
 
+void check_points(const TissueModel& model, const CutState& state, Violations& violations) {
+  bool size = false, dosed = false, filled = false;
+  const CutPoints& p = state.points;
+  const PointLattice lattice(model, p.tets);
+  for (const std::size_t found :
+       {p.dose.size(), p.is_held.size(), p.offset_mm.size(), p.parted_step.size(), p.parted_mm.size()}) {
+    violations.add(found != lattice.size(), size, "points: expected {} of everything, found {}", lattice.size(), found);
+  }
+  if (size) return;
+  for (std::size_t i = 0; i < p.dose.size(); ++i) {
+    const bool is_sound = std::isfinite(p.dose[i]) && p.dose[i] >= 0.0 && (p.dose[i] >= 1.0) == (p.parted_step[i] >= 0);
+    violations.add(!is_sound, dosed, "points: point {} has a dose of {} and parted in step {}", i, p.dose[i],
+                   p.parted_step[i]);
+  }
+  for (std::size_t t = 0; t < state.tissue.fill.size(); ++t) {
+    const double fill = state.tissue.fill[t];
+    violations.add(!(fill > 0.0 && fill <= 1.0), filled, "points: tet {} has {} of its stiffness left", t, fill);
+  }
+}
+
 void check_bonds(const TissueModel& model, const CutState& state, Violations& violations) {
   bool unknown = false, dead = false, disordered = false, offset = false;
   for (std::size_t i = 0; i < state.bonds.size(); ++i) {
@@ -133,6 +155,7 @@ std::vector<std::string> cut_invariants(const TissueModel& model, const CutState
   check_balance(model, state, times_removed, violations);
   check_positions(model, state, violations);
   check_bonds(model, state, violations);
+  check_points(model, state, violations);
   return violations.take();
 }
 

@@ -29,6 +29,12 @@ std::vector<Problem> validate(const CutSettings& s, double tool_diameter_mm) {
                             fmt::format("at most {} s", kMaxContactS)});
     }
   }
+  if (s.rule == CutRule::Lattice) {
+    if (s.tear_energy_kpa)
+      violations.push_back(
+          {"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none where points carry the cut"});
+    if (s.slip_mm) violations.push_back({"slip_mm", fmt::format("{}", *s.slip_mm), "none where points carry the cut"});
+  }
   Expect{violations}(s.advance_per_step_mm <= tool_diameter_mm, "advance_per_step_mm", s.advance_per_step_mm,
                      "at most the tool's diameter or thickness");
   return violations;

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kPerTet =
     16 + 96 + 8 + 16 + 64 + 16  // of the model: corners, gradients, volume, moduli, slots, place with the vertices
     + 190                       // its copy in the order of the kernels
-    + 3 * 73 + 16 + 16;         // rotation and mark, stretched, cut and when it was assembled; doses; neighbours
+    + 3 * 80 + 16 + 16;         // rotation and mark, stretched, cut and when it was assembled; doses; neighbours
 constexpr std::size_t kPerVertex = 24 + 8 + 3 + 24 + 12 + 24  // of the model: position, mass, how it is held, load
                                    + 5 * 24  // positions stretched, cut and before the step; right side, increment
                                    + 72 + 216 +

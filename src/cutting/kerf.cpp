@@ -1,5 +1,7 @@
 #include "kerf.hpp"
 
+#include "point_kerf.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/geometry/surface_query.hpp>
@@ -23,12 +25,16 @@ Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
 }
 
 KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
-                     const IncisionSettings& settings, const CutRecord& record) {
+                     const IncisionSettings& settings, const CutState& state) {
   KerfInput kerf;
-  for (const Removal& removal : record.removals) {
-    const Tet& t = model.mesh.tets[removal.tet.index()];
-    const Points& x = stretched.positions;
-    kerf.removed_tets.push_back({x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]});
+  if (settings.cut.rule == CutRule::Lattice) {
+    kerf.removed_tets = PointKerf(model, state.points, stretched.positions).tets();
+  } else {
+    for (const Removal& removal : state.record.removals) {
+      const Tet& t = model.mesh.tets[removal.tet.index()];
+      const Points& x = stretched.positions;
+      kerf.removed_tets.push_back({x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]});
+    }
   }
   kerf.surface = skin_of(model.mesh, stretched.positions);
   kerf.approach = settings.approach;
@@ -87,7 +93,8 @@ void measure_final_edges(const TissueModel& model, const TissueState& stretched,
   if (path.tumor_edge.points.size() < 3) return;
   const TissueState& tissue = result.final_state.tissue;
   result.final_tumor_edge = carried(path.tumor_edge, model.mesh, stretched.positions, tissue.positions);
-  if (!path.is_closed) return;
+  // Tets that the kerf crosses stretch over its gap once it opens: where the plug's edge lies then is not in them.
+  if (!path.is_closed || settings.cut.rule == CutRule::Lattice) return;
   InnerEdgeSettings edge_settings;
   edge_settings.opening_mm = bridge_mm;
   result.inner_edge = inner_edge_contour(
@@ -113,16 +120,22 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
                   const IncisionSettings& settings, IncisionResult& result, Workers& workers) {
   KerfMidlineSettings midline_settings;
   midline_settings.layer_bottom_mm = settings.midline_layer_mm;
-  const KerfInput kerf = kerf_input(model, stretched, path, settings, result.record);
+  const KerfInput kerf = kerf_input(model, stretched, path, settings, result.final_state);
   const TissueState& tissue = result.final_state.tissue;
   KerfMeasures& measures = result.kerf;
   measures.layers.resize(settings.layer_depths_mm.size());
   // Each writes what no other reads; the slow ones stand apart, so that threads share them.
   std::vector<std::function<void()>> tasks{
       [&] { measure_midline(kerf, midline_settings, result); },
-      [&] { measures.body = kerf_body(model, stretched.positions, tissue.is_live); },
+      [&] {
+        measures.body = kerf_body(model, stretched.positions, tissue.is_live);
+        if (settings.cut.rule != CutRule::Lattice) return;
+        measures.body.surface = PointKerf(model, result.final_state.points, stretched.positions).surface();
+        measures.body.volume_mm3 = enclosed_volume_mm3(measures.body.surface);
+        measures.body.boundary = manifoldness_of(measures.body.surface.triangles);
+      },
       [&] { measures.depth = depth_reached(kerf, path, settings); },
-      [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, result.record); },
+      [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, result.final_state); },
       // A strip of tissue that the mid-line overlooks does not hold the plug either.
       [&] { measure_final_edges(model, stretched, path, settings, midline_settings.closing_mm, result); }};
   for (std::size_t i = 0; i < measures.layers.size(); ++i) {
@@ -130,7 +143,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
   }
   workers.for_each(tasks.size(), 1, [&](std::size_t i) { tasks[i](); });
   measures.deep_margin = deep_margin(measures.body, measures.depth, settings);
-  if (!result.centerline) return;
+  if (!result.centerline || settings.cut.rule == CutRule::Lattice) return;  // as for the inner edge
   measures.final_centerline =
       carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
                         tissue.is_live, stretched.positions, tissue.positions);

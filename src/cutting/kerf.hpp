@@ -22,7 +22,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
 [[nodiscard]] DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings);
 [[nodiscard]] std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const Vec3> stretched,
                                                     const ToolPath& path, const IncisionSettings& settings,
-                                                    const CutRecord& record);
+                                                    const CutState& state);
 /// @param body   of the kerf.  @param depth  for the floor.
 /// @throws InvalidArgument for a tumour surface that does not enclose a volume.
 [[nodiscard]] std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& depth,

@@ -67,6 +67,7 @@ KerfLayer kerf_layer(const KerfInput& kerf, const ToolPath& path, double depth_m
   if (path.is_closed) {
     layer.is_closed = found.is_closed;
     if (!found.is_closed && std::isfinite(found.gap_mm)) layer.gap_mm = found.gap_mm;
+    if (found.gap_place_mm) layer.gap_place_mm = *found.gap_place_mm + depth_mm * kerf.approach;
   }
   layer.width_mm = found.mean_width_mm;
   layer.centerline = std::move(found.contour);

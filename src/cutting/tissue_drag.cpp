@@ -1,7 +1,9 @@
 #include "kerf.hpp"
+#include "point_lattice.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace incise {
 namespace {
@@ -63,6 +65,7 @@ class Course {
 
 /// Sum of what went in one step, weighted by rest volume.
 struct StepSum {
+  double time_s = 0.0;
   double volume_mm3 = 0.0;
   Vec3 moment = Vec3::Zero();  // displacement · volume
 };
@@ -80,27 +83,49 @@ Spread weighted_spread(std::span<const double> values, std::span<const double> w
 
 }  // namespace
 
+namespace {
+
+/// What went in each step, by its number.
+std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> stretched,
+                               const IncisionSettings& settings, const CutState& state) {
+  std::map<int, StepSum> sums;
+  if (settings.cut.rule == CutRule::Lattice) {
+    const PointLattice lattice(model, state.points.tets);
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+      const int number = state.points.parted_step[i];
+      if (number < 0) continue;
+      StepSum& step = sums[number];
+      step.time_s = number * settings.cut.step_s();
+      step.volume_mm3 += lattice.volume_mm3(i);
+      step.moment += lattice.volume_mm3(i) * (state.points.parted_mm[i] - lattice.position(i, stretched));
+    }
+    return sums;
+  }
+  for (const Removal& removal : state.record.removals) {
+    if (removal.cause == RemovalCause::LooseFragment) continue;  // it went with its surroundings, not with the tool
+    Vec3 place = Vec3::Zero();
+    for (const VertexId v : model.mesh.tets[removal.tet.index()]) place += 0.25 * stretched[v.index()];
+    StepSum& step = sums[removal.step];
+    step.time_s = removal.time_s;
+    step.volume_mm3 += removal.rest_volume_mm3;
+    step.moment += removal.rest_volume_mm3 * (removal.centroid_mm - place);
+  }
+  return sums;
+}
+
+}  // namespace
+
 std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path,
-                                      const IncisionSettings& settings, const CutRecord& record) {
+                                      const IncisionSettings& settings, const CutState& state) {
   const Course course(path, settings);
   TissueDrag drag;
   std::vector<double> volumes;
-  const std::vector<Removal>& removals = record.removals;
-  for (std::size_t i = 0, end = 0; i < removals.size(); i = end) {
-    StepSum step;
-    for (; end < removals.size() && removals[end].step == removals[i].step; ++end) {
-      if (removals[end].cause == RemovalCause::LooseFragment)
-        continue;  // it went with its surroundings, not with the tool
-      Vec3 place = Vec3::Zero();
-      for (const VertexId v : model.mesh.tets[removals[end].tet.index()]) place += 0.25 * stretched[v.index()];
-      step.volume_mm3 += removals[end].rest_volume_mm3;
-      step.moment += removals[end].rest_volume_mm3 * (removals[end].centroid_mm - place);
-    }
-    const std::optional<Vec3> direction = course.direction(removals[i].time_s);
+  for (const auto& [number, step] : sums_of(model, stretched, settings, state)) {
+    const std::optional<Vec3> direction = course.direction(step.time_s);
     if (!direction || step.volume_mm3 == 0.0) continue;
     const Vec3 displacement = step.moment / step.volume_mm3;
-    drag.time_s.push_back(removals[i].time_s);
-    drag.arclength_mm.push_back(course.arclength_mm(removals[i].time_s));
+    drag.time_s.push_back(step.time_s);
+    drag.arclength_mm.push_back(course.arclength_mm(step.time_s));
     drag.lag_mm.push_back(displacement.dot(*direction));
     drag.drift_mm.push_back(displacement.dot(course.across(*direction, settings.approach)));
     volumes.push_back(step.volume_mm3);

@@ -149,8 +149,7 @@ std::optional<Contour> open_midline(const KerfPicture& picture, const KerfMidlin
 }
 
 /// From the picture plane onto the surface, evenly spaced there.
-Contour lifted(const Contour& curve, const KerfInput& input, const ViewFrame& view,
-               const KerfMidlineSettings& settings) {
+Contour on_surface(const Contour& curve, const KerfInput& input, const ViewFrame& view) {
   const SurfaceQuery surface(input.surface);
   Contour result{.points = {}, .is_closed = curve.is_closed};
   double height = 0.0;
@@ -162,7 +161,7 @@ Contour lifted(const Contour& curve, const KerfInput& input, const ViewFrame& vi
     height = view.to_view(position).z();
     result.points.push_back(position);
   }
-  return evenly_spaced(result, settings.spacing_mm);
+  return result;
 }
 
 void require_valid(const KerfMidlineSettings& s) {
@@ -195,7 +194,12 @@ KerfMidline midline_contour(const KerfInput& input, const KerfMidlineSettings& s
     const std::optional<Raster> enclosed = enclosed_tissue(picture->mask, inside);
     if (!enclosed) {
       result.gap_deg = widest_gap_deg(picture->mask, inside);
-      result.gap_mm = widest_gap_mm(picture->mask, inside);
+      const WidestGap gap = widest_gap(picture->mask, inside);
+      result.gap_mm = gap.width_mm;
+      if (gap.place) {
+        const Contour place{{{gap.place->x(), gap.place->y(), 0.0}}, false};
+        result.gap_place_mm = on_surface(place, input, view).points.front();
+      }
       return result;
     }
     curve = equidistant_loop(*picture, *enclosed, {inside.x(), inside.y(), 0.0});
@@ -206,7 +210,7 @@ KerfMidline midline_contour(const KerfInput& input, const KerfMidlineSettings& s
   }
   if (!curve) return result;
   result.mean_width_mm = mean_width(*picture, *curve);
-  result.contour = lifted(*curve, input, view, settings);
+  result.contour = evenly_spaced(on_surface(*curve, input, view), settings.spacing_mm);
   result.is_closed = input.is_closed;
   if (input.is_closed) {
     result.contour = start_farthest_along(counter_clockwise(*result.contour, input.approach), view.x);

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -20,9 +22,6 @@ constexpr double kKerfBorderMm = 3.0;
 
 /// Steps in which directions are sorted when a gap is looked for.
 constexpr int kDirections = 3600;
-
-/// Halvings of the interval in which the widest disc is searched: 0.001 mm for rings of any size that occurs.
-constexpr int kBisections = 20;
 
 }  // namespace
 
@@ -141,27 +140,55 @@ double widest_gap_deg(const Raster& mask, const Vec2& inside) {
   return 360.0 * std::min(longest, kDirections) / kDirections;
 }
 
-double widest_gap_mm(const Raster& mask, const Vec2& inside) {
-  const auto pixel = pixel_of(mask, inside);
-  const int i = pixel[0];  // plain numbers: not every compiler lets a lambda use names of a structured binding
-  const int j = pixel[1];
-  if (!mask.contains(i, j)) return std::numeric_limits<double>::infinity();
-  if (mask.at(i, j) != 0) return 0.0;
-  const ScalarRaster distance = distance_to(mask, 1);
-  const auto can_leave = [&](double radius) {
-    Raster free(mask, 0);
-    for (std::size_t p = 0; p < free.pixels.size(); ++p) free.pixels[p] = distance.pixels[p] > radius ? 1 : 0;
-    if (free.at(i, j) == 0) return false;
-    const Components parts = find_components(free, 1, Connectivity::Four);
-    return parts.parts[static_cast<std::size_t>(parts.labels[free.offset(i, j)])].touches_border;
-  };
-  double passes = 0.0;
-  double stuck = distance.at(i, j);
-  for (int k = 0; k < kBisections; ++k) {
-    const double radius = 0.5 * (passes + stuck);
-    (can_leave(radius) ? passes : stuck) = radius;
+namespace {
+
+/// Sets of pixels that grow together; one element more stands for what lies beyond the picture.
+class PixelSets {
+ public:
+  explicit PixelSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+  std::size_t find(std::size_t p) {
+    while (parent_[p] != p) p = parent_[p] = parent_[parent_[p]];
+    return p;
   }
-  return std::max(0.0, 2.0 * passes - mask.pixel_mm);  // distances run to the centres of the kerf's outermost pixels
+  void join(std::size_t a, std::size_t b) { parent_[find(a)] = find(b); }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+}  // namespace
+
+WidestGap widest_gap(const Raster& mask, const Vec2& inside) {
+  const auto pixel = pixel_of(mask, inside);
+  if (!mask.contains(pixel[0], pixel[1])) return {std::numeric_limits<double>::infinity(), {}};
+  if (mask.at(pixel[0], pixel[1]) != 0) return {0.0, {}};
+  const ScalarRaster distance = distance_to(mask, 1);
+  const std::size_t start = mask.offset(pixel[0], pixel[1]), beyond = mask.pixels.size();
+  std::vector<std::size_t> order(mask.pixels.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::greater(), [&](std::size_t p) { return distance.pixels[p]; });
+  // From the widest places on, until the way out opens: at its narrowest place.
+  PixelSets sets(mask.pixels.size() + 1);
+  std::vector<std::uint8_t> is_open(mask.pixels.size(), 0);
+  for (const std::size_t p : order) {
+    if (distance.pixels[p] <= 0.0) break;
+    is_open[p] = 1;
+    const int i = static_cast<int>(p % static_cast<std::size_t>(mask.width));
+    const int j = static_cast<int>(p / static_cast<std::size_t>(mask.width));
+    for (const auto& [di, dj] : {std::array{-1, 0}, std::array{1, 0}, std::array{0, -1}, std::array{0, 1}}) {
+      if (!mask.contains(i + di, j + dj)) {
+        sets.join(p, beyond);
+      } else if (is_open[mask.offset(i + di, j + dj)] != 0) {
+        sets.join(p, mask.offset(i + di, j + dj));
+      }
+    }
+    if (is_open[start] == 0 || sets.find(start) != sets.find(beyond)) continue;
+    // Distances run to the centres of the kerf's outermost pixels. Where the start itself is the narrowest place, it
+    // lies beside the kerf, and the bridge is wider.
+    const double width = std::max(0.0, 2.0 * distance.pixels[p] - mask.pixel_mm);
+    return {width, p == start ? std::nullopt : std::optional(mask.centre(i, j))};
+  }
+  return {0.0, {}};
 }
 
 }  // namespace incise

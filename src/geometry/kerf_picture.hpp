@@ -37,7 +37,12 @@ using ViewTets = std::vector<std::array<Vec3, 4>>;
 /// Largest angle at `inside`, degrees, within which no pixel of the mask lies.
 [[nodiscard]] double widest_gap_deg(const Raster& mask, const Vec2& inside);
 
-/// Width, mm, of the widest disc that can be rolled from `inside` to the picture's border without touching the kerf.
-[[nodiscard]] double widest_gap_mm(const Raster& mask, const Vec2& inside);
+/// The way out of an open ring.
+struct WidestGap {
+  double width_mm = 0.0;  ///< of the widest disc that can be rolled to the picture's border without touching the kerf
+  std::optional<Vec2> place;  ///< where it just fits; absent where that is no place between two parts of the kerf
+};
+/// The widest way from `inside` to the picture's border; of width 0 where there is none.
+[[nodiscard]] WidestGap widest_gap(const Raster& mask, const Vec2& inside);
 
 }  // namespace incise

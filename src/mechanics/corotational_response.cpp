@@ -38,6 +38,7 @@ TetSweep reading_sweep(const TissueModel& model, const TissueState& state) {
           0,
           state.positions.data()->data(),
           state.is_live.data(),
+          state.fill.empty() ? nullptr : state.fill.data(),
           state.rotations.data()->data(),
           nullptr,
           nullptr,

@@ -17,6 +17,8 @@ void check_sizes(const TissueModel& model, const TissueState& state, std::size_t
   INCISE_REQUIRE(state.rotations.size() == model.mesh.tets.size() && state.is_live.size() == model.mesh.tets.size(),
                  fmt::format("expected {} tets, found {} rotations and {} flags", model.mesh.tets.size(),
                              state.rotations.size(), state.is_live.size()));
+  INCISE_REQUIRE(state.fill.empty() || state.fill.size() == model.mesh.tets.size(),
+                 fmt::format("expected {} shares of stiffness, found {}", model.mesh.tets.size(), state.fill.size()));
 }
 
 }  // namespace

@@ -67,7 +67,8 @@ class TetResponses {
         block += (gradients[low].dot(fibre) * gradients[high].dot(fibre)) * fibre_tangents_[tet];
       }
       if (low != corner) block.transposeInPlace();
-      Eigen::Map<RowMajor>(matrix.block(model_.tet_slots[tet][4 * corner + b])) += model_.volumes_mm3[tet] * block;
+      Eigen::Map<RowMajor>(matrix.block(model_.tet_slots[tet][4 * corner + b])) +=
+          filled_volume_mm3(model_, state_, tet) * block;
     }
   }
 
@@ -91,7 +92,7 @@ class TetResponses {
         density += 0.5 * model_.lame[tet].lambda_kpa * theta * theta;
       }
       if (!model_.fibres.empty()) density += fibre_energy_kpa(fibre_law(), model_.fibres[tet], d.f);
-      energy += model_.volumes_mm3[tet] * density;
+      energy += filled_volume_mm3(model_, state_, tet) * density;
     }
     return energy;
   }
@@ -155,7 +156,7 @@ void add_law_response(const TissueModel& model, TissueState& state, std::span<Ve
       const auto entry = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)]);
       const std::size_t tet = entry / 4;
       if (state.is_live[tet] == 0) continue;
-      force -= model.volumes_mm3[tet] * (tets.stresses()[tet] * model.gradients[tet][entry % 4]);
+      force -= filled_volume_mm3(model, state, tet) * (tets.stresses()[tet] * model.gradients[tet][entry % 4]);
       if (stiffness != nullptr) tets.add_stiffness(tet, entry % 4, *stiffness);
     }
     forces[v] += force;

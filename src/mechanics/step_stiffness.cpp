@@ -26,7 +26,7 @@ struct StepStiffness::Data {
 
   BlockMatrix matrix;
   std::vector<double> rotations;  // those with which tets were assembled, in the order of the kernels' batches
-  std::vector<std::uint8_t> is_in;
+  std::vector<double> fill;       // likewise; 0: not in the matrix
   std::vector<std::uint8_t> is_changed;
   std::vector<std::uint8_t> next_changed;  // rows that differ again when what was lent is taken back
   std::vector<Lent> lent;
@@ -49,7 +49,7 @@ struct StepStiffness::Data {
     if (is_plain_corotational(model)) {
       const std::size_t places = kBatchTets * model.batches->batches.size();
       rotations.assign(9 * places, 0.0);
-      is_in.assign(places, 0);
+      fill.assign(places, 0.0);
     }
     for (const SupportPlane& support : model.supports) {
       for (const VertexId v : support.vertices) {
@@ -111,13 +111,13 @@ void StepStiffness::Data::assemble_all(const TissueModel& model, TissueState& st
     const double inertia = model.vertex_mass_kg[v] / (step_s * step_s);
     for (const int i : {0, 4, 8}) diagonal[i] += inertia;
   }
-  if (is_in.empty()) return;
+  if (fill.empty()) return;
   workers.for_each(model.batches->batches.size(), kBatchesPerChunk, [&](std::size_t b) {
     const TetBatch& batch = model.batches->batches[b];
     for (std::size_t lane = 0; lane < kBatchTets; ++lane) {
       const std::int32_t tet = batch.tets[lane];
       if (tet < 0) continue;
-      is_in[kBatchTets * b + lane] = state.is_live[static_cast<std::size_t>(tet)];
+      fill[kBatchTets * b + lane] = filled_share(state, static_cast<std::size_t>(tet));
       const double* rotation = state.rotations[static_cast<std::size_t>(tet)].data();
       for (std::size_t k = 0; k < 9; ++k) rotations[9 * kBatchTets * b + kBatchTets * k + lane] = rotation[k];
     }
@@ -128,7 +128,7 @@ void StepStiffness::Data::assemble_all(const TissueModel& model, TissueState& st
 void StepStiffness::Data::renew(const TissueModel& model, TissueState& state, std::span<Vec3> forces,
                                 Workers& workers) {
   is_changed.swap(next_changed);
-  const AssembledTets assembled{model.batches->batches.data(), rotations.data(), is_in.data(), is_changed.data(),
+  const AssembledTets assembled{model.batches->batches.data(), rotations.data(), fill.data(), is_changed.data(),
                                 2.0 * kTurnRad * kTurnRad};
   renew_corotational_tangent(model, state, forces, matrix, assembled, workers);
   workers.for_each(matrix.pattern->rows(), kRowsPerChunk, [&](std::size_t row) {
@@ -142,7 +142,7 @@ void StepStiffness::begin(const TissueModel& model, TissueState& state, double s
   d.take_back();
   const bool has_viscosity = viscous_s && is_viscous(model.material);
   if (is_fresh || has_viscosity || d.had_viscosity || tangent != Tangent::FrozenRotations ||
-      d.tangent != Tangent::FrozenRotations || step_s != d.step_s || d.is_in.empty()) {
+      d.tangent != Tangent::FrozenRotations || step_s != d.step_s || d.fill.empty()) {
     d.step_s = step_s;
     d.tangent = tangent;
     d.assemble_all(model, state, forces, workers);

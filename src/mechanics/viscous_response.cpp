@@ -163,7 +163,7 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
       if (state.is_live[tet] == 0) continue;
       const Response& r = responses[tet];
       const auto& g = model.gradients[tet];
-      force -= model.volumes_mm3[tet] * (r.f * (r.stress * g[corner]));
+      force -= filled_volume_mm3(model, state, tet) * (r.f * (r.stress * g[corner]));
       if (stiffness == nullptr) continue;
       for (std::size_t b = 0; b < 4; ++b) {  // (b, a) as the transpose of (a, b): symmetric bit for bit
         const std::size_t low = std::min(corner, b);
@@ -171,7 +171,8 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
         Mat3 block = viscous_block(r.f, r.geometric, tets.modulus(tet), g[low], g[high]);
         if (low == high) block = (0.5 * (block + block.transpose())).eval();
         if (low != corner) block.transposeInPlace();
-        Eigen::Map<RowMajor>(stiffness->block(model.tet_slots[tet][4 * corner + b])) += model.volumes_mm3[tet] * block;
+        Eigen::Map<RowMajor>(stiffness->block(model.tet_slots[tet][4 * corner + b])) +=
+            filled_volume_mm3(model, state, tet) * block;
       }
     }
     forces[v] += force;
@@ -189,7 +190,7 @@ double viscous_potential_uj(const TissueModel& model, const TissueState& state, 
   const ViscousTets tets(model, state, step_s);
   double sum = 0.0;
   for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
-    if (state.is_live[tet] != 0) sum += model.volumes_mm3[tet] * tets.potential(tet);
+    if (state.is_live[tet] != 0) sum += filled_volume_mm3(model, state, tet) * tets.potential(tet);
   }
   return sum;
 }

@@ -14,7 +14,7 @@ void gather_gradient(const TissueModel& model, const TissueState& state, std::sp
   for (auto i = model.vertex_tet_start[n]; i < model.vertex_tet_start[n + 1]; ++i) {
     const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
     if (state.is_live[tet] == 0) continue;
-    const double share = 0.25 * model.volumes_mm3[tet];
+    const double share = 0.25 * filled_volume_mm3(model, state, tet);
     for (std::size_t c = 0; c < 4; ++c) {
       const auto at = std::lower_bound(star.begin(), star.end(), model.mesh.tets[tet][c].value);
       result[static_cast<std::size_t>(at - star.begin())] += share * (gradients[tet] * model.gradients[tet][c]);
@@ -37,7 +37,7 @@ VolumeAverages::VolumeAverages(const TissueModel& model, const TissueState& stat
     for (auto i = model.vertex_tet_start[n]; i < model.vertex_tet_start[n + 1]; ++i) {
       const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
       if (state.is_live[tet] == 0) continue;
-      const double share = 0.25 * model.volumes_mm3[tet];
+      const double share = 0.25 * filled_volume_mm3(model, state, tet);
       volume += share;
       change += share * dilations[tet];
       compliance += share / model.lame[tet].lambda_kpa;

@@ -27,7 +27,7 @@ std::vector<JudgedLayer> judged_layers(const SimulatedCut& cut) {
 
 std::optional<std::string> why_no_deep_margin(const SimulatedCut& cut) {
   if (cut.incision.kerf.deep_margin) return std::nullopt;
-  if (cut.incision.record.removals.empty()) return "nothing was cut";
+  if (cut.incision.kerf.body.surface.triangles.empty()) return "nothing was cut";
   return "the case names no tumor.surface: an edge does not show how deep the tumour is";
 }
 

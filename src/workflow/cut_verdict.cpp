@@ -33,7 +33,7 @@ void judge_layers(const SimulatedCut& cut, Verdict& verdict) {
     verdict.add("open_layer", layer.gap_mm,
                 fmt::format("the simulated cut is open at a depth of {} mm: uncut tissue{} still holds the piece there",
                             layer.depth_mm, bridge),
-                VerdictPlace{{}, {}, fmt::format("{} mm below the skin", layer.depth_mm)});
+                VerdictPlace{{}, layer.gap_place_mm, fmt::format("{} mm below the skin", layer.depth_mm)});
   }
 }
 

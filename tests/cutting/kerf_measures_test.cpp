@@ -156,9 +156,9 @@ TEST(KerfMeasures, UndraggedTissueHasNeitherLagNorDrift) {
 TissueDrag drag_of_one(const ToolPath& path, double time_s, const Vec3& u, RemovalCause cause = RemovalCause::Dwell) {
   Vec3 place = u;
   for (const VertexId v : block().mesh.tets[500]) place += 0.25 * vertex(block().mesh.vertices, v);
-  CutRecord record;
-  record.removals.push_back({TetId(500), 7, time_s, cause, place, block().volumes_mm3[500]});
-  return tissue_drag(block(), block().mesh.vertices, path, coarse_settings(), record).value_or(TissueDrag{});
+  CutState state;
+  state.record.removals.push_back({TetId(500), 7, time_s, cause, place, block().volumes_mm3[500]});
+  return tissue_drag(block(), block().mesh.vertices, path, coarse_settings(), state).value_or(TissueDrag{});
 }
 
 TEST(TissueDrag, OfAnOpenCutIsAheadAndToTheLeft) {
@@ -261,6 +261,7 @@ TEST(ShallowestClosedRing, IsTheFirstLayerThatClosedLiftedToTheSkin) {
                    .is_within_plan = true,
                    .is_closed = is_closed,
                    .gap_mm = {},
+                   .gap_place_mm = {},
                    .width_mm = width_mm,
                    .centerline = Contour{}};
     made.centerline->points = {kMiddle + depth_mm * kDown, kMiddle + depth_mm * kDown + Vec3(depth_mm, 0, 0)};

@@ -134,6 +134,8 @@ TEST(Midline, OfAnOpenRingIsAbsentAndTheGapIsMeasured) {
   EXPECT_NEAR(result.gap_deg, 20.0, 3.0);
   EXPECT_LT(result.gap_mm, 4.2);
   EXPECT_GT(result.gap_mm, 4.2 - 0.62);
+  ASSERT_TRUE(result.gap_place_mm);
+  EXPECT_LT((*result.gap_place_mm - Vec3(12, 0, result.gap_place_mm->z())).norm(), 1.5);
   EXPECT_GT(result.area_mm2, 80.0);
 }
 
@@ -152,6 +154,10 @@ TEST(Midline, SeesTheBridgeBetweenEndsThatOverlapSideBySide) {
   EXPECT_EQ(result.gap_deg, 0.0);
   EXPECT_LT(result.gap_mm, 1.5);
   EXPECT_GT(result.gap_mm, 1.5 - 0.62);
+  ASSERT_TRUE(result.gap_place_mm);
+  const double angle_deg = std::atan2(result.gap_place_mm->y(), result.gap_place_mm->x()) * 180.0 / std::numbers::pi;
+  EXPECT_GT(angle_deg, -5.0);
+  EXPECT_LT(angle_deg, 35.0) << "between the laps";
 }
 
 TEST(Midline, OverlooksAnIslandWithinTheKerf) {

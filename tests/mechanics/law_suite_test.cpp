@@ -131,6 +131,28 @@ class EveryLaw : public ::testing::TestWithParam<LawCase> {
   }
 };
 
+TEST_P(EveryLaw, OfHalfTheStiffnessHasHalfOfEverything) {
+  const TissueModel model = block();
+  TissueState whole = shaken(model, 0.4, 3), half = whole;
+  half.fill.assign(model.mesh.tets.size(), 0.5);
+  EXPECT_NEAR(energy(model, half), 0.5 * energy(model, whole), 1e-12 * energy(model, whole));
+  const Eigen::MatrixXd expected = 0.5 * stiffness(model, whole, Tangent::Exact);
+  EXPECT_LT((stiffness(model, half, Tangent::Exact) - expected).norm(), 1e-12 * expected.norm());
+  const Points of_whole = forces(model, whole), of_half = forces(model, half);
+  for (std::size_t v = 0; v < of_whole.size(); ++v)
+    ASSERT_LT((of_half[v] - 0.5 * of_whole[v]).norm(), 1e-12 * norm(of_whole)) << "vertex " << v;
+}
+
+TEST_P(EveryLaw, OfPartlyEmptyTetsIsTheGradientOfItsEnergy) {
+  const TissueModel model = block();
+  TissueState state = shaken(model, 0.4, 4);
+  for (std::size_t t = 0; t < model.mesh.tets.size(); ++t)
+    state.fill.push_back(0.1 + 0.9 * static_cast<double>(t) / static_cast<double>(model.mesh.tets.size()));
+  const Points found = forces(model, state), gradient = energy_gradient(model, state);
+  for (std::size_t v = 0; v < found.size(); ++v)
+    ASSERT_LT((found[v] + gradient[v]).norm(), kDifferenceTolerance * norm(found)) << "vertex " << v;
+}
+
 TEST_P(EveryLaw, HasForcesThatAreMinusTheEnergyGradient) {
   const TissueModel model = block();
   for (const double amount : {0.05, 0.5, 1.5}) {

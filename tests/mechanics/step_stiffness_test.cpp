@@ -85,6 +85,18 @@ TEST_P(KeptStiffness, IsThatOfAllTetsAfterSomeTurned) {
   expect_matrix_of_now();
 }
 
+TEST_P(KeptStiffness, IsThatOfWhatIsLeftOfTets) {
+  prepare(true);
+  state_.fill.assign(state_.is_live.size(), 1.0);
+  for (std::size_t t = 0; t < state_.fill.size(); t += 3) state_.fill[t] = 0.37;
+  prepare(false);
+  expect_matrix_of_now();
+  move_beyond(11.0);
+  for (std::size_t t = 0; t < state_.fill.size(); t += 2) state_.fill[t] = 1e-3;
+  prepare(false);
+  expect_matrix_of_now();
+}
+
 TEST_P(KeptStiffness, IsThatOfTheLiveTetsAfterSomeWereCarved) {
   prepare(true);
   for (std::size_t t = 0; t < state_.is_live.size(); t += 4) state_.is_live[t] = 0;

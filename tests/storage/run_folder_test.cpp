@@ -107,9 +107,9 @@ SimulatedCut measured_cut() {
   kerf.body.volume_mm3 = 6.0;
   kerf.body.boundary = {12, 0, 1, 2};
   kerf.body.live_skin = {30, 0, 3, 4};
-  kerf.layers = {{2.5, true, true, std::nullopt, 1.5, testing::circle(1.0 / 3.0, 9, Vec3(5, 10, 2.5))},
-                 {4.0, true, false, 0.7, 0.0, std::nullopt},
-                 {5.0, false, std::nullopt, std::nullopt, 0.0, std::nullopt}};
+  kerf.layers = {{2.5, true, true, std::nullopt, std::nullopt, 1.5, testing::circle(1.0 / 3.0, 9, Vec3(5, 10, 2.5))},
+                 {4.0, true, false, 0.7, Vec3(1.0 / 3.0, 2, 3), 0.0, std::nullopt},
+                 {5.0, false, std::nullopt, std::nullopt, std::nullopt, 0.0, std::nullopt}};
   kerf.depth = {4.5,
                 {testing::circle(3.1, 8), {0, 1, 2, 3, 4, 5, 6, 7}, {0.1, 4, 4, 4, 4, 4, 4, 1.0 / 3.0}},
                 {4.5, 4.5, 4.5, 4.5, 4, 4.25, 4.5, 4.5},

@@ -93,11 +93,13 @@ TEST(VerdictOfCut, RefusesALayerWithinThePlanThatStayedOpen) {
   cut.incision.kerf.layers[1].is_closed = false;
   cut.incision.kerf.layers[2].is_closed = false;
   cut.incision.kerf.layers[2].gap_mm = 3.25;
+  cut.incision.kerf.layers[2].gap_place_mm = Vec3(4, 5, 6);
   const Verdict verdict = verdict_of_cut(Case{}, cut);
   EXPECT_THAT(ids_of(verdict), ElementsAre("open_layer", "open_layer"));
   EXPECT_EQ(verdict.status(), VerdictStatus::Refused);
   EXPECT_EQ(verdict.reasons()[1].value, 3.25);
   EXPECT_EQ(verdict.reasons()[1].at->text, "4 mm below the skin");
+  EXPECT_EQ(verdict.reasons()[1].at->position_mm, Vec3(4, 5, 6));
   for (KerfLayer& layer : cut.incision.kerf.layers) layer.is_within_plan = layer.depth_mm < 2.0;
   EXPECT_EQ(verdict_of_cut(Case{}, cut).status(), VerdictStatus::Ok) << "a shallower plan";
 }

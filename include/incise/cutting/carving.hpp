@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/workers.hpp>
+#include <incise/cutting/cut_points.hpp>
 #include <incise/cutting/cut_record.hpp>
 #include <incise/cutting/cut_settings.hpp>
 #include <incise/cutting/tool.hpp>
@@ -33,6 +34,7 @@ struct CutState {
   std::vector<double> dose;          ///< per tet: how much of what removes it is done, gone at 1; kept when contact is lost
   std::vector<double> tear_dose;     ///< per tet: the part of `dose` that is the tool's work
   std::vector<Bond> bonds;           ///< ascending tet
+  CutPoints points;                  ///< of a cut by points
   ToolPose tool;
   double time_s = 0.0;
   int step = 0;
@@ -43,6 +45,7 @@ inline void describe(Visitor& v, CutState& s) {
   v("dose", s.dose, "Of each tet: removed at 1.");
   v("tear_dose", s.tear_dose, "The part of it that is the tool's work.");
   v("bonds", s.bonds, "Ascending tet.");
+  v("points", s.points, "Of a cut by points.");
   v("tool", s.tool, "Where it is.");
   v("time_s", s.time_s, "Since the tool began to plunge.");
   v("step", s.step, "Done so far.", kNotNegative);
@@ -61,7 +64,7 @@ struct CutStepReport {
   std::size_t removed = 0;
   std::size_t loose_removed = 0;
   std::size_t held_back_vertices = 0;         ///< vertices whose step was cut to max_step_mm
-  std::size_t slipped = 0;                    ///< bonds that slipped
+  std::size_t slipped = 0;                    ///< bonds, or slices of a cut by points, that slipped
   Vec3 tool_force_mn = Vec3::Zero();          ///< of the tissue on the tool
   Vec3 tool_torque_mn_mm = Vec3::Zero();      ///< of the tissue on the tool, about its tip
   double max_step_mm = 0.0;                   ///< farthest that the solve moves a vertex, at most CutSettings::max_step_mm

@@ -15,9 +15,11 @@ namespace incise {
 /// - positions: of vertices with a live tet, mm: finite
 /// - dose: finite; what tearing contributed is between 0 and the whole
 /// - bonds: on live tets only, ascending, with finite offsets
+/// - points: as many of everything as their tets have; doses finite and not negative, at least 1 where parted and nowhere
+///   else; what is left of a tet's stiffness in (0, 1]
 ///
 /// @returns every kind of violation, one sentence each with the first offender; empty: all hold.
-/// O(vertices + tets + removals + bonds).
+/// O(vertices + tets + removals + bonds + points).
 /// @throws InvalidArgument when the state's lists do not fit the model's mesh.
 [[nodiscard]] std::vector<std::string> cut_invariants(const TissueModel& model, const CutState& state);
 

@@ -2,6 +2,7 @@
 
 #include <incise/core/defaults.hpp>
 #include <incise/core/describe.hpp>
+#include <incise/core/names.hpp>
 #include <incise/core/problem.hpp>
 
 #include <optional>
@@ -9,6 +10,16 @@
 #include <vector>
 
 namespace incise {
+
+/// What carries a cut.
+enum class CutRule {
+  Tets,     ///< whole tets have a dose, are held by the tool, and go
+  Lattice,  ///< so have points of a fixed lattice; a tet has the stiffness of what is left of it
+};
+inline constexpr std::array<std::string_view, 2> kCutRuleNames{"tets", "lattice"};
+[[nodiscard]] constexpr Names names_of(CutRule) {
+  return kCutRuleNames;
+}
 
 /// How the simulated tool cuts. Speed and dullness are the two numbers that calibration finds (paper II-C.4); the
 /// defaults are the paper's chosen pair, the rest is described in docs/models/cutting.md.
@@ -29,6 +40,13 @@ struct CutSettings {
   double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, >= 0 and less than once round
   double residual_tolerance = 0.15;   ///< each step's linear solve: |r| <= this · |contact force|, [1e-6, 0.3]; the next step puts the rest right
   double max_step_mm = 1.0;           ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
+  /// Lattice is under construction (docs/decisions/0010-cutting-law.md): no inner edge. It takes the four numbers below
+  /// in place of reach, bond stiffness, slip and tear energy.
+  CutRule rule = CutRule::Tets;
+  double kernel_radius_mm = 1.25;           ///< how far from its core the tool acts, [0.5, 5]
+  double dose_length_mm = 1.8;              ///< a point that does not move just parts where v d τ0 is this, [0.1, 10]
+  double hold_kpa = 400.0;                  ///< pull per length of tool and offset, all tissue about it whole, >= 0
+  std::optional<double> slip_mn_mm = 40.0;  ///< greatest pull per length of tool, mN/mm, > 0; none: no limit
 
   /// Contact time that removes a tet of the reference tissue at the reference power, s.
   [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
@@ -68,6 +86,12 @@ inline void describe_steps(Visitor& v, CutSettings& s) {
   v("residual_tolerance", s.residual_tolerance, "Of each step's linear solve, relative to the contact force.",
     {1e-6, 0.3});
   v.internal("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step.", kPositive);
+  v.internal("rule", s.rule, "What carries the cut.");
+  v.internal("kernel_radius_mm", s.kernel_radius_mm, "Lattice: how far the tool acts.", {0.5, 5.0});
+  v.internal("dose_length_mm", s.dose_length_mm, "Lattice: where v d tau0 is this, a point on the way just parts.",
+             {0.1, 10.0});
+  v.internal("hold_kpa", s.hold_kpa, "Lattice: pull per length of tool and offset.", {0.0, 1e6});
+  v.internal("slip_mn_mm", s.slip_mn_mm, "Lattice: greatest pull per length of tool.", kPositive);
 }
 inline void describe(Visitor& v, CutSettings& s) {
   describe_effect(v, s);

@@ -28,6 +28,7 @@ struct KerfLayer {
   bool is_within_plan = false;        ///< the planned depth reaches the layer's middle; if not, nothing was looked for
   std::optional<bool> is_closed;      ///< whether a ring closed there; absent for an open cut, or outside the plan
   std::optional<double> gap_mm;       ///< ring that stayed open there: width of the widest uncut bridge
+  std::optional<Vec3> gap_place_mm;   ///< where that bridge is narrowest, stretched tissue before the cut, mm
   double width_mm = 0.0;              ///< of the kerf there, mean; 0 without a mid-line
   std::optional<Contour> centerline;  ///< at that depth, stretched tissue before the cut, mm
 };
@@ -36,6 +37,7 @@ inline void describe(Visitor& v, KerfLayer& l) {
   v("within_plan", l.is_within_plan, "Whether the planned depth reaches it.");
   v("closed_loop", l.is_closed, "Whether a ring closed there.");
   v("gap_mm", l.gap_mm, "Of a ring that stayed open there: width of the widest uncut bridge.");
+  v("gap_place_mm", l.gap_place_mm, "Where that bridge is narrowest, stretched tissue before the cut.");
   v("kerf_width_mm", l.width_mm, "Mean, there.");
   v.bulk("centerline", l.centerline, "The mid-line there, stretched tissue before the cut.");
 }

@@ -38,6 +38,7 @@ struct KerfMidline {
   double gap_deg = 0.0;  ///< ring wanted but open: the largest angle at `inside_mm` without kerf; 360 without any
   double gap_mm = 0.0;   ///< ring wanted but open: width of the widest uncut bridge to the outside; also found where
                          ///< the ends overlap side by side and `gap_deg` is 0
+  std::optional<Vec3> gap_place_mm;  ///< where that bridge is narrowest, on the surface, mm; absent: not known
   double mean_width_mm = 0.0;  ///< of the kerf across `contour`, averaged over the layer
   double area_mm2 = 0.0;       ///< of the kerf seen along the approach
 };

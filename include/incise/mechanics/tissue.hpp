@@ -81,15 +81,27 @@ struct TissueState {
   Points positions;                   ///< N x 3, mm
   std::vector<Mat3> rotations;        ///< per tet, warm start of the polar decomposition; proper
   std::vector<std::uint8_t> is_live;  ///< per tet: 1 until it is carved
+  std::vector<double> fill;           ///< per live tet: the share of its stiffness that is left, (0, 1]; empty: 1
   ViscousMemory memory;               ///< of viscous tissue; changed by end_viscous_step alone
 };
 inline void describe(Visitor& v, TissueState& s) {
   v("positions", s.positions, "Of the vertices.");
   v("rotations", s.rotations, "Of the tets: where the polar decomposition starts.");
   v("is_live", s.is_live, "Of each tet: 1 until it is carved.");
+  v("fill", s.fill, "Of each live tet: the share of its stiffness that is left; empty: 1.");
   v("memory", s.memory, "Of viscous tissue.");
 }
 [[nodiscard]] TissueState rest_state(const TissueModel& model);
+
+/// The share of a tet's stiffness that is left; 0: it is carved.
+[[nodiscard]] inline double filled_share(const TissueState& state, std::size_t tet) {
+  if (state.is_live[tet] == 0) return 0.0;
+  return state.fill.empty() ? 1.0 : state.fill[tet];
+}
+/// What is left of a live tet's rest volume, mm³.
+[[nodiscard]] inline double filled_volume_mm3(const TissueModel& model, const TissueState& state, std::size_t tet) {
+  return state.fill.empty() ? model.volumes_mm3[tet] : state.fill[tet] * model.volumes_mm3[tet];
+}
 
 /// Which derivative of the forces is wanted.
 enum class Tangent {

@@ -29,7 +29,7 @@ enum class SweepTangent { None, FrozenRotations, Exact, Projected };
 struct AssembledTets {
   const TetBatch* first_batch;
   double* rotations;    ///< per batch nine times eight numbers: those with which its tets' blocks were made, by columns
-  std::uint8_t* is_in;  ///< eight per batch: 1 where the tet's blocks are in the matrix
+  double* fill;  ///< eight per batch: that with which the tet's blocks are in the matrix; 0: they are not
   std::uint8_t* is_changed;  ///< per vertex: set to 1 for the corners of tets whose blocks are changed
   double turn_limit;         ///< |R - R before|² (Frobenius) above which a tet's blocks are made anew
 };
@@ -40,6 +40,7 @@ struct TetSweep {
   std::size_t count;
   const double* positions;      ///< 3 per vertex, mm
   const std::uint8_t* is_live;  ///< per tet
+  const double* fill;           ///< per tet: the share of its stiffness that is left; null: 1
   const double* rotations;      ///< 9 per tet, by columns: where Newton's method starts
   double* new_rotations;        ///< the same array, or null: not kept
   double* forces;               ///< 3 per vertex, added to, mN; null: not wanted

@@ -1,0 +1,158 @@
+#include "point_kerf.hpp"
+
+#include <incise/geometry/iso_surface.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace incise {
+namespace {
+
+/// The six tets of Kuhn's division of a cell, by its corners (bit a of a number: one step along axis a).
+constexpr std::array<std::array<std::size_t, 4>, 6> kKuhn{
+    {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
+
+/// What a dose counts for at most: where it is high on one side, the kerf's border does not move to the other node.
+constexpr double kMostDose = 2.0;
+
+PointLattice::Node moved(const PointLattice::Node& node, std::size_t corner, int by = 1) {
+  PointLattice::Node other = node;
+  for (std::size_t a = 0; a < 3; ++a) other[a] += (corner >> a & 1U) != 0 ? by : 0;
+  return other;
+}
+
+/// Where the dose is 1 between two places.
+Vec3 crossing(const Vec3& from, double dose, const Vec3& to, double other_dose) {
+  return from + (1.0 - dose) / (other_dose - dose) * (to - from);
+}
+
+void add_prism(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, std::vector<std::array<Vec3, 4>>& tets) {
+  tets.push_back({a[0], a[1], a[2], b[0]});
+  tets.push_back({a[1], a[2], b[0], b[1]});
+  tets.push_back({a[2], b[0], b[1], b[2]});
+}
+
+/// The part of a tet in which the dose, linear in it, is at least 1.
+void add_part(const std::array<Vec3, 4>& at, const std::array<double, 4>& dose,
+              std::vector<std::array<Vec3, 4>>& tets) {
+  std::array<std::size_t, 4> order{0, 1, 2, 3};
+  std::ranges::stable_partition(order, [&](std::size_t c) { return dose[c] >= 1.0; });
+  const auto inside = std::ranges::count_if(dose, [](double d) { return d >= 1.0; });
+  const auto cut = [&](std::size_t from, std::size_t to) {
+    return crossing(at[order[from]], dose[order[from]], at[order[to]], dose[order[to]]);
+  };
+  const auto place = [&](std::size_t c) -> const Vec3& { return at[order[c]]; };
+  switch (inside) {
+    case 1:
+      tets.push_back({place(0), cut(0, 1), cut(0, 2), cut(0, 3)});
+      break;
+    case 2:
+      add_prism({place(0), cut(0, 2), cut(0, 3)}, {place(1), cut(1, 2), cut(1, 3)}, tets);
+      break;
+    case 3:
+      add_prism({place(0), place(1), place(2)}, {cut(0, 3), cut(1, 3), cut(2, 3)}, tets);
+      break;
+    case 4:
+      tets.push_back(at);
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace
+
+PointKerf::PointKerf(const TissueModel& model, const CutPoints& points, std::span<const Vec3> positions)
+    : model_(model), points_(points), positions_(positions), lattice_(model, points.tets) {
+  for (std::size_t i = 0; i < lattice_.size(); ++i) {
+    if (lattice_.node_of(i)) points_at_.emplace(*lattice_.node_of(i), i);
+  }
+}
+
+PointKerf::Corner PointKerf::corner(const PointLattice::Node& node) const {
+  const auto found = points_at_.find(node);
+  if (found == points_at_.end()) return {0.0, Vec3::Zero(), false};
+  const std::size_t point = found->second;
+  return {std::min(kMostDose, points_.dose[point]),
+          lattice_.position(point, positions_) - lattice_.position(point, model_.mesh.vertices), true};
+}
+
+double PointKerf::cell(const PointLattice::Node& low, std::array<double, 8>& doses, std::array<Vec3, 8>& at) const {
+  std::array<Corner, 8> corners;
+  Vec3 mean = Vec3::Zero();
+  int known = 0;
+  double greatest = 0.0;
+  for (std::size_t c = 0; c < 8; ++c) {
+    corners[c] = corner(moved(low, c));
+    doses[c] = corners[c].dose;
+    greatest = std::max(greatest, doses[c]);
+    if (!corners[c].is_known) continue;
+    mean += corners[c].displacement;
+    ++known;
+  }
+  if (known > 0) mean /= known;
+  for (std::size_t c = 0; c < 8; ++c) {
+    at[c] = PointLattice::rest_position(moved(low, c)) + (corners[c].is_known ? corners[c].displacement : mean);
+  }
+  return greatest;
+}
+
+std::vector<std::array<Vec3, 4>> PointKerf::tets() const {
+  std::set<PointLattice::Node> cells;
+  for (const auto& [node, point] : points_at_) {
+    if (points_.dose[point] < 1.0) continue;
+    for (std::size_t c = 0; c < 8; ++c) cells.insert(moved(node, c, -1));
+  }
+  std::vector<std::array<Vec3, 4>> result;
+  for (const PointLattice::Node& low : cells) {
+    std::array<double, 8> doses{};
+    std::array<Vec3, 8> at;
+    static_cast<void>(cell(low, doses, at));
+    for (const auto& [a, b, c, d] : kKuhn)
+      add_part({at[a], at[b], at[c], at[d]}, {doses[a], doses[b], doses[c], doses[d]}, result);
+  }
+  return result;
+}
+
+TriMesh PointKerf::surface() const {
+  Box3 box;
+  for (const auto& [node, point] : points_at_) {
+    if (points_.dose[point] < 1.0) continue;
+    box.extend(Vec3(node[0], node[1], node[2]));
+  }
+  if (box.isEmpty()) return {};
+  GrayVolume doses;
+  const Eigen::Array3i low = box.min().array().cast<int>() - 1, size = box.max().array().cast<int>() + 2 - low;
+  doses.grid.size = {size[0], size[1], size[2]};
+  doses.grid.origin_mm = low.matrix().cast<double>();
+  doses.voxels.assign(doses.grid.voxel_count(), 0.0F);
+  for (const auto& [node, point] : points_at_) {
+    if (!doses.grid.contains(node[0] - low[0], node[1] - low[1], node[2] - low[2])) continue;
+    doses.voxels[doses.grid.offset(node[0] - low[0], node[1] - low[1], node[2] - low[2])] =
+        static_cast<float>(std::min(kMostDose, points_.dose[point]));
+  }
+  TriMesh surface = iso_surface(doses, 1.0);
+  for (Vec3& v : surface.vertices) {
+    const Vec3 floor = v.array().floor();
+    const PointLattice::Node node{static_cast<int>(floor.x()), static_cast<int>(floor.y()),
+                                  static_cast<int>(floor.z())};
+    std::array<double, 8> ignored{};
+    std::array<Vec3, 8> at;
+    static_cast<void>(cell(node, ignored, at));
+    const Vec3 t = v - floor;
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t c = 0; c < 8; ++c) {
+      double weight = 1.0;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double x = t[static_cast<Eigen::Index>(a)];
+        weight *= (c >> a & 1U) != 0 ? x : 1.0 - x;
+      }
+      sum += weight * at[c];
+    }
+    v = sum;
+  }
+  return surface;
+}
+
+}  // namespace incise

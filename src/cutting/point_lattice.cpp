@@ -1,0 +1,81 @@
+#include "point_lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise {
+namespace {
+
+constexpr std::size_t kLeastNodes = 4;  // of a tet, for them to stand for its volume
+// Off any plane on which meshes of blocks have their faces: no node lies on one.
+const Vec3 kOriginMm(0.0371, 0.0613, 0.0887);
+// The points of the quadrature of degree 2 with four points: (5 + 3 √5)/20 and (5 − √5)/20.
+constexpr double kNear = 0.5854101966249685, kFar = 0.1381966011250105;
+
+}  // namespace
+
+Vec3 PointLattice::rest_position(const Node& node) {
+  return kOriginMm + kSpacingMm * Vec3(node[0], node[1], node[2]);
+}
+
+PointLattice::PointLattice(const TissueModel& model, std::span<const TetId> tets)
+    : model_(model), first_(model.mesh.tets.size(), -1), count_(model.mesh.tets.size(), 0) {
+  for (const TetId tet : tets) add(tet);
+}
+
+std::size_t PointLattice::add(TetId tet) {
+  const Tet& corners = model_.mesh.tets[tet.index()];
+  const std::array<Vec3, 4>& gradients = model_.gradients[tet.index()];
+  const Vec3& origin = vertex(model_.mesh.vertices, corners[0]);
+  Box3 box;
+  for (const VertexId v : corners) box.extend((vertex(model_.mesh.vertices, v) - kOriginMm) / kSpacingMm);
+  const std::size_t first = shares_.size();
+  const Eigen::Array3i low = box.min().array().ceil().cast<int>(), high = box.max().array().floor().cast<int>();
+  for (int k = low[2]; k <= high[2]; ++k)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int i = low[0]; i <= high[0]; ++i) {
+        const Vec3 from_origin = rest_position({i, j, k}) - origin;
+        std::array<double, 4> shares{1.0, 0.0, 0.0, 0.0};
+        for (std::size_t c = 1; c < 4; ++c) {
+          shares[c] = gradients[c].dot(from_origin);
+          shares[0] -= shares[c];
+        }
+        if (std::ranges::any_of(shares, [](double share) { return share < 0.0; })) continue;
+        shares_.push_back(shares);
+        nodes_.emplace_back(Node{i, j, k});
+      }
+  const std::size_t nodes = shares_.size() - first;
+  if (nodes < kLeastNodes) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      std::array<double, 4> shares;
+      shares.fill(kFar);
+      shares[c] = kNear;
+      shares_.push_back(shares);
+    }
+  }
+  const std::size_t count = shares_.size() - first;
+  tets_.resize(shares_.size(), tet);
+  nodes_.resize(shares_.size());
+  const double volume = model_.volumes_mm3[tet.index()];
+  const bool has_own = nodes < kLeastNodes;
+  volumes_.resize(first + nodes, has_own ? 0.0 : volume / static_cast<double>(nodes));
+  volumes_.resize(shares_.size(), 0.25 * volume);
+  first_[tet.index()] = static_cast<std::int64_t>(first);
+  count_[tet.index()] = static_cast<std::int32_t>(count);
+  return count;
+}
+
+std::pair<std::size_t, std::size_t> PointLattice::points_of(TetId tet) const {
+  if (first_[tet.index()] < 0) return {0, 0};
+  const auto first = static_cast<std::size_t>(first_[tet.index()]);
+  return {first, first + static_cast<std::size_t>(count_[tet.index()])};
+}
+
+Vec3 PointLattice::position(std::size_t point, std::span<const Vec3> positions) const {
+  const Tet& corners = model_.mesh.tets[tets_[point].index()];
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t c = 0; c < 4; ++c) sum += shares_[point][c] * vertex(positions, corners[c]);
+  return sum;
+}
+
+}  // namespace incise
