@@ -122,7 +122,7 @@ std::string row_of(const Job& job, const SimulatedCut& done) {
     return summary ? fmt::format("{:.3f}", *summary.*value) : std::string();
   };
   const Evaluation& e = done.centerline;
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{:.1f}\n", job.body->name, job.body->edge_mm, done.tets,
+  return fmt::format("{},{:.4g},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{:.1f}\n", job.body->name, job.body->edge_mm, done.tets,
                      name_of(job.tissue), job.cut.speed_mm_s, job.cut.dullness, job.cut.advance_per_step_mm, to_string(done.outcome),
                      cut.is_closed_loop.value_or(false) ? "yes" : "no", part(e.signed_error_mm, &Summary::mean),
                      part(e.signed_error_mm, &Summary::sd), part(e.signed_error_mm, &Summary::min), part(e.signed_error_mm, &Summary::max),

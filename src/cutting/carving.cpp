@@ -44,6 +44,7 @@ struct CutWorkspace::Data {
   std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they stay where they are
   std::size_t carved_then = 0;          // tets carved when that was found
   std::optional<PointLattice> lattice;  // of a cut by points
+  std::vector<std::uint8_t> every_tet;  // 1 each
 
   Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
       : neighbours(face_neighbours(model.mesh)),
@@ -355,7 +356,7 @@ std::vector<TetId> follow_contact(const TissueModel& model, const CutSettings& s
                             [](const Bond& bond, TetId id) { return bond.tet < id; });
     const bool was_held = held != state.bonds.end() && held->tet == candidates[c];
     if (contact.interval.fraction > 0.0) {
-      const double toughness = model.toughness.empty() ? 1.0 : model.toughness[tet];
+      const double toughness = relative_toughness(model, tet);
       double torn = 0.0;
       if (settings.tear_energy_kpa && was_held) {
         torn = contact.interval.fraction * works_kpa[static_cast<std::size_t>(held - state.bonds.begin())] /
@@ -413,11 +414,12 @@ std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace&
 
 namespace {
 
-/// Live tets that come within a distance of the tool at one of the moments that its cores are of, ascending.
-std::vector<TetId> tets_near(const TissueModel& model, std::span<const std::uint8_t> is_live,
+/// Tets that come within a distance of the tool at one of the moments that its cores are of, ascending.
+std::vector<TetId> tets_near(const TissueModel& model, std::span<const std::uint8_t> is_wanted,
                              std::span<const Vec3> before, std::span<const Vec3> after, std::span<const ToolCore> cores,
                              double distance_mm, Workers& workers) {
-  const std::vector<TetId> candidates = contact_candidates(model, is_live, before, after, cores, distance_mm, workers);
+  const std::vector<TetId> candidates =
+      contact_candidates(model, is_wanted, before, after, cores, distance_mm, workers);
   std::vector<std::uint8_t> is_near(candidates.size(), 0);
   workers.for_each(candidates.size(), 64, [&](std::size_t c) {
     const auto from = corners_of(model.mesh, before, candidates[c].index());
@@ -441,7 +443,10 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
                              CutWorkspace::Data& scratch, const ToolPose& next, double step_s, Workers& workers) {
   CutStepReport report;
   // A state that is not the next of the last one may have met other tets.
-  if (!scratch.lattice || state.step != scratch.next_step) scratch.lattice.emplace(model, state.points.tets);
+  if (!scratch.lattice || state.step != scratch.next_step) {
+    scratch.lattice.emplace(lattice_of(model, state.points));
+    scratch.every_tet.assign(model.mesh.tets.size(), 1);
+  }
   const std::vector<ToolCore> here{ToolCore(tool, state.tool)};
   const std::vector<TetId> held =
       tets_near(model, state.tissue.is_live, scratch.before, scratch.before, here, settings.kernel_radius_mm, workers);
@@ -458,7 +463,8 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   }
   load_tool(settings, tool, next, hold, *scratch.lattice, state, report);
   const std::vector<ToolCore> cores = cores_on_the_way(tool, state.tool, next);
-  const std::vector<TetId> candidates = tets_near(model, state.tissue.is_live, scratch.before, state.tissue.positions,
+  // Removed tets, too: between a dose that grows and one that stopped, the kerf's border would lie too far inwards.
+  const std::vector<TetId> candidates = tets_near(model, scratch.every_tet, scratch.before, state.tissue.positions,
                                                   cores, settings.kernel_radius_mm, workers);
   meet_points(candidates, *scratch.lattice, state.points);
   const std::vector<TetId> due = dose_points(model, settings, state, *scratch.lattice, scratch.before, next, cores,

@@ -9,9 +9,6 @@
 
 namespace incise {
 
-/// Per tet, the neighbour across each of its four faces (face f is opposite corner f); none: -1. O(M log M).
-[[nodiscard]] std::vector<std::array<std::int32_t, 4>> face_neighbours(const TetMesh& mesh);
-
 /// Live tets of face-connected parts that `removed` (no longer live) has cut off: parts next to it with less than `least_mm3` of rest
 /// volume that touch no vertex for which `is_anchored` is set; ascending. Looks no farther than it takes to know: O(tets in `least_mm3`).
 [[nodiscard]] std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> volumes_mm3,

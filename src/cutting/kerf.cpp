@@ -25,12 +25,12 @@ Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
 }
 
 KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
-                     const IncisionSettings& settings, const CutState& state) {
+                     const IncisionSettings& settings, const CutRecord& record, const PointKerf* by_points) {
   KerfInput kerf;
-  if (settings.cut.rule == CutRule::Lattice) {
-    kerf.removed_tets = PointKerf(model, state.points, stretched.positions).tets();
+  if (by_points != nullptr) {
+    kerf.removed_tets = by_points->tets();
   } else {
-    for (const Removal& removal : state.record.removals) {
+    for (const Removal& removal : record.removals) {
       const Tet& t = model.mesh.tets[removal.tet.index()];
       const Points& x = stretched.positions;
       kerf.removed_tets.push_back({x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]});
@@ -120,8 +120,11 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
                   const IncisionSettings& settings, IncisionResult& result, Workers& workers) {
   KerfMidlineSettings midline_settings;
   midline_settings.layer_bottom_mm = settings.midline_layer_mm;
-  const KerfInput kerf = kerf_input(model, stretched, path, settings, result.final_state);
-  const TissueState& tissue = result.final_state.tissue;
+  const CutState& state = result.final_state;
+  const TissueState& tissue = state.tissue;
+  std::optional<PointKerf> by_points;
+  if (settings.cut.rule == CutRule::Lattice) by_points.emplace(model, state.points, stretched.positions);
+  const KerfInput kerf = kerf_input(model, stretched, path, settings, state.record, by_points ? &*by_points : nullptr);
   KerfMeasures& measures = result.kerf;
   measures.layers.resize(settings.layer_depths_mm.size());
   // Each writes what no other reads; the slow ones stand apart, so that threads share them.
@@ -129,13 +132,13 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
       [&] { measure_midline(kerf, midline_settings, result); },
       [&] {
         measures.body = kerf_body(model, stretched.positions, tissue.is_live);
-        if (settings.cut.rule != CutRule::Lattice) return;
-        measures.body.surface = PointKerf(model, result.final_state.points, stretched.positions).surface();
+        if (!by_points) return;
+        measures.body.surface = by_points->surface();
         measures.body.volume_mm3 = enclosed_volume_mm3(measures.body.surface);
         measures.body.boundary = manifoldness_of(measures.body.surface.triangles);
       },
       [&] { measures.depth = depth_reached(kerf, path, settings); },
-      [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, result.final_state); },
+      [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, state); },
       // A strip of tissue that the mid-line overlooks does not hold the plug either.
       [&] { measure_final_edges(model, stretched, path, settings, midline_settings.closing_mm, result); }};
   for (std::size_t i = 0; i < measures.layers.size(); ++i) {
@@ -143,7 +146,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
   }
   workers.for_each(tasks.size(), 1, [&](std::size_t i) { tasks[i](); });
   measures.deep_margin = deep_margin(measures.body, measures.depth, settings);
-  if (!result.centerline || settings.cut.rule == CutRule::Lattice) return;  // as for the inner edge
+  if (!result.centerline || by_points) return;  // as for the inner edge
   measures.final_centerline =
       carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
                         tissue.is_live, stretched.positions, tissue.positions);

@@ -64,7 +64,7 @@ void add_part(const std::array<Vec3, 4>& at, const std::array<double, 4>& dose,
 }  // namespace
 
 PointKerf::PointKerf(const TissueModel& model, const CutPoints& points, std::span<const Vec3> positions)
-    : model_(model), points_(points), positions_(positions), lattice_(model, points.tets) {
+    : model_(model), points_(points), positions_(positions), lattice_(lattice_of(model, points)) {
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
     if (lattice_.node_of(i)) points_at_.emplace(*lattice_.node_of(i), i);
   }
@@ -78,24 +78,23 @@ PointKerf::Corner PointKerf::corner(const PointLattice::Node& node) const {
           lattice_.position(point, positions_) - lattice_.position(point, model_.mesh.vertices), true};
 }
 
-double PointKerf::cell(const PointLattice::Node& low, std::array<double, 8>& doses, std::array<Vec3, 8>& at) const {
+PointKerf::Cell PointKerf::cell(const PointLattice::Node& low) const {
+  Cell cell;
   std::array<Corner, 8> corners;
   Vec3 mean = Vec3::Zero();
   int known = 0;
-  double greatest = 0.0;
   for (std::size_t c = 0; c < 8; ++c) {
     corners[c] = corner(moved(low, c));
-    doses[c] = corners[c].dose;
-    greatest = std::max(greatest, doses[c]);
+    cell.doses[c] = corners[c].dose;
     if (!corners[c].is_known) continue;
     mean += corners[c].displacement;
     ++known;
   }
   if (known > 0) mean /= known;
   for (std::size_t c = 0; c < 8; ++c) {
-    at[c] = PointLattice::rest_position(moved(low, c)) + (corners[c].is_known ? corners[c].displacement : mean);
+    cell.at[c] = PointLattice::rest_position(moved(low, c)) + (corners[c].is_known ? corners[c].displacement : mean);
   }
-  return greatest;
+  return cell;
 }
 
 std::vector<std::array<Vec3, 4>> PointKerf::tets() const {
@@ -106,9 +105,7 @@ std::vector<std::array<Vec3, 4>> PointKerf::tets() const {
   }
   std::vector<std::array<Vec3, 4>> result;
   for (const PointLattice::Node& low : cells) {
-    std::array<double, 8> doses{};
-    std::array<Vec3, 8> at;
-    static_cast<void>(cell(low, doses, at));
+    const auto [doses, at] = cell(low);
     for (const auto& [a, b, c, d] : kKuhn)
       add_part({at[a], at[b], at[c], at[d]}, {doses[a], doses[b], doses[c], doses[d]}, result);
   }
@@ -137,9 +134,7 @@ TriMesh PointKerf::surface() const {
     const Vec3 floor = v.array().floor();
     const PointLattice::Node node{static_cast<int>(floor.x()), static_cast<int>(floor.y()),
                                   static_cast<int>(floor.z())};
-    std::array<double, 8> ignored{};
-    std::array<Vec3, 8> at;
-    static_cast<void>(cell(node, ignored, at));
+    const std::array<Vec3, 8> at = cell(node).at;
     const Vec3 t = v - floor;
     Vec3 sum = Vec3::Zero();
     for (std::size_t c = 0; c < 8; ++c) {

@@ -28,9 +28,12 @@ class PointKerf {
     bool is_known;
   };
   [[nodiscard]] Corner corner(const PointLattice::Node& node) const;
-  /// The eight corners of a cell, x fastest, those that are not known displaced as the others on average; the greatest
-  /// dose of them.
-  [[nodiscard]] double cell(const PointLattice::Node& low, std::array<double, 8>& doses, std::array<Vec3, 8>& at) const;
+  struct Cell {
+    std::array<double, 8> doses;
+    std::array<Vec3, 8> at;
+  };
+  /// The eight corners of a cell, x fastest; those that are not known are displaced as the others on average.
+  [[nodiscard]] Cell cell(const PointLattice::Node& low) const;
 
   const TissueModel& model_;
   const CutPoints& points_;

@@ -1,5 +1,9 @@
 #include "point_lattice.hpp"
 
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +27,7 @@ PointLattice::PointLattice(const TissueModel& model, std::span<const TetId> tets
   for (const TetId tet : tets) add(tet);
 }
 
-std::size_t PointLattice::add(TetId tet) {
+void PointLattice::add(TetId tet) {
   const Tet& corners = model_.mesh.tets[tet.index()];
   const std::array<Vec3, 4>& gradients = model_.gradients[tet.index()];
   const Vec3& origin = vertex(model_.mesh.vertices, corners[0]);
@@ -53,7 +57,6 @@ std::size_t PointLattice::add(TetId tet) {
       shares_.push_back(shares);
     }
   }
-  const std::size_t count = shares_.size() - first;
   tets_.resize(shares_.size(), tet);
   nodes_.resize(shares_.size());
   const double volume = model_.volumes_mm3[tet.index()];
@@ -61,8 +64,7 @@ std::size_t PointLattice::add(TetId tet) {
   volumes_.resize(first + nodes, has_own ? 0.0 : volume / static_cast<double>(nodes));
   volumes_.resize(shares_.size(), 0.25 * volume);
   first_[tet.index()] = static_cast<std::int64_t>(first);
-  count_[tet.index()] = static_cast<std::int32_t>(count);
-  return count;
+  count_[tet.index()] = static_cast<std::int32_t>(shares_.size() - first);
 }
 
 std::pair<std::size_t, std::size_t> PointLattice::points_of(TetId tet) const {
@@ -76,6 +78,19 @@ Vec3 PointLattice::position(std::size_t point, std::span<const Vec3> positions) 
   Vec3 sum = Vec3::Zero();
   for (std::size_t c = 0; c < 4; ++c) sum += shares_[point][c] * vertex(positions, corners[c]);
   return sum;
+}
+
+PointLattice lattice_of(const TissueModel& model, const CutPoints& points) {
+  for (const TetId tet : points.tets)
+    INCISE_REQUIRE(tet.is_valid() && tet.index() < model.mesh.tets.size(),
+                   fmt::format("points: expected one of {} tets, found {}", model.mesh.tets.size(), tet.value));
+  PointLattice lattice(model, points.tets);
+  for (const std::size_t found : {points.dose.size(), points.is_held.size(), points.offset_mm.size(),
+                                  points.parted_step.size(), points.parted_mm.size()}) {
+    INCISE_REQUIRE(found == lattice.size(),
+                   fmt::format("points: expected {} of everything, found {}", lattice.size(), found));
+  }
+  return lattice;
 }
 
 }  // namespace incise

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/cutting/cut_points.hpp>
 #include <incise/mechanics/tissue.hpp>
 
 #include <array>
@@ -20,17 +21,16 @@ class PointLattice {
 
   PointLattice(const TissueModel& model, std::span<const TetId> tets);
 
-  /// Adds the points of a tet. @returns how many.
-  std::size_t add(TetId tet);
+  /// Adds the points of a tet.
+  void add(TetId tet);
 
   [[nodiscard]] std::size_t size() const { return shares_.size(); }
   /// The points of a tet are [first, second); none where it was not added.
   [[nodiscard]] std::pair<std::size_t, std::size_t> points_of(TetId tet) const;
   /// Barycentric coordinates of a point in its tet.
   [[nodiscard]] const std::array<double, 4>& shares(std::size_t point) const { return shares_[point]; }
-  [[nodiscard]] TetId tet_of(std::size_t point) const { return tets_[point]; }
-  /// The rest volume that a point stands for, mm³; those of a tet add up to its own. 0: a node of a tet that stands on
-  /// points of its own.
+  /// The rest volume that a point stands for, mm³; those of a tet add up to its own. 0: a node of a tet that has points
+  /// of its own.
   [[nodiscard]] double volume_mm3(std::size_t point) const { return volumes_[point]; }
   [[nodiscard]] Vec3 position(std::size_t point, std::span<const Vec3> positions) const;
 
@@ -47,5 +47,8 @@ class PointLattice {
   std::vector<double> volumes_;
   std::vector<std::optional<Node>> nodes_;
 };
+
+/// The points that a cut has met. @throws InvalidArgument where its lists do not have one item for each of them.
+[[nodiscard]] PointLattice lattice_of(const TissueModel& model, const CutPoints& points);
 
 }  // namespace incise

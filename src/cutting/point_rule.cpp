@@ -19,15 +19,11 @@ double kernel(double distance_mm, double radius_mm) {
   return q > 0.0 ? q * q : 0.0;
 }
 
-/// Of the reference tissue. The kernel's integral along a line through the axis is 16 R / 15: a point there that gives
-/// no way gets the dose dose_length / (v d τ0).
+/// Of the reference tissue. The kernel's integral along a line through the axis is 16 R / 15: a point there that does
+/// not move gets the dose dose_length / (v d τ0).
 double dose_rate_per_s(const CutSettings& settings, double distance_mm) {
   const double radius = settings.kernel_radius_mm;
   return settings.dwell_rate_per_s() * 15.0 * settings.dose_length_mm / (16.0 * radius) * kernel(distance_mm, radius);
-}
-
-double toughness_of(const TissueModel& model, TetId tet) {
-  return model.toughness.empty() ? 1.0 : model.toughness[tet.index()];
 }
 
 /// The two hats over a place along the axis, and the weight of the second.
@@ -81,7 +77,7 @@ PointHold hold_points(const TissueModel& model, const CutSettings& settings, con
   std::vector<std::vector<Part>> parts(candidates.size());
   workers.for_each(candidates.size(), kTetsPerChunk, [&](std::size_t c) {
     const auto [begin, end] = lattice.points_of(candidates[c]);
-    const double toughness = toughness_of(model, candidates[c]);
+    const double toughness = relative_toughness(model, candidates[c].index());
     for (std::size_t i = begin; i < end; ++i) {
       if (state.points.is_held[i] == 0 || state.points.dose[i] >= 1.0) continue;
       const Vec3 p = lattice.position(i, state.tissue.positions);
@@ -156,6 +152,7 @@ double add_pull(const PointHold& hold, std::span<Vec3> forces) {
 
 void load_tool(const CutSettings& settings, const Tool& tool, const ToolPose& next, const PointHold& hold,
                const PointLattice& lattice, CutState& state, CutStepReport& report) {
+  const Mat3 held_to = held_directions(tool, next);
   std::map<int, Vec3> shifts;  // of slices that slip
   for (std::size_t t = 0; t < hold.means.terms(); ++t) {
     Vec3 middle = Vec3::Zero();
@@ -163,7 +160,7 @@ void load_tool(const CutSettings& settings, const Tool& tool, const ToolPose& ne
       middle += hold.means.weight[i] * state.tissue.positions[static_cast<std::size_t>(hold.means.vertex[i])];
     const Vec3 behind = middle - hold.target_mm[t];
     const Vec3 force = hold.means.stiffness[t] * behind;
-    const Vec3 held = held_directions(tool, next) * behind;
+    const Vec3 held = held_to * behind;
     const double pull = hold.elastic_mn_mm[t] * held.norm();
     if (settings.slip_mn_mm && pull > *settings.slip_mn_mm * kSliceMm) {
       shifts[hold.number[t]] = (1.0 - *settings.slip_mn_mm * kSliceMm / pull) * held;
@@ -199,7 +196,7 @@ std::vector<TetId> dose_points(const TissueModel& model, const CutSettings& sett
   workers.for_each(candidates.size(), kTetsPerChunk, [&](std::size_t c) {
     const std::size_t tet = candidates[c].index();
     const auto [begin, end] = lattice.points_of(candidates[c]);
-    const double toughness = toughness_of(model, candidates[c]);
+    const double toughness = relative_toughness(model, candidates[c].index());
     double filled = 0.0, all = 0.0, dosed = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 from = lattice.position(i, before), to = lattice.position(i, state.tissue.positions);
@@ -231,14 +228,14 @@ std::vector<TetId> dose_points(const TissueModel& model, const CutSettings& sett
       dosed += volume * std::min(1.0, points.dose[i]);
       if (points.dose[i] < 1.0) filled += volume;
     }
-    if (all == 0.0) return;
+    if (state.tissue.is_live[tet] == 0) return;
     state.dose[tet] = dosed / all;
     is_empty[c] = filled == 0.0 ? 1 : 0;
     state.tissue.fill[tet] = std::max(kLeastFill, filled / all);
   });
   std::vector<TetId> empty;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    if (is_near[c] != 0) ++report.tets_in_contact;
+    if (is_near[c] != 0 && state.tissue.is_live[candidates[c].index()] != 0) ++report.tets_in_contact;
     if (is_empty[c] != 0) empty.push_back(candidates[c]);
   }
   return empty;

@@ -36,8 +36,10 @@ double add_pull(const PointHold& hold, std::span<Vec3> forces);
 void load_tool(const CutSettings& settings, const Tool& tool, const ToolPose& next, const PointHold& hold,
                const PointLattice& lattice, CutState& state, CutStepReport& report);
 
-/// Gives the points of the candidates their dose of a step, and takes hold of those that come within reach.
-/// @param cores  of the tool at evenly spaced moments. @returns tets without a point that is not parted, ascending.
+/// Gives the points of the candidates, those of removed tets among them, their dose of a step, and takes hold of those
+/// that come within reach.
+/// @param cores  of the tool at evenly spaced moments. @returns live tets without a point that is not
+/// parted, ascending.
 std::vector<TetId> dose_points(const TissueModel& model, const CutSettings& settings, CutState& state,
                                const PointLattice& lattice, std::span<const Vec3> before, const ToolPose& next,
                                std::span<const ToolCore> cores, double step_s, std::span<const TetId> candidates,

@@ -90,7 +90,7 @@ std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> s
                                const IncisionSettings& settings, const CutState& state) {
   std::map<int, StepSum> sums;
   if (settings.cut.rule == CutRule::Lattice) {
-    const PointLattice lattice(model, state.points.tets);
+    const PointLattice lattice = lattice_of(model, state.points);
     for (std::size_t i = 0; i < lattice.size(); ++i) {
       const int number = state.points.parted_step[i];
       if (number < 0) continue;

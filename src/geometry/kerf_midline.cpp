@@ -148,7 +148,7 @@ std::optional<Contour> open_midline(const KerfPicture& picture, const KerfMidlin
   return extended_to_ends(picture, centred(picture, trimmed(picture, *path), settings), settings);
 }
 
-/// From the picture plane onto the surface, evenly spaced there.
+/// From the picture plane onto the surface.
 Contour on_surface(const Contour& curve, const KerfInput& input, const ViewFrame& view) {
   const SurfaceQuery surface(input.surface);
   Contour result{.points = {}, .is_closed = curve.is_closed};

@@ -1,5 +1,6 @@
 #include "geometry/kerf_picture.hpp"
 
+#include "geometry/disjoint_sets.hpp"
 #include "geometry/sight_lines.hpp"
 
 #include <incise/core/error.hpp>
@@ -140,24 +141,6 @@ double widest_gap_deg(const Raster& mask, const Vec2& inside) {
   return 360.0 * std::min(longest, kDirections) / kDirections;
 }
 
-namespace {
-
-/// Sets of pixels that grow together; one element more stands for what lies beyond the picture.
-class PixelSets {
- public:
-  explicit PixelSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-  std::size_t find(std::size_t p) {
-    while (parent_[p] != p) p = parent_[p] = parent_[parent_[p]];
-    return p;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[find(a)] = find(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
-}  // namespace
-
 WidestGap widest_gap(const Raster& mask, const Vec2& inside) {
   const auto pixel = pixel_of(mask, inside);
   if (!mask.contains(pixel[0], pixel[1])) return {std::numeric_limits<double>::infinity(), {}};
@@ -168,7 +151,7 @@ WidestGap widest_gap(const Raster& mask, const Vec2& inside) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t p) { return distance.pixels[p]; });
   // From the widest places on, until the way out opens: at its narrowest place.
-  PixelSets sets(mask.pixels.size() + 1);
+  DisjointSets sets(mask.pixels.size() + 1);  // the last stands for what lies beyond the picture
   std::vector<std::uint8_t> is_open(mask.pixels.size(), 0);
   for (const std::size_t p : order) {
     if (distance.pixels[p] <= 0.0) break;
@@ -182,7 +165,7 @@ WidestGap widest_gap(const Raster& mask, const Vec2& inside) {
         sets.join(p, mask.offset(i + di, j + dj));
       }
     }
-    if (is_open[start] == 0 || sets.find(start) != sets.find(beyond)) continue;
+    if (is_open[start] == 0 || sets.root(start) != sets.root(beyond)) continue;
     // Distances run to the centres of the kerf's outermost pixels. Where the start itself is the narrowest place, it
     // lies beside the kerf, and the bridge is wider.
     const double width = std::max(0.0, 2.0 * distance.pixels[p] - mask.pixel_mm);

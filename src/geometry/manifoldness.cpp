@@ -1,7 +1,8 @@
+#include "geometry/disjoint_sets.hpp"
+
 #include <incise/geometry/manifoldness.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -30,26 +31,12 @@ std::vector<Side> sides_of(std::span<const Triangle> triangles) {
   return sides;
 }
 
-/// Corners that hang together across edges of two triangles: the fans round the vertices.
-class Fans {
- public:
-  explicit Fans(std::size_t corners) : parent_(corners) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[root(a)] = root(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 }  // namespace
 
 Manifoldness manifoldness_of(std::span<const Triangle> triangles) {
   Manifoldness found;
   found.triangles = triangles.size();
-  Fans fans(3 * triangles.size());
+  DisjointSets fans(3 * triangles.size());  // corners that hang together across edges of two triangles
   std::vector<VertexId> on_bad_edge;
   const std::vector<Side> sides = sides_of(triangles);
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {

@@ -125,41 +125,11 @@ class Potential {
   Eigen::VectorXd load_;
 };
 
-constexpr std::int32_t kSkin = -1;
-
-/// The tets across the faces of each tet.
-std::vector<std::array<std::int32_t, 4>> neighbours_of(const TetMesh& mesh) {
-  struct Side {
-    Triangle corners;
-    std::int32_t tet;
-    int face;
-  };
-  std::vector<Side> sides;
-  sides.reserve(4 * mesh.tets.size());
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    for (int face = 0; face < 4; ++face) {
-      Triangle corners = face_of(mesh.tets[t], face);
-      std::sort(corners.begin(), corners.end());
-      sides.push_back({corners, static_cast<std::int32_t>(t), face});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.corners < b.corners; });
-  std::vector<std::array<std::int32_t, 4>> neighbours(mesh.tets.size(), {kSkin, kSkin, kSkin, kSkin});
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side& a = sides[i - 1];
-    const Side& b = sides[i];
-    if (a.corners != b.corners) continue;
-    neighbours[static_cast<std::size_t>(a.tet)][static_cast<std::size_t>(a.face)] = b.tet;
-    neighbours[static_cast<std::size_t>(b.tet)][static_cast<std::size_t>(b.face)] = a.tet;
-  }
-  return neighbours;
-}
-
 /// Gives flat tets the mean direction of those neighbours that have one, by volume, layer after layer. A fibre has no
 /// sense: each neighbour's direction is turned to the side of the first, so that the mean is never zero.
 void spread(const TetMesh& mesh, std::span<const double> volumes_mm3, std::vector<std::size_t> flat,
             std::vector<Vec3>& directions) {
-  const std::vector<std::array<std::int32_t, 4>> neighbours = neighbours_of(mesh);
+  const std::vector<std::array<std::int32_t, 4>> neighbours = face_neighbours(mesh);
   std::vector<std::uint8_t> has_direction(mesh.tets.size(), 1);
   for (const std::size_t t : flat) has_direction[t] = 0;
   while (!flat.empty()) {
@@ -167,7 +137,7 @@ void spread(const TetMesh& mesh, std::span<const double> volumes_mm3, std::vecto
     for (const std::size_t t : flat) {
       Vec3 sum = Vec3::Zero();
       for (const std::int32_t neighbour : neighbours[t]) {
-        if (neighbour == kSkin || has_direction[static_cast<std::size_t>(neighbour)] == 0) continue;
+        if (neighbour < 0 || has_direction[static_cast<std::size_t>(neighbour)] == 0) continue;
         const Vec3& own = directions[static_cast<std::size_t>(neighbour)];
         sum += (own.dot(sum) < 0.0 ? -1.0 : 1.0) * volumes_mm3[static_cast<std::size_t>(neighbour)] * own;
       }

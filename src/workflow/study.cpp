@@ -39,7 +39,9 @@ void describe(Visitor& v, Timed<T>& t) {
 bool fits(const TissueModel& model, const TissueState& state) {
   const ViscousMemory memory = rest_state(model).memory;
   return state.positions.size() == model.mesh.vertices.size() && state.rotations.size() == model.mesh.tets.size() &&
-         state.is_live.size() == model.mesh.tets.size() && state.memory.strains.size() == memory.strains.size() &&
+         state.is_live.size() == model.mesh.tets.size() &&
+         (state.fill.empty() || state.fill.size() == model.mesh.tets.size()) &&
+         state.memory.strains.size() == memory.strains.size() &&
          state.memory.branches.size() == memory.branches.size() &&
          std::ranges::all_of(state.positions, [](const Vec3& p) { return p.allFinite(); });
 }

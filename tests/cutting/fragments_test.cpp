@@ -11,21 +11,6 @@ namespace {
 /// 4 x 1 x 1 cells of 6 tets each: tets 6 c … 6 c + 5 fill cell c.
 const TetMesh kBar = make_block({4, 1, 1}, {4, 1, 1});
 
-TEST(FaceNeighbours, AreMutualAndShareThreeVertices) {
-  const auto neighbours = face_neighbours(kBar);
-  std::size_t joined = 0;
-  for (std::size_t tet = 0; tet < neighbours.size(); ++tet) {
-    for (const std::int32_t other : neighbours[tet]) {
-      if (other < 0) continue;
-      ++joined;
-      const auto& back = neighbours[static_cast<std::size_t>(other)];
-      EXPECT_NE(std::find(back.begin(), back.end(), static_cast<std::int32_t>(tet)), back.end());
-    }
-  }
-  // 24 tets have 96 faces; the bar's skin has 2 triangles on each of its 18 cell sides.
-  EXPECT_EQ(joined, 96U - 36U);
-}
-
 /// The bar without some of its tets.
 struct CutBar {
   std::vector<double> volumes = std::vector<double>(kBar.tets.size(), 1.0 / 6.0);

@@ -67,6 +67,21 @@ class StraightPass : public ::testing::Test {
     }
   }
 
+  /// Of the kerf in tissue that cannot move: at a distance y beside the way, the dose is
+  /// (ℓ / (v d τ0)) (1 − y²/R²)^(5/2).
+  [[nodiscard]] double half_width_mm() const {
+    const double on_the_way = settings_.dose_length_mm / (settings_.speed_mm_s * settings_.dwell_s());
+    return settings_.kernel_radius_mm * std::sqrt(1.0 - std::pow(on_the_way, -0.4));
+  }
+  /// Within 1 mm of a place along the pass.
+  [[nodiscard]] static Box3 part_of(const TriMesh& surface, double y) {
+    Box3 box;
+    for (const Vec3& v : surface.vertices) {
+      if (std::abs(v.y() - y) < 1.0) box.extend(v);
+    }
+    return box;
+  }
+
   CutSettings settings_;
   CutState state_;
   std::vector<CutStepReport> reports_;
@@ -77,22 +92,16 @@ TEST_F(StraightPass, ThroughTissueThatCannotMoveLeavesTheKerfOfItsKernel) {
   settings_.dullness = 5.0;
   settings_.advance_per_step_mm = 0.13;
   pass(model, 1.0, 11.0);
-  // At a distance y beside the way, the dose is (ℓ / (v d τ0)) (1 − y²/R²)^(5/2).
-  const double on_the_way = settings_.dose_length_mm / (settings_.speed_mm_s * settings_.dwell_s());
-  const double half_mm = settings_.kernel_radius_mm * std::sqrt(1.0 - std::pow(on_the_way, -0.4));
   const PointKerf kerf(model, state_.points, model.mesh.vertices);
   double volume = 0.0;
   for (const auto& [a, b, c, d] : kerf.tets()) volume += std::abs(signed_volume(a, b, c, d));
   const TriMesh surface = kerf.surface();
   EXPECT_NEAR(enclosed_volume_mm3(surface), volume, 0.03 * volume);
-  Box3 box;
-  for (const Vec3& v : surface.vertices) {
-    if (std::abs(v.y() - 6.0) < 2.0) box.extend(v);
-  }
-  EXPECT_NEAR(box.sizes().x(), 2.0 * half_mm, 0.03);
+  const Box3 box = part_of(surface, 6.0);
+  EXPECT_NEAR(box.sizes().x(), 2.0 * half_width_mm(), 0.03);
   EXPECT_NEAR(box.center().x(), 6.0, 0.005);
   EXPECT_EQ(state_.record.removals.size(), 0U)
-      << "no tet of 1 mm is empty: the kerf is " << 2.0 * half_mm << " mm wide";
+      << "no tet of 1 mm is empty: the kerf is " << 2.0 * half_width_mm() << " mm wide";
 }
 
 TEST_F(StraightPass, ThroughFineTetsEmptiesAndRemovesThoseInTheMiddleOfTheSameKerf) {
@@ -100,17 +109,11 @@ TEST_F(StraightPass, ThroughFineTetsEmptiesAndRemovesThoseInTheMiddleOfTheSameKe
   settings_.dullness = 5.0;
   settings_.advance_per_step_mm = 0.13;
   pass(model, 1.0, 7.0);
-  const double on_the_way = settings_.dose_length_mm / (settings_.speed_mm_s * settings_.dwell_s());
-  const double half_mm = settings_.kernel_radius_mm * std::sqrt(1.0 - std::pow(on_the_way, -0.4));
-  Box3 box;
-  for (const Vec3& v : PointKerf(model, state_.points, model.mesh.vertices).surface().vertices) {
-    if (std::abs(v.y() - 4.0) < 1.0) box.extend(v);
-  }
-  // Nodes of a tet that is removed get no further dose, so the border between them and the rest lies a little inwards.
-  EXPECT_NEAR(box.sizes().x(), 2.0 * half_mm, 0.04);
+  const Box3 box = part_of(PointKerf(model, state_.points, model.mesh.vertices).surface(), 4.0);
+  EXPECT_NEAR(box.sizes().x(), 2.0 * half_width_mm(), 0.03);
   ASSERT_GT(state_.record.removals.size(), 20U);
   for (const Removal& removal : state_.record.removals)
-    EXPECT_LT(std::abs(removal.centroid_mm.x() - 6.0), half_mm + 0.01) << "in the kerf";
+    EXPECT_LT(std::abs(removal.centroid_mm.x() - 6.0), half_width_mm() + 0.01) << "in the kerf";
 }
 
 TEST_F(StraightPass, AWorkspaceMayBeTakenBackToAnEarlierState) {

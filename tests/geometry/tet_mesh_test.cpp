@@ -186,5 +186,21 @@ TEST(FindProblems, FindsDataOfTheWrongLength) {
   EXPECT_EQ(problems[0].text, "cell data 'label' holds 2 numbers, expected 1 x 1 components");
 }
 
+TEST(FaceNeighbours, AreMutual) {
+  const TetMesh bar = make_block({4, 1, 1}, {4, 1, 1});  // cells of 6 tets
+  const auto neighbours = face_neighbours(bar);
+  std::size_t joined = 0;
+  for (std::size_t tet = 0; tet < neighbours.size(); ++tet) {
+    for (const std::int32_t other : neighbours[tet]) {
+      if (other < 0) continue;
+      ++joined;
+      const auto& back = neighbours[static_cast<std::size_t>(other)];
+      EXPECT_NE(std::find(back.begin(), back.end(), static_cast<std::int32_t>(tet)), back.end());
+    }
+  }
+  // 24 tets have 96 faces; the bar's skin has 2 triangles on each of its 18 cell sides.
+  EXPECT_EQ(joined, 96U - 36U);
+}
+
 }  // namespace
 }  // namespace incise

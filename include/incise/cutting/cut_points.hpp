@@ -13,7 +13,7 @@ namespace incise {
 /// tet that the tool came near first. Which points a tet has follows from the mesh alone (PointLattice).
 struct CutPoints {
   std::vector<TetId> tets;                ///< that the tool came near, in that order
-  std::vector<double> dose;               ///< per point: parted from 1 on; grows until the tet is removed
+  std::vector<double> dose;               ///< per point: parted from 1 on; goes on growing
   std::vector<std::uint8_t> is_held;      ///< per point: within the tool's reach
   std::vector<Vec3> offset_mm;            ///< of a held point from the tip when it came within reach, less its slip
   std::vector<std::int32_t> parted_step;  ///< in which a point parted; -1: it did not

@@ -5,6 +5,7 @@
 #include <incise/geometry/types.hpp>
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -74,6 +75,9 @@ struct BoundaryFace {
 /// The faces that belong to exactly one of the tets for which `is_live` is true (empty span: all tets), in order of tet, then face.
 /// O(M log M).
 [[nodiscard]] std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh, std::span<const std::uint8_t> is_live = {});
+
+/// Per tet, the tet across each of its four faces (face f is opposite corner f); none: -1. O(M log M).
+[[nodiscard]] std::vector<std::array<std::int32_t, 4>> face_neighbours(const TetMesh& mesh);
 
 /// The skin as a mesh that keeps all N vertices of `mesh` in their order (so vertex ids are shared).
 [[nodiscard]] TriMesh boundary_surface(const TetMesh& mesh);

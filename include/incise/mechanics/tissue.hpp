@@ -65,6 +65,11 @@ struct TissueModel {
                                             const Vec3& gravity_mm_s2 = Vec3::Zero(),
                                             const MaterialField& field = {});
 
+/// Against cutting, relative to the reference tissue (1).
+[[nodiscard]] inline double relative_toughness(const TissueModel& model, std::size_t tet) {
+  return model.toughness.empty() ? 1.0 : model.toughness[tet];
+}
+
 /// What viscous tissue remembers: strains of Green and Lagrange without their volumetric part. Empty without viscosity.
 struct ViscousMemory {
   std::vector<Mat3> strains;   ///< per tet: at the end of the last step
