@@ -14,8 +14,8 @@ struct FibreField {
   Region to;
 };
 inline void describe(Visitor& v, FibreField& f) {
-  v("from", f.from, "Where the fibres begin.");
-  v("to", f.to, "Where they end.");
+  v("from", f.from, "the region where the fibres begin");
+  v("to", f.to, "the region where the fibres end");
 }
 
 /// The direction of the fibres in each tet at rest.
