@@ -111,8 +111,10 @@ SimulatedCut carry_out(const Job& job) {
 }
 
 constexpr std::string_view kHeader =
-    "specimen,edge_mm,tets,tissue,speed_mm_s,dullness,advance_mm,outcome,closed_loop,signed_mean_mm,signed_sd_mm,signed_min_mm,signed_max_mm,"
-    "abs_mean_mm,paper_abs_mean_mm,kerf_width_mm,removed_tets,steps,iterations,wall_s\n";
+    "specimen,edge_mm,tets,tissue,speed_mm_s,dullness,advance_mm,outcome,closed_loop,signed_mean_mm,signed_sd_mm,"
+    "signed_min_mm,signed_max_mm,"
+    "abs_mean_mm,paper_abs_mean_mm,inner_signed_mean_mm,kerf_width_mm,removed_tets,copied_tets,steps,iterations,wall_"
+    "s\n";
 
 /// One line of the table; what an open ring does not have stays empty.
 std::string row_of(const Job& job, const SimulatedCut& done) {
@@ -122,11 +124,14 @@ std::string row_of(const Job& job, const SimulatedCut& done) {
     return summary ? fmt::format("{:.3f}", *summary.*value) : std::string();
   };
   const Evaluation& e = done.centerline;
-  return fmt::format("{},{:.4g},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{:.1f}\n", job.body->name, job.body->edge_mm, done.tets,
-                     name_of(job.tissue), job.cut.speed_mm_s, job.cut.dullness, job.cut.advance_per_step_mm, to_string(done.outcome),
+  return fmt::format("{},{:.4g},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{:.1f}\n", job.body->name,
+                     job.body->edge_mm, done.tets, name_of(job.tissue), job.cut.speed_mm_s, job.cut.dullness,
+                     job.cut.advance_per_step_mm, to_string(done.outcome),
                      cut.is_closed_loop.value_or(false) ? "yes" : "no", part(e.signed_error_mm, &Summary::mean),
-                     part(e.signed_error_mm, &Summary::sd), part(e.signed_error_mm, &Summary::min), part(e.signed_error_mm, &Summary::max),
-                     part(e.abs_error_mm, &Summary::mean), number(e.paper_abs_error_mm), cut.kerf_width_mm, cut.record.removals.size(),
+                     part(e.signed_error_mm, &Summary::sd), part(e.signed_error_mm, &Summary::min),
+                     part(e.signed_error_mm, &Summary::max), part(e.abs_error_mm, &Summary::mean),
+                     number(e.paper_abs_error_mm), part(done.inner_edge.signed_error_mm, &Summary::mean),
+                     cut.kerf_width_mm, cut.record.removals.size(), cut.final_state.splits.copies.size(),
                      cut.steps.size(), cut.solver_iterations, cut.wall_s);
 }
 

@@ -238,7 +238,7 @@ inline DenseDrift dense_fixed_point(DenseStep& step, DensePose pose, int plain_s
 /// depends on the unit. From the published start, or from a pose and width (mm) given. Ends within `still_mm` (rms) of
 /// the fixed point.
 inline DenseDrift dense_drift(std::span<const Vec3> source, std::span<const Vec3> target, double outlier_weight,
-                              double still_mm, Workers& workers, const Drift* start = nullptr) {
+                              double still_mm, Workers& workers, const CoherentPointDrift* start = nullptr) {
   constexpr int kPlainSteps = 150;
   constexpr int kMostRounds = 60;
   const auto middle_of = [](std::span<const Vec3> points) {

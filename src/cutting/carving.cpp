@@ -1,6 +1,7 @@
 #include "bond_stiffness.hpp"
 #include "contact.hpp"
 #include "fragments.hpp"
+#include "parting.hpp"
 #include "point_rule.hpp"
 
 #include <incise/core/error.hpp>
@@ -27,11 +28,13 @@ constexpr int kIntervalsPerStep = 4;     // after each of which the distance to 
 constexpr double kLeastDecrease =
     1e-4;                         // of the energy on the way to rest, as a share of what the slope promises (Armijo)
 constexpr int kMaxHalvings = 12;  // of such a step
+constexpr double kSplittingMm = 2.0;      // way of the tool after which tets are split that have come apart
 constexpr double kFullDose = 1.0 - 1e-9;  // a dose is a sum over steps: what rounding may leave it short of 1
 
 }  // namespace
 
 struct CutWorkspace::Data {
+  std::unique_ptr<const TissueModel> split;  // on the split mesh; null: the mesh is whole
   std::vector<std::array<std::int32_t, 4>> neighbours;
   std::vector<std::uint8_t> is_anchored;  // vertices that a constraint holds
   StepStiffness stiffness;
@@ -44,6 +47,7 @@ struct CutWorkspace::Data {
   std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they stay where they are
   std::size_t carved_then = 0;          // tets carved when that was found
   std::optional<PointLattice> lattice;  // of a cut by points
+  int lattice_step = -1;                // of the state that it is of
   std::vector<std::uint8_t> every_tet;  // 1 each
 
   Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
@@ -62,9 +66,24 @@ struct CutWorkspace::Data {
 };
 
 CutWorkspace::CutWorkspace(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
-    : data_(std::make_unique<Data>(model, positions, precision)) {}
+    : data_(std::make_unique<Data>(model, positions, precision)),
+      positions_(positions.begin(), positions.end()),
+      precision_(precision) {}
 CutWorkspace::~CutWorkspace() = default;
 CutWorkspace::CutWorkspace(CutWorkspace&&) noexcept = default;
+
+const TissueModel& CutWorkspace::model_for(const TissueModel& whole, const MeshSplits& splits) {
+  if (splits != splits_) {
+    data_.reset();  // it is large
+    std::unique_ptr<const TissueModel> split;
+    if (!splits.vertices.empty()) split = std::make_unique<const TissueModel>(split_model(whole, splits));
+    const TissueModel& model = split ? *split : whole;
+    data_ = std::make_unique<Data>(model, split_positions(positions_, splits), precision_);
+    data_->split = std::move(split);
+    splits_ = splits;
+  }
+  return data_->split ? *data_->split : whole;
+}
 
 CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPose& tool) {
   CutState state;
@@ -377,7 +396,19 @@ void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause c
   state.tissue.is_live[tet.index()] = 0;
   state.record.removals.push_back({tet, state.step, state.time_s, cause,
                                    centroid(corners_of(model.mesh, state.tissue.positions, tet.index())),
-                                   model.volumes_mm3[tet.index()]});
+                                   rest_volume_mm3(model, state.splits, tet)});
+}
+
+/// Removes fragments that hang by no face, next to tets that are gone or among those that have other corners now.
+/// @returns how many tets went.
+std::size_t remove_loose(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch,
+                         const std::vector<TetId>& changed) {
+  const std::vector<TetId> loose =
+      loose_fragments(model.mesh, model.volumes_mm3, scratch.neighbours, state.tissue.is_live, scratch.is_anchored,
+                      changed, kFragmentShare * scratch.body_volume_mm3);
+  for (const TetId tet : loose) remove(model, state, tet, RemovalCause::LooseFragment);
+  std::erase_if(state.bonds, [&](const Bond& bond) { return state.tissue.is_live[bond.tet.index()] == 0; });
+  return loose.size();
 }
 
 /// Removes tets (live, ascending), then what is left hanging by no face. @returns how many fragments' tets went with
@@ -389,12 +420,7 @@ std::size_t carve(const TissueModel& model, CutState& state, const CutWorkspace:
     const bool is_torn = state.tear_dose[tet.index()] > 0.5 * state.dose[tet.index()];
     remove(model, state, tet, is_torn ? RemovalCause::Tear : RemovalCause::Dwell);
   }
-  const std::vector<TetId> loose =
-      loose_fragments(model.mesh, model.volumes_mm3, scratch.neighbours, state.tissue.is_live, scratch.is_anchored, due,
-                      kFragmentShare * scratch.body_volume_mm3);
-  for (const TetId tet : loose) remove(model, state, tet, RemovalCause::LooseFragment);
-  std::erase_if(state.bonds, [&](const Bond& bond) { return state.tissue.is_live[bond.tet.index()] == 0; });
-  return loose.size();
+  return remove_loose(model, state, scratch, due);
 }
 
 }  // namespace
@@ -403,13 +429,13 @@ std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace&
                         std::span<const TetId> tets) {
   std::vector<TetId> due;
   for (const TetId tet : tets) {
-    INCISE_REQUIRE(tet.is_valid() && tet.index() < model.mesh.tets.size(),
-                   fmt::format("expected one of {} tets, found {}", model.mesh.tets.size(), tet.value));
+    INCISE_REQUIRE(tet.is_valid() && tet.index() < state.tissue.is_live.size(),
+                   fmt::format("expected one of {} tets, found {}", state.tissue.is_live.size(), tet.value));
     if (state.tissue.is_live[tet.index()] != 0) due.push_back(tet);
   }
   std::sort(due.begin(), due.end());
   due.erase(std::unique(due.begin(), due.end()), due.end());
-  return due.size() + carve(model, state, workspace.data(), due);
+  return due.size() + carve(workspace.model_for(model, state.splits), state, workspace.data(), due);
 }
 
 namespace {
@@ -438,15 +464,47 @@ std::vector<TetId> tets_near(const TissueModel& model, std::span<const std::uint
   return near;
 }
 
+/// The points of the state. One that is not the next of the last one may have met other tets.
+PointLattice& lattice_for(const TissueModel& model, const CutState& state, CutWorkspace::Data& scratch) {
+  if (!scratch.lattice || state.step != scratch.lattice_step) {
+    scratch.lattice.emplace(model, state.points, state.splits);
+    scratch.every_tet.assign(model.mesh.tets.size(), 1);
+    scratch.lattice_step = state.step;
+  }
+  return *scratch.lattice;
+}
+
+/// Whether tets are split after a step: each time that the tool has gone another length on its way. They are not in
+/// each step, because everything is made anew then.
+bool is_splitting_step(const CutSettings& settings, int step) {
+  const auto lengths = [&](int steps) {
+    return std::floor(steps * settings.advance_per_step_mm / kSplittingMm + 1e-9);
+  };
+  return lengths(step) > lengths(step - 1);
+}
+
+/// Splits the tets that have come apart, and removes what hangs by no face then. @returns how many tets went.
+std::size_t split_mesh_of(const TissueModel& whole, CutState& state, CutWorkspace& workspace) {
+  const auto& parted = state.points.parted_step;
+  if (std::ranges::none_of(parted, [&](int step) { return step > state.split_step; })) return 0;
+  const TissueModel& model = workspace.model_for(whole, state.splits);
+  const std::vector<TetId> touched = split_parted_tets(model, lattice_for(model, state, workspace.data()), state);
+  if (touched.empty()) return 0;
+  PointLattice lattice = std::move(*workspace.data().lattice);
+  const TissueModel& split = workspace.model_for(whole, state.splits);
+  lattice.follow(split, state.points, state.splits);
+  CutWorkspace::Data& scratch = workspace.data();
+  scratch.lattice = std::move(lattice);
+  scratch.every_tet.assign(split.mesh.tets.size(), 1);
+  scratch.lattice_step = state.step;
+  return remove_loose(split, state, workspace.data(), touched);
+}
+
 /// A step of a cut by points, the tool in.
 CutStepReport advance_points(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                              CutWorkspace::Data& scratch, const ToolPose& next, double step_s, Workers& workers) {
   CutStepReport report;
-  // A state that is not the next of the last one may have met other tets.
-  if (!scratch.lattice || state.step != scratch.next_step) {
-    scratch.lattice.emplace(lattice_of(model, state.points));
-    scratch.every_tet.assign(model.mesh.tets.size(), 1);
-  }
+  lattice_for(model, state, scratch);
   const std::vector<ToolCore> here{ToolCore(tool, state.tool)};
   const std::vector<TetId> held =
       tets_near(model, state.tissue.is_live, scratch.before, scratch.before, here, settings.kernel_radius_mm, workers);
@@ -455,7 +513,7 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   move_tissue(model, settings, tool, state, scratch, next, &hold, step_s, workers, report);
   if (report.is_finite) end_viscous_step(model, state.tissue, settings.tissue_s(step_s), workers);
   state.time_s += step_s;
-  ++state.step;
+  scratch.lattice_step = ++state.step;
   if (!report.is_finite) return report;
   const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, next);
   for (std::size_t i = 0; i < state.points.is_held.size(); ++i) {
@@ -477,14 +535,20 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
 
 }  // namespace
 
-CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
+CutStepReport advance(const TissueModel& whole, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers) {
   INCISE_REQUIRE(step_s > 0.0 && std::isfinite(step_s), "expected a step above 0 s");
-  CutWorkspace::Data& scratch = workspace.data();
   CutStepReport report;
+  if (!next && !state.points.tets.empty()) report.loose_removed = split_mesh_of(whole, state, workspace);
+  const TissueModel& model = workspace.model_for(whole, state.splits);
+  CutWorkspace::Data& scratch = workspace.data();
   scratch.before = state.tissue.positions;
-  if (next && settings.rule == CutRule::Lattice)
-    return advance_points(model, settings, tool, state, scratch, *next, step_s, workers);
+  if (next && settings.rule == CutRule::Lattice) {
+    report = advance_points(model, settings, tool, state, scratch, *next, step_s, workers);
+    if (report.is_finite && is_splitting_step(settings, state.step))
+      report.loose_removed += split_mesh_of(whole, state, workspace);
+    return report;
+  }
   if (!next) state.bonds.clear();
   const std::vector<double> stiffnesses =
       move_tissue(model, settings, tool, state, scratch, next, nullptr, step_s, workers, report);

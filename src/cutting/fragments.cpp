@@ -7,13 +7,13 @@ namespace incise {
 std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> volumes_mm3,
                                    std::span<const std::array<std::int32_t, 4>> neighbours,
                                    std::span<const std::uint8_t> is_live, std::span<const std::uint8_t> is_anchored,
-                                   std::span<const TetId> removed, double least_mm3) {
+                                   std::span<const TetId> changed, double least_mm3) {
   enum class Part : std::uint8_t { Unknown, Visited, Held };
   std::vector<Part> parts(is_live.size(), Part::Unknown);
   std::vector<std::int32_t> part;
   std::vector<TetId> loose;
 
-  // A part that became loose touches what was removed. The search in it ends as soon as it is known to be large or
+  // A part that became loose touches what has changed. The search in it ends as soon as it is known to be large or
   // held.
   const auto search = [&](std::int32_t seed) {
     part.assign(1, seed);
@@ -39,12 +39,14 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
       if (!is_held) loose.emplace_back(static_cast<std::size_t>(tet));
     }
   };
-  for (const TetId gone : removed) {
-    for (const std::int32_t seed : neighbours[gone.index()]) {
-      if (seed >= 0 && is_live[static_cast<std::size_t>(seed)] != 0 &&
-          parts[static_cast<std::size_t>(seed)] == Part::Unknown)
-        search(seed);
-    }
+  const auto search_from = [&](std::int32_t seed) {
+    if (seed >= 0 && is_live[static_cast<std::size_t>(seed)] != 0 &&
+        parts[static_cast<std::size_t>(seed)] == Part::Unknown)
+      search(seed);
+  };
+  for (const TetId tet : changed) {
+    search_from(tet.value);
+    for (const std::int32_t seed : neighbours[tet.index()]) search_from(seed);
   }
   std::sort(loose.begin(), loose.end());
   return loose;

@@ -80,11 +80,11 @@ CutStepLog log_of(const CutState& state, const CutStepReport& report) {
 }
 
 void require_same_mesh(const TissueModel& model, const CutState& state) {
-  INCISE_REQUIRE(
-      state.tissue.positions.size() == model.mesh.vertices.size() && state.dose.size() == model.mesh.tets.size(),
-      fmt::format("expected the progress of a cut of {} vertices and {} tets, found {} and {}",
-                  model.mesh.vertices.size(), model.mesh.tets.size(), state.tissue.positions.size(),
-                  state.dose.size()));
+  const std::size_t vertices = model.mesh.vertices.size() + state.splits.vertices.size();
+  const std::size_t tets = model.mesh.tets.size() + state.splits.copies.size();
+  INCISE_REQUIRE(state.tissue.positions.size() == vertices && state.dose.size() == tets,
+                 fmt::format("expected the progress of a cut of {} vertices and {} tets, found {} and {}", vertices,
+                             tets, state.tissue.positions.size(), state.dose.size()));
 }
 
 Precision precision_for(const TissueModel& model, const CutSettings& cut) {
@@ -255,15 +255,23 @@ void judge_solves(IncisionResult& result, std::size_t steps, Monitor& monitor) {
   if (result.outcome == Outcome::Success && is_too_many) result.outcome = Outcome::NotConverged;
 }
 
-std::size_t count_inverted(const TissueModel& model, const TissueState& tissue) {
+std::size_t count_inverted(const TetMesh& mesh, const TissueState& tissue) {
   std::size_t count = 0;
-  for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
+  for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
     if (tissue.is_live[tet] == 0) continue;
-    const Tet& t = model.mesh.tets[tet];
+    const Tet& t = mesh.tets[tet];
     const auto& x = tissue.positions;
     if (signed_volume(x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]) <= 0.0) ++count;
   }
   return count;
+}
+
+/// Brings a frame to the split mesh of the cut's end: what came apart later moves with its original.
+void complete(CutFrame& frame, const TetMesh& whole, const MeshSplits& splits) {
+  for (std::size_t v = frame.positions.size() - whole.vertices.size(); v < splits.vertices.size(); ++v)
+    frame.positions.push_back(Vec3(frame.positions[splits.vertices[v].index()]));
+  for (std::size_t t = frame.is_live.size() - whole.tets.size(); t < splits.copies.size(); ++t)
+    frame.is_live.push_back(std::uint8_t(frame.is_live[splits.copies[t].whole.index()]));
 }
 
 }  // namespace
@@ -298,10 +306,11 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
   }  // its workspace is large
   sum_up(progress.steps, result);
   judge_solves(result, progress.steps.size(), monitor);
+  for (CutFrame& frame : progress.frames) complete(frame, model.mesh, progress.state.splits);
   result.steps = std::move(progress.steps);
   result.frames = std::move(progress.frames);
   result.record = progress.state.record;
-  result.inverted_tets = count_inverted(model, progress.state.tissue);
+  result.inverted_tets = count_inverted(split_mesh(model.mesh, progress.state.splits), progress.state.tissue);
   result.final_state = std::move(progress.state);
   measure_kerf(model, stretched, path, settings, result, workers);
   if (result.outcome == Outcome::Success && result.is_closed_loop && !*result.is_closed_loop) {

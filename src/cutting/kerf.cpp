@@ -1,5 +1,6 @@
 #include "kerf.hpp"
 
+#include "parted_tissue.hpp"
 #include "point_kerf.hpp"
 
 #include <incise/core/error.hpp>
@@ -18,6 +19,10 @@ namespace {
 
 constexpr double kBeyondWallMm =
     4.0;  // beside the mid-line, live tissue is looked for this far behind the kerf's mean wall, which is rough
+
+/// Where the edge of a cut by points is read: of nodes that lie deeper than the body's border, at which the kerf is
+/// rounded.
+constexpr KerfMidlineSettings kEdgeLayer{.layer_top_mm = 0.2, .layer_bottom_mm = 0.8, .min_coverage = 0.5};
 
 /// The middle of what a ring runs round: the tumour if there is one, else the path.
 Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
@@ -44,15 +49,14 @@ KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, con
 }
 
 /// Where material points of the stretched tissue lie after the cut.
-Contour carried(const Contour& curve, const TetMesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to) {
+Contour carried(const Contour& curve, const std::function<std::optional<Vec3>(const Vec3&, double)>& place_after) {
   constexpr double kOnSkinMm = 0.5;  // points of a curve on the skin may lie this far outside the flat faces
-  const TetLocator locator(mesh, from);
   Contour moved{{}, curve.is_closed};
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
-    const auto point = locator.locate(curve.points[i], kOnSkinMm);
-    INCISE_REQUIRE(point.has_value(),
+    const std::optional<Vec3> place = place_after(curve.points[i], kOnSkinMm);
+    INCISE_REQUIRE(place.has_value(),
                    fmt::format("point {} of the tumour edge lies farther than {} mm from the tissue", i, kOnSkinMm));
-    moved.points.push_back(position_of(*point, mesh, to));
+    moved.points.push_back(*place);
   }
   return moved;
 }
@@ -87,21 +91,42 @@ void measure_midline(const KerfInput& kerf, const KerfMidlineSettings& midline_s
   result.gap_deg = midline.gap_deg;
 }
 
-/// Where the tumour edge lies after the cut, and the inner edge of a ring.
+/// Where the tumour edge lies after the cut, and the inner edge of a ring, with what has come apart in between.
+void measure_final_edges(const KerfInput& kerf, const PartedTissue& tissue, const ToolPath& path,
+                         IncisionResult& result) {
+  if (path.tumor_edge.points.size() < 3) return;
+  result.final_tumor_edge = carried(path.tumor_edge, [&](const Vec3& p, double tolerance_mm) -> std::optional<Vec3> {
+    const std::optional<Vec3> moved = tissue.displacement(p, tolerance_mm);
+    if (!moved) return std::nullopt;
+    return p + *moved;
+  });
+  if (!path.is_closed) return;
+  result.kerf.inner_edge_reference = inner_edge_contour(kerf, kEdgeLayer);
+  if (!result.kerf.inner_edge_reference) return;
+  result.inner_edge = carried_with_live(*result.kerf.inner_edge_reference, 0.0, kerf.approach, kerf.surface,
+                                        [&](const Vec3& p, double mm) { return tissue.displacement(p, mm); });
+}
+
+/// The same by whole tets.
 void measure_final_edges(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
                          const IncisionSettings& settings, double bridge_mm, IncisionResult& result) {
   if (path.tumor_edge.points.size() < 3) return;
   const TissueState& tissue = result.final_state.tissue;
-  result.final_tumor_edge = carried(path.tumor_edge, model.mesh, stretched.positions, tissue.positions);
-  // Tets that the kerf crosses stretch over its gap once it opens: where the plug's edge lies then is not in them.
-  if (!path.is_closed || settings.cut.rule == CutRule::Lattice) return;
+  const TetLocator locator(model.mesh, stretched.positions);
+  result.final_tumor_edge = carried(path.tumor_edge, [&](const Vec3& p, double tolerance_mm) -> std::optional<Vec3> {
+    const auto point = locator.locate(p, tolerance_mm);
+    if (!point) return std::nullopt;
+    return position_of(*point, model.mesh, tissue.positions);
+  });
+  if (!path.is_closed) return;
   InnerEdgeSettings edge_settings;
   edge_settings.opening_mm = bridge_mm;
   result.inner_edge = inner_edge_contour(
       cut_surface(model.mesh, tissue, settings, inside_of(result.final_tumor_edge, path)), edge_settings);
   if (!result.inner_edge) return;
-  result.kerf.inner_edge_reference = carried_with_live(*result.inner_edge, 0.0, settings.approach, model.mesh,
-                                                       tissue.is_live, tissue.positions, stretched.positions);
+  result.kerf.inner_edge_reference =
+      carried_with_live(*result.inner_edge, 0.0, settings.approach, skin_of(model.mesh, tissue.positions),
+                        displacement_of_live(model.mesh, tissue.is_live, tissue.positions, stretched.positions));
 }
 
 }  // namespace
@@ -123,7 +148,11 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
   const CutState& state = result.final_state;
   const TissueState& tissue = state.tissue;
   std::optional<PointKerf> by_points;
-  if (settings.cut.rule == CutRule::Lattice) by_points.emplace(model, state.points, stretched.positions);
+  std::optional<PartedTissue> parted;
+  if (settings.cut.rule == CutRule::Lattice) {
+    by_points.emplace(model, state.points, stretched.positions);
+    parted.emplace(model, stretched.positions, state);
+  }
   const KerfInput kerf = kerf_input(model, stretched, path, settings, state.record, by_points ? &*by_points : nullptr);
   KerfMeasures& measures = result.kerf;
   measures.layers.resize(settings.layer_depths_mm.size());
@@ -131,7 +160,8 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
   std::vector<std::function<void()>> tasks{
       [&] { measure_midline(kerf, midline_settings, result); },
       [&] {
-        measures.body = kerf_body(model, stretched.positions, tissue.is_live);
+        measures.body = kerf_body(split_mesh(model.mesh, state.splits),
+                                  split_positions(stretched.positions, state.splits), tissue.is_live);
         if (!by_points) return;
         measures.body.surface = by_points->surface();
         measures.body.volume_mm3 = enclosed_volume_mm3(measures.body.surface);
@@ -140,16 +170,21 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
       [&] { measures.depth = depth_reached(kerf, path, settings); },
       [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, state); },
       // A strip of tissue that the mid-line overlooks does not hold the plug either.
-      [&] { measure_final_edges(model, stretched, path, settings, midline_settings.closing_mm, result); }};
+      [&] {
+        if (parted) return measure_final_edges(kerf, *parted, path, result);
+        measure_final_edges(model, stretched, path, settings, midline_settings.closing_mm, result);
+      }};
   for (std::size_t i = 0; i < measures.layers.size(); ++i) {
     tasks.emplace_back([&, i] { measures.layers[i] = kerf_layer(kerf, path, settings.layer_depths_mm[i]); });
   }
   workers.for_each(tasks.size(), 1, [&](std::size_t i) { tasks[i](); });
   measures.deep_margin = deep_margin(measures.body, measures.depth, settings);
-  if (!result.centerline || by_points) return;  // as for the inner edge
-  measures.final_centerline =
-      carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm, settings.approach, model.mesh,
-                        tissue.is_live, stretched.positions, tissue.positions);
+  if (!result.centerline) return;
+  const LiveDisplacement displacement =
+      parted ? [&](const Vec3& p, double mm) { return parted->displacement(p, mm); }
+             : displacement_of_live(model.mesh, tissue.is_live, stretched.positions, tissue.positions);
+  measures.final_centerline = carried_with_live(*result.centerline, 0.5 * result.kerf_width_mm + kBeyondWallMm,
+                                                settings.approach, kerf.surface, displacement);
 }
 
 }  // namespace incise

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace incise {
 namespace {
@@ -42,14 +43,14 @@ std::vector<Triangle> corners_of_faces(std::span<const BoundaryFace> faces) {
 
 }  // namespace
 
-KerfBody kerf_body(const TissueModel& model, std::span<const Vec3> stretched, std::span<const std::uint8_t> is_live) {
+KerfBody kerf_body(const TetMesh& mesh, std::span<const Vec3> stretched, std::span<const std::uint8_t> is_live) {
   std::vector<std::uint8_t> is_gone(is_live.size());
   std::transform(is_live.begin(), is_live.end(), is_gone.begin(), [](std::uint8_t live) { return live == 0 ? 1 : 0; });
   KerfBody body;
-  body.surface = with_own_vertices(boundary_faces(model.mesh, is_gone), stretched);
+  body.surface = with_own_vertices(boundary_faces(mesh, is_gone), stretched);
   body.volume_mm3 = enclosed_volume_mm3(body.surface);
   body.boundary = manifoldness_of(body.surface.triangles);
-  body.live_skin = manifoldness_of(corners_of_faces(boundary_faces(model.mesh, is_live)));
+  body.live_skin = manifoldness_of(corners_of_faces(boundary_faces(mesh, is_live)));
   return body;
 }
 
@@ -76,22 +77,25 @@ KerfLayer kerf_layer(const KerfInput& kerf, const ToolPath& path, double depth_m
   return layer;
 }
 
-std::optional<Contour> carried_with_live(const Contour& curve, double reach_mm, const Vec3& approach,
-                                         const TetMesh& mesh, std::span<const std::uint8_t> is_live,
-                                         std::span<const Vec3> from, std::span<const Vec3> to) {
-  TetMesh live;
-  live.vertices.assign(from.begin(), from.end());
+LiveDisplacement displacement_of_live(const TetMesh& mesh, std::span<const std::uint8_t> is_live,
+                                      std::span<const Vec3> from, std::span<const Vec3> to) {
+  auto live = std::make_shared<TetMesh>();
+  live->vertices.assign(from.begin(), from.end());
   for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
-    if (is_live[tet] != 0) live.tets.push_back(mesh.tets[tet]);
+    if (is_live[tet] != 0) live->tets.push_back(mesh.tets[tet]);
   }
-  if (live.tets.empty()) return std::nullopt;
-  const TetLocator locator(live, from);
-  const auto displacement = [&](const Vec3& p, double tolerance_mm) -> std::optional<Vec3> {
-    const auto point = locator.locate(p, tolerance_mm);
+  if (live->tets.empty()) return [](const Vec3&, double) { return std::nullopt; };
+  const auto locator = std::make_shared<const TetLocator>(*live, from);
+  return [live, locator, from, to](const Vec3& p, double tolerance_mm) -> std::optional<Vec3> {
+    const auto point = locator->locate(p, tolerance_mm);
     if (!point) return std::nullopt;
-    return position_of(*point, live, to) - position_of(*point, live, from);
+    return position_of(*point, *live, to) - position_of(*point, *live, from);
   };
-  const SurfaceQuery skin(skin_of(mesh, from));  // uncut: the walk across the gap follows its slope
+}
+
+std::optional<Contour> carried_with_live(const Contour& curve, double reach_mm, const Vec3& approach,
+                                         const TriMesh& surface, const LiveDisplacement& displacement) {
+  const SurfaceQuery skin(surface);  // uncut: the walk across the gap follows its slope
   const auto first_across = [&](const Vec3& p, const Vec3& direction) -> std::optional<Vec3> {
     for (double s = 0.0; s <= reach_mm; s += kAcrossStepMm) {
       const auto seen = skin.seen_at(p + s * direction, approach);

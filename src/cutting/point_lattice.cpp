@@ -22,17 +22,23 @@ Vec3 PointLattice::rest_position(const Node& node) {
   return kOriginMm + kSpacingMm * Vec3(node[0], node[1], node[2]);
 }
 
+PointLattice::Node PointLattice::node_near(const Vec3& rest) {
+  const Vec3 at = (rest - kOriginMm) / kSpacingMm;
+  const auto nearest = [](double x) { return static_cast<std::int32_t>(std::lround(x)); };
+  return {nearest(at.x()), nearest(at.y()), nearest(at.z())};
+}
+
 PointLattice::PointLattice(const TissueModel& model, std::span<const TetId> tets)
-    : model_(model), first_(model.mesh.tets.size(), -1), count_(model.mesh.tets.size(), 0) {
+    : model_(&model), first_(model.mesh.tets.size(), -1), count_(model.mesh.tets.size(), 0) {
   for (const TetId tet : tets) add(tet);
 }
 
 void PointLattice::add(TetId tet) {
-  const Tet& corners = model_.mesh.tets[tet.index()];
-  const std::array<Vec3, 4>& gradients = model_.gradients[tet.index()];
-  const Vec3& origin = vertex(model_.mesh.vertices, corners[0]);
+  const Tet& corners = model_->mesh.tets[tet.index()];
+  const std::array<Vec3, 4>& gradients = model_->gradients[tet.index()];
+  const Vec3& origin = vertex(model_->mesh.vertices, corners[0]);
   Box3 box;
-  for (const VertexId v : corners) box.extend((vertex(model_.mesh.vertices, v) - kOriginMm) / kSpacingMm);
+  for (const VertexId v : corners) box.extend((vertex(model_->mesh.vertices, v) - kOriginMm) / kSpacingMm);
   const std::size_t first = shares_.size();
   const Eigen::Array3i low = box.min().array().ceil().cast<int>(), high = box.max().array().floor().cast<int>();
   for (int k = low[2]; k <= high[2]; ++k)
@@ -59,7 +65,7 @@ void PointLattice::add(TetId tet) {
   }
   tets_.resize(shares_.size(), tet);
   nodes_.resize(shares_.size());
-  const double volume = model_.volumes_mm3[tet.index()];
+  const double volume = model_->volumes_mm3[tet.index()];
   const bool has_own = nodes < kLeastNodes;
   volumes_.resize(first + nodes, has_own ? 0.0 : volume / static_cast<double>(nodes));
   volumes_.resize(shares_.size(), 0.25 * volume);
@@ -74,18 +80,35 @@ std::pair<std::size_t, std::size_t> PointLattice::points_of(TetId tet) const {
 }
 
 Vec3 PointLattice::position(std::size_t point, std::span<const Vec3> positions) const {
-  const Tet& corners = model_.mesh.tets[tets_[point].index()];
+  const Tet& corners = model_->mesh.tets[tets_[point].index()];
   Vec3 sum = Vec3::Zero();
   for (std::size_t c = 0; c < 4; ++c) sum += shares_[point][c] * vertex(positions, corners[c]);
   return sum;
 }
 
-PointLattice lattice_of(const TissueModel& model, const CutPoints& points) {
+PointLattice::PointLattice(const TissueModel& split, const CutPoints& points, const MeshSplits& splits)
+    : PointLattice(lattice_of(split, points)) {
+  follow(split, points, splits);
+}
+
+void PointLattice::follow(const TissueModel& split, const CutPoints& points, const MeshSplits& splits) {
+  model_ = &split;
+  first_.resize(split.mesh.tets.size(), -1);
+  count_.resize(split.mesh.tets.size(), 0);
+  const std::size_t whole = split.mesh.tets.size() - splits.copies.size();
+  for (std::size_t i = 0; i < splits.copies.size(); ++i) {
+    first_[whole + i] = first_[splits.copies[i].whole.index()];
+    count_[whole + i] = count_[splits.copies[i].whole.index()];
+  }
+  tets_ = points.tet;
+}
+
+PointLattice lattice_of(const TissueModel& whole, const CutPoints& points) {
   for (const TetId tet : points.tets)
-    INCISE_REQUIRE(tet.is_valid() && tet.index() < model.mesh.tets.size(),
-                   fmt::format("points: expected one of {} tets, found {}", model.mesh.tets.size(), tet.value));
-  PointLattice lattice(model, points.tets);
-  for (const std::size_t found : {points.dose.size(), points.is_held.size(), points.offset_mm.size(),
+    INCISE_REQUIRE(tet.is_valid() && tet.index() < whole.mesh.tets.size(),
+                   fmt::format("points: expected one of {} tets, found {}", whole.mesh.tets.size(), tet.value));
+  PointLattice lattice(whole, points.tets);
+  for (const std::size_t found : {points.tet.size(), points.dose.size(), points.is_held.size(), points.offset_mm.size(),
                                   points.parted_step.size(), points.parted_mm.size()}) {
     INCISE_REQUIRE(found == lattice.size(),
                    fmt::format("points: expected {} of everything, found {}", lattice.size(), found));

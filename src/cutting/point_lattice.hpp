@@ -20,26 +20,37 @@ class PointLattice {
   static constexpr double kSpacingMm = 0.2;
 
   PointLattice(const TissueModel& model, std::span<const TetId> tets);
+  /// The points that a cut has met, on the split mesh of the cut's state (split_model).
+  /// @throws InvalidArgument where the lists of its points do not have one item for each of them.
+  PointLattice(const TissueModel& split, const CutPoints& points, const MeshSplits& splits);
 
-  /// Adds the points of a tet.
+  /// Goes over to another split mesh of the same whole one, with the same points.
+  void follow(const TissueModel& split, const CutPoints& points, const MeshSplits& splits);
+
+  /// Adds the points of a tet that is not split.
   void add(TetId tet);
 
   [[nodiscard]] std::size_t size() const { return shares_.size(); }
-  /// The points of a tet are [first, second); none where it was not added.
+  /// The points of a tet are those of [first, second) whose tet_of it is; the others are of its copies. Empty where it
+  /// was not added.
   [[nodiscard]] std::pair<std::size_t, std::size_t> points_of(TetId tet) const;
+  /// With which a point moves.
+  [[nodiscard]] TetId tet_of(std::size_t point) const { return tets_[point]; }
   /// Barycentric coordinates of a point in its tet.
   [[nodiscard]] const std::array<double, 4>& shares(std::size_t point) const { return shares_[point]; }
   /// The rest volume that a point stands for, mm³; those of a tet add up to its own. 0: a node of a tet that has points
   /// of its own.
   [[nodiscard]] double volume_mm3(std::size_t point) const { return volumes_[point]; }
   [[nodiscard]] Vec3 position(std::size_t point, std::span<const Vec3> positions) const;
+  [[nodiscard]] Vec3 rest_position(std::size_t point) const { return position(point, model_->mesh.vertices); }
 
   /// Nothing for a tet's own point.
   [[nodiscard]] const std::optional<Node>& node_of(std::size_t point) const { return nodes_[point]; }
   [[nodiscard]] static Vec3 rest_position(const Node& node);
+  [[nodiscard]] static Node node_near(const Vec3& rest);
 
  private:
-  const TissueModel& model_;
+  const TissueModel* model_;
   std::vector<std::int64_t> first_;  // per tet: its first point; -1: not added
   std::vector<std::int32_t> count_;  // per tet
   std::vector<std::array<double, 4>> shares_;
@@ -48,7 +59,8 @@ class PointLattice {
   std::vector<std::optional<Node>> nodes_;
 };
 
-/// The points that a cut has met. @throws InvalidArgument where its lists do not have one item for each of them.
-[[nodiscard]] PointLattice lattice_of(const TissueModel& model, const CutPoints& points);
+/// The points that a cut has met, in the whole mesh, each with the tet of its rest position.
+/// @throws InvalidArgument where the lists do not have one item for each of them.
+[[nodiscard]] PointLattice lattice_of(const TissueModel& whole, const CutPoints& points);
 
 }  // namespace incise

@@ -9,8 +9,7 @@
 namespace incise {
 namespace {
 
-constexpr double kSliceMm = 0.5;     // between the middles of two hats along the axis
-constexpr double kLeastFill = 1e-3;  // of the stiffness of a tet that is not empty
+constexpr double kSliceMm = 0.5;  // between the middles of two hats along the axis
 constexpr std::size_t kTetsPerChunk = 16;
 
 /// How strongly the tool acts at a distance from its core: (1 − s²/R²)², 0 from R on.
@@ -60,6 +59,7 @@ void meet_points(std::span<const TetId> candidates, PointLattice& lattice, CutPo
     if (first != last) continue;
     lattice.add(tet);
     points.tets.push_back(tet);
+    points.tet.resize(lattice.size(), tet);
     points.dose.resize(lattice.size(), 0.0);
     points.is_held.resize(lattice.size(), 0);
     points.offset_mm.resize(lattice.size(), Vec3::Zero());
@@ -79,7 +79,7 @@ PointHold hold_points(const TissueModel& model, const CutSettings& settings, con
     const auto [begin, end] = lattice.points_of(candidates[c]);
     const double toughness = relative_toughness(model, candidates[c].index());
     for (std::size_t i = begin; i < end; ++i) {
-      if (state.points.is_held[i] == 0 || state.points.dose[i] >= 1.0) continue;
+      if (lattice.tet_of(i) != candidates[c] || state.points.is_held[i] == 0 || state.points.dose[i] >= 1.0) continue;
       const Vec3 p = lattice.position(i, state.tissue.positions);
       const double distance = distance_to_core(p, core);
       // The hold is that of the middle of the step, as far as the dose is concerned.
@@ -199,6 +199,7 @@ std::vector<TetId> dose_points(const TissueModel& model, const CutSettings& sett
     const double toughness = relative_toughness(model, candidates[c].index());
     double filled = 0.0, all = 0.0, dosed = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
+      if (lattice.tet_of(i) != candidates[c]) continue;
       const Vec3 from = lattice.position(i, before), to = lattice.position(i, state.tissue.positions);
       double sum = 0.0;
       bool is_within = false;
@@ -231,7 +232,7 @@ std::vector<TetId> dose_points(const TissueModel& model, const CutSettings& sett
     if (state.tissue.is_live[tet] == 0) return;
     state.dose[tet] = dosed / all;
     is_empty[c] = filled == 0.0 ? 1 : 0;
-    state.tissue.fill[tet] = std::max(kLeastFill, filled / all);
+    state.tissue.fill[tet] = std::clamp(filled / model.volumes_mm3[tet], kLeastFill, 1.0);
   });
   std::vector<TetId> empty;
   for (std::size_t c = 0; c < candidates.size(); ++c) {

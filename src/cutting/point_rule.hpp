@@ -9,6 +9,8 @@
 
 namespace incise {
 
+inline constexpr double kLeastFill = 1e-3;  ///< of the stiffness of a tet that is not empty
+
 /// The hold of the tool on the points about it, slice by slice along its axis: each pulls the mean of its points to
 /// where it took hold of them. Linear in the displacements; weights are those of the moment that it was made for.
 struct PointHold {

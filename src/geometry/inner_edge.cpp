@@ -1,7 +1,10 @@
+#include "geometry/kerf_picture.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/geometry/gaussian.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/geometry/morphology.hpp>
+#include <incise/geometry/surface_query.hpp>
 #include <incise/geometry/tracing.hpp>
 
 #include <fmt/format.h>
@@ -9,6 +12,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace incise {
 namespace {
@@ -122,6 +126,25 @@ std::optional<double> skin_height(const Raster& plug, const DepthBuffer& picture
   return normal_matrix.ldlt().solve(right_side).z();
 }
 
+/// The outline of the plug, at the height that its skin has there.
+std::optional<Contour> edge_of(const Raster& plug, const ViewFrame& view, const InnerEdgeSettings& settings,
+                               const std::function<std::optional<double>(const Vec2&)>& height_at) {
+  std::optional<Contour> outline;
+  for (Contour& line : level_lines(blurred(plug, settings.smoothing_mm), 0.5)) {
+    if (!outline || length_mm(line) > length_mm(*outline)) outline = std::move(line);
+  }
+  if (!outline) return std::nullopt;
+  Contour edge;
+  for (const Vec3& p : outline->points) {
+    const std::optional<double> height = height_at(p.head<2>());
+    if (height) edge.points.push_back(view.from_view({p.x(), p.y(), *height}));
+  }
+  const double length = length_mm(edge);
+  if (edge.points.size() < 3 || length == 0.0) return std::nullopt;
+  const auto count = static_cast<std::size_t>(std::max(8.0, std::round(length / settings.spacing_mm)));
+  return start_farthest_along(counter_clockwise(resample(edge, count), -view.z), view.x);
+}
+
 }  // namespace
 
 std::optional<Contour> inner_edge_contour(const CutSurface& surface, const InnerEdgeSettings& settings) {
@@ -135,20 +158,22 @@ std::optional<Contour> inner_edge_contour(const CutSurface& surface, const Inner
   const std::optional<Raster> plug = plug_of(*picture, surface, view.to_view(surface.inside_mm).head<2>(), settings);
   if (!plug) return std::nullopt;
 
-  std::optional<Contour> outline;
-  for (Contour& line : level_lines(blurred(*plug, settings.smoothing_mm), 0.5)) {
-    if (!outline || length_mm(line) > length_mm(*outline)) outline = std::move(line);
-  }
-  if (!outline) return std::nullopt;
-  Contour edge;
-  for (const Vec3& p : outline->points) {
-    const std::optional<double> height = skin_height(*plug, *picture, surface, p.head<2>());
-    if (height) edge.points.push_back(view.from_view({p.x(), p.y(), *height}));
-  }
-  const double length = length_mm(edge);
-  if (edge.points.size() < 3 || length == 0.0) return std::nullopt;
-  const auto count = static_cast<std::size_t>(std::max(8.0, std::round(length / settings.spacing_mm)));
-  return start_farthest_along(counter_clockwise(resample(edge, count), surface.approach), view.x);
+  return edge_of(*plug, view, settings, [&](const Vec2& p) { return skin_height(*plug, *picture, surface, p); });
+}
+
+std::optional<Contour> inner_edge_contour(const KerfInput& kerf, const KerfMidlineSettings& layer,
+                                          const InnerEdgeSettings& settings) {
+  const ViewFrame view = view_along(kerf.approach);
+  const std::optional<KerfPicture> picture = kerf_picture(kerf, view, layer);
+  if (!picture) return std::nullopt;
+  const std::optional<Raster> plug = enclosed_tissue(picture->mask, view.to_view(kerf.inside_mm).head<2>());
+  if (!plug) return std::nullopt;
+  const SurfaceQuery skin(kerf.surface);
+  return edge_of(*plug, view, settings, [&](const Vec2& p) -> std::optional<double> {
+    const auto seen = skin.seen_at(view.from_view({p.x(), p.y(), 0.0}), -view.z);
+    if (!seen) return std::nullopt;
+    return view.to_view(seen->position_mm).z();
+  });
 }
 
 }  // namespace incise

@@ -1,10 +1,10 @@
 #include "geometry/kerf_picture.hpp"
 
-#include "geometry/disjoint_sets.hpp"
 #include "geometry/sight_lines.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
+#include <incise/geometry/disjoint_sets.hpp>
 #include <incise/geometry/morphology.hpp>
 
 #include <fmt/format.h>

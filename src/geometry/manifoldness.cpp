@@ -1,5 +1,5 @@
-#include "geometry/disjoint_sets.hpp"
 
+#include <incise/geometry/disjoint_sets.hpp>
 #include <incise/geometry/manifoldness.hpp>
 
 #include <algorithm>

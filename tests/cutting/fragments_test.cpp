@@ -52,6 +52,13 @@ TEST(LooseFragments, EveryPartBesideTheCutIsLookedAt) {
   EXPECT_EQ(bar.loose(1.5).size(), 12U) << "the first cell and the last, each loose";
 }
 
+TEST(LooseFragments, APartThatHasChangedIsLookedAtItself) {
+  CutBar bar;
+  bar.remove_cell(2);
+  bar.removed = {TetId(20)};  // of the fourth cell, live
+  EXPECT_EQ(bar.loose(1.5).size(), 6U);
+}
+
 TEST(LooseFragments, AnAnchoredPartStays) {
   CutBar bar;
   bar.remove_cell(2);

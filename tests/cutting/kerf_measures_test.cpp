@@ -73,7 +73,7 @@ TEST(KerfMeasures, TheVolumeIsThatOfTheConfigurationInWhichTheKerfIsMeasured) {
   for (Vec3& p : doubled) p.x() *= 2.0;
   std::vector<std::uint8_t> is_live(block().mesh.tets.size(), 1);
   is_live[100] = is_live[101] = 0;
-  EXPECT_NEAR(kerf_body(block(), doubled, is_live).volume_mm3,
+  EXPECT_NEAR(kerf_body(block().mesh, doubled, is_live).volume_mm3,
               2.0 * (block().volumes_mm3[100] + block().volumes_mm3[101]), 1e-9);
 }
 
@@ -86,7 +86,7 @@ TEST(KerfMeasures, TissueThatHangsByAnEdgeIsCountedOnItsSkin) {
     for (const VertexId v : model.mesh.tets[t]) middle += 0.25 * vertex(model.mesh.vertices, v);
     is_live[t] = (middle.x() < 1.0) == (middle.y() < 1.0) ? 1 : 0;
   }
-  EXPECT_EQ(kerf_body(model, model.mesh.vertices, is_live).live_skin.nonmanifold_edges, 1U);
+  EXPECT_EQ(kerf_body(model.mesh, model.mesh.vertices, is_live).live_skin.nonmanifold_edges, 1U);
 }
 
 TEST(KerfMeasures, EachLayerOfAnUndraggedRingHasItsMidLineOnThePath) {
@@ -138,8 +138,9 @@ TEST(KerfMeasures, AMidLineMovesWithTheTissueOnBothItsSides) {
   for (Vec3& p : parted) {
     if (std::hypot(p.x() - kMiddle.x(), p.y() - kMiddle.y()) < kRadiusMm) p.z() += 1.0;
   }
-  const auto moved = carried_with_live(*result.centerline, 4.0, kDown, block().mesh, result.final_state.tissue.is_live,
-                                       block().mesh.vertices, parted);
+  const auto moved = carried_with_live(
+      *result.centerline, 4.0, kDown, skin_of(block().mesh, block().mesh.vertices),
+      displacement_of_live(block().mesh, result.final_state.tissue.is_live, block().mesh.vertices, parted));
   ASSERT_TRUE(moved);
   for (const Vec3& p : moved->points)
     EXPECT_NEAR(p.z(), 8.5, 0.3) << "tets at the kerf's rough wall extrapolate a little";

@@ -2,10 +2,12 @@
 
 #include "cutting/ring_in_a_block.hpp"
 #include "cutting/same_incision.hpp"
+#include "parted_tissue.hpp"
 #include "point_kerf.hpp"
 
 #include <incise/cutting/cut_invariants.hpp>
 #include <incise/cutting/incision_progress.hpp>
+#include <incise/mechanics/statics.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -195,6 +197,174 @@ TEST_F(StraightPass, SettingsOfTheOtherRuleAreRefused) {
   EXPECT_TRUE(validate(settings_, 1.0).empty());
 }
 
+/// A disc of tissue in plane strain, held at its rim, with the tool through its middle.
+class RodInADisc : public ::testing::Test {
+ protected:
+  static constexpr double kRimMm = 16.0, kThicknessMm = 2.0;
+
+  /// The mesh of a square, drawn to the disc; in the middle the tets have 0.4 of their mean size.
+  static TetMesh disc(int cells) {
+    TetMesh mesh = make_block({2.0, 2.0, kThicknessMm}, {cells, cells, cells / 8});
+    DataArray rim{1, {}};
+    for (Vec3& p : mesh.vertices) {
+      const double x = p.x() - 1.0, y = p.y() - 1.0;
+      rim.values.push_back(std::max(std::abs(x), std::abs(y)) > 1.0 - 1e-9 ? 1.0 : 0.0);
+      p.x() = x * std::sqrt(1.0 - 0.5 * y * y);
+      p.y() = y * std::sqrt(1.0 - 0.5 * x * x);
+      p.head<2>() *= kRimMm * (0.4 + 0.6 * p.head<2>().squaredNorm());
+    }
+    mesh.point_data["rim"] = std::move(rim);
+    return mesh;
+  }
+
+  /// Its lateral stiffness over the closed one, less 1; tets in the middle have edges of 12.8 mm / cells.
+  static double excess_stiffness(int cells);
+};
+
+// The displacement of a point force in a disc of radius b with a held rim, averaged with the kernel's weights over both
+// places: (1 / (8 π μ (1 − ν))) ((3 − 4ν) (ln b − <ln r>) − 1 / (3 − 4ν)), from the plane Kelvin solution and the rigid
+// cylinder in a held ring (Baguelin, Frank and Said 1977). Of two places of weight (1 − s²/R²)², ln r is on average
+// that of the farther one from the axis: <ln r> = ln R − 73/120. The hold is a spring in series.
+double RodInADisc::excess_stiffness(int cells) {
+  constexpr double kNu = 0.3, kShiftMm = 0.02;
+  const TissueModel model = make_tissue_model(disc(cells), {.youngs_modulus_kpa = 12.0, .poissons_ratio = kNu},
+                                              {FixedConstraint{SphereRegion{Vec3::Zero(), 1e3}, {false, false, true}},
+                                               FixedConstraint{PointArrayRegion{"rim", 1.0}, {true, true, true}}});
+  CutSettings settings;
+  settings.rule = CutRule::Lattice;
+  settings.dullness = 1e9;
+  settings.slip_mn_mm.reset();
+  settings.residual_tolerance = 1e-6;
+  const auto at = [](double y) { return ToolPose{Vec3(0, y, -3.0), -Vec3::UnitZ(), Vec3::UnitY()}; };
+  Workers workers(2);
+  CutWorkspace workspace(model, model.mesh.vertices, Precision::Double);
+  CutState state = begin_cut(model, rest_state(model), at(0.0));
+  static_cast<void>(advance(model, settings, Needle{}, state, workspace, at(0.0), 0.02, workers));  // takes hold
+  CutStepReport report;
+  for (int i = 0; i < 60; ++i)
+    report = advance(model, settings, Needle{}, state, workspace, at(kShiftMm), 0.02, workers);
+
+  const double mu = 12.0 / (2.0 * (1.0 + kNu)), spread = 3.0 - 4.0 * kNu;
+  const double ln_ratio = std::log(kRimMm / settings.kernel_radius_mm) + 73.0 / 120.0;
+  const double compliance = (spread * ln_ratio - 1.0 / spread) / (8.0 * M_PI * mu * (1.0 - kNu));
+  const double expected_mn = kThicknessMm * kShiftMm / (compliance + 1.0 / settings.hold_kpa);
+  return -report.tool_force_mn.y() / expected_mn - 1.0;
+}
+
+TEST_F(RodInADisc, HasTheLateralStiffnessOfItsClosedSolution) {
+  for (const int cells : {32, 40, 48}) EXPECT_NEAR(excess_stiffness(cells), 0.0, 0.03) << cells;
+}
+
+TEST_F(RodInADisc, ComesNearItWithTheSquareOfTheEdge) {
+  const double coarse = excess_stiffness(16), fine = excess_stiffness(32);
+  EXPECT_LT(coarse, 0.1) << "0.8 mm";
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3);
+}
+
+/// A block pulled at its far end, that a deep tool passes through from side to side: it falls in two.
+class CutInTwo : public ::testing::TestWithParam<std::tuple<int, bool>> {
+ protected:
+  static constexpr double kPullMm = 1.0;
+
+  /// So many cells along, of elastic or of viscous tissue.
+  static TissueModel block(int cells, bool is_viscous) {
+    Material material{.youngs_modulus_kpa = 70.0, .poissons_ratio = 0.3};
+    if (is_viscous) material.prony = {{0.4, 0.1}, {0.3, 2.0}};
+    return make_tissue_model(
+        make_block({12, 6, 4}, {cells, cells / 2, cells / 3}), material,
+        {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(0.1, 9, 9))}},
+         DisplacedConstraint{BoxRegion{Box3(Vec3(11.9, -1, -1), Vec3(13, 9, 9))}, Vec3(kPullMm, 0, 0)}});
+  }
+  CutInTwo() : model_(block(std::get<0>(GetParam()), std::get<1>(GetParam()))) {
+    settings_.rule = CutRule::Lattice;
+    settings_.dullness = 3.0;
+    settings_.residual_tolerance = 1e-3;
+    settings_.hold_kpa = 0.0;
+  }
+  static ToolPose at(double y) { return {Vec3(6.3, y, -2.0), -Vec3::UnitZ(), Vec3::UnitY()}; }
+
+  void cut_through() {
+    Workers workers(2);
+    Monitor silent;
+    const StaticResult stretched = solve_static(model_, StaticSettings{}, workers, silent);
+    ASSERT_EQ(stretched.outcome, Outcome::Success);
+    before_ = stretched.state.positions;
+    state_ = begin_cut(model_, stretched.state, at(-2.0));
+    remember_deformation(model_, state_.tissue, 1.0);
+    CutWorkspace workspace(model_, before_, Precision::Double);
+    const double step_mm = settings_.advance_per_step_mm;
+    for (double y = -2.0 + step_mm; y < 8.0; y += step_mm) {
+      static_cast<void>(
+          advance(model_, settings_, Needle{}, state_, workspace, at(y), step_mm / settings_.speed_mm_s, workers));
+      ASSERT_THAT(cut_invariants(model_, state_), ::testing::IsEmpty());
+    }
+    for (int i = 0; i < 60; ++i) {
+      const CutStepReport report = advance(model_, settings_, Needle{}, state_, workspace, std::nullopt, 0.02, workers);
+      ASSERT_TRUE(report.is_finite);
+    }
+    ASSERT_THAT(cut_invariants(model_, state_), ::testing::IsEmpty());
+  }
+
+  TissueModel model_;
+  CutSettings settings_;
+  CutState state_;
+  Points before_;
+};
+
+TEST_P(CutInTwo, EachPartGoesBackToItsShapeAtRest) {
+  cut_through();
+  const TetMesh split = split_mesh(model_.mesh, state_.splits);
+  // No face joins the parts, and each is one.
+  const std::vector<std::array<std::int32_t, 4>> neighbours = face_neighbours(split);
+  std::vector<std::uint8_t> is_left = state_.tissue.is_live;
+  int parts = 0;
+  for (std::size_t seed = 0; seed < split.tets.size(); ++seed) {
+    if (is_left[seed] == 0) continue;
+    ++parts;
+    std::vector<std::size_t> part{seed};
+    is_left[seed] = 0;
+    for (std::size_t next = 0; next < part.size(); ++next) {
+      for (const std::int32_t n : neighbours[part[next]]) {
+        if (n < 0 || is_left[static_cast<std::size_t>(n)] == 0) continue;
+        is_left[static_cast<std::size_t>(n)] = 0;
+        part.push_back(static_cast<std::size_t>(n));
+      }
+    }
+  }
+  EXPECT_EQ(parts, 2);
+  // Nothing pulls at either any more: the one lies where it was, the other a pull farther.
+  for (std::size_t v = 0; v < split.vertices.size(); ++v) {
+    const bool is_live = std::ranges::any_of(split.tets, [&](const Tet& tet) {
+      const auto t = static_cast<std::size_t>(&tet - split.tets.data());
+      return state_.tissue.is_live[t] != 0 && std::ranges::find(tet, VertexId(v)) != tet.end();
+    });
+    if (!is_live) continue;
+    const Vec3 moved = state_.tissue.positions[v] - split.vertices[v];
+    EXPECT_LT(std::min(moved.norm(), (moved - Vec3(kPullMm, 0, 0)).norm()), 2e-3)
+        << v << " moved by " << moved.transpose();
+  }
+  // At both borders of the kerf, the tissue is that of its own side, wherever in a tet the border lies.
+  const PartedTissue tissue(model_, before_, state_);
+  const PointKerf kerf(model_, state_.points, before_);
+  const TriMesh surface = kerf.surface();
+  std::size_t left = 0, right = 0;
+  for (const Vec3& p : surface.vertices) {
+    if (p.y() < 1.0 || p.y() > 5.0 || p.z() < 1.0 || p.z() > 3.0) continue;
+    const std::optional<Vec3> moved = tissue.displacement(p, 0.5);
+    ASSERT_TRUE(moved);
+    const Vec3 after = p + *moved;
+    // In the stretched block the tool stood at x = 6.3 and stayed there, since it holds nothing.
+    (p.x() < 6.3 ? left : right) += 1;
+    const double rest_x = p.x() < 6.3 ? after.x() : after.x() - kPullMm;
+    EXPECT_NEAR(rest_x, p.x() * 12.0 / 13.0, 0.15);
+  }
+  EXPECT_GT(left, 50U);
+  EXPECT_GT(right, 50U);
+}
+INSTANTIATE_TEST_SUITE_P(OfCells, CutInTwo,
+                         ::testing::Values(std::tuple(6, false), std::tuple(12, false), std::tuple(18, false),
+                                           std::tuple(12, true)));
+
 class RingByPoints : public testing::RingInABlock {
  protected:
   RingByPoints() : RingInABlock(16) {
@@ -220,7 +390,10 @@ TEST_F(RingByPoints, ClosesAndHasTheSameBitsAtAnyThreadCountAndFromACheckpoint) 
   ASSERT_TRUE(straight.centerline.has_value());
   EXPECT_NEAR(mean_radius(*straight.centerline), kRadiusMm, 0.5);
   EXPECT_GT(straight.kerf.drag.value().lag.mean, 0.0);
-  EXPECT_FALSE(straight.inner_edge.has_value());
+  ASSERT_TRUE(straight.inner_edge.has_value());
+  EXPECT_LT(mean_radius(*straight.kerf.inner_edge_reference), mean_radius(*straight.centerline));
+  EXPECT_TRUE(straight.kerf.final_centerline.has_value());
+  EXPECT_FALSE(straight.final_state.splits.vertices.empty());
   expect_same(straight, carry_on(begin(), 3, silent), "three threads");
   StopAtHalf half;
   std::optional<IncisionProgress> kept;
@@ -231,6 +404,8 @@ TEST_F(RingByPoints, ClosesAndHasTheSameBitsAtAnyThreadCountAndFromACheckpoint) 
   const IncisionResult resumed = carry_on(*kept, 2, silent);
   expect_same(straight, resumed, "from a checkpoint");
   EXPECT_EQ(straight.final_state.points.dose, resumed.final_state.points.dose);
+  EXPECT_EQ(straight.final_state.splits, resumed.final_state.splits);
+  EXPECT_EQ(straight.inner_edge->points, resumed.inner_edge->points);
 }
 
 }  // namespace

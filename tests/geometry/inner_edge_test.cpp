@@ -170,6 +170,27 @@ TEST(InnerEdge, OfACarvedBlockIsTheInnerBorderOfItsKerf) {
   EXPECT_NEAR(sum / static_cast<double>(edge->points.size()), 13.25, 0.1);
 }
 
+TEST(InnerEdge, OfAKerfIsTheBorderOfWhatItLeavesInside) {
+  const TetMesh mesh = testing::jittered_block({36, 36, 5}, 0.62, 2);
+  KerfInput kerf;
+  kerf.surface = boundary_surface(mesh);
+  for (const Tet& tet : mesh.tets) {
+    const Corners c = testing::corners_of(mesh, tet);
+    if (std::abs(((c[0] + c[1] + c[2] + c[3]) / 4.0).head<2>().norm() - 14.0) <= 0.75) kerf.removed_tets.push_back(c);
+  }
+  const std::optional<Contour> edge = inner_edge_contour(kerf, {.layer_bottom_mm = 1.0, .min_coverage = 0.5});
+  ASSERT_TRUE(edge);
+  double radius = 0.0;
+  for (const Vec3& p : edge->points) radius += p.head<2>().norm() / static_cast<double>(edge->points.size());
+  EXPECT_NEAR(radius, 13.25, 0.1);
+  EXPECT_NEAR(edge->points.front().z(), kerf.surface.vertices.front().z(), 5.0);
+  EXPECT_GT(signed_area_mm2(*edge, kerf.approach), 0.0);
+  kerf.inside_mm = {17, 17, 0};
+  EXPECT_FALSE(inner_edge_contour(kerf, {})) << "outside the ring";
+  kerf.removed_tets.clear();
+  EXPECT_FALSE(inner_edge_contour(kerf, {}));
+}
+
 TEST(InnerEdge, RefusesFlagsThatDoNotMatch) {
   CutSurface surface = trough();
   surface.is_skin.pop_back();

@@ -35,6 +35,8 @@ struct CutState {
   std::vector<double> tear_dose;     ///< per tet: the part of `dose` that is the tool's work
   std::vector<Bond> bonds;           ///< ascending tet
   CutPoints points;                  ///< of a cut by points
+  MeshSplits splits;                 ///< of the model's mesh, by a cut by points: all lists above are of the split mesh
+  int split_step = 0;                ///< when it was looked at last what has come apart
   ToolPose tool;
   double time_s = 0.0;
   int step = 0;
@@ -46,6 +48,8 @@ inline void describe(Visitor& v, CutState& s) {
   v("tear_dose", s.tear_dose, "The part of it that is the tool's work.");
   v("bonds", s.bonds, "Ascending tet.");
   v("points", s.points, "Of a cut by points.");
+  v("splits", s.splits, "Of the mesh, by a cut by points.");
+  v("split_step", s.split_step, "When it was looked at last what has come apart.", kNotNegative);
   v("tool", s.tool, "Where it is.");
   v("time_s", s.time_s, "Since the tool began to plunge.");
   v("step", s.step, "Done so far.", kNotNegative);
@@ -82,8 +86,15 @@ class CutWorkspace {
   struct Data;
   [[nodiscard]] Data& data() { return *data_; }
 
+  /// The model on the split mesh of a cut: everything is made anew where the splits are others than those of the last
+  /// call. Valid until then. @param whole  the model that the workspace was made for.
+  const TissueModel& model_for(const TissueModel& whole, const MeshSplits& splits);
+
  private:
   std::unique_ptr<Data> data_;
+  MeshSplits splits_;
+  Points positions_;
+  Precision precision_;
 };
 
 /// Removes live tets as a full dose would, with fragments that then hang by no face; the record names them as cut in the state's step.
@@ -93,7 +104,7 @@ std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace&
 /// One quasi-static step of implicit Euler with one linear solve: the tool moves from state.tool to `next`, bonded tissue follows or slips,
 /// the dose of touched tets is integrated inside the step, and tets whose dose is full go, with fragments that then hang by no face.
 /// Without `next` the tool is out: bonds are dropped and the tissue takes a step of Newton's method towards rest.
-CutStepReport advance(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
+CutStepReport advance(const TissueModel& whole, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers);
 
 }  // namespace incise

@@ -12,7 +12,8 @@ namespace incise {
 /// What a cut by points (CutRule::Lattice) has done to the points of its lattice, tet by tet: first all points of the
 /// tet that the tool came near first. Which points a tet has follows from the mesh alone (PointLattice).
 struct CutPoints {
-  std::vector<TetId> tets;                ///< that the tool came near, in that order
+  std::vector<TetId> tets;                ///< of the whole mesh, that the tool came near, in that order
+  std::vector<TetId> tet;                 ///< per point: that of the split mesh with which it moves
   std::vector<double> dose;               ///< per point: parted from 1 on; goes on growing
   std::vector<std::uint8_t> is_held;      ///< per point: within the tool's reach
   std::vector<Vec3> offset_mm;            ///< of a held point from the tip when it came within reach, less its slip
@@ -21,6 +22,7 @@ struct CutPoints {
 };
 inline void describe(Visitor& v, CutPoints& p) {
   v("tets", p.tets, "That the tool came near, in that order.");
+  v("tet", p.tet, "Of the split mesh, with which a point moves.");
   v("dose", p.dose, "Of each point: parted from 1 on.");
   v("is_held", p.is_held, "Whether a point is within the tool's reach.");
   v("offset_mm", p.offset_mm, "Of a held point from the tip when it came within reach, less its slip.");

@@ -56,7 +56,7 @@ struct IncisionResult {
   KerfMeasures kerf;                  ///< body, layers, depth, drag and deep margin
   CutRecord record;
   CutState final_state;  ///< tool out, tissue still stretched
-  std::vector<CutFrame> frames;
+  std::vector<CutFrame> frames;  ///< on the split mesh of final_state
   std::vector<CutStepLog> steps;
   std::size_t solver_iterations = 0;   ///< sum over all steps
   bool is_at_rest = false;             ///< no vertex moved by more than 0.001 mm in the last step, the tool out

@@ -75,5 +75,9 @@ struct InnerEdgeSettings {
 /// @throws InvalidArgument for settings out of range, points that are not finite or flags that do not match.
 [[nodiscard]] std::optional<Contour> inner_edge_contour(const CutSurface& surface,
                                                         const InnerEdgeSettings& settings = {});
+/// The same edge in the tissue before the cut, from the kerf: the border of what it leaves inside. Where the plug's
+/// tissue lies after the cut, only the tissue knows. @param layer  in which the kerf is looked at.
+[[nodiscard]] std::optional<Contour> inner_edge_contour(const KerfInput& kerf, const KerfMidlineSettings& layer,
+                                                        const InnerEdgeSettings& settings = {});
 
 }  // namespace incise

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/workers.hpp>
+#include <incise/geometry/mesh_splits.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/mechanics/block_matrix.hpp>
 #include <incise/mechanics/constraints.hpp>
@@ -64,6 +65,18 @@ struct TissueModel {
 [[nodiscard]] TissueModel make_tissue_model(TetMesh mesh, const Material& material, std::vector<Constraint> constraints,
                                             const Vec3& gravity_mm_s2 = Vec3::Zero(),
                                             const MaterialField& field = {});
+
+/// The model on the split mesh: a copy has its original's material, constraints and prescribed displacement; mass, dead
+/// load and a support's stiffness are shared among the copies of a vertex by the tissue about each. Volumes are those
+/// of whole tets: TissueState::fill says how much of it a tet of the split mesh holds. O(M log M).
+/// @throws InvalidArgument for splits that are not of this model's mesh.
+[[nodiscard]] TissueModel split_model(const TissueModel& whole, const MeshSplits& splits);
+
+/// What a tet of the split mesh holds, mm³ at rest. @param split  the model on that mesh
+[[nodiscard]] inline double rest_volume_mm3(const TissueModel& split, const MeshSplits& splits, TetId tet) {
+  const std::size_t whole_count = split.mesh.tets.size() - splits.copies.size();
+  return share_of(splits, whole_count, tet) * split.volumes_mm3[tet.index()];
+}
 
 /// Against cutting, relative to the reference tissue (1).
 [[nodiscard]] inline double relative_toughness(const TissueModel& model, std::size_t tet) {

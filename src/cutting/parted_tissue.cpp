@@ -1,0 +1,65 @@
+#include "parted_tissue.hpp"
+
+#include <cmath>
+
+namespace incise {
+
+PartedTissue::PartedTissue(const TissueModel& whole, std::span<const Vec3> from, const CutState& state)
+    : whole_(whole),
+      from_(from),
+      state_(state),
+      split_(split_mesh(whole.mesh, state.splits)),
+      lattice_(lattice_of(whole, state.points)),
+      locator_(whole.mesh, from) {
+  for (std::size_t i = 0; i < lattice_.size(); ++i) {
+    const bool is_live = state.tissue.is_live[state.points.tet[i].index()] != 0;
+    if (state.points.dose[i] >= 1.0 || !is_live || lattice_.volume_mm3(i) == 0.0) continue;
+    near_node_[PointLattice::node_near(lattice_.rest_position(i))].push_back(i);
+  }
+}
+
+std::optional<std::size_t> PartedTissue::nearest_point(const Vec3& rest, double within_mm) const {
+  const PointLattice::Node middle = PointLattice::node_near(rest);
+  const int reach = static_cast<int>(std::ceil(within_mm / PointLattice::kSpacingMm)) + 1;
+  std::optional<std::size_t> nearest;
+  double least = within_mm;
+  for (int k = -reach; k <= reach; ++k)
+    for (int j = -reach; j <= reach; ++j)
+      for (int i = -reach; i <= reach; ++i) {
+        const auto found = near_node_.find({middle[0] + i, middle[1] + j, middle[2] + k});
+        if (found == near_node_.end()) continue;
+        for (const std::size_t point : found->second) {
+          const double apart = (lattice_.rest_position(point) - rest).norm();
+          if (apart > least) continue;
+          least = apart;
+          nearest = point;
+        }
+      }
+  return nearest;
+}
+
+std::optional<Vec3> PartedTissue::displacement(const Vec3& p, double tolerance_mm) const {
+  const std::optional<EmbeddedPoint> at = locator_.locate(p, tolerance_mm);
+  if (!at) return std::nullopt;
+  const auto [first, last] = lattice_.points_of(at->tet);
+  const Points& to = state_.tissue.positions;
+  if (first == last) {  // the tool did not come near
+    if (state_.tissue.is_live[at->tet.index()] == 0) return std::nullopt;
+    return position_of(*at, split_, to) - position_of(*at, whole_.mesh, from_);
+  }
+  const Vec3 rest = position_of(*at, whole_.mesh, whole_.mesh.vertices);
+  const std::optional<std::size_t> point = nearest_point(rest, tolerance_mm);
+  if (!point) return std::nullopt;
+  const TetId whole_tet = lattice_.tet_of(*point);
+  EmbeddedPoint there{whole_tet, {1.0, 0.0, 0.0, 0.0}};
+  const Vec3 offset = rest - vertex(whole_.mesh.vertices, whole_.mesh.tets[whole_tet.index()][0]);
+  for (std::size_t c = 1; c < 4; ++c) {
+    there.barycentric[c] = whole_.gradients[whole_tet.index()][c].dot(offset);
+    there.barycentric[0] -= there.barycentric[c];
+  }
+  const Vec3 before = position_of(there, whole_.mesh, from_);
+  there.tet = state_.points.tet[*point];
+  return position_of(there, split_, to) - before;
+}
+
+}  // namespace incise
