@@ -35,7 +35,8 @@ constexpr double kFullDose = 1.0 - 1e-9;  // a dose is a sum over steps: what ro
 
 struct CutWorkspace::Data {
   std::unique_ptr<const TissueModel> split;  // on the split mesh; null: the mesh is whole
-  std::vector<std::array<std::int32_t, 4>> neighbours;
+  FaceAdjacency neighbours;
+  std::vector<double> rest_volumes_mm3;   // that each tet holds
   std::vector<std::uint8_t> is_anchored;  // vertices that a constraint holds
   StepStiffness stiffness;
   TwoLevelPcg solver;
@@ -47,17 +48,19 @@ struct CutWorkspace::Data {
   std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they stay where they are
   std::size_t carved_then = 0;          // tets carved when that was found
   std::optional<PointLattice> lattice;  // of a cut by points
-  int lattice_step = -1;                // of the state that it is of
   std::vector<std::uint8_t> every_tet;  // 1 each
 
-  Data(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
-      : neighbours(face_neighbours(model.mesh)),
+  Data(const TissueModel& model, const MeshSplits& splits, std::span<const Vec3> positions, Precision precision)
+      : neighbours(face_adjacency(model.mesh, splits.copies)),
+        rest_volumes_mm3(model.volumes_mm3),
         is_anchored(model.mesh.vertices.size(), 0),
         stiffness(model),
         solver(model.pattern, positions, kVerticesPerAggregate, precision),
         right_side(model.mesh.vertices.size()),
-        increment(model.mesh.vertices.size()),
-        body_volume_mm3(std::accumulate(model.volumes_mm3.begin(), model.volumes_mm3.end(), 0.0)) {
+        increment(model.mesh.vertices.size()) {
+    for (std::size_t t = 0; t < rest_volumes_mm3.size() && !splits.copies.empty(); ++t)
+      rest_volumes_mm3[t] = rest_volume_mm3(model, splits, TetId(t));
+    body_volume_mm3 = std::accumulate(rest_volumes_mm3.begin(), rest_volumes_mm3.end(), 0.0);
     for (std::size_t v = 0; v < is_anchored.size(); ++v) {
       const auto& fixed = model.is_fixed[v];
       is_anchored[v] = fixed[0] || fixed[1] || fixed[2] ? 1 : 0;
@@ -66,7 +69,7 @@ struct CutWorkspace::Data {
 };
 
 CutWorkspace::CutWorkspace(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
-    : data_(std::make_unique<Data>(model, positions, precision)),
+    : data_(std::make_unique<Data>(model, MeshSplits{}, positions, precision)),
       positions_(positions.begin(), positions.end()),
       precision_(precision) {}
 CutWorkspace::~CutWorkspace() = default;
@@ -74,11 +77,11 @@ CutWorkspace::CutWorkspace(CutWorkspace&&) noexcept = default;
 
 const TissueModel& CutWorkspace::model_for(const TissueModel& whole, const MeshSplits& splits) {
   if (splits != splits_) {
-    data_.reset();  // it is large
     std::unique_ptr<const TissueModel> split;
-    if (!splits.vertices.empty()) split = std::make_unique<const TissueModel>(split_model(whole, splits));
+    if (splits != MeshSplits{}) split = std::make_unique<const TissueModel>(split_model(whole, splits));
     const TissueModel& model = split ? *split : whole;
-    data_ = std::make_unique<Data>(model, split_positions(positions_, splits), precision_);
+    data_.reset();  // it is large
+    data_ = std::make_unique<Data>(model, splits, split_positions(positions_, splits), precision_);
     data_->split = std::move(split);
     splits_ = splits;
   }
@@ -262,6 +265,7 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
                                 CutState& state, CutWorkspace::Data& scratch, const std::optional<ToolPose>& next,
                                 const PointHold* hold, double step_s, Workers& workers, CutStepReport& report) {
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
+  if (state.step != scratch.next_step) scratch.is_orphan.clear();  // the state may be an earlier one
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
   // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension
@@ -404,8 +408,8 @@ void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause c
 std::size_t remove_loose(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch,
                          const std::vector<TetId>& changed) {
   const std::vector<TetId> loose =
-      loose_fragments(model.mesh, model.volumes_mm3, scratch.neighbours, state.tissue.is_live, scratch.is_anchored,
-                      changed, kFragmentShare * scratch.body_volume_mm3);
+      loose_fragments(model.mesh, scratch.rest_volumes_mm3, scratch.neighbours, state.tissue.is_live,
+                      scratch.is_anchored, changed, kFragmentShare * scratch.body_volume_mm3);
   for (const TetId tet : loose) remove(model, state, tet, RemovalCause::LooseFragment);
   std::erase_if(state.bonds, [&](const Bond& bond) { return state.tissue.is_live[bond.tet.index()] == 0; });
   return loose.size();
@@ -464,12 +468,11 @@ std::vector<TetId> tets_near(const TissueModel& model, std::span<const std::uint
   return near;
 }
 
-/// The points of the state. One that is not the next of the last one may have met other tets.
+/// The points of the state.
 PointLattice& lattice_for(const TissueModel& model, const CutState& state, CutWorkspace::Data& scratch) {
-  if (!scratch.lattice || state.step != scratch.lattice_step) {
+  if (!scratch.lattice || !scratch.lattice->is_of(state.points)) {
     scratch.lattice.emplace(model, state.points, state.splits);
     scratch.every_tet.assign(model.mesh.tets.size(), 1);
-    scratch.lattice_step = state.step;
   }
   return *scratch.lattice;
 }
@@ -496,8 +499,15 @@ std::size_t split_mesh_of(const TissueModel& whole, CutState& state, CutWorkspac
   CutWorkspace::Data& scratch = workspace.data();
   scratch.lattice = std::move(lattice);
   scratch.every_tet.assign(split.mesh.tets.size(), 1);
-  scratch.lattice_step = state.step;
-  return remove_loose(split, state, workspace.data(), touched);
+  const std::size_t loose = remove_loose(split, state, workspace.data(), touched);
+  // Fragments of one step stand in order, whichever change cut them off.
+  std::vector<Removal>& removals = state.record.removals;
+  auto first = removals.end();
+  while (first != removals.begin() && std::prev(first)->step == state.step &&
+         std::prev(first)->cause == RemovalCause::LooseFragment)
+    --first;
+  std::sort(first, removals.end(), [](const Removal& a, const Removal& b) { return a.tet < b.tet; });
+  return loose;
 }
 
 /// A step of a cut by points, the tool in.
@@ -513,7 +523,7 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   move_tissue(model, settings, tool, state, scratch, next, &hold, step_s, workers, report);
   if (report.is_finite) end_viscous_step(model, state.tissue, settings.tissue_s(step_s), workers);
   state.time_s += step_s;
-  scratch.lattice_step = ++state.step;
+  ++state.step;
   if (!report.is_finite) return report;
   const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, next);
   for (std::size_t i = 0; i < state.points.is_held.size(); ++i) {

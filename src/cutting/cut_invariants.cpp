@@ -1,5 +1,3 @@
-#include "point_lattice.hpp"
-
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/cutting/cut_invariants.hpp>
@@ -69,7 +67,7 @@ std::vector<std::uint8_t> check_record(const TissueModel& model, const CutState&
     violations.add(is_ahead, ahead, "record: entry {} is of step {}, {} s; the cut is at step {}, {} s", i, r.step,
                    r.time_s, state.step, state.time_s);
     const double held_mm3 = rest_volume_mm3(model, state.splits, r.tet);
-    violations.add(std::abs(r.rest_volume_mm3 - held_mm3) > 1e-12 * held_mm3, volume,
+    violations.add(!(std::abs(r.rest_volume_mm3 - held_mm3) <= 1e-12 * held_mm3), volume,
                    "record: tet {} has a rest volume of {} mm³, recorded are {} mm³", r.tet.value, held_mm3,
                    r.rest_volume_mm3);
   }
@@ -113,15 +111,12 @@ void check_positions(const TissueModel& model, const CutState& state, Violations
   }
 }
 
-void check_points(const TissueModel& model, const CutState& state, Violations& violations) {
-  bool size = false, dosed = false, filled = false;
+void check_points(const TissueModel& whole, const CutState& state, Violations& violations) {
+  bool unsound = false, dosed = false, filled = false;
   const CutPoints& p = state.points;
-  const PointLattice lattice(model, p.tets);
-  for (const std::size_t found :
-       {p.tet.size(), p.dose.size(), p.is_held.size(), p.offset_mm.size(), p.parted_step.size(), p.parted_mm.size()}) {
-    violations.add(found != lattice.size(), size, "points: expected {} of everything, found {}", lattice.size(), found);
-  }
-  if (size) return;
+  const std::string problem = find_problem(whole, state);
+  violations.add(!problem.empty(), unsound, "{}", problem);
+  if (unsound) return;
   for (std::size_t i = 0; i < p.dose.size(); ++i) {
     const bool is_sound = std::isfinite(p.dose[i]) && p.dose[i] >= 0.0 && (p.dose[i] >= 1.0) == (p.parted_step[i] >= 0);
     violations.add(!is_sound, dosed, "points: point {} has a dose of {} and parted in step {}", i, p.dose[i],
@@ -152,7 +147,7 @@ void check_bonds(const TissueModel& model, const CutState& state, Violations& vi
 
 std::vector<std::string> cut_invariants(const TissueModel& whole, const CutState& state) {
   std::optional<TissueModel> split;
-  if (!state.splits.vertices.empty()) split = split_model(whole, state.splits);
+  if (state.splits != MeshSplits{}) split = split_model(whole, state.splits);
   const TissueModel& model = split ? *split : whole;
   require_fitting(model, state);
   Violations violations;
@@ -160,7 +155,7 @@ std::vector<std::string> cut_invariants(const TissueModel& whole, const CutState
   check_balance(model, state, times_removed, violations);
   check_positions(model, state, violations);
   check_bonds(model, state, violations);
-  check_points(model, state, violations);
+  check_points(whole, state, violations);
   return violations.take();
 }
 

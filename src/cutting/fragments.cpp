@@ -1,13 +1,59 @@
 #include "fragments.hpp"
 
 #include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
 
 namespace incise {
 
+FaceAdjacency face_adjacency(const TetMesh& mesh, std::span<const SplitTet> copies) {
+  const std::size_t count = mesh.tets.size(), whole = count - copies.size();
+  FaceAdjacency adjacency{std::vector<std::int32_t>(count + 1, 0), {}};
+  if (copies.empty()) {
+    const std::vector<std::array<std::int32_t, 4>> neighbours = face_neighbours(mesh);
+    for (std::size_t t = 0; t < count; ++t) {
+      std::ranges::copy_if(neighbours[t], std::back_inserter(adjacency.tets), [](std::int32_t n) { return n >= 0; });
+      adjacency.start[t + 1] = static_cast<std::int32_t>(adjacency.tets.size());
+    }
+    return adjacency;
+  }
+  std::vector<std::pair<Triangle, std::int32_t>> faces;  // sorted vertices, tet
+  faces.reserve(4 * count);
+  for (std::size_t t = 0; t < count; ++t) {
+    for (int f = 0; f < 4; ++f) {
+      Triangle face = face_of(mesh.tets[t], f);
+      std::ranges::sort(face);
+      faces.emplace_back(face, static_cast<std::int32_t>(t));
+    }
+  }
+  std::ranges::sort(faces);
+  const auto whole_of = [&](std::int32_t t) {
+    const auto i = static_cast<std::size_t>(t);
+    return i < whole ? t : copies[i - whole].whole.value;
+  };
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;  // both ways
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    for (std::size_t j = i + 1; j < faces.size() && faces[j].first == faces[i].first; ++j) {
+      const std::int32_t a = faces[i].second, b = faces[j].second;
+      if (whole_of(a) == whole_of(b)) continue;
+      pairs.emplace_back(a, b);
+      pairs.emplace_back(b, a);
+    }
+  }
+  std::ranges::sort(pairs);
+  for (const auto& [tet, neighbour] : pairs) {
+    ++adjacency.start[static_cast<std::size_t>(tet) + 1];
+    adjacency.tets.push_back(neighbour);
+  }
+  for (std::size_t t = 0; t < count; ++t) adjacency.start[t + 1] += adjacency.start[t];
+  return adjacency;
+}
+
 std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> volumes_mm3,
-                                   std::span<const std::array<std::int32_t, 4>> neighbours,
-                                   std::span<const std::uint8_t> is_live, std::span<const std::uint8_t> is_anchored,
-                                   std::span<const TetId> changed, double least_mm3) {
+                                   const FaceAdjacency& neighbours, std::span<const std::uint8_t> is_live,
+                                   std::span<const std::uint8_t> is_anchored, std::span<const TetId> changed,
+                                   double least_mm3) {
   enum class Part : std::uint8_t { Unknown, Visited, Held };
   std::vector<Part> parts(is_live.size(), Part::Unknown);
   std::vector<std::int32_t> part;
@@ -25,8 +71,8 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
       volume += volumes_mm3[tet];
       is_held = volume >= least_mm3;
       for (const VertexId v : mesh.tets[tet]) is_held = is_held || is_anchored[v.index()] != 0;
-      for (const std::int32_t neighbour : neighbours[tet]) {
-        if (neighbour < 0 || is_live[static_cast<std::size_t>(neighbour)] == 0) continue;
+      for (const std::int32_t neighbour : neighbours.of(tet)) {
+        if (is_live[static_cast<std::size_t>(neighbour)] == 0) continue;
         Part& known = parts[static_cast<std::size_t>(neighbour)];
         is_held = is_held || known == Part::Held;
         if (known != Part::Unknown) continue;
@@ -40,13 +86,12 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
     }
   };
   const auto search_from = [&](std::int32_t seed) {
-    if (seed >= 0 && is_live[static_cast<std::size_t>(seed)] != 0 &&
-        parts[static_cast<std::size_t>(seed)] == Part::Unknown)
+    if (is_live[static_cast<std::size_t>(seed)] != 0 && parts[static_cast<std::size_t>(seed)] == Part::Unknown)
       search(seed);
   };
   for (const TetId tet : changed) {
     search_from(tet.value);
-    for (const std::int32_t seed : neighbours[tet.index()]) search_from(seed);
+    for (const std::int32_t seed : neighbours.of(tet.index())) search_from(seed);
   }
   std::sort(loose.begin(), loose.end());
   return loose;

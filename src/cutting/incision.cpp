@@ -85,6 +85,8 @@ void require_same_mesh(const TissueModel& model, const CutState& state) {
   INCISE_REQUIRE(state.tissue.positions.size() == vertices && state.dose.size() == tets,
                  fmt::format("expected the progress of a cut of {} vertices and {} tets, found {} and {}", vertices,
                              tets, state.tissue.positions.size(), state.dose.size()));
+  const std::string problem = find_problem(model, state);
+  INCISE_REQUIRE(problem.empty(), problem);
 }
 
 Precision precision_for(const TissueModel& model, const CutSettings& cut) {
@@ -270,8 +272,14 @@ std::size_t count_inverted(const TetMesh& mesh, const TissueState& tissue) {
 void complete(CutFrame& frame, const TetMesh& whole, const MeshSplits& splits) {
   for (std::size_t v = frame.positions.size() - whole.vertices.size(); v < splits.vertices.size(); ++v)
     frame.positions.push_back(Vec3(frame.positions[splits.vertices[v].index()]));
+  // A tet that is split later had a live part then.
+  std::vector<std::uint8_t> has_live(frame.is_live.begin(),
+                                     frame.is_live.begin() + static_cast<std::ptrdiff_t>(whole.tets.size()));
+  for (std::size_t t = whole.tets.size(); t < frame.is_live.size(); ++t) {
+    if (frame.is_live[t] != 0) has_live[splits.copies[t - whole.tets.size()].whole.index()] = 1;
+  }
   for (std::size_t t = frame.is_live.size() - whole.tets.size(); t < splits.copies.size(); ++t)
-    frame.is_live.push_back(std::uint8_t(frame.is_live[splits.copies[t].whole.index()]));
+    frame.is_live.push_back(has_live[splits.copies[t].whole.index()]);
 }
 
 }  // namespace

@@ -95,11 +95,8 @@ void measure_midline(const KerfInput& kerf, const KerfMidlineSettings& midline_s
 void measure_final_edges(const KerfInput& kerf, const PartedTissue& tissue, const ToolPath& path,
                          IncisionResult& result) {
   if (path.tumor_edge.points.size() < 3) return;
-  result.final_tumor_edge = carried(path.tumor_edge, [&](const Vec3& p, double tolerance_mm) -> std::optional<Vec3> {
-    const std::optional<Vec3> moved = tissue.displacement(p, tolerance_mm);
-    if (!moved) return std::nullopt;
-    return p + *moved;
-  });
+  result.final_tumor_edge =
+      carried(path.tumor_edge, [&](const Vec3& p, double mm) { return tissue.place_after(p, mm); });
   if (!path.is_closed) return;
   result.kerf.inner_edge_reference = inner_edge_contour(kerf, kEdgeLayer);
   if (!result.kerf.inner_edge_reference) return;

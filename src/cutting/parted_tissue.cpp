@@ -1,6 +1,7 @@
 #include "parted_tissue.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace incise {
 
@@ -36,6 +37,22 @@ std::optional<std::size_t> PartedTissue::nearest_point(const Vec3& rest, double 
         }
       }
   return nearest;
+}
+
+std::optional<Vec3> PartedTissue::place_after(const Vec3& p, double tolerance_mm) const {
+  if (const std::optional<Vec3> moved = displacement(p, tolerance_mm)) return p + *moved;
+  std::optional<EmbeddedPoint> at = locator_.locate(p, tolerance_mm);
+  if (!at) return std::nullopt;
+  const Vec3 rest = position_of(*at, whole_.mesh, whole_.mesh.vertices);
+  const auto [first, last] = lattice_.points_of(at->tet);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = first; i < last; ++i) {
+    const double apart = (lattice_.rest_position(i) - rest).norm();
+    if (apart >= least) continue;
+    least = apart;
+    at->tet = state_.points.tet[i];
+  }
+  return position_of(*at, split_, state_.tissue.positions);
 }
 
 std::optional<Vec3> PartedTissue::displacement(const Vec3& p, double tolerance_mm) const {

@@ -23,6 +23,10 @@ class PartedTissue {
   /// tool came near, from tissue that is not parted. @returns nullopt where there is none.
   [[nodiscard]] std::optional<Vec3> displacement(const Vec3& p, double tolerance_mm) const;
 
+  /// Where a place lies then; one whose tissue is parted, with its nearest point. @returns nullopt outside the
+  /// body.
+  [[nodiscard]] std::optional<Vec3> place_after(const Vec3& p, double tolerance_mm) const;
+
  private:
   [[nodiscard]] std::optional<std::size_t> nearest_point(const Vec3& rest, double within_mm) const;
 

@@ -36,7 +36,7 @@ struct Part {
 struct Star {
   TetId tet;
   std::size_t first_part = 0, last_part = 0;  // [first, last)
-  bool is_cut = false;                        // a point of it is parted
+  bool is_cut = false;                        // a point of it, or of another part of its whole tet, is parted
   bool has_nodes = true;                      // its points are nodes of the lattice
 };
 
@@ -60,13 +60,12 @@ class Splitter {
   [[nodiscard]] bool is_parted(std::size_t point) const { return state_.points.dose[point] >= 1.0; }
   [[nodiscard]] const Tet& corners_of_star(std::size_t s) const { return model_.mesh.tets[stars_[s].tet.index()]; }
 
-  /// The live tets with points that parted since it was looked at last, and all that share a vertex with one.
+  /// The live tets that share a vertex with one in which points parted since it was looked at last, removed ones among
+  /// these.
   void list_stars() {
     std::set<TetId> changed;
     for (std::size_t i = 0; i < state_.points.parted_step.size(); ++i) {
-      const TetId tet = state_.points.tet[i];
-      if (state_.points.parted_step[i] > state_.split_step && state_.tissue.is_live[tet.index()] != 0)
-        changed.insert(tet);
+      if (state_.points.parted_step[i] > state_.split_step) changed.insert(state_.points.tet[i]);
     }
     for (const TetId tet : changed) {
       for (const VertexId v : model_.mesh.tets[tet.index()]) vertices_.insert(v);
@@ -90,12 +89,10 @@ class Splitter {
       Star& star = stars_[s];
       const auto [begin, end] = lattice_.points_of(star.tet);
       for (std::size_t i = begin; i < end; ++i) {
-        if (lattice_.tet_of(i) != star.tet || lattice_.volume_mm3(i) == 0.0) continue;
+        if (lattice_.volume_mm3(i) == 0.0) continue;
         star.has_nodes = lattice_.node_of(i).has_value();
-        if (is_parted(i)) {
-          star.is_cut = true;
-          continue;
-        }
+        star.is_cut = star.is_cut || is_parted(i);
+        if (lattice_.tet_of(i) != star.tet || is_parted(i)) continue;
         if (star.has_nodes) at_node_[*lattice_.node_of(i)] = left_.size();
         left_.push_back(i);
         star_of.push_back(s);
@@ -155,13 +152,14 @@ class Splitter {
         if (part_of_[a] != part_of_[b]) linked.insert(std::minmax(part_of_[a], part_of_[b]));
       });
     }
-    std::map<Triangle, std::size_t> open;  // sorted vertices: the star on one side
+    std::map<Triangle, std::vector<std::size_t>> at_face;  // by sorted vertices; several parts may lie on one side
     for (std::size_t s = 0; s < stars_.size(); ++s) {
       for (int f = 0; f < 4; ++f) {
         Triangle face = face_of(corners_of_star(s), f);
         std::ranges::sort(face);
-        const auto [at, is_first] = open.try_emplace(face, s);
-        if (!is_first) join(face, at->second, s, linked, corners);
+        std::vector<std::size_t>& others = at_face[face];
+        for (const std::size_t t : others) join(face, t, s, linked, corners);
+        others.push_back(s);
       }
     }
   }

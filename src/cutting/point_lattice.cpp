@@ -1,6 +1,7 @@
 #include "point_lattice.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/cutting/carving.hpp>
 
 #include <fmt/format.h>
 
@@ -69,6 +70,7 @@ void PointLattice::add(TetId tet) {
   const bool has_own = nodes < kLeastNodes;
   volumes_.resize(first + nodes, has_own ? 0.0 : volume / static_cast<double>(nodes));
   volumes_.resize(shares_.size(), 0.25 * volume);
+  added_.push_back(tet);
   first_[tet.index()] = static_cast<std::int64_t>(first);
   count_[tet.index()] = static_cast<std::int32_t>(shares_.size() - first);
 }
@@ -100,7 +102,29 @@ void PointLattice::follow(const TissueModel& split, const CutPoints& points, con
     first_[whole + i] = first_[splits.copies[i].whole.index()];
     count_[whole + i] = count_[splits.copies[i].whole.index()];
   }
+  require_own_tets(points, splits);
   tets_ = points.tet;
+}
+
+void PointLattice::require_own_tets(const CutPoints& points, const MeshSplits& splits) const {
+  const std::size_t count = first_.size(), whole = count - splits.copies.size();
+  const auto whole_of = [&](TetId t) { return t.index() < whole ? t : splits.copies[t.index() - whole].whole; };
+  for (std::size_t i = 0; i < tets_.size(); ++i) {
+    const TetId tet = points.tet[i];
+    const bool is_own = tet.is_valid() && tet.index() < count && whole_of(tet) == whole_of(tets_[i]);
+    INCISE_REQUIRE(is_own, fmt::format("points: expected point {} in its tet or a copy of it, found {}", i, tet.value));
+  }
+}
+
+std::string find_problem(const TissueModel& whole, const CutState& state) {
+  if (state.points.tets.empty() && state.splits == MeshSplits{}) return {};
+  try {
+    const TissueModel split = split_model(whole, state.splits);
+    static_cast<void>(PointLattice(split, state.points, state.splits));
+  } catch (const InvalidArgument& error) {
+    return error.text();
+  }
+  return {};
 }
 
 PointLattice lattice_of(const TissueModel& whole, const CutPoints& points) {

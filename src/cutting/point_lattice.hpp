@@ -31,6 +31,8 @@ class PointLattice {
   void add(TetId tet);
 
   [[nodiscard]] std::size_t size() const { return shares_.size(); }
+  /// Whether a cut has met these points, and each moves with the tet that it does here.
+  [[nodiscard]] bool is_of(const CutPoints& points) const { return added_ == points.tets && tets_ == points.tet; }
   /// The points of a tet are those of [first, second) whose tet_of it is; the others are of its copies. Empty where it
   /// was not added.
   [[nodiscard]] std::pair<std::size_t, std::size_t> points_of(TetId tet) const;
@@ -50,7 +52,11 @@ class PointLattice {
   [[nodiscard]] static Node node_near(const Vec3& rest);
 
  private:
+  /// @throws InvalidArgument for a point that is given to a tet that it does not lie in.
+  void require_own_tets(const CutPoints& points, const MeshSplits& splits) const;
+
   const TissueModel* model_;
+  std::vector<TetId> added_;         // in that order
   std::vector<std::int64_t> first_;  // per tet: its first point; -1: not added
   std::vector<std::int32_t> count_;  // per tet
   std::vector<std::array<double, 4>> shares_;

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 namespace incise {
 namespace {
@@ -18,10 +20,14 @@ void require_fitting(const TetMesh& whole, const MeshSplits& splits) {
     require(v.is_valid() && v.index() < vertices + i, "vertices", v.value, vertices + i);
   }
   const std::vector<VertexId> whole_of = whole_vertices(vertices, splits);
+  std::map<TetId, double> shares;
   for (const auto* list : {&splits.copies, &splits.changed}) {
     for (const SplitTet& tet : *list) {
       require(tet.whole.is_valid() && tet.whole.index() < whole.tets.size(), "tets", tet.whole.value,
               whole.tets.size());
+      INCISE_REQUIRE(tet.share >= 0.0 && tet.share <= 1.0,
+                     fmt::format("splits: expected a share of tet {} in [0, 1], found {}", tet.whole.value, tet.share));
+      shares[tet.whole] += tet.share;
       for (std::size_t c = 0; c < 4; ++c) {
         const VertexId v = tet.corners[c];
         const std::size_t count = vertices + splits.vertices.size();
@@ -30,6 +36,13 @@ void require_fitting(const TetMesh& whole, const MeshSplits& splits) {
       }
     }
   }
+  const auto is_out_of_order = [](const SplitTet& a, const SplitTet& b) { return !(a.whole < b.whole); };
+  INCISE_REQUIRE(std::ranges::adjacent_find(splits.changed, is_out_of_order) == splits.changed.end(),
+                 "splits: expected changed tets in ascending order, each once");
+  constexpr double kRounding = 1e-9;
+  for (const auto& [tet, sum] : shares)
+    INCISE_REQUIRE(std::abs(sum - 1.0) <= kRounding,
+                   fmt::format("splits: expected shares of tet {} that add up to 1, found {}", tet.value, sum));
 }
 
 void add_copies(std::map<std::string, DataArray>& data, std::span<const std::size_t> originals) {

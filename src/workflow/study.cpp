@@ -36,20 +36,30 @@ void describe(Visitor& v, Timed<T>& t) {
 
 // An entry that is whole may still have been written by someone else: nothing in it may point outside the mesh.
 
-bool fits(const TissueModel& model, const TissueState& state) {
-  const ViscousMemory memory = rest_state(model).memory;
-  return state.positions.size() == model.mesh.vertices.size() && state.rotations.size() == model.mesh.tets.size() &&
-         state.is_live.size() == model.mesh.tets.size() &&
-         (state.fill.empty() || state.fill.size() == model.mesh.tets.size()) &&
-         state.memory.strains.size() == memory.strains.size() &&
-         state.memory.branches.size() == memory.branches.size() &&
+/// How many vertices and tets the lists of a state have: those of the split mesh of a cut by points.
+struct Counts {
+  std::size_t vertices, tets;
+};
+Counts counts_of(const TissueModel& model, const MeshSplits& splits = {}) {
+  return {model.mesh.vertices.size() + splits.vertices.size(), model.mesh.tets.size() + splits.copies.size()};
+}
+
+bool fits(const TissueModel& model, const Counts& counts, const TissueState& state) {
+  const std::size_t strains = is_viscous(model.material) ? counts.tets : 0;
+  return state.positions.size() == counts.vertices && state.rotations.size() == counts.tets &&
+         state.is_live.size() == counts.tets && (state.fill.empty() || state.fill.size() == counts.tets) &&
+         state.memory.strains.size() == strains &&
+         state.memory.branches.size() == strains * viscous_terms(model.material).value_or(0) &&
          std::ranges::all_of(state.positions, [](const Vec3& p) { return p.allFinite(); });
+}
+bool fits(const TissueModel& model, const TissueState& state) {
+  return fits(model, counts_of(model), state);
 }
 
 template <class Item>
-bool are_of(const TissueModel& model, const std::vector<Item>& items) {
+bool are_of(const Counts& counts, const std::vector<Item>& items) {
   return std::ranges::all_of(
-      items, [&model](const Item& item) { return item.tet.is_valid() && item.tet.index() < model.mesh.tets.size(); });
+      items, [&counts](const Item& item) { return item.tet.is_valid() && item.tet.index() < counts.tets; });
 }
 
 /// Whether all corners of tets or triangles are vertices.
@@ -61,26 +71,33 @@ bool are_of(const Points& vertices, const std::vector<Cell>& cells) {
 }
 
 bool fits(const TissueModel& model, const CutState& state) {
-  return fits(model, state.tissue) && state.dose.size() == model.mesh.tets.size() &&
-         state.tear_dose.size() == model.mesh.tets.size() && are_of(model, state.bonds) &&
-         are_of(model, state.record.removals);
+  const Counts counts = counts_of(model, state.splits);
+  return fits(model, counts, state.tissue) && state.dose.size() == counts.tets &&
+         state.tear_dose.size() == counts.tets && are_of(counts, state.bonds) &&
+         are_of(counts, state.record.removals) && find_problem(model, state).empty();
 }
 
-bool fits(const TissueModel& model, const std::vector<CutFrame>& frames) {
-  return std::ranges::all_of(frames, [&model](const CutFrame& frame) {
-    return frame.positions.size() == model.mesh.vertices.size() && frame.is_live.size() == model.mesh.tets.size();
+bool fits(const Counts& counts, const std::vector<CutFrame>& frames) {
+  return std::ranges::all_of(frames, [&counts](const CutFrame& frame) {
+    return frame.positions.size() == counts.vertices && frame.is_live.size() == counts.tets;
   });
 }
 
+/// Frames of a cut under way have what had come apart when they were kept.
 bool fits(const TissueModel& model, const IncisionProgress& progress) {
-  return fits(model, progress.state) && fits(model, progress.frames);
+  const Counts least = counts_of(model), most = counts_of(model, progress.state.splits);
+  return fits(model, progress.state) && std::ranges::all_of(progress.frames, [&](const CutFrame& frame) {
+           const std::size_t vertices = frame.positions.size(), tets = frame.is_live.size();
+           return vertices >= least.vertices && vertices <= most.vertices && tets >= least.tets && tets <= most.tets;
+         });
 }
 
 bool fits(const TissueModel& model, const IncisionResult& result) {
   const TriMesh& body = result.kerf.body.surface;
   const DepthReached& depth = result.kerf.depth;
   const std::size_t places = depth.profile.course.points.size();
-  return fits(model, result.final_state) && fits(model, result.frames) && are_of(model, result.record.removals) &&
+  const Counts counts = counts_of(model, result.final_state.splits);
+  return fits(model, result.final_state) && fits(counts, result.frames) && are_of(counts, result.record.removals) &&
          are_of(body.vertices, body.triangles) && depth.profile.arclength_mm.size() == places &&
          depth.profile.depth_mm.size() == places && depth.planned_at_mm.size() == places;
 }

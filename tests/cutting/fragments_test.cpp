@@ -25,7 +25,7 @@ struct CutBar {
     }
   }
   [[nodiscard]] std::vector<TetId> loose(double least_mm3) const {
-    return loose_fragments(kBar, volumes, face_neighbours(kBar), is_live, is_anchored, removed, least_mm3);
+    return loose_fragments(kBar, volumes, face_adjacency(kBar), is_live, is_anchored, removed, least_mm3);
   }
 };
 
@@ -57,6 +57,19 @@ TEST(LooseFragments, APartThatHasChangedIsLookedAtItself) {
   bar.remove_cell(2);
   bar.removed = {TetId(20)};  // of the fourth cell, live
   EXPECT_EQ(bar.loose(1.5).size(), 6U);
+}
+
+TEST(FaceAdjacency, PartsOfOneTetAreNeighboursOfTheTetAcrossTheFaceNotOfEachOther) {
+  TetMesh mesh;
+  const auto tet = [](std::size_t a) { return Tet{VertexId(a), VertexId(0), VertexId(1), VertexId(2)}; };
+  mesh.vertices.resize(6, Vec3::Zero());
+  mesh.tets = {tet(3), tet(4), tet(5)};  // the last is a copy of the first with a corner of its own
+  const SplitTet copy{TetId(0), mesh.tets[2], 0.5};
+  const FaceAdjacency adjacency = face_adjacency(mesh, std::span(&copy, 1));
+  const auto list = [&](std::size_t t) { return std::vector(adjacency.of(t).begin(), adjacency.of(t).end()); };
+  EXPECT_EQ(list(0), std::vector{1});
+  EXPECT_EQ(list(1), (std::vector{0, 2}));
+  EXPECT_EQ(list(2), std::vector{1});
 }
 
 TEST(LooseFragments, AnAnchoredPartStays) {

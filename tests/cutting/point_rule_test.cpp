@@ -2,9 +2,11 @@
 
 #include "cutting/ring_in_a_block.hpp"
 #include "cutting/same_incision.hpp"
+#include "fragments.hpp"
 #include "parted_tissue.hpp"
 #include "point_kerf.hpp"
 
+#include <incise/core/random.hpp>
 #include <incise/cutting/cut_invariants.hpp>
 #include <incise/cutting/incision_progress.hpp>
 #include <incise/mechanics/statics.hpp>
@@ -13,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace incise {
@@ -131,6 +134,86 @@ TEST_F(StraightPass, AWorkspaceMayBeTakenBackToAnEarlierState) {
   static_cast<void>(advance(model, settings_, Needle{}, alone, fresh, at(1.26), 0.02, workers));
   EXPECT_THAT(cut_invariants(model, early), ::testing::IsEmpty());
   EXPECT_EQ(early.points.dose, alone.points.dose);
+  // To another cut that has done as many steps.
+  CutState other = begin_cut(model, rest_state(model), at(6.0));
+  CutState other_alone = other;
+  CutWorkspace another(model, model.mesh.vertices);
+  for (const double y : {6.26, 6.52}) {
+    static_cast<void>(advance(model, settings_, Needle{}, other, workspace, at(y), 0.02, workers));
+    static_cast<void>(advance(model, settings_, Needle{}, other_alone, another, at(y), 0.02, workers));
+  }
+  EXPECT_THAT(cut_invariants(model, other), ::testing::IsEmpty());
+  EXPECT_EQ(other.points.dose, other_alone.points.dose);
+}
+
+TEST_F(StraightPass, WhatHangsTogetherSharesItsFaceAndNothingElseIsJoined) {
+  settings_.dullness = 4.0;
+  for (const double edge_mm : {0.6, 1.0, 1.5}) {
+    SCOPED_TRACE(edge_mm);
+    const auto cells = [edge_mm](double mm) { return static_cast<int>(std::lround(mm / edge_mm)); };
+    TetMesh mesh = make_block({12, 10, 6}, {cells(12), cells(10), cells(6)});
+    Random random(7);
+    for (Vec3& p : mesh.vertices) {  // no face lies along the way
+      const bool is_inner = p.x() > 0.1 && p.x() < 11.9 && p.y() > 0.1 && p.y() < 9.9 && p.z() > 0.1 && p.z() < 5.9;
+      for (int a = 0; a < 3 && is_inner; ++a) p[a] += random.uniform(-0.2, 0.2) * edge_mm;
+    }
+    const TissueModel model = make_tissue_model(std::move(mesh), Material{}, kHeldWhole);
+    pass(model, -1.0, 7.0);  // from outside to its middle
+    Workers workers(2);
+    CutWorkspace workspace(model, model.mesh.vertices);
+    static_cast<void>(advance(model, settings_, Needle{}, state_, workspace, std::nullopt, 0.02, workers));
+    ASSERT_FALSE(state_.splits.vertices.empty());
+
+    const TetMesh split = split_mesh(model.mesh, state_.splits);
+    const PointLattice lattice = lattice_of(model, state_.points);
+    std::map<PointLattice::Node, std::size_t> left;
+    for (std::size_t i = 0; i < lattice.size(); ++i) {
+      if (lattice.node_of(i) && lattice.volume_mm3(i) > 0.0 && state_.points.dose[i] < 1.0)
+        left[*lattice.node_of(i)] = i;
+    }
+    const auto shared = [](const Tet& a, const Tet& b) {
+      return std::ranges::count_if(a, [&b](VertexId v) { return std::ranges::find(b, v) != b.end(); });
+    };
+    std::size_t pairs = 0, broken = 0;
+    for (const auto& [node, i] : left) {
+      for (int axis = 0; axis < 3; ++axis) {
+        PointLattice::Node next = node;
+        ++next[static_cast<std::size_t>(axis)];
+        if (!left.contains(next)) continue;
+        const std::size_t k = left.at(next);
+        const Tet& a = model.mesh.tets[lattice.tet_of(i).index()];
+        const Tet& b = model.mesh.tets[lattice.tet_of(k).index()];
+        if (lattice.tet_of(i) == lattice.tet_of(k) || shared(a, b) != 3) continue;
+        ++pairs;
+        broken +=
+            shared(split.tets[state_.points.tet[i].index()], split.tets[state_.points.tet[k].index()]) < 3 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(pairs, 1000U);
+    EXPECT_EQ(broken, 0U);
+
+    const FaceAdjacency adjacency = face_adjacency(split, state_.splits.copies);
+    std::vector<std::vector<std::size_t>> around(split.vertices.size());
+    for (std::size_t t = 0; t < split.tets.size(); ++t) {
+      for (const VertexId v : split.tets[t]) {
+        if (state_.tissue.is_live[t] != 0) around[v.index()].push_back(t);
+      }
+    }
+    std::size_t hinges = 0;
+    for (const std::vector<std::size_t>& tets : around) {
+      std::set<std::size_t> unseen(tets.begin(), tets.end());
+      std::vector<std::size_t> group;
+      const auto see = [&](std::size_t t) {
+        if (unseen.erase(t) > 0) group.push_back(t);
+      };
+      if (!tets.empty()) see(tets.front());
+      for (std::size_t next = 0; next < group.size(); ++next) {
+        for (const std::int32_t n : adjacency.of(group[next])) see(static_cast<std::size_t>(n));
+      }
+      hinges += unseen.empty() ? 0 : 1;
+    }
+    EXPECT_EQ(hinges, 0U) << "vertices that alone join tissue";
+  }
 }
 
 TEST_F(StraightPass, PullsNoHarderThanItsSlipWhateverTheStep) {
@@ -187,6 +270,12 @@ TEST_F(StraightPass, InvariantsFindPointsThatCannotBe) {
   state_ = sound;
   state_.points.dose.pop_back();
   EXPECT_EQ(cut_invariants(model, state_).size(), 1U);
+  state_ = sound;
+  for (const TetId elsewhere :
+       {TetId(), TetId(100000000), TetId((sound.points.tet[0].index() + 1) % model.mesh.tets.size())}) {
+    state_.points.tet[0] = elsewhere;
+    EXPECT_EQ(cut_invariants(model, state_).size(), 1U) << elsewhere.value;
+  }
 }
 
 TEST_F(StraightPass, SettingsOfTheOtherRuleAreRefused) {

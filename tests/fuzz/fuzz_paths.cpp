@@ -99,6 +99,16 @@ FuzzCut random_cut(std::uint64_t seed) {
   c.overlap_mm = random.uniform(0.0, 10.0);
   if (random.below(3) == 0) c.slip_mm = random.uniform(0.05, 2.0);
   if (random.below(3) == 0) c.tear_energy_kpa = random.uniform(0.5, 100.0);
+  if (random.below(3) == 0) {
+    cut.kind += ", by points";
+    c.rule = CutRule::Lattice;
+    c.slip_mm.reset();
+    c.tear_energy_kpa.reset();
+    c.kernel_radius_mm = random.uniform(0.5, 3.0);
+    c.dose_length_mm = random.uniform(0.5, 5.0);
+    c.hold_kpa = one_of(std::array{0.0, 40.0, 400.0, 4000.0});
+    c.slip_mn_mm = random.below(4) == 0 ? std::nullopt : std::optional(random.uniform(1.0, 100.0));
+  }
   return cut;
 }
 

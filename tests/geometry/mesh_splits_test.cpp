@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace incise {
 namespace {
 
@@ -71,6 +73,14 @@ TEST(MeshSplits, OfAnotherMeshAreRefused) {
   EXPECT_THAT(refusal(bad), HasSubstr("a copy of the tet's own, found 6"));
   bad.copies[0].corners[0] = v(7);
   EXPECT_THAT(refusal(bad), HasSubstr("found 7"));
+  bad = splits();
+  bad.copies[0].share = 0.5;
+  EXPECT_THAT(refusal(bad), HasSubstr("shares of tet 1 that add up to 1, found 1.25"));
+  bad.copies[0].share = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(refusal(bad), HasSubstr("a share of tet 1 in [0, 1]"));
+  bad = splits();
+  bad.changed.push_back(bad.changed.front());
+  EXPECT_THAT(refusal(bad), HasSubstr("in ascending order, each once"));
 }
 
 }  // namespace

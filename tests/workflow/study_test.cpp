@@ -106,6 +106,22 @@ TEST(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
   EXPECT_EQ(again.is_accepted, study.is_accepted);
 }
 
+TEST(RunStudy, ACutByPointsThatSplitsTetsIsLoadedAsItWasComputed) {
+  Block block;
+  Workers workers(2);
+  Monitor silent;
+  Case settings = coarse_case();
+  settings.frames = 3;
+  settings.cut.rule = CutRule::Lattice;
+  settings.cut.dullness = 4.0;
+  const Study study = run_study(settings, block, block.cache, {.until = Stage::Simulate}, workers, silent);
+  ASSERT_FALSE(study.as_planned->incision.final_state.splits.vertices.empty());
+  EXPECT_TRUE(study.as_planned->incision.inner_edge.has_value());
+  const Study again = run_study(settings, block, block.cache, {.until = Stage::Simulate}, workers, silent);
+  EXPECT_EQ(again.stages.back().state, StageState::Reused);
+  EXPECT_EQ(bytes_of(again.as_planned->incision), bytes_of(study.as_planned->incision));
+}
+
 TEST(PathErrors, AnInnerEdgeThatIsOpenNearTheSkinIsToldFromADeeperLayer) {
   Contour edge, middle;
   for (int i = 0; i < 120; ++i) {

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace incise {
@@ -35,7 +36,7 @@ struct CutState {
   std::vector<double> tear_dose;     ///< per tet: the part of `dose` that is the tool's work
   std::vector<Bond> bonds;           ///< ascending tet
   CutPoints points;                  ///< of a cut by points
-  MeshSplits splits;                 ///< of the model's mesh, by a cut by points: all lists above are of the split mesh
+  MeshSplits splits;                 ///< of the model's mesh, by a cut by points: all lists here are of the split mesh
   int split_step = 0;                ///< when it was looked at last what has come apart
   ToolPose tool;
   double time_s = 0.0;
@@ -55,6 +56,8 @@ inline void describe(Visitor& v, CutState& s) {
   v("step", s.step, "Done so far.", kNotNegative);
   v("record", s.record, "Every tet that was removed.");
 }
+/// What is wrong with the points and splits of a state that came from elsewhere; empty: they are of this model.
+[[nodiscard]] std::string find_problem(const TissueModel& whole, const CutState& state);
 [[nodiscard]] CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPose& tool);
 
 /// Whether the next step from here makes everything anew that a workspace carries from step to step (every 20th step does). From such a

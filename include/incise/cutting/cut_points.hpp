@@ -10,7 +10,7 @@
 namespace incise {
 
 /// What a cut by points (CutRule::Lattice) has done to the points of its lattice, tet by tet: first all points of the
-/// tet that the tool came near first. Which points a tet has follows from the mesh alone (PointLattice).
+/// tet that the tool came near first. Which points a tet has follows from the whole mesh alone (PointLattice).
 struct CutPoints {
   std::vector<TetId> tets;                ///< of the whole mesh, that the tool came near, in that order
   std::vector<TetId> tet;                 ///< per point: that of the split mesh with which it moves

@@ -21,7 +21,7 @@ inline constexpr std::array<std::string_view, 3> kRemovalCauseNames{"dwell", "lo
 }
 
 struct Removal {
-  TetId tet;
+  TetId tet;  ///< of the split mesh, after a cut by points
   int step = 0;
   double time_s = 0.0;             ///< since the tool began to plunge
   RemovalCause cause = RemovalCause::Dwell;

@@ -40,7 +40,7 @@ struct CutSettings {
   double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, >= 0 and less than once round
   double residual_tolerance = 0.15;   ///< each step's linear solve: |r| <= this · |contact force|, [1e-6, 0.3]; the next step puts the rest right
   double max_step_mm = 1.0;           ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
-  /// Lattice is under construction (docs/decisions/0010-cutting-law.md): no inner edge. It takes the four numbers below
+  /// Lattice is under construction (docs/decisions/0010-cutting-law.md). It takes the four numbers below
   /// in place of reach, bond stiffness, slip and tear energy.
   CutRule rule = CutRule::Tets;
   double kernel_radius_mm = 1.25;           ///< how far from its core the tool acts, [0.5, 5]
