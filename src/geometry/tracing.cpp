@@ -119,7 +119,8 @@ Contour smoothed(const Contour& curve, double sigma_mm) {
   const double spacing =
       length_mm(curve) / static_cast<double>(curve.is_closed ? curve.points.size() : curve.points.size() - 1);
   INCISE_REQUIRE(spacing > 0.0, "all points of the curve coincide, expected a positive length");
-  const double sigma = sigma_mm / spacing;
+  // Four times the curve's points even out everything, to rounding; a curve that is tiny beside sigma_mm costs no more.
+  const double sigma = std::min(sigma_mm / spacing, 4.0 * static_cast<double>(curve.points.size()));
   const Points once = filtered(curve.points, curve.is_closed, sigma);
   const Points twice = filtered(once, curve.is_closed, sigma);
   Contour result = curve;

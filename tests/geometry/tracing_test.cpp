@@ -116,5 +116,10 @@ TEST(Smoothed, EvensOutNoiseAndKeepsTheEndsOfAnOpenCurve) {
   EXPECT_EQ(smoothed(line, 0.0).points, line.points);
 }
 
+TEST(Smoothed, OfATinyCircleIsItsMiddle) {
+  const Contour result = smoothed(circle(1e-9, 40), 1.0);  // six thousand million points would be a millimetre
+  for (const Vec3& p : result.points) EXPECT_LT(p.norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace incise
