@@ -1,11 +1,13 @@
 // What the simulated cut depends on. Cuts run side by side, one thread each; errors of the mid-line against the lateral
 // margin stand beside the cost.
-//   incise_cut_study step  [--threads N] [--csv FILE] [--figure FILE]   the simulation step: 0.13, 0.26, 0.52 mm
-//   incise_cut_study mesh  ...                                          edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag,
-//   without, and in tissue that cannot move incise_cut_study law   ...                                          the cut
-//   by points (docs/decisions/0010-cutting-law.md): 6, 12 and 70 kPa on two meshes of each of three sizes
-//   incise_cut_study table [--rule tets|lattice] [--specimens 2] ...    the paper's Table I: 25 pairs of speed and
-//   dullness on two virtual specimens
+//
+//   incise_cut_study step|mesh|law|table [--threads N] [--csv FILE] [--figure FILE]
+//
+// step:  the simulation step: 0.13, 0.26, 0.52 mm.
+// mesh:  edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move.
+// law:   the cut by points (docs/decisions/0010-cutting-law.md): 6, 12 and 70 kPa on two meshes of each of three sizes.
+// table: the paper's Table I: 25 pairs of speed and dullness; [--rule tets|lattice] [--specimens 2].
+
 #include "cost_table.hpp"
 #include "support/phantom_inputs.hpp"
 
@@ -47,11 +49,13 @@ Options parse(int argc, char** argv) {
     const char* value = argv[i + 1];
     if (name == "--rule") {
       INCISE_REQUIRE(options.study == "table", "expected --rule with table alone: law has its own");
-      const std::string_view rule = value;
-      INCISE_REQUIRE(rule == "tets" || rule == "lattice", fmt::format("expected tets or lattice, found {}", rule));
-      options.rule = rule == "tets" ? CutRule::Tets : CutRule::Lattice;
+      const std::optional<CutRule> rule = value_of<CutRule>(value);
+      INCISE_REQUIRE(rule.has_value(), fmt::format("expected --rule {}, found {}", choices(names_of(CutRule{})), value));
+      options.rule = *rule;
     } else if (name == "--specimens") {
-      options.specimens = static_cast<std::uint64_t>(std::max(1, std::atoi(value)));
+      const int specimens = std::atoi(value);
+      INCISE_REQUIRE(specimens > 0, fmt::format("expected --specimens 1 or more, found {}", value));
+      options.specimens = static_cast<std::uint64_t>(specimens);
     } else if (name == "--threads") {
       options.threads = std::atoi(value);
     } else if (name == "--csv") {
@@ -68,14 +72,14 @@ Options parse(int argc, char** argv) {
 /// A stretched specimen with the planned path.
 struct Body {
   std::string name;
-  double edge_mm = 0.0;  // 0: that of a number of tets
+  std::optional<double> edge_mm;  // absent: that of a number of tets
   Case settings;
   Study study;
 };
 
 Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& meshing, Workers& workers,
                const Material& material = {}) {
-  Body body{std::move(name), meshing.fine_mm.value_or(0.0), {}, {}};
+  Body body{std::move(name), meshing.fine_mm, {}, {}};
   body.settings.is_virtual = true;
   body.settings.meshing = meshing;
   body.settings.material = material;
@@ -125,10 +129,9 @@ SimulatedCut carry_out(const Job& job) {
 }
 
 constexpr std::string_view kHeader =
-    "specimen,edge_mm,tets,tissue,speed_mm_s,dullness,advance_mm,outcome,closed_loop,signed_mean_mm,signed_sd_mm,"
-    "signed_min_mm,signed_max_mm,"
-    "abs_mean_mm,paper_abs_mean_mm,inner_signed_mean_mm,kerf_width_mm,removed_tets,copied_tets,steps,iterations,wall_"
-    "s\n";
+    "specimen,edge_mm,tets,tissue,speed_mm_s,dullness,advance_mm,outcome,closed_loop,"
+    "signed_mean_mm,signed_sd_mm,signed_min_mm,signed_max_mm,abs_mean_mm,paper_abs_mean_mm,inner_signed_mean_mm,"
+    "kerf_width_mm,removed_tets,copied_tets,steps,iterations,wall_s\n";
 
 /// One line of the table; what an open ring does not have stays empty.
 std::string row_of(const Job& job, const SimulatedCut& done) {
@@ -138,8 +141,8 @@ std::string row_of(const Job& job, const SimulatedCut& done) {
     return summary ? fmt::format("{:.3f}", *summary.*value) : std::string();
   };
   const Evaluation& e = done.centerline;
-  return fmt::format("{},{:.4g},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{:.1f}\n", job.body->name,
-                     job.body->edge_mm, done.tets, name_of(job.tissue), job.cut.speed_mm_s, job.cut.dullness,
+  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{:.1f}\n", job.body->name,
+                     job.body->edge_mm ? fmt::format("{:.4g}", *job.body->edge_mm) : "", done.tets, name_of(job.tissue), job.cut.speed_mm_s, job.cut.dullness,
                      job.cut.advance_per_step_mm, to_string(done.outcome),
                      cut.is_closed_loop.value_or(false) ? "yes" : "no", part(e.signed_error_mm, &Summary::mean),
                      part(e.signed_error_mm, &Summary::sd), part(e.signed_error_mm, &Summary::min),
@@ -221,7 +224,7 @@ Result study_meshes(Workers& workers) {
   Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh (mm/s x dullness)", "edge length in the band, mm",
                                            "mean signed error, mm", true, false, {}}};
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    add_point(result.plot, fmt::format("{}, 13 x {}", name_of(jobs[i].tissue), jobs[i].cut.dullness), jobs[i].body->edge_mm,
+    add_point(result.plot, fmt::format("{}, 13 x {}", name_of(jobs[i].tissue), jobs[i].cut.dullness), jobs[i].body->edge_mm.value(),
               result.done[i]);
   }
   return result;
@@ -251,7 +254,7 @@ Result study_law(Workers& workers) {
   }
   Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh, cut by points", "edge length in the band, mm",
                                            "mean signed error, mm", true, false, {}}};
-  for (std::size_t i = 0; i < jobs.size(); ++i) add_point(result.plot, jobs[i].body->name, jobs[i].body->edge_mm, result.done[i]);
+  for (std::size_t i = 0; i < jobs.size(); ++i) add_point(result.plot, jobs[i].body->name, jobs[i].body->edge_mm.value(), result.done[i]);
   return result;
 }
 

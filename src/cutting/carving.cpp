@@ -52,13 +52,13 @@ struct CutWorkspace::Data {
 
   Data(const TissueModel& model, const MeshSplits& splits, std::span<const Vec3> positions, Precision precision)
       : neighbours(face_adjacency(model.mesh, splits.copies)),
-        rest_volumes_mm3(model.volumes_mm3),
+        rest_volumes_mm3(model.mesh.tets.size()),
         is_anchored(model.mesh.vertices.size(), 0),
         stiffness(model),
         solver(model.pattern, positions, kVerticesPerAggregate, precision),
         right_side(model.mesh.vertices.size()),
         increment(model.mesh.vertices.size()) {
-    for (std::size_t t = 0; t < rest_volumes_mm3.size() && !splits.copies.empty(); ++t)
+    for (std::size_t t = 0; t < rest_volumes_mm3.size(); ++t)
       rest_volumes_mm3[t] = rest_volume_mm3(model, splits, TetId(t));
     body_volume_mm3 = std::accumulate(rest_volumes_mm3.begin(), rest_volumes_mm3.end(), 0.0);
     for (std::size_t v = 0; v < is_anchored.size(); ++v) {

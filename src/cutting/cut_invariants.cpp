@@ -1,3 +1,5 @@
+#include "point_lattice.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/cutting/cut_invariants.hpp>
@@ -144,6 +146,16 @@ void check_bonds(const TissueModel& model, const CutState& state, Violations& vi
 }
 
 }  // namespace
+
+std::string find_problem(const TissueModel& whole, const CutState& state) {
+  try {
+    require_splits_of(whole.mesh, state.splits);
+    lattice_of(whole, state.points).require_own_tets(state.points, state.splits, whole.mesh.tets.size());
+  } catch (const InvalidArgument& error) {
+    return error.text();
+  }
+  return {};
+}
 
 std::vector<std::string> cut_invariants(const TissueModel& whole, const CutState& state) {
   std::optional<TissueModel> split;

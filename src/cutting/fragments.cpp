@@ -1,23 +1,12 @@
 #include "fragments.hpp"
 
 #include <algorithm>
-#include <array>
-#include <iterator>
 #include <utility>
 
 namespace incise {
 
 FaceAdjacency face_adjacency(const TetMesh& mesh, std::span<const SplitTet> copies) {
   const std::size_t count = mesh.tets.size(), whole = count - copies.size();
-  FaceAdjacency adjacency{std::vector<std::int32_t>(count + 1, 0), {}};
-  if (copies.empty()) {
-    const std::vector<std::array<std::int32_t, 4>> neighbours = face_neighbours(mesh);
-    for (std::size_t t = 0; t < count; ++t) {
-      std::ranges::copy_if(neighbours[t], std::back_inserter(adjacency.tets), [](std::int32_t n) { return n >= 0; });
-      adjacency.start[t + 1] = static_cast<std::int32_t>(adjacency.tets.size());
-    }
-    return adjacency;
-  }
   std::vector<std::pair<Triangle, std::int32_t>> faces;  // sorted vertices, tet
   faces.reserve(4 * count);
   for (std::size_t t = 0; t < count; ++t) {
@@ -28,25 +17,25 @@ FaceAdjacency face_adjacency(const TetMesh& mesh, std::span<const SplitTet> copi
     }
   }
   std::ranges::sort(faces);
-  const auto whole_of = [&](std::int32_t t) {
-    const auto i = static_cast<std::size_t>(t);
-    return i < whole ? t : copies[i - whole].whole.value;
-  };
-  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;  // both ways
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    for (std::size_t j = i + 1; j < faces.size() && faces[j].first == faces[i].first; ++j) {
-      const std::int32_t a = faces[i].second, b = faces[j].second;
-      if (whole_of(a) == whole_of(b)) continue;
-      pairs.emplace_back(a, b);
-      pairs.emplace_back(b, a);
+  const auto whole_of = [&](std::size_t t) { return t < whole ? TetId(t) : copies[t - whole].whole; };
+  const auto for_each_pair = [&](const auto& visit) {  // both ways
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      for (std::size_t j = i + 1; j < faces.size() && faces[j].first == faces[i].first; ++j) {
+        const auto a = static_cast<std::size_t>(faces[i].second), b = static_cast<std::size_t>(faces[j].second);
+        if (whole_of(a) == whole_of(b)) continue;
+        visit(a, b);
+        visit(b, a);
+      }
     }
-  }
-  std::ranges::sort(pairs);
-  for (const auto& [tet, neighbour] : pairs) {
-    ++adjacency.start[static_cast<std::size_t>(tet) + 1];
-    adjacency.tets.push_back(neighbour);
-  }
+  };
+  FaceAdjacency adjacency{std::vector<std::int32_t>(count + 1, 0), {}};
+  for_each_pair([&](std::size_t tet, std::size_t) { ++adjacency.start[tet + 1]; });
   for (std::size_t t = 0; t < count; ++t) adjacency.start[t + 1] += adjacency.start[t];
+  adjacency.tets.resize(static_cast<std::size_t>(adjacency.start[count]));
+  std::vector<std::int32_t> next(adjacency.start.begin(), adjacency.start.end() - 1);
+  for_each_pair([&](std::size_t tet, std::size_t neighbour) {
+    adjacency.tets[static_cast<std::size_t>(next[tet]++)] = static_cast<std::int32_t>(neighbour);
+  });
   return adjacency;
 }
 

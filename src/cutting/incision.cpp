@@ -1,6 +1,7 @@
 #include "kerf.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/cutting/cut_invariants.hpp>
 #include <incise/cutting/incision.hpp>
 #include <incise/cutting/incision_memory.hpp>
 

@@ -34,7 +34,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
 /// The displacement at a place of live tissue within a tolerance, mm; nullopt: there is none.
 using LiveDisplacement = std::function<std::optional<Vec3>(const Vec3& place, double tolerance_mm)>;
 
-/// That of live tets.
+/// That of live tets. Keeps references to both lists of positions, mm.
 [[nodiscard]] LiveDisplacement displacement_of_live(const TetMesh& mesh, std::span<const std::uint8_t> is_live,
                                                     std::span<const Vec3> from, std::span<const Vec3> to);
 

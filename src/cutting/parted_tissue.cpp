@@ -13,7 +13,7 @@ PartedTissue::PartedTissue(const TissueModel& whole, std::span<const Vec3> from,
       lattice_(lattice_of(whole, state.points)),
       locator_(whole.mesh, from) {
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
-    const bool is_live = state.tissue.is_live[state.points.tet[i].index()] != 0;
+    const bool is_live = state.tissue.is_live[state.points.tet_of[i].index()] != 0;
     if (state.points.dose[i] >= 1.0 || !is_live || lattice_.volume_mm3(i) == 0.0) continue;
     near_node_[PointLattice::node_near(lattice_.rest_position(i))].push_back(i);
   }
@@ -50,7 +50,7 @@ std::optional<Vec3> PartedTissue::place_after(const Vec3& p, double tolerance_mm
     const double apart = (lattice_.rest_position(i) - rest).norm();
     if (apart >= least) continue;
     least = apart;
-    at->tet = state_.points.tet[i];
+    at->tet = state_.points.tet_of[i];
   }
   return position_of(*at, split_, state_.tissue.positions);
 }
@@ -68,14 +68,9 @@ std::optional<Vec3> PartedTissue::displacement(const Vec3& p, double tolerance_m
   const std::optional<std::size_t> point = nearest_point(rest, tolerance_mm);
   if (!point) return std::nullopt;
   const TetId whole_tet = lattice_.tet_of(*point);
-  EmbeddedPoint there{whole_tet, {1.0, 0.0, 0.0, 0.0}};
-  const Vec3 offset = rest - vertex(whole_.mesh.vertices, whole_.mesh.tets[whole_tet.index()][0]);
-  for (std::size_t c = 1; c < 4; ++c) {
-    there.barycentric[c] = whole_.gradients[whole_tet.index()][c].dot(offset);
-    there.barycentric[0] -= there.barycentric[c];
-  }
+  EmbeddedPoint there{whole_tet, barycentric_at_rest(whole_, whole_tet, rest)};
   const Vec3 before = position_of(there, whole_.mesh, from_);
-  there.tet = state_.points.tet[*point];
+  there.tet = state_.points.tet_of[*point];
   return position_of(there, split_, to) - before;
 }
 

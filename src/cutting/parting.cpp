@@ -33,7 +33,7 @@ struct Part {
 };
 
 /// A tet that may have come apart, or lies at a corner of one that may.
-struct Star {
+struct StarTet {
   TetId tet;
   std::size_t first_part = 0, last_part = 0;  // [first, last)
   bool is_cut = false;                        // a point of it, or of another part of its whole tet, is parted
@@ -65,7 +65,7 @@ class Splitter {
   void list_stars() {
     std::set<TetId> changed;
     for (std::size_t i = 0; i < state_.points.parted_step.size(); ++i) {
-      if (state_.points.parted_step[i] > state_.split_step) changed.insert(state_.points.tet[i]);
+      if (state_.points.parted_step[i] > state_.split_step) changed.insert(state_.points.tet_of[i]);
     }
     for (const TetId tet : changed) {
       for (const VertexId v : model_.mesh.tets[tet.index()]) vertices_.insert(v);
@@ -86,7 +86,7 @@ class Splitter {
   void find_parts() {
     std::vector<std::size_t> star_of;  // of each of left_
     for (std::size_t s = 0; s < stars_.size(); ++s) {
-      Star& star = stars_[s];
+      StarTet& star = stars_[s];
       const auto [begin, end] = lattice_.points_of(star.tet);
       for (std::size_t i = begin; i < end; ++i) {
         if (lattice_.volume_mm3(i) == 0.0) continue;
@@ -110,7 +110,7 @@ class Splitter {
     }
     std::map<std::size_t, std::size_t> part_of;  // by root
     for (std::size_t a = 0; a < left_.size(); ++a) {
-      Star& star = stars_[star_of[a]];
+      StarTet& star = stars_[star_of[a]];
       if (a == 0 || star_of[a - 1] != star_of[a]) star.first_part = parts_.size();
       const auto [at, is_new] = part_of.try_emplace(sets.root(a), parts_.size());
       if (is_new) parts_.push_back({star_of[a], {}});
@@ -121,7 +121,7 @@ class Splitter {
   }
 
   /// A whole tet is one part, and so is one whose points are no nodes.
-  [[nodiscard]] static bool is_searched(const Star& star) { return star.is_cut && star.has_nodes; }
+  [[nodiscard]] static bool is_searched(const StarTet& star) { return star.is_cut && star.has_nodes; }
 
   /// Calls `f` with the nodes next to one.
   template <class F>
@@ -214,7 +214,7 @@ class Splitter {
   std::vector<TetId> apply(DisjointSets& corners) {
     name_vertices(corners);
     std::vector<TetId> touched;
-    for (const Star& star : stars_) {
+    for (const StarTet& star : stars_) {
       const Tet& before = model_.mesh.tets[star.tet.index()];
       std::vector<std::pair<Tet, std::vector<std::size_t>>> groups;  // corners, parts
       for (std::size_t p = star.first_part; p < star.last_part; ++p) {
@@ -237,7 +237,7 @@ class Splitter {
   }
 
   /// Gives each group of parts a tet of its own: the first the one that there was.
-  void share_out(const Star& star, const std::vector<std::pair<Tet, std::vector<std::size_t>>>& groups,
+  void share_out(const StarTet& star, const std::vector<std::pair<Tet, std::vector<std::size_t>>>& groups,
                  std::vector<TetId>& touched) {
     std::vector<TetId> ids;
     for (std::size_t g = 0; g < groups.size(); ++g) ids.push_back(g == 0 ? star.tet : add_copy(star.tet));
@@ -254,7 +254,7 @@ class Splitter {
             const double apart = distance(i, k);
             if (apart >= least) continue;
             least = apart;
-            state_.points.tet[i] = ids[g];
+            state_.points.tet_of[i] = ids[g];
           }
         }
       }
@@ -264,7 +264,7 @@ class Splitter {
     for (std::size_t g = 0; g < groups.size(); ++g) {
       double all = 0.0, filled = 0.0, dosed = 0.0;
       for (const std::size_t i : own) {
-        if (state_.points.tet[i] != ids[g]) continue;
+        if (state_.points.tet_of[i] != ids[g]) continue;
         all += lattice_.volume_mm3(i);
         dosed += lattice_.volume_mm3(i) * std::min(1.0, state_.points.dose[i]);
         if (!is_parted(i)) filled += lattice_.volume_mm3(i);
@@ -316,7 +316,7 @@ class Splitter {
   CutState& state_;
   std::size_t whole_tets_;
   std::set<VertexId> vertices_;  // of tets that may have come apart
-  std::vector<Star> stars_;
+  std::vector<StarTet> stars_;
   std::vector<std::size_t> left_;  // points of the stars that are not parted
   std::vector<std::size_t> part_of_;  // of each of them
   std::unordered_map<PointLattice::Node, std::size_t, NodeHash> at_node_;  // place in left_

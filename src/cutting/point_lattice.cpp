@@ -1,7 +1,6 @@
 #include "point_lattice.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/cutting/carving.hpp>
 
 #include <fmt/format.h>
 
@@ -18,6 +17,16 @@ const Vec3 kOriginMm(0.0371, 0.0613, 0.0887);
 constexpr double kNear = 0.5854101966249685, kFar = 0.1381966011250105;
 
 }  // namespace
+
+std::array<double, 4> barycentric_at_rest(const TissueModel& model, TetId tet, const Vec3& rest) {
+  const Vec3 from_origin = rest - vertex(model.mesh.vertices, model.mesh.tets[tet.index()][0]);
+  std::array<double, 4> shares{1.0, 0.0, 0.0, 0.0};
+  for (std::size_t c = 1; c < 4; ++c) {
+    shares[c] = model.gradients[tet.index()][c].dot(from_origin);
+    shares[0] -= shares[c];
+  }
+  return shares;
+}
 
 Vec3 PointLattice::rest_position(const Node& node) {
   return kOriginMm + kSpacingMm * Vec3(node[0], node[1], node[2]);
@@ -36,8 +45,6 @@ PointLattice::PointLattice(const TissueModel& model, std::span<const TetId> tets
 
 void PointLattice::add(TetId tet) {
   const Tet& corners = model_->mesh.tets[tet.index()];
-  const std::array<Vec3, 4>& gradients = model_->gradients[tet.index()];
-  const Vec3& origin = vertex(model_->mesh.vertices, corners[0]);
   Box3 box;
   for (const VertexId v : corners) box.extend((vertex(model_->mesh.vertices, v) - kOriginMm) / kSpacingMm);
   const std::size_t first = shares_.size();
@@ -45,12 +52,7 @@ void PointLattice::add(TetId tet) {
   for (int k = low[2]; k <= high[2]; ++k)
     for (int j = low[1]; j <= high[1]; ++j)
       for (int i = low[0]; i <= high[0]; ++i) {
-        const Vec3 from_origin = rest_position({i, j, k}) - origin;
-        std::array<double, 4> shares{1.0, 0.0, 0.0, 0.0};
-        for (std::size_t c = 1; c < 4; ++c) {
-          shares[c] = gradients[c].dot(from_origin);
-          shares[0] -= shares[c];
-        }
+        const std::array<double, 4> shares = barycentric_at_rest(*model_, tet, rest_position({i, j, k}));
         if (std::ranges::any_of(shares, [](double share) { return share < 0.0; })) continue;
         shares_.push_back(shares);
         nodes_.emplace_back(Node{i, j, k});
@@ -102,29 +104,18 @@ void PointLattice::follow(const TissueModel& split, const CutPoints& points, con
     first_[whole + i] = first_[splits.copies[i].whole.index()];
     count_[whole + i] = count_[splits.copies[i].whole.index()];
   }
-  require_own_tets(points, splits);
-  tets_ = points.tet;
+  require_own_tets(points, splits, whole);
+  tets_ = points.tet_of;
 }
 
-void PointLattice::require_own_tets(const CutPoints& points, const MeshSplits& splits) const {
-  const std::size_t count = first_.size(), whole = count - splits.copies.size();
+void PointLattice::require_own_tets(const CutPoints& points, const MeshSplits& splits, std::size_t whole) const {
+  const std::size_t count = whole + splits.copies.size();
   const auto whole_of = [&](TetId t) { return t.index() < whole ? t : splits.copies[t.index() - whole].whole; };
   for (std::size_t i = 0; i < tets_.size(); ++i) {
-    const TetId tet = points.tet[i];
+    const TetId tet = points.tet_of[i];
     const bool is_own = tet.is_valid() && tet.index() < count && whole_of(tet) == whole_of(tets_[i]);
     INCISE_REQUIRE(is_own, fmt::format("points: expected point {} in its tet or a copy of it, found {}", i, tet.value));
   }
-}
-
-std::string find_problem(const TissueModel& whole, const CutState& state) {
-  if (state.points.tets.empty() && state.splits == MeshSplits{}) return {};
-  try {
-    const TissueModel split = split_model(whole, state.splits);
-    static_cast<void>(PointLattice(split, state.points, state.splits));
-  } catch (const InvalidArgument& error) {
-    return error.text();
-  }
-  return {};
 }
 
 PointLattice lattice_of(const TissueModel& whole, const CutPoints& points) {
@@ -132,8 +123,8 @@ PointLattice lattice_of(const TissueModel& whole, const CutPoints& points) {
     INCISE_REQUIRE(tet.is_valid() && tet.index() < whole.mesh.tets.size(),
                    fmt::format("points: expected one of {} tets, found {}", whole.mesh.tets.size(), tet.value));
   PointLattice lattice(whole, points.tets);
-  for (const std::size_t found : {points.tet.size(), points.dose.size(), points.is_held.size(), points.offset_mm.size(),
-                                  points.parted_step.size(), points.parted_mm.size()}) {
+  for (const std::size_t found : {points.tet_of.size(), points.dose.size(), points.is_held.size(),
+                                  points.offset_mm.size(), points.parted_step.size(), points.parted_mm.size()}) {
     INCISE_REQUIRE(found == lattice.size(),
                    fmt::format("points: expected {} of everything, found {}", lattice.size(), found));
   }

@@ -12,6 +12,9 @@
 
 namespace incise {
 
+/// Barycentric coordinates, in a tet at rest, of a place at rest, mm; outside the tet some are below 0.
+[[nodiscard]] std::array<double, 4> barycentric_at_rest(const TissueModel& model, TetId tet, const Vec3& rest);
+
 /// The points that carry a cut: the nodes of a cubic lattice in the tissue at rest, each in the tet that holds it. A
 /// tet with fewer than four nodes has four points of its own in their place, which are no nodes.
 class PointLattice {
@@ -27,12 +30,16 @@ class PointLattice {
   /// Goes over to another split mesh of the same whole one, with the same points.
   void follow(const TissueModel& split, const CutPoints& points, const MeshSplits& splits);
 
+  /// @param whole  tets of the whole mesh. @throws InvalidArgument for a point that is given to a tet that it does not
+  /// lie in.
+  void require_own_tets(const CutPoints& points, const MeshSplits& splits, std::size_t whole) const;
+
   /// Adds the points of a tet that is not split.
   void add(TetId tet);
 
   [[nodiscard]] std::size_t size() const { return shares_.size(); }
   /// Whether a cut has met these points, and each moves with the tet that it does here.
-  [[nodiscard]] bool is_of(const CutPoints& points) const { return added_ == points.tets && tets_ == points.tet; }
+  [[nodiscard]] bool is_of(const CutPoints& points) const { return added_ == points.tets && tets_ == points.tet_of; }
   /// The points of a tet are those of [first, second) whose tet_of it is; the others are of its copies. Empty where it
   /// was not added.
   [[nodiscard]] std::pair<std::size_t, std::size_t> points_of(TetId tet) const;
@@ -52,9 +59,6 @@ class PointLattice {
   [[nodiscard]] static Node node_near(const Vec3& rest);
 
  private:
-  /// @throws InvalidArgument for a point that is given to a tet that it does not lie in.
-  void require_own_tets(const CutPoints& points, const MeshSplits& splits) const;
-
   const TissueModel* model_;
   std::vector<TetId> added_;         // in that order
   std::vector<std::int64_t> first_;  // per tet: its first point; -1: not added

@@ -59,7 +59,7 @@ void meet_points(std::span<const TetId> candidates, PointLattice& lattice, CutPo
     if (first != last) continue;
     lattice.add(tet);
     points.tets.push_back(tet);
-    points.tet.resize(lattice.size(), tet);
+    points.tet_of.resize(lattice.size(), tet);
     points.dose.resize(lattice.size(), 0.0);
     points.is_held.resize(lattice.size(), 0);
     points.offset_mm.resize(lattice.size(), Vec3::Zero());

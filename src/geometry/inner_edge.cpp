@@ -23,13 +23,17 @@ constexpr double kSkinBorderMm = 2.0;
 /// Reach of the plane that is fitted to the plug's skin where a height is read, mm.
 constexpr double kHeightReachMm = 0.6;
 
+void require_valid(const Vec3& inside_mm, const InnerEdgeSettings& settings) {
+  INCISE_REQUIRE(inside_mm.allFinite(), "the point inside is not finite");
+  INCISE_REQUIRE(std::isfinite(settings.spacing_mm) && settings.spacing_mm > 0.0,
+                 fmt::format("expected a spacing above 0 mm, found {}", settings.spacing_mm));
+}
+
 void require_valid(const CutSurface& surface, const InnerEdgeSettings& settings) {
   INCISE_REQUIRE(surface.is_skin.size() == surface.triangles.size(),
                  fmt::format("expected a flag for each of {} triangles, found {}", surface.triangles.size(),
                              surface.is_skin.size()));
-  INCISE_REQUIRE(surface.inside_mm.allFinite(), "the point inside is not finite");
-  INCISE_REQUIRE(std::isfinite(settings.spacing_mm) && settings.spacing_mm > 0.0,
-                 fmt::format("expected a spacing above 0 mm, found {}", settings.spacing_mm));
+  require_valid(surface.inside_mm, settings);
   for (std::size_t i = 0; i < surface.vertices.size(); ++i) {
     INCISE_REQUIRE(surface.vertices[i].allFinite(), fmt::format("vertex {} is not finite", i));
   }
@@ -163,6 +167,7 @@ std::optional<Contour> inner_edge_contour(const CutSurface& surface, const Inner
 
 std::optional<Contour> inner_edge_contour(const KerfInput& kerf, const KerfMidlineSettings& layer,
                                           const InnerEdgeSettings& settings) {
+  require_valid(kerf.inside_mm, settings);
   const ViewFrame view = view_along(kerf.approach);
   const std::optional<KerfPicture> picture = kerf_picture(kerf, view, layer);
   if (!picture) return std::nullopt;

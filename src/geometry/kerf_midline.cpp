@@ -164,21 +164,9 @@ Contour on_surface(const Contour& curve, const KerfInput& input, const ViewFrame
   return result;
 }
 
-void require_valid(const KerfMidlineSettings& s) {
-  INCISE_REQUIRE(
-      std::isfinite(s.layer_top_mm) && std::isfinite(s.layer_bottom_mm) && s.layer_top_mm < s.layer_bottom_mm,
-      fmt::format("expected a layer with top < bottom, found {} to {} mm", s.layer_top_mm, s.layer_bottom_mm));
-  INCISE_REQUIRE(s.min_coverage > 0.0 && s.min_coverage <= 1.0,
-                 fmt::format("expected a least coverage in (0, 1], found {}", s.min_coverage));
-  INCISE_REQUIRE(s.max_island_mm2 >= 0.0, fmt::format("expected islands of 0 mm² or more, found {}", s.max_island_mm2));
-  INCISE_REQUIRE(std::isfinite(s.spacing_mm) && s.spacing_mm > 0.0,
-                 fmt::format("expected a spacing above 0 mm, found {}", s.spacing_mm));
-}
-
 }  // namespace
 
 KerfMidline midline_contour(const KerfInput& input, const KerfMidlineSettings& settings) {
-  require_valid(settings);
   INCISE_REQUIRE(input.inside_mm.allFinite(), "the enclosed point is not finite");
   KerfMidline result;
   const ViewFrame view = view_along(input.approach);

@@ -25,6 +25,7 @@ using ViewTets = std::vector<std::array<Vec3, 4>>;
 [[nodiscard]] ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view);
 
 /// Projects the removed tets, cut to the layer below the surface. nullopt if nothing of the layer is gone.
+/// @throws InvalidArgument for settings out of range.
 [[nodiscard]] std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
                                                       const KerfMidlineSettings& settings);
 

@@ -8,9 +8,8 @@
 #include <map>
 
 namespace incise {
-namespace {
 
-void require_fitting(const TetMesh& whole, const MeshSplits& splits) {
+void require_splits_of(const TetMesh& whole, const MeshSplits& splits) {
   const auto require = [](bool is_one, const char* what, std::int32_t found, std::size_t count) {
     INCISE_REQUIRE(is_one, fmt::format("splits: expected one of {} {}, found {}", count, what, found));
   };
@@ -45,6 +44,8 @@ void require_fitting(const TetMesh& whole, const MeshSplits& splits) {
                    fmt::format("splits: expected shares of tet {} that add up to 1, found {}", tet.value, sum));
 }
 
+namespace {
+
 void add_copies(std::map<std::string, DataArray>& data, std::span<const std::size_t> originals) {
   for (auto& [name, array] : data) {
     const auto components = static_cast<std::size_t>(array.components);
@@ -57,7 +58,7 @@ void add_copies(std::map<std::string, DataArray>& data, std::span<const std::siz
 }  // namespace
 
 TetMesh split_mesh(const TetMesh& whole, const MeshSplits& splits) {
-  require_fitting(whole, splits);
+  require_splits_of(whole, splits);
   TetMesh mesh = whole;
   mesh.vertices = split_positions(whole.vertices, splits);
   for (const SplitTet& tet : splits.changed) mesh.tets[tet.whole.index()] = tet.corners;

@@ -1,33 +1,14 @@
 #include "meshing/mesh_order.hpp"
 
+#include <incise/geometry/disjoint_sets.hpp>
+
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <utility>
 #include <vector>
 
 namespace incise::meshing_detail {
 namespace {
-
-/// Sets that grow together (union-find with path halving); the representative is the lowest member.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t find(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) {
-    a = find(a);
-    b = find(b);
-    if (a != b) parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 using Face = std::pair<Triangle, std::size_t>;  ///< sorted corners, tet
 
@@ -104,12 +85,12 @@ TetMesh largest_component(TetMesh mesh, std::size_t& dropped) {
     if (faces[f].first == faces[f - 1].first) sets.join(faces[f].second, faces[f - 1].second);
   }
   std::vector<std::size_t> size(mesh.tets.size(), 0);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) ++size[sets.find(t)];
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) ++size[sets.root(t)];
   const auto largest = static_cast<std::size_t>(std::max_element(size.begin(), size.end()) - size.begin());
 
   std::vector<Tet> kept;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    if (sets.find(t) == largest) kept.push_back(mesh.tets[t]);
+    if (sets.root(t) == largest) kept.push_back(mesh.tets[t]);
   }
   dropped = mesh.tets.size() - kept.size();
   mesh.tets = std::move(kept);

@@ -1,5 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
+#include <incise/cutting/cut_invariants.hpp>
 #include <incise/cutting/incision_memory.hpp>
 #include <incise/cutting/tool_program.hpp>
 #include <incise/geometry/contour_checks.hpp>

@@ -185,8 +185,9 @@ TEST_F(StraightPass, WhatHangsTogetherSharesItsFaceAndNothingElseIsJoined) {
         const Tet& b = model.mesh.tets[lattice.tet_of(k).index()];
         if (lattice.tet_of(i) == lattice.tet_of(k) || shared(a, b) != 3) continue;
         ++pairs;
-        broken +=
-            shared(split.tets[state_.points.tet[i].index()], split.tets[state_.points.tet[k].index()]) < 3 ? 1 : 0;
+        broken += shared(split.tets[state_.points.tet_of[i].index()], split.tets[state_.points.tet_of[k].index()]) < 3
+                      ? 1
+                      : 0;
       }
     }
     EXPECT_GT(pairs, 1000U);
@@ -272,8 +273,8 @@ TEST_F(StraightPass, InvariantsFindPointsThatCannotBe) {
   EXPECT_EQ(cut_invariants(model, state_).size(), 1U);
   state_ = sound;
   for (const TetId elsewhere :
-       {TetId(), TetId(100000000), TetId((sound.points.tet[0].index() + 1) % model.mesh.tets.size())}) {
-    state_.points.tet[0] = elsewhere;
+       {TetId(), TetId(100000000), TetId((sound.points.tet_of[0].index() + 1) % model.mesh.tets.size())}) {
+    state_.points.tet_of[0] = elsewhere;
     EXPECT_EQ(cut_invariants(model, state_).size(), 1U) << elsewhere.value;
   }
 }
@@ -404,7 +405,7 @@ TEST_P(CutInTwo, EachPartGoesBackToItsShapeAtRest) {
   cut_through();
   const TetMesh split = split_mesh(model_.mesh, state_.splits);
   // No face joins the parts, and each is one.
-  const std::vector<std::array<std::int32_t, 4>> neighbours = face_neighbours(split);
+  const FaceAdjacency neighbours = face_adjacency(split, state_.splits.copies);
   std::vector<std::uint8_t> is_left = state_.tissue.is_live;
   int parts = 0;
   for (std::size_t seed = 0; seed < split.tets.size(); ++seed) {
@@ -413,8 +414,8 @@ TEST_P(CutInTwo, EachPartGoesBackToItsShapeAtRest) {
     std::vector<std::size_t> part{seed};
     is_left[seed] = 0;
     for (std::size_t next = 0; next < part.size(); ++next) {
-      for (const std::int32_t n : neighbours[part[next]]) {
-        if (n < 0 || is_left[static_cast<std::size_t>(n)] == 0) continue;
+      for (const std::int32_t n : neighbours.of(part[next])) {
+        if (is_left[static_cast<std::size_t>(n)] == 0) continue;
         is_left[static_cast<std::size_t>(n)] = 0;
         part.push_back(static_cast<std::size_t>(n));
       }

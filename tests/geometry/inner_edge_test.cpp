@@ -183,10 +183,13 @@ TEST(InnerEdge, OfAKerfIsTheBorderOfWhatItLeavesInside) {
   double radius = 0.0;
   for (const Vec3& p : edge->points) radius += p.head<2>().norm() / static_cast<double>(edge->points.size());
   EXPECT_NEAR(radius, 13.25, 0.1);
-  EXPECT_NEAR(edge->points.front().z(), kerf.surface.vertices.front().z(), 5.0);
+  double top = -1e9;
+  for (const Vec3& p : kerf.surface.vertices) top = std::max(top, p.z());
+  for (const Vec3& p : edge->points) EXPECT_NEAR(p.z(), top, 0.01) << "on the skin";
   EXPECT_GT(signed_area_mm2(*edge, kerf.approach), 0.0);
   kerf.inside_mm = {17, 17, 0};
   EXPECT_FALSE(inner_edge_contour(kerf, {})) << "outside the ring";
+  EXPECT_THROW(static_cast<void>(inner_edge_contour(kerf, {.layer_top_mm = 3.0})), InvalidArgument);
   kerf.removed_tets.clear();
   EXPECT_FALSE(inner_edge_contour(kerf, {}));
 }

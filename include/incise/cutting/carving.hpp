@@ -13,7 +13,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace incise {
@@ -56,8 +55,6 @@ inline void describe(Visitor& v, CutState& s) {
   v("step", s.step, "Done so far.", kNotNegative);
   v("record", s.record, "Every tet that was removed.");
 }
-/// What is wrong with the points and splits of a state that came from elsewhere; empty: they are of this model.
-[[nodiscard]] std::string find_problem(const TissueModel& whole, const CutState& state);
 [[nodiscard]] CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPose& tool);
 
 /// Whether the next step from here makes everything anew that a workspace carries from step to step (every 20th step does). From such a
@@ -104,9 +101,11 @@ class CutWorkspace {
 /// @returns how many went. @throws InvalidArgument for a tet that the mesh does not have.
 std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace, std::span<const TetId> tets);
 
-/// One quasi-static step of implicit Euler with one linear solve: the tool moves from state.tool to `next`, bonded tissue follows or slips,
-/// the dose of touched tets is integrated inside the step, and tets whose dose is full go, with fragments that then hang by no face.
-/// Without `next` the tool is out: bonds are dropped and the tissue takes a step of Newton's method towards rest.
+/// One quasi-static step of implicit Euler with one linear solve: the tool moves from state.tool to `next`, bonded
+/// tissue follows or slips, the dose of touched tets is integrated inside the step, and tets whose dose is full go,
+/// with fragments that then hang by no face. Without `next` the tool is out: bonds are dropped and the tissue takes a
+/// step of Newton's method towards rest. A cut by points splits the mesh on its way: see CutState::splits. @param whole
+/// the model of the mesh before that.
 CutStepReport advance(const TissueModel& whole, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers);
 

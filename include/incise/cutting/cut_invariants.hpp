@@ -7,6 +7,9 @@
 
 namespace incise {
 
+/// What is wrong with the points and splits of a state that came from elsewhere; empty: they are of this model.
+[[nodiscard]] std::string find_problem(const TissueModel& whole, const CutState& state);
+
 /// What has to hold of a cut at every step, whatever the tool did:
 ///
 /// - balance: rest volume and mass of the live tets and of those in the record add up to the uncut body's, to rounding
@@ -21,6 +24,6 @@ namespace incise {
 /// @returns every kind of violation, one sentence each with the first offender; empty: all hold.
 /// O(vertices + tets + removals + bonds + points).
 /// @throws InvalidArgument when the state's lists do not fit the model's mesh.
-[[nodiscard]] std::vector<std::string> cut_invariants(const TissueModel& model, const CutState& state);
+[[nodiscard]] std::vector<std::string> cut_invariants(const TissueModel& whole, const CutState& state);
 
 }  // namespace incise

@@ -13,7 +13,7 @@ namespace incise {
 /// tet that the tool came near first. Which points a tet has follows from the whole mesh alone (PointLattice).
 struct CutPoints {
   std::vector<TetId> tets;                ///< of the whole mesh, that the tool came near, in that order
-  std::vector<TetId> tet;                 ///< per point: that of the split mesh with which it moves
+  std::vector<TetId> tet_of;              ///< per point: that of the split mesh with which it moves
   std::vector<double> dose;               ///< per point: parted from 1 on; goes on growing
   std::vector<std::uint8_t> is_held;      ///< per point: within the tool's reach
   std::vector<Vec3> offset_mm;            ///< of a held point from the tip when it came within reach, less its slip
@@ -22,7 +22,7 @@ struct CutPoints {
 };
 inline void describe(Visitor& v, CutPoints& p) {
   v("tets", p.tets, "That the tool came near, in that order.");
-  v("tet", p.tet, "Of the split mesh, with which a point moves.");
+  v("tet_of", p.tet_of, "Of the split mesh, with which a point moves.");
   v("dose", p.dose, "Of each point: parted from 1 on.");
   v("is_held", p.is_held, "Whether a point is within the tool's reach.");
   v("offset_mm", p.offset_mm, "Of a held point from the tip when it came within reach, less its slip.");

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <vector>
 
 namespace incise {
 
-/// Sets of the numbers from 0 on, each at first alone, that grow together (union-find with halving of the ways).
+/// Sets of the numbers from 0 on, each at first alone, that grow together (union-find with halving of the ways). The
+/// lowest member stands for a set.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {
@@ -17,7 +19,11 @@ class DisjointSets {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void join(std::size_t a, std::size_t b) { parent_[root(a)] = root(b); }
+  void join(std::size_t a, std::size_t b) {
+    a = root(a);
+    b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
 
  private:
   std::vector<std::size_t> parent_;

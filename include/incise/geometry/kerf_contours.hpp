@@ -77,6 +77,8 @@ struct InnerEdgeSettings {
                                                         const InnerEdgeSettings& settings = {});
 /// The same edge in the tissue before the cut, from the kerf: the border of what it leaves inside. Where the plug's
 /// tissue lies after the cut, only the tissue knows. @param layer  in which the kerf is looked at.
+/// @returns nullopt where the kerf is no closed ring round `inside_mm`, or there is none. @throws InvalidArgument for
+/// settings out of range or points that are not finite.
 [[nodiscard]] std::optional<Contour> inner_edge_contour(const KerfInput& kerf, const KerfMidlineSettings& layer,
                                                         const InnerEdgeSettings& settings = {});
 

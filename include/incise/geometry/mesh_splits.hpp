@@ -36,8 +36,12 @@ inline void describe(Visitor& v, MeshSplits& s) {
   v("changed", s.changed, "Tets of the whole mesh with other corners or a smaller share, ascending.");
 }
 
+/// @throws InvalidArgument for splits that are not of this mesh: numbers out of range, corners that are no copies of
+/// the tet's own, shares that do not add up to 1.
+void require_splits_of(const TetMesh& whole, const MeshSplits& splits);
+
 /// The split mesh; a copy has its original's position and data.
-/// @throws InvalidArgument for splits that are not of this mesh.
+/// @throws InvalidArgument as require_splits_of.
 [[nodiscard]] TetMesh split_mesh(const TetMesh& whole, const MeshSplits& splits);
 
 /// One position for each vertex of the split mesh, a copy's that of its original.
