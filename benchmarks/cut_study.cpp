@@ -6,7 +6,8 @@
 // step:  the simulation step: 0.13, 0.26, 0.52 mm.
 // mesh:  edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move.
 // law:   the cut by points (docs/decisions/0010-cutting-law.md): 6, 12 and 70 kPa on two meshes of each of three sizes.
-// table: the paper's Table I: 25 pairs of speed and dullness; [--rule tets|lattice] [--specimens 2].
+// table: the paper's Table I: 25 pairs of speed and dullness; [--rule tets|lattice|paper] [--count keep|reset]
+//        [--specimens 2].
 
 #include "cost_table.hpp"
 #include "support/phantom_inputs.hpp"
@@ -31,6 +32,7 @@ struct Options {
   std::string study;
   int threads = 2;
   CutRule rule = CutRule::Tets;  // of the table
+  ContactCount count = ContactCount::Keep;  // of the table by the paper's rule
   std::uint64_t specimens = 2;   // of the table
   std::string csv;
   std::string figure;
@@ -43,6 +45,7 @@ Options parse(int argc, char** argv) {
   INCISE_REQUIRE(options.study == "step" || options.study == "mesh" || options.study == "law" ||
                      options.study == "table",
                  fmt::format("expected step, mesh, law or table, found {}", options.study));
+  bool is_counted = false;  // --count was given
   for (int i = 2; i < argc; i += 2) {
     const std::string_view name = argv[i];
     INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a value after {}", name));
@@ -52,6 +55,12 @@ Options parse(int argc, char** argv) {
       const std::optional<CutRule> rule = value_of<CutRule>(value);
       INCISE_REQUIRE(rule.has_value(), fmt::format("expected --rule {}, found {}", choices(names_of(CutRule{})), value));
       options.rule = *rule;
+    } else if (name == "--count") {
+      const std::optional<ContactCount> count = value_of<ContactCount>(value);
+      INCISE_REQUIRE(count.has_value(),
+                     fmt::format("expected --count {}, found {}", choices(names_of(ContactCount{})), value));
+      options.count = *count;
+      is_counted = true;
     } else if (name == "--specimens") {
       const int specimens = std::atoi(value);
       INCISE_REQUIRE(specimens > 0, fmt::format("expected --specimens 1 or more, found {}", value));
@@ -63,9 +72,11 @@ Options parse(int argc, char** argv) {
     } else if (name == "--figure") {
       options.figure = value;
     } else {
-      throw InvalidArgument(fmt::format("expected --threads, --rule, --specimens, --csv or --figure, found {}", name));
+      throw InvalidArgument(
+          fmt::format("expected --threads, --rule, --count, --specimens, --csv or --figure, found {}", name));
     }
   }
+  INCISE_REQUIRE(!is_counted || options.rule == CutRule::Paper, "expected --count with --rule paper alone");
   return options;
 }
 
@@ -141,15 +152,15 @@ std::string row_of(const Job& job, const SimulatedCut& done) {
     return summary ? fmt::format("{:.3f}", *summary.*value) : std::string();
   };
   const Evaluation& e = done.centerline;
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{:.1f}\n", job.body->name,
-                     job.body->edge_mm ? fmt::format("{:.4g}", *job.body->edge_mm) : "", done.tets, name_of(job.tissue), job.cut.speed_mm_s, job.cut.dullness,
-                     job.cut.advance_per_step_mm, to_string(done.outcome),
-                     cut.is_closed_loop.value_or(false) ? "yes" : "no", part(e.signed_error_mm, &Summary::mean),
-                     part(e.signed_error_mm, &Summary::sd), part(e.signed_error_mm, &Summary::min),
-                     part(e.signed_error_mm, &Summary::max), part(e.abs_error_mm, &Summary::mean),
-                     number(e.paper_abs_error_mm), part(done.inner_edge.signed_error_mm, &Summary::mean),
-                     cut.kerf_width_mm, cut.record.removals.size(), cut.final_state.splits.copies.size(),
-                     cut.steps.size(), cut.solver_iterations, cut.wall_s);
+  return fmt::format(
+      "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{:.3f},{},{},{},{},{:.1f}\n", job.body->name,
+      job.body->edge_mm ? fmt::format("{:.4g}", *job.body->edge_mm) : "", done.tets, name_of(job.tissue),
+      job.cut.speed_mm_s, job.cut.dullness, fmt::format("{:.4g}", job.cut.advance_mm()), to_string(done.outcome),
+      cut.is_closed_loop.value_or(false) ? "yes" : "no", part(e.signed_error_mm, &Summary::mean),
+      part(e.signed_error_mm, &Summary::sd), part(e.signed_error_mm, &Summary::min),
+      part(e.signed_error_mm, &Summary::max), part(e.abs_error_mm, &Summary::mean), number(e.paper_abs_error_mm),
+      part(done.inner_edge.signed_error_mm, &Summary::mean), cut.kerf_width_mm, cut.record.removals.size(),
+      cut.final_state.splits.copies.size(), cut.steps.size(), cut.solver_iterations, cut.wall_s);
 }
 
 /// What is kept of a cut.
@@ -259,11 +270,11 @@ Result study_law(Workers& workers) {
 }
 
 /// The 25 pairs of the paper's Table I.
-Result study_table(Workers& workers, CutRule rule, std::uint64_t specimens) {
+Result study_table(Workers& workers, const Options& options) {
   static constexpr std::array<double, 5> kValues{1.0, 5.0, 9.0, 13.0, 17.0};
   Monitor silent;
   std::vector<Body> bodies;
-  for (std::uint64_t seed = 1; seed <= specimens; ++seed) {
+  for (std::uint64_t seed = 1; seed <= options.specimens; ++seed) {
     PhantomSettings specimen;
     specimen.seed = seed;
     MeshingChoice meshing;
@@ -277,8 +288,9 @@ Result study_table(Workers& workers, CutRule rule, std::uint64_t specimens) {
         jobs.push_back({&body, Tissue::Held, {}});
         jobs.back().cut.speed_mm_s = speed;
         jobs.back().cut.dullness = dullness;
-        jobs.back().cut.rule = rule;
-        if (rule == CutRule::Lattice) jobs.back().cut.residual_tolerance = kLatticeTolerance;
+        jobs.back().cut.rule = options.rule;
+        jobs.back().cut.contact_count = options.count;
+        if (options.rule == CutRule::Lattice) jobs.back().cut.residual_tolerance = kLatticeTolerance;
       }
     }
   }
@@ -296,7 +308,7 @@ int run(const Options& options) {
   const Result result = options.study == "step"   ? study_steps(workers)
                         : options.study == "mesh" ? study_meshes(workers)
                         : options.study == "law"  ? study_law(workers)
-                                                  : study_table(workers, options.rule, options.specimens);
+                                                  : study_table(workers, options);
   std::string table = origin_line("simulations of virtual specimens");
   table += kHeader;
   for (const Done& done : result.done) table += done.row;

@@ -543,6 +543,51 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   return report;
 }
 
+/// Whether a tet has a face on the boundary of what is live.
+bool is_at_surface(const FaceAdjacency& neighbours, std::span<const std::uint8_t> is_live, TetId tet) {
+  return std::ranges::count_if(neighbours.of(tet.index()), [&](std::int32_t neighbour) {
+           return is_live[static_cast<std::size_t>(neighbour)] != 0;
+         }) < 4;
+}
+
+/// The paper's rule, before the tissue moves: the tool holds the tets at the surface that it touches where it is, and
+/// no others. What a removal bared is touched from the next step on, as by SofaCarving.
+void touch_surface(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
+                   const CutWorkspace::Data& scratch, Workers& workers) {
+  const std::vector<ToolCore> here{ToolCore(tool, state.tool)};
+  std::vector<TetId> touched = tets_near(model, state.tissue.is_live, state.tissue.positions, state.tissue.positions,
+                                         here, touching_distance_mm(tool, settings), workers);
+  std::erase_if(touched, [&](TetId tet) { return !is_at_surface(scratch.neighbours, state.tissue.is_live, tet); });
+  if (settings.contact_count == ContactCount::Reset) {
+    for (const Bond& bond : state.bonds) {
+      if (!std::ranges::binary_search(touched, bond.tet)) state.dose[bond.tet.index()] = 0.0;
+    }
+  }
+  std::vector<Bond> bonds;
+  for (const TetId tet : touched) {
+    const auto held = std::ranges::lower_bound(state.bonds, tet, {}, &Bond::tet);
+    const bool was_held = held != state.bonds.end() && held->tet == tet;
+    const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, tet.index()));
+    bonds.push_back(was_held ? *held : Bond{tet, middle - state.tool.tip_mm});
+  }
+  state.bonds = std::move(bonds);
+}
+
+/// The paper's rule, once the tissue has moved: a step counts for each tet that is held. @returns the tets whose count
+/// is full now, ascending.
+std::vector<TetId> count_step(const TissueModel& model, const CutSettings& settings, CutState& state,
+                              CutStepReport& report) {
+  const double unit = settings.dwell_rate_per_s() * settings.reference_step_s;  // 1 / dullness at the reference power
+  std::vector<TetId> due;
+  for (const Bond& bond : state.bonds) {
+    double& dose = state.dose[bond.tet.index()];
+    dose += unit / relative_toughness(model, bond.tet.index());
+    if (dose >= kFullDose) due.push_back(bond.tet);
+  }
+  report.tets_in_contact = state.bonds.size();
+  return due;
+}
+
 }  // namespace
 
 CutStepReport advance(const TissueModel& whole, const CutSettings& settings, const Tool& tool, CutState& state,
@@ -560,6 +605,8 @@ CutStepReport advance(const TissueModel& whole, const CutSettings& settings, con
     return report;
   }
   if (!next) state.bonds.clear();
+  const bool counts_steps = settings.rule == CutRule::Paper;
+  if (next && counts_steps) touch_surface(model, settings, tool, state, scratch, workers);
   const std::vector<double> stiffnesses =
       move_tissue(model, settings, tool, state, scratch, next, nullptr, step_s, workers, report);
   if (report.is_finite)
@@ -573,8 +620,9 @@ CutStepReport advance(const TissueModel& whole, const CutSettings& settings, con
   // What the tool holds turns with it.
   const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, *next);
   for (Bond& bond : state.bonds) bond.offset_mm = turn * bond.offset_mm;
-  const std::vector<TetId> due =
-      follow_contact(model, settings, tool, state, scratch.before, *next, step_s, works_kpa, workers, report);
+  const std::vector<TetId> due = counts_steps ? count_step(model, settings, state, report)
+                                              : follow_contact(model, settings, tool, state, scratch.before, *next,
+                                                               step_s, works_kpa, workers, report);
   state.tool = *next;
   report.loose_removed = carve(model, state, scratch, due);
   report.removed = due.size();

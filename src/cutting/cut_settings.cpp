@@ -35,6 +35,16 @@ std::vector<Problem> validate(const CutSettings& s, double tool_diameter_mm) {
           {"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none where points carry the cut"});
     if (s.slip_mm) violations.push_back({"slip_mm", fmt::format("{}", *s.slip_mm), "none where points carry the cut"});
   }
+  if (s.rule == CutRule::Paper) {
+    if (s.tear_energy_kpa)
+      violations.push_back(
+          {"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none where steps of contact are counted"});
+    if (!(s.advance_mm() <= tool_diameter_mm))
+      violations.push_back(
+          {"reference_step_s",
+           fmt::format("{} at {} mm/s: {:.3g} mm a step", s.reference_step_s, s.speed_mm_s, s.advance_mm()),
+           "at most the tool's diameter or thickness"});
+  }
   Expect{violations}(s.advance_per_step_mm <= tool_diameter_mm, "advance_per_step_mm", s.advance_per_step_mm,
                      "at most the tool's diameter or thickness");
   return violations;

@@ -83,6 +83,31 @@ TEST(CutSettings, APowerOfTheLawOutOfRangeIsRefused) {
                           HasSubstr("tear_energy_kpa: found 0"), HasSubstr("slip_mm: found inf")));
 }
 
+TEST(CutSettings, ByThePapersRuleStepsTakeTheReferenceTimeAtAnySpeed) {
+  CutSettings settings;
+  settings.advance_per_step_mm = 0.1;
+  for (const double speed_mm_s : {1.0, 17.0}) {
+    settings.speed_mm_s = speed_mm_s;
+    settings.rule = CutRule::Paper;
+    EXPECT_DOUBLE_EQ(settings.step_s(), settings.reference_step_s);
+    EXPECT_DOUBLE_EQ(settings.advance_mm(), speed_mm_s * settings.reference_step_s);
+    EXPECT_THAT(validate(settings, kNeedleDiameterMm), IsEmpty());
+    settings.rule = CutRule::Tets;
+    EXPECT_DOUBLE_EQ(settings.step_s(), 0.1 / speed_mm_s);
+    EXPECT_DOUBLE_EQ(settings.advance_mm(), 0.1);
+  }
+}
+
+TEST(CutSettings, ThePapersRuleRefusesTearingAndStepsLongerThanTheNeedleIsWide) {
+  CutSettings settings;
+  settings.rule = CutRule::Paper;
+  settings.tear_energy_kpa = 5.0;
+  settings.speed_mm_s = 51.0;
+  EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
+              ElementsAre(HasSubstr("tear_energy_kpa: found 5, expected none"),
+                          HasSubstr("reference_step_s: found 0.02 at 51 mm/s: 1.02 mm a step")));
+}
+
 TEST(CutSettings, TwiceThePowerCutsTwiceAsFastOrAsTheExponentSays) {
   CutSettings settings;
   EXPECT_NEAR(settings.dwell_rate_per_s(), 1.0 / 0.18, 1e-12);

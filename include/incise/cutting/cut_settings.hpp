@@ -15,10 +15,21 @@ namespace incise {
 enum class CutRule {
   Tets,     ///< whole tets have a dose, are held by the tool, and go
   Lattice,  ///< so have points of a fixed lattice; a tet has the stiffness of what is left of it
+  Paper,    ///< whole tets as the paper removes them (II-C.2): from the surface inwards, after a count of steps
 };
-inline constexpr std::array<std::string_view, 2> kCutRuleNames{"tets", "lattice"};
+inline constexpr std::array<std::string_view, 3> kCutRuleNames{"tets", "lattice", "paper"};
 [[nodiscard]] constexpr Names names_of(CutRule) {
   return kCutRuleNames;
+}
+
+/// What becomes of a tet's count of steps when contact is lost. The paper does not say.
+enum class ContactCount {
+  Keep,   ///< it goes on from there when the tet is touched again
+  Reset,  ///< it begins anew
+};
+inline constexpr std::array<std::string_view, 2> kContactCountNames{"keep", "reset"};
+[[nodiscard]] constexpr Names names_of(ContactCount) {
+  return kContactCountNames;
 }
 
 /// How the simulated tool cuts. Speed and dullness are the two numbers that calibration finds (paper II-C.4); the
@@ -43,6 +54,7 @@ struct CutSettings {
   /// Lattice is under construction (docs/decisions/0010-cutting-law.md). It takes the four numbers below
   /// in place of reach, bond stiffness, slip and tear energy.
   CutRule rule = CutRule::Tets;
+  ContactCount contact_count = ContactCount::Keep;  ///< Paper: what becomes of a tet's count when contact is lost
   double kernel_radius_mm = 1.25;           ///< how far from its core the tool acts, [0.5, 5]
   double dose_length_mm = 1.8;              ///< a point that does not move just parts where v d τ0 is this, [0.1, 10]
   double hold_kpa = 400.0;                  ///< pull per length of tool and offset, all tissue about it whole, >= 0
@@ -56,8 +68,15 @@ struct CutSettings {
   [[nodiscard]] double tissue_s(double step_s) const {
     return step_s * speed_mm_s / real_speed_mm_s.value_or(speed_mm_s);
   }
-  /// Duration of one simulation step, s.
-  [[nodiscard]] double step_s() const { return advance_per_step_mm / speed_mm_s; }
+  /// Duration of one simulation step, s. The paper's rule counts steps, and those of SOFA take the same time at every
+  /// speed: in steps of the same travel, speed would have no effect.
+  [[nodiscard]] double step_s() const {
+    return rule == CutRule::Paper ? reference_step_s : advance_per_step_mm / speed_mm_s;
+  }
+  /// Tool travel in one simulation step, mm.
+  [[nodiscard]] double advance_mm() const {
+    return rule == CutRule::Paper ? speed_mm_s * reference_step_s : advance_per_step_mm;
+  }
 };
 /// What decides when tissue is cut; a case file puts the tissue's toughness behind it.
 inline void describe_effect(Visitor& v, CutSettings& s) {
@@ -87,6 +106,8 @@ inline void describe_steps(Visitor& v, CutSettings& s) {
     {1e-6, 0.3});
   v.internal("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step.", kPositive);
   v.internal("rule", s.rule, "What carries the cut.");
+  v.internal("contact_count", s.contact_count,
+             "Rule of the paper (II-C.2): what becomes of a tetrahedron's count of steps when contact is lost.");
   v.internal("kernel_radius_mm", s.kernel_radius_mm, "Lattice: how far the tool acts.", {0.5, 5.0});
   v.internal("dose_length_mm", s.dose_length_mm, "Lattice: where v d tau0 is this, a point on the way just parts.",
              {0.1, 10.0});
