@@ -103,8 +103,6 @@ Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& me
   return body;
 }
 
-constexpr double kLatticeTolerance = 0.03;  // today's 0.15 is too loose for a cut by points
-
 enum class Tissue { Held, WithoutDrag, Frozen };
 constexpr std::string_view name_of(Tissue tissue) {
   return tissue == Tissue::Held ? "drag" : tissue == Tissue::WithoutDrag ? "no drag" : "frozen";
@@ -130,7 +128,7 @@ SimulatedCut carry_out(const Job& job) {
   Monitor silent;
   Case settings = job.body->settings;
   settings.cut = job.cut;
-  if (job.tissue != Tissue::Held) settings.cut.bond_stiffness_kpa_mm2 = settings.cut.hold_kpa = 0.0;
+  if (job.tissue != Tissue::Held) settings.cut.bond_stiffness_kpa_mm2 = settings.cut.hold_per_mm2 = 0.0;
   const Study& study = job.body->study;
   if (job.tissue != Tissue::Frozen) {
     return cut_and_judge(settings, *study.model, study.stretched->state, *study.plan, *study.plan, alone, silent);
@@ -261,7 +259,6 @@ Result study_law(Workers& workers) {
     jobs.push_back({&body, Tissue::Held, {}});
     jobs.back().cut.rule = CutRule::Lattice;
     jobs.back().cut.dullness = 5.4;
-    jobs.back().cut.residual_tolerance = kLatticeTolerance;
   }
   Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh, cut by points", "edge length in the band, mm",
                                            "mean signed error, mm", true, false, {}}};
@@ -290,7 +287,6 @@ Result study_table(Workers& workers, const Options& options) {
         jobs.back().cut.dullness = dullness;
         jobs.back().cut.rule = options.rule;
         jobs.back().cut.contact_count = options.count;
-        if (options.rule == CutRule::Lattice) jobs.back().cut.residual_tolerance = kLatticeTolerance;
       }
     }
   }

@@ -80,6 +80,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "The requested correction is not accepted; the path is the uncorrected one, or the rejected one."},
     {"eligibility", kCaution, {}, "", "", "The assessment of this specimen advises against the path."},
     {"registration", kCaution, {}, "", "", "The registration's own figures argue against trusting it."},
+    {"cut_rule", kCaution, {}, "", "",
+     "The cut was simulated by another rule than the usual one (`cut.rule`), with whose cuts nothing was compared."},
     // Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
     {"mesh_resolution", kCaution, 1.5, "<=", "mm", "Mean edge length of the mesh along the path."},
     {"locking", kCaution, 0.49, "<=", "", "Poisson's ratio, where each tetrahedron keeps its own volume."},

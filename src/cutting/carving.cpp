@@ -174,6 +174,24 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   return stiffnesses;
 }
 
+/// Adds what the tool does to points about it, and its exact (constant) tangent. @returns the norm of the pulls over
+/// all vertices, mN.
+double add_hold(const TissueModel& model, const PointHold& hold, std::span<Vec3> forces, BlockMatrix& matrix) {
+  std::vector<std::pair<VertexId, Vec3>> pulls;
+  for (const HeldTet& held : hold.tets) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      const VertexId v = model.mesh.tets[held.tet.index()][a];
+      forces[v.index()] += held.pull_mn[a];
+      pulls.emplace_back(v, held.pull_mn[a]);
+      for (std::size_t b = 0; b < 4; ++b) {
+        Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.block(
+            model.tet_slots[held.tet.index()][4 * a + b])) += held.stiffness_mn_mm[4 * a + b] * hold.directions;
+      }
+    }
+  }
+  return norm_of_sums(std::move(pulls));
+}
+
 /// Lets tissue that the tool has left too far behind slip: the place where it is held follows.
 void slip(const TissueModel& model, const Tool& tool, double slip_mm, CutState& state, CutStepReport& report) {
   const Mat3 held = held_directions(tool, state.tool);
@@ -275,8 +293,9 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   scratch.stiffness.begin(model, state.tissue, kSteadyingS, is_fresh, tangent, scratch.right_side, workers, viscous_s);
   double bond_scale = 0.0;
   std::vector<double> stiffnesses;
-  if (next && hold != nullptr) {
-    bond_scale = add_pull(*hold, scratch.right_side);
+  if (hold != nullptr) {
+    for (const HeldTet& held : hold->tets) scratch.stiffness.lend(model, held.tet);
+    bond_scale = add_hold(model, *hold, scratch.right_side, scratch.stiffness.matrix());
   } else if (next) {
     for (const Bond& bond : state.bonds) scratch.stiffness.lend(model, bond.tet);
     stiffnesses = add_bonds(model, settings, tool, state, scratch.right_side, scratch.stiffness.matrix(), bond_scale);
@@ -288,7 +307,6 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   pcg.relative_tolerance = settings.residual_tolerance;
   pcg.reference_mn = std::max(bond_scale, kForceFloorMn);
   pcg.starts_from_last = true;
-  if (hold != nullptr) pcg.means = &hold->means;
   report.solve = scratch.solver.solve(scratch.stiffness.matrix(), scratch.right_side, scratch.increment, pcg, workers);
 
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) {
@@ -529,7 +547,7 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   for (std::size_t i = 0; i < state.points.is_held.size(); ++i) {
     if (state.points.is_held[i] != 0) state.points.offset_mm[i] = turn * state.points.offset_mm[i];
   }
-  load_tool(settings, tool, next, hold, *scratch.lattice, state, report);
+  load_tool(model, settings, tool, next, hold, *scratch.lattice, scratch.before, state, report);
   const std::vector<ToolCore> cores = cores_on_the_way(tool, state.tool, next);
   // Removed tets, too: between a dose that grows and one that stopped, the kerf's border would lie too far inwards.
   const std::vector<TetId> candidates = tets_near(model, scratch.every_tet, scratch.before, state.tissue.positions,

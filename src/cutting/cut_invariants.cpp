@@ -151,6 +151,16 @@ std::string find_problem(const TissueModel& whole, const CutState& state) {
   try {
     require_splits_of(whole.mesh, state.splits);
     lattice_of(whole, state.points).require_own_tets(state.points, state.splits, whole.mesh.tets.size());
+    for (const std::int32_t step : state.points.parted_step)
+      INCISE_REQUIRE(
+          step >= -1 && step <= state.step,
+          fmt::format("points: expected a step up to {} in which one parted, or -1, found {}", state.step, step));
+    for (const double dose : state.points.dose)
+      INCISE_REQUIRE(dose >= 0.0 && std::isfinite(dose),
+                     fmt::format("points: expected a dose of 0 or more, found {}", dose));
+    for (const Removal& removal : state.record.removals)
+      INCISE_REQUIRE(removal.step >= 0 && removal.step <= state.step,
+                     fmt::format("record: expected steps from 0 to {}, found {}", state.step, removal.step));
   } catch (const InvalidArgument& error) {
     return error.text();
   }

@@ -29,11 +29,8 @@ std::vector<Problem> validate(const CutSettings& s, double tool_diameter_mm) {
                             fmt::format("at most {} s", kMaxContactS)});
     }
   }
-  if (s.rule == CutRule::Lattice) {
-    if (s.tear_energy_kpa)
-      violations.push_back(
-          {"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none where points carry the cut"});
-    if (s.slip_mm) violations.push_back({"slip_mm", fmt::format("{}", *s.slip_mm), "none where points carry the cut"});
+  if (s.rule == CutRule::Lattice && s.tear_energy_kpa) {
+    violations.push_back({"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none where points carry the cut"});
   }
   if (s.rule == CutRule::Paper) {
     if (s.tear_energy_kpa)

@@ -61,7 +61,7 @@ class FrameKeeper {
 
  private:
   void keep(const CutState& state, bool is_tool_in) {
-    kept_.push_back({state.time_s, state.tool, is_tool_in, state.tissue.positions, state.tissue.is_live});
+    kept_.push_back({state.time_s, state.step, state.tool, is_tool_in, state.tissue.positions});
   }
   int frames_;
   double duration_s_;
@@ -273,14 +273,6 @@ std::size_t count_inverted(const TetMesh& mesh, const TissueState& tissue) {
 void complete(CutFrame& frame, const TetMesh& whole, const MeshSplits& splits) {
   for (std::size_t v = frame.positions.size() - whole.vertices.size(); v < splits.vertices.size(); ++v)
     frame.positions.push_back(Vec3(frame.positions[splits.vertices[v].index()]));
-  // A tet that is split later had a live part then.
-  std::vector<std::uint8_t> has_live(frame.is_live.begin(),
-                                     frame.is_live.begin() + static_cast<std::ptrdiff_t>(whole.tets.size()));
-  for (std::size_t t = whole.tets.size(); t < frame.is_live.size(); ++t) {
-    if (frame.is_live[t] != 0) has_live[splits.copies[t - whole.tets.size()].whole.index()] = 1;
-  }
-  for (std::size_t t = frame.is_live.size() - whole.tets.size(); t < splits.copies.size(); ++t)
-    frame.is_live.push_back(has_live[splits.copies[t].whole.index()]);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ std::uint64_t expected_memory_bytes(std::size_t vertices, std::size_t tets, Volu
   const std::size_t aggregates = vertices / kVerticesOfAggregate + 1;
   const std::size_t coarse = aggregates <= kMostAggregatesWithInverse ? 6 * aggregates : 0;
   return kPerTet * tets + kPerVertex * vertices + kPerBlock * blocks + kPerCoarseNumber * coarse * coarse +
-         static_cast<std::size_t>(frames) * (24 * vertices + tets) + per_viscous_tet * tets;
+         static_cast<std::size_t>(frames) * 24 * vertices + per_viscous_tet * tets;
 }
 
 }  // namespace incise

@@ -18,14 +18,6 @@ constexpr double kLinkMm = 1.75 * PointLattice::kSpacingMm;
 // Points that are no nodes stand for a whole small or flat tet: the nearest across a face hang together up to this.
 constexpr double kFarLinkMm = 1.0;
 
-struct NodeHash {
-  std::size_t operator()(const PointLattice::Node& node) const {
-    std::size_t hash = 0;
-    for (const std::int32_t i : node) hash = 1000003 * hash + static_cast<std::size_t>(i);
-    return hash;
-  }
-};
-
 /// Points of one tet that hang together.
 struct Part {
   std::size_t star;  // place of its tet among those that are looked at
@@ -319,7 +311,7 @@ class Splitter {
   std::vector<StarTet> stars_;
   std::vector<std::size_t> left_;  // points of the stars that are not parted
   std::vector<std::size_t> part_of_;  // of each of them
-  std::unordered_map<PointLattice::Node, std::size_t, NodeHash> at_node_;  // place in left_
+  std::unordered_map<PointLattice::Node, std::size_t, PointLattice::NodeHash> at_node_;  // place in left_
   std::vector<Part> parts_;
   std::map<std::size_t, VertexId> vertex_of_;  // by the root of a class of corners
 };

@@ -1,5 +1,7 @@
 #include "point_kerf.hpp"
 
+#include "dose_field.hpp"
+
 #include <incise/geometry/iso_surface.hpp>
 
 #include <algorithm>
@@ -12,9 +14,6 @@ namespace {
 /// The six tets of Kuhn's division of a cell, by its corners (bit a of a number: one step along axis a).
 constexpr std::array<std::array<std::size_t, 4>, 6> kKuhn{
     {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
-
-/// What a dose counts for at most: where it is high on one side, the kerf's border does not move to the other node.
-constexpr double kMostDose = 2.0;
 
 PointLattice::Node moved(const PointLattice::Node& node, std::size_t corner, int by = 1) {
   PointLattice::Node other = node;
@@ -74,7 +73,7 @@ PointKerf::Corner PointKerf::corner(const PointLattice::Node& node) const {
   const auto found = points_at_.find(node);
   if (found == points_at_.end()) return {0.0, Vec3::Zero(), false};
   const std::size_t point = found->second;
-  return {std::min(kMostDose, points_.dose[point]),
+  return {std::min(DoseField::kMostDose, points_.dose[point]),
           lattice_.position(point, positions_) - lattice_.position(point, model_.mesh.vertices), true};
 }
 
@@ -127,7 +126,7 @@ TriMesh PointKerf::surface() const {
   for (const auto& [node, point] : points_at_) {
     if (!doses.grid.contains(node[0] - low[0], node[1] - low[1], node[2] - low[2])) continue;
     doses.voxels[doses.grid.offset(node[0] - low[0], node[1] - low[1], node[2] - low[2])] =
-        static_cast<float>(std::min(kMostDose, points_.dose[point]));
+        static_cast<float>(std::min(DoseField::kMostDose, points_.dose[point]));
   }
   TriMesh surface = iso_surface(doses, 1.0);
   for (Vec3& v : surface.vertices) {

@@ -38,6 +38,11 @@ PointLattice::Node PointLattice::node_near(const Vec3& rest) {
   return {nearest(at.x()), nearest(at.y()), nearest(at.z())};
 }
 
+PointLattice::Node PointLattice::cell_of(const Vec3& rest) {
+  const Eigen::Array3i low = ((rest - kOriginMm) / kSpacingMm).array().floor().cast<int>();
+  return {low[0], low[1], low[2]};
+}
+
 PointLattice::PointLattice(const TissueModel& model, std::span<const TetId> tets)
     : model_(&model), first_(model.mesh.tets.size(), -1), count_(model.mesh.tets.size(), 0) {
   for (const TetId tet : tets) add(tet);

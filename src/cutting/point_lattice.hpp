@@ -20,6 +20,13 @@ namespace incise {
 class PointLattice {
  public:
   using Node = std::array<std::int32_t, 3>;
+  struct NodeHash {
+    std::size_t operator()(const Node& node) const {
+      std::size_t hash = 0;
+      for (const std::int32_t i : node) hash = 1000003 * hash + static_cast<std::size_t>(i);
+      return hash;
+    }
+  };
   static constexpr double kSpacingMm = 0.2;
 
   PointLattice(const TissueModel& model, std::span<const TetId> tets);
@@ -57,6 +64,8 @@ class PointLattice {
   [[nodiscard]] const std::optional<Node>& node_of(std::size_t point) const { return nodes_[point]; }
   [[nodiscard]] static Vec3 rest_position(const Node& node);
   [[nodiscard]] static Node node_near(const Vec3& rest);
+  /// The node of lowest coordinates of the cell that holds a place at rest.
+  [[nodiscard]] static Node cell_of(const Vec3& rest);
 
  private:
   const TissueModel* model_;

@@ -4,6 +4,7 @@
 
 #include <incise/cutting/carving.hpp>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -11,14 +12,17 @@ namespace incise {
 
 inline constexpr double kLeastFill = 1e-3;  ///< of the stiffness of a tet that is not empty
 
-/// The hold of the tool on the points about it, slice by slice along its axis: each pulls the mean of its points to
-/// where it took hold of them. Linear in the displacements; weights are those of the moment that it was made for.
+/// The hold of the tool on the points of one tet, linear in the displacement of its corners.
+struct HeldTet {
+  TetId tet;
+  std::array<double, 16> stiffness_mn_mm{};  ///< of its corners, row by row; along the directions of the hold
+  std::array<Vec3, 4> pull_mn{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< where they are
+};
+/// The hold of the tool on the points about it: each is pulled to where the tool took hold of it. Weights are those of
+/// the moment that it was made for.
 struct PointHold {
-  MeanStiffness means;                ///< per slice
-  std::vector<Vec3> target_mm;        ///< per slice: where the mean is pulled to
-  std::vector<Vec3> middle_mm;        ///< per slice: where the mean is
-  std::vector<double> elastic_mn_mm;  ///< per slice: stiffness of the hold, which `means` has where it does not slip
-  std::vector<int> number;            ///< per slice: how many hats up from the tip
+  std::vector<HeldTet> tets;           ///< ascending
+  Mat3 directions = Mat3::Identity();  ///< in which the tool holds: a projection
 };
 
 /// Makes the points of tets that the tool comes near for the first time.
@@ -30,13 +34,11 @@ void meet_points(std::span<const TetId> candidates, PointLattice& lattice, CutPo
                                     const CutState& state, const ToolPose& next, double step_s,
                                     const PointLattice& lattice, std::span<const TetId> candidates, Workers& workers);
 
-/// Adds the pull to the forces, mN. @returns its norm over all vertices, mN.
-double add_pull(const PointHold& hold, std::span<Vec3> forces);
-
-/// Finds the load on the tool, and lets slices slip that are pulled harder than the limit. Tissue and offsets are those
-/// of the step's end. @param next  where the tool is then.
-void load_tool(const CutSettings& settings, const Tool& tool, const ToolPose& next, const PointHold& hold,
-               const PointLattice& lattice, CutState& state, CutStepReport& report);
+/// Finds the load on the tool, and lets points slip that it has left too far behind. @param next  where the tool is
+/// now. @param before  where the tissue was when the hold was made; the state has where it is.
+void load_tool(const TissueModel& model, const CutSettings& settings, const Tool& tool, const ToolPose& next,
+               const PointHold& hold, const PointLattice& lattice, std::span<const Vec3> before, CutState& state,
+               CutStepReport& report);
 
 /// Gives the points of the candidates, those of removed tets among them, their dose of a step, and takes hold of those
 /// that come within reach.

@@ -103,6 +103,15 @@ std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh, std::span<const st
   return faces;
 }
 
+std::vector<std::uint8_t> skin_faces(const TetMesh& mesh) {
+  std::vector<std::uint8_t> faces(mesh.tets.size(), 0);
+  for_each_face_group(mesh.tets, mesh.vertices.size(), {}, [&](std::span<const FaceEntry> group) {
+    std::uint8_t& of_tet = faces[group[0].slot() / 4];
+    if (group.size() == 1) of_tet = static_cast<std::uint8_t>(of_tet | 1U << group[0].slot() % 4);
+  });
+  return faces;
+}
+
 TriMesh boundary_surface(const TetMesh& mesh) {
   TriMesh surface;
   surface.vertices = mesh.vertices;

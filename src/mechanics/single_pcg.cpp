@@ -27,11 +27,11 @@ float scale_for(double largest_on_diagonal) {
 SinglePcg::SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSpace& coarse)
     : pattern_(std::move(pattern)),
       vertex_(coarse.aggregates().vertices),
-      own_(pattern_->rows()),
       start_(coarse.aggregates().start),
       is_coarse_dense_(coarse.is_dense()) {
   const std::size_t count = pattern_->rows();
-  for (std::size_t i = 0; i < count; ++i) own_[static_cast<std::size_t>(vertex_[i])] = static_cast<std::int32_t>(i);
+  std::vector<std::int32_t> own(count);
+  for (std::size_t i = 0; i < count; ++i) own[static_cast<std::size_t>(vertex_[i])] = static_cast<std::int32_t>(i);
   row_start_.push_back(0);
   std::vector<std::pair<std::int32_t, std::int32_t>> row;  // own column, slot of the pattern
   for (std::size_t i = 0; i < count; ++i) {
@@ -39,7 +39,7 @@ SinglePcg::SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSp
     row.clear();
     for (auto slot = pattern_->row_start[v]; slot < pattern_->row_start[v + 1]; ++slot) {
       const auto column = static_cast<std::size_t>(pattern_->column[static_cast<std::size_t>(slot)]);
-      row.emplace_back(own_[column], slot);
+      row.emplace_back(own[column], slot);
     }
     std::sort(row.begin(), row.end());
     for (const auto& [column, slot] : row) {
@@ -173,8 +173,8 @@ void SinglePcg::load(std::span<const Vec3> b, bool keeps_last, Workers& workers)
 }
 
 /// How much of the direction p, the last solution, lowers the energy most: p · b / p · A p.
-double SinglePcg::share_of_last(const MeanStiffness* means, Workers& workers) {
-  const double pq = multiply(means, workers);
+double SinglePcg::share_of_last(Workers& workers) {
+  const double pq = multiply(workers);
   for_aggregates(workers, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     double sum = 0.0;
     for (auto k = 4 * static_cast<std::size_t>(start_[begin]); k < 4 * static_cast<std::size_t>(start_[end]); ++k)
@@ -216,36 +216,14 @@ double SinglePcg::precondition(Workers& workers) {
 }
 
 /// q = A p; returns p · q.
-double SinglePcg::multiply(const MeanStiffness* means, Workers& workers) {
+double SinglePcg::multiply(Workers& workers) {
   const BlockRows<std::int16_t> rows{row_start_.data(), column_.data(), values_.data()};
   const PcgVectors v = vectors();
   for_aggregates(workers, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     partial_pq_[chunk] = kernels().multiply_whole(rows, v, static_cast<std::size_t>(start_[begin]),
                                                   static_cast<std::size_t>(start_[end]));
   });
-  return sum_of(partial_pq_) + (means != nullptr ? add_means(*means) : 0.0);
-}
-
-/// The same of the means: adds to q along free axes; returns p · what it adds.
-double SinglePcg::add_means(const MeanStiffness& means) {
-  double product = 0.0;
-  for (std::size_t t = 0; t < means.terms(); ++t) {
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t i = means.start[t]; i < means.start[t + 1]; ++i) {
-      const float* p = p_.data() + 4 * own_[static_cast<std::size_t>(means.vertex[i])];
-      mean += means.weight[i] * Vec3(p[0], p[1], p[2]);
-    }
-    const Vec3 pull = means.stiffness[t] * mean;
-    product += mean.dot(pull);
-    for (std::size_t i = means.start[t]; i < means.start[t + 1]; ++i) {
-      const auto place = 4 * static_cast<std::size_t>(own_[static_cast<std::size_t>(means.vertex[i])]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double add = means.weight[i] * pull[static_cast<Eigen::Index>(k)];
-        q_[place + k] += is_free_[place + k] * static_cast<float>(add);
-      }
-    }
-  }
-  return product;
+  return sum_of(partial_pq_);
 }
 
 /// p = z + P y + beta p.
@@ -268,10 +246,9 @@ PcgReport SinglePcg::solve(std::span<const Vec3> b, std::span<Vec3> x, const Pcg
   }
   const bool keeps_last = settings.starts_from_last && has_last_;
   load(b, keeps_last, workers);
-  const double start = keeps_last ? share_of_last(settings.means, workers) : 0.0;
+  const double start = keeps_last ? share_of_last(workers) : 0.0;
   struct Sweeps {
     SinglePcg& pcg;
-    const MeanStiffness* means;
     Workers& workers;
     double move(double alpha) {
       pcg.move(static_cast<float>(alpha), workers);
@@ -279,8 +256,8 @@ PcgReport SinglePcg::solve(std::span<const Vec3> b, std::span<Vec3> x, const Pcg
     }
     double precondition() { return pcg.precondition(workers); }
     void turn(double beta) { pcg.turn(static_cast<float>(beta), workers); }
-    double multiply() { return pcg.multiply(means, workers); }
-  } sweeps{*this, settings.means, workers};
+    double multiply() { return pcg.multiply(workers); }
+  } sweeps{*this, workers};
   const PcgReport report = iterate(sweeps, settings, start);
   has_last_ = report.converged;
   for (std::size_t i = 0; i < vertex_.size(); ++i) {

@@ -38,16 +38,14 @@ class SinglePcg {
   bool round_row(const BlockMatrix& matrix, std::size_t row);
   PcgVectors vectors();
   void load(std::span<const Vec3> b, bool keeps_last, Workers& workers);
-  double share_of_last(const MeanStiffness* means, Workers& workers);
+  double share_of_last(Workers& workers);
   void move(float alpha, Workers& workers);
   double precondition(Workers& workers);
-  double multiply(const MeanStiffness* means, Workers& workers);
-  double add_means(const MeanStiffness& means);
+  double multiply(Workers& workers);
   void turn(float beta, Workers& workers);
 
   std::shared_ptr<const BlockPattern> pattern_;
   std::vector<std::int32_t> vertex_;  ///< own number -> vertex
-  std::vector<std::int32_t> own_;     ///< vertex -> own number
   std::vector<std::int32_t> start_;   ///< aggregates + 1, into own numbers
   std::vector<std::int32_t> row_start_, column_;
   std::vector<std::int32_t> source_slot_;  ///< own slot -> slot of the pattern

@@ -104,31 +104,14 @@ struct TwoLevelPcg::Data {
   }
 
   /// q = A p; returns p · q.
-  double apply_matrix(const BlockMatrix& matrix, const MeanStiffness* means, Workers& workers) {
+  double apply_matrix(const BlockMatrix& matrix, Workers& workers) {
     workers.for_chunks(pattern->rows(), kRowsPerChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       multiply_rows(matrix, p, q, begin, end);
       double pq = 0.0;
       for (std::size_t v = begin; v < end; ++v) pq += p[v].dot(q[v]);
       partial_pq[chunk] = pq;
     });
-    return sum_of(partial_pq) + (means != nullptr ? add_means(*means) : 0.0);
-  }
-
-  /// The same of the means: adds to q along free axes; returns p · what it adds.
-  double add_means(const MeanStiffness& means) {
-    double product = 0.0;
-    for (std::size_t t = 0; t < means.terms(); ++t) {
-      Vec3 mean = Vec3::Zero();
-      for (std::size_t i = means.start[t]; i < means.start[t + 1]; ++i)
-        mean += means.weight[i] * p[static_cast<std::size_t>(means.vertex[i])];
-      const Vec3 pull = means.stiffness[t] * mean;
-      product += mean.dot(pull);
-      for (std::size_t i = means.start[t]; i < means.start[t + 1]; ++i) {
-        const auto v = static_cast<std::size_t>(means.vertex[i]);
-        q[v] += means.weight[i] * coarse.is_free(v).cwiseProduct(pull);
-      }
-    }
-    return product;
+    return sum_of(partial_pq);
   }
 
   /// y = C Pᵀ r; returns r · M r, since r · P y = (Pᵀ r) · y.
@@ -206,7 +189,6 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
   struct Sweeps {
     Data& data;
     const BlockMatrix& matrix;
-    const MeanStiffness* means;
     std::span<Vec3> x;
     Workers& workers;
     double move(double alpha) {
@@ -215,8 +197,8 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
     }
     double precondition() { return data.finish_preconditioning(workers); }
     void turn(double beta) { data.turn_direction(beta, workers); }
-    double multiply() { return data.apply_matrix(matrix, means, workers); }
-  } sweeps{d, matrix, settings.means, x, workers};
+    double multiply() { return data.apply_matrix(matrix, workers); }
+  } sweeps{d, matrix, x, workers};
   PcgReport report = iterate(sweeps, settings);
   report.is_redone = d.single != nullptr;
   report.iterations += in_single.iterations;

@@ -161,23 +161,20 @@ GrayVolume occupancy_of(const LabelVolume& labels) {
   return occupancy;
 }
 
-ReportFrame frame_of(const TetMesh& mesh, std::span<const BoundaryFace> uncut, Points positions,
+ReportFrame frame_of(const TetMesh& mesh, std::span<const std::uint8_t> on_skin, Points positions,
                      std::span<const std::uint8_t> is_live) {
   INCISE_REQUIRE(positions.size() == mesh.vertices.size(),
                  fmt::format("expected {} positions, found {}", mesh.vertices.size(), positions.size()));
   INCISE_REQUIRE(is_live.empty() || is_live.size() == mesh.tets.size(),
                  fmt::format("expected {} live flags, found {}", mesh.tets.size(), is_live.size()));
-  // Both lists are in the order of tet and face, and a face keeps its corners: one walk along both tells which are old.
+  INCISE_REQUIRE(on_skin.size() == mesh.tets.size(),
+                 fmt::format("expected the skin's faces of {} tets, found {}", mesh.tets.size(), on_skin.size()));
   ReportFrame frame;
-  auto old = uncut.begin();
   for (const BoundaryFace& face : boundary_faces(mesh, is_live)) {
-    while (old != uncut.end() && old->tet < face.tet) ++old;
-    bool is_old = false;
-    for (auto same = old; same != uncut.end() && same->tet == face.tet; ++same) {
-      is_old = is_old || same->corners == face.corners;
-    }
+    int opposite = 0;
+    while (face_of(mesh.tets[face.tet.index()], opposite) != face.corners) ++opposite;
     frame.skin.push_back(face.corners);
-    frame.is_kerf.push_back(is_old ? 0 : 1);
+    frame.is_kerf.push_back((on_skin[face.tet.index()] >> opposite & 1U) != 0 ? 0 : 1);
   }
   frame.positions_mm = std::move(positions);
   return frame;

@@ -123,7 +123,7 @@ std::string mesh_section(const ReportData& data, bool mesh_is_shown) {
   }
   if (mesh_is_shown) {
     ReportAnimation still{.name = "mesh",
-                          .frames = {frame_of(picture.mesh, boundary_faces(picture.mesh), picture.mesh.vertices, {})}};
+                          .frames = {frame_of(picture.mesh, skin_faces(picture.mesh), picture.mesh.vertices, {})}};
     html += viewer("mesh-view", "The tetrahedral mesh, opened along a plane",
                    png_data_uri(frame_png(still, 0, data.approach, kStillWidth, kStillHeight)));
   } else if (!picture.mesh.tets.empty()) {

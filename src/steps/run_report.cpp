@@ -22,6 +22,7 @@
 #include <incise/steps/compensation_figures.hpp>
 #include <incise/steps/run_report.hpp>
 #include <incise/storage/case_file.hpp>
+#include <incise/storage/run_folder.hpp>
 #include <incise/workflow/cut_verdict.hpp>
 
 #include <fmt/format.h>
@@ -192,19 +193,41 @@ void add_mesh(const TetMesh& mesh, ReportData& data) {
   data.mesh.volume_mm3 = quality.volume_mm3;
 }
 
+/// One number for each tet, whole and from 0 to `last`. @throws DataError where the file has others.
+const std::vector<double>& cell_values(const TetMesh& mesh, const char* name, double last, const fs::path& file) {
+  const auto found = mesh.cell_data.find(name);
+  if (found == mesh.cell_data.end() || found->second.values.size() != mesh.tets.size())
+    throw DataError(file, name, "no number for each tetrahedron", "cell data as `incise` writes it");
+  for (const double value : found->second.values) {
+    if (!(value >= 0.0 && value <= last && value == std::floor(value)))
+      throw DataError(file, name, fmt::format("{}", value), fmt::format("whole numbers from 0 to {}", last));
+  }
+  return found->second.values;
+}
+
 /// The frames of one cut, as kept beside frames.pvd.
-std::vector<ReportFrame> read_frames(const fs::path& folder, const TetMesh& mesh, Monitor& monitor) {
+std::vector<ReportFrame> read_frames(const fs::path& folder, const TetMesh& whole, Monitor& monitor) {
   std::vector<ReportFrame> frames;
   if (!fs::exists(folder / "frames.pvd")) return frames;
-  const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
+  const bool is_divided = fs::exists(folder / kUncutFile);
+  const TetMesh mesh = is_divided ? read_deformed_tet_mesh(folder / kUncutFile) : whole;
+  std::vector<std::uint8_t> on_skin;
+  if (is_divided) {
+    for (const double faces : cell_values(mesh, "skin_faces", 15.0, folder / kUncutFile))
+      on_skin.push_back(static_cast<std::uint8_t>(faces));
+  } else {
+    on_skin = skin_faces(mesh);
+  }
   const fs::path tool_file = folder / "frames" / "tool.json";
   const Json tools = from_written_json(tool_file, [&] { return read_json(tool_file).at("frames"); });
   const std::vector<PvdFrame> series = read_pvd(folder / "frames.pvd");
   for (std::size_t i = 0; i < series.size() && i < tools.size(); ++i) {
     TetMesh live = read_deformed_tet_mesh(folder / series[i].file);
     std::vector<std::uint8_t> is_live(mesh.tets.size(), 0);
-    for (const double place : live.cell_data.at("tet").values) is_live.at(static_cast<std::size_t>(place)) = 1;
-    ReportFrame frame = frame_of(mesh, uncut, std::move(live.vertices), is_live);
+    const double last = static_cast<double>(mesh.tets.size()) - 1.0;
+    for (const double place : cell_values(live, is_divided ? "cell" : "tet", last, folder / series[i].file))
+      is_live[static_cast<std::size_t>(place)] = 1;
+    ReportFrame frame = frame_of(mesh, on_skin, std::move(live.vertices), is_live);
     frame.time_s = series[i].time_s;
     from_written_json(tool_file, [&] {
       const bool is_tool_in = tools.at(i).at("is_tool_in");

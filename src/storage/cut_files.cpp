@@ -1,65 +1,133 @@
 #include "kerf_files.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/cutting/divided_mesh.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/pvd_io.hpp>
+#include <incise/mechanics/statics.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/storage/run_folder.hpp>
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <memory>
+#include <utility>
 
 namespace incise {
 namespace {
 
-/// The live tets at one moment, deformed; the cell array `tet` keeps their place in the uncut mesh. What viscosity adds
-/// to stress is not kept in a frame.
-TetMesh live_mesh(const TissueModel& model, TissueState state, const CutFrame& frame) {
-  state.positions = frame.positions;
-  state.is_live = frame.is_live;
-  TetMesh live = deformed_mesh(model, state);
-  const std::vector<double> stress = std::move(live.cell_data["von_mises_kpa"].values);
-  live.tets.clear();
-  live.cell_data.clear();
-  DataArray place{1, {}}, live_stress{1, {}};
-  for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
-    if (frame.is_live[tet] == 0) continue;
-    live.tets.push_back(model.mesh.tets[tet]);
-    place.values.push_back(static_cast<double>(tet));
-    live_stress.values.push_back(stress[tet]);
+/// A cut's tissue for pictures.
+struct CutTissue {
+  std::unique_ptr<const TissueModel> split;  // where the cut has split the mesh
+  const TissueModel& model;                  // on the split mesh
+  TissueState stretched;                     // before the cut
+  DividedMesh divided;
+  std::vector<TetId> whole_tet;  // of each tet that is there
+  [[nodiscard]] bool is_divided() const { return split || !divided.between.empty(); }
+};
+
+CutTissue tissue_of(const TissueModel& whole, const TissueState& stretched, const CutState& state) {
+  const MeshSplits& splits = state.splits;
+  std::unique_ptr<const TissueModel> split;
+  if (splits != MeshSplits{}) split = std::make_unique<const TissueModel>(split_model(whole, splits));
+  const TissueModel& model = split ? *split : whole;
+  CutTissue tissue{std::move(split), model, stretched, divide_at_kerf(whole, state), {}};
+  tissue.stretched.positions = split_positions(stretched.positions, splits);
+  for (const SplitTet& copy : splits.copies)
+    tissue.stretched.rotations.push_back(Mat3(stretched.rotations[copy.whole.index()]));
+  tissue.stretched.is_live.resize(model.mesh.tets.size(), 1);
+  for (const TetId tet : tissue.divided.split_tet) {
+    const std::size_t count = whole.mesh.tets.size();
+    tissue.whole_tet.push_back(tet.index() < count ? tet : splits.copies[tet.index() - count].whole);
   }
-  live.cell_data["tet"] = std::move(place);
+  return tissue;
+}
+
+/// Some of the tets, with their numbers: cell data `tet` has those in the uncut mesh, and, where the cut has divided
+/// tets, `cell` those among all that there are.
+TetMesh some_of(const CutTissue& tissue, Points vertices, const std::vector<std::uint8_t>& is_wanted) {
+  TetMesh mesh;
+  mesh.vertices = std::move(vertices);
+  DataArray place{1, {}}, cell{1, {}};
+  for (std::size_t t = 0; t < is_wanted.size(); ++t) {
+    if (is_wanted[t] == 0) continue;
+    mesh.tets.push_back(tissue.divided.tets[t]);
+    place.values.push_back(static_cast<double>(tissue.whole_tet[t].index()));
+    cell.values.push_back(static_cast<double>(t));
+  }
+  mesh.cell_data["tet"] = std::move(place);
+  if (tissue.is_divided()) mesh.cell_data["cell"] = std::move(cell);
+  return mesh;
+}
+
+/// What is left at one moment, deformed. What viscosity adds to stress is not kept in a frame.
+TetMesh live_mesh(const CutTissue& tissue, const CutFrame& frame) {
+  const std::vector<std::uint8_t> is_left = tissue.divided.is_left(frame.step);
+  TissueState state = tissue.stretched;
+  state.positions = frame.positions;
+  std::ranges::fill(state.is_live, 0);
+  for (std::size_t t = 0; t < is_left.size(); ++t) {
+    if (is_left[t] != 0) state.is_live[tissue.divided.split_tet[t].index()] = 1;
+  }
+  const std::vector<double> stress = von_mises_kpa(tissue.model, state);
+  TetMesh live = some_of(tissue, tissue.divided.positions(frame.positions), is_left);
+  DataArray displacement{3, {}}, live_stress{1, {}};
+  const Points rest = tissue.divided.positions(tissue.model.mesh.vertices);
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    const Vec3 moved = live.vertices[v] - rest[v];
+    displacement.values.insert(displacement.values.end(), {moved.x(), moved.y(), moved.z()});
+  }
+  for (std::size_t t = 0; t < is_left.size(); ++t) {
+    if (is_left[t] != 0) live_stress.values.push_back(stress[tissue.divided.split_tet[t].index()]);
+  }
+  live.point_data["displacement_mm"] = std::move(displacement);
   live.cell_data["von_mises_kpa"] = std::move(live_stress);
   return live;
 }
 
-/// The removed tets where they lay before the cut, with when and why they went.
-TetMesh removed_mesh(const TetMesh& mesh, const Points& stretched, const CutRecord& record) {
+/// All that there was before the cut, as the cut has divided it.
+TetMesh uncut_mesh(const CutTissue& tissue) {
+  const DividedMesh& divided = tissue.divided;
+  TetMesh mesh =
+      some_of(tissue, divided.positions(tissue.stretched.positions), std::vector<std::uint8_t>(divided.tets.size(), 1));
+  mesh.cell_data["skin_faces"] = {1, {divided.skin_faces.begin(), divided.skin_faces.end()}};
+  mesh.cell_data["gone_step"] = {1, {divided.gone_step.begin(), divided.gone_step.end()}};
+  return mesh;
+}
+
+/// What went, where it lay before the cut, with when and why, in order.
+TetMesh removed_mesh(const CutTissue& tissue, const std::vector<CutStepLog>& steps) {
+  const DividedMesh& divided = tissue.divided;
+  std::vector<std::size_t> gone;
+  for (std::size_t t = 0; t < divided.tets.size(); ++t) {
+    if (divided.gone_step[t] >= 0) gone.push_back(t);
+  }
+  const auto is_loose = [&](std::size_t t) { return divided.gone_cause[t] == RemovalCause::LooseFragment; };
+  std::ranges::stable_sort(gone, {}, [&](std::size_t t) { return std::pair(divided.gone_step[t], is_loose(t)); });
+  const Points before = divided.positions(tissue.stretched.positions);
   TetMesh removed;
-  std::vector<std::int32_t> place(mesh.vertices.size(), -1);
-  DataArray time{1, {}};
-  DataArray step{1, {}};
-  DataArray loose{1, {}};
-  DataArray cause{1, {}};
-  for (const Removal& removal : record.removals) {
-    Tet tet = mesh.tets[removal.tet.index()];
+  std::vector<std::int32_t> place(before.size(), -1);
+  DataArray time{1, {}}, step{1, {}}, loose{1, {}}, cause{1, {}};
+  for (const std::size_t t : gone) {
+    Tet tet = divided.tets[t];
     for (VertexId& corner : tet) {
       std::int32_t& position = place[corner.index()];
       if (position < 0) {
         position = static_cast<std::int32_t>(removed.vertices.size());
-        removed.vertices.push_back(stretched[corner.index()]);
+        removed.vertices.push_back(before[corner.index()]);
       }
       corner = VertexId(static_cast<std::size_t>(position));
     }
     removed.tets.push_back(tet);
-    time.values.push_back(removal.time_s);
-    step.values.push_back(removal.step);
-    loose.values.push_back(removal.cause == RemovalCause::LooseFragment ? 1.0 : 0.0);
-    cause.values.push_back(static_cast<double>(removal.cause));
+    const auto after = static_cast<std::size_t>(divided.gone_step[t]);
+    time.values.push_back(after == 0 ? 0.0 : steps.at(after - 1).time_s);
+    step.values.push_back(divided.gone_step[t]);
+    loose.values.push_back(is_loose(t) ? 1.0 : 0.0);
+    cause.values.push_back(static_cast<double>(divided.gone_cause[t]));
   }
   removed.cell_data["removed_at_s"] = std::move(time);
   removed.cell_data["step"] = std::move(step);
@@ -97,16 +165,16 @@ void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog
 }
 
 /// Frames as a ParaView time series, the tool beside them as columns of a table.
-void write_frames(const std::filesystem::path& folder, const TissueModel& model, const TissueState& stretched,
-                  const std::vector<CutFrame>& frames) {
+void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, const std::vector<CutFrame>& frames) {
   if (frames.empty()) return;
   std::filesystem::create_directories(folder / "frames");
+  if (tissue.is_divided()) write_vtu(folder / kUncutFile, uncut_mesh(tissue));
   std::vector<PvdFrame> series;
   nlohmann::ordered_json tools = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const CutFrame& frame = frames[i];
     const std::string name = fmt::format("frames/frame_{:04}.vtu", i);
-    write_vtu(folder / name, live_mesh(model, stretched, frame));
+    write_vtu(folder / name, live_mesh(tissue, frame));
     series.push_back({frame.time_s, name});
     const Vec3& tip = frame.tool.tip_mm;
     const Vec3& axis = frame.tool.axis;
@@ -139,11 +207,11 @@ void RunFolder::cut(const ProductNote& note, const TissueModel& model, const Sta
     if (incision.inner_edge) write_contour_csv(to / "inner_edge.csv", *incision.inner_edge);
     if (!incision.final_tumor_edge.points.empty())
       write_contour_csv(to / "tumor_edge_final.csv", incision.final_tumor_edge);
-    if (!incision.record.removals.empty()) {
-      write_vtu(to / "removed.vtu", removed_mesh(model.mesh, stretched.state.positions, incision.record));
-    }
+    const CutTissue tissue = tissue_of(model, stretched.state, incision.final_state);
+    const TetMesh removed = removed_mesh(tissue, incision.steps);
+    if (!removed.tets.empty()) write_vtu(to / "removed.vtu", removed);
     write_kerf_files(to, incision.kerf);
-    write_frames(to, model, stretched.state, incision.frames);
+    write_frames(to, tissue, incision.frames);
   });
 }
 

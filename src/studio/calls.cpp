@@ -5,6 +5,7 @@
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
+#include <incise/cutting/divided_mesh.hpp>
 #include <incise/geometry/iso_surface.hpp>
 #include <incise/imaging/scan_checks.hpp>
 #include <incise/imaging/segmentation.hpp>
@@ -547,23 +548,26 @@ void Calls::show_moment(const std::string& cut, const TissueModel& model, const 
   if (std::chrono::duration<double>(now - last_moment_).count() < kMomentS) return;
   last_moment_ = now;
   if (!shows_moments_) return;
-  const CutState& state = progress.state;
-  const Skin skin = skin_of(model.mesh, state.tissue.is_live);
   try {
-    send_moment(cut, state, skin);
-  } catch (const DataError& error) {  // no room for its arrays: a cut does not end for want of a picture
+    send_moment(cut, model, progress.state);
+  } catch (const std::exception& error) {  // no room for its arrays: a cut does not end for want of a picture
     shows_moments_ = false;
     monitor_.message(Severity::Warning, fmt::format("{}. The cut continues without pictures", error.what()));
   }
 }
 
-void Calls::send_moment(const std::string& cut, const CutState& state, const Skin& skin) {
+void Calls::send_moment(const std::string& cut, const TissueModel& model, const CutState& state) {
+  const DividedMesh divided = divide_at_kerf(model, state);
+  TetMesh mesh;
+  mesh.vertices = divided.positions(state.tissue.positions);
+  mesh.tets = divided.tets;
+  const Skin skin = skin_of(mesh, divided.is_left(state.step));
   watchers_.on_moment(
       {{"cut", cut},
        {"time_s", state.time_s},
        {"tip", points_json(std::array{state.tool.tip_mm}).front()},
        {"removed_tets", state.record.removals.size()},
-       {"skin", surface_json(blobs_, "moment.skin", positions_on(skin, state.tissue.positions), skin.triangles)}});
+       {"skin", surface_json(blobs_, "moment.skin", positions_on(skin, mesh.vertices), skin.triangles)}});
 }
 
 Json Calls::run(const Json& arguments) {

@@ -89,7 +89,7 @@ class Calls {
   /// Runs the case up to a stage, in its own output folder.
   [[nodiscard]] Study study_until(Stage until);
   void show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress);
-  void send_moment(const std::string& cut, const CutState& state, const Skin& skin);
+  void send_moment(const std::string& cut, const TissueModel& model, const CutState& state);
 
   BlobFolder blobs_;
   Monitor& monitor_;

@@ -176,6 +176,13 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const
                             "are too small. volume: averaged avoids this",
                             ratio));
   }
+  if (settings.cut.rule != CutSettings{}.rule) {
+    verdict.add(
+        "cut_rule", std::nullopt,
+        fmt::format("the rule of the cut is {} (cut.rule), whose cuts nothing was compared with. Where the tool "
+                    "will cut is better known with {}",
+                    to_string(settings.cut.rule), to_string(CutSettings{}.rule)));
+  }
   const double coarsest_mm = *verdict_rule("mesh_resolution").limit;
   const std::optional<double> edge_mm = edge_along_mm(model, stretched, path, settings.plan.approach);
   if (edge_mm && *edge_mm > coarsest_mm) {

@@ -11,6 +11,8 @@ namespace {
 /// dragged along: a tet goes that stays in reach for this share of the widest way through the tool's reach. The kerf is
 /// then about as wide as the needle.
 constexpr double kContactShare = 13.0 / 15.0;
+constexpr double kDoseShare =
+    0.5;  // the same of a cut by points: its kerf is then about as wide as its kernel's radius
 constexpr double kBeyondTissueMm = 1e4;
 
 /// The stretched body as one that nothing can move.
@@ -28,10 +30,13 @@ CutSettings without_drag(const Case& settings) {
   CutSettings cut = settings.cut;
   cut.power_w = cut.reference_power_w;
   cut.bond_stiffness_kpa_mm2 = 0.0;
+  cut.hold_per_mm2 = 0.0;
   cut.tear_energy_kpa.reset();
   cut.slip_mm.reset();
-  const double way_mm = kContactShare * 2.0 * (radius_mm(settings.tool) + cut.reach_mm);
-  cut.dullness = way_mm / (cut.speed_mm_s * cut.reference_step_s);
+  const double way_mm = cut.rule == CutRule::Lattice ? kDoseShare * cut.dose_length_mm
+                                                     : kContactShare * 2.0 * (radius_mm(settings.tool) + cut.reach_mm);
+  // By the paper's rule the tool gets on by a layer of tets each time that their count is full.
+  cut.dullness = cut.rule == CutRule::Paper ? 1.0 : way_mm / (cut.speed_mm_s * cut.reference_step_s);
   return cut;
 }
 

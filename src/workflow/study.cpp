@@ -79,17 +79,16 @@ bool fits(const TissueModel& model, const CutState& state) {
 }
 
 bool fits(const Counts& counts, const std::vector<CutFrame>& frames) {
-  return std::ranges::all_of(frames, [&counts](const CutFrame& frame) {
-    return frame.positions.size() == counts.vertices && frame.is_live.size() == counts.tets;
-  });
+  return std::ranges::all_of(frames,
+                             [&counts](const CutFrame& frame) { return frame.positions.size() == counts.vertices; });
 }
 
 /// Frames of a cut under way have what had come apart when they were kept.
 bool fits(const TissueModel& model, const IncisionProgress& progress) {
   const Counts least = counts_of(model), most = counts_of(model, progress.state.splits);
   return fits(model, progress.state) && std::ranges::all_of(progress.frames, [&](const CutFrame& frame) {
-           const std::size_t vertices = frame.positions.size(), tets = frame.is_live.size();
-           return vertices >= least.vertices && vertices <= most.vertices && tets >= least.tets && tets <= most.tets;
+           const std::size_t vertices = frame.positions.size();
+           return vertices >= least.vertices && vertices <= most.vertices;
          });
 }
 
@@ -98,7 +97,8 @@ bool fits(const TissueModel& model, const IncisionResult& result) {
   const DepthReached& depth = result.kerf.depth;
   const std::size_t places = depth.profile.course.points.size();
   const Counts counts = counts_of(model, result.final_state.splits);
-  return fits(model, result.final_state) && fits(counts, result.frames) && are_of(counts, result.record.removals) &&
+  return fits(model, result.final_state) && result.steps.size() >= static_cast<std::size_t>(result.final_state.step) &&
+         fits(counts, result.frames) && are_of(counts, result.record.removals) &&
          are_of(body.vertices, body.triangles) && depth.profile.arclength_mm.size() == places &&
          depth.profile.depth_mm.size() == places && depth.planned_at_mm.size() == places;
 }

@@ -63,6 +63,29 @@ class LoopTest(CommandTest):
         self.json_of("report", self.out, "-o", self.folder / "again.html")
         self.json_of("export", self.out / "program" / "path.json", "-o", self.folder / "again.script", *small_case.ACCEPTED)
 
+    def test_a_cut_by_points_is_drawn_as_it_goes_and_has_a_caution(self):
+        small_case.write_case(self.folder / "case", {
+            **small_case.SOUND, "cut": {"rule": "lattice", "frames": 4, "dullness": 5, "advance_per_step_mm": 0.8},
+            "compensation": {"method": "paper"}})
+        small_case.write_tumor_surface(self.folder / "case" / "tumor.stl")
+        result = self.json_of("run", "case", "-o", self.out, *small_case.ACCEPTED, status=NOT_ACCEPTABLE)
+        self.assertIn("cut_rule", json.dumps(result["verdict"]))
+        self.assertIn("lattice", (self.out / "report.html").read_text())
+        cut = self.out / "as_planned"
+        uncut = meshio.read(cut / "frames" / "uncut.vtu")
+        steps = uncut.cell_data["gone_step"][0].ravel()
+        count = len(steps)
+        left = [meshio.read(frame).cell_data["cell"][0].ravel().astype(int) for frame in sorted((cut / "frames").glob("frame_*.vtu"))]
+        self.assertEqual(len(left), 4)
+        self.assertEqual(list(left[0]), list(range(count)))
+        for before, after in zip(left, left[1:]):
+            self.assertTrue(set(after) < set(before))
+        self.assertEqual(set(left[-1]), {cell for cell in range(count) if steps[cell] < 0})
+        removed = meshio.read(cut / "removed.vtu")
+        self.assertEqual(len(removed.cells[0].data), count - len(left[-1]))
+        times = removed.cell_data["removed_at_s"][0].ravel()
+        self.assertTrue(all(a <= b for a, b in zip(times, times[1:])))
+
     def check_kerf(self, cut):
         """The kerf of the small block: 5 mm deep at 9 mm from a tumour of 3 mm depth, within what a mesh of 3 mm allows."""
         self.assertEqual([layer["depth_mm"] for layer in cut["layers"]], [1, 2.5, 4, 5])

@@ -102,12 +102,16 @@ FuzzCut random_cut(std::uint64_t seed) {
   if (random.below(3) == 0) {
     cut.kind += ", by points";
     c.rule = CutRule::Lattice;
-    c.slip_mm.reset();
     c.tear_energy_kpa.reset();
     c.kernel_radius_mm = random.uniform(0.5, 3.0);
     c.dose_length_mm = random.uniform(0.5, 5.0);
-    c.hold_kpa = one_of(std::array{0.0, 40.0, 400.0, 4000.0});
-    c.slip_mn_mm = random.below(4) == 0 ? std::nullopt : std::optional(random.uniform(1.0, 100.0));
+    c.hold_per_mm2 = one_of(std::array{0.0, 4.0, 25.0, 1000.0});
+  } else if (random.below(3) == 0) {
+    cut.kind += ", by the paper's rule";
+    c.rule = CutRule::Paper;
+    c.contact_count = one_of(std::array{ContactCount::Keep, ContactCount::Reset});
+    c.tear_energy_kpa.reset();
+    c.reference_step_s = std::min(c.reference_step_s, 2.0 * radius_mm(cut.settings.tool) / c.speed_mm_s);
   }
   return cut;
 }

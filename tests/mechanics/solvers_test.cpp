@@ -89,55 +89,6 @@ TEST(TwoLevelPcg, FindsTheSolutionOfCholesky) {
   EXPECT_LT(difference(iterated, direct), 1e-8 * norm(direct));
 }
 
-/// Of five and four vertices, one of them held.
-MeanStiffness two_means(const System& system) {
-  MeanStiffness means;
-  means.stiffness = {Vec3(30, 30, 0).asDiagonal(), 12.0 * Mat3::Identity()};
-  const auto count = static_cast<std::int32_t>(system.right.size());
-  for (const std::int32_t v : {0, 7, 11, 12, count - 1}) means.vertex.push_back(v);
-  means.start.push_back(means.vertex.size());
-  for (const std::int32_t v : {7, 9, count - 3, count - 2}) means.vertex.push_back(v);
-  means.start.push_back(means.vertex.size());
-  means.weight = {0.1, 0.2, 0.3, 0.15, 0.25, 0.4, 0.3, 0.2, 0.1};
-  return means;
-}
-
-Points solved_with(const System& system, const MeanStiffness* means, Precision precision) {
-  Workers workers(2);
-  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, 20, precision);
-  solver.update(system.matrix, true, workers);
-  PcgSettings settings;
-  settings.relative_tolerance = precision == Precision::Double ? 1e-10 : 1e-5;
-  settings.means = means;
-  Points x(system.right.size());
-  EXPECT_TRUE(solver.solve(system.matrix, system.right, x, settings, workers).converged);
-  return x;
-}
-
-TEST(TwoLevelPcg, SolvesWithStiffnessOfMeansInBothPrecisions) {
-  const System system(clamped_block({6, 4, 4}, 0.45));
-  const MeanStiffness means = two_means(system);
-  const Points x = solved_with(system, &means, Precision::Double);
-  Points left(x.size());
-  Workers workers(1);
-  multiply(system.matrix, x, left, workers);
-  for (std::size_t t = 0; t < means.terms(); ++t) {
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t i = means.start[t]; i < means.start[t + 1]; ++i)
-      mean += means.weight[i] * x[static_cast<std::size_t>(means.vertex[i])];
-    for (std::size_t i = means.start[t]; i < means.start[t + 1]; ++i) {
-      const auto v = static_cast<std::size_t>(means.vertex[i]);
-      for (int k = 0; k < 3; ++k) {
-        if (!system.model.is_fixed[v][static_cast<std::size_t>(k)])
-          left[v][k] += means.weight[i] * (means.stiffness[t] * mean)[k];
-      }
-    }
-  }
-  EXPECT_LT(difference(left, system.right), 1e-9 * norm(system.right));
-  EXPECT_LT(difference(solved_with(system, &means, Precision::Single), x), 1e-2 * norm(x));
-  EXPECT_GT(difference(solved_with(system, nullptr, Precision::Double), x), 0.05 * norm(x)) << "they matter";
-}
-
 TEST(TwoLevelPcg, StopsAtTheResidualThatWasAskedFor) {
   const System system(clamped_block({6, 4, 4}));
   for (const double tolerance : {1e-1, 1e-3, 1e-6}) {

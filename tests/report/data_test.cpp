@@ -73,10 +73,10 @@ TEST(HtmlReport, RefusesWhatHasProblemsAndListsThem) {
 
 TEST(FrameOf, MarksExactlyTheFacesThatTheCutLaidOpen) {
   const TetMesh mesh = make_block({2.0, 1.0, 1.0}, {2, 1, 1});  // two cells of six tets
-  const auto uncut = boundary_faces(mesh);
+  const auto on_skin = skin_faces(mesh);
   std::vector<std::uint8_t> is_live(12, 1);
   std::fill(is_live.begin() + 6, is_live.end(), std::uint8_t{0});  // the second cell goes
-  const ReportFrame frame = frame_of(mesh, uncut, mesh.vertices, is_live);
+  const ReportFrame frame = frame_of(mesh, on_skin, mesh.vertices, is_live);
   ASSERT_EQ(frame.skin.size(), 12U);  // a cube has 6 sides of 2 triangles
   std::size_t kerf = 0;
   for (std::size_t k = 0; k < frame.skin.size(); ++k) {
@@ -90,14 +90,14 @@ TEST(FrameOf, MarksExactlyTheFacesThatTheCutLaidOpen) {
 TEST(FrameOf, HasNoKerfBeforeTheCut) {
   const TetMesh mesh = make_block({3.0, 2.0, 1.0}, {3, 2, 1});
   const auto uncut = boundary_faces(mesh);
-  const ReportFrame frame = frame_of(mesh, uncut, mesh.vertices, {});
+  const ReportFrame frame = frame_of(mesh, skin_faces(mesh), mesh.vertices, {});
   EXPECT_EQ(frame.skin.size(), uncut.size());
   EXPECT_THAT(frame.is_kerf, ::testing::Each(0));
 }
 
 TEST(FrameOf, RefusesPositionsOfAnotherMesh) {
   const TetMesh mesh = make_block({1.0, 1.0, 1.0}, {1, 1, 1});
-  EXPECT_THROW(static_cast<void>(frame_of(mesh, boundary_faces(mesh), Points(3, Vec3::Zero()), {})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(frame_of(mesh, skin_faces(mesh), Points(3, Vec3::Zero()), {})), InvalidArgument);
 }
 
 TEST(OccupancyOf, IsOneWhereverThereIsALabel) {

@@ -34,8 +34,8 @@ double RingFixture::tumor_radius(double angle) {
 }
 
 std::vector<ReportFrame> RingFixture::frames(int steps) const {
-  const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
-  std::vector<ReportFrame> result{frame_of(mesh, uncut, mesh.vertices, {})};
+  const std::vector<std::uint8_t> on_skin = skin_faces(mesh);
+  std::vector<ReportFrame> result{frame_of(mesh, on_skin, mesh.vertices, {})};
   result.back().phase = "rest";
   Points positions;
   for (const Vec3& p : mesh.vertices) positions.push_back(stretched(p));
@@ -51,7 +51,7 @@ std::vector<ReportFrame> RingFixture::frames(int steps) const {
       const double off = from_center.head<2>().norm() - tumor_radius(angle + units::kPi / 2.0) - 5.0;
       if (angle <= done && std::abs(off) < 0.9 && middle.z() > 7.0) is_live[t] = 0;
     }
-    result.push_back(frame_of(mesh, uncut, positions, is_live));
+    result.push_back(frame_of(mesh, on_skin, positions, is_live));
     result.back().phase = k == 0 ? "stretched" : "cutting";
     result.back().time_s = 10.0 * k / steps + 1.0;
     const double angle = units::kPi / 2.0 + done;

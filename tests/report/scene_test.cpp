@@ -59,7 +59,7 @@ TEST(AnimationJson, GivesPositionsBackToHalfAStep) {
 TEST(AnimationJson, LeavesOutVerticesThatNoSkinUses) {
   const testing::RingFixture fixture(4.0);
   ReportAnimation animation{
-      .name = "rest", .frames = {frame_of(fixture.mesh, boundary_faces(fixture.mesh), fixture.mesh.vertices, {})}};
+      .name = "rest", .frames = {frame_of(fixture.mesh, skin_faces(fixture.mesh), fixture.mesh.vertices, {})}};
   const auto scene = animation_json(animation, 10'000'000);
   // 16 x 12 x 4 grid points, of which 14 x 10 x 2 lie inside.
   EXPECT_EQ(scene["vertices"].get<int>(), 16 * 12 * 4 - 14 * 10 * 2);

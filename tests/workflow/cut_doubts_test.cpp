@@ -69,6 +69,16 @@ TEST(VerdictBeforeCut, CautionsOfTissueThatBeginsToLock) {
   EXPECT_THAT(doubts(block(24, 0.493, VolumeTreatment::Averaged)), IsEmpty());
 }
 
+TEST(VerdictBeforeCut, CautionsOfARuleOfTheCutThatNothingWasFittedTo) {
+  const TissueModel model = block(24, 0.45);
+  Case settings;
+  EXPECT_FALSE(verdict_before_cut(settings, model, {}, model.mesh.vertices, ring()).has("cut_rule"));
+  settings.cut.rule = CutRule::Lattice;
+  const Verdict verdict = verdict_before_cut(settings, model, {}, model.mesh.vertices, ring());
+  ASSERT_TRUE(verdict.has("cut_rule"));
+  EXPECT_THAT(verdict.reasons().front().message, AllOf(HasSubstr("lattice"), HasSubstr("cut.rule")));
+}
+
 /// A cube of edge a, cut into six tets: three edges of a, two diagonals √2 a and one √3 a each.
 double mean_edge_of_cubes(double a) {
   return a * (3.0 + 2.0 * std::sqrt(2.0) + std::sqrt(3.0)) / 6.0;

@@ -68,7 +68,7 @@ struct CutStepReport {
   std::size_t removed = 0;
   std::size_t loose_removed = 0;
   std::size_t held_back_vertices = 0;         ///< vertices whose step was cut to max_step_mm
-  std::size_t slipped = 0;                    ///< bonds, or slices of a cut by points, that slipped
+  std::size_t slipped = 0;                    ///< bonds, or points of a cut by points, that slipped
   Vec3 tool_force_mn = Vec3::Zero();          ///< of the tissue on the tool
   Vec3 tool_torque_mn_mm = Vec3::Zero();      ///< of the tissue on the tool, about its tip
   double max_step_mm = 0.0;                   ///< farthest that the solve moves a vertex, at most CutSettings::max_step_mm

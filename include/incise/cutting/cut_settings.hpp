@@ -51,14 +51,12 @@ struct CutSettings {
   double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, >= 0 and less than once round
   double residual_tolerance = 0.15;   ///< each step's linear solve: |r| <= this · |contact force|, [1e-6, 0.3]; the next step puts the rest right
   double max_step_mm = 1.0;           ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
-  /// Lattice is under construction (docs/decisions/0010-cutting-law.md). It takes the four numbers below
-  /// in place of reach, bond stiffness, slip and tear energy.
   CutRule rule = CutRule::Tets;
   ContactCount contact_count = ContactCount::Keep;  ///< Paper: what becomes of a tet's count when contact is lost
+  // Lattice: in place of reach, bond stiffness and tear energy; not calibrated (docs/decisions/0010-cutting-law.md).
   double kernel_radius_mm = 1.25;           ///< how far from its core the tool acts, [0.5, 5]
-  double dose_length_mm = 1.8;              ///< a point that does not move just parts where v d τ0 is this, [0.1, 10]
-  double hold_kpa = 400.0;                  ///< pull per length of tool and offset, all tissue about it whole, >= 0
-  std::optional<double> slip_mn_mm = 40.0;  ///< greatest pull per length of tool, mN/mm, > 0; none: no limit
+  double dose_length_mm = 3.0;              ///< a point that does not move just parts where v d τ0 is this, [0.1, 10]
+  double hold_per_mm2 = 50.0;      ///< pull on a point per volume, offset and shear modulus, 1/mm², >= 0: the layer that moves with the tool is 1/√ of it thick; 0: no drag
 
   /// Contact time that removes a tet of the reference tissue at the reference power, s.
   [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
@@ -95,24 +93,26 @@ inline void describe_effect(Visitor& v, CutSettings& s) {
 }
 /// How the cut is simulated, step by step.
 inline void describe_steps(Visitor& v, CutSettings& s) {
-  v({"advance_per_step_mm", "Tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
+  v({"advance_per_step_mm", "Not with the rule paper: tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
     s.advance_per_step_mm, {0.01, 10.0});
-  v({"reach_mm", "Tissue is in contact within the tool's radius plus this of its core.", "mm"}, s.reach_mm, {0.0, 5.0});
-  v({"bond_stiffness_kpa_mm2", "Pull of the tool on tissue that it holds, per volume and offset; 0: no drag.",
+  v({"reach_mm", "Not with the rule lattice: tissue is in contact within the tool's radius plus this of its core.", "mm"}, s.reach_mm, {0.0, 5.0});
+  v({"bond_stiffness_kpa_mm2", "Not with the rule lattice: pull of the tool on tissue that it holds, per volume and offset; 0: no drag.",
      "kPa/mm2"},
     s.bond_stiffness_kpa_mm2, {0.0, 1e6});
   v({"overlap_mm", "A ring is cut this far beyond its start, less than once round.", "mm"}, s.overlap_mm, {0.0, 50.0});
   v("residual_tolerance", s.residual_tolerance, "Of each step's linear solve, relative to the contact force.",
     {1e-6, 0.3});
   v.internal("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step.", kPositive);
-  v.internal("rule", s.rule, "What carries the cut.");
-  v.internal("contact_count", s.contact_count,
-             "Rule of the paper (II-C.2): what becomes of a tetrahedron's count of steps when contact is lost.");
-  v.internal("kernel_radius_mm", s.kernel_radius_mm, "Lattice: how far the tool acts.", {0.5, 5.0});
-  v.internal("dose_length_mm", s.dose_length_mm, "Lattice: where v d tau0 is this, a point on the way just parts.",
-             {0.1, 10.0});
-  v.internal("hold_kpa", s.hold_kpa, "Lattice: pull per length of tool and offset.", {0.0, 1e6});
-  v.internal("slip_mn_mm", s.slip_mn_mm, "Lattice: greatest pull per length of tool.", kPositive);
+  v("rule", s.rule, "What is cut: whole tetrahedra, the points of a lattice, or tetrahedra as the paper does it.");
+  v("contact_count", s.contact_count,
+    "Rule paper: what becomes of a tetrahedron's count of steps when contact is lost.");
+  v({"kernel_radius_mm", "Rule lattice: how far from its core (a needle's axis) the tool acts.", "mm"}, s.kernel_radius_mm, {0.5, 5.0});
+  v({"dose_length_mm", "Rule lattice: where speed times dullness times reference_step_s is this, reference tissue that does not move is just cut.",
+     "mm"},
+    s.dose_length_mm, {0.1, 10.0});
+  v({"hold_per_mm2", "Rule lattice: pull of the tool on tissue about it, per volume, offset and shear modulus; 0: no drag.",
+     "1/mm2"},
+    s.hold_per_mm2, {0.0, 1e4});
 }
 inline void describe(Visitor& v, CutSettings& s) {
   describe_effect(v, s);

@@ -11,17 +11,17 @@ namespace incise {
 /// The tissue at one moment of the cut.
 struct CutFrame {
   double time_s = 0.0;
+  int step = 0;  ///< after which: what went up to it is gone
   ToolPose tool;
   bool is_tool_in = true;
-  Points positions;                   ///< N x 3, mm
-  std::vector<std::uint8_t> is_live;  ///< per tet
+  Points positions;  ///< N x 3, mm
 };
 inline void describe(Visitor& v, CutFrame& f) {
   v("time_s", f.time_s, "Since the tool began to plunge.");
+  v("step", f.step, "After which it is.", kNotNegative);
   v("tool", f.tool, "Where it is.");
   v("is_tool_in", f.is_tool_in, "Whether it is in the tissue.");
   v("positions", f.positions, "Of the vertices.");
-  v("is_live", f.is_live, "Of each tet.");
 }
 
 /// One line of the log of a cut.
@@ -32,7 +32,7 @@ struct CutStepLog {
   std::size_t tets_in_contact = 0;
   std::size_t removed = 0;
   std::size_t held_back_vertices = 0;     ///< vertices whose step was cut to CutSettings::max_step_mm
-  std::size_t slipped = 0;                ///< bonds that slipped
+  std::size_t slipped = 0;                ///< bonds, or points, that slipped
   Vec3 tool_force_mn = Vec3::Zero();      ///< of the tissue on the tool
   Vec3 tool_torque_mn_mm = Vec3::Zero();  ///< of the tissue on the tool, about its tip
 };
@@ -43,7 +43,7 @@ inline void describe(Visitor& v, CutStepLog& s) {
   v("tets_in_contact", s.tets_in_contact, "How many.");
   v("removed", s.removed, "Tets removed in the step.");
   v("held_back_vertices", s.held_back_vertices, "Vertices whose step was cut short.");
-  v("slipped", s.slipped, "Bonds that slipped.");
+  v("slipped", s.slipped, "Bonds, or points, that slipped.");
   v("tool_force_mn", s.tool_force_mn, "Of the tissue on the tool.");
   v("tool_torque_mn_mm", s.tool_torque_mn_mm, "Of the tissue on the tool, about its tip.");
 }

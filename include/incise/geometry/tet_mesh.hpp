@@ -76,6 +76,9 @@ struct BoundaryFace {
 /// O(M log M).
 [[nodiscard]] std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh, std::span<const std::uint8_t> is_live = {});
 
+/// Per tet: bit f is set where face f (opposite corner f) is on the skin. O(M log M).
+[[nodiscard]] std::vector<std::uint8_t> skin_faces(const TetMesh& mesh);
+
 /// Per tet, the tet across each of its four faces (face f is opposite corner f); none: -1. O(M log M).
 [[nodiscard]] std::vector<std::array<std::int32_t, 4>> face_neighbours(const TetMesh& mesh);
 

@@ -1,13 +1,10 @@
 #pragma once
 
 #include <incise/core/workers.hpp>
-#include <incise/geometry/types.hpp>
 #include <incise/mechanics/block_matrix.hpp>
 
-#include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace incise {
 
@@ -19,16 +16,6 @@ enum class LinearSolver {
                        ///< hundred times
 };
 
-/// A few stiffnesses between means of displacements and the ground, beside a matrix: the block of vertices v and w is
-/// the sum over the terms of g_v g_w S, where g are a term's weights and S is symmetric and positive semi-definite.
-struct MeanStiffness {
-  std::vector<std::size_t> start{0};  ///< terms + 1, into `vertex` and `weight`
-  std::vector<std::int32_t> vertex;   ///< at most once in each term
-  std::vector<double> weight;         ///< g
-  std::vector<Mat3> stiffness;        ///< S, one per term, mN/mm
-  [[nodiscard]] std::size_t terms() const { return stiffness.size(); }
-};
-
 struct PcgSettings {
   double relative_tolerance = 1e-2;  ///< stops at |r| <= relative_tolerance * max(reference, floor)
   double reference_mn = 0.0;         ///< scale of the stopping test; 0: |b|
@@ -37,7 +24,6 @@ struct PcgSettings {
   /// Begin with the share of the last solution that lowers the energy most, in place of zero (of the last since
   /// update() renewed the coarse matrix; there is none, or with Precision::Double: zero).
   bool starts_from_last = false;
-  const MeanStiffness* means = nullptr;  ///< added to the matrix; not seen by the preconditioner. Null: nothing
 };
 
 struct PcgReport {

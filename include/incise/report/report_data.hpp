@@ -73,11 +73,12 @@ struct ReportFrame {
   Vec3 tool_axis = -Vec3::UnitZ();    ///< unit; points from the holder to the tip
 };
 
-/// A frame without time and tool: the skin of the tets that are left. A face is of the kerf when it is not in `uncut`.
-/// @param uncut      boundary_faces(mesh), made once for all frames.
+/// A frame without time and tool: the skin of the tets that are left. A face is of the kerf where it is not on the uncut
+/// body's skin.
+/// @param on_skin    per tet: bit f is set where face f is on that skin (skin_faces).
 /// @param positions  N x 3, mm.  @param is_live  per tet; empty: all.  @throws InvalidArgument if a length does not fit
 /// the mesh.
-[[nodiscard]] ReportFrame frame_of(const TetMesh& mesh, std::span<const BoundaryFace> uncut, Points positions,
+[[nodiscard]] ReportFrame frame_of(const TetMesh& mesh, std::span<const std::uint8_t> on_skin, Points positions,
                                    std::span<const std::uint8_t> is_live);
 
 /// One simulated cut from beginning to end. Frames may have different numbers of vertices, but vertex i stays vertex i.

@@ -116,6 +116,10 @@ class RunFolder : public Inputs, public ProductSink {
   std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
 };
 
+/// In the folder of a cut that has divided tets: all of them before the cut, with the cell data `skin_faces` (bit f is
+/// set where face f is on the skin) and `gone_step`. The frames name them by the cell data `cell`.
+inline constexpr const char* kUncutFile = "frames/uncut.vtu";
+
 /// The mesh at rest with what a deformation did to it: point data `displacement_mm`, cell data `von_mises_kpa`.
 [[nodiscard]] TetMesh rest_mesh(const TissueModel& model, const TissueState& state);
 /// The same with its vertices where they were moved to.

@@ -65,6 +65,7 @@ const kLabels = {
     said: "Simulated speed",
     hint: "Of the simulated tool. Calibration fits it, with the dullness, to photographs of cuts.",
   },
+  "cut.rule": {label: "What is cut", words: {tets: "Whole tetrahedra", lattice: "Points of a lattice", paper: "As the paper does it"}},
   "cut.dullness": {hint: "How long contact lasts before tissue is cut."},
   "cut.overlap_mm": {hint: "The ring is cut so far beyond its start."},
   "thermal.conductivity_w_m_k": {label: "Conductivity"},

@@ -126,6 +126,7 @@ export const kWaysOut = {
   not_corrected: ["Compare both cuts. A person can accept the path without a correction.", "compare", "program"],
   eligibility: ["The assessment says why. A person can accept the path in spite of it.", "program"],
   registration: ["Register again: a cloud with more of the surface, and with nothing else in it.", "register"],
+  cut_rule: ["Set what is cut to whole tetrahedra, or accept this and compare the cut with a real one.", "plan"],
   mesh_resolution: ["Make the mesh finer: more tetrahedra, or a shorter fine edge.", "hold"],
   locking: ["Under Tissue, let the change of volume be averaged, or lower Poisson's ratio.", "hold"],
   convergence: ["A finer mesh or a smaller pull may help.", "hold"],
