@@ -11,7 +11,8 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace incise {
 namespace {
@@ -80,22 +81,27 @@ class Divider {
   }
 
   DividedMesh run() {
+    std::vector<std::uint8_t> is_divided(copies_.size(), 0);
+    std::vector<std::int32_t> gone_step(copies_.size(), -1);  // of tets that lie in the kerf
     for (const TetId tet : state_.points.tets) {
-      if (!is_divided(tet)) continue;
-      divided_.insert(tet);
+      const int in_kerf = places_in_kerf(tet);
+      if (in_kerf == 10) gone_step[tet.index()] = parted_step(nearest(tet, {0.25, 0.25, 0.25, 0.25}, true));
+      if ((in_kerf == 0 || in_kerf == 10) && copies_[tet.index()].size() == 1) continue;
+      is_divided[tet.index()] = 1;
       const Tet& corners = whole_.mesh.tets[tet.index()];
-      for (const auto& [a, b] : kEdges) halved_.insert(std::minmax(corners[a], corners[b]));
+      for (const auto& [a, b] : kEdges) halved_.insert(number_of(std::minmax(corners[a], corners[b])));
     }
     for (std::size_t t = 0; t < copies_.size(); ++t) {
-      if (divided_.contains(TetId(t))) {
+      if (is_divided[t] != 0) {
         divide(TetId(t));
         continue;
       }
-      const Tet& corners = whole_.mesh.tets[t];
-      const bool is_next = !halved_.empty() && std::ranges::any_of(kEdges, [&](const std::array<std::size_t, 2>& edge) {
-        return halved_.contains(std::minmax(corners[edge[0]], corners[edge[1]]));
-      });
-      for (const TetId tet : copies_[t]) is_next ? add_fan(TetId(t), tet) : add(whole_piece(tet), TetId(t), tet);
+      const TetId split = copies_[t].front();
+      if (has_halved_edge(TetId(t))) {
+        add_fan(TetId(t), split, gone_step[t]);
+      } else {
+        add(whole_piece(split), TetId(t), split, gone_step[t]);
+      }
     }
     return std::move(mesh_);
   }
@@ -121,8 +127,20 @@ class Divider {
     return corner;
   }
 
+  static std::uint64_t number_of(const Edge& edge) {
+    return static_cast<std::uint64_t>(edge.first.index()) << 32U | edge.second.index();
+  }
+  [[nodiscard]] bool is_halved(TetId whole, std::size_t a, std::size_t b) const {
+    const Tet& named = whole_.mesh.tets[whole.index()];
+    return halved_.contains(number_of(std::minmax(named[a], named[b])));
+  }
+  [[nodiscard]] bool has_halved_edge(TetId whole) const {
+    return std::ranges::any_of(
+        kEdges, [&](const std::array<std::size_t, 2>& edge) { return is_halved(whole, edge[0], edge[1]); });
+  }
+
   double dose_at(const Edge& edge) {
-    const auto [at, is_new] = dose_.try_emplace(edge, 0.0);
+    const auto [at, is_new] = dose_.try_emplace(number_of(edge), 0.0);
     if (is_new) {
       const Points& rest = whole_.mesh.vertices;
       at->second = doses_.at(0.5 * (vertex(rest, edge.first) + vertex(rest, edge.second)));
@@ -130,20 +148,19 @@ class Divider {
     return at->second;
   }
 
-  [[nodiscard]] bool is_divided(TetId tet) {
-    if (copies_[tet.index()].size() > 1) return true;
+  /// How many of a tet's ten places lie in the kerf.
+  [[nodiscard]] int places_in_kerf(TetId tet) {
     const Tet& corners = whole_.mesh.tets[tet.index()];
+    int count = 0;
     for (std::size_t a = 0; a < 4; ++a) {
-      for (std::size_t b = a; b < 4; ++b) {
-        if (dose_at(std::minmax(corners[a], corners[b])) >= 1.0) return true;
-      }
+      for (std::size_t b = a; b < 4; ++b) count += dose_at(std::minmax(corners[a], corners[b])) >= 1.0 ? 1 : 0;
     }
-    return false;
+    return count;
   }
 
   VertexId between(VertexId a, VertexId b, double share) {
     const bool is_in_order = a < b;
-    const auto [at, is_new] = between_.try_emplace(std::minmax(a, b), VertexId(vertices_));
+    const auto [at, is_new] = between_.try_emplace(number_of(std::minmax(a, b)), VertexId(vertices_));
     if (is_new) {
       ++vertices_;
       mesh_.between.push_back(is_in_order ? BetweenVertex{a, b, share} : BetweenVertex{b, a, 1.0 - share});
@@ -160,34 +177,45 @@ class Divider {
     return piece;
   }
 
-  /// A tet with edges of divided ones: a fan about its middle, over faces that are divided where their edges are.
-  void add_fan(TetId whole, TetId split) {
+  /// A tet with edges of divided ones: a fan over faces that are divided where their edges are. Where these edges lie
+  /// in one face, from the vertex across it, else from the tet's middle over all faces.
+  void add_fan(TetId whole, TetId split, std::int32_t step) {
     const Piece piece = whole_piece(split);
+    for (std::size_t f = 0; f < 4; ++f) {
+      bool has_others = false;
+      for (std::size_t c = 0; c < 4; ++c) has_others = has_others || (c != f && is_halved(whole, f, c));
+      if (has_others) continue;
+      add_fan_over(f, piece[f], whole, split, step);
+      return;
+    }
     const VertexId first = between(piece[0].id, piece[1].id, 0.5), second = between(piece[2].id, piece[3].id, 0.5);
     Corner middle{};
     middle.id = between(first, second, 0.5);
     middle.shares.fill(0.25);
+    for (std::size_t f = 0; f < 4; ++f) add_fan_over(f, middle, whole, split, step);
+  }
+
+  void add_fan_over(std::size_t face, const Corner& from, TetId whole, TetId split, std::int32_t step) {
+    const Piece piece = whole_piece(split);
     const Tet& named = whole_.mesh.tets[whole.index()];
-    for (std::size_t f = 0; f < 4; ++f) {
-      std::vector<std::size_t> at;
-      for (std::size_t c = 0; c < 4; ++c) {
-        if (c != f) at.push_back(c);
-      }
-      std::ranges::sort(at, {}, [&](std::size_t c) { return named[c]; });  // neighbours divide their common face alike
-      const auto add_part = [&](const Corner& a, const Corner& b, const Corner& c) {
-        add({middle, a, b, c}, whole, split);
-      };
-      const Corner &a = piece[at[0]], &b = piece[at[1]], &c = piece[at[2]];
-      const std::optional<Corner> ab = middle_of(whole, split, at[0], at[1]), ac = middle_of(whole, split, at[0], at[2]),
-                                  bc = middle_of(whole, split, at[1], at[2]);
-      if (ab && ac && bc) {
-        add_part(a, *ab, *ac);
-        add_part(*ab, b, *bc);
-        add_part(*ac, *bc, c);
-        add_part(*ab, *bc, *ac);
-      } else {
-        add_parts(a, b, c, ab, ac, bc, add_part);
-      }
+    std::vector<std::size_t> at;
+    for (std::size_t c = 0; c < 4; ++c) {
+      if (c != face) at.push_back(c);
+    }
+    std::ranges::sort(at, {}, [&](std::size_t c) { return named[c]; });  // neighbours divide their common face alike
+    const auto add_part = [&](const Corner& a, const Corner& b, const Corner& c) {
+      add({from, a, b, c}, whole, split, step);
+    };
+    const Corner &a = piece[at[0]], &b = piece[at[1]], &c = piece[at[2]];
+    const std::optional<Corner> ab = middle_of(whole, split, at[0], at[1]), ac = middle_of(whole, split, at[0], at[2]),
+                                bc = middle_of(whole, split, at[1], at[2]);
+    if (ab && ac && bc) {
+      add_part(a, *ab, *ac);
+      add_part(*ab, b, *bc);
+      add_part(*ac, *bc, c);
+      add_part(*ab, *bc, *ac);
+    } else {
+      add_parts(a, b, c, ab, ac, bc, add_part);
     }
   }
 
@@ -211,8 +239,7 @@ class Divider {
 
   /// Where an edge of a tet is halved.
   std::optional<Corner> middle_of(TetId whole, TetId split, std::size_t a, std::size_t b) {
-    const Tet& named = whole_.mesh.tets[whole.index()];
-    if (!halved_.contains(std::minmax(named[a], named[b]))) return std::nullopt;
+    if (!is_halved(whole, a, b)) return std::nullopt;
     const auto edge = std::ranges::find(kEdges, std::array{std::min(a, b), std::max(a, b)});
     return corner(whole, split, 4 + static_cast<std::size_t>(edge - kEdges.begin()));
   }
@@ -221,10 +248,10 @@ class Divider {
   /// points next to its pieces.
   void divide(TetId whole) {
     static const std::vector<Neighbours> kNeighbours = neighbouring_pieces();
-    std::array<double, 10> doses{};
-    for (std::size_t i = 0; i < 10; ++i) doses[i] = corner(whole, i).dose;
+    std::array<Corner, 10> places{};
+    for (std::size_t i = 0; i < 10; ++i) places[i] = corner(whole, i);
     for (const bool is_gone : {false, true}) {
-      const auto is_own = [&](std::size_t i) { return (doses[i] >= 1.0) == is_gone; };
+      const auto is_own = [&](std::size_t i) { return (places[i].dose >= 1.0) == is_gone; };
       DisjointSets sets(kPieces.size());
       for (const auto& [a, b, face] : kNeighbours) {
         if (std::ranges::any_of(face, is_own)) sets.join(a, b);
@@ -237,8 +264,7 @@ class Divider {
         for (const std::size_t i : kPieces[k]) {
           if (!is_own(i)) continue;
           ++own;
-          const Corner c = corner(whole, i);
-          for (std::size_t m = 0; m < 4; ++m) middle[m] += c.shares[m];
+          for (std::size_t m = 0; m < 4; ++m) middle[m] += places[i].shares[m];
         }
         if (own == 0) continue;
         for (double& share : middle) share /= own;
@@ -321,7 +347,7 @@ class Divider {
   }
 
   /// @param step  in which the piece went, unless its tet did before; -1: when that did.
-  void add(Piece piece, TetId whole, TetId split, std::int32_t step = -1) {
+  void add(Piece piece, TetId whole, TetId split, std::int32_t step) {
     std::array<Vec3, 4> at;
     for (std::size_t c = 0; c < 4; ++c) at[c] = {piece[c].shares[1], piece[c].shares[2], piece[c].shares[3]};
     if (signed_volume(at[0], at[1], at[2], at[3]) < 0.0) std::swap(piece[2], piece[3]);
@@ -359,11 +385,10 @@ class Divider {
   std::size_t vertices_;
   std::map<TetId, const Removal*> removals_;
   std::vector<std::uint8_t> on_skin_;        // of each tet of the whole mesh
-  std::set<Edge> halved_;                    // those of divided tets
+  std::unordered_set<std::uint64_t> halved_;  // those of divided tets
   std::vector<std::vector<TetId>> copies_;   // of each tet of the whole mesh: itself and its copies
-  std::set<TetId> divided_;
-  std::map<Edge, double> dose_;
-  std::map<std::pair<VertexId, VertexId>, VertexId> between_;  // by numbers in the divided mesh
+  std::unordered_map<std::uint64_t, double> dose_;       // of edges
+  std::unordered_map<std::uint64_t, VertexId> between_;  // by numbers in the divided mesh
   DividedMesh mesh_;
 };
 

@@ -36,7 +36,8 @@ namespace {
 using Json = Calls::Json;
 
 constexpr double kEdgeStepMm = 1.0;            // of a drawn edge
-constexpr double kMomentS = 1.0;               // between two pictures of a cut under way
+constexpr double kMomentS = 1.0;               // between two pictures of a cut under way, at least
+constexpr double kMomentShare = 0.04;          // of the time, at most, that they take
 constexpr std::size_t kMostEdgePoints = 2000;  // that a person draws
 constexpr std::string_view kDrawnEdge = "tumor_edge";
 
@@ -545,15 +546,16 @@ Json Calls::plan(const Json&) {
 void Calls::show_moment(const std::string& cut, const TissueModel& model, const IncisionProgress& progress) {
   watchers_.on_part(part_of_run(cut));
   const auto now = std::chrono::steady_clock::now();
-  if (std::chrono::duration<double>(now - last_moment_).count() < kMomentS) return;
+  const double pause_s = std::max(kMomentS, moment_cost_s_ / kMomentShare);
+  if (!shows_moments_ || std::chrono::duration<double>(now - last_moment_).count() < pause_s) return;
   last_moment_ = now;
-  if (!shows_moments_) return;
   try {
     send_moment(cut, model, progress.state);
   } catch (const std::exception& error) {  // no room for its arrays: a cut does not end for want of a picture
     shows_moments_ = false;
     monitor_.message(Severity::Warning, fmt::format("{}. The cut continues without pictures", error.what()));
   }
+  moment_cost_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - now).count();
 }
 
 void Calls::send_moment(const std::string& cut, const TissueModel& model, const CutState& state) {

@@ -102,6 +102,7 @@ class Calls {
   std::string found_key_;  ///< in which case file, of which content, and in which scan or labels
   Found found_;
   std::chrono::steady_clock::time_point last_moment_{};
+  double moment_cost_s_ = 0.0;  // of the last picture
   bool shows_moments_ = true;
 };
 
