@@ -53,7 +53,8 @@ Options parse(int argc, char** argv) {
     if (name == "--rule") {
       INCISE_REQUIRE(options.study == "table", "expected --rule with table alone: law has its own");
       const std::optional<CutRule> rule = value_of<CutRule>(value);
-      INCISE_REQUIRE(rule.has_value(), fmt::format("expected --rule {}, found {}", choices(names_of(CutRule{})), value));
+      INCISE_REQUIRE(rule.has_value(),
+                     fmt::format("expected --rule {}, found {}", choices(names_of(CutRule{})), value));
       options.rule = *rule;
     } else if (name == "--count") {
       const std::optional<ContactCount> count = value_of<ContactCount>(value);
@@ -233,8 +234,8 @@ Result study_meshes(Workers& workers) {
   Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh (mm/s x dullness)", "edge length in the band, mm",
                                            "mean signed error, mm", true, false, {}}};
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    add_point(result.plot, fmt::format("{}, 13 x {}", name_of(jobs[i].tissue), jobs[i].cut.dullness), jobs[i].body->edge_mm.value(),
-              result.done[i]);
+    add_point(result.plot, fmt::format("{}, 13 x {}", name_of(jobs[i].tissue), jobs[i].cut.dullness),
+              jobs[i].body->edge_mm.value(), result.done[i]);
   }
   return result;
 }
@@ -262,7 +263,8 @@ Result study_law(Workers& workers) {
   }
   Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh, cut by points", "edge length in the band, mm",
                                            "mean signed error, mm", true, false, {}}};
-  for (std::size_t i = 0; i < jobs.size(); ++i) add_point(result.plot, jobs[i].body->name, jobs[i].body->edge_mm.value(), result.done[i]);
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    add_point(result.plot, jobs[i].body->name, jobs[i].body->edge_mm.value(), result.done[i]);
   return result;
 }
 

@@ -1,4 +1,5 @@
 #include "dose_field.hpp"
+#include "tet_clip.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/cutting/divided_mesh.hpp>
@@ -21,9 +22,9 @@ using Edge = std::pair<VertexId, VertexId>;  // of the whole mesh, the lower num
 
 /// A vertex of a piece of a tet.
 struct Corner {
-  VertexId id;                      // in the divided mesh
-  Edge key;                        // on whose middle it lies; twice the same number: a vertex
-  std::array<double, 4> shares;     // barycentric, in the tet
+  VertexId id;                   // in the divided mesh
+  Edge key;                      // on whose middle it lies; twice the same number: a vertex
+  std::array<double, 4> shares;  // barycentric, in the tet
   double dose;
 };
 using Piece = std::array<Corner, 4>;
@@ -31,14 +32,8 @@ using Piece = std::array<Corner, 4>;
 /// Regular division of a tet: four pieces at its corners, four in the octahedron between these; 4 … 9 are the middles
 /// of its edges.
 constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-constexpr std::array<std::array<std::size_t, 4>, 8> kPieces{{{0, 4, 5, 6},
-                                                             {4, 1, 7, 8},
-                                                             {5, 7, 2, 9},
-                                                             {6, 8, 9, 3},
-                                                             {4, 9, 5, 6},
-                                                             {4, 9, 6, 8},
-                                                             {4, 9, 8, 7},
-                                                             {4, 9, 7, 5}}};
+constexpr std::array<std::array<std::size_t, 4>, 8> kPieces{
+    {{0, 4, 5, 6}, {4, 1, 7, 8}, {5, 7, 2, 9}, {6, 8, 9, 3}, {4, 9, 5, 6}, {4, 9, 6, 8}, {4, 9, 8, 7}, {4, 9, 7, 5}}};
 
 /// Pairs of kPieces that share a face, and its corners among the ten.
 struct Neighbours {
@@ -85,7 +80,8 @@ class Divider {
     std::vector<std::int32_t> gone_step(copies_.size(), -1);  // of tets that lie in the kerf
     for (const TetId tet : state_.points.tets) {
       const int in_kerf = places_in_kerf(tet);
-      if (in_kerf == 10) gone_step[tet.index()] = parted_step(nearest(tet, {0.25, 0.25, 0.25, 0.25}, true));
+      if (in_kerf == 10)
+        gone_step[tet.index()] = parted_step(nearest(tet, {0.25, 0.25, 0.25, 0.25}, true), corner(tet, 0).key);
       if ((in_kerf == 0 || in_kerf == 10) && copies_[tet.index()].size() == 1) continue;
       is_divided[tet.index()] = 1;
       const Tet& corners = whole_.mesh.tets[tet.index()];
@@ -280,9 +276,12 @@ class Divider {
         Piece piece;
         for (std::size_t c = 0; c < 4; ++c) piece[c] = corner(whole, split, kPieces[k][c]);
         std::ranges::sort(piece, {}, &Corner::key);  // neighbours divide their common face alike
-        std::vector<Piece> parts;
-        clip(piece, is_gone, parts);
-        for (const Piece& part : parts) add(part, whole, split, is_gone ? parted_step(*near[k]) : -1);
+        std::vector<Corner> own, others;
+        for (const Corner& c : piece) ((c.dose >= 1.0) == is_gone ? own : others).push_back(c);
+        const std::int32_t step = is_gone ? parted_step(*near[k], own[0].key) : -1;
+        clip_tet(
+            own, others, [&](const Corner& a, const Corner& b) { return crossing(a, b); },
+            [&](const Piece& part) { add(part, whole, split, step); });
       }
     }
   }
@@ -303,10 +302,14 @@ class Divider {
     return found;
   }
 
-  /// When a piece went, by the point next to it.
-  [[nodiscard]] std::int32_t parted_step(std::size_t near) const {
-    const std::int32_t step = state_.points.parted_step[near];
-    return step >= 0 ? step : doses_.parted_step_near(lattice_.rest_position(near)).value_or(state_.step);
+  /// When the tissue of a tet's places in the kerf went: by the point next to them, or the node that gives one its
+  /// dose.
+  [[nodiscard]] std::int32_t parted_step(std::size_t near, const Edge& place) const {
+    if (state_.points.parted_step[near] >= 0) return state_.points.parted_step[near];
+    const Points& rest = whole_.mesh.vertices;
+    const auto step = doses_.parted_step_near(0.5 * (vertex(rest, place.first) + vertex(rest, place.second)));
+    INCISE_REQUIRE(step.has_value(), "points: expected a step for each that is parted, found a dose of 1 without one");
+    return *step;
   }
 
   Corner crossing(const Corner& a, const Corner& b) {
@@ -315,35 +318,6 @@ class Divider {
     cut.id = between(a.id, b.id, share);
     for (std::size_t k = 0; k < 4; ++k) cut.shares[k] = a.shares[k] + share * (b.shares[k] - a.shares[k]);
     return cut;
-  }
-
-  static void add_prism(const std::array<Corner, 3>& a, const std::array<Corner, 3>& b, std::vector<Piece>& parts) {
-    parts.push_back({a[0], a[1], a[2], b[0]});
-    parts.push_back({a[1], a[2], b[0], b[1]});
-    parts.push_back({a[2], b[0], b[1], b[2]});
-  }
-
-  /// The part of a piece on one side of the border.
-  void clip(const Piece& piece, bool is_gone, std::vector<Piece>& parts) {
-    std::vector<const Corner*> own, others;
-    for (const Corner& c : piece) ((c.dose >= 1.0) == is_gone ? own : others).push_back(&c);
-    const auto cut = [&](std::size_t o, std::size_t k) { return crossing(*own[o], *others[k]); };
-    switch (own.size()) {
-      case 1:
-        parts.push_back({*own[0], cut(0, 0), cut(0, 1), cut(0, 2)});
-        break;
-      case 2:
-        add_prism({*own[0], cut(0, 0), cut(0, 1)}, {*own[1], cut(1, 0), cut(1, 1)}, parts);
-        break;
-      case 3:
-        add_prism({*own[0], *own[1], *own[2]}, {cut(0, 0), cut(1, 0), cut(2, 0)}, parts);
-        break;
-      case 4:
-        parts.push_back(piece);
-        break;
-      default:
-        break;
-    }
   }
 
   /// @param step  in which the piece went, unless its tet did before; -1: when that did.
@@ -384,17 +358,13 @@ class Divider {
   DoseField doses_;
   std::size_t vertices_;
   std::map<TetId, const Removal*> removals_;
-  std::vector<std::uint8_t> on_skin_;        // of each tet of the whole mesh
-  std::unordered_set<std::uint64_t> halved_;  // those of divided tets
-  std::vector<std::vector<TetId>> copies_;   // of each tet of the whole mesh: itself and its copies
+  std::vector<std::uint8_t> on_skin_;                    // of each tet of the whole mesh
+  std::unordered_set<std::uint64_t> halved_;             // edges of divided tets
+  std::vector<std::vector<TetId>> copies_;               // of each tet of the whole mesh: itself and its copies
   std::unordered_map<std::uint64_t, double> dose_;       // of edges
   std::unordered_map<std::uint64_t, VertexId> between_;  // by numbers in the divided mesh
   DividedMesh mesh_;
 };
-
-}  // namespace
-
-namespace {
 
 /// After a cut by whole tets.
 DividedMesh undivided(const TissueModel& whole, const CutState& state) {

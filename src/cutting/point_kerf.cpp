@@ -1,6 +1,7 @@
 #include "point_kerf.hpp"
 
 #include "dose_field.hpp"
+#include "tet_clip.hpp"
 
 #include <incise/geometry/iso_surface.hpp>
 
@@ -21,43 +22,22 @@ PointLattice::Node moved(const PointLattice::Node& node, std::size_t corner, int
   return other;
 }
 
-/// Where the dose is 1 between two places.
-Vec3 crossing(const Vec3& from, double dose, const Vec3& to, double other_dose) {
-  return from + (1.0 - dose) / (other_dose - dose) * (to - from);
-}
-
-void add_prism(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>& b, std::vector<std::array<Vec3, 4>>& tets) {
-  tets.push_back({a[0], a[1], a[2], b[0]});
-  tets.push_back({a[1], a[2], b[0], b[1]});
-  tets.push_back({a[2], b[0], b[1], b[2]});
-}
+struct DosedPlace {
+  Vec3 at;
+  double dose;
+};
 
 /// The part of a tet in which the dose, linear in it, is at least 1.
 void add_part(const std::array<Vec3, 4>& at, const std::array<double, 4>& dose,
               std::vector<std::array<Vec3, 4>>& tets) {
-  std::array<std::size_t, 4> order{0, 1, 2, 3};
-  std::ranges::stable_partition(order, [&](std::size_t c) { return dose[c] >= 1.0; });
-  const auto inside = std::ranges::count_if(dose, [](double d) { return d >= 1.0; });
-  const auto cut = [&](std::size_t from, std::size_t to) {
-    return crossing(at[order[from]], dose[order[from]], at[order[to]], dose[order[to]]);
+  std::vector<DosedPlace> inside, outside;
+  for (std::size_t c = 0; c < 4; ++c) (dose[c] >= 1.0 ? inside : outside).push_back({at[c], dose[c]});
+  const auto crossing = [](const DosedPlace& from, const DosedPlace& to) {
+    return DosedPlace{from.at + (1.0 - from.dose) / (to.dose - from.dose) * (to.at - from.at), 1.0};
   };
-  const auto place = [&](std::size_t c) -> const Vec3& { return at[order[c]]; };
-  switch (inside) {
-    case 1:
-      tets.push_back({place(0), cut(0, 1), cut(0, 2), cut(0, 3)});
-      break;
-    case 2:
-      add_prism({place(0), cut(0, 2), cut(0, 3)}, {place(1), cut(1, 2), cut(1, 3)}, tets);
-      break;
-    case 3:
-      add_prism({place(0), place(1), place(2)}, {cut(0, 3), cut(1, 3), cut(2, 3)}, tets);
-      break;
-    case 4:
-      tets.push_back(at);
-      break;
-    default:
-      break;
-  }
+  clip_tet(inside, outside, crossing, [&](const std::array<DosedPlace, 4>& tet) {
+    tets.push_back({tet[0].at, tet[1].at, tet[2].at, tet[3].at});
+  });
 }
 
 }  // namespace

@@ -74,7 +74,9 @@ PointHold hold_points(const TissueModel& model, const CutSettings& settings, con
       }
     }
   });
-  std::erase_if(hold.tets, [](const HeldTet& held) { return held.stiffness_mn_mm[0] == 0.0; });
+  std::erase_if(hold.tets, [](const HeldTet& held) {
+    return std::ranges::all_of(held.stiffness_mn_mm, [](double stiffness) { return stiffness == 0.0; });
+  });
   return hold;
 }
 

@@ -223,7 +223,7 @@ TEST_F(StraightPass, WhatHangsTogetherSharesItsFaceAndNothingElseIsJoined) {
 TEST_F(StraightPass, DragsTissueOfAnyStiffnessAlike) {
   const auto block = [](double modulus_kpa) {
     Material material{.youngs_modulus_kpa = modulus_kpa};
-    material.density_kg_m3 = 1.0;
+    material.density_kg_m3 = 1.0;  // weight would tell them apart
     return make_tissue_model(make_block({12, 16, 6}, {12, 16, 6}), material, kHeldBelow);
   };
   settings_.residual_tolerance = 1e-4;
@@ -418,8 +418,8 @@ TEST_F(RodInADisc, HasTheLateralStiffnessOfTheReference) {
 TEST_F(RodInADisc, ComesNearItWithTheSquareOfTheEdge) {
   const double coarse = excess_stiffness(16, 100.0), fine = excess_stiffness(32, 100.0);
   EXPECT_GT(fine, 0.0);
-  EXPECT_LT(coarse, 0.15) << "0.8 mm";
-  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.5);
+  EXPECT_LT(coarse, 0.1) << "0.8 mm";
+  EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3);
 }
 
 /// A block pulled at its far end, that a deep tool passes through from side to side: it falls in two.
@@ -551,6 +551,7 @@ TEST_P(CutInTwo, IsDrawnAsTwoBodiesWithTheKerfBetweenThem) {
   double kerf = 0.0;
   for (const auto& [a, b, c, d] : PointKerf(model_, state_.points, model_.mesh.vertices).tets())
     kerf += std::abs(signed_volume(a, b, c, d));
+  // Halves of edges of 2 mm hardly show a kerf of 1.4 mm.
   EXPECT_NEAR(gone, kerf, (std::get<0>(GetParam()) == 6 ? 0.15 : 0.06) * kerf);
   std::size_t walls = 0;
   for (const BoundaryFace& face : boundary_faces(mesh, is_left)) {

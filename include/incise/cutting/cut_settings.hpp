@@ -50,13 +50,14 @@ struct CutSettings {
   double bond_stiffness_kpa_mm2 = 1500.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag; finite meshes hold with less
   double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, >= 0 and less than once round
   double residual_tolerance = 0.15;   ///< each step's linear solve: |r| <= this · |contact force|, [1e-6, 0.3]; the next step puts the rest right
-  double max_step_mm = 1.0;           ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
+  double max_step_mm = 1.0;  ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
   CutRule rule = CutRule::Tets;
   ContactCount contact_count = ContactCount::Keep;  ///< Paper: what becomes of a tet's count when contact is lost
   // Lattice: in place of reach, bond stiffness and tear energy; not calibrated (docs/decisions/0010-cutting-law.md).
   double kernel_radius_mm = 1.25;           ///< how far from its core the tool acts, [0.5, 5]
   double dose_length_mm = 3.0;              ///< a point that does not move just parts where v d τ0 is this, [0.1, 10]
-  double hold_per_mm2 = 50.0;      ///< pull on a point per volume, offset and shear modulus, 1/mm², >= 0: the layer that moves with the tool is 1/√ of it thick; 0: no drag
+  double hold_per_mm2 = 50.0;  ///< pull on a point per volume, offset and shear modulus, 1/mm², >= 0: the layer that
+                               ///< moves with the tool is 1/√ of it thick; 0: no drag
 
   /// Contact time that removes a tet of the reference tissue at the reference power, s.
   [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
@@ -93,10 +94,14 @@ inline void describe_effect(Visitor& v, CutSettings& s) {
 }
 /// How the cut is simulated, step by step.
 inline void describe_steps(Visitor& v, CutSettings& s) {
-  v({"advance_per_step_mm", "Not with the rule paper: tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
+  v({"advance_per_step_mm",
+     "Not with the rule paper: tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
     s.advance_per_step_mm, {0.01, 10.0});
-  v({"reach_mm", "Not with the rule lattice: tissue is in contact within the tool's radius plus this of its core.", "mm"}, s.reach_mm, {0.0, 5.0});
-  v({"bond_stiffness_kpa_mm2", "Not with the rule lattice: pull of the tool on tissue that it holds, per volume and offset; 0: no drag.",
+  v({"reach_mm", "Not with the rule lattice: tissue is in contact within the tool's radius plus this of its core.",
+     "mm"},
+    s.reach_mm, {0.0, 5.0});
+  v({"bond_stiffness_kpa_mm2",
+     "Not with the rule lattice: pull of the tool on tissue that it holds, per volume and offset; 0: no drag.",
      "kPa/mm2"},
     s.bond_stiffness_kpa_mm2, {0.0, 1e6});
   v({"overlap_mm", "A ring is cut this far beyond its start, less than once round.", "mm"}, s.overlap_mm, {0.0, 50.0});
@@ -106,12 +111,15 @@ inline void describe_steps(Visitor& v, CutSettings& s) {
   v("rule", s.rule, "What is cut: whole tetrahedra, the points of a lattice, or tetrahedra as the paper does it.");
   v("contact_count", s.contact_count,
     "Rule paper: what becomes of a tetrahedron's count of steps when contact is lost.");
-  v({"kernel_radius_mm", "Rule lattice: how far from its core (a needle's axis) the tool acts.", "mm"}, s.kernel_radius_mm, {0.5, 5.0});
-  v({"dose_length_mm", "Rule lattice: where speed times dullness times reference_step_s is this, reference tissue that does not move is just cut.",
+  v({"kernel_radius_mm", "Rule lattice: how far from its core (a needle's axis) the tool acts.", "mm"},
+    s.kernel_radius_mm, {0.5, 5.0});
+  v({"dose_length_mm",
+     "Rule lattice: where speed times dullness times reference_step_s is this, reference tissue that does not move is "
+     "just cut.",
      "mm"},
     s.dose_length_mm, {0.1, 10.0});
-  v({"hold_per_mm2", "Rule lattice: pull of the tool on tissue about it, per volume, offset and shear modulus; 0: no drag.",
-     "1/mm2"},
+  v({"hold_per_mm2",
+     "Rule lattice: pull of the tool on tissue about it, per volume, offset and shear modulus; 0: no drag.", "1/mm2"},
     s.hold_per_mm2, {0.0, 1e4});
 }
 inline void describe(Visitor& v, CutSettings& s) {

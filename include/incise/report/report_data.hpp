@@ -73,8 +73,8 @@ struct ReportFrame {
   Vec3 tool_axis = -Vec3::UnitZ();    ///< unit; points from the holder to the tip
 };
 
-/// A frame without time and tool: the skin of the tets that are left. A face is of the kerf where it is not on the uncut
-/// body's skin.
+/// A frame without time and tool: the skin of the tets that are left. A face is of the kerf where it is not on the
+/// uncut body's skin.
 /// @param on_skin    per tet: bit f is set where face f is on that skin (skin_faces).
 /// @param positions  N x 3, mm.  @param is_live  per tet; empty: all.  @throws InvalidArgument if a length does not fit
 /// the mesh.
