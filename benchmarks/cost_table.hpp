@@ -7,10 +7,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace incise::bench {
@@ -34,6 +37,20 @@ inline void write_text(const std::string& file_name, const std::string& text) {
   std::ofstream file(file_name);
   file << text;
   if (!file.flush()) throw DataError(file_name, "", "a file that cannot be written", "room and permission for it");
+}
+
+/// Numbers above 0 with commas between them. @throws InvalidArgument
+inline std::vector<double> numbers_in(std::string_view option, const char* text) {
+  std::vector<double> found;
+  const char* at = text;
+  do {
+    char* end = nullptr;
+    found.push_back(std::strtod(at, &end));
+    INCISE_REQUIRE(end != at && found.back() > 0.0 && std::isfinite(found.back()) && (*end == ',' || *end == '\0'),
+                   fmt::format("expected {} numbers above 0 with commas between them, found {}", option, text));
+    at = *end == ',' ? end + 1 : nullptr;
+  } while (at != nullptr);
+  return found;
 }
 
 inline double median(std::vector<double> values) {

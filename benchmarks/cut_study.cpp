@@ -5,7 +5,9 @@
 //
 // step:  the simulation step: 0.13, 0.26, 0.52 mm.
 // mesh:  edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move.
-// law:   the cut by points (docs/decisions/0010-cutting-law.md): 6, 12 and 70 kPa on two meshes of each of three sizes.
+// law:   the cut by points (docs/decisions/0010-cutting-law.md): [--moduli 6,12,70] kPa, [--edges 1.0,0.8,0.6] mm, of
+//        each size [--meshes 2], whose edges differ by half a percent, of specimens [--seeds 1], in steps of
+//        [--steps 0.26] mm.
 // table: the paper's Table I: 25 pairs of speed and dullness; [--rule tets|lattice|paper] [--count keep|reset]
 //        [--specimens 2].
 
@@ -20,10 +22,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <mutex>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace incise::bench {
 namespace {
@@ -34,6 +38,8 @@ struct Options {
   CutRule rule = CutRule::Tets;  // of the table
   ContactCount count = ContactCount::Keep;  // of the table by the paper's rule
   std::uint64_t specimens = 2;   // of the table
+  std::vector<double> moduli_kpa{6.0, 12.0, 70.0}, edges_mm{1.0, 0.8, 0.6}, seeds{1.0}, steps_mm{0.26};  // of the law
+  int meshes = 2;
   std::string csv;
   std::string figure;
 };
@@ -66,6 +72,19 @@ Options parse(int argc, char** argv) {
       const int specimens = std::atoi(value);
       INCISE_REQUIRE(specimens > 0, fmt::format("expected --specimens 1 or more, found {}", value));
       options.specimens = static_cast<std::uint64_t>(specimens);
+    } else if (options.study == "law" && name == "--moduli") {
+      options.moduli_kpa = numbers_in(name, value);
+    } else if (options.study == "law" && name == "--edges") {
+      options.edges_mm = numbers_in(name, value);
+    } else if (options.study == "law" && name == "--seeds") {
+      options.seeds = numbers_in(name, value);
+      for (const double seed : options.seeds)
+        INCISE_REQUIRE(seed == std::floor(seed), fmt::format("expected whole --seeds, found {}", value));
+    } else if (options.study == "law" && name == "--steps") {
+      options.steps_mm = numbers_in(name, value);
+    } else if (options.study == "law" && name == "--meshes") {
+      options.meshes = std::atoi(value);
+      INCISE_REQUIRE(options.meshes > 0, fmt::format("expected --meshes 1 or more, found {}", value));
     } else if (name == "--threads") {
       options.threads = std::atoi(value);
     } else if (name == "--csv") {
@@ -73,8 +92,10 @@ Options parse(int argc, char** argv) {
     } else if (name == "--figure") {
       options.figure = value;
     } else {
-      throw InvalidArgument(
-          fmt::format("expected --threads, --rule, --count, --specimens, --csv or --figure, found {}", name));
+      throw InvalidArgument(fmt::format(
+          "expected --threads, --csv, --figure, with table --rule, --count, --specimens, with law --moduli, "
+          "--edges, --meshes, --seeds, --steps; found {}",
+          name));
     }
   }
   INCISE_REQUIRE(!is_counted || options.rule == CutRule::Paper, "expected --count with --rule paper alone");
@@ -240,31 +261,40 @@ Result study_meshes(Workers& workers) {
   return result;
 }
 
-/// Whether a cut by points depends on its mesh: two meshes of each size, whose edges differ by half a percent.
-Result study_law(Workers& workers) {
+/// Whether a cut by points depends on its mesh.
+Result study_law(Workers& workers, const Options& options) {
   Monitor silent;
-  const Phantom phantom = make_phantom(PhantomSettings{}, silent);
   std::vector<Body> bodies;
-  for (const double modulus_kpa : {6.0, 12.0, 70.0}) {
-    for (const double edge : {1.0, 0.8, 0.6}) {
-      for (const double share : {1.0, 1.005}) {
-        MeshingChoice meshing;
-        meshing.fine_mm = edge * share;
-        const Material material{.youngs_modulus_kpa = modulus_kpa, .poissons_ratio = 0.45};
-        bodies.push_back(make_body(phantom, fmt::format("seed 1 of {} kPa", modulus_kpa), meshing, workers, material));
+  for (const double seed : options.seeds) {
+    PhantomSettings specimen;
+    specimen.seed = static_cast<std::uint64_t>(seed);
+    const Phantom phantom = make_phantom(specimen, silent);
+    for (const double modulus_kpa : options.moduli_kpa) {
+      for (const double edge : options.edges_mm) {
+        for (int mesh = 0; mesh < options.meshes; ++mesh) {
+          MeshingChoice meshing;
+          meshing.fine_mm = edge * (1.0 + 0.005 * mesh);
+          const Material material{.youngs_modulus_kpa = modulus_kpa, .poissons_ratio = 0.45};
+          bodies.push_back(make_body(phantom, fmt::format("seed {} of {} kPa", specimen.seed, modulus_kpa), meshing,
+                                     workers, material));
+        }
       }
     }
   }
   std::vector<Job> jobs;
   for (const Body& body : bodies) {
-    jobs.push_back({&body, Tissue::Held, {}});
-    jobs.back().cut.rule = CutRule::Lattice;
-    jobs.back().cut.dullness = 5.4;
+    for (const double step_mm : options.steps_mm) {
+      jobs.push_back({&body, Tissue::Held, {}});
+      jobs.back().cut.rule = CutRule::Lattice;
+      jobs.back().cut.dullness = 5.4;
+      jobs.back().cut.advance_per_step_mm = step_mm;
+    }
   }
   Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh, cut by points", "edge length in the band, mm",
                                            "mean signed error, mm", true, false, {}}};
   for (std::size_t i = 0; i < jobs.size(); ++i)
-    add_point(result.plot, jobs[i].body->name, jobs[i].body->edge_mm.value(), result.done[i]);
+    add_point(result.plot, fmt::format("{}, {} mm a step", jobs[i].body->name, jobs[i].cut.advance_per_step_mm),
+              jobs[i].body->edge_mm.value(), result.done[i]);
   return result;
 }
 
@@ -305,7 +335,7 @@ int run(const Options& options) {
   Workers workers(options.threads);
   const Result result = options.study == "step"   ? study_steps(workers)
                         : options.study == "mesh" ? study_meshes(workers)
-                        : options.study == "law"  ? study_law(workers)
+                        : options.study == "law"  ? study_law(workers, options)
                                                   : study_table(workers, options);
   std::string table = origin_line("simulations of virtual specimens");
   table += kHeader;

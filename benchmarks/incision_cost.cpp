@@ -1,7 +1,9 @@
-// What a whole incision costs: a virtual tongue from CT to stretched tissue, then the same ring cut with several settings.
-//   incise_incision_cost [--tets N[,N...]] [--threads N] [--one-thread-too] [--runs N] [--advance MM] [--tolerance T] [--tight] [--csv FILE] [--figure FILE]
-// Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4). Several sizes, in
-// ascending order, are drawn against each other with --figure.
+// What a whole incision costs: a virtual tongue from CT to stretched tissue, then the same ring cut with several
+// settings.
+//   incise_incision_cost [--tets N[,N...]] [--threads N] [--one-thread-too] [--runs N] [--advance MM] [--tolerance T]
+//   [--rule tets|lattice|paper] [--tight] [--csv FILE] [--figure FILE]
+// Prints, beside each time, how far the contour lies from that of a tightly converged run (--tight: residual 1e-4).
+// Several sizes, in ascending order, are drawn against each other with --figure.
 #include "cost_table.hpp"
 #include "process_cost.hpp"
 #include "support/phantom_inputs.hpp"
@@ -29,22 +31,11 @@ struct Options {
   int runs = 1;
   double advance_mm = 0.26;
   double tolerance = 0.0;  // 0: the default
+  CutRule rule = CutRule::Tets;
   bool is_tight = false;
   std::string csv;
   std::string figure;
 };
-
-std::vector<int> numbers(const char* text) {
-  std::vector<int> found;
-  for (const char* at = text; *at != '\0';) {
-    char* end = nullptr;
-    found.push_back(static_cast<int>(std::strtol(at, &end, 10)));
-    INCISE_REQUIRE(end != at && found.back() > (found.size() > 1 ? found[found.size() - 2] : 0) && (*end == ',' || *end == '\0'),
-                   fmt::format("expected ascending numbers above 0 and commas, found {}", text));
-    at = *end == ',' ? end + 1 : end;
-  }
-  return found;
-}
 
 Options parse(int argc, char** argv) {
   Options options;
@@ -61,7 +52,12 @@ Options parse(int argc, char** argv) {
     INCISE_REQUIRE(i + 1 < argc, fmt::format("expected a value after {}", name));
     const char* value = argv[++i];
     if (name == "--tets") {
-      options.tets = numbers(value);
+      options.tets.clear();
+      for (const double count : numbers_in(name, value)) {
+        INCISE_REQUIRE(count == std::floor(count) && (options.tets.empty() || count > options.tets.back()),
+                       fmt::format("expected --tets whole and ascending, found {}", value));
+        options.tets.push_back(static_cast<int>(count));
+      }
     } else if (name == "--threads") {
       options.threads = std::atoi(value);
     } else if (name == "--runs") {
@@ -70,13 +66,20 @@ Options parse(int argc, char** argv) {
       options.advance_mm = std::atof(value);
     } else if (name == "--tolerance") {
       options.tolerance = std::atof(value);
+    } else if (name == "--rule") {
+      const std::optional<CutRule> rule = value_of<CutRule>(value);
+      INCISE_REQUIRE(rule.has_value(),
+                     fmt::format("expected --rule {}, found {}", choices(names_of(CutRule{})), value));
+      options.rule = *rule;
     } else if (name == "--csv") {
       options.csv = value;
     } else if (name == "--figure") {
       options.figure = value;
     } else {
       throw InvalidArgument(
-          fmt::format("expected --tets, --threads, --one-thread-too, --runs, --advance, --tolerance, --tight, --csv or --figure, found {}", name));
+          fmt::format("expected --tets, --threads, --one-thread-too, --runs, --advance, --tolerance, --rule, --tight, "
+                      "--csv or --figure, found {}",
+                      name));
     }
   }
   return options;
@@ -136,6 +139,7 @@ Size run_size(const Options& options, const Phantom& phantom, int tets, std::str
   incision.approach = settings.plan.approach;
   incision.cut = settings.cut;
   incision.cut.advance_per_step_mm = options.advance_mm;
+  incision.cut.rule = options.rule;
   if (options.tolerance > 0.0) incision.cut.residual_tolerance = options.tolerance;
 
   std::optional<Contour> reference;
@@ -175,11 +179,12 @@ Size run_size(const Options& options, const Phantom& phantom, int tets, std::str
                r.steps.size(), size.iterations_per_step, run.wall_s, run.processor_s, 1000.0 * run.wall_s / steps, r.record.removals.size(),
                signed_mm, to_tight, 1e-6 * peak_bytes(), to_string(r.outcome), load_average());
     std::fflush(stdout);
-    table += fmt::format("{},{},{},{},{},{},{},{:.3f},{:.3f},{},{:.4f},{:.4f},{:.0f},{},{:.2f},{},{}\n", study.model->mesh.tets.size(),
-                         study.model->mesh.vertices.size(), threads, incision.cut.advance_per_step_mm,
-                         incision.cut.residual_tolerance, r.steps.size(), r.solver_iterations, run.wall_s, run.processor_s,
-                         r.record.removals.size(), signed_mm, to_tight, size.bytes_per_tet, to_string(r.outcome), load_average(),
-                         to_string(active_isa()), source_commit());
+    table += fmt::format("{},{},{},{},{},{},{},{:.3f},{:.3f},{},{:.4f},{:.4f},{:.0f},{},{:.2f},{},{},{}\n",
+                         study.model->mesh.tets.size(), study.model->mesh.vertices.size(), threads,
+                         incision.cut.advance_per_step_mm, incision.cut.residual_tolerance, r.steps.size(),
+                         r.solver_iterations, run.wall_s, run.processor_s, r.record.removals.size(), signed_mm,
+                         to_tight, size.bytes_per_tet, to_string(r.outcome), load_average(), to_string(active_isa()),
+                         source_commit(), to_string(options.rule));
   }
   size.median_wall_s = median(walls);
   fmt::print("median of {} runs on {} threads: {:.2f} s wall, {:.2f} s processor\n", options.runs, options.threads,
@@ -215,7 +220,7 @@ int run(const Options& options) {
   std::string table = origin_line();
   table +=
       "tets,vertices,threads,advance_mm,residual_tolerance,steps,iterations,wall_s,processor_s,removed,signed_error_mm,"
-      "to_tight_mm,bytes_per_tet,outcome,load,isa,commit\n";
+      "to_tight_mm,bytes_per_tet,outcome,load,isa,commit,rule\n";
   std::vector<Size> sizes;
   for (const int tets : options.tets) sizes.push_back(run_size(options, phantom, tets, table));
   write_text(options.csv, table);

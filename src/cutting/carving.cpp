@@ -28,14 +28,15 @@ constexpr int kIntervalsPerStep = 4;     // after each of which the distance to 
 constexpr double kLeastDecrease =
     1e-4;                         // of the energy on the way to rest, as a share of what the slope promises (Armijo)
 constexpr int kMaxHalvings = 12;  // of such a step
-constexpr double kSplittingMm = 2.0;      // way of the tool after which tets are split that have come apart
+constexpr double kSplittingMm = 2.7;      // at most, of the tool's way between two splits
 constexpr double kFullDose = 1.0 - 1e-9;  // a dose is a sum over steps: what rounding may leave it short of 1
 
 }  // namespace
 
 struct CutWorkspace::Data {
   std::unique_ptr<const TissueModel> split;  // on the split mesh; null: the mesh is whole
-  FaceAdjacency neighbours;
+  std::shared_ptr<const FaceAdjacency> whole_neighbours;
+  FaceAdjacency split_neighbours;         // empty: the mesh is whole
   std::vector<double> rest_volumes_mm3;   // that each tet holds
   std::vector<std::uint8_t> is_anchored;  // vertices that a constraint holds
   StepStiffness stiffness;
@@ -43,15 +44,20 @@ struct CutWorkspace::Data {
   Points right_side;
   Points increment;
   Points before;
+  Points left;                          // positions after the last step
   double body_volume_mm3 = 0.0;         // at rest, uncut
   int next_step = -1;                   // the one that may build on what is kept here
   std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they stay where they are
   std::size_t carved_then = 0;          // tets carved when that was found
   std::optional<PointLattice> lattice;  // of a cut by points
   std::vector<std::uint8_t> every_tet;  // 1 each
+  NearTets near;
 
-  Data(const TissueModel& model, const MeshSplits& splits, std::span<const Vec3> positions, Precision precision)
-      : neighbours(face_adjacency(model.mesh, splits.copies)),
+  Data(const TissueModel& model, const MeshSplits& splits, std::span<const Vec3> positions, Precision precision,
+       std::shared_ptr<const FaceAdjacency> of_whole)
+      : whole_neighbours(std::move(of_whole)),
+        split_neighbours(splits == MeshSplits{} ? FaceAdjacency{}
+                                                : split_adjacency(model.mesh, splits, *whole_neighbours)),
         rest_volumes_mm3(model.mesh.tets.size()),
         is_anchored(model.mesh.vertices.size(), 0),
         stiffness(model),
@@ -66,10 +72,14 @@ struct CutWorkspace::Data {
       is_anchored[v] = fixed[0] || fixed[1] || fixed[2] ? 1 : 0;
     }
   }
+  [[nodiscard]] const FaceAdjacency& neighbours() const {
+    return split_neighbours.start.empty() ? *whole_neighbours : split_neighbours;
+  }
 };
 
 CutWorkspace::CutWorkspace(const TissueModel& model, std::span<const Vec3> positions, Precision precision)
-    : data_(std::make_unique<Data>(model, MeshSplits{}, positions, precision)),
+    : data_(std::make_unique<Data>(model, MeshSplits{}, positions, precision,
+                                   std::make_shared<const FaceAdjacency>(face_adjacency(model.mesh)))),
       positions_(positions.begin(), positions.end()),
       precision_(precision) {}
 CutWorkspace::~CutWorkspace() = default;
@@ -80,8 +90,9 @@ const TissueModel& CutWorkspace::model_for(const TissueModel& whole, const MeshS
     std::unique_ptr<const TissueModel> split;
     if (splits != MeshSplits{}) split = std::make_unique<const TissueModel>(split_model(whole, splits));
     const TissueModel& model = split ? *split : whole;
+    const std::shared_ptr<const FaceAdjacency> neighbours = data_->whole_neighbours;
     data_.reset();  // it is large
-    data_ = std::make_unique<Data>(model, splits, split_positions(positions_, splits), precision_);
+    data_ = std::make_unique<Data>(model, splits, split_positions(positions_, splits), precision_, neighbours);
     data_->split = std::move(split);
     splits_ = splits;
   }
@@ -284,7 +295,6 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
                                 CutState& state, CutWorkspace::Data& scratch, const std::optional<ToolPose>& next,
                                 const PointHold* hold, double step_s, Workers& workers, CutStepReport& report) {
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
-  if (state.step != scratch.next_step) scratch.is_orphan.clear();  // the state may be an earlier one
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
   // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension
@@ -314,19 +324,20 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
     Vec3& step = scratch.increment[v];
     const double length = step.norm();
     if (!std::isfinite(length)) report.is_finite = false;
-    if (length > settings.max_step_mm) {
+    if (next && length > settings.max_step_mm) {
       step *= settings.max_step_mm / length;
       ++report.held_back_vertices;
     }
-    report.max_step_mm = std::max(report.max_step_mm, std::min(length, settings.max_step_mm));
+    report.max_step_mm = std::max(report.max_step_mm, next ? std::min(length, settings.max_step_mm) : length);
   }
   if (!report.is_finite) return stiffnesses;
-  if (!next) {
+  if (next) {
+    for (std::size_t v = 0; v < scratch.increment.size(); ++v) state.tissue.positions[v] += scratch.increment[v];
+  } else {
     const double share = take_lowering_share(model, scratch.right_side, scratch.increment, state.tissue);
     if (share > 0.0) report.max_step_mm *= share;  // where no share lowers the energy it is stuck, which is not rest
-    return stiffnesses;
   }
-  for (std::size_t v = 0; v < scratch.increment.size(); ++v) state.tissue.positions[v] += scratch.increment[v];
+  scratch.near.moved(report.max_step_mm);
   return stiffnesses;
 }
 
@@ -378,12 +389,13 @@ std::vector<ToolCore> cores_on_the_way(const Tool& tool, const ToolPose& from, c
 /// volume.
 /// @returns the tets whose dose is full now, ascending.
 std::vector<TetId> follow_contact(const TissueModel& model, const CutSettings& settings, const Tool& tool,
-                                  CutState& state, std::span<const Vec3> before, const ToolPose& next, double step_s,
+                                  CutState& state, CutWorkspace::Data& scratch, const ToolPose& next, double step_s,
                                   std::span<const double> works_kpa, Workers& workers, CutStepReport& report) {
+  const Points& before = scratch.before;
   const double limit = touching_distance_mm(tool, settings);
   const std::vector<ToolCore> cores = cores_on_the_way(tool, state.tool, next);
   const std::vector<TetId> candidates =
-      contact_candidates(model, state.tissue.is_live, before, state.tissue.positions, cores, limit, workers);
+      scratch.near.candidates(model, state.tissue.is_live, before, state.tissue.positions, cores, limit, workers);
   const std::vector<Contact> contacts =
       find_contacts(model, tool, state, before, next, cores, limit, candidates, workers);
 
@@ -427,7 +439,7 @@ void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause c
 std::size_t remove_loose(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch,
                          const std::vector<TetId>& changed) {
   const std::vector<TetId> loose =
-      loose_fragments(model.mesh, scratch.rest_volumes_mm3, scratch.neighbours, state.tissue.is_live,
+      loose_fragments(model.mesh, scratch.rest_volumes_mm3, scratch.neighbours(), state.tissue.is_live,
                       scratch.is_anchored, changed, kFragmentShare * scratch.body_volume_mm3);
   for (const TetId tet : loose) remove(model, state, tet, RemovalCause::LooseFragment);
   std::erase_if(state.bonds, [&](const Bond& bond) { return state.tissue.is_live[bond.tet.index()] == 0; });
@@ -464,16 +476,15 @@ std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace&
 namespace {
 
 /// Tets that come within a distance of the tool at one of the moments that its cores are of, ascending.
-std::vector<TetId> tets_near(const TissueModel& model, std::span<const std::uint8_t> is_wanted,
+std::vector<TetId> tets_near(const TissueModel& model, NearTets& finder, std::span<const std::uint8_t> is_wanted,
                              std::span<const Vec3> before, std::span<const Vec3> after, std::span<const ToolCore> cores,
                              double distance_mm, Workers& workers) {
-  const std::vector<TetId> candidates =
-      contact_candidates(model, is_wanted, before, after, cores, distance_mm, workers);
+  const std::vector<TetId> candidates = finder.candidates(model, is_wanted, before, after, cores, distance_mm, workers);
   std::vector<std::uint8_t> is_near(candidates.size(), 0);
   workers.for_each(candidates.size(), 64, [&](std::size_t c) {
     const auto from = corners_of(model.mesh, before, candidates[c].index());
     const auto to = corners_of(model.mesh, after, candidates[c].index());
-    for (std::size_t m = 0; m < cores.size(); ++m) {
+    for (std::size_t m = 0; m < cores.size() && is_near[c] == 0; ++m) {
       const double t = cores.size() > 1 ? static_cast<double>(m) / static_cast<double>(cores.size() - 1) : 0.0;
       std::array<Vec3, 4> corners;
       for (std::size_t i = 0; i < 4; ++i) corners[i] = from[i] + t * (to[i] - from[i]);
@@ -496,13 +507,12 @@ PointLattice& lattice_for(const TissueModel& model, const CutState& state, CutWo
   return *scratch.lattice;
 }
 
-/// Whether tets are split after a step: each time that the tool has gone another length on its way. They are not in
-/// each step, because everything is made anew then.
+/// Whether tets are split after a step: every n steps, where n is the greatest divisor of kRenewalSteps that takes the
+/// tool at most kSplittingMm on, or 1. Not after each, because everything is made anew then.
 bool is_splitting_step(const CutSettings& settings, int step) {
-  const auto lengths = [&](int steps) {
-    return std::floor(steps * settings.advance_per_step_mm / kSplittingMm + 1e-9);
-  };
-  return lengths(step) > lengths(step - 1);
+  int steps = kRenewalSteps;
+  while (steps > 1 && (kRenewalSteps % steps != 0 || steps * settings.advance_per_step_mm > kSplittingMm)) --steps;
+  return step % steps == 0;
 }
 
 /// Splits the tets that have come apart, and removes what hangs by no face then. @returns how many tets went.
@@ -535,8 +545,8 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   CutStepReport report;
   lattice_for(model, state, scratch);
   const std::vector<ToolCore> here{ToolCore(tool, state.tool)};
-  const std::vector<TetId> held =
-      tets_near(model, state.tissue.is_live, scratch.before, scratch.before, here, settings.kernel_radius_mm, workers);
+  const std::vector<TetId> held = tets_near(model, scratch.near, state.tissue.is_live, scratch.before, scratch.before,
+                                            here, settings.kernel_radius_mm, workers);
   meet_points(held, *scratch.lattice, state.points);
   const PointHold hold = hold_points(model, settings, tool, state, next, step_s, *scratch.lattice, held, workers);
   move_tissue(model, settings, tool, state, scratch, next, &hold, step_s, workers, report);
@@ -551,8 +561,8 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   load_tool(model, settings, tool, next, hold, *scratch.lattice, scratch.before, state, report);
   const std::vector<ToolCore> cores = cores_on_the_way(tool, state.tool, next);
   // Removed tets, too: between a dose that grows and one that stopped, the kerf's border would lie too far inwards.
-  const std::vector<TetId> candidates = tets_near(model, scratch.every_tet, scratch.before, state.tissue.positions,
-                                                  cores, settings.kernel_radius_mm, workers);
+  const std::vector<TetId> candidates = tets_near(model, scratch.near, scratch.every_tet, scratch.before,
+                                                  state.tissue.positions, cores, settings.kernel_radius_mm, workers);
   meet_points(candidates, *scratch.lattice, state.points);
   const std::vector<TetId> due = dose_points(model, settings, state, *scratch.lattice, scratch.before, next, cores,
                                              step_s, candidates, workers, report);
@@ -572,11 +582,11 @@ bool is_at_surface(const FaceAdjacency& neighbours, std::span<const std::uint8_t
 /// The paper's rule, before the tissue moves: the tool holds the tets at the surface that it touches where it is, and
 /// no others. What a removal bared is touched from the next step on, as by SofaCarving.
 void touch_surface(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
-                   const CutWorkspace::Data& scratch, Workers& workers) {
+                   CutWorkspace::Data& scratch, Workers& workers) {
   const std::vector<ToolCore> here{ToolCore(tool, state.tool)};
-  std::vector<TetId> touched = tets_near(model, state.tissue.is_live, state.tissue.positions, state.tissue.positions,
-                                         here, touching_distance_mm(tool, settings), workers);
-  std::erase_if(touched, [&](TetId tet) { return !is_at_surface(scratch.neighbours, state.tissue.is_live, tet); });
+  std::vector<TetId> touched = tets_near(model, scratch.near, state.tissue.is_live, state.tissue.positions,
+                                         state.tissue.positions, here, touching_distance_mm(tool, settings), workers);
+  std::erase_if(touched, [&](TetId tet) { return !is_at_surface(scratch.neighbours(), state.tissue.is_live, tet); });
   if (settings.contact_count == ContactCount::Reset) {
     for (const Bond& bond : state.bonds) {
       if (!std::ranges::binary_search(touched, bond.tet)) state.dose[bond.tet.index()] = 0.0;
@@ -616,9 +626,15 @@ CutStepReport advance(const TissueModel& whole, const CutSettings& settings, con
   if (!next && !state.points.tets.empty()) report.loose_removed = split_mesh_of(whole, state, workspace);
   const TissueModel& model = workspace.model_for(whole, state.splits);
   CutWorkspace::Data& scratch = workspace.data();
+  if (state.step != scratch.next_step || state.tissue.positions != scratch.left) {  // an earlier or another state
+    scratch.next_step = -1;
+    scratch.is_orphan.clear();
+    scratch.near.forget();
+  }
   scratch.before = state.tissue.positions;
   if (next && settings.rule == CutRule::Lattice) {
     report = advance_points(model, settings, tool, state, scratch, *next, step_s, workers);
+    scratch.left = state.tissue.positions;
     if (report.is_finite && is_splitting_step(settings, state.step))
       report.loose_removed += split_mesh_of(whole, state, workspace);
     return report;
@@ -631,6 +647,7 @@ CutStepReport advance(const TissueModel& whole, const CutSettings& settings, con
   if (report.is_finite)
     end_viscous_step(model, state.tissue, next ? settings.tissue_s(step_s) : std::numeric_limits<double>::infinity(),
                      workers);
+  scratch.left = state.tissue.positions;
   state.time_s += step_s;
   ++state.step;
   if (!next || !report.is_finite) return report;
@@ -639,9 +656,9 @@ CutStepReport advance(const TissueModel& whole, const CutSettings& settings, con
   // What the tool holds turns with it.
   const Eigen::Quaterniond turn = turn_of_held(tool, state.tool, *next);
   for (Bond& bond : state.bonds) bond.offset_mm = turn * bond.offset_mm;
-  const std::vector<TetId> due = counts_steps ? count_step(model, settings, state, report)
-                                              : follow_contact(model, settings, tool, state, scratch.before, *next,
-                                                               step_s, works_kpa, workers, report);
+  const std::vector<TetId> due =
+      counts_steps ? count_step(model, settings, state, report)
+                   : follow_contact(model, settings, tool, state, scratch, *next, step_s, works_kpa, workers, report);
   state.tool = *next;
   report.loose_removed = carve(model, state, scratch, due);
   report.removed = due.size();

@@ -9,6 +9,13 @@
 namespace incise {
 namespace {
 
+constexpr double kListedBeyondMm = 3.0;  // how far tool and tissue may move before tets are listed anew
+constexpr double kRoundingMm = 1e-9;     // of positions that are sums of steps
+
+Box3 grown(const Box3& box, double by_mm) {
+  return {box.min() - Vec3::Constant(by_mm), box.max() + Vec3::Constant(by_mm)};
+}
+
 double point_segment_squared(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
   const double length = ab.squaredNorm();
@@ -235,35 +242,38 @@ std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::span<const Vec3> positi
   return {positions[t[0].index()], positions[t[1].index()], positions[t[2].index()], positions[t[3].index()]};
 }
 
-std::vector<TetId> contact_candidates(const TissueModel& model, std::span<const std::uint8_t> is_live,
-                                      std::span<const Vec3> before, std::span<const Vec3> after, std::span<const ToolCore> cores,
-                                      double limit_mm, Workers& workers) {
+std::vector<TetId> NearTets::candidates(const TissueModel& model, std::span<const std::uint8_t> is_wanted,
+                                        std::span<const Vec3> before, std::span<const Vec3> after,
+                                        std::span<const ToolCore> cores, double limit_mm, Workers& workers) {
   Box3 swept;
   for (const ToolCore& core : cores) {
     for (const Vec3& corner : core.corners()) swept.extend(corner);
   }
-  const Vec3 low = swept.min() - Vec3::Constant(limit_mm);
-  const Vec3 high = swept.max() + Vec3::Constant(limit_mm);
-
-  constexpr std::size_t kChunk = 4096;
-  const std::size_t count = model.mesh.tets.size();
-  std::vector<std::vector<TetId>> found(Workers::chunk_count(count, kChunk));
-  workers.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    for (std::size_t tet = begin; tet < end; ++tet) {
-      if (is_live[tet] == 0) continue;
-      Vec3 tet_low = Vec3::Constant(std::numeric_limits<double>::infinity());
-      Vec3 tet_high = -tet_low;
-      for (const VertexId v : model.mesh.tets[tet]) {
-        tet_low = tet_low.cwiseMin(before[v.index()]).cwiseMin(after[v.index()]);
-        tet_high = tet_high.cwiseMax(before[v.index()]).cwiseMax(after[v.index()]);
+  const Box3 wanted = grown(swept, limit_mm);
+  const auto box_of = [&](std::size_t tet) {
+    Box3 box;
+    for (const VertexId v : model.mesh.tets[tet]) box.extend(before[v.index()]).extend(after[v.index()]);
+    return box;
+  };
+  if (!is_known_ || !reach_.contains(grown(wanted, moved_mm_ + kRoundingMm))) {
+    reach_ = grown(wanted, kListedBeyondMm);
+    moved_mm_ = 0.0;
+    is_known_ = true;
+    constexpr std::size_t kChunk = 4096;
+    const std::size_t count = model.mesh.tets.size();
+    std::vector<std::vector<TetId>> found(Workers::chunk_count(count, kChunk));
+    workers.for_chunks(count, kChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+      for (std::size_t tet = begin; tet < end; ++tet) {
+        if (box_of(tet).intersects(reach_)) found[chunk].emplace_back(tet);
       }
-      if ((tet_low.array() <= high.array()).all() && (tet_high.array() >= low.array()).all()) {
-        found[chunk].emplace_back(tet);
-      }
-    }
-  });
+    });
+    listed_.clear();
+    for (const auto& part : found) listed_.insert(listed_.end(), part.begin(), part.end());
+  }
   std::vector<TetId> all;
-  for (const auto& part : found) all.insert(all.end(), part.begin(), part.end());
+  for (const TetId tet : listed_) {
+    if (is_wanted[tet.index()] != 0 && box_of(tet.index()).intersects(wanted)) all.push_back(tet);
+  }
   return all;
 }
 

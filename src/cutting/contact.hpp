@@ -2,9 +2,11 @@
 
 #include <incise/core/workers.hpp>
 #include <incise/cutting/tool.hpp>
+#include <incise/geometry/types.hpp>
 #include <incise/mechanics/tissue.hpp>
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -32,11 +34,28 @@ struct ContactInterval {
 [[nodiscard]] ContactInterval contact_interval(std::span<const double> distances_mm, const std::function<double(double)>& distance_mm,
                                                double limit_mm);
 
-/// Live tets whose bounding box, over a step from `before` to `after`, comes within `limit_mm` of the box of the tool's core at all the
-/// moments that are looked at; ascending. A superset of the tets in contact then. O(M).
-[[nodiscard]] std::vector<TetId> contact_candidates(const TissueModel& model, std::span<const std::uint8_t> is_live,
-                                                    std::span<const Vec3> before, std::span<const Vec3> after,
-                                                    std::span<const ToolCore> cores, double limit_mm, Workers& workers);
+/// Finds the tets near the tool step after step. It keeps a list of those that can come near soon, so that most steps
+/// look at few tets; what it finds does not depend on the list.
+class NearTets {
+ public:
+  /// Wanted tets whose bounding box, over a step from `before` to `after`, comes within `limit_mm` of the box of the
+  /// tool's core at all the moments that are looked at; ascending. A superset of the tets in contact then. O(M) where
+  /// the list is made anew.
+  [[nodiscard]] std::vector<TetId> candidates(const TissueModel& model, std::span<const std::uint8_t> is_wanted,
+                                              std::span<const Vec3> before, std::span<const Vec3> after,
+                                              std::span<const ToolCore> cores, double limit_mm, Workers& workers);
+  /// No vertex has moved farther than this since the last call, mm. To be called before candidates() is given the new
+  /// positions as `after`.
+  void moved(double distance_mm) { moved_mm_ += distance_mm; }
+  /// The tissue is another one now.
+  void forget() { is_known_ = false; }
+
+ private:
+  bool is_known_ = false;
+  Box3 reach_;             ///< tets whose box met this are listed
+  double moved_mm_ = 0.0;  ///< since then
+  std::vector<TetId> listed_;
+};
 
 /// The share of a tet's volume within `limit_mm` of a core, from 35 evenly spread sample points, [0, 1].
 [[nodiscard]] double share_within(const std::array<Vec3, 4>& tet, const ToolCore& core, double limit_mm);

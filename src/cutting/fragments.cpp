@@ -5,8 +5,8 @@
 
 namespace incise {
 
-FaceAdjacency face_adjacency(const TetMesh& mesh, std::span<const SplitTet> copies) {
-  const std::size_t count = mesh.tets.size(), whole = count - copies.size();
+FaceAdjacency face_adjacency(const TetMesh& mesh) {
+  const std::size_t count = mesh.tets.size();
   std::vector<std::pair<Triangle, std::int32_t>> faces;  // sorted vertices, tet
   faces.reserve(4 * count);
   for (std::size_t t = 0; t < count; ++t) {
@@ -17,12 +17,10 @@ FaceAdjacency face_adjacency(const TetMesh& mesh, std::span<const SplitTet> copi
     }
   }
   std::ranges::sort(faces);
-  const auto whole_of = [&](std::size_t t) { return t < whole ? TetId(t) : copies[t - whole].whole; };
   const auto for_each_pair = [&](const auto& visit) {  // both ways
     for (std::size_t i = 0; i < faces.size(); ++i) {
       for (std::size_t j = i + 1; j < faces.size() && faces[j].first == faces[i].first; ++j) {
         const auto a = static_cast<std::size_t>(faces[i].second), b = static_cast<std::size_t>(faces[j].second);
-        if (whole_of(a) == whole_of(b)) continue;
         visit(a, b);
         visit(b, a);
       }
@@ -36,6 +34,44 @@ FaceAdjacency face_adjacency(const TetMesh& mesh, std::span<const SplitTet> copi
   for_each_pair([&](std::size_t tet, std::size_t neighbour) {
     adjacency.tets[static_cast<std::size_t>(next[tet]++)] = static_cast<std::int32_t>(neighbour);
   });
+  return adjacency;
+}
+
+FaceAdjacency split_adjacency(const TetMesh& split, const MeshSplits& splits, const FaceAdjacency& whole) {
+  const std::size_t whole_count = whole.start.size() - 1;
+  // Per whole tet: its first copy, and per copy the next one of the same tet.
+  std::vector<std::int32_t> first(whole_count, -1), next(splits.copies.size(), -1);
+  for (std::size_t i = splits.copies.size(); i-- > 0;) {
+    std::int32_t& head = first[splits.copies[i].whole.index()];
+    next[i] = head;
+    head = static_cast<std::int32_t>(i);
+  }
+  std::vector<std::uint8_t> has_other_corners(whole_count, 0);
+  for (const auto* list : {&splits.changed, &splits.copies}) {
+    for (const SplitTet& tet : *list) has_other_corners[tet.whole.index()] = 1;
+  }
+  const auto share_a_face = [&](std::size_t a, std::size_t b) {
+    const Tet& other = split.tets[b];
+    return std::ranges::count_if(split.tets[a],
+                                 [&](VertexId v) { return std::ranges::find(other, v) != other.end(); }) == 3;
+  };
+  FaceAdjacency adjacency;
+  adjacency.start.reserve(split.tets.size() + 1);
+  adjacency.tets.reserve(whole.tets.size() + 4 * splits.copies.size());
+  adjacency.start.push_back(0);
+  for (std::size_t tet = 0; tet < split.tets.size(); ++tet) {
+    const std::size_t original = tet < whole_count ? tet : splits.copies[tet - whole_count].whole.index();
+    for (const std::int32_t neighbour : whole.of(original)) {
+      const auto n = static_cast<std::size_t>(neighbour);
+      const bool is_as_before = has_other_corners[original] == 0 && has_other_corners[n] == 0;
+      if (is_as_before || share_a_face(tet, n)) adjacency.tets.push_back(neighbour);
+      for (std::int32_t copy = first[n]; copy >= 0; copy = next[static_cast<std::size_t>(copy)]) {
+        const std::size_t part = whole_count + static_cast<std::size_t>(copy);
+        if (share_a_face(tet, part)) adjacency.tets.push_back(static_cast<std::int32_t>(part));
+      }
+    }
+    adjacency.start.push_back(static_cast<std::int32_t>(adjacency.tets.size()));
+  }
   return adjacency;
 }
 

@@ -19,8 +19,10 @@ struct FaceAdjacency {
     return std::span(tets).subspan(first, last - first);
   }
 };
-/// @param copies  of the split mesh; none: it is whole. O(M log M).
-[[nodiscard]] FaceAdjacency face_adjacency(const TetMesh& mesh, std::span<const SplitTet> copies = {});
+/// O(M log M).
+[[nodiscard]] FaceAdjacency face_adjacency(const TetMesh& mesh);
+/// Of a split mesh: `split` is split_mesh of the mesh that `whole` is of. O(M).
+[[nodiscard]] FaceAdjacency split_adjacency(const TetMesh& split, const MeshSplits& splits, const FaceAdjacency& whole);
 
 /// Live tets of face-connected parts that a change has cut off: parts that hold or border on a tet of `changed` (no
 /// longer live, or live with other corners), with less than `least_mm3` of rest volume, that touch no vertex for which

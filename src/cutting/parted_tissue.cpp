@@ -24,18 +24,25 @@ std::optional<std::size_t> PartedTissue::nearest_point(const Vec3& rest, double 
   const int reach = static_cast<int>(std::ceil(within_mm / PointLattice::kSpacingMm)) + 1;
   std::optional<std::size_t> nearest;
   double least = within_mm;
-  for (int k = -reach; k <= reach; ++k)
-    for (int j = -reach; j <= reach; ++j)
-      for (int i = -reach; i <= reach; ++i) {
-        const auto found = near_node_.find({middle[0] + i, middle[1] + j, middle[2] + k});
-        if (found == near_node_.end()) continue;
-        for (const std::size_t point : found->second) {
-          const double apart = (lattice_.rest_position(point) - rest).norm();
-          if (apart > least) continue;
-          least = apart;
-          nearest = point;
-        }
+  const auto look_at = [&](const PointLattice::Node& node) {
+    const auto found = near_node_.find(node);
+    if (found == near_node_.end()) return;
+    for (const std::size_t point : found->second) {
+      const double apart = (lattice_.rest_position(point) - rest).norm();
+      if (apart > least) continue;
+      least = apart;
+      nearest = point;
+    }
+  };
+  // A point in shell s is at least s - 1 spacings away.
+  for (int shell = 0; shell <= reach && (shell - 1) * PointLattice::kSpacingMm <= least; ++shell) {
+    for (int k = -shell; k <= shell; ++k)
+      for (int j = -shell; j <= shell; ++j) {
+        const bool is_side = std::abs(k) == shell || std::abs(j) == shell;
+        for (int i = -shell; i <= shell; i += is_side ? 1 : 2 * shell)
+          look_at({middle[0] + i, middle[1] + j, middle[2] + k});
       }
+  }
   return nearest;
 }
 

@@ -5,9 +5,9 @@
 #include <incise/cutting/carving.hpp>
 #include <incise/geometry/surface_query.hpp>
 
-#include <map>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace incise {
@@ -36,7 +36,8 @@ class PartedTissue {
   TetMesh split_;
   PointLattice lattice_;
   TetLocator locator_;
-  std::map<PointLattice::Node, std::vector<std::size_t>> near_node_;  // points that are not parted
+  std::unordered_map<PointLattice::Node, std::vector<std::size_t>, PointLattice::NodeHash>
+      near_node_;  // points that are not parted
 };
 
 }  // namespace incise

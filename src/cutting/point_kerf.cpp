@@ -44,6 +44,7 @@ void add_part(const std::array<Vec3, 4>& at, const std::array<double, 4>& dose,
 
 PointKerf::PointKerf(const TissueModel& model, const CutPoints& points, std::span<const Vec3> positions)
     : model_(model), points_(points), positions_(positions), lattice_(lattice_of(model, points)) {
+  points_at_.reserve(lattice_.size());
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
     if (lattice_.node_of(i)) points_at_.emplace(*lattice_.node_of(i), i);
   }

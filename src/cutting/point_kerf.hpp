@@ -5,7 +5,7 @@
 #include <incise/cutting/cut_points.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 
-#include <map>
+#include <unordered_map>
 
 namespace incise {
 
@@ -39,7 +39,7 @@ class PointKerf {
   const CutPoints& points_;
   std::span<const Vec3> positions_;
   PointLattice lattice_;
-  std::map<PointLattice::Node, std::size_t> points_at_;
+  std::unordered_map<PointLattice::Node, std::size_t, PointLattice::NodeHash> points_at_;
 };
 
 }  // namespace incise

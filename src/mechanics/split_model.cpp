@@ -86,8 +86,8 @@ TissueModel split_model(const TissueModel& whole, const MeshSplits& splits) {
       support.stiffness[i] *= share[support.vertices[i].index()];
     }
   }
-  add_topology(model);
-  model.batches = make_tet_batches(model);
+  add_split_topology(model, whole, splits);
+  model.batches = make_split_batches(model, whole, splits);
   return model;
 }
 

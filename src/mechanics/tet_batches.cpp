@@ -115,6 +115,35 @@ std::shared_ptr<const TetBatches> make_tet_batches(const TissueModel& model) {
   return result;
 }
 
+std::shared_ptr<const TetBatches> make_split_batches(const TissueModel& model, const TissueModel& whole,
+                                                     const MeshSplits& splits) {
+  const TetBatches& before = *whole.batches;
+  const std::size_t whole_tets = whole.mesh.tets.size();
+  std::vector<std::vector<std::int32_t>> runs(before.runs());
+  std::vector<std::size_t> run_of(whole_tets);
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    const auto first = static_cast<std::size_t>(before.run_start[run]);
+    const auto last = static_cast<std::size_t>(before.run_start[run + 1]);
+    for (std::size_t lane = 0; lane < kBatchTets; ++lane) {  // the order in which add_run took them
+      for (std::size_t batch = first; batch < last; ++batch) {
+        const std::int32_t tet = before.batches[batch].tets[lane];
+        if (tet < 0) continue;
+        runs[run].push_back(tet);
+        run_of[static_cast<std::size_t>(tet)] = run;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < splits.copies.size(); ++i)
+    runs[run_of[splits.copies[i].whole.index()]].push_back(static_cast<std::int32_t>(whole_tets + i));
+  auto result = std::make_shared<TetBatches>();
+  result->batches.reserve(before.batches.size() + splits.copies.size() / kBatchTets + runs.size());
+  result->run_start.push_back(0);
+  for (const std::vector<std::int32_t>& run : runs) add_run(model, run, *result);
+  result->color_start = before.color_start;
+  result->mirror = transposed_slots(*model.pattern);
+  return result;
+}
+
 void mirror_row(BlockMatrix& matrix, std::span<const std::int32_t> mirror, std::size_t row) {
   const BlockPattern& pattern = *matrix.pattern;
   for (auto slot = pattern.row_start[row]; slot < pattern.diagonal[row]; ++slot) {

@@ -26,6 +26,10 @@ struct TetBatches {
 
 /// Built from the model's mesh, gradients, volumes, Lamé parameters, pattern and slots.
 [[nodiscard]] std::shared_ptr<const TetBatches> make_tet_batches(const TissueModel& model);
+/// Of the split mesh of a model: each copy stands in the run of its original, with which it shares its neighbours, so
+/// that runs and colours are those of the whole mesh. O(M).
+[[nodiscard]] std::shared_ptr<const TetBatches> make_split_batches(const TissueModel& model, const TissueModel& whole,
+                                                                   const MeshSplits& splits);
 
 /// For each block of a symmetric pattern the slot of its transpose.
 [[nodiscard]] std::vector<std::int32_t> transposed_slots(const BlockPattern& pattern);

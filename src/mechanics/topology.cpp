@@ -1,6 +1,9 @@
 #include "mechanics/topology.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <vector>
 
 namespace incise {
 namespace {
@@ -22,13 +25,31 @@ void list_tets_of_vertices(TissueModel& model) {
   }
 }
 
+/// Rows that another pattern has, and the vertices whose row is not of it.
+struct KnownRows {
+  const BlockPattern& pattern;
+  const std::vector<std::uint8_t>& is_new;
+};
+
 /// The pattern whose row v holds what `list_neighbours(v, list)` appends, in any order, and v itself.
 template <class ListNeighbours>
-std::shared_ptr<const BlockPattern> make_pattern(std::size_t count, const ListNeighbours& list_neighbours) {
+std::shared_ptr<const BlockPattern> make_pattern(std::size_t count, const ListNeighbours& list_neighbours,
+                                                 const KnownRows* known = nullptr) {
   auto pattern = std::make_shared<BlockPattern>();
+  pattern->row_start.reserve(count + 1);
+  pattern->diagonal.reserve(count);
+  if (known != nullptr) pattern->column.reserve(known->pattern.column.size() + known->pattern.column.size() / 16);
   pattern->row_start.push_back(0);
   std::vector<std::int32_t> neighbours;
   for (std::size_t v = 0; v < count; ++v) {
+    if (known != nullptr && known->is_new[v] == 0) {
+      const std::vector<std::int32_t>& start = known->pattern.row_start;
+      pattern->diagonal.push_back(pattern->row_start.back() + known->pattern.diagonal[v] - start[v]);
+      pattern->column.insert(pattern->column.end(), known->pattern.column.begin() + start[v],
+                             known->pattern.column.begin() + start[v + 1]);
+      pattern->row_start.push_back(static_cast<std::int32_t>(pattern->column.size()));
+      continue;
+    }
     neighbours.assign(1, static_cast<std::int32_t>(v));  // the diagonal exists even for a vertex without a tet
     list_neighbours(v, neighbours);
     std::sort(neighbours.begin(), neighbours.end());
@@ -41,13 +62,14 @@ std::shared_ptr<const BlockPattern> make_pattern(std::size_t count, const ListNe
   return pattern;
 }
 
-std::shared_ptr<const BlockPattern> make_stars(const TissueModel& model) {
-  return make_pattern(model.mesh.vertices.size(), [&](std::size_t v, std::vector<std::int32_t>& neighbours) {
+std::shared_ptr<const BlockPattern> make_stars(const TissueModel& model, const KnownRows* known = nullptr) {
+  const auto list_star = [&](std::size_t v, std::vector<std::int32_t>& neighbours) {
     for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
       const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
       for (const VertexId w : model.mesh.tets[tet]) neighbours.push_back(w.value);
     }
-  });
+  };
+  return make_pattern(model.mesh.vertices.size(), list_star, known);
 }
 
 std::shared_ptr<const BlockPattern> make_stars_of_stars(const BlockPattern& stars) {
@@ -61,23 +83,58 @@ std::shared_ptr<const BlockPattern> make_stars_of_stars(const BlockPattern& star
   });
 }
 
+/// Where the blocks of the pairs of corners of a tet stand: block (a, b) is one of row a.
+void find_slots(TissueModel& model, std::size_t tet, std::size_t a) {
+  const std::vector<std::int32_t>& column = model.pattern->column;
+  const std::size_t row = model.mesh.tets[tet][a].index();
+  const auto begin = column.begin() + model.pattern->row_start[row];
+  const auto end = column.begin() + model.pattern->row_start[row + 1];
+  for (std::size_t b = 0; b < 4; ++b) {
+    const auto at = std::lower_bound(begin, end, model.mesh.tets[tet][b].value);
+    model.tet_slots[tet][4 * a + b] = static_cast<std::int32_t>(at - column.begin());
+  }
+}
+
+std::shared_ptr<const BlockPattern> pattern_for(const TissueModel& model) {
+  return model.material.volume == VolumeTreatment::Averaged ? make_stars_of_stars(*model.stars) : model.stars;
+}
+
 }  // namespace
 
 void add_topology(TissueModel& model) {
   list_tets_of_vertices(model);
   model.stars = make_stars(model);
-  model.pattern = model.material.volume == VolumeTreatment::Averaged ? make_stars_of_stars(*model.stars) : model.stars;
+  model.pattern = pattern_for(model);
   model.tet_slots.resize(model.mesh.tets.size());
-  const auto& column = model.pattern->column;
+  for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) {
+    for (std::size_t a = 0; a < 4; ++a) find_slots(model, t, a);
+  }
+}
+
+void add_split_topology(TissueModel& model, const TissueModel& whole, const MeshSplits& splits) {
+  list_tets_of_vertices(model);
+  std::vector<std::uint8_t> is_new(model.mesh.vertices.size(), 0);
+  std::fill(is_new.begin() + static_cast<std::ptrdiff_t>(whole.mesh.vertices.size()), is_new.end(), std::uint8_t{1});
+  for (const auto* list : {&splits.changed, &splits.copies}) {
+    for (const SplitTet& tet : *list) {
+      for (const VertexId v : tet.corners) is_new[v.index()] = 1;
+      for (const VertexId v : whole.mesh.tets[tet.whole.index()]) is_new[v.index()] = 1;
+    }
+  }
+  const KnownRows stars{*whole.stars, is_new};
+  model.stars = make_stars(model, &stars);
+  model.pattern = pattern_for(model);
+  const bool keeps_rows = model.pattern == model.stars;  // else rows farther away are others, too
+  model.tet_slots.resize(model.mesh.tets.size());
   for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) {
     for (std::size_t a = 0; a < 4; ++a) {
       const std::size_t row = model.mesh.tets[t][a].index();
-      const auto begin = column.begin() + model.pattern->row_start[row];
-      const auto end = column.begin() + model.pattern->row_start[row + 1];
-      for (std::size_t b = 0; b < 4; ++b) {
-        const auto at = std::lower_bound(begin, end, model.mesh.tets[t][b].value);
-        model.tet_slots[t][4 * a + b] = static_cast<std::int32_t>(at - column.begin());
+      if (!keeps_rows || is_new[row] != 0) {
+        find_slots(model, t, a);
+        continue;
       }
+      const std::int32_t moved = model.pattern->row_start[row] - whole.pattern->row_start[row];
+      for (std::size_t b = 0; b < 4; ++b) model.tet_slots[t][4 * a + b] = whole.tet_slots[t][4 * a + b] + moved;
     }
   }
 }

@@ -148,5 +148,30 @@ TEST(ContactInterval, AContactThatBeginsAndEndsBetweenTwoMomentsIsFound) {
   EXPECT_NEAR(interval_of(distance, 1.0).fraction, 2.0 * std::sqrt(1.0 - 0.99 * 0.99) / 4.0, 1e-5);
 }
 
+/// The tool goes through a block whose vertices move meanwhile; near it are those that looking at every tet finds.
+TEST(NearTets, AreThoseThatLookingAtEveryTetFinds) {
+  const TissueModel model = make_tissue_model(make_block({20, 10, 8}, {20, 10, 8}), Material{},
+                                              {FixedConstraint{SphereRegion{Vec3::Zero(), 1.0}}});
+  const Tool needle = Needle{};
+  Workers workers(2);
+  NearTets near;
+  Points now = model.mesh.vertices;
+  std::vector<std::uint8_t> is_wanted(model.mesh.tets.size(), 1);
+  constexpr double kLimitMm = 1.1, kMovedMm = 0.3;
+  for (int step = 0; step < 60; ++step) {
+    const Points before = now;
+    for (std::size_t v = 0; v < now.size(); ++v)  // to and fro, farther and farther
+      now[v] += kMovedMm * Vec3(step % 8 < 6 ? 1.0 : -1.0, 0.0, 0.0);
+    near.moved(kMovedMm);
+    is_wanted[static_cast<std::size_t>(97 * step)] = 0;
+    const ToolCore core(needle, {Vec3(1.0 + 0.3 * step, 5.2, 4.0), -Vec3::UnitZ()});
+    NearTets anew;
+    const std::vector<TetId> expected =
+        anew.candidates(model, is_wanted, before, now, std::span(&core, 1), kLimitMm, workers);
+    EXPECT_EQ(near.candidates(model, is_wanted, before, now, std::span(&core, 1), kLimitMm, workers), expected) << step;
+    EXPECT_TRUE(step != 5 || expected.size() > 20U);
+  }
+}
+
 }  // namespace
 }  // namespace incise

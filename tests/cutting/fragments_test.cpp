@@ -64,8 +64,12 @@ TEST(FaceAdjacency, PartsOfOneTetAreNeighboursOfTheTetAcrossTheFaceNotOfEachOthe
   const auto tet = [](std::size_t a) { return Tet{VertexId(a), VertexId(0), VertexId(1), VertexId(2)}; };
   mesh.vertices.resize(6, Vec3::Zero());
   mesh.tets = {tet(3), tet(4), tet(5)};  // the last is a copy of the first with a corner of its own
-  const SplitTet copy{TetId(0), mesh.tets[2], 0.5};
-  const FaceAdjacency adjacency = face_adjacency(mesh, std::span(&copy, 1));
+  TetMesh whole = mesh;
+  whole.tets.pop_back();
+  MeshSplits splits;
+  splits.copies = {{TetId(0), mesh.tets[2], 0.5}};
+  splits.changed = {{TetId(0), mesh.tets[0], 0.5}};
+  const FaceAdjacency adjacency = split_adjacency(mesh, splits, face_adjacency(whole));
   const auto list = [&](std::size_t t) { return std::vector(adjacency.of(t).begin(), adjacency.of(t).end()); };
   EXPECT_EQ(list(0), std::vector{1});
   EXPECT_EQ(list(1), (std::vector{0, 2}));

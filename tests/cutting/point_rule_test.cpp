@@ -149,6 +149,25 @@ TEST_F(StraightPass, AWorkspaceMayBeTakenBackToAnEarlierState) {
   EXPECT_EQ(other.points.dose, other_alone.points.dose);
 }
 
+/// What a workspace remembers of one cut is not taken for what another has at the same step and nearly the same place.
+TEST_F(StraightPass, AWorkspaceTakesAnotherCutAtTheSameStepForAnother) {
+  const TissueModel model = make_tissue_model(make_block({12, 12, 6}, {6, 6, 3}), Material{}, kHeldBelow);
+  Workers workers(1);
+  const auto cut = [&](double from, CutWorkspace& workspace) {
+    CutState state = begin_cut(model, rest_state(model), at(from));
+    for (int i = 1; i <= 5; ++i)
+      static_cast<void>(advance(model, settings_, Needle{}, state, workspace, at(from + 0.5 * i), 0.02, workers));
+    return state;
+  };
+  CutWorkspace ones(model, model.mesh.vertices), others(model, model.mesh.vertices), fresh(model, model.mesh.vertices);
+  static_cast<void>(cut(1.0, ones));
+  CutState other = cut(3.5, others), alone = other;
+  static_cast<void>(advance(model, settings_, Needle{}, other, ones, at(6.5), 0.02, workers));
+  static_cast<void>(advance(model, settings_, Needle{}, alone, fresh, at(6.5), 0.02, workers));
+  EXPECT_EQ(other.points.dose, alone.points.dose);
+  EXPECT_EQ(other.tissue.positions, alone.tissue.positions);
+}
+
 TEST_F(StraightPass, WhatHangsTogetherSharesItsFaceAndNothingElseIsJoined) {
   settings_.dullness = 4.0;
   for (const double edge_mm : {0.6, 1.0, 1.5}) {
@@ -196,7 +215,7 @@ TEST_F(StraightPass, WhatHangsTogetherSharesItsFaceAndNothingElseIsJoined) {
     EXPECT_GT(pairs, 1000U);
     EXPECT_EQ(broken, 0U);
 
-    const FaceAdjacency adjacency = face_adjacency(split, state_.splits.copies);
+    const FaceAdjacency adjacency = split_adjacency(split, state_.splits, face_adjacency(model.mesh));
     std::vector<std::vector<std::size_t>> around(split.vertices.size());
     for (std::size_t t = 0; t < split.tets.size(); ++t) {
       for (const VertexId v : split.tets[t]) {
@@ -476,7 +495,16 @@ TEST_P(CutInTwo, EachPartGoesBackToItsShapeAtRest) {
   cut_through();
   const TetMesh split = split_mesh(model_.mesh, state_.splits);
   // No face joins the parts, and each is one.
-  const FaceAdjacency neighbours = face_adjacency(split, state_.splits.copies);
+  const FaceAdjacency neighbours = split_adjacency(split, state_.splits, face_adjacency(model_.mesh));
+  const FaceAdjacency by_faces = face_adjacency(split);
+  const std::size_t whole = model_.mesh.tets.size();
+  const auto whole_of = [&](std::size_t t) { return t < whole ? TetId(t) : state_.splits.copies[t - whole].whole; };
+  for (std::size_t t = 0; t < split.tets.size(); ++t) {
+    std::set<std::int32_t> expected(by_faces.of(t).begin(), by_faces.of(t).end());
+    std::erase_if(expected, [&](std::int32_t n) { return whole_of(static_cast<std::size_t>(n)) == whole_of(t); });
+    EXPECT_EQ(std::set<std::int32_t>(neighbours.of(t).begin(), neighbours.of(t).end()), expected) << t;
+    EXPECT_EQ(neighbours.of(t).size(), expected.size()) << t;
+  }
   std::vector<std::uint8_t> is_left = state_.tissue.is_live;
   int parts = 0;
   for (std::size_t seed = 0; seed < split.tets.size(); ++seed) {

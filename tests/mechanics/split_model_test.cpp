@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <vector>
 
 namespace incise {
 namespace {
@@ -92,6 +95,75 @@ TEST_P(SplitModel, AddsUpToTheWholeWhereCopiesMoveTogether) {
   EXPECT_NEAR(sum(split.supports[0].stiffness), sum(whole.supports[0].stiffness),
               1e-9 * sum(whole.supports[0].stiffness));
   EXPECT_GT(split.supports[0].vertices.size(), whole.supports[0].vertices.size());
+}
+/// Its rows are taken from the whole one where nothing is split.
+TEST_P(SplitModel, HasThePatternAndTheSlotsOfItsMesh) {
+  const TissueModel whole = whole_block(GetParam());
+  std::optional<TetId> in_two;
+  const TissueModel split = split_model(whole, splits_at_middle(whole.mesh, in_two));
+  std::vector<std::set<std::int32_t>> stars(split.mesh.vertices.size());
+  for (const Tet& tet : split.mesh.tets) {
+    for (const VertexId v : tet) {
+      for (const VertexId w : tet) stars[v.index()].insert(w.value);
+    }
+  }
+  std::vector<std::set<std::int32_t>> rows = stars;
+  for (std::size_t v = 0; GetParam() == VolumeTreatment::Averaged && v < rows.size(); ++v) {
+    for (const std::int32_t w : stars[v])
+      rows[v].insert(stars[static_cast<std::size_t>(w)].begin(), stars[static_cast<std::size_t>(w)].end());
+  }
+  const BlockPattern& pattern = *split.pattern;
+  ASSERT_EQ(pattern.rows(), rows.size());
+  for (std::size_t v = 0; v < rows.size(); ++v) {
+    const std::vector<std::int32_t> found(pattern.column.begin() + pattern.row_start[v],
+                                          pattern.column.begin() + pattern.row_start[v + 1]);
+    EXPECT_EQ(found, std::vector(rows[v].begin(), rows[v].end())) << v;
+    EXPECT_EQ(pattern.column[static_cast<std::size_t>(pattern.diagonal[v])], static_cast<std::int32_t>(v));
+  }
+  for (std::size_t t = 0; t < split.mesh.tets.size(); ++t) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      const std::size_t row = split.mesh.tets[t][a].index();
+      for (std::size_t b = 0; b < 4; ++b) {
+        const std::int32_t slot = split.tet_slots[t][4 * a + b];
+        EXPECT_TRUE(slot >= pattern.row_start[row] && slot < pattern.row_start[row + 1]);
+        EXPECT_EQ(pattern.column[static_cast<std::size_t>(slot)], split.mesh.tets[t][b].value);
+      }
+    }
+  }
+}
+
+/// Copies stand in the runs of their originals.
+TEST(SplitModel, HasTheSameForcesAtAnyThreadCountAndInAllThoseOfTheWhole) {
+  const TissueModel whole = make_tissue_model(make_block({10, 10, 10}, {9, 9, 9}), Material{},
+                                              {FixedConstraint{plane_x(0.0)}});  // of several runs
+  MeshSplits splits;
+  for (std::size_t t = 0; t < whole.mesh.tets.size(); t += 7) {  // in two, the second with a corner of its own
+    Tet corners = whole.mesh.tets[t];
+    corners[0] = VertexId(whole.mesh.vertices.size() + splits.vertices.size());
+    splits.vertices.push_back(whole.mesh.tets[t][0]);
+    splits.copies.push_back({TetId(t), corners, 0.5});
+    splits.changed.push_back({TetId(t), whole.mesh.tets[t], 0.5});
+  }
+  const TissueModel split = split_model(whole, splits);
+  TissueState of_whole = testing::shaken(whole, 0.1, 5), state = rest_state(split);
+  state.positions = split_positions(of_whole.positions, splits);
+  state.fill.assign(split.mesh.tets.size(), 1.0);
+  for (std::size_t i = 0; i < splits.copies.size(); ++i)
+    state.fill[splits.copies[i].whole.index()] = state.fill[whole.mesh.tets.size() + i] = 0.5;
+  const auto forces = [&](int threads) {
+    Points sums(split.mesh.vertices.size(), Vec3::Zero());
+    Workers workers(threads);
+    TissueState begun = state;
+    add_elastic_response(split, begun, sums, nullptr, workers);
+    return sums;
+  };
+  Points sums = forces(1);
+  EXPECT_EQ(forces(4), sums);
+  for (std::size_t i = 0; i < splits.vertices.size(); ++i)
+    sums[splits.vertices[i].index()] += sums[whole.mesh.vertices.size() + i];
+  const Points expected = elastic_forces(whole, of_whole);
+  for (std::size_t v = 0; v < expected.size(); ++v)
+    EXPECT_LT((sums[v] - expected[v]).norm(), 1e-9 * (1.0 + expected[v].norm())) << v;
 }
 INSTANTIATE_TEST_SUITE_P(Volumes, SplitModel, ::testing::Values(VolumeTreatment::PerTet, VolumeTreatment::Averaged));
 

@@ -71,7 +71,8 @@ struct CutStepReport {
   std::size_t slipped = 0;                    ///< bonds, or points of a cut by points, that slipped
   Vec3 tool_force_mn = Vec3::Zero();          ///< of the tissue on the tool
   Vec3 tool_torque_mn_mm = Vec3::Zero();      ///< of the tissue on the tool, about its tip
-  double max_step_mm = 0.0;                   ///< farthest that the solve moves a vertex, at most CutSettings::max_step_mm
+  double max_step_mm = 0.0;  ///< farthest that a vertex moves, with the tool in at most CutSettings::max_step_mm; on
+                             ///< the way to rest, where nothing lowers the energy, how far the step would move it
   bool is_finite = true;                      ///< false: positions were left as before the step
 };
 

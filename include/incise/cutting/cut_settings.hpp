@@ -50,7 +50,8 @@ struct CutSettings {
   double bond_stiffness_kpa_mm2 = 1500.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag; finite meshes hold with less
   double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, >= 0 and less than once round
   double residual_tolerance = 0.15;   ///< each step's linear solve: |r| <= this · |contact force|, [1e-6, 0.3]; the next step puts the rest right
-  double max_step_mm = 1.0;  ///< farthest that a vertex moves in one step (loose bits are held back; counted), > 0
+  double max_step_mm =
+      1.0;  ///< farthest that a vertex moves in one step with the tool in (loose bits are held back; counted), > 0
   CutRule rule = CutRule::Tets;
   ContactCount contact_count = ContactCount::Keep;  ///< Paper: what becomes of a tet's count when contact is lost
   // Lattice: in place of reach, bond stiffness and tear energy; not calibrated (docs/decisions/0010-cutting-law.md).
@@ -107,7 +108,7 @@ inline void describe_steps(Visitor& v, CutSettings& s) {
   v({"overlap_mm", "A ring is cut this far beyond its start, less than once round.", "mm"}, s.overlap_mm, {0.0, 50.0});
   v("residual_tolerance", s.residual_tolerance, "Of each step's linear solve, relative to the contact force.",
     {1e-6, 0.3});
-  v.internal("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step.", kPositive);
+  v.internal("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step with the tool in.", kPositive);
   v("rule", s.rule, "What is cut: whole tetrahedra, the points of a lattice, or tetrahedra as the paper does it.");
   v("contact_count", s.contact_count,
     "Rule paper: what becomes of a tetrahedron's count of steps when contact is lost.");
