@@ -1,5 +1,5 @@
 // How well can the planner's own simulation be made to follow one cut of the virtual bench? See planner_fit.hpp.
-//   incise_bench_fit [first seed] [specimens] [tets]
+//   incise_bench_fit [first seed] [specimens] [tets] [tets|lattice|paper]
 #include "support/planner_fit.hpp"
 
 #include <fmt/format.h>
@@ -15,13 +15,20 @@ int main(int argc, char** argv) {
   const std::uint64_t first = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const std::uint64_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 2;
   const int tets = argc > 3 ? std::atoi(argv[3]) : 25000;
+  const std::optional<incise::CutRule> rule =
+      argc > 4 ? incise::value_of<incise::CutRule>(argv[4]) : incise::CutRule::Tets;
+  if (!rule) {
+    fmt::print(stderr, "incise_bench_fit: expected one of {} as the rule, found {}\n",
+               incise::choices(incise::names_of(incise::CutRule{})), argv[4]);
+    return 2;
+  }
   fmt::print(
       "seed,bench_mean_abs_mm,bench_sd_mm,residual_rms_mm,dullness_at_13_mm_s,modulus_kpa,bias_mm,open_simulations\n");
   std::size_t fitted = 0;
   std::size_t in_band = 0;
   double sum = 0.0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    const std::optional<PlannerFit> fit = fit_planner_to_bench(seed, tets);
+    const std::optional<PlannerFit> fit = fit_planner_to_bench(seed, tets, *rule);
     if (!fit) {
       fmt::print("{},no closed ring\n", seed);
       continue;

@@ -97,13 +97,17 @@ int study(const ExperimentSettings& settings, const CommonOptions& options) {
 
 void add_experiment(Application& application) {
   auto settings = std::make_shared<ExperimentSettings>();
-  CLI::App* verb = application.add_verb("experiment",
-                                        "The paper's whole experiment on the virtual bench: specimens are cut as "
-                                        "planned, the simulation is calibrated to their photographs, further "
-                                        "specimens are cut as planned and corrected, and all is measured. Everything "
-                                        "in it is virtual. Run it again to continue where it stopped",
-                                        "incise experiment --quick -o experiment",
-                                        [settings](const CommonOptions& options) { return study(*settings, options); });
+  auto rule = std::make_shared<std::string>(to_string(CutRule::Tets));
+  CLI::App* verb =
+      application.add_verb("experiment",
+                           "The paper's whole experiment on the virtual bench: specimens are cut as "
+                           "planned, the simulation is calibrated to their photographs, further "
+                           "specimens are cut as planned and corrected, and all is measured. Everything "
+                           "in it is virtual. Run it again to continue where it stopped",
+                           "incise experiment --quick -o experiment", [settings, rule](const CommonOptions& options) {
+                             settings->rule = value_named<CutRule>(*rule);
+                             return study(*settings, options);
+                           });
   verb->alias("study");
   verb->add_option("--specimens", settings->specimens,
                    "2 to 200, even: half to calibrate on, half to test; 4: as in the paper, and one outside the "
@@ -124,6 +128,8 @@ void add_experiment(Application& application) {
                  "Also run `assess` as if the pull had not been measured");
   verb->add_option("--tets", settings->tets, "Tetrahedra of the planner's meshes")
       ->check(whole_between("--tets", 5000, 500000));
+  verb->add_option("--rule", *rule, "Of the planner's simulated cuts: cut.rule of its cases")
+      ->check(name_of_any<CutRule>());
   verb->add_option("--truth", settings->truth, "Folder for the hidden specimens; by default truth/ in the output");
 }
 

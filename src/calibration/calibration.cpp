@@ -158,6 +158,7 @@ void describe(Visitor& v, Calibration& c) {
   v("score_percent", c.score_percent, "Of the chosen setting.");
   v({"baseline_mm", "0.75 mean + 0.25 max of the photographed errors.", "mm"}, c.table.baseline_mm, kAnatomyMm);
   v({"reference_step_s", "The time that one unit of dullness represents.", "s"}, c.reference_step_s, {1e-6, 1.0});
+  v("cut_rule", c.cut_rule, "Of the simulated cuts (cut.rule).");
   v.derived("simulations", c.simulations, "In all.");
   v.derived("verdict", c.verdict, "On the photographs.");
   v("specimens", c.specimens, "Calibrated to.");

@@ -13,6 +13,7 @@
 #include <incise/steps/tissue_steps.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/LU>
 
@@ -173,8 +174,14 @@ std::filesystem::path SpecimenTrial::write_variant(const std::string& name, cons
       "material: {{youngs_modulus_kpa: {:.4f}}}\n"
       "tumor: {{contour: tumor.csv, configuration: stretched}}\nplan: {{power_w: {}}}\n",
       setup_.tets, youngs_modulus_kpa, setup_.power_w);
+  std::vector<std::string> cut;
+  if (setup_.rule != CutRule::Tets) cut.push_back(fmt::format("rule: {}", to_string(setup_.rule)));
   if (tool) {
-    yaml += fmt::format("cut: {{speed_mm_s: {}, dullness: {}}}\n", tool->speed_mm_s, tool->dullness);
+    cut.push_back(fmt::format("speed_mm_s: {}", tool->speed_mm_s));
+    cut.push_back(fmt::format("dullness: {}", tool->dullness));
+  }
+  if (!cut.empty()) yaml += fmt::format("cut: {{{}}}\n", fmt::join(cut, ", "));
+  if (tool) {
     yaml += method == CompensationMethod::Paper
                 ? std::string("compensation: {method: paper}\n")
                 : fmt::format("compensation: {{observable: inner_edge, bias_mm: {}}}\n", tool->bias_mm);

@@ -18,6 +18,7 @@ struct TrialSetup {
   std::string name;  ///< "S1"
   double power_w = 35.0;
   int tets = 25000;  ///< of the planner's mesh
+  CutRule rule = CutRule::Tets;  ///< of the planner's cuts
 };
 
 /// The simulated tool that a calibration chose, and by how much real inner edges lie farther out than simulated ones.

@@ -63,6 +63,7 @@ StepResult assess_case(const CaseRequest& of, const CalibrationInput& calibratio
   const Verdict of_registration = read_specimens_registration(registration, request);
   report_reasons(of_registration, context.monitor);
   require_ring_by_default_method(of.file);
+  require_rule_of(calibration, of.file);
   const std::string note = other_tool(of.file.settings.cut, calibration.found);
   if (!note.empty()) context.monitor.message(Severity::Warning, note);
   CaseRun run(of.file, of.output, of.options, context.run);

@@ -22,4 +22,8 @@ auto with_tissues(CaseRun& run, Work work) -> decltype(work()) {
 /// The case's part of what is asked.
 [[nodiscard]] ScenarioRequest scenario_request(const CalibratedRequest& request, const StepContext& context);
 
+/// The tissues and the bias of a calibration are those of one law of cutting.
+/// @throws CaseError where the case cuts by another rule than the calibration did.
+void require_rule_of(const CalibrationInput& calibration, const CaseFile& file);
+
 }  // namespace incise::steps

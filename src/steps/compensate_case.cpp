@@ -100,9 +100,21 @@ ScenarioRequest scenario_request(const CalibratedRequest& request, const StepCon
   return scenarios;
 }
 
+void require_rule_of(const CalibrationInput& calibration, const CaseFile& file) {
+  const CutRule rule = file.settings.cut.rule, calibrated = calibration.found.cut_rule.value_or(CutRule::Tets);
+  if (rule == calibrated) return;
+  throw CaseError(
+      "case", "cut.rule", std::string(to_string(rule)),
+      fmt::format("{}, the rule of the cuts in {}", to_string(calibrated), calibration.request.calibration.string()))
+      .in_file(file.file.string());
+}
+
 StepResult compensate_case(const CaseRequest& request, const std::optional<RobustRequest>& robust,
                            const StepContext& context) {
-  if (robust) require_default_method(request.file);
+  if (robust) {
+    require_default_method(request.file);
+    require_rule_of(robust->calibration, request.file);
+  }
   CaseRun run(request.file, request.output, request.options, context.run);
   const Study study = run.study(context.workers, context.monitor);
   StepResult done{summary_of(study)};

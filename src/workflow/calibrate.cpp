@@ -29,9 +29,11 @@ class CalibrationRunner {
   }
 
   Calibration run() {
+    require_one_rule();
     for (const Subject& subject : subjects_) prepare(*subject.of);
     calibration_.method = request_.method;
     calibration_.reference_step_s = subjects_.front().of->settings.cut.reference_step_s;
+    calibration_.cut_rule = subjects_.front().of->settings.cut.rule;
     make_runs(request_.method == CalibrationMethod::Paper ? grid() : knots());
     match_pictures();
     if (request_.method == CalibrationMethod::Fit) fit();
@@ -48,6 +50,18 @@ class CalibrationRunner {
   struct Subject {
     const CalibrationSubject* of = nullptr;
   };
+
+  void require_one_rule() const {
+    const CutRule first = subjects_.front().of->settings.cut.rule;
+    for (const Subject& subject : subjects_) {
+      const CutRule rule = subject.of->settings.cut.rule;
+      if (rule == first) continue;
+      throw CaseError(
+          "case", "cut.rule", std::string(to_string(rule)),
+          fmt::format("{}, as in the first case: all cuts of a calibration follow one rule", to_string(first)))
+          .in_file(subject.of->case_file);
+    }
+  }
 
   void prepare(const CalibrationSubject& subject) {
     try {

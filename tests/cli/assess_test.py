@@ -157,6 +157,12 @@ class AssessTest(CommandTest):
         small_calibration.write(self.calibration)
         small_case.write_case(self.folder / "case", {"compensation": {"method": "paper"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "compensation.method", "paper")
+        small_case.write_case(self.folder / "case", {"cut": {"rule": "lattice"}})
+        self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", "cut.rule", "lattice", "expected tets")
+        small_calibration.write(self.calibration, lambda c: c.update(cut_rule="paper"))
+        self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "cut.rule", "lattice", "expected paper")
+        small_calibration.write(self.calibration, lambda c: c.update(cut_rule="lettuce"))
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "cut_rule", "lettuce")
         self.assert_nothing_written()
 
     def test_an_interrupted_assessment_goes_on(self):

@@ -107,6 +107,9 @@ class RobustTest(CommandTest):
         self.assert_refused(refused, BAD_CASE, "--robust", "--calibration")
         refused = self.incise("compensate", "case", "-o", self.out, "--calibration", self.calibration)
         self.assert_refused(refused, BAD_CASE, "--calibration", "--robust")
+        small_calibration.write(self.calibration, lambda c: c.update(cut_rule="lattice"))
+        self.assert_refused(self.compensate(), BAD_CASE, "cut.rule", "tets", "expected lattice")
+        small_calibration.write(self.calibration)
         self.assert_refused(self.compensate("--method", "paper"), BAD_CASE, "--robust", "--method default")
         for probability in (0, 1, -0.1):
             self.assert_refused(self.compensate("--max-probability", probability), BAD_CASE, "--max-probability")

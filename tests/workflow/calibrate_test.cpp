@@ -437,6 +437,14 @@ TEST_F(CalibrateBlocks, RefusesALineAndAForceWithoutAPull) {
   EXPECT_EQ(kept_.saved, 0);
 }
 
+TEST_F(CalibrateBlocks, RefusesCasesOfDifferentRules) {
+  subjects_[1].settings.cut.rule = CutRule::Lattice;
+  EXPECT_THAT([&] { static_cast<void>(run({})); },
+              ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("cut.rule"), HasSubstr("lattice"),
+                                                                   HasSubstr("tets, as in the first case"))));
+  EXPECT_EQ(kept_.saved, 0);
+}
+
 TEST(CalibrationRequest, ListsEveryViolation) {
   EXPECT_TRUE(validate(CalibrationRequest{}).empty());
   CalibrationRequest request;

@@ -7,6 +7,7 @@
 #include <incise/calibration/score_table.hpp>
 #include <incise/core/names.hpp>
 #include <incise/core/verdict.hpp>
+#include <incise/cutting/cut_settings.hpp>
 
 #include <optional>
 #include <string>
@@ -80,6 +81,8 @@ struct Calibration {
   std::optional<RunSetting> chosen;     ///< absent: every setting failed
   std::optional<double> score_percent;  ///< of the chosen setting: the paper's, of a fit ScoreRow::inner_percent
   double reference_step_s = 0.02;
+  std::optional<CutRule>
+      cut_rule;                 ///< of all its simulated cuts; absent in files of version 0.1.0, which knew Tets alone
   bool is_virtual = false;      ///< one specimen at least is
   std::size_t simulations = 0;  ///< runs in all, those reused too
   Verdict verdict;              ///< `photo_specimen` for each photograph that may be of another specimen

@@ -2,6 +2,7 @@
 
 #include <incise/core/monitor.hpp>
 #include <incise/core/workers.hpp>
+#include <incise/cutting/cut_settings.hpp>
 #include <incise/storage/run_folder.hpp>
 
 #include <nlohmann/json.hpp>
@@ -23,6 +24,7 @@ struct ExperimentSettings {
   bool with_known_physics = false;   ///< and along that of a planner that knows the bench's physics
   bool with_withheld_force = false;  ///< advice is asked for once more without the pull
   int tets = 25000;                  ///< of the planner's meshes
+  CutRule rule = CutRule::Tets;      ///< of the planner's simulated cuts
 };
 
 /// The whole experiment: specimens are cut as planned, the simulation is calibrated to their photographs, further ones

@@ -69,13 +69,14 @@ struct RobustRequest {
 };
 /// Corrects the path of a case and verifies it by another cut.
 /// Not acceptable: a correction that is not accepted, or a verdict that refuses its cut. @throws as CaseRun::study;
-/// CaseError for a robust path of the paper's method.
+/// CaseError for a robust path of the paper's method, or where case and calibration differ in the rule of their cuts.
 [[nodiscard]] StepResult compensate_case(const CaseRequest& request, const std::optional<RobustRequest>& robust,
                                          const StepContext& context);
 
 /// Should a case be cut along its corrected path? A ring that is corrected pass by pass.
 /// @param registration  file of the specimen's registration.
-/// Not acceptable: the advice not to use the simulation. @throws DataError, CaseError; as CaseRun::study.
+/// Not acceptable: the advice not to use the simulation. @throws DataError, CaseError, also where case and calibration
+/// differ in the rule of their cuts; as CaseRun::study.
 [[nodiscard]] StepResult assess_case(const CaseRequest& request, const CalibrationInput& calibration,
                                      const std::filesystem::path& registration, const StepContext& context);
 
