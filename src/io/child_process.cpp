@@ -27,6 +27,12 @@ class RelayedError : public DataError {
   std::string text_;
 };
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kBoundsAddressSpace = false;  // a sanitizer reserves terabytes of it
+#else
+constexpr bool kBoundsAddressSpace = true;
+#endif
+
 enum : char { kResult = 'R', kDataError = 'D', kOtherError = 'E' };
 
 /// Address space that this process holds now, bytes; 0: not known.
@@ -61,9 +67,7 @@ bool write_all(int to, const char* data, std::size_t size) {
   std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the process that waits
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.processor_s);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  limit(RLIMIT_AS, held_address_space() + limits.memory_bytes);
-#endif
+  if (kBoundsAddressSpace) limit(RLIMIT_AS, held_address_space() + limits.memory_bytes);
   char kind = kResult;
   std::string answer;
   try {
