@@ -320,15 +320,16 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
   pcg.starts_from_last = true;
   report.solve = scratch.solver.solve(scratch.stiffness.matrix(), scratch.right_side, scratch.increment, pcg, workers);
 
+  const double longest_mm = next ? settings.max_step_mm : std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; v < scratch.increment.size(); ++v) {
     Vec3& step = scratch.increment[v];
     const double length = step.norm();
     if (!std::isfinite(length)) report.is_finite = false;
-    if (next && length > settings.max_step_mm) {
-      step *= settings.max_step_mm / length;
+    if (length > longest_mm) {
+      step *= longest_mm / length;
       ++report.held_back_vertices;
     }
-    report.max_step_mm = std::max(report.max_step_mm, next ? std::min(length, settings.max_step_mm) : length);
+    report.max_step_mm = std::max(report.max_step_mm, std::min(length, longest_mm));
   }
   if (!report.is_finite) return stiffnesses;
   if (next) {
@@ -338,6 +339,7 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
     if (share > 0.0) report.max_step_mm *= share;  // where no share lowers the energy it is stuck, which is not rest
   }
   scratch.near.moved(report.max_step_mm);
+  scratch.left = state.tissue.positions;
   return stiffnesses;
 }
 
@@ -634,7 +636,6 @@ CutStepReport advance(const TissueModel& whole, const CutSettings& settings, con
   scratch.before = state.tissue.positions;
   if (next && settings.rule == CutRule::Lattice) {
     report = advance_points(model, settings, tool, state, scratch, *next, step_s, workers);
-    scratch.left = state.tissue.positions;
     if (report.is_finite && is_splitting_step(settings, state.step))
       report.loose_removed += split_mesh_of(whole, state, workspace);
     return report;
@@ -647,7 +648,6 @@ CutStepReport advance(const TissueModel& whole, const CutSettings& settings, con
   if (report.is_finite)
     end_viscous_step(model, state.tissue, next ? settings.tissue_s(step_s) : std::numeric_limits<double>::infinity(),
                      workers);
-  scratch.left = state.tissue.positions;
   state.time_s += step_s;
   ++state.step;
   if (!next || !report.is_finite) return report;

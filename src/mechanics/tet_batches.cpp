@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
+#include <vector>
 
 namespace incise {
 namespace {
@@ -80,6 +82,20 @@ void add_run(const TissueModel& model, std::span<const std::int32_t> tets, TetBa
   result.run_start.push_back(static_cast<std::int32_t>(result.batches.size()));
 }
 
+using Run = std::vector<std::int32_t>;  // tets
+
+/// @param runs  those of one colour together. @param color_start  colours + 1, into the runs.
+std::shared_ptr<const TetBatches> batches_of(const TissueModel& model, const std::vector<Run>& runs,
+                                             std::vector<std::int32_t> color_start) {
+  auto result = std::make_shared<TetBatches>();
+  result->batches.reserve(model.mesh.tets.size() / kBatchTets + runs.size());
+  result->run_start.push_back(0);
+  for (const Run& run : runs) add_run(model, run, *result);
+  result->color_start = std::move(color_start);
+  result->mirror = transposed_slots(*model.pattern);
+  return result;
+}
+
 }  // namespace
 
 std::vector<std::int32_t> transposed_slots(const BlockPattern& pattern) {
@@ -96,30 +112,27 @@ std::vector<std::int32_t> transposed_slots(const BlockPattern& pattern) {
 }
 
 std::shared_ptr<const TetBatches> make_tet_batches(const TissueModel& model) {
-  auto result = std::make_shared<TetBatches>();
-  const Aggregates runs = group_tets(model);
-  const std::vector<int> color = color_runs(model, runs);
-  std::vector<std::size_t> order(runs.count());
+  const Aggregates groups = group_tets(model);
+  const std::vector<int> color = color_runs(model, groups);
+  std::vector<std::size_t> order(groups.count());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return color[a] < color[b]; });
-  result->batches.reserve(model.mesh.tets.size() / kBatchTets + runs.count());
-  result->run_start.push_back(0);
+  std::vector<Run> runs;
+  std::vector<std::int32_t> color_start;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i == 0 || color[order[i]] != color[order[i - 1]]) result->color_start.push_back(static_cast<std::int32_t>(i));
-    const auto begin = static_cast<std::size_t>(runs.start[order[i]]);
-    const auto end = static_cast<std::size_t>(runs.start[order[i] + 1]);
-    add_run(model, std::span(runs.vertices).subspan(begin, end - begin), *result);
+    if (i == 0 || color[order[i]] != color[order[i - 1]]) color_start.push_back(static_cast<std::int32_t>(i));
+    runs.emplace_back(groups.vertices.begin() + groups.start[order[i]],
+                      groups.vertices.begin() + groups.start[order[i] + 1]);
   }
-  result->color_start.push_back(static_cast<std::int32_t>(runs.count()));
-  result->mirror = transposed_slots(*model.pattern);
-  return result;
+  color_start.push_back(static_cast<std::int32_t>(runs.size()));
+  return batches_of(model, runs, std::move(color_start));
 }
 
 std::shared_ptr<const TetBatches> make_split_batches(const TissueModel& model, const TissueModel& whole,
                                                      const MeshSplits& splits) {
   const TetBatches& before = *whole.batches;
   const std::size_t whole_tets = whole.mesh.tets.size();
-  std::vector<std::vector<std::int32_t>> runs(before.runs());
+  std::vector<Run> runs(before.runs());
   std::vector<std::size_t> run_of(whole_tets);
   for (std::size_t run = 0; run < runs.size(); ++run) {
     const auto first = static_cast<std::size_t>(before.run_start[run]);
@@ -135,13 +148,7 @@ std::shared_ptr<const TetBatches> make_split_batches(const TissueModel& model, c
   }
   for (std::size_t i = 0; i < splits.copies.size(); ++i)
     runs[run_of[splits.copies[i].whole.index()]].push_back(static_cast<std::int32_t>(whole_tets + i));
-  auto result = std::make_shared<TetBatches>();
-  result->batches.reserve(before.batches.size() + splits.copies.size() / kBatchTets + runs.size());
-  result->run_start.push_back(0);
-  for (const std::vector<std::int32_t>& run : runs) add_run(model, run, *result);
-  result->color_start = before.color_start;
-  result->mirror = transposed_slots(*model.pattern);
-  return result;
+  return batches_of(model, runs, before.color_start);
 }
 
 void mirror_row(BlockMatrix& matrix, std::span<const std::int32_t> mirror, std::size_t row) {
