@@ -30,6 +30,11 @@ CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions&
   CaseFile file = read_case_with_inputs(case_path);
   if (cut.frames) file.settings.frames = *cut.frames;
   if (cut.method) file.settings.compensation.method = *cut.method;
+  if (const std::vector<Problem> problems = validate(file.settings.compensation); !problems.empty()) {
+    throw CaseError("case", "compensation." + problems[0].path, problems[0].found, problems[0].expected,
+                    problems[0].hint)
+        .in_file(case_path.string());
+  }
   return file;
 }
 

@@ -3,6 +3,8 @@
 
 #include <incise/core/error.hpp>
 
+#include <fmt/format.h>
+
 #include <memory>
 
 namespace incise::cli {
@@ -12,6 +14,7 @@ struct CompensateOptions {
   std::filesystem::path case_path;
   CutOptions cut;
   bool is_robust = false;
+  bool is_unverified = false;
   steps::CalibratedRequest calibrated;
   double max_probability = ScenarioRequest{}.max_probability;
 };
@@ -29,8 +32,25 @@ void require_robust_options(const CompensateOptions& chosen) {
   }
 }
 
+/// A path that follows from photographs of other cuts alone, without any simulated one.
+int shift_without_simulation(const CompensateOptions& chosen, const CommonOptions& options) {
+  const steps::CaseRequest request = case_request(chosen.case_path, Stage::Compensate, options, chosen.cut);
+  const CompensationMethod method = request.file.settings.compensation.method;
+  if (chosen.is_robust || method != CompensationMethod::Profile) {
+    throw CaseError("command line", "--no-verify",
+                    chosen.is_robust ? std::string("--robust") : fmt::format("method {}", to_string(method)),
+                    "method profile: the others simulate the cuts that they correct");
+  }
+  for (const auto& [option, is_given] :
+       {std::pair{"--resume", chosen.cut.must_resume}, std::pair{"--frames", chosen.cut.frames.has_value()}}) {
+    if (is_given) throw CaseError("command line", option, "--no-verify", "one of the two: no cut is simulated");
+  }
+  return run_step(options, [&](const auto& context) { return steps::run_stages(request, context); });
+}
+
 int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
   require_robust_options(chosen);
+  if (chosen.is_unverified) return shift_without_simulation(chosen, options);
   std::optional<steps::RobustRequest> robust;
   if (chosen.is_robust) robust = {steps::read_calibration_input(chosen.calibrated), chosen.max_probability};
   return run_step(
@@ -49,7 +69,9 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
           "--method", [&options](const std::string& name) { options.method = value_named<CompensationMethod>(name); },
           "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 if there is an "
           "objection to the nearest one); paper: each waypoint moves once by the error "
-          "measured there. Overrides the case's compensation.method")
+          "simulated there; profile: each waypoint moves once by the case's compensation.photographed_mm. Overrides "
+          "the "
+          "case's compensation.method")
       ->check(name_of_any<CompensationMethod>());
 }
 
@@ -62,6 +84,9 @@ void add_compensate(Application& application) {
   verb->add_option("case", chosen->case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, chosen->cut);
   add_compensation_method(*verb, chosen->cut);
+  verb->add_flag("--no-verify", chosen->is_unverified,
+                 "Method profile: move the path and stop, without any simulated cut. What is known against the path "
+                 "is then that no cut along it was simulated");
   verb->add_flag(
       "--robust", chosen->is_robust,
       "Also choose the path of least expected error over the calibration's posterior, with a probability of a close "

@@ -1,4 +1,5 @@
 #include <incise/calibration/calibration.hpp>
+#include <incise/calibration/ring_profiles.hpp>
 #include <incise/mechanics/material.hpp>
 
 #include <fmt/format.h>
@@ -98,6 +99,9 @@ void describe_fit(Visitor& v, DragFit& fit, Identifiability& told) {
   v("fitted", fitted, "Specimen by specimen.");
   if (v.sets()) fit.specimens = fitted.value_or(std::vector<SpecimenFit>{});
   v.derived("identifiability", told.sentences, "What the data identify.");
+  if (v.sets() || fit.specimens.empty()) return;  // a file of version 0.1.0 has none
+  v.derived("photographed_profile", photographed_profile(fit.specimens), "What photographs alone say of the next cut.");
+  v.derived("residual_profile", residual_profile(fit), "What they say beyond the simulation and its bias.");
 }
 /// A reader's fitted specimens are those of the calibration, with errors that a photograph can have.
 void require_fitted_specimens(const Visitor& v, const Calibration& calibration) {

@@ -32,14 +32,19 @@ std::vector<double> ring_spectrum(const std::vector<double>& values) {
   return spectrum;
 }
 
-std::vector<double> without_fast_waves(const std::vector<double>& values) {
-  const std::size_t n = values.size();
-  const std::vector<double> spectrum = ring_spectrum(values);
-  std::vector<double> slow(n, 0.0);
-  for (std::size_t entry = 0; entry < std::min(n, kEntriesThatCount); ++entry) {
-    for (std::size_t i = 0; i < n; ++i) slow[i] += spectrum[entry] * basis(entry, i, n);
+std::vector<double> ring_values(const std::vector<double>& spectrum) {
+  const std::size_t n = spectrum.size();
+  std::vector<double> values(n, 0.0);
+  for (std::size_t entry = 0; entry < n; ++entry) {
+    for (std::size_t i = 0; i < n; ++i) values[i] += spectrum[entry] * basis(entry, i, n);
   }
-  return slow;
+  return values;
+}
+
+std::vector<double> without_fast_waves(const std::vector<double>& values) {
+  std::vector<double> spectrum = ring_spectrum(values);
+  for (std::size_t entry = kEntriesThatCount; entry < spectrum.size(); ++entry) spectrum[entry] = 0.0;
+  return ring_values(spectrum);
 }
 
 std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg) {

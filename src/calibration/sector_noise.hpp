@@ -9,6 +9,9 @@ namespace incise {
 /// angle between two sectors alone is diagonal. Entry 0 is the mean times √N; then cosine and sine of each order.
 [[nodiscard]] std::vector<double> ring_spectrum(const std::vector<double>& values);
 
+/// The numbers round a ring that have this spectrum.
+[[nodiscard]] std::vector<double> ring_values(const std::vector<double>& spectrum);
+
 /// Eigenvalues, in the order of ring_spectrum, of the correlation exp(−angle / length) between `sectors` sectors.
 [[nodiscard]] std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg);
 

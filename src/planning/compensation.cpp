@@ -127,12 +127,21 @@ void move_waypoints(const SurfaceView& view, const Vec2& center, const Compensat
     const bool is_limited = std::abs(wanted) - move.length_mm > kShortMoveMm;
     result.move_mm.push_back(sign * move.length_mm);
     result.is_limited.push_back(is_limited ? 1 : 0);
-    result.limited_waypoints += is_limited ? 1 : 0;
-    result.max_move_mm = std::max(result.max_move_mm, move.length_mm);
   }
 }
 
 }  // namespace
+
+void count_moves(Compensation& compensation) {
+  const auto count = [](const std::vector<std::uint8_t>& flags) {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
+  };
+  compensation.limited_waypoints = count(compensation.is_limited);
+  compensation.interpolated_waypoints = count(compensation.is_interpolated);
+  compensation.max_move_mm = 0.0;
+  for (const double move : compensation.move_mm)
+    compensation.max_move_mm = std::max(compensation.max_move_mm, std::abs(move));
+}
 
 Compensation compensate_paper(const ToolPath& current, const Contour& measured, const Contour& tumor_edge,
                               const SurfaceQuery& surface, const CompensationSettings& settings) {
@@ -154,6 +163,7 @@ Compensation compensate_paper(const ToolPath& current, const Contour& measured, 
   measure_sectors(errors, angles, first_angle, view, center, result);
   smooth(result.error_mm, settings.smoothing_passes);
   move_waypoints(view, center, settings, result);
+  count_moves(result);
   check_path_as({"compensation"}, result.path, surface, settings.approach, settings.rim_clearance_mm);
   return result;
 }

@@ -90,7 +90,19 @@ class ConvergingIteration {
     }
   }
 
-  void note(const PathErrors& errors, CompensationPass& pass) const {
+  /// What a real cut errs beyond the simulated one and its bias: the residual, and what the share leaves of the first
+  /// cut's error or adds to it.
+  void expect_beyond(const CompensationPass& first) {
+    beyond_mm_ = settings_.residual_mm;
+    if (settings_.simulated_share == 1.0) return;
+    const std::vector<double> simulated =
+        course_.average(first.along_mm, first.point_error_mm, settings_.smoothing_mm).value;
+    beyond_mm_.resize(simulated.size(), 0.0);
+    for (std::size_t i = 0; i < simulated.size(); ++i)
+      beyond_mm_[i] += (settings_.simulated_share - 1.0) * simulated[i];
+  }
+
+  void note(const PathErrors& errors, CompensationPass& pass) {
     INCISE_REQUIRE(errors.places.size() == errors.signed_error_mm.size() && !errors.places.empty(),
                    fmt::format("expected one error for each measured place, found {} for {}",
                                errors.signed_error_mm.size(), errors.places.size()));
@@ -101,6 +113,11 @@ class ConvergingIteration {
       double& expected = pass.point_error_mm[k];
       pass.along_mm.push_back(course_.along_mm(errors.places[k]));
       if (!settings_.bias_mm.empty()) expected += course_.interpolate(settings_.bias_mm, pass.along_mm[k]);
+    }
+    if (passes_.empty()) expect_beyond(pass);
+    for (std::size_t k = 0; k < errors.places.size(); ++k) {
+      double& expected = pass.point_error_mm[k];
+      if (!beyond_mm_.empty()) expected += course_.interpolate(beyond_mm_, pass.along_mm[k]);
       sum += std::abs(expected);
       greatest = std::max(greatest, std::abs(expected));
     }
@@ -194,6 +211,7 @@ class ConvergingIteration {
   const MovablePath movable_;
   double trust_mm_;
   std::vector<CompensationPass> passes_;
+  std::vector<double> beyond_mm_;  ///< per waypoint; empty: nothing
   std::size_t best_ = 0;     // of those that may be returned
   std::size_t nearest_ = 0;  // to where the cut was intended: where the next pass starts
   ToolPath best_path_;
@@ -210,6 +228,9 @@ ConvergedCompensation compensate_converging(const ToolPath& intended, const Surf
   INCISE_REQUIRE(settings.bias_mm.size() <= 1 || settings.bias_mm.size() == intended.waypoints.size(),
                  fmt::format("expected no bias_mm, one, or one for each of {} waypoints, found {}",
                              intended.waypoints.size(), settings.bias_mm.size()));
+  INCISE_REQUIRE(settings.residual_mm.empty() || settings.residual_mm.size() == intended.waypoints.size(),
+                 fmt::format("expected no residual_mm, or one for each of {} waypoints, found {}",
+                             intended.waypoints.size(), settings.residual_mm.size()));
   check_path_as({"compensation"}, intended, surface, settings.region.approach, 0.0);
   return ConvergingIteration(intended, surface, measure, settings).run();
 }

@@ -47,9 +47,10 @@ void require_ring_by_default_method(const CaseFile& file) {
   if (settings.plan.kind != PlanKind::Ring)
     throw CaseError("case", "plan.kind", std::string(to_string(settings.plan.kind)), "ring")
         .in_file(file.file.string());
-  if (settings.compensation.method == CompensationMethod::Default) return;
-  throw CaseError("case", "compensation.method", std::string(to_string(settings.compensation.method)), "default")
-      .in_file(file.file.string());
+  if (settings.compensation.method != CompensationMethod::Default)
+    throw CaseError("case", "compensation.method", std::string(to_string(settings.compensation.method)), "default")
+        .in_file(file.file.string());
+  require_no_profile(file);
 }
 
 }  // namespace

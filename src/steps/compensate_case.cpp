@@ -1,6 +1,7 @@
 #include "steps/calibrated_case.hpp"
 
 #include <incise/core/described_json.hpp>
+#include <incise/io/path_io.hpp>
 #include <incise/steps/compensation_figures.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/workflow/assess.hpp>
@@ -8,14 +9,15 @@
 namespace incise::steps {
 namespace {
 
-/// What was left of the mean error per pass; one pass of the paper's: after over before.
+/// What was left of the mean error per pass; where there was one pass: after over before.
 nlohmann::ordered_json contraction_of(const Study& study) {
   if (!study.correction) return nullptr;
   if (study.correction->iteration) {
     const std::optional<double>& contraction = study.correction->iteration->contraction;
     return contraction ? nlohmann::ordered_json(*contraction) : nlohmann::ordered_json(nullptr);
   }
-  if (!study.corrected || !study.corrected->centerline.abs_error_mm) return nullptr;
+  if (!study.corrected || !study.corrected->centerline.abs_error_mm || !study.as_planned->centerline.abs_error_mm)
+    return nullptr;
   return study.corrected->centerline.abs_error_mm->mean / study.as_planned->centerline.abs_error_mm->mean;
 }
 
@@ -46,8 +48,11 @@ nlohmann::ordered_json summary_of(const Study& study) {
 }
 
 void require_default_method(const CaseFile& file) {
-  if (file.settings.compensation.method == CompensationMethod::Default) return;
-  throw CaseError("command line", "--robust", "the paper's method", "--method default, from whose path it starts");
+  const CompensationMethod method = file.settings.compensation.method;
+  if (method != CompensationMethod::Default)
+    throw CaseError("command line", "--robust", fmt::format("method {}", to_string(method)),
+                    "--method default, from whose path it starts");
+  require_no_profile(file);
 }
 
 /// The path that is right for the whole posterior; what is said of it.
@@ -109,6 +114,18 @@ void require_rule_of(const CalibrationInput& calibration, const CaseFile& file) 
       .in_file(file.file.string());
 }
 
+void require_no_profile(const CaseFile& file) {
+  const CompensationChoice& choice = file.settings.compensation;
+  if (!expects_by_direction(choice)) return;
+  const bool is_share = choice.simulated_share != 1.0;
+  throw CaseError("case", is_share ? "compensation.simulated_share" : "compensation.residual_mm",
+                  is_share ? fmt::format("{}", choice.simulated_share) : std::string("expected errors by direction"),
+                  is_share ? "1" : "none",
+                  "The calibration's posterior holds a constant bias alone: its probabilities would not be those of "
+                  "this correction")
+      .in_file(file.file.string());
+}
+
 StepResult compensate_case(const CaseRequest& request, const std::optional<RobustRequest>& robust,
                            const StepContext& context) {
   if (robust) {
@@ -151,18 +168,27 @@ StepResult run_stages(const CaseRequest& request, const StepContext& context) {
   const char* product = "stretched";
   if (until == Stage::Plan) product = "plan";
   if (until == Stage::Simulate) product = "as_planned";
+  if (until == Stage::Compensate) product = "correction";
   if (is_stretched && until == Stage::Plan) {
     result.json = plan_summary_json(*study.plan);
   } else if (is_stretched && until == Stage::Simulate) {
     result.json = to_json(*study.as_planned);
+  } else if (is_stretched && until == Stage::Compensate && study.correction) {
+    result.json = correction_summary_json(*study.correction);
+    result.json["path"] = (run.folder.folder(product) / "path.json").string();
   } else {
     result.json = to_json(*study.stretched);
   }
   result.json["folder"] = run.folder.folder(product).string();
   result.json["stages"] = to_json(study.stages);
-  // Before a cut there is nothing to judge.
-  const bool is_refused = until == Stage::Simulate && study.verdict.status() == VerdictStatus::Refused;
-  result.is_acceptable = study.outcome == Outcome::Success && !is_refused;
+  bool is_refused = until == Stage::Simulate && study.verdict.status() == VerdictStatus::Refused;
+  if (until == Stage::Compensate && study.correction) {  // what is known against a path that nothing was cut along
+    const Verdict verdict = read_path_verdict(run.folder.folder(product) / "path.json");
+    result.json["verdict"] = to_json(verdict);
+    is_refused = verdict.status() == VerdictStatus::Refused;
+  }
+  const bool is_missing = until == Stage::Compensate && !study.correction;
+  result.is_acceptable = study.outcome == Outcome::Success && !is_refused && !is_missing;
   return result;
 }
 

@@ -108,6 +108,7 @@ void require_consistent(const CaseFile& file, const std::string& name) {
     throw CaseError(name, "plan.lateral_margin_mm", fmt::format("{} mm", c.plan.lateral_margin_mm),
                     fmt::format("more than the electrode's radius of {} mm", radius_mm(c.tool)));
   }
+  refuse("compensation", validate(c.compensation), "a usable correction");
   refuse("thermal", validate(c.thermal), "usable constants of heat");
   const double coarse_mm = c.meshing.coarse_mm.value_or(SizingSettings{}.coarse_mm);  // or less, in a small body
   if (c.meshing.fine_mm && *c.meshing.fine_mm > coarse_mm) {

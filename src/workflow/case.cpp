@@ -88,6 +88,37 @@ std::vector<Problem> validate(const Material& material, const MaterialVariation&
   return violations;
 }
 
+std::vector<Problem> validate(const CompensationChoice& choice) {
+  constexpr std::size_t kMostSectors = 360;
+  std::vector<Problem> violations;
+  const auto unused = [&](const char* field, const std::string& found, const char* expected) {
+    violations.push_back(
+        {field, fmt::format("{}, which method {} does not use", found, to_string(choice.method)), expected});
+  };
+  for (const auto& [field, list] :
+       {std::pair{"residual_mm", &choice.residual_mm}, std::pair{"photographed_mm", &choice.photographed_mm}}) {
+    if (list->size() > kMostSectors) {
+      violations.push_back({field, fmt::format("{} numbers", list->size()), fmt::format("at most {}", kMostSectors)});
+    }
+  }
+  const bool is_profile = choice.method == CompensationMethod::Profile;
+  if (is_profile && choice.photographed_mm.empty()) {
+    violations.push_back({"photographed_mm", "no numbers, so that method profile changes nothing",
+                          "the expected errors by direction, or a list of one number for all",
+                          "A calibration's photographed_profile.mean_mm is such a list"});
+  }
+  if (!is_profile && !choice.photographed_mm.empty()) unused("photographed_mm", "numbers", "none");
+  if (is_profile && choice.bias_mm != 0.0) unused("bias_mm", fmt::format("{} mm", choice.bias_mm), "0");
+  if (choice.method == CompensationMethod::Default) return violations;
+  if (!choice.residual_mm.empty()) unused("residual_mm", "numbers", "none");
+  if (choice.simulated_share != 1.0) unused("simulated_share", fmt::format("{}", choice.simulated_share), "1");
+  return violations;
+}
+
+bool expects_by_direction(const CompensationChoice& choice) {
+  return !choice.photographed_mm.empty() || !choice.residual_mm.empty() || choice.simulated_share != 1.0;
+}
+
 MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation) {
   if (const std::vector<Problem> violations = validate(material, variation); !violations.empty()) {
     const Problem& first = violations.front();

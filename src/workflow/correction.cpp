@@ -1,5 +1,7 @@
 #include <incise/core/error.hpp>
+#include <incise/evaluation/error_profile.hpp>
 #include <incise/geometry/surface_query.hpp>
+#include <incise/planning/shift_path.hpp>
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/cut_verdict.hpp>
 #include <incise/workflow/study.hpp>
@@ -93,6 +95,17 @@ std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& f
                      100.0 * least(corrected), 100.0 * least(first));
 }
 
+/// What a list by direction says of each waypoint.
+std::vector<double> values_at_waypoints(const Case& settings, const std::vector<double>& sectors, const ToolPath& path,
+                                        const Contour& tumor_edge) {
+  ProfileSettings profile;
+  profile.approach = settings.plan.approach;
+  profile.start_direction = settings.plan.start_direction;
+  Points places;
+  for (const Waypoint& waypoint : path.waypoints) places.push_back(waypoint.position_mm);
+  return values_at(sectors, places, tumor_edge, profile);
+}
+
 ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {
   ConvergenceSettings convergence;
   convergence.region = safe_region(settings);
@@ -100,6 +113,7 @@ ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) 
   convergence.more_simulations = kMostPasses - kUsualPasses;
   convergence.floor_mm = floor_mm;
   if (settings.compensation.bias_mm != 0.0) convergence.bias_mm = {settings.compensation.bias_mm};
+  convergence.simulated_share = settings.compensation.simulated_share;
   return convergence;
 }
 
@@ -159,6 +173,19 @@ Correction correct_as_paper(const Case& settings, const ToolPath& followed, cons
   return correction;
 }
 
+Correction correct_by_profile(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
+                              const SurfaceQuery& surface) {
+  std::vector<double> offset_mm =
+      values_at_waypoints(settings, settings.compensation.photographed_mm, followed, tumor_edge);
+  for (double& offset : offset_mm) offset = -offset;
+  ToolPath start = followed;
+  start.tumor_edge = tumor_edge;
+  Correction correction;
+  correction.method = CompensationMethod::Profile;
+  correction.moves = shift_path(start, surface, offset_mm, safe_region(settings));
+  return correction;
+}
+
 Correction correct_converging(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
                               const SurfaceQuery& surface, std::optional<double> floor_mm, const CutOfPass& cut,
                               Monitor& monitor) {
@@ -171,10 +198,12 @@ Correction correct_converging(const Case& settings, const ToolPath& followed, co
   };
   ToolPath start = followed;
   start.tumor_edge = tumor_edge;
+  ConvergenceSettings convergence = convergence_settings(settings, floor_mm.value_or(0.0));
+  const std::vector<double>& residual_mm = settings.compensation.residual_mm;
+  if (!residual_mm.empty()) convergence.residual_mm = values_at_waypoints(settings, residual_mm, start, tumor_edge);
   Correction correction;
   correction.floor_mm = floor_mm;
-  correction.iteration =
-      compensate_converging(start, surface, measure, convergence_settings(settings, floor_mm.value_or(0.0)));
+  correction.iteration = compensate_converging(start, surface, measure, convergence);
   const ConvergedCompensation& done = *correction.iteration;
   Compensation& moves = correction.moves;
   moves.path = done.path;
@@ -182,10 +211,7 @@ Correction correct_converging(const Case& settings, const ToolPath& followed, co
   moves.move_mm = done.result().offset_mm;
   moves.is_limited = done.result().is_limited;
   moves.is_interpolated = done.passes.front().is_interpolated;
-  moves.limited_waypoints = static_cast<std::size_t>(std::count(moves.is_limited.begin(), moves.is_limited.end(), 1));
-  moves.interpolated_waypoints =
-      static_cast<std::size_t>(std::count(moves.is_interpolated.begin(), moves.is_interpolated.end(), 1));
-  for (const double move : moves.move_mm) moves.max_move_mm = std::max(moves.max_move_mm, std::abs(move));
+  count_moves(moves);
   return correction;
 }
 
@@ -219,6 +245,7 @@ std::string objection_to(const Case& settings, const Correction& correction, con
                          const SimulatedCut& corrected) {
   if (corrected.outcome != Outcome::Success) return fmt::format("its cut {}", in_words(corrected.outcome));
   if (std::string loss = loss_of_depth_or_closure(settings, first, corrected); !loss.empty()) return loss;
+  if (correction.method == CompensationMethod::Profile) return {};  // simulated errors are what it does not go by
   std::optional<double> before, after;
   std::string none_kept;
   bool is_at_first = false, is_first_measured = true;

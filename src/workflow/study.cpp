@@ -129,6 +129,12 @@ class Runner {
     read_inputs();
     for (std::size_t i = 0; i <= static_cast<std::size_t>(options_.until); ++i) {
       throw_if_cancelled(monitor_, "the study");
+      if (static_cast<Stage>(i) == Stage::Simulate && goes_without_simulation()) {
+        study_.stages.push_back({Stage::Simulate, StageState::Skipped, 0.0});
+        choose_path();
+        for (const char* cut : {"as_planned", "corrected"}) sink_.absent(cut);
+        continue;
+      }
       if (!(this->*kSteps[i])()) break;
     }
     if (must_resume_) refuse_to_resume("cuts that are all finished");
@@ -136,7 +142,7 @@ class Runner {
     if (options_.until >= Stage::Verify && !study_.corrected) sink_.absent("corrected");
     const bool was_correction_asked = options_.until >= Stage::Verify && settings_.plan.kind == PlanKind::Ring;
     hand_over_verdicts(was_correction_asked && !study_.is_accepted);
-    if (options_.until == Stage::Plan && study_.plan) refuse_before_cut();
+    if (study_.plan && !study_.as_planned) refuse_before_cut();
     study_.verdict = verdict_of_run(
         settings_, study_.about_inputs, verifying_cut(study_),
         was_correction_asked && !study_.is_accepted ? std::optional(study_.correction_note) : std::nullopt);
@@ -144,6 +150,11 @@ class Runner {
   }
 
  private:
+  /// A correction by photographs that is not to be verified needs no cut.
+  [[nodiscard]] bool goes_without_simulation() const {
+    return options_.until == Stage::Compensate && settings_.compensation.method == CompensationMethod::Profile;
+  }
+
   /// What is quickly read is read first: a damaged contour shows before anything long has run.
   void read_inputs() {
     tumor_edge_ = inputs_.read_tumor_edge();
@@ -154,6 +165,10 @@ class Runner {
     if (given_path_ && given_path_->is_closed != is_ring) {
       throw CaseError("case", "path", given_path_->is_closed ? "a closed path" : "an open path",
                       is_ring ? "a closed path for plan.kind: ring" : "an open path for plan.kind: line");
+    }
+    if (given_path_ && expects_by_direction(settings_.compensation)) {
+      throw CaseError("case", "path", "a path of its own, and errors that are expected along the planned one",
+                      "one of the two", "Leave out path, or photographed_mm, residual_mm and simulated_share");
     }
     if (!tumor_edge_ || !tumor_surface_) return;
     require_tumor_size(*tumor_surface_);
@@ -358,11 +373,19 @@ class Runner {
 
   /// What refuses the plan already goes with its path, although no cut was made.
   void refuse_before_cut() {
-    const Verdict early =
-        verdict_before_cut(settings_, *study_.model, made_skin_, study_.stretched->state.positions, *study_.plan);
-    if (early.status() != VerdictStatus::Refused) return;
-    report("the plan", early);
-    sink_.verdicts(refusals_of(early, "the run ended before it cut along the path"), std::nullopt);
+    const auto refusals = [this](const char* what, const ToolPath& path) -> std::optional<Verdict> {
+      const Verdict of_path =
+          verdict_before_cut(settings_, *study_.model, made_skin_, study_.stretched->state.positions, path);
+      Verdict early = study_.about_inputs;
+      early.add(of_path);
+      if (early.status() != VerdictStatus::Refused) return std::nullopt;
+      if (of_path.status() == VerdictStatus::Refused) report(what, of_path);
+      return refusals_of(early, "the run ended before it cut along the path");
+    };
+    const std::optional<Verdict> of_plan = refusals("the plan", *study_.plan);
+    std::optional<Verdict> of_correction;
+    if (study_.correction) of_correction = refusals("the corrected path", study_.correction->moves.path);
+    if (of_plan || of_correction) sink_.verdicts(of_plan, of_correction);
   }
 
   /// Whoever takes a path from its file finds there what its cut is worth.
@@ -499,12 +522,17 @@ class Runner {
     }
   }
 
-  bool simulate() {
+  /// The planned path, or the one that was given, which is checked.
+  void choose_path() {
     if (given_path_) {
       require_reached();
       check_path(*given_path_, SurfaceQuery(skin_of(study_.model->mesh, study_.stretched->state.positions)), settings_.plan.approach);
     }
     study_.followed = given_path_ ? *given_path_ : *study_.plan;
+  }
+
+  bool simulate() {
+    choose_path();
     study_.as_planned = cut(Stage::Simulate, name_of_pass(0), *study_.followed);
     report("the cut as planned", study_.as_planned->verdict);
     study_.outcome = study_.as_planned->outcome;
@@ -512,9 +540,12 @@ class Runner {
   }
 
   bool compensate() {
-    const bool is_paper = settings_.compensation.method == CompensationMethod::Paper;
+    const CompensationMethod method = settings_.compensation.method;
+    const bool is_paper = method == CompensationMethod::Paper;
     const bool is_ring = settings_.plan.kind == PlanKind::Ring;
-    if (!is_ring || (is_paper && !study_.as_planned->incision.centerline)) return skip_correction("it needs a ring whose mid-line could be measured");
+    if (!is_ring) return skip_correction("it needs a ring");
+    if (is_paper && !study_.as_planned->incision.centerline)
+      return skip_correction("it needs a ring whose mid-line could be measured");
     const CacheKey key = CacheKey("correction")
                              .add_text(key_of_cut(*study_.followed).digest())
                              .add(settings_.compensation)
@@ -525,9 +556,10 @@ class Runner {
     ProductNote note{"correction", {}, 0.0};
     const auto make = [&] {
       const SurfaceQuery surface(skin_of(study_.model->mesh, study_.stretched->state.positions));
-      return is_paper
-                 ? correct_as_paper(settings_, *study_.followed, *study_.as_planned, study_.plan->tumor_edge, surface)
-                 : correct_pass_by_pass(surface);
+      const Contour& edge = study_.plan->tumor_edge;
+      if (method == CompensationMethod::Profile) return correct_by_profile(settings_, *study_.followed, edge, surface);
+      return is_paper ? correct_as_paper(settings_, *study_.followed, *study_.as_planned, edge, surface)
+                      : correct_pass_by_pass(surface);
     };
     study_.correction = product<Correction>(Stage::Compensate, note, key, make, true);
     sink_.correction(note, *study_.correction);

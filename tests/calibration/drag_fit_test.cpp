@@ -1,3 +1,5 @@
+#include "calibration/sectors.hpp"
+
 #include <incise/calibration/drag_fit.hpp>
 #include <incise/calibration/identifiability.hpp>
 #include <incise/core/error.hpp>
@@ -13,11 +15,8 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kSectors = 36;
-
-double angle_of(std::size_t sector) {
-  return 2.0 * units::kPi * static_cast<double>(sector) / kSectors;
-}
+using testing::angle_of;
+using testing::kSectors;
 
 /// A tissue by formula: a mean and two waves that grow with the drag length; a stiffer one is dragged less.
 /// @param stiffness_wave  how much of the effect of stiffness differs in shape from that of the drag length

@@ -93,6 +93,86 @@ class CompensateTest(CommandTest):
         before = [float(row["signed_error_mm"]) for row in self.rows("errors.csv") if row["pass"] == "0"]
         self.assertAlmostEqual(sum(before) / len(before), result["before"]["inner_edge"]["signed_error_mm"]["mean"] + 0.2, delta=1e-9)
 
+    def test_a_profile_of_photographs_moves_the_path_without_a_simulated_cut(self):
+        small_case.write_case(self.folder / "case", {"compensation": {"method": "profile", "photographed_mm": [-1.0, 0.6, 0.0, -0.6]}})
+        result = self.compensated("--no-verify", status=DONE)
+        self.assertEqual(result["method"], "profile")
+        self.assertAlmostEqual(result["max_move_mm"], 1.0, delta=1e-6)
+        self.assertEqual({stage["name"]: stage["state"] for stage in result["stages"]}["simulate"], "skipped")
+        self.assertFalse((self.out / "as_planned").exists() or (self.out / "corrected").exists())
+        path = json.loads((self.folder / result["path"]).read_text())
+        self.assertEqual([reason["id"] for reason in result["verdict"]["reasons"]], ["not_simulated"])
+        planned = json.loads((self.out / "plan" / "path.json").read_text())
+        middle = [sum(w["position_mm"][k] for w in planned["waypoints"]) / 24 for k in range(2)]
+
+        def out(waypoints, i):
+            x, y = (waypoints[i]["position_mm"][k] - middle[k] for k in range(2))
+            return (x * x + y * y) ** 0.5
+
+        moves = [out(path["waypoints"], i) - out(planned["waypoints"], i) for i in range(24)]
+        # Seen from above, the start lies at the front (low y), and a quarter counter-clockwise from it at high x.
+        self.assertAlmostEqual(moves[0], 1.0, delta=0.05, msg="the first sector lies about the start")
+        self.assertAlmostEqual(moves[12], 0.0, delta=0.05, msg="and the third one opposite to it")
+        at_high_x = max(range(24), key=lambda i: planned["waypoints"][i]["position_mm"][0])
+        self.assertAlmostEqual(moves[at_high_x], -0.6, delta=0.05)
+        self.assertAlmostEqual(moves[(at_high_x + 12) % 24], 0.6, delta=0.05)
+
+        verified = self.compensated()
+        self.assertEqual((verified["passes"], verified["simulations"]), (1, 2))
+        self.assertAlmostEqual(verified["correction"]["max_move_mm"], result["max_move_mm"], delta=1e-12)
+
+    def test_what_refuses_the_inputs_refuses_a_path_without_a_cut(self):
+        small_case.write_case(self.folder / "case", {"compensation": {"method": "profile", "photographed_mm": [-1.0]},
+                                                     "tumor": {"surface": "tumor.stl"}})
+        small_case.write_tumor_surface(self.folder / "case" / "tumor.stl", scale=1.3)  # it lies elsewhere then
+        result = self.compensated("--no-verify", status=NOT_ACCEPTABLE)
+        self.assertEqual(result["verdict"]["status"], "refused")
+        path = json.loads((self.folder / result["path"]).read_text())
+        self.assertIn("contour_surface", json.dumps(path["verdict"]))
+
+    def test_cuts_of_earlier_runs_do_not_stay_beside_a_path_without_a_cut(self):
+        choice = {"method": "profile", "photographed_mm": [-1.0]}
+        small_case.write_case(self.folder / "case", {"compensation": choice})
+        verified = self.compensated()
+        small_case.write_case(self.folder / "case", {"compensation": choice, "cut": {"dullness": 20}})
+        self.compensated("--no-verify", status=DONE)
+        self.assertFalse((self.out / "as_planned").exists() or (self.out / "corrected").exists())
+        # Changed back, it has its cuts again, and nothing is cut anew.
+        small_case.write_case(self.folder / "case", {"compensation": choice})
+        again = self.compensated()
+        self.assertEqual(again["after"]["abs_error_mm"], verified["after"]["abs_error_mm"])
+        self.assertEqual({stage["name"]: stage["state"] for stage in again["stages"]}["simulate"], "reused")
+        self.assertTrue((self.out / "as_planned").is_dir())
+
+    def test_errors_along_the_planned_path_are_not_taken_for_those_of_another(self):
+        small_case.write_case(self.folder / "case", {"compensation": {"simulated_share": 0.5}})
+        self.json_of("plan", "case", "-o", self.out)
+        (self.folder / "given.json").write_bytes((self.out / "plan" / "path.json").read_bytes())
+        small_case.write_case(self.folder / "case", {"compensation": {"simulated_share": 0.5}, "path": "../given.json"})
+        self.assert_refused(self.incise("compensate", "case", "-o", self.folder / "other"), BAD_CASE, "path", "planned one")
+
+    def test_a_profile_is_asked_for_and_used_only_where_it_acts(self):
+        for options, choice, says in (
+            (("--method", "profile"), {}, ("compensation.photographed_mm", "no numbers")),
+            ((), {"method": "profile", "photographed_mm": []}, ("compensation.photographed_mm", "no numbers")),
+            ((), {"method": "profile", "photographed_mm": [0.1], "bias_mm": 0.2}, ("compensation.bias_mm", "0.2 mm")),
+            (("--method", "default"), {"method": "profile", "photographed_mm": [0.1]}, ("compensation.photographed_mm", "method default")),
+            (("--method", "paper"), {"residual_mm": [0.1]}, ("compensation.residual_mm", "method paper")),
+            ((), {"residual_mm": [0.1, 40.0]}, ("compensation.residual_mm", "[-10, 10]")),
+            ((), {"residual_mm": [0.1] * 361}, ("compensation.residual_mm", "361", "360")),
+            ((), {"simulated_share": 5}, ("compensation.simulated_share", "[-1, 3]")),
+            (("--no-verify",), {}, ("--no-verify", "method default")),
+            (("--method", "paper", "--no-verify"), {}, ("--no-verify", "method paper")),
+            (("--no-verify", "--resume"), {"method": "profile", "photographed_mm": [0.1]}, ("--resume", "no cut is simulated")),
+        ):
+            with self.subTest(options=options, choice=choice):
+                small_case.write_case(self.folder / "case", {"compensation": choice})
+                done = self.incise("compensate", "case", "-o", self.out, *options)
+                self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+                for words in says:
+                    self.assertIn(words, done.stderr)
+                self.assert_nothing_written()
+
     def test_a_case_that_cannot_be_is_refused(self):
         done = self.incise("compensate", "case", "-o", self.out, "--method", "best")
         self.assertEqual(done.returncode, BAD_CASE, done.stderr)

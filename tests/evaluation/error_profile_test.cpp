@@ -66,5 +66,43 @@ TEST(ErrorProfile, RefusesAnOpenRingAndAStartAlongTheApproach) {
                InvalidArgument);
 }
 
+TEST(ValuesAt, GiveASectorsValueInItsMiddleAndAreLinearBetween) {
+  ProfileSettings settings;
+  settings.start_direction = Vec3::UnitX();
+  const Contour edge = testing::circle(10.0, 720, Vec3(3.0, -2.0, 0.0));
+  const auto at = [&](double degrees) {
+    const double a = degrees * std::acos(-1.0) / 180.0;
+    return Vec3(3.0 + 15.0 * std::cos(a), -2.0 + 15.0 * std::sin(a), 7.0);
+  };
+  const std::vector<double> values =
+      values_at({1.0, 2.0, 4.0, 8.0}, {at(0.0), at(90.0), at(45.0), at(292.5)}, edge, settings);
+  ASSERT_EQ(values.size(), 4U);
+  EXPECT_NEAR(values[0], 1.0, 1e-9);
+  EXPECT_NEAR(values[1], 2.0, 1e-9);
+  EXPECT_NEAR(values[2], 1.5, 1e-9);
+  EXPECT_NEAR(values[3], 0.75 * 8.0 + 0.25 * 1.0, 1e-9) << "round the ring, a quarter of a sector past the last middle";
+  settings.turn_deg = 90.0;
+  EXPECT_NEAR(values_at({1.0, 2.0, 4.0, 8.0}, {at(90.0)}, edge, settings)[0], 1.0, 1e-9);
+}
+
+TEST(ValuesAt, OfOneSectorAreTheSameEverywhere) {
+  const std::vector<double> values = values_at({-0.7}, {Vec3(1, 5, 0), Vec3(-4, 0, 2)}, testing::circle(10.0, 360), {});
+  EXPECT_DOUBLE_EQ(values.at(0), -0.7);
+  EXPECT_DOUBLE_EQ(values.at(1), -0.7);
+}
+
+TEST(ValuesAt, GoBackToTheErrorsThatAProfileWasMadeOf) {
+  const Contour ring = testing::circle(14.5, 720, Vec3(1.0, 0.5, 0.0)), edge = testing::circle(10.0, 720);
+  const ProfileSettings settings{.turn_deg = 12.0};
+  const std::vector<double> values = values_at(*error_profile(ring, edge, settings), ring.points, edge, settings);
+  for (std::size_t i = 0; i < ring.points.size(); ++i) EXPECT_NEAR(values[i], ring.points[i].norm() - 14.5, 0.02) << i;
+}
+
+TEST(ValuesAt, NeedsAtLeastOneSectorAndAtMost360) {
+  EXPECT_THROW(static_cast<void>(values_at({}, {}, testing::circle(10.0, 360), {})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(values_at(std::vector<double>(361), {}, testing::circle(10.0, 360), {})),
+               InvalidArgument);
+}
+
 }  // namespace
 }  // namespace incise

@@ -184,12 +184,27 @@ TEST_F(Converge, AimsAtTheRealCutWhereItsBiasIsKnown) {
   EXPECT_NEAR(along.result().offset_mm[36], 1.0 + 0.4, 2.0 * kChordMm);
 }
 
+TEST_F(Converge, BelievesOfTheSimulatedErrorNoMoreThanItsShare) {
+  const FakeTissue tissue{.drift_mm = [](double angle) { return -1.0 + 0.6 * std::cos(angle); }};
+  // Half of the simulated error and its bias, and a residual beyond it: 0.5 (−1 + 0.6 cos + 0.2) − 0.3; the path starts
+  // at −90°.
+  const ConvergedCompensation half =
+      run(tissue, {.bias_mm = {0.2}, .simulated_share = 0.5, .residual_mm = std::vector<double>(48, -0.3)});
+  EXPECT_NEAR(half.result().offset_mm[12], 0.4 - 0.3 + 0.3, 2.0 * kChordMm);
+  EXPECT_NEAR(half.result().offset_mm[36], 0.4 + 0.3 + 0.3, 2.0 * kChordMm);
+  // None of it: the path follows the residual alone, and moves as far as that says.
+  const ConvergedCompensation none =
+      run(tissue, {.simulated_share = 0.0, .residual_mm = std::vector<double>(48, -0.3)});
+  EXPECT_THAT(none.result().offset_mm, Each(::testing::DoubleNear(0.3, 2.0 * kChordMm)));
+}
+
 TEST_F(Converge, TellsEveryViolationOfItsSettings) {
   const ConvergenceSettings bad{.simulations = 1, .smoothing_mm = 0.0, .relaxation = 1.5, .trust_mm = -1.0};
   EXPECT_THAT(sentences(problems_of(bad)), ElementsAre(HasSubstr("simulations"), HasSubstr("relaxation"),
                                                        HasSubstr("smoothing_mm"), HasSubstr("trust_mm")));
   EXPECT_THROW(static_cast<void>(run({}, bad)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(run({}, {.bias_mm = {0.1, 0.2}})), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(run({}, {.residual_mm = {0.1}})), InvalidArgument) << "one for each waypoint";
   ToolPath open = path_;
   open.is_closed = false;
   const MeasureCut measure = [](const ToolPath&) { return std::optional<PathErrors>(); };

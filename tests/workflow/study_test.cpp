@@ -321,5 +321,80 @@ TEST(DefaultConstraints, AreRefusedForABodyThatTheirLengthsWereNotMadeFor) {
                   ::testing::AllOf(::testing::HasSubstr("specimen.constraints"), ::testing::HasSubstr("9 mm long"))));
 }
 
+TEST(RunStudy, ByAProfileMovesThePathWithoutAnySimulatedCutUntilItIsVerified) {
+  Block block;
+  Workers workers(2);
+  Monitor silent;
+  Case settings = coarse_case();
+  settings.compensation.method = CompensationMethod::Profile;
+  settings.compensation.photographed_mm = {-0.8};
+  const Study moved = run_study(settings, block, block.cache, {.until = Stage::Compensate}, workers, silent);
+  EXPECT_FALSE(moved.as_planned);
+  ASSERT_TRUE(moved.correction && moved.plan);
+  EXPECT_EQ(moved.correction->method, CompensationMethod::Profile);
+  ASSERT_EQ(moved.correction->moves.move_mm.size(), moved.plan->waypoints.size());
+  for (const double move : moved.correction->moves.move_mm) EXPECT_NEAR(move, 0.8, 1e-6);
+  ASSERT_EQ(moved.stages.size(), 6U);
+  EXPECT_EQ(moved.stages[4].stage, Stage::Simulate);
+  EXPECT_EQ(moved.stages[4].state, StageState::Skipped);
+
+  const Study verified = run_study(settings, block, block.cache, {}, workers, silent);
+  ASSERT_TRUE(verified.as_planned && verified.corrected);
+  EXPECT_EQ(verified.correction->moves.move_mm, moved.correction->moves.move_mm) << "the same product";
+}
+
+TEST(Correct, AddsTheProfileToTheBiasWaypointByWaypoint) {
+  Block block;
+  Workers workers(2);
+  Monitor silent;
+  Case settings = coarse_case();
+  settings.compensation.bias_mm = 0.3;
+  const Study by_bias = run_study(settings, block, block.cache, {}, workers, silent);
+  settings.compensation.bias_mm = 0.1;
+  settings.compensation.residual_mm = {0.2};
+  const Study by_both = run_study(settings, block, block.cache, {}, workers, silent);
+  ASSERT_TRUE(by_bias.correction && by_both.correction);
+  const std::vector<double>&one = by_bias.correction->moves.move_mm, &other = by_both.correction->moves.move_mm;
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(one[i], other[i], 1e-9) << i;
+}
+
+TEST(Validate, RefusesAChoiceOfCorrectionThatWouldNotAct) {
+  const auto path_of = [](const CompensationChoice& choice) {
+    const std::vector<Problem> problems = validate(choice);
+    return problems.empty() ? std::string() : problems.front().path;
+  };
+  EXPECT_EQ(path_of({}), "");
+  EXPECT_EQ(path_of({.bias_mm = 0.2, .simulated_share = 0.5, .residual_mm = {0.1, 0.2}}), "");
+  EXPECT_EQ(path_of({.method = CompensationMethod::Profile, .photographed_mm = {0.1}}), "");
+  EXPECT_EQ(path_of({.method = CompensationMethod::Profile}), "photographed_mm");
+  EXPECT_EQ(path_of({.photographed_mm = {0.1}}), "photographed_mm") << "the default method has its own list";
+  EXPECT_EQ(path_of({.method = CompensationMethod::Profile, .bias_mm = 0.2, .photographed_mm = {0.1}}), "bias_mm");
+  for (const CompensationMethod method : {CompensationMethod::Paper, CompensationMethod::Profile}) {
+    CompensationChoice choice{.method = method};
+    if (method == CompensationMethod::Profile) choice.photographed_mm = {0.1};
+    choice.simulated_share = 0.5;
+    EXPECT_EQ(path_of(choice), "simulated_share");
+    choice.residual_mm = {0.1};
+    EXPECT_EQ(path_of(choice), "residual_mm");
+  }
+  EXPECT_EQ(path_of({.residual_mm = std::vector<double>(361, 0.0)}), "residual_mm");
+}
+
+TEST(ObjectionTo, APathByPhotographsIsNotHeldToTheSimulatedError) {
+  const auto cut_with = [](double mean) {
+    SimulatedCut cut;
+    cut.outcome = Outcome::Success;
+    cut.centerline.abs_error_mm = Summary{.mean = mean};
+    return cut;
+  };
+  Correction correction;
+  correction.method = CompensationMethod::Profile;
+  EXPECT_EQ(objection_to({}, correction, cut_with(0.5), cut_with(1.1)), "") << "photographs say more than is simulated";
+  SimulatedCut open = cut_with(0.1);
+  open.outcome = Outcome::OpenLoop;
+  EXPECT_THAT(objection_to({}, correction, cut_with(0.5), open), ::testing::HasSubstr("its ring does not close"));
+}
+
 }  // namespace
 }  // namespace incise

@@ -26,4 +26,14 @@ struct ProfileSettings {
 [[nodiscard]] std::optional<std::vector<double>> error_profile(const Contour& incision, const Contour& tumor_edge,
                                                                const ProfileSettings& settings);
 
+/// The other way round: what a profile says of a place, by its direction from the middle of the tumour edge. Linear
+/// between the middles of neighbouring sectors, round the ring; one sector says the same everywhere.
+/// @param sectors     1 to 360 values, in the order of error_profile.
+/// @param places      seen along the approach; a place on the edge's middle has the direction of the first sector.
+/// @param tumor_edge  closed, mm, same frame. `target_mm` and `sectors` of the settings are not read.
+/// @returns one value for each place.
+/// @throws InvalidArgument for no sector or more than 360, or settings out of range.
+[[nodiscard]] std::vector<double> values_at(const std::vector<double>& sectors, const Points& places,
+                                            const Contour& tumor_edge, const ProfileSettings& settings);
+
 }  // namespace incise

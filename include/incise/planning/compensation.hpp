@@ -61,6 +61,10 @@ inline void describe(Visitor& v, Compensation& c) {
   v("max_move_mm", c.max_move_mm, "Greatest move.");
 }
 
+/// Sets the three figures that follow from the lists: how many waypoints were limited and interpolated, and the
+/// greatest move.
+void count_moves(Compensation& compensation);
+
 /// The paper's correction: each waypoint moves away from, or towards, the tumour's centre by the error that was
 /// measured in its direction. Error of waypoint i: mean signed error (see contour_errors) of the measured points whose
 /// polar angle about the tumour's centre, seen along the approach, is nearer to the waypoint's than to its neighbours'.

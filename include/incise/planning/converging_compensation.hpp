@@ -78,6 +78,8 @@ struct ConvergenceSettings {
   double trust_mm = 4.0;
   double least_move_mm = 0.01;
   std::vector<double> bias_mm;
+  double simulated_share = 1.0;
+  std::vector<double> residual_mm;
 };
 /// The cut answers to the tool's path blurred (see PathErrors::lag_mm). What both ways of compensating take from it.
 inline void describe_blur(Visitor& v, double& smoothing_mm, double& shift_lags, double& spread_lags) {
@@ -114,6 +116,11 @@ inline void describe(Visitor& v, ConvergenceSettings& s) {
      "path, or one per waypoint. Added to what is measured.",
      "mm"},
     s.bias_mm);
+  v("simulated_share", s.simulated_share,
+    "How much a real cut along the intended path is expected to err per simulated error (with its bias), waypoint by "
+    "waypoint. What it lacks or exceeds is expected of every pass: a path and its cut move together.",
+    {-1.0, 3.0});
+  v({"residual_mm", "Expected beyond that; none, or one per waypoint.", "mm"}, s.residual_mm);
 }
 
 /// One simulated cut of the iteration.

@@ -42,8 +42,9 @@ inline constexpr std::array<std::string_view, 2> kInterchangeFormatNames{"sofa",
 [[nodiscard]] StepResult write_for_solver(const CaseFile& file, InterchangeFormat format,
                                           const std::filesystem::path& output, const StepContext& context);
 
-/// Runs a case up to a stage before the correction and shows the last product: stretch, plan or cut as planned.
-/// Not acceptable: a stretch or a cut that fails, a verdict that refuses the cut. @throws as CaseRun::study.
+/// Runs a case up to a stage before the verifying cut and shows the last product: stretch, plan, cut as planned, or
+/// corrected path. Not acceptable: a stretch or a cut that fails, a verdict that refuses the cut, no correction.
+/// @throws as CaseRun::study.
 [[nodiscard]] StepResult run_stages(const CaseRequest& request, const StepContext& context);
 
 /// What is known of a specimen beside its case: a calibration, and what was measured of it.
@@ -69,11 +70,12 @@ struct RobustRequest {
 };
 /// Corrects the path of a case and verifies it by another cut.
 /// Not acceptable: a correction that is not accepted, or a verdict that refuses its cut. @throws as CaseRun::study;
-/// CaseError for a robust path of the paper's method, or where case and calibration differ in the rule of their cuts.
+/// CaseError for a robust path of another method than the default or with errors by direction, or where case and
+/// calibration differ in the rule of their cuts.
 [[nodiscard]] StepResult compensate_case(const CaseRequest& request, const std::optional<RobustRequest>& robust,
                                          const StepContext& context);
 
-/// Should a case be cut along its corrected path? A ring that is corrected pass by pass.
+/// Should a case be cut along its corrected path? A ring that is corrected pass by pass, by a constant bias at most.
 /// @param registration  file of the specimen's registration.
 /// Not acceptable: the advice not to use the simulation. @throws DataError, CaseError, also where case and calibration
 /// differ in the rule of their cuts; as CaseRun::study.

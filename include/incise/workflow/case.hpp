@@ -116,8 +116,9 @@ inline constexpr std::array<std::string_view, 2> kTumorConfigurationNames{"stret
 enum class CompensationMethod {
   Default,  ///< pass by pass, until the cut lies where it was intended
   Paper,    ///< each waypoint moves once by the error measured there
+  Profile,  ///< each waypoint moves once by an error that photographs of other cuts showed in its direction
 };
-inline constexpr std::array<std::string_view, 2> kCompensationMethodNames{"default", "paper"};
+inline constexpr std::array<std::string_view, 3> kCompensationMethodNames{"default", "paper", "profile"};
 [[nodiscard]] constexpr Names names_of(CompensationMethod) {
   return kCompensationMethodNames;
 }
@@ -125,17 +126,44 @@ inline constexpr std::array<std::string_view, 2> kCompensationMethodNames{"defau
 /// How the path is corrected.
 struct CompensationChoice {
   CompensationMethod method = CompensationMethod::Default;
-  ContourKind observable = ContourKind::Centerline;  ///< which line of the cut is brought to its target; the paper's method: the mid-line
-  double bias_mm = 0.0;  ///< expected error of the real cut less that of the simulated one, positive = farther out; the paper's method: none
+  ContourKind observable = ContourKind::Centerline;
+  double bias_mm = 0.0;
+  double simulated_share = 1.0;
+  std::vector<double> residual_mm;
+  std::vector<double> photographed_mm;
 };
 inline void describe(Visitor& v, CompensationChoice& m) {
-  v("method", m.method, "Pass by pass until the cut lies where it was intended, or the paper's one pass.");
-  v("observable", m.observable, "Which line of the cut is brought to its target; the paper's method: the mid-line.");
+  v("method", m.method,
+    "default: pass by pass until the simulated cut lies where it was intended; paper: each waypoint moves once by the "
+    "error simulated there; profile: each waypoint moves once by photographed_mm, and simulation only verifies the "
+    "path.");
+  v("observable", m.observable,
+    "Which line of the cut is brought to its target by the default method; the paper's method: the mid-line.");
   v({"bias_mm",
      "Expected error of the real cut less that of the simulated one, positive: farther out; default method only.",
      "mm"},
     m.bias_mm, {-10.0, 10.0});
+  v("simulated_share", m.simulated_share,
+    "How much a real cut along the planned path errs per simulated error, the bias included; default method only. 1: "
+    "as "
+    "simulated; 0: as residual_mm says, whatever is simulated.",
+    {-1.0, 3.0});
+  v({"residual_mm",
+     "Expected error of the real cut beyond that share, by direction from the middle of the tumour edge, positive: "
+     "farther out; default method only. A list of one number, or of one for each of up to 360 sectors of equal angle, "
+     "the first about plan.start_direction, then counter-clockwise against the approach. Empty: none.",
+     "mm"},
+    m.residual_mm, {-10.0, 10.0});
+  v({"photographed_mm",
+     "Expected error of the real cut along the planned path, by direction as in residual_mm; method profile only.",
+     "mm"},
+    m.photographed_mm, {-10.0, 10.0});
 }
+/// Lists that are too long, and what the method would not use: photographed_mm, residual_mm, simulated_share, and
+/// bias_mm with method profile.
+[[nodiscard]] std::vector<Problem> validate(const CompensationChoice& choice);
+/// Whether it expects errors of the planned path by direction: they hold for a ring as it was planned, no other path.
+[[nodiscard]] bool expects_by_direction(const CompensationChoice& choice);
 
 /// What a study asks for, whatever files it came from. Every default is written here or in the structs that it holds.
 struct Case {

@@ -33,6 +33,11 @@ namespace incise {
 [[nodiscard]] Correction correct_as_paper(const Case& settings, const ToolPath& followed, const SimulatedCut& cut,
                                           const Contour& tumor_edge, const SurfaceQuery& surface);
 
+/// Each waypoint moves by what `compensation.photographed_mm` says of its direction; no simulated cut takes
+/// part. @pre the list is not empty. @throws as shift_path.
+[[nodiscard]] Correction correct_by_profile(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
+                                            const SurfaceQuery& surface);
+
 /// Simulates the cut of a pass (0: along the path as followed first).
 using CutOfPass = std::function<SimulatedCut(int pass, const ToolPath& path)>;
 
@@ -46,6 +51,7 @@ using CutOfPass = std::function<SimulatedCut(int pass, const ToolPath& path)>;
 /// is accepted when its mean |error| is below the electrode's radius. Ours adds that it has to succeed, to be nearer
 /// than the first cut, where that could be measured, and not to buy that with depth or closure: it leaves no more
 /// planned layers open than the first cut, and its least depth is that of the rule `depth`, or that of the first cut.
+/// A path by photographs is held to success, closure and depth alone: it corrects what the simulation does not show.
 [[nodiscard]] std::string objection_to(const Case& settings, const Correction& correction, const SimulatedCut& first,
                                        const SimulatedCut& corrected);
 

@@ -57,7 +57,8 @@ void describe(Visitor& v, SimulatedCut& cut);
 /// How the path was corrected.
 struct Correction {
   CompensationMethod method = CompensationMethod::Default;
-  /// The corrected path. Errors per waypoint are those of the cut as planned, moves those from the path that it followed.
+  /// The corrected path. Errors per waypoint are those of the cut as planned (method profile: those that were
+  /// expected), moves those from the path that it followed.
   Compensation moves;
   std::optional<double> floor_mm;                 ///< see mesh_floor_mm; the default method only
   std::optional<ConvergedCompensation> iteration;  ///< pass by pass; the default method only

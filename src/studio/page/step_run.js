@@ -27,7 +27,7 @@ export function StepRun() {
       h(
         "p",
         {class: "soft"},
-        "The path is cut as planned in the simulation, corrected by the errors found, and cut again.",
+        "The path is cut as planned in the simulation, corrected, and cut again.",
       ),
       h(
         "div",
