@@ -1,5 +1,5 @@
 // How well can the planner's own simulation be made to follow one cut of the virtual bench? See planner_fit.hpp.
-//   incise_bench_fit [first seed] [specimens] [tets] [tets|lattice|paper]
+//   incise_bench_fit [first seed] [specimens] [tets] [tets|lattice|paper] [kernel_radius_mm] [hold_per_mm2]
 #include "support/planner_fit.hpp"
 
 #include <fmt/format.h>
@@ -22,13 +22,21 @@ int main(int argc, char** argv) {
                incise::choices(incise::names_of(incise::CutRule{})), argv[4]);
     return 2;
   }
+  incise::CutSettings cut;
+  cut.rule = *rule;
+  if (argc > 5) cut.kernel_radius_mm = std::strtod(argv[5], nullptr);
+  if (argc > 6) cut.hold_per_mm2 = std::strtod(argv[6], nullptr);
+  if (const auto problems = incise::validate(cut, 1.0); !problems.empty()) {
+    fmt::print(stderr, "incise_bench_fit: {}\n", incise::sentence(problems.front()));
+    return 2;
+  }
   fmt::print(
       "seed,bench_mean_abs_mm,bench_sd_mm,residual_rms_mm,dullness_at_13_mm_s,modulus_kpa,bias_mm,open_simulations\n");
   std::size_t fitted = 0;
   std::size_t in_band = 0;
   double sum = 0.0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    const std::optional<PlannerFit> fit = fit_planner_to_bench(seed, tets, *rule);
+    const std::optional<PlannerFit> fit = fit_planner_to_bench(seed, tets, cut);
     if (!fit) {
       fmt::print("{},no closed ring\n", seed);
       continue;

@@ -88,7 +88,7 @@ std::optional<Profile> cut_on_bench(const Specimen& specimen, Workers& workers) 
 
 }  // namespace
 
-std::optional<PlannerFit> fit_planner_to_bench(std::uint64_t seed, int tets, CutRule rule) {
+std::optional<PlannerFit> fit_planner_to_bench(std::uint64_t seed, int tets, const CutSettings& cut) {
   Workers workers(1);
   Monitor silent;
   const Specimen specimen = draw_specimen(seed);
@@ -104,7 +104,7 @@ std::optional<PlannerFit> fit_planner_to_bench(std::uint64_t seed, int tets, Cut
     settings.is_virtual = true;
     settings.meshing.tets = tets;
     settings.frames = 0;
-    settings.cut.rule = rule;
+    settings.cut = cut;
     settings.tumor_configuration = TumorConfiguration::Rest;
     settings.material.youngs_modulus_kpa = modulus_kpa;
     const Study study = run_study(settings, inputs, cache, {.until = Stage::Plan}, workers, silent);

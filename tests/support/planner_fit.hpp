@@ -19,10 +19,9 @@ struct PlannerFit {
 /// The simulation of the specimen's shape is cut with five drag lengths (speed times dullness) and two stiffnesses;
 /// between neighbouring drag lengths its signed error by 36 directions is interpolated, a constant bias is free, and
 /// the least squares are taken: what is left is what no calibration of these parameters can remove. One thread.
-/// @param tets  of the simulation's mesh, about. @param rule  of its cuts. @returns nothing where the bench's ring
-/// stayed open.
-[[nodiscard]] std::optional<PlannerFit> fit_planner_to_bench(std::uint64_t seed, int tets,
-                                                             CutRule rule = CutRule::Tets);
+/// @param tets  of the simulation's mesh, about. @param cut  of its cuts; the dullness is not read. @returns nothing
+/// where the bench's ring stayed open.
+[[nodiscard]] std::optional<PlannerFit> fit_planner_to_bench(std::uint64_t seed, int tets, const CutSettings& cut = {});
 
 /// The band that the bench was made for: residuals below would mean that the planner knows the bench's physics, above
 /// that nothing can be planned by it.
