@@ -34,6 +34,25 @@ void print_area(const char* name, const nlohmann::ordered_json& area) {
              area.at("worse").get<std::size_t>() + area.at("not_worse").get<std::size_t>());
 }
 
+/// Every path, and how it compares with the best one without a simulated cut.
+void print_paths(const nlohmann::ordered_json& result) {
+  const nlohmann::ordered_json& best = result.at("best_without_simulation");
+  fmt::print("{:<34} {:>8} {:>9} {:>6} {:>8}  {}\n", "path", "mean, mm", "specimens", "worse", "not cut",
+             "difference from the best without simulation, mm (95 %)");
+  for (const auto& [name, path] : result.at("rivals").items()) {
+    std::string against = best == name ? "best" : "";
+    if (path.at("difference_mm").is_number()) against = fmt::format("{:+.2f}", path.at("difference_mm").get<double>());
+    if (path.at("confidence_mm").is_array())
+      against += fmt::format(" ({:+.2f} to {:+.2f})", path.at("confidence_mm")[0].get<double>(),
+                             path.at("confidence_mm")[1].get<double>());
+    const std::string mean =
+        path.at("mean_mm").is_number() ? fmt::format("{:.2f}", path.at("mean_mm").get<double>()) : "-";
+    fmt::print("{:<34} {:>8} {:>9} {:>6} {:>8}  {}\n", name, mean, path.at("pairs").get<std::size_t>(),
+               path.at("worse").get<std::size_t>(), path.at("uncut").get<std::size_t>(), against);
+  }
+  if (best.is_null()) fmt::print("no rival without a simulated cut: no benefit of simulation can be claimed\n");
+}
+
 /// What a person wants of it; everything is in study.json and the report.
 void print_summary(const nlohmann::ordered_json& result) {
   fmt::print("VIRTUAL specimens, mean |error| of the photographs\n");
@@ -42,7 +61,7 @@ void print_summary(const nlohmann::ordered_json& result) {
     fmt::print("{:<34} {:.0f} % less; {} cut as planned alone\n", "  of all that were cut",
                result.at("gain_percent_of_all").get<double>(), result.at("uncorrected").get<std::size_t>());
   }
-  if (result.contains("paper_pass")) print_gain("as planned -> paper's single pass", result.at("paper_pass"));
+  print_paths(result);
   if (result.contains("known_physics") && result.at("known_physics").at("mean_after_mm").is_number()) {
     fmt::print("{:<34} {:.2f} mm ({} specimens, from the truth)\n", "physics known",
                result.at("known_physics").at("mean_after_mm").get<double>(),
@@ -120,8 +139,12 @@ void add_experiment(Application& application) {
                    "turn), to compare the advice of `assess` with what happens; "
                    "by default one with four specimens, else none")
       ->check(whole_between("--outside", 0, 200));
+  verb->add_flag("!--no-rivals", settings->with_rivals,
+                 "Do not cut test specimens along the rivals' paths (constant offset and mean profile of the "
+                 "photographs, the paper's pass, incise without calibration, hybrid). Faster, but then no benefit of "
+                 "simulation can be claimed");
   verb->add_flag("--paper-pass", settings->with_paper_pass,
-                 "Also cut every test specimen along the paper's single radial correction");
+                 "With --no-rivals: the paper's single radial correction all the same");
   verb->add_flag("--known-physics", settings->with_known_physics,
                  "Also cut every test specimen as a planner that knows the bench's physics would");
   verb->add_flag("--withheld-force", settings->with_withheld_force,

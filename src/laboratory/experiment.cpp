@@ -1,5 +1,6 @@
 #include "laboratory/experiment_advice.hpp"
 #include "laboratory/experiment_report.hpp"
+#include "laboratory/experiment_rivals.hpp"
 #include "laboratory/experiment_tables.hpp"
 #include "laboratory/outside_range.hpp"
 #include "laboratory/virtual_laboratory.hpp"
@@ -56,6 +57,7 @@ ExperimentJson settings_json(const ExperimentSettings& settings) {
   return {{"specimens", settings.specimens},
           {"outside", settings.outside ? ExperimentJson(*settings.outside) : ExperimentJson(nullptr)},
           {"quick", settings.is_quick},
+          {"rivals", settings.with_rivals},
           {"paper_pass", settings.with_paper_pass},
           {"known_physics", settings.with_known_physics},
           {"withheld_force", settings.with_withheld_force},
@@ -125,8 +127,11 @@ class Experiment {
   void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
   void correct(SpecimenTrial& specimen, Trial& trial);
   [[nodiscard]] SecondCut cut_again(SpecimenTrial& specimen, const std::filesystem::path& file,
-                                    const std::filesystem::path& folder, const std::string& tag);
-  void correct_as_paper(SpecimenTrial& specimen, Trial& trial);
+                                    const std::filesystem::path& folder, const std::string& tag,
+                                    bool is_simulated = true);
+  [[nodiscard]] bool is_asked_for(RivalPath path) const;
+  [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa) const;
+  void cut_rivals(SpecimenTrial& specimen, Trial& trial);
   void calibrate();
   void compare();
   void write_commands() const;
@@ -174,8 +179,12 @@ ExperimentJson Experiment::run() {
   const ExperimentJson of_test = to_json(summary);
   for (const auto& [key, value] : of_test.items())
     if (key != "specimens") result[key] = value;
-  if (settings_.with_paper_pass)
-    result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, &Trial::paper_pass));
+  if (is_asked_for(RivalPath::PaperPass))
+    result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, RivalPath::PaperPass));
+  const PathComparison paths = compare_paths(trials_);
+  result["rivals"] = paths_json(paths);
+  result["best_without_simulation"] =
+      paths.best_without_simulation ? ExperimentJson(*paths.best_without_simulation) : ExperimentJson(nullptr);
   if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
   result["advice"] = advice;
   result["calibration"] =
@@ -196,7 +205,7 @@ ExperimentJson Experiment::run() {
     if (std::filesystem::exists(root_ / figure)) result["figures"].push_back((root_ / figure).string());
   }
   result["commands"] = (root_ / "commands.sh").string();
-  ReportData page = experiment_report(trials_, result, root_);
+  ReportData page = experiment_report(trials_, paths, result, root_);
   const ExperimentJson asked = settings_json(settings_);
   for (const auto& [name, value] : asked.items()) page.settings.push_back({name, value.dump(), ""});
   page.provenance = {{"version", std::string(version()), ""},
@@ -295,7 +304,12 @@ double Experiment::cost_of(const Trial& trial) const {
   if (trial.role == TrialRole::Calibrate) return 1.0;
   double cost = 3.2;
   if (settings_.with_withheld_force) cost += 1.6;
-  if (trial.role == TrialRole::Test && settings_.with_paper_pass) cost += 0.9;
+  if (trial.role == TrialRole::Test) {
+    for (std::size_t i = 0; i < kRivalPathNames.size(); ++i) {
+      const auto path = static_cast<RivalPath>(i);
+      if (is_asked_for(path)) cost += is_without_simulation(path) ? 0.5 : 0.9;
+    }
+  }
   if (trial.role == TrialRole::Test && settings_.with_known_physics) cost += 1.5;
   return cost;
 }
@@ -320,7 +334,7 @@ void Experiment::run_trial(Trial& trial) {
       correct(specimen, trial);
     }
     if (goes_on && settings_.with_withheld_force) assess_without_pull(specimen, trial);
-    if (is_test && settings_.with_paper_pass) correct_as_paper(specimen, trial);
+    if (is_test) cut_rivals(specimen, trial);
     if (is_test && settings_.with_known_physics) trial.known_physics = bench.known_physics().result;
   }
   trial.stretch_force_n = specimen.stretch_force_n();
@@ -342,7 +356,7 @@ void Experiment::assess(SpecimenTrial& specimen, Trial& trial) {
 void Experiment::assess_without_pull(SpecimenTrial& specimen, Trial& trial) {
   const std::filesystem::path folder = specimen.at("withheld");
   const std::filesystem::path file =
-      specimen.write_variant("withheld.yaml", tool_, calibrated_kpa_, CompensationMethod::Default);
+      specimen.write_variant("withheld.yaml", {tool_, calibrated_kpa_, calibrated_choice(*tool_)});
   trial.assessment_without_pull = advice_of(specimen, "assess_without_pull", file, folder, std::nullopt);
   trial.withheld = cut_again(specimen, file, folder, "withheld").cut;
 }
@@ -369,25 +383,74 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
       .result;
 }
 
-/// The paper's correction with the same tool: one pass, radially, by the mid-line.
-void Experiment::correct_as_paper(SpecimenTrial& specimen, Trial& trial) {
-  const std::filesystem::path file =
-      specimen.write_variant("paper_pass.yaml", tool_, specimen.youngs_modulus_kpa(), CompensationMethod::Paper);
-  trial.paper_pass = cut_again(specimen, file, specimen.at("paper_pass"), "paper_pass").cut;
+bool Experiment::is_asked_for(RivalPath path) const {
+  return settings_.with_rivals || (path == RivalPath::PaperPass && settings_.with_paper_pass);
 }
 
-/// The correction of a case, verified in simulation, and another cut of the same specimen along it. Where its own
-/// simulation does not accept it, it is cut all the same: whether that was right is part of the experiment.
+/// The case whose correction is the rival's path, by the same readings and photographs.
+CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa) const {
+  const auto list = [this](const char* pointer) {
+    return calibration_.at(ExperimentJson::json_pointer(pointer)).get<std::vector<double>>();
+  };
+  CaseVariant variant{tool_, youngs_modulus_kpa, CompensationChoice{.method = CompensationMethod::Profile}};
+  CompensationChoice& choice = *variant.compensation;
+  switch (path) {
+    case RivalPath::Constant:
+      choice.photographed_mm = {calibration_.at("photographed_profile").at("constant_mm").get<double>()};
+      break;
+    case RivalPath::Profile:
+      choice.photographed_mm = list("/photographed_profile/mean_mm");
+      break;
+    case RivalPath::ProfileSmoothed:
+      choice.photographed_mm = list("/photographed_profile/smoothed_mm");
+      break;
+    case RivalPath::PaperPass:
+      choice.method = CompensationMethod::Paper;
+      break;
+    case RivalPath::Uncalibrated:
+      variant.tool.reset();
+      choice = {.observable = ContourKind::InnerEdge};
+      break;
+    case RivalPath::Hybrid:
+      choice = calibrated_choice(*tool_);
+      choice.residual_mm = list("/residual_profile/mean_mm");
+      choice.simulated_share = calibration_.at("residual_profile").at("simulated_share").get<double>();
+      break;
+  }
+  return variant;
+}
+
+/// Cuts the same specimen along every rival's path.
+void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
+  for (std::size_t i = 0; i < kRivalPathNames.size(); ++i) {
+    const auto path = static_cast<RivalPath>(i);
+    if (!is_asked_for(path)) continue;
+    const std::string name{to_string(path)};
+    const std::filesystem::path file =
+        specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa()));
+    trial.rivals.push_back(
+        {path, cut_again(specimen, file, specimen.at(name), name, !is_without_simulation(path)).cut});
+  }
+}
+
+/// The correction of a case, and another cut of the same specimen along it. Where its own simulation does not accept
+/// it, it is cut all the same: whether that was right is part of the experiment.
+/// @param is_simulated  the correction is verified in simulation; else no simulated cut takes part.
 SecondCut Experiment::cut_again(SpecimenTrial& specimen, const std::filesystem::path& file,
-                                const std::filesystem::path& folder, const std::string& tag) {
+                                const std::filesystem::path& folder, const std::string& tag, bool is_simulated) {
   const std::filesystem::path path = folder / "correction/path.json";
+  std::vector<std::string> words{"compensate", file.string()};
+  if (!is_simulated) words.emplace_back("--no-verify");
+  words.insert(words.end(), {"-o", folder.string()});
   const StepAnswer corrected =
       specimen.ask({tag + "_compensate",
-                    {"compensate", file.string(), "-o", folder.string()},
+                    words,
                     {file, specimen.at("tumor.csv"), specimen.at("lab/ct")},
                     {path},
                     [=](const steps::StepContext& context) {
-                      return steps::compensate_case({read_case_with_inputs(file), folder, {}}, std::nullopt, context);
+                      const CaseFile of = read_case_with_inputs(file);
+                      return is_simulated ? steps::compensate_case({of, folder, {}}, std::nullopt, context)
+                                          : steps::run_stages({of, folder, {.until = Stage::Compensate}}, context);
                     }});
   if (corrected.end == StepEnd::Done || (corrected.end == StepEnd::NotAcceptable && has_path(corrected.result)))
     return {corrected.result, specimen.cut(path, tag)};

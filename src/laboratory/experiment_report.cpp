@@ -101,27 +101,39 @@ std::string refused_specimens(const std::vector<Trial>& trials) {
   return list;
 }
 
-void add_gain(ReportTable& table, const char* name, const ReportJson& summary) {
-  table.rows.push_back({name, cell(summary.at("pairs"), "pairs"), cell(summary.at("mean_before_mm"), "mean_before_mm"),
-                        cell(summary.at("mean_after_mm"), "mean_after_mm"),
-                        cell(summary.at("gain_percent"), "gain_percent"), cell(summary.at("worse"), "worse"),
-                        cell(summary.at("most_worse_mm"), "most_worse_mm")});
-}
-
-/// The figures that the experiment was made for.
-ReportTable outcome_table(const ReportJson& result) {
-  ReportTable table{
-      "Result (virtual): specimens cut twice, mean over specimens of the photographs' mean absolute error",
-      {"cut", "specimens", "as_planned_mm", "after_mm", "gain_percent", "worse", "most_worse_mm"},
-      {}};
-  add_gain(table, "corrected", result);
-  if (result.contains("paper_pass")) add_gain(table, "the paper's single pass", result.at("paper_pass"));
+/// The figures that the experiment was made for: every path, and its distance from the best one without simulation.
+ReportTable outcome_table(const PathComparison& paths, const ReportJson& result) {
+  ReportTable table{"Result (virtual): mean over specimens of the photographs' mean absolute error, path by path",
+                    {"path", "simulated", "specimens", "mean_mm", "worse", "not cut",
+                     "difference from the best without simulation, mm", "95 % interval, mm"},
+                    {}};
+  for (const PathResult& path : paths.paths) {
+    const bool is_best = path.name == paths.best_without_simulation;
+    table.rows.push_back(
+        {path.name, path.is_simulated ? "yes" : "no", std::to_string(path.pairs),
+         path.mean_mm ? measure_text(*path.mean_mm, "mm") : "", std::to_string(path.worse), std::to_string(path.uncut),
+         is_best              ? "best"
+         : path.difference_mm ? fmt::format("{:+.2f}", *path.difference_mm)
+                              : "",
+         path.confidence ? fmt::format("{:+.2f} to {:+.2f}", path.confidence->low, path.confidence->high) : ""});
+  }
   if (result.contains("known_physics")) {
     const ReportJson& floor = result.at("known_physics");
-    table.rows.push_back({"known-physics limit (the arm's errors not known)", cell(floor.at("specimens"), "specimens"),
-                          "", cell(floor.at("mean_after_mm"), "mean_after_mm"), "", "", ""});
+    table.rows.push_back({"known-physics limit (the arm's errors not known)", "", cell(floor.at("specimens"), ""),
+                          cell(floor.at("mean_after_mm"), "mean_after_mm"), "", "", "", ""});
   }
   return table;
+}
+
+/// What may be claimed: the corrections against the best path without a simulated cut.
+std::string claim(const PathComparison& paths) {
+  if (!paths.best_without_simulation)
+    return "No rival without a simulated cut can be compared, so no benefit of simulation can be claimed. ";
+  std::string claims;
+  for (const char* name : {"incise", "hybrid"}) {
+    if (const std::string one = claim_of(paths, name); !one.empty()) claims += one + ". ";
+  }
+  return claims;
 }
 
 /// What the cuts of the calibration's specimens say of the simulated tool.
@@ -148,7 +160,7 @@ ReportTable fit_table(const ReportJson& result) {
 
 }  // namespace
 
-ReportData experiment_report(const std::vector<Trial>& trials, const ReportJson& result,
+ReportData experiment_report(const std::vector<Trial>& trials, const PathComparison& paths, const ReportJson& result,
                              const std::filesystem::path& folder) {
   ReportData data;
   data.title = "Virtual experiment: cut, calibrate, correct, cut again";
@@ -162,6 +174,7 @@ ReportData experiment_report(const std::vector<Trial>& trials, const ReportJson&
         "({:.0f} % less); {} worse. ",
         summary.pairs, summary.pairs == 1 ? "" : "s", summary.mean_before_mm, summary.mean_after_mm,
         summary.gain_percent, summary.worse);
+    data.subtitle += claim(paths);
   }
   const std::string refused = refused_specimens(trials);
   data.subtitle +=
@@ -181,7 +194,7 @@ ReportData experiment_report(const std::vector<Trial>& trials, const ReportJson&
                 "Simulated speed and dullness against the photographs, after the paper's Table I.");
   add_picture(data, folder / "calibration/fit.svg", "Calibration",
               "Signed error photographed and simulated, and what the data say of each parameter.");
-  data.tables.push_back(outcome_table(result));
+  data.tables.push_back(outcome_table(paths, result));
   if (result.at("fit").is_object()) data.tables.push_back(fit_table(result));
   data.tables.push_back(
       table_of("Table II of this experiment (virtual): every cut, measured in its photograph", table_2_json(trials)));

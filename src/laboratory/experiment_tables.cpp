@@ -31,11 +31,7 @@ TableJson measure_at(const TableJson& measures, const char* pointer) {
   return measures.contains(at) ? measures.at(at) : TableJson(nullptr);
 }
 
-double mean_error_mm(const TrialCut& cut) {
-  return cut.measured->measures.at("abs_error_mm").at("mean").get<double>();
-}
-
-TableJson row_of(const Trial& trial, const char* cut_name, const TrialCut& cut) {
+TableJson row_of(const Trial& trial, std::string_view cut_name, const TrialCut& cut) {
   TableJson row;
   row["specimen"] = trial.name;
   row["seed"] = trial.seed;
@@ -75,22 +71,37 @@ std::string cell(const TableJson& value, std::string_view column) {
 }
 
 std::vector<std::string> refusals_of(const Trial& trial) {
+  std::vector<const std::string*> reasons{&trial.ended_at, &trial.planned.ended_at, &trial.corrected.ended_at};
+  for (const RivalCut& rival : trial.rivals) reasons.push_back(&rival.cut.ended_at);
+  reasons.push_back(&trial.withheld.ended_at);
   std::vector<std::string> list;
-  for (const std::string* reason : {&trial.ended_at, &trial.planned.ended_at, &trial.corrected.ended_at,
-                                    &trial.paper_pass.ended_at, &trial.withheld.ended_at})
+  for (const std::string* reason : reasons)
     if (!reason->empty()) list.push_back(*reason);
   return list;
 }
 
-TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, TrialCut Trial::*after) {
+const TrialCut* find_rival(const Trial& trial, RivalPath path) {
+  for (const RivalCut& rival : trial.rivals)
+    if (rival.path == path) return &rival.cut;
+  return nullptr;
+}
+
+std::optional<double> mean_error_mm(const TrialCut& cut) {
+  if (!cut.measured) return std::nullopt;
+  return cut.measured->measures.at("abs_error_mm").at("mean").get<double>();
+}
+
+TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, std::optional<RivalPath> path) {
+  const TrialCut not_made;
   TrialSummary summary;
   double uncorrected_mm = 0.0;
   for (const Trial& trial : trials) {
     if (trial.role != role) continue;
     ++summary.specimens;
-    const TrialCut& second = trial.*after;
+    const TrialCut* found = path ? find_rival(trial, *path) : &trial.corrected;
+    const TrialCut& second = found != nullptr ? *found : not_made;
     if (!trial.planned.measured) continue;
-    const double before_mm = mean_error_mm(trial.planned);
+    const double before_mm = *mean_error_mm(trial.planned);
     if (!second.is_made) {
       ++summary.uncorrected;
       uncorrected_mm += before_mm;
@@ -101,7 +112,7 @@ TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role, TrialC
       ++summary.worse;
       continue;
     }
-    const double after_mm = mean_error_mm(second);
+    const double after_mm = *mean_error_mm(second);
     ++summary.pairs;
     summary.mean_before_mm += before_mm;
     summary.mean_after_mm += after_mm;
@@ -136,8 +147,7 @@ TableJson table_2_json(const std::vector<Trial>& trials) {
   for (const Trial& trial : trials) {
     rows.push_back(row_of(trial, "planned", trial.planned));
     if (trial.role != TrialRole::Calibrate) rows.push_back(row_of(trial, "corrected", trial.corrected));
-    if (trial.paper_pass.is_made || !trial.paper_pass.ended_at.empty())
-      rows.push_back(row_of(trial, "paper_pass", trial.paper_pass));
+    for (const RivalCut& rival : trial.rivals) rows.push_back(row_of(trial, to_string(rival.path), rival.cut));
   }
   return rows;
 }
@@ -156,7 +166,7 @@ TableJson assessments_json(const std::vector<Trial>& trials) {
     entry["accepted"] =
         trial.compensation.is_object() ? trial.compensation.value("accepted", TableJson()) : TableJson(nullptr);
     entry["gain_mm"] =
-        is_pair ? TableJson(mean_error_mm(trial.planned) - mean_error_mm(trial.corrected)) : TableJson(nullptr);
+        is_pair ? TableJson(*mean_error_mm(trial.planned) - *mean_error_mm(trial.corrected)) : TableJson(nullptr);
     list.push_back(std::move(entry));
   }
   return list;

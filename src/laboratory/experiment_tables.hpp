@@ -20,6 +20,30 @@ inline constexpr std::array<std::string_view, 3> kTrialRoleNames{"calibrate", "t
   return kTrialRoleNames;
 }
 
+/// A path along which test specimens are cut beside the planned and the corrected one.
+enum class RivalPath {
+  Constant,         ///< moved out by one number, the mean signed error of the calibration's photographs
+  Profile,          ///< moved by their mean error by direction
+  ProfileSmoothed,  ///< the same, without fast waves
+  PaperPass,        ///< the paper's single pass by the simulated mid-line, with the calibrated tool
+  Uncalibrated,     ///< corrected with the default tool and no bias
+  Hybrid,           ///< corrected, with what the photographs say beyond the simulation by direction
+};
+inline constexpr std::array<std::string_view, 6> kRivalPathNames{
+    "constant", "profile", "profile_smoothed", "paper_pass", "incise_uncalibrated", "hybrid"};
+[[nodiscard]] constexpr Names names_of(RivalPath) {
+  return kRivalPathNames;
+}
+/// Whether no simulated cut takes part in the path.
+[[nodiscard]] constexpr bool is_without_simulation(RivalPath path) {
+  return path <= RivalPath::ProfileSmoothed;
+}
+
+struct RivalCut {
+  RivalPath path = RivalPath::Constant;
+  TrialCut cut;
+};
+
 /// One specimen of an experiment, and what came of it.
 struct Trial {
   std::string name;
@@ -28,8 +52,8 @@ struct Trial {
   std::string kind;                                   ///< of a specimen outside the calibrated range; else empty
   std::vector<std::pair<std::string, double>> given;  ///< hidden parameters that are not drawn from the seed
   TrialCut planned, corrected;
-  TrialCut paper_pass;                             ///< along the paper's single correction; not made unless asked for
-  TrialCut withheld;                               ///< corrected as if the pull had not been measured; likewise
+  std::vector<RivalCut> rivals;                    ///< those that were asked for
+  TrialCut withheld;                               ///< corrected as if the pull had not been measured, if asked for
   nlohmann::ordered_json compensation;             ///< what `incise compensate` printed; null: not run
   nlohmann::ordered_json assessment;               ///< what `incise assess` printed; null: not run
   nlohmann::ordered_json assessment_without_pull;  ///< the same, had the pull not been measured
@@ -69,9 +93,16 @@ inline void describe(Visitor& v, TrialSummary& s) {
   v("worse", s.worse, "Specimens whose error grew, and those that opened.");
   v({"most_worse_mm", "By how much an error grew at most; 0: none did.", "mm"}, s.most_worse_mm);
 }
-/// Of the specimens with that role, as planned against another cut. No pairs: zeros.
+/// Of the specimens with that role, as planned against the corrected cut, or against that along another path. No pairs:
+/// zeros.
 [[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role,
-                                      TrialCut Trial::*after = &Trial::corrected);
+                                      std::optional<RivalPath> path = std::nullopt);
+
+/// The cut along a path; nothing: it was not asked for.
+[[nodiscard]] const TrialCut* find_rival(const Trial& trial, RivalPath path);
+
+/// Mean |error| of the photograph, mm; nothing: no closed ring was measured.
+[[nodiscard]] std::optional<double> mean_error_mm(const TrialCut& cut);
 /// What is left to a planner that knows the bench's physics, of the specimens that summary_of counts as pairs:
 /// `specimens`, `mean_after_mm` (from the truth, not from photographs).
 [[nodiscard]] nlohmann::ordered_json known_physics_json(const std::vector<Trial>& trials);

@@ -44,7 +44,28 @@ double pull_n(const StudyJson& stretched) {
   return 1e-3 * largest;
 }
 
+/// What each method reads of a choice, as a case file has it.
+std::vector<std::string> fields_of(const CompensationChoice& choice) {
+  std::vector<std::string> fields;
+  if (choice.method != CompensationMethod::Default)
+    fields.push_back(fmt::format("method: {}", to_string(choice.method)));
+  if (choice.method == CompensationMethod::Default) {
+    fields.push_back(fmt::format("observable: {}", to_string(choice.observable)));
+    fields.push_back(fmt::format("bias_mm: {}", choice.bias_mm));
+  }
+  if (choice.simulated_share != 1.0) fields.push_back(fmt::format("simulated_share: {}", choice.simulated_share));
+  for (const auto& [field, list] :
+       {std::pair{"residual_mm", &choice.residual_mm}, std::pair{"photographed_mm", &choice.photographed_mm}}) {
+    if (!list->empty()) fields.push_back(fmt::format("{}: [{}]", field, fmt::join(*list, ", ")));
+  }
+  return fields;
+}
+
 }  // namespace
+
+CompensationChoice calibrated_choice(const ChosenTool& tool) {
+  return {.observable = ContourKind::InnerEdge, .bias_mm = tool.bias_mm};
+}
 
 std::optional<StudyJson> SpecimenTrial::run(const ExperimentStep& step) {
   StepAnswer answer = steps_.run(step);
@@ -55,7 +76,8 @@ std::optional<StudyJson> SpecimenTrial::run(const ExperimentStep& step) {
 
 bool SpecimenTrial::prepare(const std::optional<ChosenTool>& tool) {
   if (!read() || !find_shape() || !find_place()) return false;
-  const std::filesystem::path file = write_variant("case.yaml", tool, youngs_modulus_kpa_, CompensationMethod::Default);
+  const std::filesystem::path file = write_variant(
+      "case.yaml", {tool, youngs_modulus_kpa_, tool ? std::optional(calibrated_choice(*tool)) : std::nullopt});
   const std::filesystem::path output = at("planned");
   return run({"plan",
               {"plan", file.string(), "-o", output.string()},
@@ -167,25 +189,21 @@ void SpecimenTrial::write_edge(const StudyJson& registration) const {
   write_contour_csv(at("tumor.csv"), edge);
 }
 
-std::filesystem::path SpecimenTrial::write_variant(const std::string& name, const std::optional<ChosenTool>& tool,
-                                                   double youngs_modulus_kpa, CompensationMethod method) const {
+std::filesystem::path SpecimenTrial::write_variant(const std::string& name, const CaseVariant& variant) const {
   std::string yaml = fmt::format(
       "schema: incise.case/1\nspecimen_is: virtual\nct: {{volume: lab/ct}}\nmeshing: {{tets: {}}}\nspecimen:\n  "
       "material: {{youngs_modulus_kpa: {:.4f}}}\n"
       "tumor: {{contour: tumor.csv, configuration: stretched}}\nplan: {{power_w: {}}}\n",
-      setup_.tets, youngs_modulus_kpa, setup_.power_w);
+      setup_.tets, variant.youngs_modulus_kpa, setup_.power_w);
   std::vector<std::string> cut;
   if (setup_.rule != CutRule::Tets) cut.push_back(fmt::format("rule: {}", to_string(setup_.rule)));
-  if (tool) {
-    cut.push_back(fmt::format("speed_mm_s: {}", tool->speed_mm_s));
-    cut.push_back(fmt::format("dullness: {}", tool->dullness));
+  if (variant.tool) {
+    cut.push_back(fmt::format("speed_mm_s: {}", variant.tool->speed_mm_s));
+    cut.push_back(fmt::format("dullness: {}", variant.tool->dullness));
   }
   if (!cut.empty()) yaml += fmt::format("cut: {{{}}}\n", fmt::join(cut, ", "));
-  if (tool) {
-    yaml += method == CompensationMethod::Paper
-                ? std::string("compensation: {method: paper}\n")
-                : fmt::format("compensation: {{observable: inner_edge, bias_mm: {}}}\n", tool->bias_mm);
-  }
+  if (variant.compensation)
+    yaml += fmt::format("compensation: {{{}}}\n", fmt::join(fields_of(*variant.compensation), ", "));
   write_atomically(at(name), yaml);
   return at(name);
 }

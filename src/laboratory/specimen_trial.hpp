@@ -28,6 +28,16 @@ struct ChosenTool {
   double bias_mm = 0.0;
 };
 
+/// The correction that a calibrated planner makes: of the inner edge, which is what photographs show.
+[[nodiscard]] CompensationChoice calibrated_choice(const ChosenTool& tool);
+
+/// What one case file of a specimen says beyond the readings.
+struct CaseVariant {
+  std::optional<ChosenTool> tool;                  ///< absent: the default one
+  double youngs_modulus_kpa = 70.0;                ///< > 0
+  std::optional<CompensationChoice> compensation;  ///< absent: nothing is said of it
+};
+
 /// A cut whose photograph shows a closed ring.
 struct MeasuredCut {
   std::filesystem::path evaluation;  ///< file of `incise evaluate`
@@ -55,8 +65,7 @@ class SpecimenTrial {
   /// measures the photograph. @param tag  of the files: planned, corrected …
   [[nodiscard]] TrialCut cut(const std::filesystem::path& path, const std::string& tag);
   /// Writes another case of the same specimen into its folder. @returns the file.
-  [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const std::optional<ChosenTool>& tool,
-                                                    double youngs_modulus_kpa, CompensationMethod method) const;
+  [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const CaseVariant& variant) const;
   /// Runs one more step in this specimen's folder, whose refusal is an answer.
   StepAnswer ask(const ExperimentStep& step) { return steps_.run(step); }
 
