@@ -69,9 +69,8 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
           "--method", [&options](const std::string& name) { options.method = value_named<CompensationMethod>(name); },
           "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 if there is an "
           "objection to the nearest one); paper: each waypoint moves once by the error "
-          "simulated there; profile: each waypoint moves once by the case's compensation.photographed_mm. Overrides "
-          "the "
-          "case's compensation.method")
+          "simulated there; profile: each waypoint moves once by the case's compensation.photographed_mm. "
+          "Overrides the case's compensation.method")
       ->check(name_of_any<CompensationMethod>());
 }
 
@@ -85,8 +84,8 @@ void add_compensate(Application& application) {
   add_cut_options(*verb, chosen->cut);
   add_compensation_method(*verb, chosen->cut);
   verb->add_flag("--no-verify", chosen->is_unverified,
-                 "Method profile: move the path and stop, without any simulated cut. What is known against the path "
-                 "is then that no cut along it was simulated");
+                 "Method profile: move the path and stop, without any simulated cut. The path then has the caution "
+                 "not_simulated, or what refuses it before any cut");
   verb->add_flag(
       "--robust", chosen->is_robust,
       "Also choose the path of least expected error over the calibration's posterior, with a probability of a close "

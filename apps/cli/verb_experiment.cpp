@@ -144,7 +144,7 @@ void add_experiment(Application& application) {
                  "photographs, the paper's pass, incise without calibration, hybrid). Faster, but then no benefit of "
                  "simulation can be claimed");
   verb->add_flag("--paper-pass", settings->with_paper_pass,
-                 "With --no-rivals: the paper's single radial correction all the same");
+                 "With --no-rivals: still cut along the paper's single radial correction");
   verb->add_flag("--known-physics", settings->with_known_physics,
                  "Also cut every test specimen as a planner that knows the bench's physics would");
   verb->add_flag("--withheld-force", settings->with_withheld_force,

@@ -49,6 +49,14 @@ void require_done(const StepAnswer& answer, const char* step, const ExperimentSt
     throw DataError(runner.folder() / "log.txt", step, refusal_of(step, answer), "a step whose result can be used");
 }
 
+/// Along whose paths test specimens are cut.
+std::vector<RivalPath> rivals_of(const ExperimentSettings& settings) {
+  if (settings.with_rivals)
+    return {RivalPath::Constant,  RivalPath::Profile,      RivalPath::ProfileSmoothed,
+            RivalPath::PaperPass, RivalPath::Uncalibrated, RivalPath::Hybrid};
+  return settings.with_paper_pass ? std::vector{RivalPath::PaperPass} : std::vector<RivalPath>{};
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -129,7 +137,6 @@ class Experiment {
   [[nodiscard]] SecondCut cut_again(SpecimenTrial& specimen, const std::filesystem::path& file,
                                     const std::filesystem::path& folder, const std::string& tag,
                                     bool is_simulated = true);
-  [[nodiscard]] bool is_asked_for(RivalPath path) const;
   [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa) const;
   void cut_rivals(SpecimenTrial& specimen, Trial& trial);
   void calibrate();
@@ -143,6 +150,7 @@ class Experiment {
   std::filesystem::path root_, truth_;
   FolderLock lock_{root_};
   std::vector<Trial> trials_;
+  const std::vector<RivalPath> rivals_ = rivals_of(settings_);
   std::optional<ChosenTool> tool_;
   double calibrated_kpa_ = 0.0;  // geometric mean of the calibrated specimens' moduli
   ExperimentJson calibration_, table_1_, comparison_;
@@ -179,7 +187,7 @@ ExperimentJson Experiment::run() {
   const ExperimentJson of_test = to_json(summary);
   for (const auto& [key, value] : of_test.items())
     if (key != "specimens") result[key] = value;
-  if (is_asked_for(RivalPath::PaperPass))
+  if (std::find(rivals_.begin(), rivals_.end(), RivalPath::PaperPass) != rivals_.end())
     result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, RivalPath::PaperPass));
   const PathComparison paths = compare_paths(trials_);
   result["rivals"] = paths_json(paths);
@@ -305,10 +313,7 @@ double Experiment::cost_of(const Trial& trial) const {
   double cost = 3.2;
   if (settings_.with_withheld_force) cost += 1.6;
   if (trial.role == TrialRole::Test) {
-    for (std::size_t i = 0; i < kRivalPathNames.size(); ++i) {
-      const auto path = static_cast<RivalPath>(i);
-      if (is_asked_for(path)) cost += is_without_simulation(path) ? 0.5 : 0.9;
-    }
+    for (const RivalPath path : rivals_) cost += is_without_simulation(path) ? 0.5 : 0.9;
   }
   if (trial.role == TrialRole::Test && settings_.with_known_physics) cost += 1.5;
   return cost;
@@ -383,10 +388,6 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
       .result;
 }
 
-bool Experiment::is_asked_for(RivalPath path) const {
-  return settings_.with_rivals || (path == RivalPath::PaperPass && settings_.with_paper_pass);
-}
-
 /// The case whose correction is the rival's path, by the same readings and photographs.
 CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa) const {
   const auto list = [this](const char* pointer) {
@@ -422,9 +423,7 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa) co
 
 /// Cuts the same specimen along every rival's path.
 void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
-  for (std::size_t i = 0; i < kRivalPathNames.size(); ++i) {
-    const auto path = static_cast<RivalPath>(i);
-    if (!is_asked_for(path)) continue;
+  for (const RivalPath path : rivals_) {
     const std::string name{to_string(path)};
     const std::filesystem::path file =
         specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa()));

@@ -157,6 +157,9 @@ class AssessTest(CommandTest):
         small_calibration.write(self.calibration)
         small_case.write_case(self.folder / "case", {"compensation": {"method": "paper"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "compensation.method", "paper")
+        for field, value in (("residual_mm", [0.1]), ("simulated_share", 0.5)):
+            small_case.write_case(self.folder / "case", {"compensation": {field: value}})
+            self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", f"compensation.{field}", "constant bias")
         small_case.write_case(self.folder / "case", {"cut": {"rule": "lattice"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", "cut.rule", "lattice", "expected tets")
         small_calibration.write(self.calibration, lambda c: c.update(cut_rule="paper"))

@@ -111,6 +111,10 @@ class RobustTest(CommandTest):
         self.assert_refused(self.compensate(), BAD_CASE, "cut.rule", "tets", "expected lattice")
         small_calibration.write(self.calibration)
         self.assert_refused(self.compensate("--method", "paper"), BAD_CASE, "--robust", "--method default")
+        self.assert_refused(self.compensate("--no-verify"), BAD_CASE, "--no-verify", "--robust")
+        small_case.write_case(self.folder / "case", {"compensation": {"residual_mm": [0.1]}})
+        self.assert_refused(self.compensate(), BAD_CASE, "case.yaml", "compensation.residual_mm", "constant bias")
+        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}})
         for probability in (0, 1, -0.1):
             self.assert_refused(self.compensate("--max-probability", probability), BAD_CASE, "--max-probability")
         self.assert_refused(self.compensate("--stretch-force-n", 0), BAD_CASE, "--stretch-force-n")

@@ -174,14 +174,16 @@ TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
       << "no worse; the verdict refuses both";
 }
 
+/// Of a mid-line with this mean |error|, mm.
+SimulatedCut cut_with(double mean_error_mm) {
+  SimulatedCut cut;
+  cut.outcome = Outcome::Success;
+  cut.centerline.abs_error_mm = Summary{.mean = mean_error_mm};
+  return cut;
+}
+
 TEST(IsAccepted, ByThePapersRule) {
   Case settings;  // a needle of 1 mm: radius 0.5
-  const auto cut_with = [](double mean) {
-    SimulatedCut cut;
-    cut.outcome = Outcome::Success;
-    cut.centerline.abs_error_mm = Summary{.mean = mean};
-    return cut;
-  };
   Correction paper;
   paper.method = CompensationMethod::Paper;
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.99), cut_with(0.33)), "");
@@ -382,12 +384,6 @@ TEST(Validate, RefusesAChoiceOfCorrectionThatWouldNotAct) {
 }
 
 TEST(ObjectionTo, APathByPhotographsIsNotHeldToTheSimulatedError) {
-  const auto cut_with = [](double mean) {
-    SimulatedCut cut;
-    cut.outcome = Outcome::Success;
-    cut.centerline.abs_error_mm = Summary{.mean = mean};
-    return cut;
-  };
   Correction correction;
   correction.method = CompensationMethod::Profile;
   EXPECT_EQ(objection_to({}, correction, cut_with(0.5), cut_with(1.1)), "") << "photographs say more than is simulated";

@@ -22,7 +22,7 @@ struct ExperimentSettings {
   bool is_quick = false;             ///< without Table I
   /// Test specimens are cut along every rival's path, too: without that no benefit of simulation can be claimed.
   bool with_rivals = true;
-  bool with_paper_pass = false;      ///< of the rivals the paper's single correction at least
+  bool with_paper_pass = false;      ///< without the rivals: still the paper's single correction
   bool with_known_physics = false;   ///< and along that of a planner that knows the bench's physics
   bool with_withheld_force = false;  ///< advice is asked for once more without the pull
   int tets = 25000;                  ///< of the planner's meshes

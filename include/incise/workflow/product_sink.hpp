@@ -27,8 +27,7 @@ class ProductSink {
   virtual void plan(const ProductNote&, const ToolPath&) {}
   virtual void cut(const ProductNote&, const TissueModel&, const StaticResult&, const SimulatedCut&) {}
   virtual void correction(const ProductNote&, const Correction&) {}
-  virtual void absent(const std::string& /*name*/) {
-  }  ///< the run goes without this product: one of an earlier run is none of its own
+  virtual void absent(const std::string& /*name*/) {}  ///< the run has no such product: that of an earlier run goes
   /// What the cuts along the planned and along the corrected path are worth. @param of_planned  absent: the first cut
   /// did not follow the plan.
   /// @param of_corrected  absent: there is no corrected path.
