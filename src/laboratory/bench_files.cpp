@@ -176,8 +176,8 @@ void write_truth(const std::filesystem::path& folder, const BenchBody& body) {
   Json json;
   json["note"] = "The truth about a virtual specimen, for tests: nothing of this may reach a planner.";
   json["stretch_force_n"] = body.stretch_force_n;
-  json["T_robot_specimen"] = matrix(T_robot_specimen(body.specimen));
-  json["T_robot_camera"] = matrix(T_robot_camera(body.specimen));
+  json["T_robot_specimen"] = matrix(T_robot_specimen(placement_of(body.specimen)));
+  json["T_robot_camera"] = matrix(T_robot_camera(placement_of(body.specimen)));
   write_json(folder / "truth.json", json);
 }
 

@@ -100,8 +100,8 @@ steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps
   for (const auto& folder : {request.output, request.truth}) steps::make_parent(folder);
   const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
   if (!is_held(body, context.monitor)) return {nullptr, false};
-  const std::vector<TipPose> course =
-      tip_course(asked_course(replay, program.T_flange_tool), specimen, T_robot_specimen(specimen).inverse());
+  const std::vector<TipPose> course = tip_course(asked_course(replay, program.T_flange_tool), specimen,
+                                                 T_robot_specimen(placement_of(specimen)).inverse());
   if (const auto misfit = find_misfit(body, course)) {
     throw DataError(request.program, "poses", *misfit, "a course in this specimen's tissue round its tumour",
                     "Is it the program of another specimen?");

@@ -1,5 +1,4 @@
 #include <incise/core/random.hpp>
-#include <incise/core/units.hpp>
 #include <incise/virtual_bench/readings.hpp>
 
 #include <algorithm>
@@ -12,23 +11,6 @@ constexpr std::uint64_t kReadingStream = 0xc2b2ae35ULL;
 constexpr double kForceNoise = 0.05;       // standard deviation, relative
 constexpr double kElasticityNoise = 0.20;  // likewise
 constexpr double kElasticityVoxelMm = 2.0;
-constexpr double kCameraHeightMm = 230.0;  // above the platform
-constexpr int kCloudStride = 3;            // every third pixel of the depth picture becomes a point
-
-Points cloud_of(const FrameShot& frame) {
-  Points cloud;
-  for (int v = 0; v < frame.camera.height; v += kCloudStride) {
-    for (int u = 0; u < frame.camera.width; u += kCloudStride) {
-      const std::size_t n =
-          static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.camera.width) + static_cast<std::size_t>(u);
-      if (frame.is_specimen[n] == 0 || frame.depth.counts[n] == 0) continue;
-      const double z = frame.depth_unit_mm * frame.depth.counts[n];
-      cloud.emplace_back((u - frame.camera.cx) / frame.camera.focal_px * z,
-                         (v - frame.camera.cy) / frame.camera.focal_px * z, z);
-    }
-  }
-  return cloud;
-}
 
 GrayVolume elasticity_of(const BenchBody& body, Random& random) {
   const TissueModel& model = *body.tissue;
@@ -56,27 +38,8 @@ GrayVolume elasticity_of(const BenchBody& body, Random& random) {
 
 }  // namespace
 
-Mat4 T_robot_specimen(const Specimen& specimen) {
-  // The tip of the tongue (-y) points back to the base, its back up.
-  Mat3 laid;
-  laid << 0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
-  const Mat3 turn =
-      Eigen::AngleAxisd(units::rad_from_deg(specimen.placement_turn_deg), Vec3::UnitZ()).toRotationMatrix();
-  Mat4 T = Mat4::Identity();
-  T.topLeftCorner<3, 3>() = turn * laid;
-  T.topRightCorner<3, 1>() = kHolderMm + Vec3(specimen.placement_x_mm, specimen.placement_y_mm, 0.0);
-  return T;
-}
-
-Mat4 T_robot_camera(const Specimen& specimen) {
-  Mat3 down;
-  down << 0.0, -1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, -1.0;
-  const double tilt = units::rad_from_deg(specimen.camera_tilt_deg);
-  Mat4 T = Mat4::Identity();
-  T.topLeftCorner<3, 3>() = Eigen::AngleAxisd(tilt, Vec3::UnitY()).toRotationMatrix() * down;
-  // The tilted camera keeps the holder in the middle of its picture.
-  T.topRightCorner<3, 1>() = kHolderMm - kCameraHeightMm * T.block<3, 1>(0, 2);
-  return T;
+Placement placement_of(const Specimen& specimen) {
+  return {specimen.placement_x_mm, specimen.placement_y_mm, specimen.placement_turn_deg, specimen.camera_tilt_deg};
 }
 
 Readings take_readings(const BenchBody& body, bool has_elasticity, Monitor& monitor) {
@@ -84,8 +47,9 @@ Readings take_readings(const BenchBody& body, bool has_elasticity, Monitor& moni
   Readings readings;
   readings.stretch_force_n = body.stretch_force_n * (1.0 + kForceNoise * random.normal());
   readings.ct = make_phantom(phantom_settings(body.specimen), monitor).ct;
-  readings.T_robot_camera = T_robot_camera(body.specimen);
-  const Mat4 T_camera_specimen = readings.T_robot_camera.inverse() * T_robot_specimen(body.specimen);
+  const Placement placement = placement_of(body.specimen);
+  readings.T_robot_camera = T_robot_camera(placement);
+  const Mat4 T_camera_specimen = readings.T_robot_camera.inverse() * T_robot_specimen(placement);
   readings.frame = shoot_frame(body, T_camera_specimen);
   readings.cloud_mm = cloud_of(readings.frame);
   if (has_elasticity) readings.elasticity_kpa = elasticity_of(body, random);

@@ -1,10 +1,8 @@
 #include <incise/core/error.hpp>
 #include <incise/core/expect.hpp>
-#include <incise/core/random.hpp>
 #include <incise/virtual_bench/specimen.hpp>
 
 #include <array>
-#include <cmath>
 
 namespace incise {
 namespace {
@@ -132,22 +130,6 @@ constexpr std::array kSpecs{
                   "standard deviation of a voxel", "chosen: a clinical head protocol", "CT"},
 };
 
-/// FNV-1a of the name: a stream of its own for each parameter.
-std::uint64_t stream_of(std::uint64_t seed, std::string_view name) {
-  std::uint64_t hash = 1469598103934665603ULL;
-  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash ^ (seed * 0x9E3779B97F4A7C15ULL);
-}
-
-double drawn(const ParameterSpec& spec, Random& random) {
-  if (spec.drawn_as == DrawnAs::Uniform) return random.uniform(spec.a, spec.b);
-  for (;;) {
-    const double z = random.normal();
-    const double value = spec.drawn_as == DrawnAs::Normal ? spec.a + spec.b * z : spec.a * std::exp(spec.b * z);
-    if (value >= spec.low && value <= spec.high) return value;
-  }
-}
-
 }  // namespace
 
 std::span<const ParameterSpec> parameter_specs() {
@@ -157,10 +139,7 @@ std::span<const ParameterSpec> parameter_specs() {
 Specimen draw_specimen(std::uint64_t seed) {
   Specimen specimen;
   specimen.seed = seed;
-  for (const ParameterSpec& spec : kSpecs) {
-    Random random(stream_of(seed, spec.name));
-    specimen.*spec.member = drawn(spec, random);
-  }
+  for (const ParameterSpec& spec : kSpecs) specimen.*spec.member = drawn(spec, seed);
   return specimen;
 }
 

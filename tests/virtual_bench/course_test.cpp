@@ -59,10 +59,10 @@ TEST(TipCourse, TransformsLieAsTheirNamesSay) {
   Specimen specimen = without_errors();
   specimen.placement_turn_deg = 10.0;
   specimen.camera_tilt_deg = 5.0;
-  const Mat4 T_robot_sim = T_robot_specimen(specimen);
+  const Mat4 T_robot_sim = T_robot_specimen(placement_of(specimen));
   const Mat3 turn = T_robot_sim.topLeftCorner<3, 3>();
   EXPECT_NEAR(turn.determinant(), 1.0, 1e-12);
-  const Mat4 camera = T_robot_camera(specimen);
+  const Mat4 camera = T_robot_camera(placement_of(specimen));
   const Mat3 look = camera.topLeftCorner<3, 3>();
   EXPECT_LT((look * look.transpose() - Mat3::Identity()).norm(), 1e-12);
   EXPECT_NEAR(look.determinant(), 1.0, 1e-12);

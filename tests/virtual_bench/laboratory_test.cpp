@@ -38,7 +38,7 @@ const Readings& readings() {
 // Every test makes the body anew where each runs in a process of its own: few tests, more in each.
 void expect_cloud_on_the_stretched_skin() {
   const SurfaceQuery skin(skin_at(body(), body().stretched.positions));
-  const Mat4 T_specimen_camera = T_robot_specimen(seen_specimen()).inverse() * readings().T_robot_camera;
+  const Mat4 T_specimen_camera = T_robot_specimen(placement_of(seen_specimen())).inverse() * readings().T_robot_camera;
   ASSERT_GT(readings().cloud_mm.size(), 2000U);
   double squares = 0.0;
   double wrong = 0.0;
@@ -74,7 +74,7 @@ void expect_holes_of_their_share() {
 
 void expect_green_mark_on_the_tumours_edge() {
   FrameShot frame = readings().frame;
-  const Mat4 T_camera_specimen = readings().T_robot_camera.inverse() * T_robot_specimen(seen_specimen());
+  const Mat4 T_camera_specimen = readings().T_robot_camera.inverse() * T_robot_specimen(placement_of(seen_specimen()));
   int green = 0;
   const Contour edge = tumor_edge_at(body(), body().stretched.positions);
   for (const Vec3& p : edge.points) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/bench_kit/tip_course.hpp>
 #include <incise/core/outcome.hpp>
 #include <incise/virtual_bench/body.hpp>
 
@@ -7,14 +8,6 @@
 #include <vector>
 
 namespace incise {
-
-/// Where the tool's tip is and which way the tool points, at a time; specimen frame.
-struct TipPose {
-  double time_s = 0.0;
-  Vec3 tip_mm = Vec3::Zero();
-  Vec3 axis = -Vec3::UnitZ();  ///< unit, out of the tip
-  bool is_cutting = true;      ///< between plunge and exit: the electrode is on
-};
 
 /// What really happened. Of this only the photograph leaves the bench; the rest is truth, for tests.
 struct BenchCut {

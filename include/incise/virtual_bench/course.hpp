@@ -1,7 +1,6 @@
 #pragma once
 
-#include <incise/robot/player.hpp>
-#include <incise/robot/program.hpp>
+#include <incise/bench_kit/tip_course.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
 
 #include <optional>
@@ -9,15 +8,6 @@
 #include <vector>
 
 namespace incise {
-
-/// The tip's course that a program asks for, in the robot's base frame: its poses.
-/// @throws InvalidArgument for a program with fewer than 2 poses or numbers that are not finite.
-[[nodiscard]] std::vector<TipPose> asked_course(const RobotProgram& program);
-
-/// The same as the arm's controller plays it: every 20 ms, and where a phase ends.
-/// @param replay  completed, with at least 2 samples (InvalidArgument).  @param T_flange_tool  rigid, mm.
-[[nodiscard]] std::vector<TipPose> asked_course(const Replay& replay, const Mat4& T_flange_tool,
-                                                const ArmModel& arm = ur10e());
 
 /// Where the arm really takes the tip: the course, off by the arm's hidden errors (offset, turn about the vertical
 /// through the middle of the course, slow wandering), in the specimen's frame.

@@ -1,12 +1,10 @@
 #pragma once
 
+#include <incise/bench_kit/hidden_parameter.hpp>
 #include <incise/core/describe.hpp>
 
 #include <cstdint>
 #include <span>
-#include <string>
-#include <string_view>
-#include <vector>
 
 namespace incise {
 
@@ -67,28 +65,7 @@ struct Specimen {
   [[nodiscard]] bool operator==(const Specimen&) const = default;
 };
 
-/// How a parameter is drawn.
-enum class DrawnAs {
-  Uniform,    ///< between a and b
-  Normal,     ///< mean a, standard deviation b, redrawn until within the limits
-  LogNormal,  ///< median a, standard deviation b of the natural logarithm, redrawn until within the limits
-};
-inline constexpr std::array<std::string_view, 3> kDrawnAsNames{"uniform", "normal", "lognormal"};
-[[nodiscard]] constexpr Names names_of(DrawnAs) {
-  return kDrawnAsNames;
-}
-
-/// One hidden parameter.
-struct ParameterSpec {
-  std::string_view name;     ///< its key in a specimen file; units at the end
-  double Specimen::*member;  ///< the place it has
-  DrawnAs drawn_as;
-  double a, b;       ///< of the spread
-  double low, high;  ///< what a specimen file may say, both included
-  std::string_view meaning;
-  std::string_view source;    ///< of value and spread; "chosen" where nobody has published one
-  std::string_view shows_in;  ///< the reading through which it shows; "none"
-};
+using ParameterSpec = HiddenParameter<Specimen>;
 /// All of them, in the order of Specimen.
 [[nodiscard]] std::span<const ParameterSpec> parameter_specs();
 

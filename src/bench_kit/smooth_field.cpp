@@ -1,5 +1,4 @@
-#include "virtual_bench/smooth_field.hpp"
-
+#include <incise/bench_kit/smooth_field.hpp>
 #include <incise/core/units.hpp>
 
 #include <cmath>

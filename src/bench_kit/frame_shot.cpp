@@ -1,8 +1,8 @@
-#include "virtual_bench/drawn_line.hpp"
-#include "virtual_bench/tissue_colors.hpp"
+#include "bench_kit/drawn_line.hpp"
+#include "bench_kit/tissue_colors.hpp"
 
+#include <incise/bench_kit/pictures.hpp>
 #include <incise/core/units.hpp>
-#include <incise/virtual_bench/pictures.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,7 @@ constexpr double kMarkMm = 1.0;          // width of the felt pen's line
 constexpr double kGrazingCosine = 0.25;  // flatter than this the sensor sees nothing
 constexpr double kSlowNoiseShare = 0.5;  // of the depth noise that changes slowly over the picture
 constexpr double kColorNoise = 3.0;
+constexpr int kCloudStride = 3;  // every third pixel of the depth picture becomes a point
 
 /// What each pixel of a pinhole sees: perspective depth buffer.
 struct View {
@@ -39,7 +40,7 @@ double depth_on(const std::array<Vec3, 3>& corners, const Vec3& ray) {
   return normal.dot(corners[0]) / normal.dot(ray);
 }
 
-View look(const Pinhole& camera, const std::vector<BoundaryFace>& skin, const Points& seen) {
+View look(const Pinhole& camera, const std::vector<Triangle>& skin, const Points& seen) {
   View view;
   view.depth_mm.assign(place(camera, 0, camera.height), std::numeric_limits<double>::infinity());
   view.triangle.assign(view.depth_mm.size(), -1);
@@ -47,7 +48,7 @@ View look(const Pinhole& camera, const std::vector<BoundaryFace>& skin, const Po
     std::array<Vec3, 3> corners;
     std::array<Vec2, 3> px;
     for (std::size_t c = 0; c < 3; ++c) {
-      corners[c] = seen[skin[f].corners[c].index()];
+      corners[c] = seen[skin[f][c].index()];
       px[c] = pixel_of(camera, corners[c]);
     }
     const auto cross = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
@@ -104,27 +105,26 @@ std::vector<std::uint8_t> holes(const Pinhole& camera, const View& view, double 
 
 }  // namespace
 
-FrameShot shoot_frame(const BenchBody& body, const Mat4& T_camera_specimen) {
-  const Specimen& specimen = body.specimen;
+FrameShot shoot_frame(const SeenTissue& tissue, const FrameNoise& asked, const Mat4& T_camera_specimen) {
   FrameShot shot;
   const Pinhole& camera = shot.camera;
   const Mat3 R = T_camera_specimen.topLeftCorner<3, 3>();
   const Vec3 t = T_camera_specimen.topRightCorner<3, 1>();
   Points seen;
-  for (const Vec3& p : body.stretched.positions) seen.push_back(R * p + t);
-  const View view = look(camera, body.skin, seen);
+  for (const Vec3& p : tissue.vertices) seen.push_back(R * p + t);
+  const View view = look(camera, tissue.triangles, seen);
 
-  Random random(specimen.seed ^ kNoiseStream);
+  Random random(asked.seed ^ kNoiseStream);
   const SmoothField slow(60.0, random);  // waves in pixels
-  const std::vector<std::uint8_t> is_hole = holes(camera, view, specimen.hole_percent, random);
-  const TissueGrain grain(specimen.seed);
+  const std::vector<std::uint8_t> is_hole = holes(camera, view, asked.hole_percent, random);
+  const TissueGrain grain(asked.seed);
   LineDistance mark(camera.width, camera.height, 4.0);
   std::vector<Vec2> line;
   double mark_depth = 0.0;
-  for (const Vec3& p : tumor_edge_at(body, body.stretched.positions).points) {
+  for (const Vec3& p : tissue.tumor_edge.points) {
     const Vec3 q = R * p + t;
     line.push_back(pixel_of(camera, q));
-    mark_depth += q.z() / static_cast<double>(body.tumor_edge.size());
+    mark_depth += q.z() / static_cast<double>(tissue.tumor_edge.points.size());
   }
   mark.add(line, true);
   const double half_px = 0.5 * kMarkMm * camera.focal_px / mark_depth;
@@ -142,7 +142,7 @@ FrameShot shoot_frame(const BenchBody& body, const Mat4& T_camera_specimen) {
       double cosine = std::abs(up.dot(ray)) / ray.norm();
       Paint paint = kTablePaint;
       if (view.triangle[n] >= 0) {
-        const Triangle& corners = body.skin[static_cast<std::size_t>(view.triangle[n])].corners;
+        const Triangle& corners = tissue.triangles[static_cast<std::size_t>(view.triangle[n])];
         const Vec3& a = seen[corners[0].index()];
         const Vec3 normal = (seen[corners[1].index()] - a).cross(seen[corners[2].index()] - a).normalized();
         depth = view.depth_mm[n];
@@ -155,14 +155,29 @@ FrameShot shoot_frame(const BenchBody& body, const Mat4& T_camera_specimen) {
       put(pixel, paint + Paint(random.normal(), random.normal(), random.normal()) * kColorNoise);
       if (view.triangle[n] >= 0) lay(pixel, kGreenInk, std::clamp(half_px + 0.5 - mark.at(u, v), 0.0, 1.0));
       const double noise =
-          specimen.depth_noise_mm * (std::sqrt(1.0 - kSlowNoiseShare * kSlowNoiseShare) * random.normal() +
-                                     kSlowNoiseShare * slow.at(Vec3(u, v, 0.0)));
-      const double measured = (depth * specimen.depth_scale + noise) / shot.depth_unit_mm;
+          asked.depth_noise_mm * (std::sqrt(1.0 - kSlowNoiseShare * kSlowNoiseShare) * random.normal() +
+                                  kSlowNoiseShare * slow.at(Vec3(u, v, 0.0)));
+      const double measured = (depth * asked.depth_scale + noise) / shot.depth_unit_mm;
       if (is_hole[n] != 0 || cosine < kGrazingCosine || !(measured > 0.0 && measured < 65535.0)) continue;
       shot.depth.counts[n] = static_cast<std::uint16_t>(std::lround(measured));
     }
   }
   return shot;
+}
+
+Points cloud_of(const FrameShot& frame) {
+  Points cloud;
+  for (int v = 0; v < frame.camera.height; v += kCloudStride) {
+    for (int u = 0; u < frame.camera.width; u += kCloudStride) {
+      const std::size_t n =
+          static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.camera.width) + static_cast<std::size_t>(u);
+      if (frame.is_specimen[n] == 0 || frame.depth.counts[n] == 0) continue;
+      const double z = frame.depth_unit_mm * frame.depth.counts[n];
+      cloud.emplace_back((u - frame.camera.cx) / frame.camera.focal_px * z,
+                         (v - frame.camera.cy) / frame.camera.focal_px * z, z);
+    }
+  }
+  return cloud;
 }
 
 }  // namespace incise

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "virtual_bench/smooth_field.hpp"
-
+#include <incise/bench_kit/smooth_field.hpp>
 #include <incise/geometry/picture.hpp>
 #include <incise/geometry/types.hpp>
 

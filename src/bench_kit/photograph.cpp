@@ -1,11 +1,11 @@
-#include "virtual_bench/drawn_line.hpp"
-#include "virtual_bench/tissue_colors.hpp"
+#include "bench_kit/drawn_line.hpp"
+#include "bench_kit/tissue_colors.hpp"
 
+#include <incise/bench_kit/pictures.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/morphology.hpp>
 #include <incise/geometry/raster.hpp>
-#include <incise/virtual_bench/pictures.hpp>
 
 #include <fmt/format.h>
 
@@ -21,33 +21,8 @@ constexpr double kWallMm = 1.2;        // from the rim of the kerf to where it i
 constexpr double kCoarsePixels = 4.0;  // distances from the rim are taken on a grid this much coarser
 constexpr int kRays = 720;             // in which an open kerf's inner edge is looked for
 constexpr double kMostJumpMm = 1.2;    // between neighbouring rays along one piece of it
-constexpr double kHandMm = 0.03;       // standard deviation of the hand that draws the red line
 constexpr double kRulerMm = 40.0;
 constexpr double kTickMm = 0.25;  // width of a tick
-
-/// What is seen from above: triangles of what is left, in view coordinates.
-struct Scene {
-  Points in_view;
-  std::vector<Triangle> triangles;
-  std::vector<std::uint8_t> is_skin;
-};
-
-Scene scene_of(const BenchBody& body, const BenchCut& cut, const ViewFrame& view) {
-  Scene scene;
-  for (const Vec3& p : cut.after.positions) scene.in_view.push_back(view.to_view(p));
-  const auto key_of = [](Triangle corners) {
-    std::sort(corners.begin(), corners.end());
-    return corners;
-  };
-  std::vector<Triangle> skin;
-  for (const BoundaryFace& face : body.skin) skin.push_back(key_of(face.corners));
-  std::sort(skin.begin(), skin.end());
-  for (const BoundaryFace& face : boundary_faces(body.tissue->mesh, cut.after.is_live)) {
-    scene.triangles.push_back(face.corners);
-    scene.is_skin.push_back(std::binary_search(skin.begin(), skin.end(), key_of(face.corners)) ? 1 : 0);
-  }
-  return scene;
-}
 
 Points flat(const Contour& contour, const ViewFrame& view) {
   Points points;
@@ -55,10 +30,10 @@ Points flat(const Contour& contour, const ViewFrame& view) {
   return points;
 }
 
-Vec3 weights_at(const Scene& scene, const Triangle& t, const Vec2& p) {
-  const Vec2 a = scene.in_view[t[0].index()].head<2>();
-  const Vec2 b = scene.in_view[t[1].index()].head<2>() - a;
-  const Vec2 c = scene.in_view[t[2].index()].head<2>() - a;
+Vec3 weights_at(const Points& in_view, const Triangle& t, const Vec2& p) {
+  const Vec2 a = in_view[t[0].index()].head<2>();
+  const Vec2 b = in_view[t[1].index()].head<2>() - a;
+  const Vec2 c = in_view[t[2].index()].head<2>() - a;
   const double area = b.x() * c.y() - b.y() * c.x();
   if (std::abs(area) < 1e-12) return {1.0, 0.0, 0.0};
   const Vec2 d = p - a;
@@ -97,32 +72,28 @@ std::vector<std::vector<Vec2>> open_inner_edge(const Raster& kerf, const Vec2& m
 
 class Painter {
  public:
-  Painter(const BenchBody& body, const BenchCut& cut, const PhotographSettings& settings)
-      : body_(body),
-        cut_(cut),
-        settings_(settings),
-        view_(view_along(body.approach)),
-        scene_(scene_of(body, cut, view_)),
-        grain_(body.specimen.seed) {
-    Box3 box = bounding_box(flat(cut.tumor_edge, view_));
-    if (cut.inner_edge)
-      box.extend(bounding_box(flat(*cut.inner_edge, view_)));
+  Painter(const SeenTissue& tissue, const Marked& marked, const PhotographSettings& settings)
+      : tissue_(tissue), marked_(marked), settings_(settings), view_(view_along(marked.approach)), grain_(marked.seed) {
+    for (const Vec3& p : tissue.vertices) in_view_.push_back(view_.to_view(p));
+    Box3 box = bounding_box(flat(tissue.tumor_edge, view_));
+    if (marked.inner_edge)
+      box.extend(bounding_box(flat(*marked.inner_edge, view_)));
     else
       box = Box3(box.min() - Vec3::Constant(6.0), box.max() + Vec3::Constant(6.0));
     grid_ = grid_around(box.min().head<2>(), box.max().head<2>(), settings.mm_per_pixel, settings.border_mm);
-    seen_ = depth_buffer(grid_, scene_.in_view, scene_.triangles);
+    seen_ = depth_buffer(grid_, in_view_, tissue_.triangles);
     picture_ = {grid_.width, grid_.height, std::vector<std::uint8_t>(3 * grid_.pixel_count())};
   }
 
   ColorPicture paint() {
-    tissue();
+    lay_tissue();
     cooked_rim();
-    line({flat2(cut_.tumor_edge)}, true, settings_.green_line_mm, kGreenInk, 0.0);
-    if (cut_.inner_edge) {
-      line({flat2(*cut_.inner_edge)}, true, settings_.line_mm, kRedInk, kHandMm);
+    line({flat2(tissue_.tumor_edge)}, true, settings_.green_line_mm, kGreenInk, 0.0);
+    if (marked_.inner_edge) {
+      line({flat2(*marked_.inner_edge)}, true, settings_.line_mm, kRedInk, marked_.hand_mm);
     } else {
-      const Vec3 middle = view_.to_view(curve_centroid(cut_.tumor_edge));
-      line(open_inner_edge(kerf(grid_), middle.head<2>()), false, settings_.line_mm, kRedInk, kHandMm);
+      const Vec3 middle = view_.to_view(curve_centroid(tissue_.tumor_edge));
+      line(open_inner_edge(kerf(grid_), middle.head<2>()), false, settings_.line_mm, kRedInk, marked_.hand_mm);
     }
     ruler();
     return std::move(picture_);
@@ -154,14 +125,14 @@ class Painter {
         const int v = static_cast<int>(std::lround(index.y()));
         if (!grid_.contains(u, v)) continue;
         const std::int32_t triangle = seen_.triangles[grid_.offset(u, v)];
-        raster.at(i, j) = triangle >= 0 && scene_.is_skin[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
+        raster.at(i, j) = triangle >= 0 && tissue_.is_skin[static_cast<std::size_t>(triangle)] == 0 ? 1 : 0;
       }
     }
     return raster;
   }
 
-  void tissue() {
-    Random random(body_.specimen.seed ^ 0x85ebca6bULL);
+  void lay_tissue() {
+    Random random(marked_.seed ^ 0x85ebca6bULL);
     const ScalarRaster within = distance_to(kerf(coarse_grid()), 0);
     for (int j = 0; j < grid_.height; ++j) {
       for (int i = 0; i < grid_.width; ++i) {
@@ -171,15 +142,14 @@ class Painter {
           put(pixel(i, j), kTablePaint + 2.5 * noise);
           continue;
         }
-        const Triangle& t = scene_.triangles[static_cast<std::size_t>(n)];
-        const Vec3 weights = weights_at(scene_, t, grid_.centre(i, j));
+        const Triangle& t = tissue_.triangles[static_cast<std::size_t>(n)];
+        const Vec3 weights = weights_at(in_view_, t, grid_.centre(i, j));
         Vec3 rest = Vec3::Zero();
-        for (std::size_t c = 0; c < 3; ++c)
-          rest += weights[static_cast<Eigen::Index>(c)] * body_.tissue->mesh.vertices[t[c].index()];
-        const Vec3& a = scene_.in_view[t[0].index()];
-        const Vec3 normal = (scene_.in_view[t[1].index()] - a).cross(scene_.in_view[t[2].index()] - a).normalized();
+        for (std::size_t c = 0; c < 3; ++c) rest += weights[static_cast<Eigen::Index>(c)] * tissue_.rest[t[c].index()];
+        const Vec3& a = in_view_[t[0].index()];
+        const Vec3 normal = (in_view_[t[1].index()] - a).cross(in_view_[t[2].index()] - a).normalized();
         const double light = 0.6 + 0.4 * std::abs(normal.z());
-        if (scene_.is_skin[static_cast<std::size_t>(n)] != 0) {
+        if (tissue_.is_skin[static_cast<std::size_t>(n)] != 0) {
           put(pixel(i, j), kTissuePaint * (grain_.at(rest) * light) + 2.5 * noise);
           continue;
         }
@@ -194,13 +164,13 @@ class Painter {
 
   /// Tissue beside the kerf that was heated past denaturation, where that is farther than the eye takes for granted.
   void cooked_rim() {
-    if (cut_.thermal_width_mm <= kVisibleHeatMm) return;
+    if (marked_.thermal_width_mm <= kVisibleHeatMm) return;
     const ScalarRaster away = distance_to(kerf(coarse_grid()), 1);
-    const double reach = cut_.thermal_width_mm - kNeedleMm;
+    const double reach = marked_.thermal_width_mm - kNeedleMm;
     for (int j = 0; j < grid_.height; ++j) {
       for (int i = 0; i < grid_.width; ++i) {
         const std::int32_t n = seen_.triangles[grid_.offset(i, j)];
-        if (n < 0 || scene_.is_skin[static_cast<std::size_t>(n)] == 0) continue;
+        if (n < 0 || tissue_.is_skin[static_cast<std::size_t>(n)] == 0) continue;
         const double distance = sample(away, grid_.centre(i, j));
         if (distance < reach) lay(pixel(i, j), kCookedPaint, 0.85 * (1.0 - 0.5 * distance / reach));
       }
@@ -209,7 +179,7 @@ class Painter {
 
   void line(const std::vector<std::vector<Vec2>>& pieces, bool is_closed, double width_mm, const Paint& ink,
             double hand_mm) {
-    Random random(body_.specimen.seed ^ 0xc2b2ae3dULL);
+    Random random(marked_.seed ^ 0xc2b2ae3dULL);
     const SmoothField along_x(4.0, random);
     const SmoothField along_y(4.0, random);
     const double half_px = 0.5 * width_mm / grid_.pixel_mm;
@@ -248,11 +218,11 @@ class Painter {
     }
   }
 
-  const BenchBody& body_;
-  const BenchCut& cut_;
+  const SeenTissue& tissue_;
+  const Marked& marked_;
   const PhotographSettings& settings_;
   ViewFrame view_;
-  Scene scene_;
+  Points in_view_;
   TissueGrain grain_;
   RasterGrid grid_;
   DepthBuffer seen_;
@@ -261,12 +231,11 @@ class Painter {
 
 }  // namespace
 
-ColorPicture photograph(const BenchBody& body, const BenchCut& cut, const PhotographSettings& settings) {
+ColorPicture photograph(const SeenTissue& tissue, const Marked& marked, const PhotographSettings& settings) {
   INCISE_REQUIRE(settings.mm_per_pixel > 0.0 && settings.border_mm >= 6.0 && settings.line_mm > 0.0 &&
                      settings.green_line_mm > 0.0,
                  "expected a scale and widths above 0 and a border of at least 6 mm");
-  INCISE_REQUIRE(cut.after.positions.size() == body.tissue->mesh.vertices.size(), "expected a cut of this body");
-  return Painter(body, cut, settings).paint();
+  return Painter(tissue, marked, settings).paint();
 }
 
 }  // namespace incise

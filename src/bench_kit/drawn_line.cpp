@@ -1,4 +1,4 @@
-#include "virtual_bench/drawn_line.hpp"
+#include "bench_kit/drawn_line.hpp"
 
 #include <algorithm>
 #include <cmath>
