@@ -2,8 +2,12 @@
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/laboratory/acceptance.hpp>
 #include <incise/laboratory/bench_steps.hpp>
 
+#include <fmt/format.h>
+
+#include <functional>
 #include <memory>
 
 namespace incise::cli {
@@ -37,6 +41,58 @@ int floor_of(const CommonOptions& options, laboratory::KnownPhysicsRequest reque
   return run_step(options, [&](const auto& context) { return laboratory::cut_by_known_physics(request, context); });
 }
 
+int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
+  const std::filesystem::path root = options.required_output("acceptance");
+  std::filesystem::create_directories(root);
+  nlohmann::ordered_json result;
+  try {
+    Console console(options.level());
+    Workers workers(options.threads);
+    result = accept_bench(settings, root, options.context(), workers, console);
+  } catch (const Cancelled& error) {
+    throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
+  }
+  if (options.json) {
+    print_result(options, result);
+    return kDone;
+  }
+  fmt::print("VIRTUAL specimens, mean |error| of the photographs, mm\n{:>6} {:>10} {:>8} {:>12}\n", "seed", "planned",
+             "paper's", "mm/s");
+  const auto shown = [](const nlohmann::ordered_json& value) {
+    return value.is_number() ? fmt::format("{:.2f}", value.get<double>()) : std::string("-");
+  };
+  for (const auto& row : result.at("rows")) {
+    const auto& asked = row.at("prescription");
+    fmt::print("{:>6} {:>10} {:>8} {:>12}\n", row.at("seed").get<std::uint64_t>(), shown(row.at("planned_mm")),
+               shown(row.at("paper_pass_mm")), asked.is_object() ? shown(asked.at("speed_mm_s")) : "-");
+  }
+  nlohmann::ordered_json summary = result.at("summary");
+  print_result(options, summary);
+  return kDone;
+}
+
+std::vector<std::string> factor_names() {
+  std::vector<std::string> names(second_bench::kFactorNames.begin(), second_bench::kFactorNames.end());
+  names.emplace_back("none");
+  return names;
+}
+
+void add_factors(CLI::App& verb, const std::function<void(second_bench::Factors)>& take) {
+  verb.add_option_function<std::vector<std::string>>(
+          "--factors",
+          [take](const std::vector<std::string>& given) {
+            second_bench::Factors factors;
+            for (const std::string& name : given)
+              if (name != "none") factors.insert(*value_of<second_bench::Factor>(name));
+            take(std::move(factors));
+          },
+          "Of laboratory 2: what varies beside placement, stretch and stiffness; the rest has the defaults of `incise "
+          "schema "
+          "bench2`. By default everything; none: nothing more")
+      ->delimiter(',')
+      ->check(CLI::IsMember(factor_names()));
+}
+
 }  // namespace
 
 void add_bench(Application& application) {
@@ -46,13 +102,36 @@ void add_bench(Application& application) {
   auto made = std::make_shared<laboratory::MakeSpecimenRequest>();
   CLI::App* verb = application.add_verb_to(
       *bench, "make", "Make the readings that a laboratory would have: CT, cloud, RGB-D frame, pull force",
-      "incise bench make --seed 7 -o specimen7 --truth hidden7",
+      "incise bench make --bench 2 --seed 7 -o specimen7 --truth hidden7",
       [made](const CommonOptions& options) { return make(options, *made); });
   verb->add_option("specimen", made->specimen,
-                   "Specimen file (incise schema bench); without it one is drawn from the seed");
+                   "Specimen file (incise schema bench, or bench2); without it one is drawn from the seed");
+  verb->add_option("--bench", made->bench,
+                   "1, or 2: the laboratory that varies far more. A specimen file says it itself")
+      ->check(whole_between("--bench", 1, 2));
+  add_factors(*verb, [made](second_bench::Factors factors) { made->factors = std::move(factors); });
+  verb->add_option("--series", made->series,
+                   "Of laboratory 2: specimens of one series share the hand-eye error; by default the seed")
+      ->check(CLI::NonNegativeNumber);
   verb->add_option("--truth", made->truth,
                    "Folder for the hidden truth; it holds the specimen.json that `bench cut` needs");
   verb->add_flag("--elasticity", made->has_elasticity, "Also a noisy elasticity map");
+
+  auto accepted = std::make_shared<AcceptanceSettings>();
+  verb = application.add_verb_to(
+      *bench, "accept",
+      "Cut specimens of laboratory 2 as planned and along the paper's correction, to judge the laboratory without the "
+      "planner that it will judge. Run it again to continue where it stopped",
+      "incise bench accept --seed 1 -o acceptance",
+      [accepted](const CommonOptions& options) { return accept(options, *accepted); });
+  verb->add_option("--specimens", accepted->specimens, "1 to 200; their seeds count up from --seed")
+      ->check(whole_between("--specimens", 1, 200));
+  add_factors(*verb, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
+  verb->add_option("--speed-mm-s", accepted->speed_mm_s, "Of every cut; by default as prescribed")
+      ->check(CLI::Range(1.0, 15.0));
+  verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
+      ->check(CLI::Range(1.0, 120.0));
+  verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut as planned alone");
 
   auto run = std::make_shared<laboratory::CutSpecimenRequest>();
   verb = application.add_verb_to(*bench, "cut", "Cut a specimen with a robot program and photograph it",

@@ -14,6 +14,8 @@ namespace {
 
 std::string text_of(const std::string& what, bool has_defaults) {
   if (what == "bench") return has_defaults ? json_text(specimen_json(Specimen{})) : bench_schema_json();
+  if (what == "bench2")
+    return has_defaults ? json_text(specimen_json(second_bench::Specimen{})) : second_bench_schema_json();
   if (what == "path") return path_schema_json();
   return has_defaults ? case_defaults_yaml() : case_schema_json();
 }
@@ -39,7 +41,7 @@ void add_schema(Application& application) {
         }
         return kDone;
       });
-  verb->add_option("what", a.what, "Which file")->check(CLI::IsMember({"bench", "case", "path"}))->required();
+  verb->add_option("what", a.what, "Which file")->check(CLI::IsMember({"bench", "bench2", "case", "path"}))->required();
   verb->add_flag("--defaults", a.defaults, "A file with every default instead of the schema");
 }
 

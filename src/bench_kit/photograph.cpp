@@ -21,6 +21,7 @@ constexpr double kWallMm = 1.2;        // from the rim of the kerf to where it i
 constexpr double kCoarsePixels = 4.0;  // distances from the rim are taken on a grid this much coarser
 constexpr int kRays = 720;             // in which an open kerf's inner edge is looked for
 constexpr double kMostJumpMm = 1.2;    // between neighbouring rays along one piece of it
+constexpr double kCharMm = 0.5;        // beside the rim
 constexpr double kRulerMm = 40.0;
 constexpr double kTickMm = 0.25;  // width of a tick
 
@@ -88,6 +89,7 @@ class Painter {
   ColorPicture paint() {
     lay_tissue();
     cooked_rim();
+    if (marked_.stains > 0.0) stain();
     line({flat2(tissue_.tumor_edge)}, true, settings_.green_line_mm, kGreenInk, 0.0);
     if (marked_.inner_edge) {
       line({flat2(*marked_.inner_edge)}, true, settings_.line_mm, kRedInk, marked_.hand_mm);
@@ -177,11 +179,32 @@ class Painter {
     }
   }
 
+  /// Char along the kerf's rim, blood that has run out of it, and lamps that tissue mirrors.
+  void stain() {
+    Random random(marked_.seed ^ 0x2c1b3c6dULL);
+    const SmoothField blood(5.0, random), glare(2.2, random);
+    const ScalarRaster away = distance_to(kerf(coarse_grid()), 1);
+    for (int j = 0; j < grid_.height; ++j) {
+      for (int i = 0; i < grid_.width; ++i) {
+        const std::int32_t n = seen_.triangles[grid_.offset(i, j)];
+        if (n < 0 || tissue_.is_skin[static_cast<std::size_t>(n)] == 0) continue;
+        const Vec2 at = grid_.centre(i, j);
+        const Vec3 place(at.x(), at.y(), 0.0);
+        const double distance = sample(away, at);
+        if (!std::isfinite(distance)) continue;  // no kerf, no stains
+        lay(pixel(i, j), kCharPaint, marked_.stains * std::clamp(1.0 - distance / kCharMm, 0.0, 1.0));
+        const double run = std::clamp(blood.at(place) - 0.6 - 0.35 * distance, 0.0, 1.0);
+        lay(pixel(i, j), kBloodPaint, 0.8 * marked_.stains * run);
+        lay(pixel(i, j), kGlarePaint, marked_.stains * std::clamp(4.0 * (glare.at(place) - 2.2), 0.0, 1.0));
+      }
+    }
+  }
+
   void line(const std::vector<std::vector<Vec2>>& pieces, bool is_closed, double width_mm, const Paint& ink,
             double hand_mm) {
     Random random(marked_.seed ^ 0xc2b2ae3dULL);
-    const SmoothField along_x(4.0, random);
-    const SmoothField along_y(4.0, random);
+    const SmoothField along_x(marked_.hand_wave_mm, random);
+    const SmoothField along_y(marked_.hand_wave_mm, random);
     const double half_px = 0.5 * width_mm / grid_.pixel_mm;
     LineDistance distance(grid_.width, grid_.height, half_px + 2.0);
     for (const std::vector<Vec2>& piece : pieces) {

@@ -17,6 +17,9 @@ inline const Paint kTissuePaint(196.0, 138.0, 130.0);
 inline const Paint kWallPaint(70.0, 40.0, 38.0);  // cut muscle, in the shadow of the kerf
 inline const Paint kDeepPaint(46.0, 18.0, 18.0);  // the bottom of the kerf
 inline const Paint kCookedPaint(226.0, 212.0, 190.0);
+inline const Paint kCharPaint(38.0, 30.0, 28.0);
+inline const Paint kBloodPaint(104.0, 52.0, 50.0);
+inline const Paint kGlarePaint(250.0, 246.0, 240.0);
 inline const Paint kRedInk(208.0, 22.0, 30.0);
 inline const Paint kGreenInk(26.0, 158.0, 62.0);
 inline const Paint kTablePaint(70.0, 96.0, 122.0);  // a blue drape

@@ -24,8 +24,7 @@ constexpr double kBoardBeyondMm = 6.0;  // the board is so much larger than the 
 constexpr int kColumns = 5;             // sub-columns along each of i and j in a voxel
 constexpr std::size_t kTextureWaves = 8;
 
-Box3 board_of(const Phantom& phantom, const PhantomSettings& settings) {
-  const Box3& body = phantom.bounds_mm;
+Box3 board_of(const Box3& body, const PhantomSettings& settings) {
   return {Vec3(body.min().x() - kBoardBeyondMm, body.min().y() - kBoardBeyondMm, -settings.holder_thickness_mm),
           Vec3(body.max().x() + kBoardBeyondMm, body.max().y() + kBoardBeyondMm, 0.0)};
 }
@@ -171,6 +170,29 @@ CtVolume scan(const GrayVolume& ideal, const PhantomSettings& settings, Random& 
   return ct;
 }
 
+void require_valid(const PhantomSettings& settings) {
+  const std::vector<Problem> problems = validate(settings);
+  if (!problems.empty())
+    throw CaseError("phantom", "settings",
+                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(sentences(problems), "; ")),
+                    "settings in their ranges");
+}
+
+CtVolume scan_with(const TongueShape& shape, const PhantomSettings& settings, Random& random, Monitor& monitor) {
+  const Texture texture = draw_texture(settings.texture_hu, random);
+  const Box3 body = bounds_mm(shape);
+  const Box3 board = board_of(body, settings);
+  const VolumeGrid grid = scan_grid(board, body, settings, random);
+  GrayVolume ideal = mix(tissue_share(shape, grid, monitor), board, texture, settings);
+  monitor.progress(kPhantomStage, 0.7);
+  throw_if_cancelled(monitor, kPhantomStage);
+  Workers alone(1);
+  ideal = gaussian(std::move(ideal), settings.blur_mm, alone);
+  CtVolume ct = scan(ideal, settings, random);
+  monitor.progress(kPhantomStage, 1.0);
+  return ct;
+}
+
 Vec3 middle_of_body(const TongueShape& shape) {
   const double x = midline_x_mm(shape, 0.0);
   const std::optional<TissueSpan> span = span_at(shape, x, 0.0);
@@ -194,11 +216,7 @@ std::vector<Problem> validate(const PhantomSettings& settings) {
 }
 
 Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor) {
-  const std::vector<Problem> problems = validate(settings);
-  if (!problems.empty())
-    throw CaseError("phantom", "settings",
-                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(sentences(problems), "; ")),
-                    "settings in their ranges");
+  require_valid(settings);
   Random random(settings.seed);
   Phantom phantom;
   phantom.shape = draw_tongue_shape(settings.shape, random);
@@ -208,18 +226,14 @@ Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor) {
   phantom.posterior_end_mm = 0.5 * phantom.shape.length_mm;
   phantom.seed_mm = middle_of_body(phantom.shape);
   draw_tumor(settings, random, phantom);
-
-  const Texture texture = draw_texture(settings.texture_hu, random);
-  const Box3 board = board_of(phantom, settings);
-  const VolumeGrid grid = scan_grid(board, phantom.bounds_mm, settings, random);
-  GrayVolume ideal = mix(tissue_share(phantom.shape, grid, monitor), board, texture, settings);
-  monitor.progress(kPhantomStage, 0.7);
-  throw_if_cancelled(monitor, kPhantomStage);
-  Workers alone(1);
-  ideal = gaussian(std::move(ideal), settings.blur_mm, alone);
-  phantom.ct = scan(ideal, settings, random);
-  monitor.progress(kPhantomStage, 1.0);
+  phantom.ct = scan_with(phantom.shape, settings, random, monitor);
   return phantom;
+}
+
+CtVolume scan_shape(const TongueShape& shape, const PhantomSettings& settings, Monitor& monitor) {
+  require_valid(settings);
+  Random random(settings.seed);
+  return scan_with(shape, settings, random, monitor);
 }
 
 }  // namespace incise

@@ -19,7 +19,9 @@ namespace incise {
 namespace {
 
 using Json = nlohmann::ordered_json;
-constexpr const char* kSpecimenSchema = "incise.specimen/1";
+constexpr const char* kFirstSchema = "incise.specimen/1";
+constexpr const char* kSecondSchema = "incise.specimen/2";
+constexpr const char* kTruth = "The truth about a virtual specimen, for tests: nothing of this may reach a planner.";
 constexpr const char* kVirtual = "Virtual: computed by incise's bench, no real tissue.";
 
 Json matrix(const Mat4& T) {
@@ -28,7 +30,8 @@ Json matrix(const Mat4& T) {
   return rows;
 }
 
-std::string spread_text(const ParameterSpec& spec) {
+template <class S>
+std::string spread_text(const HiddenParameter<S>& spec) {
   switch (spec.drawn_as) {
     case DrawnAs::Uniform:
       return fmt::format("uniform in [{}, {}]", spec.a, spec.b);
@@ -55,76 +58,141 @@ double number_in(const Json& object, const std::string& key, const std::filesyst
   return found->get<double>();
 }
 
-}  // namespace
+/// What a bench's specimen file says beside its parameters.
+struct WholeNumber {
+  const char* key;
+  const char* meaning;
+};
+constexpr WholeNumber kSeed{
+    "seed", "Of the shape, of the fields inside, of all noise and of every parameter that is not given"};
+constexpr WholeNumber kSeries{"series", "Of what specimens of one series share: the hand-eye error"};
 
-std::string bench_schema_json() {
+template <class Parameters>
+std::string schema_text(const char* name, const std::vector<WholeNumber>& numbers, const Parameters& parameters,
+                        const std::vector<double>& defaults) {
   Json schema;
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
-  schema["title"] = kSpecimenSchema;
+  schema["title"] = name;
   schema["description"] =
       "A virtual specimen: all that is hidden from the planner. Parameters that are not given are drawn from the "
       "seed.";
   schema["type"] = "object";
   Json& properties = schema["properties"];
-  properties["schema"] = {{"const", kSpecimenSchema}};
-  properties["seed"] = {
-      {"type", "integer"},
-      {"minimum", 0},
-      {"description", "Of the shape, of the fields inside, of all noise and of every parameter that is not given"}};
-  const Specimen defaults;
-  for (const ParameterSpec& spec : parameter_specs()) {
-    properties[std::string(spec.name)] = {{"type", "number"},
-                                          {"minimum", spec.low},
-                                          {"maximum", spec.high},
-                                          {"default", defaults.*spec.member},
-                                          {"description", spec.meaning},
-                                          {"x-spread", spread_text(spec)},
-                                          {"x-source", spec.source},
-                                          {"x-shows-in", spec.shows_in}};
+  properties["schema"] = {{"const", name}};
+  schema["required"] = {"schema"};
+  for (const WholeNumber& number : numbers) {
+    properties[number.key] = {{"type", "integer"}, {"minimum", 0}, {"description", number.meaning}};
+    schema["required"].push_back(number.key);
   }
-  schema["required"] = {"schema", "seed"};
+  for (std::size_t n = 0; n < parameters.size(); ++n) {
+    const auto& spec = parameters[n];
+    properties[std::string(spec.name)] = {
+        {"type", "number"},        {"minimum", spec.low},         {"maximum", spec.high},
+        {"default", defaults[n]},  {"description", spec.meaning}, {"x-spread", spread_text(spec)},
+        {"x-source", spec.source}, {"x-shows-in", spec.shows_in}};
+    if constexpr (requires { spec.factor; })
+      properties[std::string(spec.name)]["x-factor"] = spec.factor ? Json(to_string(*spec.factor)) : Json(nullptr);
+  }
   schema["additionalProperties"] = false;
   return json_text(schema);
 }
 
+template <class Specimen, class Parameters>
+std::vector<double> values_of(const Specimen& specimen, const Parameters& parameters) {
+  std::vector<double> values;
+  for (const auto& spec : parameters) values.push_back(specimen.*spec.member);
+  return values;
+}
+
+std::uint64_t whole_number_in(const Json& document, const char* key, const std::filesystem::path& file) {
+  const auto found = document.find(key);
+  if (found == document.end() || !found->is_number_unsigned())
+    throw DataError(file, key, found == document.end() ? "nothing" : found->dump(), "a whole number, 0 or above");
+  return found->get<std::uint64_t>();
+}
+
+/// Takes over the parameters that a file gives.
+template <class Specimen, class Parameters>
+void read_parameters(const Json& document, std::vector<std::string> names, const Parameters& parameters,
+                     const std::filesystem::path& file, Specimen& specimen) {
+  const std::size_t known = names.size();
+  for (const auto& spec : parameters) names.emplace_back(spec.name);
+  for (const auto& [key, value] : document.items()) {
+    const auto found = std::find(names.begin(), names.end(), key);
+    if (found == names.end())
+      throw DataError(file, key, "an unknown key", "a parameter of a specimen",
+                      fmt::format("Did you mean '{}'? `incise schema {}` lists all.", nearest_name(key, names),
+                                  known > 2 ? "bench2" : "bench"));
+    const auto place = static_cast<std::size_t>(found - names.begin());
+    if (place < known) continue;
+    const auto& spec = parameters[place - known];
+    const double number = number_in(document, key, file);
+    if (number < spec.low || number > spec.high)
+      throw DataError(file, key, fmt::format("{}", number), fmt::format("a number in [{}, {}]", spec.low, spec.high));
+    specimen.*spec.member = number;
+  }
+}
+
+}  // namespace
+
+std::string bench_schema_json() {
+  return schema_text(kFirstSchema, {kSeed}, parameter_specs(), values_of(Specimen{}, parameter_specs()));
+}
+
+std::string second_bench_schema_json() {
+  return schema_text(kSecondSchema, {kSeed, kSeries}, second_bench::parameters(),
+                     values_of(second_bench::Specimen{}, second_bench::parameters()));
+}
+
 Json specimen_json(const Specimen& specimen) {
   Json json;
-  json["schema"] = kSpecimenSchema;
+  json["schema"] = kFirstSchema;
   json["seed"] = specimen.seed;
   for (const ParameterSpec& spec : parameter_specs()) json[std::string(spec.name)] = specimen.*spec.member;
   return json;
 }
 
+Json specimen_json(const second_bench::Specimen& specimen) {
+  Json json;
+  json["schema"] = kSecondSchema;
+  json["seed"] = specimen.seed;
+  json["series"] = specimen.series;
+  for (const auto& spec : second_bench::parameters()) json[std::string(spec.name)] = specimen.*spec.member;
+  return json;
+}
+
 Specimen read_specimen(const std::filesystem::path& file) {
   const Json document = read_json(file);
-  require_schema(document, kSpecimenSchema, file);
-  const auto seed = document.find("seed");
-  if (seed == document.end() || !seed->is_number_unsigned())
-    throw DataError(file, "seed", seed == document.end() ? "nothing" : seed->dump(), "a whole number, 0 or above");
-  Specimen specimen = draw_specimen(seed->get<std::uint64_t>());
-  std::vector<std::string> names{"schema", "seed"};
-  for (const ParameterSpec& spec : parameter_specs()) names.emplace_back(spec.name);
-  for (const auto& [key, value] : document.items()) {
-    if (key == "schema" || key == "seed") continue;
-    const auto specs = parameter_specs();
-    const auto spec =
-        std::find_if(specs.begin(), specs.end(), [&key = key](const ParameterSpec& s) { return s.name == key; });
-    if (spec == specs.end())
-      throw DataError(file, key, "an unknown key", "a parameter of a specimen",
-                      fmt::format("Did you mean '{}'? `incise schema bench` lists all.", nearest_name(key, names)));
-    const double number = number_in(document, key, file);
-    if (number < spec->low || number > spec->high)
-      throw DataError(file, key, fmt::format("{}", number), fmt::format("a number in [{}, {}]", spec->low, spec->high));
-    specimen.*spec->member = number;
-  }
+  require_schema(document, kFirstSchema, file);
+  Specimen specimen = draw_specimen(whole_number_in(document, kSeed.key, file));
+  read_parameters(document, {"schema", kSeed.key}, parameter_specs(), file, specimen);
   return specimen;
+}
+
+second_bench::Specimen read_second_specimen(const std::filesystem::path& file) {
+  const Json document = read_json(file);
+  require_schema(document, kSecondSchema, file);
+  second_bench::Specimen specimen =
+      second_bench::draw_specimen(whole_number_in(document, kSeed.key, file),
+                                  whole_number_in(document, kSeries.key, file), second_bench::all_factors());
+  read_parameters(document, {"schema", kSeed.key, kSeries.key}, second_bench::parameters(), file, specimen);
+  return specimen;
+}
+
+int bench_of(const std::filesystem::path& file) {
+  const Json document = read_json(file);
+  if (document.is_object() && document.value("schema", Json()) == kSecondSchema) return 2;
+  if (document.is_object() && document.value("schema", Json()) == kFirstSchema) return 1;
+  throw DataError(file, "schema", document.is_object() ? document.value("schema", Json()).dump() : document.type_name(),
+                  fmt::format("\"{}\" or \"{}\"", kFirstSchema, kSecondSchema));
 }
 
 void write_picture(const std::filesystem::path& file, const ColorPicture& picture) {
   write_atomically(file, [&picture](std::ostream& out) { out << encode_png(picture); });
 }
 
-void write_readings(const std::filesystem::path& folder, const Readings& readings, const std::string& name) {
+void write_readings(const std::filesystem::path& folder, const Readings& readings, const std::string& name,
+                    const nlohmann::ordered_json& prescription) {
   DicomTags tags;
   tags.patient_id = name;
   tags.series_description = "CT of a virtual specimen";
@@ -155,12 +223,13 @@ void write_readings(const std::filesystem::path& folder, const Readings& reading
   json["camera"] = "camera.json";
   json["stretch_mm"] = 20.0;
   json["stretch_force_n"] = readings.stretch_force_n;
-  json["stretch_force_noise_percent"] = 5.0;
+  if (prescription.is_null()) json["stretch_force_noise_percent"] = 5.0;  // the second laboratory does not know its own
   if (readings.elasticity_kpa) {
     write_gray(folder / "elasticity.nrrd", *readings.elasticity_kpa);
     json["elasticity_kpa"] = "elasticity.nrrd";
     json["elasticity_noise_percent"] = 20.0;
   }
+  if (!prescription.is_null()) json["prescription"] = prescription;
   write_json(folder / "readings.json", json);
 }
 
@@ -174,10 +243,22 @@ void write_truth(const std::filesystem::path& folder, const BenchBody& body) {
   stretched.cell_data["toughness_kpa"] = {1, body.toughness_kpa};
   write_vtu(folder / "stretched.vtu", stretched);
   Json json;
-  json["note"] = "The truth about a virtual specimen, for tests: nothing of this may reach a planner.";
+  json["note"] = kTruth;
   json["stretch_force_n"] = body.stretch_force_n;
   json["T_robot_specimen"] = matrix(T_robot_specimen(placement_of(body.specimen)));
   json["T_robot_camera"] = matrix(T_robot_camera(placement_of(body.specimen)));
+  write_json(folder / "truth.json", json);
+}
+
+void write_truth(const std::filesystem::path& folder, const second_bench::Body& body) {
+  write_json(folder / "specimen.json", specimen_json(body.specimen));
+  write_contour_csv(folder / "tumor_edge_rest.csv", body.tumor_edge_rest);
+  write_contour_csv(folder / "tumor_edge_stretched.csv", second_bench::tumor_edge_of(*body.state));
+  Json json;
+  json["note"] = kTruth;
+  json["stretch_force_n"] = body.stretch_force_n;
+  json["T_robot_specimen"] = matrix(T_robot_specimen(second_bench::placement_of(body.specimen)));
+  json["T_robot_camera"] = matrix(T_robot_camera(second_bench::placement_of(body.specimen)));
   write_json(folder / "truth.json", json);
 }
 

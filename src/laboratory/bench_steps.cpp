@@ -1,3 +1,5 @@
+#include "laboratory/virtual_specimen.hpp"
+
 #include <incise/bench_studies/planned_bench_cut.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -5,7 +7,6 @@
 #include <incise/io/json_file.hpp>
 #include <incise/laboratory/bench_files.hpp>
 #include <incise/laboratory/bench_steps.hpp>
-#include <incise/virtual_bench/course.hpp>
 
 #include <fmt/format.h>
 
@@ -24,51 +25,20 @@ void write_run(const std::filesystem::path& folder, const steps::StepContext& co
   write_manifest(folder, manifest);
 }
 
-/// A specimen that cannot be held and stretched is a result. The monitor gets a warning; nothing is read or cut.
-bool is_held(const BenchBody& body, Monitor& monitor) {
-  if (body.inverted_tets > 0)
-    monitor.message(Severity::Detail,
-                    fmt::format("{} tets of the stretched specimen are turned inside out", body.inverted_tets));
-  if (body.outcome != Outcome::NotConverged) return true;
-  monitor.message(Severity::Warning, fmt::format("the specimen could not be stretched: {}, residual {:.2g}",
-                                                 to_string(body.outcome), body.equilibrium_residual));
-  return false;
-}
-
-nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut) {
-  nlohmann::ordered_json json;
-  json["note"] = "The truth about a virtual cut, for tests: nothing of this may reach a planner.";
-  json["outcome"] = to_string(cut.outcome);
-  if (cut.inner_edge) {
-    double mean = 0.0;
-    const std::vector<double> errors = true_errors_mm(body, cut, kInnerEdgeTargetMm);
-    for (const double e : errors) mean += std::abs(e) / static_cast<double>(errors.size());
-    json["mean_abs_error_mm"] = mean;
-    json["signed_errors_mm"] = errors;
-  }
-  json["bulge_mm"] = cut.bulge_mm;
-  json["thermal_width_mm"] = cut.thermal_width_mm;
-  json["mean_drag_force_mn"] = cut.mean_force_mn;
-  json["removed_tets"] = cut.removed_tets;
-  return json;
-}
-
 }  // namespace
 
 steps::StepResult make_specimen(const MakeSpecimenRequest& request, const steps::StepContext& context) {
-  const Specimen specimen =
-      request.specimen.empty() ? draw_specimen(context.run.seed) : read_specimen(request.specimen);
   for (const auto& folder : {request.output, request.truth}) steps::make_parent(folder);
-  const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
-  if (!is_held(body, context.monitor)) return {nullptr, false};
-  const Readings readings = take_readings(body, request.has_elasticity, context.monitor);
-  const std::string name = "VIRTUAL-" + sha256_of_text(specimen_json(specimen).dump()).substr(0, 8);
+  const std::unique_ptr<const VirtualSpecimen> specimen = specimen_of(request, context);
+  if (!specimen->is_held(context.monitor)) return {nullptr, false};
+  const Readings readings = specimen->readings(request.has_elasticity, context.monitor);
+  const std::string name = "VIRTUAL-" + sha256_of_text(specimen->file().dump()).substr(0, 8);
   AtomicFolder folder(request.output);
-  write_readings(folder.path(), readings, name);
+  write_readings(folder.path(), readings, name, specimen->prescription());
   write_run(folder.path(), context, "incise bench make", {});
   if (!request.truth.empty()) {
     AtomicFolder truth(request.truth);
-    write_truth(truth.path(), body);
+    specimen->write_truth(truth.path());
     write_run(truth.path(), context, context.run.command, {});
     truth.commit();
   }
@@ -81,6 +51,7 @@ steps::StepResult make_specimen(const MakeSpecimenRequest& request, const steps:
   result["scan"] = (request.output / "scan.ply").string();
   result["scan_points"] = readings.cloud_mm.size();
   result["stretch_force_n"] = readings.stretch_force_n;
+  if (const auto asked = specimen->prescription(); !asked.is_null()) result["prescription"] = asked;
   if (!request.truth.empty()) result["truth"] = request.truth.string();
   result["virtual"] = true;
   result["wall_s"] = context.wall_s();
@@ -88,7 +59,6 @@ steps::StepResult make_specimen(const MakeSpecimenRequest& request, const steps:
 }
 
 steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps::StepContext& context) {
-  const Specimen specimen = read_specimen(request.specimen);
   const WrittenProgram program = program_from_text(read_text(request.program), request.program);
   const Replay replay = play(program);
   if (replay.outcome != ReplayOutcome::Completed) {
@@ -98,23 +68,22 @@ steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps
                     "`incise replay` shows how far it gets.");
   }
   for (const auto& folder : {request.output, request.truth}) steps::make_parent(folder);
-  const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
-  if (!is_held(body, context.monitor)) return {nullptr, false};
-  const std::vector<TipPose> course = tip_course(asked_course(replay, program.T_flange_tool), specimen,
-                                                 T_robot_specimen(placement_of(specimen)).inverse());
-  if (const auto misfit = find_misfit(body, course)) {
+  const std::unique_ptr<const VirtualSpecimen> specimen = specimen_of(request.specimen, context);
+  if (!specimen->is_held(context.monitor)) return {nullptr, false};
+  const std::vector<TipPose> course = specimen->course(asked_course(replay, program.T_flange_tool));
+  if (const auto misfit = specimen->misfit(course)) {
     throw DataError(request.program, "poses", *misfit, "a course in this specimen's tissue round its tumour",
                     "Is it the program of another specimen?");
   }
-  const BenchCut made = cut_specimen(body, course, request.power_w, context.workers, context.monitor);
-  if (made.outcome == Outcome::NotConverged) {
+  PhotographSettings settings;
+  settings.mm_per_pixel = request.mm_per_pixel;
+  const auto made = specimen->cut(course, request.power_w, settings, context.workers, context.monitor);
+  if (!made) {
     context.monitor.message(Severity::Warning, "the cut did not converge: nothing to photograph");
     return {nullptr, false};
   }
-  PhotographSettings settings;
-  settings.mm_per_pixel = request.mm_per_pixel;
   AtomicFolder folder(request.output);
-  write_picture(folder.path() / "photo.png", photograph(body, made, settings));
+  write_picture(folder.path() / "photo.png", made->photograph);
   write_json(folder.path() / "photo.json", {{"note", "Virtual photograph: no real tissue."},
                                             {"mm_per_pixel", settings.mm_per_pixel},
                                             {"ruler_tick_mm", 1.0},
@@ -122,7 +91,7 @@ steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps
   write_run(folder.path(), context, "incise bench cut", {request.program});
   if (!request.truth.empty()) {
     AtomicFolder truth(request.truth);
-    write_json(truth.path() / "cut_truth.json", truth_of(body, made));
+    write_json(truth.path() / "cut_truth.json", made->truth);
     write_run(truth.path(), context, context.run.command, {request.specimen, request.program});
     truth.commit();
   }
@@ -143,7 +112,7 @@ steps::StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const
   const auto parent = std::filesystem::absolute(request.output).parent_path();
   if (!std::filesystem::is_directory(parent)) throw DataError(parent, "", "no such folder", "a folder to write into");
   const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
-  if (!is_held(body, context.monitor)) return {nullptr, false};
+  if (!is_stretched(body, context.monitor)) return {nullptr, false};
   PlanSettings plan;
   plan.power_w = request.power_w;
   const KnownPhysicsCut made = cut_knowing_physics(body, plan, request.simulations, context.workers, context.monitor);

@@ -32,17 +32,6 @@ namespace {
 
 using ExperimentJson = nlohmann::ordered_json;
 
-/// A correction and the cut along it.
-struct SecondCut {
-  ExperimentJson compensation;  // what `incise compensate` printed
-  TrialCut cut;
-};
-
-/// Whether a correction ended with a path of its own.
-bool has_path(const ExperimentJson& compensation) {
-  return compensation.is_object() && compensation.contains("path") && compensation.at("path").is_string();
-}
-
 /// A step of all specimens together cannot be done without.
 void require_done(const StepAnswer& answer, const char* step, const ExperimentSteps& runner) {
   if (answer.end != StepEnd::Done)
@@ -134,9 +123,6 @@ class Experiment {
                                          std::optional<double> force_n) const;
   void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
   void correct(SpecimenTrial& specimen, Trial& trial);
-  [[nodiscard]] SecondCut cut_again(SpecimenTrial& specimen, const std::filesystem::path& file,
-                                    const std::filesystem::path& folder, const std::string& tag,
-                                    bool is_simulated = true);
   [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa) const;
   void cut_rivals(SpecimenTrial& specimen, Trial& trial);
   void calibrate();
@@ -328,7 +314,7 @@ double Experiment::calibration_cost() const {
 void Experiment::run_trial(Trial& trial) {
   Workers one(1);
   ExperimentSteps steps(root_ / trial.name, one, monitor_);
-  VirtualLaboratory bench({trial.seed, trial.given, truth_ / trial.name}, steps);
+  VirtualLaboratory bench({.seed = trial.seed, .given = trial.given, .truth = truth_ / trial.name}, steps);
   SpecimenTrial specimen({.name = trial.name, .tets = settings_.tets, .rule = settings_.rule}, steps, bench);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
@@ -363,7 +349,7 @@ void Experiment::assess_without_pull(SpecimenTrial& specimen, Trial& trial) {
   const std::filesystem::path file =
       specimen.write_variant("withheld.yaml", {tool_, calibrated_kpa_, calibrated_choice(*tool_)});
   trial.assessment_without_pull = advice_of(specimen, "assess_without_pull", file, folder, std::nullopt);
-  trial.withheld = cut_again(specimen, file, folder, "withheld").cut;
+  trial.withheld = specimen.cut_again(file, folder, "withheld").cut;
 }
 
 /// @param force_n  absent: not measured.
@@ -427,40 +413,13 @@ void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
     const std::string name{to_string(path)};
     const std::filesystem::path file =
         specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa()));
-    trial.rivals.push_back(
-        {path, cut_again(specimen, file, specimen.at(name), name, !is_without_simulation(path)).cut});
+    trial.rivals.push_back({path, specimen.cut_again(file, specimen.at(name), name, !is_without_simulation(path)).cut});
   }
-}
-
-/// The correction of a case, and another cut of the same specimen along it. Where its own simulation does not accept
-/// it, it is cut all the same: whether that was right is part of the experiment.
-/// @param is_simulated  the correction is verified in simulation; else no simulated cut takes part.
-SecondCut Experiment::cut_again(SpecimenTrial& specimen, const std::filesystem::path& file,
-                                const std::filesystem::path& folder, const std::string& tag, bool is_simulated) {
-  const std::filesystem::path path = folder / "correction/path.json";
-  std::vector<std::string> words{"compensate", file.string()};
-  if (!is_simulated) words.emplace_back("--no-verify");
-  words.insert(words.end(), {"-o", folder.string()});
-  const StepAnswer corrected =
-      specimen.ask({tag + "_compensate",
-                    words,
-                    {file, specimen.at("tumor.csv"), specimen.at("lab/ct")},
-                    {path},
-                    [=](const steps::StepContext& context) {
-                      const CaseFile of = read_case_with_inputs(file);
-                      return is_simulated ? steps::compensate_case({of, folder, {}}, std::nullopt, context)
-                                          : steps::run_stages({of, folder, {.until = Stage::Compensate}}, context);
-                    }});
-  if (corrected.end == StepEnd::Done || (corrected.end == StepEnd::NotAcceptable && has_path(corrected.result)))
-    return {corrected.result, specimen.cut(path, tag)};
-  TrialCut none;
-  none.ended_at = refusal_of(tag + "_compensate", corrected);
-  return {corrected.result, none};
 }
 
 void Experiment::correct(SpecimenTrial& specimen, Trial& trial) {
   // The case holds what was calibrated: tool, stiffness, bias.
-  SecondCut again = cut_again(specimen, specimen.case_file(), specimen.at("compensated"), "corrected");
+  SecondCut again = specimen.cut_again(specimen.case_file(), specimen.at("compensated"), "corrected");
   trial.compensation = std::move(again.compensation);
   trial.corrected = std::move(again.cut);
 }

@@ -1,5 +1,6 @@
 #include "laboratory/specimen_trial.hpp"
 
+#include <incise/core/defaults.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/verdict.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -61,6 +62,11 @@ std::vector<std::string> fields_of(const CompensationChoice& choice) {
   return fields;
 }
 
+/// Whether a correction ended with a path of its own.
+bool has_path(const StudyJson& compensation) {
+  return compensation.is_object() && compensation.contains("path") && compensation.at("path").is_string();
+}
+
 }  // namespace
 
 CompensationChoice calibrated_choice(const ChosenTool& tool) {
@@ -96,6 +102,12 @@ bool SpecimenTrial::read() {
     return false;
   }
   stretch_force_n_ = readings.result.at("stretch_force_n").get<double>();
+  const auto asked = readings.result.find("prescription");
+  if (asked != readings.result.end()) {
+    prescription_ = *asked;
+    if (setup_.given_power_w) prescription_["power_w"] = *setup_.given_power_w;
+    setup_.power_w = prescription_.at("power_w").get<double>();
+  }
   return true;
 }
 
@@ -190,11 +202,14 @@ void SpecimenTrial::write_edge(const StudyJson& registration) const {
 }
 
 std::filesystem::path SpecimenTrial::write_variant(const std::string& name, const CaseVariant& variant) const {
+  std::vector<std::string> plan{fmt::format("power_w: {}", setup_.power_w)};
+  for (const char* field : {"lateral_margin_mm", "depth_mm", "speed_mm_s", "start_direction"})
+    if (prescription_.is_object()) plan.push_back(fmt::format("{}: {}", field, prescription_.at(field).dump()));
   std::string yaml = fmt::format(
       "schema: incise.case/1\nspecimen_is: virtual\nct: {{volume: lab/ct}}\nmeshing: {{tets: {}}}\nspecimen:\n  "
       "material: {{youngs_modulus_kpa: {:.4f}}}\n"
-      "tumor: {{contour: tumor.csv, configuration: stretched}}\nplan: {{power_w: {}}}\n",
-      setup_.tets, variant.youngs_modulus_kpa, setup_.power_w);
+      "tumor: {{contour: tumor.csv, configuration: stretched}}\nplan: {{{}}}\n",
+      setup_.tets, variant.youngs_modulus_kpa, fmt::join(plan, ", "));
   std::vector<std::string> cut;
   if (setup_.rule != CutRule::Tets) cut.push_back(fmt::format("rule: {}", to_string(setup_.rule)));
   if (variant.tool) {
@@ -232,6 +247,10 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
                                     text(setup_.power_w),
                                     "-o",
                                     exporting.output.string()};
+  if (prescription_.is_object()) {
+    exporting.checks.planned_depth_mm = prescription_.at("depth_mm").get<double>();
+    exported.insert(exported.end(), {"--depth-mm", text(exporting.checks.planned_depth_mm)});
+  }
   // The bench's tissue is virtual, and the cut as planned is made to see how far it misses: cautions are taken. What a
   // simulation refuses is not cut here either.
   for (const VerdictRule& rule : verdict_rules()) {
@@ -241,6 +260,18 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
   }
   steps::EvaluateRequest evaluating{.photo = photo / "photo.png", .figure = named("found.png"), .output = found};
   evaluating.scale.mm_per_pixel = kMmPerPixel;
+  std::vector<std::string> evaluated{"evaluate",
+                                     evaluating.photo.string(),
+                                     "--mm-per-pixel",
+                                     text(kMmPerPixel),
+                                     "--figure",
+                                     evaluating.figure.string(),
+                                     "-o",
+                                     found.string()};
+  if (prescription_.is_object()) {
+    evaluating.settings.target_mm = prescription_.at("lateral_margin_mm").get<double>() - kElectrodeRadiusMm;
+    evaluated.insert(evaluated.end(), {"--target-mm", text(*evaluating.settings.target_mm)});
+  }
   const ExperimentStep project{
       tag + "_project",
       {"project", path.string(), "--transform", registration.string(), "--surface", projecting.surface.string(),
@@ -255,12 +286,9 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
       {exporting.output},
       [=](const steps::StepContext& context) { return steps::export_program(exporting, context); }};
   const ExperimentStep evaluate{
-      tag + "_evaluate",
-      {"evaluate", evaluating.photo.string(), "--mm-per-pixel", text(kMmPerPixel), "--figure",
-       evaluating.figure.string(), "-o", found.string()},
-      {evaluating.photo},
-      {found},
-      [=](const steps::StepContext& context) { return steps::evaluate_cut(evaluating, context); }};
+      tag + "_evaluate", evaluated, {evaluating.photo}, {found}, [=](const steps::StepContext& context) {
+        return steps::evaluate_cut(evaluating, context);
+      }};
   TrialCut result;
   const auto goes_on = [&result](const std::string& step, const StepAnswer& answer) {
     if (answer.end == StepEnd::Done) return true;
@@ -274,6 +302,29 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
   StepAnswer measured = steps_.run(evaluate);
   if (goes_on(evaluate.name, measured)) result.measured = MeasuredCut{found, std::move(measured.result)};
   return result;
+}
+
+SecondCut SpecimenTrial::cut_again(const std::filesystem::path& file, const std::filesystem::path& folder,
+                                   const std::string& tag, bool is_simulated) {
+  const std::filesystem::path path = folder / "correction/path.json";
+  std::vector<std::string> words{"compensate", file.string()};
+  if (!is_simulated) words.emplace_back("--no-verify");
+  words.insert(words.end(), {"-o", folder.string()});
+  const StepAnswer corrected =
+      steps_.run({tag + "_compensate",
+                  words,
+                  {file, at("tumor.csv"), at("lab/ct")},
+                  {path},
+                  [=](const steps::StepContext& context) {
+                    const CaseFile of = read_case_with_inputs(file);
+                    return is_simulated ? steps::compensate_case({of, folder, {}}, std::nullopt, context)
+                                        : steps::run_stages({of, folder, {.until = Stage::Compensate}}, context);
+                  }});
+  if (corrected.end == StepEnd::Done || (corrected.end == StepEnd::NotAcceptable && has_path(corrected.result)))
+    return {corrected.result, cut(path, tag)};
+  TrialCut none;
+  none.ended_at = refusal_of(tag + "_compensate", corrected);
+  return {corrected.result, none};
 }
 
 }  // namespace incise::laboratory

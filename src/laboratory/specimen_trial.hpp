@@ -17,6 +17,7 @@ namespace incise::laboratory {
 struct TrialSetup {
   std::string name;  ///< "S1"
   double power_w = 35.0;
+  std::optional<double> given_power_w;  ///< whatever is prescribed
   int tets = 25000;  ///< of the planner's mesh
   CutRule rule = CutRule::Tets;  ///< of the planner's cuts
 };
@@ -51,6 +52,12 @@ struct TrialCut {
   std::string ended_at;                 ///< the step that refused, and why; empty: none did
 };
 
+/// A correction and the cut along it.
+struct SecondCut {
+  nlohmann::ordered_json compensation;  ///< what `incise compensate` printed
+  TrialCut cut;
+};
+
 class SpecimenTrial {
  public:
   /// @param steps  of the specimen's folder; both outlive the trial.
@@ -64,6 +71,11 @@ class SpecimenTrial {
   /// Projects a path (sim_stretched) on the tissue, exports the program after its checks, has the bench cut, and
   /// measures the photograph. @param tag  of the files: planned, corrected …
   [[nodiscard]] TrialCut cut(const std::filesystem::path& path, const std::string& tag);
+  /// The correction of a case, and another cut of the same specimen along it. Where its own simulation does not accept
+  /// it, it is cut all the same: whether that was right is part of an experiment.
+  /// @param is_simulated  the correction is verified in simulation; else no simulated cut takes part.
+  [[nodiscard]] SecondCut cut_again(const std::filesystem::path& file, const std::filesystem::path& folder,
+                                    const std::string& tag, bool is_simulated = true);
   /// Writes another case of the same specimen into its folder. @returns the file.
   [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const CaseVariant& variant) const;
   /// Runs one more step in this specimen's folder, whose refusal is an answer.
@@ -73,6 +85,8 @@ class SpecimenTrial {
   [[nodiscard]] std::filesystem::path case_file() const { return at("case.yaml"); }
   [[nodiscard]] std::filesystem::path registration() const { return at("registration/registration.json"); }
   [[nodiscard]] std::filesystem::path planned_path() const { return at("planned/plan/path.json"); }
+  /// What the surgeon asks for; null: nothing.
+  [[nodiscard]] const nlohmann::ordered_json& prescription() const { return prescription_; }
   [[nodiscard]] double stretch_force_n() const { return stretch_force_n_; }
   [[nodiscard]] double youngs_modulus_kpa() const { return youngs_modulus_kpa_; }
   [[nodiscard]] const std::optional<double>& registration_rmse_mm() const { return registration_rmse_mm_; }
@@ -91,6 +105,7 @@ class SpecimenTrial {
   ExperimentSteps& steps_;
   Laboratory& laboratory_;
   std::string ended_at_;
+  nlohmann::ordered_json prescription_;  ///< null: the plan's defaults
   double stretch_force_n_ = 0.0;
   double youngs_modulus_kpa_ = 0.0;
   double camera_scale_ = 1.0;

@@ -1,9 +1,11 @@
 #include "laboratory/virtual_laboratory.hpp"
 
 #include <incise/io/json_file.hpp>
+#include <incise/laboratory/bench_files.hpp>
 #include <incise/laboratory/bench_steps.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace incise::laboratory {
 
@@ -12,13 +14,31 @@ StepAnswer VirtualLaboratory::take_readings(const std::filesystem::path& folder)
   std::vector<std::filesystem::path> inputs;
   MakeSpecimenRequest request{.output = folder, .truth = hidden_.truth};
   std::filesystem::create_directories(hidden_.truth.parent_path());
+  const bool is_first = hidden_.bench == 1;
   if (!hidden_.given.empty()) {
-    nlohmann::ordered_json specimen{{"schema", "incise.specimen/1"}, {"seed", hidden_.seed}};
+    nlohmann::ordered_json specimen;
+    if (is_first) {
+      specimen = {{"schema", "incise.specimen/1"}, {"seed", hidden_.seed}};
+    } else {
+      specimen = incise::specimen_json(second_bench::draw_specimen(hidden_.seed, hidden_.series, hidden_.factors));
+    }
     for (const auto& [key, value] : hidden_.given) specimen[key] = value;
     request.specimen = hidden_.truth.string() + ".json";
     write_json(request.specimen, specimen);
     arguments.push_back(request.specimen.string());
     inputs.push_back(request.specimen);
+  } else if (!is_first) {
+    request.bench = hidden_.bench;
+    request.series = hidden_.series;
+    arguments.insert(arguments.end(),
+                     {"--bench", std::to_string(hidden_.bench), "--series", std::to_string(hidden_.series)});
+    if (hidden_.factors != second_bench::all_factors()) {
+      request.factors = hidden_.factors;
+      std::vector<std::string> names;
+      for (const second_bench::Factor factor : hidden_.factors) names.emplace_back(to_string(factor));
+      arguments.insert(arguments.end(),
+                       {"--factors", names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","))});
+    }
   }
   arguments.insert(arguments.end(),
                    {"--seed", std::to_string(hidden_.seed), "-o", folder.string(), "--truth", hidden_.truth.string()});

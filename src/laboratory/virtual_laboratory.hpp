@@ -2,6 +2,8 @@
 
 #include "laboratory/experiment_steps.hpp"
 
+#include <incise/second_bench/specimen.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -15,6 +17,9 @@ struct HiddenSpecimen {
   std::uint64_t seed = 1;
   std::vector<std::pair<std::string, double>> given;  ///< hidden parameters that are not drawn from the seed
   std::filesystem::path truth;  ///< folder of the specimen; what happened in a cut goes to TRUTH_TAG beside it
+  int bench = 1;                ///< of which laboratory it is
+  std::uint64_t series = 1;     ///< of the second laboratory, as all below
+  second_bench::Factors factors = second_bench::all_factors();
 };
 
 /// The laboratory of the virtual bench: it alone knows where the truth is.

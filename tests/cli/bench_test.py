@@ -49,6 +49,54 @@ class SchemaTest(CommandTest):
         self.assertEqual(defaults["schema"], "incise.specimen/1")
 
 
+class SecondLaboratoryTest(CommandTest):
+    def make(self, *arguments, **where):
+        return self.incise("bench", "make", *arguments, "-o", self.out, "--json", **where)
+
+    def test_the_schema_says_the_factor_of_each_parameter(self):
+        schema = json.loads(self.incise("schema", "bench2").stdout)
+        self.assertEqual(schema["title"], "incise.specimen/2")
+        self.assertEqual(schema["required"], ["schema", "seed", "series"])
+        self.assertEqual(schema["properties"]["shrinking"]["x-factor"], "heat")
+        self.assertIsNone(schema["properties"]["youngs_modulus_kpa"]["x-factor"])
+
+    def test_a_specimen_is_read_with_its_prescription_and_nothing_hidden(self):
+        truth = self.folder / "truth"
+        done = self.make("--bench", "2", "--seed", "4", "--series", "2", "--factors", "ring,heat", "--truth", truth)
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        hidden = json.loads((truth / "specimen.json").read_text())
+        self.assertEqual((hidden["schema"], hidden["seed"], hidden["series"]), ("incise.specimen/2", 4, 2))
+        self.assertNotEqual(hidden["shrinking"], 0)
+        self.assertEqual((hidden["margin_mm"], hidden["fibre_ratio"]), (5, 1))
+        readings = json.loads((self.out / "readings.json").read_text())
+        self.assertEqual(readings["prescription"]["power_w"], 35)
+        for key in hidden:
+            if key not in ("schema", "depth_mm", "speed_mm_s"):
+                self.assertNotIn(f'"{key}"', json.dumps(readings))
+        # The truth is a specimen file: it makes the same readings.
+        again = self.incise("bench", "make", truth / "specimen.json", "-o", self.folder / "again")
+        self.assertEqual(again.returncode, DONE, again.stderr)
+        self.assertEqual((self.folder / "again/scan.ply").read_bytes(), (self.out / "scan.ply").read_bytes())
+
+    def test_what_does_not_go_together_is_refused(self):
+        first = specimen_file(self.folder / "first.json")
+        second = self.folder / "second.json"
+        second.write_text(json.dumps({"schema": "incise.specimen/2", "seed": 5, "series": 1}))
+        for arguments, says in (
+            (("--factors", "heat"), "--factors"),
+            (("--series", "3"), "--series"),
+            ((first, "--bench", "2"), "--bench"),
+            ((second, "--factors", "heat"), "--factors"),
+            ((second, "--elasticity"), "--elasticity"),
+        ):
+            self.assert_refused(self.make(*arguments), BAD_CASE, says)
+            self.assert_nothing_written(self.out)
+        second.write_text(json.dumps({"schema": "incise.specimen/2", "seed": 5}))
+        self.assert_refused(self.make(second), BAD_DATA, "second.json", "series")
+        second.write_text(json.dumps({"schema": "incise.specimen/2", "seed": 5, "series": 1, "friction": 7}))
+        self.assert_refused(self.make(second), BAD_DATA, "friction", "[0, 1]")
+
+
 class BadInputTest(CommandTest):
     def refused(self, *says, **given):
         done = self.incise("bench", "make", specimen_file(self.folder / "specimen.json", **given), "-o", self.out)

@@ -66,6 +66,8 @@ struct Marked {
   std::uint64_t seed = 1;             ///< of the grain of tissue, of noise and of the hand
   std::optional<Contour> inner_edge;  ///< of the kerf; absent: open, and drawn by pieces
   double hand_mm = 0.03;              ///< standard deviation of the hand that draws the red line
+  double hand_wave_mm = 4.0;          ///< over which it errs alike
+  double stains = 0.0;                ///< char along the kerf, blood and glare, in [0, 1]
   double thermal_width_mm = 0.0;      ///< how far beside the tool's axis heat reached
   Vec3 approach = -Vec3::UnitZ();     ///< as the camera looks
 };

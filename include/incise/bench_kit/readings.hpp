@@ -28,7 +28,7 @@ struct Readings {
   FrameShot frame;  ///< colour and depth after clamping and stretching, with the contour marked
   Points cloud_mm;  ///< the specimen's part of the depth picture, camera frame
   Mat4 T_robot_camera = Mat4::Identity();
-  double stretch_force_n = 0.0;              ///< the suture's pull at its 20 mm, load cell with 5 % noise
+  double stretch_force_n = 0.0;              ///< the suture's pull at its 20 mm, as its gauge says
   std::optional<GrayVolume> elasticity_kpa;  ///< elastography of the unclamped specimen, 20 % noise; 0: no tissue
 };
 

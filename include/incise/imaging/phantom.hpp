@@ -82,4 +82,8 @@ struct Phantom {
 /// @throws CaseError listing every violation of `settings`.  @throws Cancelled if the monitor asks to stop.
 [[nodiscard]] Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor);
 
+/// The CT of a given shape, as make_phantom() makes it; of `settings` those of the scanner and the texture count.
+/// @throws CaseError listing every violation of `settings`.  @throws Cancelled if the monitor asks to stop.
+[[nodiscard]] CtVolume scan_shape(const TongueShape& shape, const PhantomSettings& settings, Monitor& monitor);
+
 }  // namespace incise

@@ -3,6 +3,7 @@
 #include <incise/bench_studies/power_series.hpp>
 #include <incise/calibration/incision_speed.hpp>
 #include <incise/core/names.hpp>
+#include <incise/second_bench/specimen.hpp>
 #include <incise/steps/step.hpp>
 #include <incise/virtual_bench/readings.hpp>
 
@@ -44,6 +45,9 @@ steps::StepResult make_virtual_cloud(const VirtualCloudRequest& request, const s
 /// What a laboratory would have of a virtual specimen.
 struct MakeSpecimenRequest {
   std::filesystem::path specimen;  ///< file of hidden parameters; empty: drawn from the seed of the context
+  std::optional<int> bench;        ///< 1 or 2; absent: that of the file, else 1
+  std::optional<second_bench::Factors> factors;  ///< what varies in the second laboratory; absent: everything
+  std::optional<std::uint64_t> series;           ///< of the second laboratory: whose hand-eye error; absent: the seed
   bool has_elasticity = false;     ///< also a noisy elasticity map
   std::filesystem::path output;    ///< folder of the readings
   std::filesystem::path truth;     ///< folder of the specimen itself, apart from the output; empty: none

@@ -1,0 +1,170 @@
+#include "laboratory/experiment_tables.hpp"
+#include "laboratory/virtual_laboratory.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
+#include <incise/io/folder_lock.hpp>
+#include <incise/io/json_file.hpp>
+#include <incise/io/manifest.hpp>
+#include <incise/laboratory/acceptance.hpp>
+#include <incise/steps/case_steps.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <ostream>
+#include <thread>
+
+namespace incise {
+namespace {
+
+using laboratory::Trial;
+using Rows = nlohmann::ordered_json;
+
+constexpr const char* kAcceptanceFile = "acceptance.json";
+constexpr const char* kAcceptanceTable = "acceptance.csv";
+constexpr const char* kClaim = "bench.json";
+
+Rows asked_json(const AcceptanceSettings& settings) {
+  Rows factors = Rows::array();
+  for (const second_bench::Factor factor : settings.factors) factors.push_back(to_string(factor));
+  return {{"specimens", settings.specimens},
+          {"factors", factors},
+          {"speed_mm_s", settings.speed_mm_s ? Rows(*settings.speed_mm_s) : Rows(nullptr)},
+          {"power_w", settings.power_w ? Rows(*settings.power_w) : Rows(nullptr)},
+          {"paper_pass", settings.with_paper_pass},
+          {"tets", settings.tets}};
+}
+
+/// One folder holds the specimens of one first seed. What an earlier run said of the whole would be taken for this
+/// one's.
+void claim_folder(const std::filesystem::path& output, std::uint64_t seed) {
+  const std::filesystem::path claim = output / kClaim;
+  steps::require_own_or_empty(output, {kClaim}, "an acceptance");
+  if (!std::filesystem::exists(claim)) {
+    write_json(claim, {{"schema", "incise.acceptance/1"}, {"specimen_is", "virtual"}, {"seed", seed}});
+  } else if (const Rows kept = read_json(claim); !kept.is_object() || kept.value("seed", Rows()) != Rows(seed)) {
+    throw DataError(claim, "seed", kept.is_object() ? kept.value("seed", Rows()).dump() : kept.type_name(),
+                    fmt::format("{}, that of this command", seed),
+                    "Its specimens differ: choose another place for the output");
+  }
+  for (const char* file : {kAcceptanceFile, kAcceptanceTable}) std::filesystem::remove(output / file);
+}
+
+/// As planned, then along the paper's correction.
+void cut_twice(const AcceptanceSettings& settings, const std::filesystem::path& root, std::uint64_t series,
+               Monitor& monitor, Trial& trial, Rows& row) {
+  Workers one(1);
+  laboratory::ExperimentSteps steps(root / trial.name, one, monitor);
+  laboratory::HiddenSpecimen hidden{trial.seed, trial.given, root / "truth" / trial.name, 2, series};
+  hidden.factors = settings.factors;
+  laboratory::VirtualLaboratory bench(hidden, steps);
+  laboratory::TrialSetup setup{.name = trial.name, .tets = settings.tets};
+  setup.given_power_w = settings.power_w;
+  laboratory::SpecimenTrial specimen(setup, steps, bench);
+  if (specimen.prepare(std::nullopt)) {
+    trial.planned = specimen.cut(specimen.planned_path(), "planned");
+    if (trial.planned.is_made && settings.with_paper_pass) {
+      laboratory::CaseVariant variant{std::nullopt, specimen.youngs_modulus_kpa(),
+                                      CompensationChoice{.method = CompensationMethod::Paper}};
+      const std::filesystem::path file = specimen.write_variant("paper_pass.yaml", variant);
+      trial.rivals.push_back(
+          {laboratory::RivalPath::PaperPass, specimen.cut_again(file, specimen.at("paper_pass"), "paper_pass").cut});
+    }
+  }
+  trial.ended_at = specimen.ended_at();
+  const auto error = [](const laboratory::TrialCut* cut) {
+    const auto mean = cut != nullptr ? laboratory::mean_error_mm(*cut) : std::nullopt;
+    return mean ? Rows(*mean) : Rows(nullptr);
+  };
+  row["seed"] = trial.seed;
+  row["prescription"] = specimen.prescription();
+  row["youngs_modulus_kpa"] = specimen.youngs_modulus_kpa() > 0.0 ? Rows(specimen.youngs_modulus_kpa()) : Rows(nullptr);
+  row["planned_mm"] = error(&trial.planned);
+  row["paper_pass_mm"] = error(laboratory::find_rival(trial, laboratory::RivalPath::PaperPass));
+  row["ended_at"] = Rows::array();
+  for (const std::string& refusal : laboratory::refusals_of(trial)) row["ended_at"].push_back(refusal);
+}
+
+Rows summary_of_rows(const Rows& rows) {
+  std::size_t closed = 0, pairs = 0, worse = 0;
+  double planned = 0.0, before = 0.0, after = 0.0;
+  for (const Rows& row : rows) {
+    if (!row.at("planned_mm").is_number()) continue;
+    const double error = row.at("planned_mm").get<double>();
+    ++closed;
+    planned += error;
+    if (!row.at("paper_pass_mm").is_number()) continue;
+    const double again = row.at("paper_pass_mm").get<double>();
+    ++pairs;
+    before += error;
+    after += again;
+    if (again > error) ++worse;
+  }
+  Rows summary;
+  summary["specimens"] = rows.size();
+  summary["closed_as_planned"] = closed;
+  summary["planned_mean_mm"] = closed > 0 ? Rows(planned / static_cast<double>(closed)) : Rows(nullptr);
+  summary["pairs"] = pairs;
+  summary["paper_pass_gain_percent"] = pairs > 0 ? Rows(100.0 * (1.0 - after / before)) : Rows(nullptr);
+  summary["paper_pass_worse"] = worse;
+  return summary;
+}
+
+std::string csv_of(const Rows& rows) {
+  std::string csv = "seed,margin_mm,depth_mm,speed_mm_s,power_w,youngs_modulus_kpa,planned_mm,paper_pass_mm\n";
+  for (const Rows& row : rows) {
+    const Rows& asked = row.at("prescription");
+    const auto of = [&asked](const char* key) { return asked.is_object() ? asked.at(key).dump() : std::string(); };
+    const auto number = [&row](const char* key) {
+      return row.at(key).is_number() ? row.at(key).dump() : std::string();
+    };
+    csv += fmt::format("{},{},{},{},{},{},{},{}\n", row.at("seed").dump(), of("lateral_margin_mm"), of("depth_mm"),
+                       of("speed_mm_s"), of("power_w"), number("youngs_modulus_kpa"), number("planned_mm"),
+                       number("paper_pass_mm"));
+  }
+  return csv;
+}
+
+}  // namespace
+
+nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const std::filesystem::path& output,
+                                    const RunContext& run, Workers& workers, Monitor& monitor) {
+  const auto start = std::chrono::steady_clock::now();
+  const FolderLock lock(output);
+  claim_folder(output, run.seed);
+  std::vector<Trial> trials(settings.specimens);
+  std::vector<Rows> rows(settings.specimens);
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    trials[i].name = fmt::format("S{}", i + 1);
+    trials[i].seed = run.seed + i;
+    trials[i].role = laboratory::TrialRole::Test;
+    if (settings.speed_mm_s) trials[i].given.emplace_back("speed_mm_s", *settings.speed_mm_s);
+  }
+  std::mutex mutex;
+  std::size_t done = 0;
+  const std::thread::id caller = std::this_thread::get_id();
+  workers.for_each(trials.size(), 1, [&](std::size_t i) {
+    cut_twice(settings, output, run.seed, monitor, trials[i], rows[i]);
+    const std::scoped_lock guard(mutex);
+    ++done;
+    if (std::this_thread::get_id() == caller)
+      monitor.progress("virtual specimens", static_cast<double>(done) / static_cast<double>(trials.size()));
+  });
+  Rows result;
+  result["specimen_is"] = "virtual";
+  result["settings"] = asked_json(settings);
+  result["summary"] = summary_of_rows(rows);
+  result["rows"] = rows;
+  write_atomically(output / kAcceptanceTable, csv_of(rows));
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  write_manifest(output, steps::manifest_of(run, asked_json(settings).dump(), {}, wall_s));
+  result["wall_s"] = wall_s;
+  write_json(output / kAcceptanceFile, result);
+  return result;
+}
+
+}  // namespace incise

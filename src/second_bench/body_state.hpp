@@ -1,0 +1,28 @@
+#pragma once
+
+#include "second_bench/holder.hpp"
+
+#include <incise/imaging/tongue_shape.hpp>
+#include <incise/second_bench/body.hpp>
+
+#include <optional>
+
+namespace incise::second_bench {
+
+/// All that the bench knows of a held specimen.
+struct BodyState {
+  BrickTissue tissue;
+  Platform platform;
+  TongueShape shape;
+  std::vector<std::optional<TissueSpan>> columns;  ///< of voxels, x fastest
+  std::vector<float> energy_j;                     ///< per brick: what a voxel takes until it parts
+  Points tumor_edge_rest;
+  std::vector<std::int32_t> suture_nodes;
+  float viscous_ratio = 0.0F;
+  float viscous_time_s = 1.0F;
+
+  [[nodiscard]] int columns_x() const { return kVoxelsAcross * tissue.grid.bricks_along(0); }
+  [[nodiscard]] int columns_y() const { return kVoxelsAcross * tissue.grid.bricks_along(1); }
+};
+
+}  // namespace incise::second_bench

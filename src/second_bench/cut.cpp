@@ -1,0 +1,338 @@
+#include "second_bench/body_state.hpp"
+
+#include <incise/core/defaults.hpp>
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+#include <incise/second_bench/cut.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace incise::second_bench {
+namespace {
+
+constexpr double kNeedleMm = kElectrodeRadiusMm;
+constexpr double kContactKpaMm = 100.0;  // pressure per depth at which tissue lies in the needle
+constexpr double kShellMm = 0.25;        // beyond the metal: where tissue still sticks to it
+constexpr double kStickMm = 0.1;         // of slip, at which adhesion has half its strength
+constexpr double kEngagedMm = 5.0;       // length of needle for which a full arc needs tissue
+constexpr double kHalfSpeedMmS = 7.0;    // at which adhesion has half its fast strength
+constexpr double kCookedMm = 1.0;        // beyond the arc's reach: where tissue is heated enough to shrink
+constexpr double kBreathS = 4.0;
+constexpr double kLeastDamping = 0.12;
+constexpr double kPhotographS = 34.0;
+constexpr int kMostSettling = 600;
+constexpr double kAtRest = 3e-3;
+
+struct Needle {
+  Vec3 tip = Vec3::Zero();
+  Vec3 axis = -Vec3::UnitZ();
+  /// From the needle's axis to a point.
+  [[nodiscard]] Vec3 offset(const Vec3& p) const {
+    const double above = std::max(0.0, -(p - tip).dot(axis));
+    return p - (tip - above * axis);
+  }
+};
+
+struct NearVoxel {
+  Rider rider;
+  std::size_t brick = 0;
+  int bit = 0;
+  float volume_mm3 = 0.0F;
+  Vec3 before = Vec3::Zero();  // at the step's start
+  Vec3 drag = Vec3::Zero();    // by the needle in the last iteration
+};
+
+Rider rider_of(int piece, int bit) {
+  Rider rider;
+  rider.piece = piece;
+  const std::array<double, 3> share{(bit % 4 + 0.5) / 4, (bit / 4 % 4 + 0.5) / 4, (bit / 16 + 0.5) / 4};
+  for (int c = 0; c < 8; ++c) {
+    double weight = 1.0;
+    for (std::size_t axis = 0; axis < 3; ++axis) weight *= (c >> axis & 1) != 0 ? share[axis] : 1.0 - share[axis];
+    rider.weights[static_cast<std::size_t>(c)] = static_cast<float>(weight);
+  }
+  return rider;
+}
+
+Needle between(const TipPose& a, const TipPose& b, double share) {
+  return {a.tip_mm + share * (b.tip_mm - a.tip_mm), (a.axis + share * (b.axis - a.axis)).normalized()};
+}
+
+class Cutting {
+ public:
+  Cutting(const Body& body, double power_w)
+      : specimen_(body.specimen), resolution_(body.resolution), state_(*body.state), power_w_(power_w) {}
+
+  Cut run(const std::vector<TipPose>& course, Monitor& monitor) {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<TipPose> part;
+    for (const TipPose& pose : course)
+      if (pose.is_cutting) part.push_back(pose);
+    INCISE_REQUIRE(part.size() >= 2, "expected a course that cuts");
+    double way = 0.0;
+    for (std::size_t n = 1; n < part.size(); ++n) way += (part[n].tip_mm - part[n - 1].tip_mm).norm();
+    const double begin = part.front().time_s, end = part.back().time_s;
+    const int steps = std::max(1, static_cast<int>(std::ceil(way / resolution_.way_mm)));
+    const double step_s = (end - begin) / steps;
+    suture_start_ = held_at_suture();
+    std::size_t segment = 0;
+    const auto pose_at = [&](double time) {
+      while (segment + 2 < part.size() && part[segment + 1].time_s <= time) ++segment;
+      const TipPose& a = part[segment];
+      const TipPose& b = part[segment + 1];
+      const double share = b.time_s > a.time_s ? std::clamp((time - a.time_s) / (b.time_s - a.time_s), 0.0, 1.0) : 1.0;
+      const Needle needle = between(a, b, share);
+      return TipPose{time, needle.tip + swayed_mm(time - begin, (time - begin) / (end - begin)), needle.axis, true};
+    };
+    TipPose before = pose_at(begin);
+    for (int n = 0; n < steps; ++n) {
+      throw_if_cancelled(monitor, "cutting");
+      const TipPose after = pose_at(begin + (n + 1) * step_s);
+      creep(static_cast<double>(n + 1) / steps);
+      step(before, after, step_s);
+      travelled_mm_ += (after.tip_mm - before.tip_mm).norm();
+      before = after;
+      monitor.progress("cutting", static_cast<double>(n + 1) / (steps + 10));
+    }
+    result_.steps = steps;
+    if (steps > 0) result_.mean_force_mn /= steps;
+    settle();
+    if (!(result_.residual <= kAtRest)) result_.outcome = Outcome::NotConverged;
+    result_.after = std::make_shared<const BodyState>(std::move(state_));
+    result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::array<float, 4>> held_at_suture() const {
+    std::vector<std::array<float, 4>> places;
+    for (const std::int32_t node : state_.suture_nodes)
+      places.push_back(state_.tissue.position[static_cast<std::size_t>(node)]);
+    return places;
+  }
+
+  /// By how much the tool moves against tissue that breathes and drifts.
+  [[nodiscard]] Vec3 swayed_mm(double time_s, double share) const {
+    const double breath = std::sin(2.0 * units::kPi * time_s / kBreathS + static_cast<double>(specimen_.seed % 7));
+    return {-share * specimen_.drift_mm, 0.0, -specimen_.breathing_mm * breath};
+  }
+
+  /// The suture cuts in: its grip moves back towards the root.
+  void creep(double share) {
+    for (std::size_t n = 0; n < suture_start_.size(); ++n)
+      state_.tissue.position[static_cast<std::size_t>(state_.suture_nodes[n])][1] =
+          suture_start_[n][1] + static_cast<float>(share * specimen_.suture_creep_mm);
+  }
+
+  void find_near(const Needle& from, const Needle& to) {
+    near_.clear();
+    BrickTissue& tissue = state_.tissue;
+    const double seen = specimen_.shrinking > 0.0 ? kCookedMm : 0.6;
+    const double reach = kNeedleMm + specimen_.reach_mm + 0.5 * (to.tip - from.tip).norm() + seen;
+    const Needle middle{0.5 * (from.tip + to.tip), (from.axis + to.axis).normalized()};
+    for (std::size_t p = 0; p < tissue.piece_count(); ++p) {
+      if (tissue.voxels_of[p] == 0) continue;
+      Vec3 low = Vec3::Constant(1e9), high = -low;
+      for (int c = 0; c < 8; ++c) {
+        const auto& q = tissue.position[static_cast<std::size_t>(tissue.node(static_cast<int>(p), c))];
+        const Vec3 at(q[0], q[1], q[2]);
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+      }
+      const double half = 0.5 * (high - low).norm();
+      if (middle.offset(0.5 * (low + high)).norm() > reach + half) continue;
+      const float volume =
+          static_cast<float>(tissue.grid.size_mm(tissue.grid.place_of(tissue.brick_of[p])).prod() / kVoxels);
+      for (Voxels left = tissue.voxels_of[p]; left != 0; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        NearVoxel voxel;
+        voxel.rider = rider_of(static_cast<int>(p), bit);
+        voxel.before = tissue.position_of(voxel.rider);
+        if (middle.offset(voxel.before).norm() > reach) continue;
+        voxel.brick = tissue.brick_of[p];
+        voxel.bit = bit;
+        voxel.volume_mm3 = volume;
+        near_.push_back(voxel);
+      }
+    }
+  }
+
+  /// Forces of the needle on tissue; their stiffness where `with_masses`.
+  Vec3 add_needle(const Needle& needle, const Vec3& way, bool with_masses) {
+    BrickTissue& tissue = state_.tissue;
+    const double adhesion = specimen_.adhesion_kpa * (1.0 + specimen_.char_per_mm * travelled_mm_) * speed_mm_s_ /
+                            (speed_mm_s_ + kHalfSpeedMmS);
+    Vec3 sum = Vec3::Zero();
+    for (NearVoxel& voxel : near_) {
+      const Vec3 p = tissue.position_of(voxel.rider);
+      const Vec3 offset = needle.offset(p);
+      const double d = offset.norm();
+      voxel.drag.setZero();
+      if (d > kNeedleMm + kShellMm) continue;
+      const double area = std::cbrt(static_cast<double>(voxel.volume_mm3) * static_cast<double>(voxel.volume_mm3));
+      if (d < kNeedleMm && d > 1e-6) voxel.drag += kContactKpaMm * area * (kNeedleMm - d) / d * offset;
+      const Vec3 slip = way - (p - voxel.before);
+      voxel.drag += adhesion * area / std::sqrt(slip.squaredNorm() + kStickMm * kStickMm) * slip;
+      sum += voxel.drag;
+      if (with_masses)
+        add_mass(tissue, voxel.rider, (d < kNeedleMm ? kContactKpaMm * area : 0.0) + adhesion * area / kStickMm);
+      else
+        add_force(tissue, voxel.rider, voxel.drag);
+    }
+    return sum;
+  }
+
+  void step(const TipPose& from, const TipPose& to, double step_s) {
+    BrickTissue& tissue = state_.tissue;
+    // The needle gives way to the force of the step before.
+    const Vec3 bent = -1e-3 * specimen_.bending_mm_n * force_mn_;
+    TipPose first = from, last = to;
+    first.tip_mm += bent_mm_;
+    last.tip_mm += bent;
+    bent_mm_ = bent;
+    speed_mm_s_ = (to.tip_mm - from.tip_mm).norm() / step_s;
+    const Needle start{first.tip_mm, first.axis}, end{last.tip_mm, last.axis};
+    find_near(start, end);
+    const float gain = begin_step(tissue, state_.viscous_ratio, state_.viscous_time_s, static_cast<float>(step_s));
+    const int count = resolution_.relaxations;
+    for (int n = 0; n < count; ++n) {
+      const double share = std::min(1.0, (n + 1.0) / (0.5 * count));  // the second half at rest at the step's end
+      const Needle needle = between(first, last, share);
+      const Vec3 way = share * (last.tip_mm - first.tip_mm);
+      if (n % 8 == 0) {
+        bound_masses(tissue, gain);
+        add_platform_masses(tissue, state_.platform);
+        add_needle(end, way, true);
+      }
+      add_elastic_forces(tissue, gain, static_cast<float>(kWeightMnMm3));
+      add_platform(tissue, state_.platform);
+      force_mn_ = add_needle(needle, way, false);
+      relaxer_.iterate(tissue, kLeastDamping);
+      ++result_.iterations;
+    }
+    end_step(tissue, gain);
+    result_.mean_force_mn += force_mn_.norm();
+    result_.max_force_mn = std::max(result_.max_force_mn, force_mn_.norm());
+    burn(end, last.tip_mm - first.tip_mm, step_s);
+    if (specimen_.shrinking > 0.0) cook(end);
+  }
+
+  /// What heat and force do to tissue in reach; what has taken enough of them parts.
+  void burn(const Needle& needle, const Vec3& way, double step_s) {
+    BrickTissue& tissue = state_.tissue;
+    const double reach = kNeedleMm + specimen_.reach_mm;
+    std::vector<double> weights(near_.size(), 0.0);
+    double sum = 0.0;
+    for (std::size_t n = 0; n < near_.size(); ++n) {
+      const double d = needle.offset(tissue.position_of(near_[n].rider)).norm();
+      if (d >= reach) continue;
+      const double share = 1.0 - d * d / (reach * reach);
+      weights[n] = share * static_cast<double>(near_[n].volume_mm3);
+      sum += weights[n];
+    }
+    // An eighth of the disc in reach, over the needle's length, is what a full arc feeds on; weights are 1/2 on
+    // average.
+    const double least = 0.5 * 0.125 * units::kPi * reach * reach * kEngagedMm;
+    const double heat_j = std::max(0.0, power_w_ - specimen_.lost_power_w) * step_s;
+    std::map<int, Voxels> gone;
+    for (std::size_t n = 0; n < near_.size(); ++n) {
+      NearVoxel& voxel = near_[n];
+      auto& dose = dose_[voxel.brick];
+      float& taken = dose[static_cast<std::size_t>(voxel.bit)];
+      const double energy = static_cast<double>(state_.energy_j[voxel.brick]);
+      const double heat = heat_j * weights[n] / std::max(sum, least) / energy;
+      const double slip_work = voxel.drag.dot(way - (tissue.position_of(voxel.rider) - voxel.before));
+      const double area = std::cbrt(static_cast<double>(voxel.volume_mm3) * static_cast<double>(voxel.volume_mm3));
+      const double torn = std::max(0.0, slip_work) / (specimen_.toughness_j_m2 * area);
+      taken += static_cast<float>(heat + torn);
+      if (taken < 1.0F) continue;
+      gone[voxel.rider.piece] |= Voxels{1} << voxel.bit;
+      ++(heat > torn ? result_.parted_by_heat : result_.parted_by_force);
+    }
+    if (gone.empty()) return;
+    remove_voxels(tissue, {gone.begin(), gone.end()});
+    result_.loose += remove_loose(tissue);
+  }
+
+  /// Tissue that was heated shrinks.
+  void cook(const Needle& needle) {
+    BrickTissue& tissue = state_.tissue;
+    const double reach = kNeedleMm + specimen_.reach_mm + kCookedMm;
+    std::set<std::size_t> bricks;
+    for (const NearVoxel& voxel : near_) {
+      const int piece = tissue.piece_with(voxel.brick, voxel.bit);
+      if (piece < 0) continue;
+      if (needle.offset(tissue.position_of(rider_of(piece, voxel.bit))).norm() >= reach) continue;
+      Voxels& cooked = cooked_[voxel.brick];
+      const Voxels before = cooked;
+      cooked |= Voxels{1} << voxel.bit;
+      if (cooked != before) bricks.insert(voxel.brick);
+    }
+    for (const std::size_t brick : bricks)
+      for (const int piece : tissue.pieces_of[brick]) {
+        const Voxels voxels = tissue.voxels_of[static_cast<std::size_t>(piece)];
+        const double share = static_cast<double>(std::popcount(voxels & cooked_[brick])) / std::popcount(voxels);
+        shrink(tissue, piece, static_cast<float>(1.0 - specimen_.shrinking * share));
+      }
+  }
+
+  /// The needle is out: tissue comes to rest while it waits for the photograph.
+  void settle() {
+    BrickTissue& tissue = state_.tissue;
+    Rest rest;
+    for (const double step_s : {1.0, 3.0, 10.0, kPhotographS - 14.0}) {
+      const float gain = begin_step(tissue, state_.viscous_ratio, state_.viscous_time_s, static_cast<float>(step_s));
+      for (int n = 0; n < kMostSettling; ++n) {
+        if (n % 20 == 0) {
+          bound_masses(tissue, gain);
+          add_platform_masses(tissue, state_.platform);
+        }
+        add_elastic_forces(tissue, gain, static_cast<float>(kWeightMnMm3));
+        add_platform(tissue, state_.platform);
+        rest = relaxer_.iterate(tissue, 0.0);
+        ++result_.iterations;
+        if (n > 20 && rest.residual_mn < kAtRest * rest.reaction_mn) break;
+      }
+      end_step(tissue, gain);
+    }
+    result_.residual = rest.residual_mn / rest.reaction_mn;
+  }
+
+  const Specimen& specimen_;
+  const Resolution& resolution_;
+  BodyState state_;
+  double power_w_;
+  Relaxer relaxer_;
+  std::vector<NearVoxel> near_;
+  std::map<std::size_t, std::array<float, kVoxels>> dose_;
+  std::vector<std::array<float, 4>> suture_start_;
+  std::map<std::size_t, Voxels> cooked_;
+  Vec3 force_mn_ = Vec3::Zero();  // of the needle on tissue
+  Vec3 bent_mm_ = Vec3::Zero();
+  double speed_mm_s_ = 0.0;
+  double travelled_mm_ = 0.0;
+  Cut result_;
+};
+
+}  // namespace
+
+Cut cut_specimen(const Body& body, const std::vector<TipPose>& course, double power_w, Monitor& monitor) {
+  return Cutting(body, power_w).run(course, monitor);
+}
+
+Contour tumor_edge_of(const BodyState& state) {
+  Contour edge;
+  for (const Vec3& rest : state.tumor_edge_rest) {
+    const Rider rider = state.tissue.rider_at(rest);
+    INCISE_REQUIRE(rider.piece >= 0, "expected tissue within three bricks of the tumour's edge");
+    edge.points.push_back(state.tissue.position_of(rider));
+  }
+  return edge;
+}
+
+}  // namespace incise::second_bench

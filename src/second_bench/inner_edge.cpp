@@ -1,0 +1,90 @@
+#include <incise/core/units.hpp>
+#include <incise/geometry/morphology.hpp>
+#include <incise/geometry/raster.hpp>
+#include <incise/second_bench/cut.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace incise::second_bench {
+namespace {
+
+constexpr double kPixelMm = 0.1;
+constexpr double kAroundMm = 16.0;  // beyond the tumour's edge
+constexpr double kSlitMm = 0.6;     // jump of the place at rest from one pixel to the next: a kerf that has shut
+constexpr double kBridgeMm = 1.0;   // narrower skin is no skin
+constexpr int kRays = 360;
+constexpr double kSmoothDeg = 4.0;  // over which a person draws straight on
+
+/// Where the skin can be followed from one pixel to the next.
+Raster whole_skin(const SeenTissue& seen, const RasterGrid& grid) {
+  const DepthBuffer view = depth_buffer(grid, seen.vertices, seen.triangles);
+  Points rest(grid.pixel_count(), Vec3::Constant(1e9));
+  Raster skin(grid, 0);
+  for (int j = 0; j < grid.height; ++j)
+    for (int i = 0; i < grid.width; ++i) {
+      const std::int32_t n = view.triangles[grid.offset(i, j)];
+      if (n < 0 || seen.is_skin[static_cast<std::size_t>(n)] == 0) continue;
+      skin.at(i, j) = 1;
+      Vec3 sum = Vec3::Zero();
+      const Triangle& t = seen.triangles[static_cast<std::size_t>(n)];
+      const Vec2 a = seen.vertices[t[0].index()].head<2>();
+      const Vec2 b = seen.vertices[t[1].index()].head<2>() - a, c = seen.vertices[t[2].index()].head<2>() - a;
+      const Vec2 d = grid.centre(i, j) - a;
+      const double area = b.x() * c.y() - b.y() * c.x();
+      const double v = area != 0.0 ? (d.x() * c.y() - d.y() * c.x()) / area : 0.0;
+      const double w = area != 0.0 ? (b.x() * d.y() - b.y() * d.x()) / area : 0.0;
+      sum = (1.0 - v - w) * seen.rest[t[0].index()] + v * seen.rest[t[1].index()] + w * seen.rest[t[2].index()];
+      rest[grid.offset(i, j)] = sum;
+    }
+  Raster whole = skin;
+  for (int j = 1; j < grid.height; ++j)
+    for (int i = 1; i < grid.width; ++i) {
+      if (skin.at(i, j) == 0) continue;
+      for (const auto& [a, b] : {std::pair{i - 1, j}, std::pair{i, j - 1}})
+        if (skin.at(a, b) != 0 && (rest[grid.offset(i, j)] - rest[grid.offset(a, b)]).norm() > kSlitMm)
+          whole.at(i, j) = 0;
+    }
+  return whole;
+}
+
+}  // namespace
+
+std::optional<Contour> inner_edge_of(const SeenTissue& seen) {
+  const Vec3 middle = curve_centroid(seen.tumor_edge);
+  const Box3 box = bounding_box(seen.tumor_edge.points);
+  const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), kPixelMm, kAroundMm);
+  const Raster skin = opened(whole_skin(seen, grid), 0.5 * kBridgeMm);
+  const Components parts = find_components(skin, 1, Connectivity::Four);
+  const Vec2 centre = grid.index_of(middle.head<2>());
+  const std::int32_t plug =
+      parts.labels[grid.offset(static_cast<int>(std::lround(centre.x())), static_cast<int>(std::lround(centre.y())))];
+  if (plug < 0 || parts.parts[static_cast<std::size_t>(plug)].touches_border) return std::nullopt;
+  std::vector<double> radius;
+  for (int n = 0; n < kRays; ++n) {
+    const double angle = 2.0 * units::kPi * n / kRays;
+    double r = 0.0;
+    for (;; r += 0.25 * kPixelMm) {
+      const Vec2 at = grid.index_of(middle.head<2>() + r * Vec2(std::cos(angle), std::sin(angle)));
+      const int i = static_cast<int>(std::lround(at.x())), j = static_cast<int>(std::lround(at.y()));
+      if (!grid.contains(i, j) || parts.labels[grid.offset(i, j)] != plug) break;
+    }
+    radius.push_back(r);
+  }
+  Contour edge;
+  const int half = static_cast<int>(kSmoothDeg * kRays / 360.0);
+  for (int n = 0; n < kRays; ++n) {
+    double sum = 0.0, weights = 0.0;
+    for (int k = -half; k <= half; ++k) {
+      const double weight = 1.0 - std::abs(k) / (half + 1.0);
+      sum += weight * radius[static_cast<std::size_t>((n + k + kRays) % kRays)];
+      weights += weight;
+    }
+    const double angle = 2.0 * units::kPi * n / kRays;
+    edge.points.emplace_back(middle.x() + sum / weights * std::cos(angle), middle.y() + sum / weights * std::sin(angle),
+                             middle.z());
+  }
+  return edge;
+}
+
+}  // namespace incise::second_bench

@@ -1,0 +1,239 @@
+#include <incise/second_bench/specimen.hpp>
+
+#include <algorithm>
+#include <optional>
+
+namespace incise::second_bench {
+namespace {
+
+using S = Specimen;
+constexpr std::string_view kMark = "marked contour in the RGB-D frame";
+constexpr std::string_view kCloud = "camera cloud";
+constexpr std::string_view kPull = "stretch_force_n";
+constexpr std::string_view kPrescription = "prescription";
+constexpr std::string_view kPhoto = "photograph of the cut";
+constexpr std::string_view kNone = "none";
+constexpr auto kUniform = DrawnAs::Uniform;
+constexpr auto kNormal = DrawnAs::Normal;
+constexpr auto kLogNormal = DrawnAs::LogNormal;
+constexpr std::optional<Factor> kAlways = std::nullopt;
+
+constexpr std::array kParameters{
+    Parameter{
+        {"tumor_diameter_mm", &S::tumor_diameter_mm, kUniform, 12.0, 26.0, 8.0, 30.0,
+         "mean diameter of the tumour's edge at rest", "T1 and small T2 cancers: below 20 and 40 mm; chosen", kMark},
+        Factor::Ring},
+    Parameter{{"tumor_irregularity", &S::tumor_irregularity, kUniform, 0.05, 0.20, 0.0, 0.25,
+               "sum of the amplitudes of its harmonics over its radius", "Paper: figure 5, read off; wider", kMark},
+              Factor::Ring},
+    Parameter{{"tumor_depth_mm", &S::tumor_depth_mm, kUniform, 2.0, 6.0, 1.0, 9.0,
+               "of the stiff inclusion beneath the edge", "T1: less than 5 mm deep; wider: chosen", kNone},
+              Factor::Ring},
+    Parameter{{"tumor_along", &S::tumor_along, kUniform, 0.40, 0.54, 0.35, 0.60,
+               "of its middle, as a share of the length from the tip", "chosen: what clamp and suture leave", kMark},
+              Factor::Ring},
+    Parameter{{"tumor_aside", &S::tumor_aside, kUniform, -0.9, 0.9, -1.0, 1.0,
+               "of its middle from the mid-line, as a share of the room that the ring leaves beside it",
+               "most tongue cancers lie at the lateral border; chosen", kMark},
+              Factor::Ring},
+
+    Parameter{{"margin_mm", &S::margin_mm, kUniform, 3.0, 8.0, 2.0, 10.0, "of healthy tissue round the tumour",
+               "5 mm by custom, 2.2 to 7.5 mm proposed: PMC5473778 and its replies", kPrescription},
+              Factor::Prescription},
+    Parameter{{"depth_mm", &S::depth_mm, kUniform, 3.0, 8.0, 2.0, 10.0, "of the tip below the skin",
+               "chosen: as the margin", kPrescription},
+              Factor::Prescription},
+    Parameter{{"speed_mm_s", &S::speed_mm_s, kUniform, 2.0, 12.0, 1.0, 15.0, "of the tool",
+               "2 mm/s: Ge 2024; 7 mm/s: Paper II-B.4; up to 10: nriaziat/thermo; wider: chosen", kPrescription},
+              Factor::Prescription},
+    Parameter{{"start_deg", &S::start_deg, kUniform, 0.0, 360.0, 0.0, 360.0,
+               "where the cut starts, about the vertical from the tip's side", "chosen", kPrescription},
+              Factor::Prescription},
+
+    Parameter{
+        {"youngs_modulus_kpa", &S::youngs_modulus_kpa, kLogNormal, 10.0, 0.25, 3.0, 60.0,
+         "long-time Young's modulus across the fibres at small strain",
+         "[Cheng2011]: E some 8 kPa in vivo; [Buchaillard2009]: 6.2 kPa; raised for dead muscle; spread chosen", kPull},
+        kAlways},
+    Parameter{{"poissons_ratio", &S::poissons_ratio, kUniform, 0.45, 0.47, 0.3, 0.48, "Poisson's ratio",
+               "chosen: nearly incompressible", kNone},
+              kAlways},
+    Parameter{{"stiffness_spread", &S::stiffness_spread, kUniform, 0.05, 0.20, 0.0, 0.6,
+               "standard deviation of the logarithm of stiffness from place to place, 15 mm waves", "chosen", kNone},
+              kAlways},
+    Parameter{{"fibre_ratio", &S::fibre_ratio, kUniform, 1.0, 6.0, 1.0, 8.0,
+               "stiffness along stretched fibres over that across",
+               "porcine muscle is stiffer along its fibres (Song 2007, Pietsch 2014); range chosen", kPull},
+              Factor::Fibres},
+    Parameter{{"stiffening", &S::stiffening, kUniform, 0.2, 0.8, 0.0, 2.0, "c2 / c1 of Yeoh's energy",
+               "0.47 both in [Gerard2005] and [Buchaillard2009]; range chosen", kPull},
+              Factor::Stiffening},
+    Parameter{{"tumor_ratio", &S::tumor_ratio, kLogNormal, 7.0, 0.8, 1.0, 40.0,
+               "stiffness inside the tumour over that outside",
+               "[TongueStrain2022]: 9.7 +- 9.8 (n = 62): a log-normal of median 6.9, sd 0.84", kNone},
+              Factor::Tumor},
+    Parameter{{"relaxing_ratio", &S::relaxing_ratio, kUniform, 0.5, 3.0, 0.0, 10.0,
+               "stiffness that relaxes over that which stays",
+               "[Palevski2006]: up to 13 at a step, not preconditioned; less at the rates here: chosen", kPull},
+              Factor::Relaxation},
+    Parameter{{"relaxation_time_s", &S::relaxation_time_s, kUniform, 4.0, 20.0, 1.0, 100.0, "of that part",
+               "[Palevski2006]: plateau at some 20 s", kPull},
+              Factor::Relaxation},
+    Parameter{
+        {"wait_s", &S::wait_s, kUniform, 30.0, 300.0, 0.0, 3600.0, "from the stretch to the cut", "chosen", kNone},
+        Factor::Relaxation},
+    Parameter{{"gauge_s", &S::gauge_s, kUniform, 2.0, 60.0, 0.0, 3600.0, "from the stretch to the reading of the pull",
+               "chosen", kPull},
+              Factor::Relaxation},
+
+    Parameter{{"ablation_j_mm3", &S::ablation_j_mm3, kLogNormal, 0.38, 0.10, 0.1, 3.0,
+               "energy that parts tissue by heat, per volume",
+               "2.6 J/mm3 boil tissue away, part of which rupture by steam saves; fits Paper II-B.3: at 7 mm/s 25 W do "
+               "not cut, 35 W do",
+               kNone},
+              Factor::Cutting},
+    Parameter{{"ablation_spread", &S::ablation_spread, kUniform, 0.03, 0.12, 0.0, 0.6,
+               "standard deviation of its logarithm from place to place, 12 mm waves", "chosen", kNone},
+              Factor::Cutting},
+    Parameter{{"lost_power_w", &S::lost_power_w, kNormal, 15.0, 0.5, 8.0, 22.0,
+               "lost in leads, plate and drying before the arc holds",
+               "[Karaki2020], porcine liver: no effect at 10 W, no cut at 25 W; in between: chosen", kNone},
+              Factor::Cutting},
+    Parameter{{"reach_mm", &S::reach_mm, kUniform, 0.15, 0.35, 0.1, 1.0, "of the arc beyond the metal",
+               "kerfs of 0.15 to 0.70 mm beyond the tool: Life 13:162; chosen", kPhoto},
+              Factor::Cutting},
+    Parameter{
+        {"toughness_j_m2", &S::toughness_j_m2, kLogNormal, 300.0, 0.30, 50.0, 3000.0,
+         "work that tears tissue, per area",
+         "[Liu2022], table 2: porcine lamina propria 169 to 451 J/m2; three times the first bench's spread", kNone},
+        Factor::Cutting},
+    Parameter{{"adhesion_kpa", &S::adhesion_kpa, kLogNormal, 90.0, 0.45, 5.0, 600.0,
+               "traction at which tissue lets go of the metal, fast",
+               "chosen: errors as planned like Paper Table II; three times the first bench's spread", kNone},
+              Factor::Cutting},
+    Parameter{{"char_per_mm", &S::char_per_mm, kUniform, 0.0, 0.008, 0.0, 0.05, "growth of adhesion along the path",
+               "chosen: char builds up on an electrode", kNone},
+              Factor::Cutting},
+    Parameter{{"shrinking", &S::shrinking, kUniform, 0.12, 0.22, 0.0, 0.4,
+               "of tissue that the cut has heated, in length", "liver: 12 to 22 % at 60 to 95 degrees C", kPhoto},
+              Factor::Heat},
+
+    Parameter{{"stretch_error_mm", &S::stretch_error_mm, kNormal, 0.0, 1.0, -8.0, 8.0,
+               "of the 20 mm by which the suture is drawn", "chosen: knots slip", kCloud},
+              kAlways},
+    Parameter{{"stretch_angle_deg", &S::stretch_angle_deg, kNormal, 0.0, 3.0, -15.0, 15.0,
+               "sideways, of the direction of the pull", "chosen: set by eye", kCloud},
+              kAlways},
+    Parameter{{"clamp_slip_mm", &S::clamp_slip_mm, kUniform, 0.0, 2.0, 0.0, 8.0,
+               "how far the root is pulled out of the clamp", "chosen: wet muscle between jaws", kCloud},
+              kAlways},
+    Parameter{{"force_bias", &S::force_bias, kNormal, 0.0, 0.20, -0.6, 0.6, "of the gauge, relative",
+               "chosen: a spring scale, read in passing", kPull},
+              Factor::Pull},
+    Parameter{{"suture_creep_mm", &S::suture_creep_mm, kUniform, 0.0, 1.5, 0.0, 10.0,
+               "by which the suture cuts in during the cut", "chosen", kNone},
+              Factor::Suture},
+    Parameter{{"friction", &S::friction, kUniform, 0.0, 0.5, 0.0, 1.0, "coefficient between sole and platform",
+               "chosen: wet to dry tissue on plastic", kNone},
+              Factor::Platform},
+    Parameter{
+        {"sole_relief_mm", &S::sole_relief_mm, kUniform, 0.0, 1.0, 0.0, 3.0,
+         "standard deviation of the platform's height under the sole, 25 mm waves", "chosen: drape and gauze", kNone},
+        Factor::Platform},
+    Parameter{{"breathing_mm", &S::breathing_mm, kUniform, 0.1, 0.5, 0.0, 3.0, "amplitude of a rise and fall every 4 s",
+               "chosen: 0.2 to 1 mm from end to end", kNone},
+              Factor::Motion},
+    Parameter{{"drift_mm", &S::drift_mm, kUniform, -1.0, 1.0, -5.0, 5.0, "sideways, over the cut", "chosen", kNone},
+              Factor::Motion},
+
+    Parameter{{"hand_eye_x_mm", &S::hand_eye_x_mm, kNormal, 0.0, 0.6, -1.5, 1.5,
+               "of the tip from where it should be, base frame; one for a series",
+               "Paper [21]: millimetre accuracy in all; 0.5 to 1.5 mm: chosen", kPhoto},
+              Factor::HandEye},
+    Parameter{
+        {"hand_eye_y_mm", &S::hand_eye_y_mm, kNormal, 0.0, 0.6, -1.5, 1.5, "likewise", "as hand_eye_x_mm", kPhoto},
+        Factor::HandEye},
+    Parameter{{"hand_eye_z_mm", &S::hand_eye_z_mm, kNormal, 0.0, 0.6, -1.5, 1.5, "likewise", "as hand_eye_x_mm", kNone},
+              Factor::HandEye},
+    Parameter{{"ct_blur_mm", &S::ct_blur_mm, kUniform, 0.3, 1.0, 0.1, 2.0, "standard deviation of the point spread",
+               "chosen: soft to sharp kernels", "CT"},
+              Factor::Imaging},
+    Parameter{{"ct_slice_mm", &S::ct_slice_mm, kUniform, 0.8, 2.0, 0.5, 3.0, "distance of slices", "chosen", "CT"},
+              Factor::Imaging},
+    Parameter{{"segmentation_mm", &S::segmentation_mm, kUniform, -0.7, 0.7, -2.0, 2.0,
+               "by which the specimen seems larger all round", "chosen", "CT"},
+              Factor::Imaging},
+    Parameter{{"sag", &S::sag, kUniform, -0.01, 0.04, -0.1, 0.15,
+               "by which it is lower, and wider by the same share, in the scanner", "chosen: it lay otherwise", "CT"},
+              Factor::Imaging},
+    Parameter{{"lens_distortion", &S::lens_distortion, kUniform, -0.03, 0.03, -0.3, 0.3,
+               "radial, first coefficient, left by the camera's calibration", "chosen", kCloud},
+              Factor::Imaging},
+    Parameter{{"camera_distance_mm", &S::camera_distance_mm, kUniform, 200.0, 400.0, 100.0, 10000.0,
+               "of the photograph's camera from the tissue", "chosen: held by hand", kPhoto},
+              Factor::Photograph},
+    Parameter{{"photograph_tilt_deg", &S::photograph_tilt_deg, kUniform, 0.0, 8.0, 0.0, 20.0,
+               "of that camera from straight down, any way", "chosen: held by hand", kPhoto},
+              Factor::Photograph},
+    Parameter{{"annotator_mm", &S::annotator_mm, kUniform, 0.2, 0.4, 0.0, 1.0,
+               "standard deviation of the hand that draws the kerf's inner edge", "chosen", kPhoto},
+              Factor::Photograph},
+    Parameter{{"stains", &S::stains, kUniform, 0.3, 1.0, 0.0, 1.0, "char, blood and glare in the photograph", "chosen",
+               kPhoto},
+              Factor::Photograph},
+    Parameter{{"lag_s", &S::lag_s, kUniform, 0.0, 0.08, 0.0, 0.5, "of the arm behind its program",
+               "servo loops of some tens of ms; chosen", kNone},
+              Factor::Arm},
+    Parameter{
+        {"wander_mm", &S::wander_mm, kUniform, 0.05, 0.20, 0.0, 1.0,
+         "standard deviation of the tip from its course, 20 mm waves", "[UrDataSheet]: repeatability 0.05 mm", kNone},
+        Factor::Arm},
+    Parameter{{"bending_mm_n", &S::bending_mm_n, kUniform, 0.0, 0.4, 0.0, 3.0, "of the needle's tip per force",
+               "chosen: steel, 1 mm thick, 60 to 80 mm long", kNone},
+              Factor::Arm},
+    Parameter{{"placement_x_mm", &S::placement_x_mm, kNormal, 0.0, 8.0, -40.0, 40.0, "on the table, base frame",
+               "chosen: set down by hand", kCloud},
+              kAlways},
+    Parameter{{"placement_y_mm", &S::placement_y_mm, kNormal, 0.0, 8.0, -40.0, 40.0, "likewise",
+               "chosen: set down by hand", kCloud},
+              kAlways},
+    Parameter{{"placement_turn_deg", &S::placement_turn_deg, kNormal, 0.0, 5.0, -45.0, 45.0, "about the vertical",
+               "chosen: set down by hand", kCloud},
+              kAlways},
+};
+
+}  // namespace
+
+Factors all_factors() {
+  Factors all;
+  for (std::size_t n = 0; n < kFactorNames.size(); ++n) all.insert(static_cast<Factor>(n));
+  return all;
+}
+
+std::span<const Parameter> parameters() {
+  return kParameters;
+}
+
+Specimen draw_specimen(std::uint64_t seed, std::uint64_t series, const Factors& factors) {
+  Specimen specimen;
+  specimen.seed = seed;
+  specimen.series = series;
+  for (const Parameter& parameter : kParameters) {
+    if (parameter.factor && !factors.contains(*parameter.factor)) continue;
+    specimen.*parameter.member = drawn(parameter, parameter.factor == Factor::HandEye ? series : seed);
+  }
+  return specimen;
+}
+
+double prescribed_power_w(const Specimen& specimen) {
+  return std::max(20.0, 15.0 + 20.0 * specimen.depth_mm * specimen.speed_mm_s / (5.0 * 7.0));
+}
+
+void describe(Visitor& v, Specimen& specimen) {
+  v("seed", specimen.seed, "Of the shape, of the fields inside, of all noise and of every parameter.");
+  v("series", specimen.series, "Of the hand-eye error: specimens of one series share it.");
+  for (const Parameter& parameter : kParameters)
+    v(parameter.name, specimen.*parameter.member, parameter.meaning, Range{parameter.low, parameter.high});
+}
+
+}  // namespace incise::second_bench

@@ -1,0 +1,163 @@
+#include "second_bench/body_state.hpp"
+
+#include <incise/core/units.hpp>
+#include <incise/second_bench/readings.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+namespace incise::second_bench {
+namespace {
+
+constexpr Resolution kCoarse{.brick_mm = 2.6, .coarse_mm = 7.0, .way_mm = 0.6, .relaxations = 12};
+
+Specimen plain(double youngs_modulus_kpa = 12.0) {
+  Specimen specimen;
+  specimen.seed = 4;
+  specimen.tumor_diameter_mm = 14.0;
+  specimen.youngs_modulus_kpa = youngs_modulus_kpa;
+  return specimen;
+}
+
+const Body& plain_body() {
+  static const Body body = [] {
+    Monitor quiet;
+    return make_body(plain(), kCoarse, quiet);
+  }();
+  return body;
+}
+
+/// A ring outside the tumour's edge, straight down, with 8 mm of overlap.
+std::vector<TipPose> ring(const Body& body, double speed_mm_s) {
+  const Contour edge = tumor_edge_of(*body.state);
+  const Vec3 middle = curve_centroid(edge);
+  std::vector<TipPose> course;
+  double time = 0.0, way = 0.0;
+  const auto tip = [&](std::size_t n) {
+    const Vec3 p = edge.points[n % edge.points.size()];
+    const Vec2 out = (p - middle).head<2>();
+    Vec3 q = p;
+    q.head<2>() += 5.0 * out.normalized();
+    q.z() -= 5.5;
+    return q;
+  };
+  course.push_back({0.0, tip(0) + 6.0 * Vec3::UnitZ(), -Vec3::UnitZ(), true});
+  for (std::size_t n = 0; n < edge.points.size() || way < 8.0; ++n) {
+    const double step = (tip(n) - course.back().tip_mm).norm();
+    time += step / speed_mm_s;
+    if (n >= edge.points.size()) way += step;
+    course.push_back({time, tip(n), -Vec3::UnitZ(), true});
+  }
+  return course;
+}
+
+const Cut& cut_at(double speed_mm_s, double power_w) {
+  static std::map<std::pair<double, double>, Cut> made;
+  const auto key = std::pair(speed_mm_s, power_w);
+  if (!made.contains(key)) {
+    Monitor quiet;
+    made[key] = cut_specimen(plain_body(), ring(plain_body(), speed_mm_s), power_w, quiet);
+  }
+  return made.at(key);
+}
+
+double mean_abs(const std::vector<double>& errors) {
+  double sum = 0.0;
+  for (const double e : errors) sum += std::abs(e) / static_cast<double>(errors.size());
+  return sum;
+}
+
+TEST(SecondBody, IsHeldStretchedAndPulled) {
+  const Body& body = plain_body();
+  EXPECT_EQ(body.outcome, Outcome::Success);
+  EXPECT_GT(body.stretch_force_n, 0.3);
+  const Contour edge = tumor_edge_of(*body.state);
+  // Pulled 20 mm at the tip: the edge lies some way towards it, and is longer than it was.
+  EXPECT_LT(curve_centroid(edge).y(), curve_centroid(body.tumor_edge_rest).y() - 4.0);
+  EXPECT_GT(bounding_box(edge.points).sizes().y(), 1.02 * bounding_box(body.tumor_edge_rest.points).sizes().y());
+}
+
+TEST(SecondBody, TheGaugeReadsMoreTheSoonerAfterTheStretch) {
+  Monitor quiet;
+  Specimen soon = plain();
+  soon.gauge_s = 2.0;
+  const Body body = make_body(soon, kCoarse, quiet);
+  EXPECT_GT(body.gauge_force_n, 1.3 * plain_body().gauge_force_n);
+  // When the cut begins both have relaxed, to within what is called at rest.
+  EXPECT_NEAR(body.stretch_force_n, plain_body().stretch_force_n, 0.01 * plain_body().stretch_force_n);
+}
+
+TEST(SecondCut, ClosesErrsInwardAndIsTheSameTwice) {
+  const Cut& cut = cut_at(7.0, 35.0);
+  const auto errors = true_errors_mm(cut, 4.5);
+  ASSERT_TRUE(errors.has_value());
+  EXPECT_GT(mean_abs(*errors), 0.4);
+  EXPECT_LT(mean_abs(*errors), 3.0);
+  Monitor quiet;
+  const Cut again = cut_specimen(plain_body(), ring(plain_body(), 7.0), 35.0, quiet);
+  EXPECT_EQ(again.after->tissue.position, cut.after->tissue.position);
+  EXPECT_EQ(again.after->tissue.voxels_of, cut.after->tissue.voxels_of);
+}
+
+TEST(SecondCut, AFasterToolPushesHarderAndErrsMore) {
+  const auto slow = true_errors_mm(cut_at(2.0, 35.0), 4.5), fast = true_errors_mm(cut_at(7.0, 35.0), 4.5);
+  ASSERT_TRUE(slow && fast);
+  EXPECT_LT(cut_at(2.0, 35.0).mean_force_mn, 0.7 * cut_at(7.0, 35.0).mean_force_mn);
+  EXPECT_LT(mean_abs(*slow), mean_abs(*fast));
+}
+
+// The order of paper II-B.3: at 25 W tissue piles up, at 30 W less, at 40 W still less; heat parts the more.
+TEST(SecondCut, ThePowerSeriesHasThePapersOrder) {
+  const Cut &weak = cut_at(7.0, 25.0), &less = cut_at(7.0, 30.0), &more = cut_at(7.0, 40.0);
+  EXPECT_GT(weak.mean_force_mn, less.mean_force_mn);
+  EXPECT_GT(less.mean_force_mn, cut_at(7.0, 35.0).mean_force_mn);
+  EXPECT_GT(cut_at(7.0, 35.0).mean_force_mn, more.mean_force_mn);
+  EXPECT_LT(weak.parted_by_heat, less.parted_by_heat);
+  EXPECT_LT(less.parted_by_heat, more.parted_by_heat);
+  EXPECT_FALSE(inner_edge_of(seen_from_above(*weak.after)).has_value());
+}
+
+TEST(SecondCut, HeatShrinksTheRim) {
+  Monitor quiet;
+  Specimen specimen = plain();
+  specimen.shrinking = 0.2;
+  const Body body = make_body(specimen, kCoarse, quiet);
+  const Cut cut = cut_specimen(body, ring(body, 4.0), 35.0, quiet);
+  const auto errors = true_errors_mm(cut, 4.5), without = true_errors_mm(cut_at(4.0, 35.0), 4.5);
+  ASSERT_TRUE(errors && without);
+  double mean = 0.0, mean_without = 0.0;
+  for (const double e : *errors) mean += e / static_cast<double>(errors->size());
+  for (const double e : *without) mean_without += e / static_cast<double>(without->size());
+  EXPECT_LT(mean, mean_without - 0.02);
+}
+
+TEST(SecondReadings, TheArmIsOffAndLate) {
+  std::vector<TipPose> asked;
+  for (int n = 0; n <= 100; ++n) asked.push_back({0.02 * n, Vec3(0.14 * n, 0.0, 0.0), -Vec3::UnitZ(), true});
+  Specimen specimen;
+  specimen.wander_mm = 0.0;
+  specimen.hand_eye_y_mm = 0.8;
+  specimen.lag_s = 0.05;
+  const std::vector<TipPose> real = tip_course(asked, specimen, Mat4::Identity());
+  // 7 mm/s, 50 ms late.
+  EXPECT_NEAR(asked.back().tip_mm.x() - real.back().tip_mm.x(), 0.35, 0.08);
+  EXPECT_NEAR(real.back().tip_mm.y(), 0.8, 1e-9);
+}
+
+// The picture's camera looks askew and from near: places above the tumour's edge seem farther out.
+TEST(SecondReadings, ThePhotographIsInPerspective) {
+  Body body = plain_body();
+  body.specimen.camera_distance_mm = 200.0;
+  const Cut& cut = cut_at(7.0, 35.0);
+  const SeenTissue straight = seen_from_above(*cut.after), seen = seen_by_camera(body, cut);
+  const Vec3 middle = curve_centroid(straight.tumor_edge);
+  for (std::size_t n = 0; n < seen.vertices.size(); n += 97) {
+    const Vec3 p = straight.vertices[n] - middle;
+    EXPECT_NEAR((seen.vertices[n] - middle).head<2>().norm(), p.head<2>().norm() * 200.0 / (200.0 - p.z()), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace incise::second_bench
