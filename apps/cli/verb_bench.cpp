@@ -117,22 +117,6 @@ void add_bench(Application& application) {
                    "Folder for the hidden truth; it holds the specimen.json that `bench cut` needs");
   verb->add_flag("--elasticity", made->has_elasticity, "Also a noisy elasticity map");
 
-  auto accepted = std::make_shared<AcceptanceSettings>();
-  verb = application.add_verb_to(
-      *bench, "accept",
-      "Cut specimens of laboratory 2 as planned and along the paper's correction, to judge the laboratory without the "
-      "planner that it will judge. Run it again to continue where it stopped",
-      "incise bench accept --seed 1 -o acceptance",
-      [accepted](const CommonOptions& options) { return accept(options, *accepted); });
-  verb->add_option("--specimens", accepted->specimens, "1 to 200; their seeds count up from --seed")
-      ->check(whole_between("--specimens", 1, 200));
-  add_factors(*verb, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
-  verb->add_option("--speed-mm-s", accepted->speed_mm_s, "Of every cut; by default as prescribed")
-      ->check(CLI::Range(1.0, 15.0));
-  verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
-      ->check(CLI::Range(1.0, 120.0));
-  verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut as planned alone");
-
   auto run = std::make_shared<laboratory::CutSpecimenRequest>();
   verb = application.add_verb_to(*bench, "cut", "Cut a specimen with a robot program and photograph it",
                                  "incise bench cut hidden7/specimen.json cut.script -o cut7",
@@ -154,6 +138,22 @@ void add_bench(Application& application) {
       ->check(CLI::Range(1.0, 120.0));
   verb->add_option("--simulations", floor->simulations, "Bench cuts by which the path is corrected")
       ->check(whole_between("--simulations", 2, 8));
+
+  auto accepted = std::make_shared<AcceptanceSettings>();
+  verb = application.add_verb_to(
+      *bench, "accept",
+      "Cut specimens of laboratory 2 as planned and along the paper's correction, to judge the laboratory without the "
+      "planner that it will judge. Run it again to continue where it stopped",
+      "incise bench accept --seed 1 -o acceptance",
+      [accepted](const CommonOptions& options) { return accept(options, *accepted); });
+  verb->add_option("--specimens", accepted->specimens, "1 to 200; their seeds count up from --seed")
+      ->check(whole_between("--specimens", 1, 200));
+  add_factors(*verb, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
+  verb->add_option("--speed-mm-s", accepted->speed_mm_s, "Of every cut; by default as prescribed")
+      ->check(CLI::Range(1.0, 15.0));
+  verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
+      ->check(CLI::Range(1.0, 120.0));
+  verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut as planned alone");
 }
 
 }  // namespace incise::cli
