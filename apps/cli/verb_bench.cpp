@@ -4,10 +4,13 @@
 #include <incise/core/error.hpp>
 #include <incise/laboratory/acceptance.hpp>
 #include <incise/laboratory/bench_steps.hpp>
+#include <incise/robot/checks.hpp>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
+#include <iterator>
 #include <memory>
 
 namespace incise::cli {
@@ -81,14 +84,15 @@ void add_factors(CLI::App& verb, const std::function<void(second_bench::Factors)
   verb.add_option_function<std::vector<std::string>>(
           "--factors",
           [take](const std::vector<std::string>& given) {
+            if (given.size() > 1 && std::find(given.begin(), given.end(), "none") != given.end())
+              throw CaseError("command line", "--factors", "none beside others", "none, or names of factors");
             second_bench::Factors factors;
             for (const std::string& name : given)
               if (name != "none") factors.insert(*value_of<second_bench::Factor>(name));
             take(std::move(factors));
           },
           "Of laboratory 2: what varies beside placement, stretch and stiffness; the rest has the defaults of `incise "
-          "schema "
-          "bench2`. By default everything; none: nothing more")
+          "schema bench2`. By default everything; none: nothing more")
       ->delimiter(',')
       ->check(CLI::IsMember(factor_names()));
 }
@@ -153,6 +157,14 @@ void add_bench(Application& application) {
       ->check(CLI::Range(1.0, 15.0));
   verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
       ->check(CLI::Range(1.0, 120.0));
+  std::vector<std::string> checks;
+  std::ranges::copy_if(check_names(), std::back_inserter(checks), can_be_overridden);
+  verb->add_option("--override", accepted->overrides,
+                   "Cut although this check of the program fails, as `incise export` would: the tissue is virtual. "
+                   "Repeat for each check")
+      ->expected(1)
+      ->take_all()
+      ->check(CLI::IsMember(checks));
   verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut as planned alone");
 }
 

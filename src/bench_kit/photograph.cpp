@@ -31,18 +31,6 @@ Points flat(const Contour& contour, const ViewFrame& view) {
   return points;
 }
 
-Vec3 weights_at(const Points& in_view, const Triangle& t, const Vec2& p) {
-  const Vec2 a = in_view[t[0].index()].head<2>();
-  const Vec2 b = in_view[t[1].index()].head<2>() - a;
-  const Vec2 c = in_view[t[2].index()].head<2>() - a;
-  const double area = b.x() * c.y() - b.y() * c.x();
-  if (std::abs(area) < 1e-12) return {1.0, 0.0, 0.0};
-  const Vec2 d = p - a;
-  const double v = (d.x() * c.y() - d.y() * c.x()) / area;
-  const double w = (b.x() * d.y() - b.y() * d.x()) / area;
-  return {1.0 - v - w, v, w};
-}
-
 /// Rows of a picture run down, those of a grid up.
 Vec2 to_picture(const RasterGrid& grid, const Vec2& p) {
   const Vec2 index = grid.index_of(p);
@@ -145,7 +133,7 @@ class Painter {
           continue;
         }
         const Triangle& t = tissue_.triangles[static_cast<std::size_t>(n)];
-        const Vec3 weights = weights_at(in_view_, t, grid_.centre(i, j));
+        const Vec3 weights = weights_seen_at(in_view_, t, grid_.centre(i, j));
         Vec3 rest = Vec3::Zero();
         for (std::size_t c = 0; c < 3; ++c) rest += weights[static_cast<Eigen::Index>(c)] * tissue_.rest[t[c].index()];
         const Vec3& a = in_view_[t[0].index()];

@@ -35,6 +35,7 @@ Rows asked_json(const AcceptanceSettings& settings) {
           {"factors", factors},
           {"speed_mm_s", settings.speed_mm_s ? Rows(*settings.speed_mm_s) : Rows(nullptr)},
           {"power_w", settings.power_w ? Rows(*settings.power_w) : Rows(nullptr)},
+          {"overrides", settings.overrides},
           {"paper_pass", settings.with_paper_pass},
           {"tets", settings.tets}};
 }
@@ -64,6 +65,7 @@ void cut_twice(const AcceptanceSettings& settings, const std::filesystem::path& 
   laboratory::VirtualLaboratory bench(hidden, steps);
   laboratory::TrialSetup setup{.name = trial.name, .tets = settings.tets};
   setup.given_power_w = settings.power_w;
+  setup.overrides = settings.overrides;
   laboratory::SpecimenTrial specimen(setup, steps, bench);
   if (specimen.prepare(std::nullopt)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");

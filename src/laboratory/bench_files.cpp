@@ -112,17 +112,18 @@ std::uint64_t whole_number_in(const Json& document, const char* key, const std::
 }
 
 /// Takes over the parameters that a file gives.
+/// @param schema  what `incise schema` calls such a file.  @param names  of its other keys.
 template <class Specimen, class Parameters>
-void read_parameters(const Json& document, std::vector<std::string> names, const Parameters& parameters,
-                     const std::filesystem::path& file, Specimen& specimen) {
+void read_parameters(const Json& document, const char* schema, std::vector<std::string> names,
+                     const Parameters& parameters, const std::filesystem::path& file, Specimen& specimen) {
   const std::size_t known = names.size();
   for (const auto& spec : parameters) names.emplace_back(spec.name);
   for (const auto& [key, value] : document.items()) {
     const auto found = std::find(names.begin(), names.end(), key);
     if (found == names.end())
-      throw DataError(file, key, "an unknown key", "a parameter of a specimen",
-                      fmt::format("Did you mean '{}'? `incise schema {}` lists all.", nearest_name(key, names),
-                                  known > 2 ? "bench2" : "bench"));
+      throw DataError(
+          file, key, "an unknown key", "a parameter of a specimen",
+          fmt::format("Did you mean '{}'? `incise schema {}` lists all.", nearest_name(key, names), schema));
     const auto place = static_cast<std::size_t>(found - names.begin());
     if (place < known) continue;
     const auto& spec = parameters[place - known];
@@ -165,7 +166,7 @@ Specimen read_specimen(const std::filesystem::path& file) {
   const Json document = read_json(file);
   require_schema(document, kFirstSchema, file);
   Specimen specimen = draw_specimen(whole_number_in(document, kSeed.key, file));
-  read_parameters(document, {"schema", kSeed.key}, parameter_specs(), file, specimen);
+  read_parameters(document, "bench", {"schema", kSeed.key}, parameter_specs(), file, specimen);
   return specimen;
 }
 
@@ -175,7 +176,7 @@ second_bench::Specimen read_second_specimen(const std::filesystem::path& file) {
   second_bench::Specimen specimen =
       second_bench::draw_specimen(whole_number_in(document, kSeed.key, file),
                                   whole_number_in(document, kSeries.key, file), second_bench::all_factors());
-  read_parameters(document, {"schema", kSeed.key, kSeries.key}, second_bench::parameters(), file, specimen);
+  read_parameters(document, "bench2", {"schema", kSeed.key, kSeries.key}, second_bench::parameters(), file, specimen);
   return specimen;
 }
 
@@ -221,9 +222,9 @@ void write_readings(const std::filesystem::path& folder, const Readings& reading
   json["rgb"] = "rgb.png";
   json["depth"] = "depth.png";
   json["camera"] = "camera.json";
-  json["stretch_mm"] = 20.0;
+  json["stretch_mm"] = kDrawnMm;
   json["stretch_force_n"] = readings.stretch_force_n;
-  if (prescription.is_null()) json["stretch_force_noise_percent"] = 5.0;  // the second laboratory does not know its own
+  if (readings.stretch_force_noise_percent) json["stretch_force_noise_percent"] = *readings.stretch_force_noise_percent;
   if (readings.elasticity_kpa) {
     write_gray(folder / "elasticity.nrrd", *readings.elasticity_kpa);
     json["elasticity_kpa"] = "elasticity.nrrd";
@@ -252,7 +253,7 @@ void write_truth(const std::filesystem::path& folder, const BenchBody& body) {
 
 void write_truth(const std::filesystem::path& folder, const second_bench::Body& body) {
   write_json(folder / "specimen.json", specimen_json(body.specimen));
-  write_contour_csv(folder / "tumor_edge_rest.csv", body.tumor_edge_rest);
+  write_contour_csv(folder / "tumor_edge_rest.csv", second_bench::tumor_edge_rest_of(*body.state));
   write_contour_csv(folder / "tumor_edge_stretched.csv", second_bench::tumor_edge_of(*body.state));
   Json json;
   json["note"] = kTruth;

@@ -251,6 +251,8 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
     exporting.checks.planned_depth_mm = prescription_.at("depth_mm").get<double>();
     exported.insert(exported.end(), {"--depth-mm", text(exporting.checks.planned_depth_mm)});
   }
+  exporting.overrides = setup_.overrides;
+  for (const std::string& check : setup_.overrides) exported.insert(exported.end(), {"--override", check});
   // The bench's tissue is virtual, and the cut as planned is made to see how far it misses: cautions are taken. What a
   // simulation refuses is not cut here either.
   for (const VerdictRule& rule : verdict_rules()) {

@@ -18,6 +18,7 @@ struct TrialSetup {
   std::string name;  ///< "S1"
   double power_w = 35.0;
   std::optional<double> given_power_w;  ///< whatever is prescribed
+  std::vector<std::string> overrides;   ///< checks of the program that whoever cuts takes on them
   int tets = 25000;  ///< of the planner's mesh
   CutRule rule = CutRule::Tets;  ///< of the planner's cuts
 };

@@ -104,6 +104,8 @@ class SecondSpecimen : public VirtualSpecimen {
     truth["most_needle_force_mn"] = made.max_force_mn;
     truth["voxels_parted_by_heat"] = made.parted_by_heat;
     truth["voxels_parted_by_force"] = made.parted_by_force;
+    truth["steps"] = made.steps;
+    truth["iterations"] = made.iterations;
     truth["residual"] = made.residual;
     return PhotographedCut{photograph(body_, made, settings), truth};
   }

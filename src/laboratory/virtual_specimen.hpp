@@ -21,7 +21,7 @@ struct PhotographedCut {
 class VirtualSpecimen {
  public:
   virtual ~VirtualSpecimen() = default;
-  /// Whether it could be stretched; else `monitor` is told why not, and nothing can be read or cut.
+  /// Whether the specimen could be stretched. If not, `monitor` gets a warning, and nothing can be read or cut.
   [[nodiscard]] virtual bool is_held(Monitor& monitor) const = 0;
   /// A specimen file in full.
   [[nodiscard]] virtual nlohmann::ordered_json file() const = 0;

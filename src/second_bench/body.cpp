@@ -1,5 +1,6 @@
 #include "second_bench/body_state.hpp"
 
+#include <incise/bench_kit/readings.hpp>
 #include <incise/bench_kit/smooth_field.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/expect.hpp>
@@ -7,21 +8,22 @@
 #include <incise/core/units.hpp>
 #include <incise/imaging/tumor_star.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <chrono>
+#include <bit>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 namespace incise::second_bench {
 namespace {
 
-constexpr double kClampMm = 14.0;
-constexpr double kSutureMm = 8.0;
-constexpr double kStretchMm = 20.0;
 constexpr double kRoundRingMm = 4.0;     // beyond the planned ring and below it: where bricks are small
 constexpr double kToSilhouetteMm = 5.0;  // from the ring of the tumour that lies farthest aside
+constexpr double kStiffnessWaveMm = 15.0;
+constexpr double kAblationWaveMm = 12.0;
 constexpr double kReliefWaveMm = 25.0;
-constexpr const char* kMakingStage = "making the virtual specimen";
+constexpr int kEdgePoints = 120;
 constexpr int kLaplaceSweeps = 400;
 constexpr int kMostIterations = 4000;
 constexpr double kAtRest = 1e-3;  // residual over reactions
@@ -64,11 +66,14 @@ Tumor draw_tumor(const Specimen& specimen, const TongueShape& shape, Random& ran
   const double x = midline_x_mm(shape, y) + aside_mm(specimen, shape, y);
   const auto place = [&](double px, double py) {
     const auto span = span_at(shape, px, py);
-    return Vec3(px, py, span ? span->high_mm : std::numeric_limits<double>::quiet_NaN());
+    if (!span)
+      throw CaseError("specimen", "tumor_diameter_mm", fmt::format("{}, beyond the tissue", specimen.tumor_diameter_mm),
+                      "a tumour whose edge lies on the back of the tongue");
+    return Vec3(px, py, span->high_mm);
   };
   tumor.middle = place(x, y);
-  for (int n = 0; n < 120; ++n) {
-    const double angle = 2.0 * units::kPi * n / 120;
+  for (int n = 0; n < kEdgePoints; ++n) {
+    const double angle = 2.0 * units::kPi * n / kEdgePoints;
     const double r = tumor.star.radius_at_mm(angle);
     tumor.edge.points.push_back(place(x + r * std::cos(angle), y + r * std::sin(angle)));
   }
@@ -83,7 +88,8 @@ bool is_in(const Tumor& tumor, const TongueShape& shape, const Vec3& p) {
   return span && span->high_mm - p.z() <= tumor.depth_mm * std::sqrt(1.0 - share * share);
 }
 
-/// Fibres run along the gradient of a potential that is harmonic between clamp and suture (Laplace fibres).
+/// Fibres run along the gradient of a potential that is harmonic between clamp and suture (Laplace fibres); in what
+/// these hold, along y.
 std::vector<Vec3> fibres_of(const BrickGrid& grid, const std::vector<Voxels>& voxels, double low_y, double high_y) {
   const std::size_t count = grid.brick_count();
   std::vector<float> potential(count, 0.5F);
@@ -159,35 +165,15 @@ BrickGrid grid_of(const Specimen& specimen, const Resolution& resolution, const 
   grid.planes_mm[0] = planes(ordered({std::min(box.min().x(), low.x() - 0.5), std::max(low.x(), box.min().x()),
                                       std::min(high.x(), box.max().x()), std::max(box.max().x(), high.x()) + 0.5}),
                              {coarse, fine, coarse});
-  grid.planes_mm[1] = planes(ordered({tip, tip + kSutureMm, low.y(), high.y(), root - kClampMm, root}),
+  grid.planes_mm[1] = planes(ordered({tip, tip + kSuturedMm, low.y(), high.y(), root - kClampedMm, root}),
                              {coarse, coarse, fine, coarse, coarse});
   grid.planes_mm[2] = planes(ordered({0.0, low.z(), box.max().z() + 0.1}), {coarse, fine});
   return grid;
 }
 
-/// Lets held tissue come to rest. @returns free forces over reactions; not a number where it burst.
-double come_to_rest(BodyState& state, Monitor& monitor) {
-  BrickTissue& tissue = state.tissue;
-  Relaxer relaxer;
-  Rest rest;
-  for (int n = 0; n < kMostIterations; ++n) {
-    if (n % 20 == 0) {
-      throw_if_cancelled(monitor, kMakingStage);
-      bound_masses(tissue, 0.0F);
-      add_platform_masses(tissue, state.platform);
-    }
-    add_elastic_forces(tissue, 0.0F, static_cast<float>(kWeightMnMm3));
-    add_platform(tissue, state.platform);
-    rest = relaxer.iterate(tissue, 0.0);
-    if (n > 50 && rest.residual_mn < kAtRest * rest.reaction_mn) break;
-  }
-  for (auto& velocity : tissue.velocity) velocity = {};
-  return rest.residual_mn / rest.reaction_mn;
-}
-
 /// What the suture holds.
 double pull_n(BodyState& state) {
-  add_elastic_forces(state.tissue, 0.0F, static_cast<float>(kWeightMnMm3));
+  set_tissue_forces(state.tissue, 0.0F, static_cast<float>(kWeightMnMm3));
   add_platform(state.tissue, state.platform);
   Vec3 sum = Vec3::Zero();
   for (const std::int32_t node : state.suture_nodes) {
@@ -197,124 +183,150 @@ double pull_n(BodyState& state) {
   return 1e-3 * sum.norm();
 }
 
-}  // namespace
-
-Body make_body(const Specimen& specimen, const Resolution& resolution, Monitor& monitor) {
-  const auto start = std::chrono::steady_clock::now();
-  if (const auto problems = problems_of(specimen); !problems.empty()) throw CaseError("specimen", problems.front());
-  auto state = std::make_shared<BodyState>();
-  Random random(specimen.seed ^ kShapeStream);
-  state->shape = draw_tongue_shape({}, random);
-  const Tumor tumor = draw_tumor(specimen, state->shape, random);
-  BrickGrid grid = grid_of(specimen, resolution, state->shape, tumor);
-  const TongueShape& shape = state->shape;
-  const Box3 box = bounds_mm(shape);
-  const double clamp_y = box.max().y() - kClampMm, suture_y = box.min().y() + kSutureMm;
-
-  // Voxels whose middles lie in the shape.
+/// Columns of voxels, and the voxels whose middles lie in the shape.
+std::vector<Voxels> fill(const BrickGrid& grid, const TongueShape& shape,
+                         std::vector<std::optional<TissueSpan>>& columns) {
   std::vector<Voxels> voxels(grid.brick_count(), 0);
-  const int nx = kVoxelsAcross * grid.bricks_along(0), ny = kVoxelsAcross * grid.bricks_along(1);
-  state->columns.resize(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
-  for (int j = 0; j < ny; ++j)
-    for (int i = 0; i < nx; ++i) {
-      const std::array<int, 3> place{i / kVoxelsAcross, j / kVoxelsAcross, 0};
-      const Vec3 middle = grid.voxel_mm(place, i % kVoxelsAcross + 4 * (j % kVoxelsAcross));
-      const auto span = span_at(shape, middle.x(), middle.y());
-      state->columns[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i)] = span;
+  for (int j = 0; j < kVoxelsAcross * grid.bricks_along(1); ++j)
+    for (int i = 0; i < kVoxelsAcross * grid.bricks_along(0); ++i) {
+      const int flat = i % kVoxelsAcross + kVoxelsAcross * (j % kVoxelsAcross);
+      std::array<int, 3> place{i / kVoxelsAcross, j / kVoxelsAcross, 0};
+      const Vec3 middle = grid.voxel_mm(place, flat);
+      const auto& span = columns.emplace_back(span_at(shape, middle.x(), middle.y()));
       if (!span) continue;
-      for (int k = 0; k < grid.bricks_along(2); ++k)
-        for (int c = 0; c < kVoxelsAcross; ++c) {
-          const int bit = i % kVoxelsAcross + 4 * (j % kVoxelsAcross) + 16 * c;
-          const double z = grid.voxel_mm({place[0], place[1], k}, bit).z();
-          if (z >= span->low_mm && z <= span->high_mm) voxels[grid.brick(place[0], place[1], k)] |= Voxels{1} << bit;
+      for (place[2] = 0; place[2] < grid.bricks_along(2); ++place[2])
+        for (int bit = flat; bit < kVoxels; bit += kVoxelsAcross * kVoxelsAcross) {
+          const double z = grid.voxel_mm(place, bit).z();
+          if (z >= span->low_mm && z <= span->high_mm)
+            voxels[grid.brick(place[0], place[1], place[2])] |= Voxels{1} << bit;
         }
     }
+  return voxels;
+}
 
-  Random fields(specimen.seed ^ kFieldStream);
-  const SmoothField stiffness(15.0, fields), ablation(12.0, fields);
-  const std::vector<Vec3> fibres = fibres_of(grid, voxels, suture_y, clamp_y);
-  std::vector<BrickMaterial> materials(grid.brick_count());
-  state->energy_j.resize(grid.brick_count());
-  for (std::size_t b = 0; b < grid.brick_count(); ++b) {
-    const auto place = grid.place_of(b);
-    const Vec3 size = grid.size_mm(place), middle = grid.low_mm(place) + 0.5 * size;
-    int inside = 0, all = 0;
-    for (int bit = 0; bit < kVoxels; ++bit) {
-      if ((voxels[b] >> bit & 1) == 0) continue;
-      ++all;
-      if (is_in(tumor, shape, grid.voxel_mm(place, bit))) ++inside;
-    }
-    const double share = all > 0 ? static_cast<double>(inside) / all : 0.0;
-    const double e = specimen.youngs_modulus_kpa * std::exp(specimen.stiffness_spread * stiffness.at(middle)) *
-                     std::pow(specimen.tumor_ratio, share);
-    const double mu = e / (2.0 * (1.0 + specimen.poissons_ratio));
-    BrickMaterial& m = materials[b];
-    m.c1_kpa = static_cast<float>(0.5 * mu);
-    m.c2_kpa = static_cast<float>(0.5 * mu * specimen.stiffening);
-    m.lambda_kpa = static_cast<float>(mu / (1.0 - 2.0 * specimen.poissons_ratio));  // Lame's first constant + mu
-    m.fibre_kpa = static_cast<float>(0.25 * (specimen.fibre_ratio - 1.0) * e * (1.0 - share));
-    m.fibre = fibres[b];
-    state->energy_j[b] = static_cast<float>(specimen.ablation_j_mm3 * size.prod() / kVoxels *
-                                            std::exp(specimen.ablation_spread * ablation.at(middle)));
-  }
-  state->tissue = make_tissue(std::move(grid), std::move(materials), voxels);
-  BrickTissue& tissue = state->tissue;
-  const BrickGrid& g = tissue.grid;
+/// Share of a brick's voxels that lie in the tumour.
+double share_in(const Tumor& tumor, const TongueShape& shape, const BrickGrid& grid, std::size_t brick, Voxels voxels) {
+  if (voxels == 0) return 0.0;
+  int inside = 0;
+  for (Voxels left = voxels; left != 0; left &= left - 1)
+    if (is_in(tumor, shape, grid.voxel_mm(grid.place_of(brick), std::countr_zero(left)))) ++inside;
+  return static_cast<double>(inside) / std::popcount(voxels);
+}
 
-  // The sole: one point under the middle of each column of bricks.
-  for (int j = 0; j < g.bricks_along(1); ++j)
-    for (int i = 0; i < g.bricks_along(0); ++i) {
-      const Vec3 low = g.low_mm({i, j, 0}), size = g.size_mm({i, j, 0});
-      const Vec3 middle = low + 0.5 * size;
+BrickMaterial material_of(const Specimen& specimen, double stiffness, double tumor_share, const Vec3& fibre) {
+  const double e = specimen.youngs_modulus_kpa * std::exp(stiffness) * std::pow(specimen.tumor_ratio, tumor_share);
+  const double mu = e / (2.0 * (1.0 + specimen.poissons_ratio));
+  BrickMaterial material;
+  material.c1_kpa = static_cast<float>(0.5 * mu);
+  material.c2_kpa = static_cast<float>(0.5 * mu * specimen.stiffening);
+  material.lambda_kpa = static_cast<float>(mu / (1.0 - 2.0 * specimen.poissons_ratio));  // Lame's first constant + mu
+  material.fibre_kpa = static_cast<float>(0.25 * (specimen.fibre_ratio - 1.0) * e * (1.0 - tumor_share));
+  material.fibre = fibre;
+  return material;
+}
+
+/// The sole: one point under the middle of each column of bricks; and the platform's relief under it.
+Platform platform_of(const BrickTissue& tissue, const TongueShape& shape, const Specimen& specimen,
+                     const SmoothField& relief) {
+  Platform platform;
+  platform.friction = specimen.friction;
+  const BrickGrid& grid = tissue.grid;
+  for (int j = 0; j < grid.bricks_along(1); ++j)
+    for (int i = 0; i < grid.bricks_along(0); ++i) {
+      const Vec3 size = grid.size_mm({i, j, 0}), middle = grid.low_mm({i, j, 0}) + 0.5 * size;
       const auto span = span_at(shape, middle.x(), middle.y());
       if (!span) continue;
-      const Rider rider = tissue.rider_at(Vec3(middle.x(), middle.y(), span->low_mm));
-      if (rider.piece < 0) continue;
-      state->platform.sole.push_back(rider);
-      state->platform.area_mm2.push_back(static_cast<float>(size.x() * size.y()));
+      const Vec3 rest(middle.x(), middle.y(), span->low_mm);
+      const Rider rider = tissue.rider_at(rest);
+      if (rider.piece < 0) continue;  // thinner than a voxel
+      platform.sole.push_back(rider);
+      platform.area_mm2.push_back(static_cast<float>(size.x() * size.y()));
+      platform.height_mm.push_back(specimen.sole_relief_mm * relief.at(rest));
+      platform.anchor_mm.push_back(rest.head<2>());
+      platform.is_down.push_back(0);
     }
-  const SmoothField relief(kReliefWaveMm, fields);
-  for (const Rider& rider : state->platform.sole)
-    state->platform.height_mm.push_back(specimen.sole_relief_mm * relief.at(tissue.position_of(rider)));
-  state->platform.anchor_mm.resize(state->platform.sole.size(), Vec2::Zero());
-  state->platform.is_down.resize(state->platform.sole.size(), 0);
-  state->platform.friction = specimen.friction;
+  return platform;
+}
 
-  // Clamp and suture; between them a first guess.
+/// Clamps the root, draws the tip by the suture, and moves what lies between evenly.
+void hold(BodyState& state, const Specimen& specimen, double suture_y, double clamp_y) {
+  constexpr double kOnPlaneMm = 1e-4;
   const double angle = units::rad_from_deg(specimen.stretch_angle_deg);
-  const double way = kStretchMm + specimen.stretch_error_mm;
-  const Vec3 pull = way * Vec3(std::sin(angle), -std::cos(angle), 0.0);
+  const Vec3 pull = (kDrawnMm + specimen.stretch_error_mm) * Vec3(std::sin(angle), -std::cos(angle), 0.0);
   const Vec3 slip(0.0, -specimen.clamp_slip_mm, 0.0);
+  BrickTissue& tissue = state.tissue;
   for (std::size_t n = 1; n < tissue.position.size(); ++n) {
     auto& p = tissue.position[n];
     const double y = static_cast<double>(p[1]);
+    const bool is_sutured = y <= suture_y + kOnPlaneMm;
+    tissue.is_held[n] = is_sutured || y >= clamp_y - kOnPlaneMm ? 1 : 0;
+    if (is_sutured) state.suture_nodes.push_back(static_cast<std::int32_t>(n));
     const double share = std::clamp((clamp_y - y) / (clamp_y - suture_y), 0.0, 1.0);
-    if (y >= clamp_y - 1e-4 || y <= suture_y + 1e-4) tissue.is_held[n] = 1;
-    if (y <= suture_y + 1e-4) state->suture_nodes.push_back(static_cast<std::int32_t>(n));
     const Vec3 moved = (1.0 - share) * slip + share * pull;
     for (std::size_t a = 0; a < 3; ++a) p[a] += static_cast<float>(moved[static_cast<Eigen::Index>(a)]);
   }
+}
+
+/// Lets the stretched body come to rest; reads the gauge, and waits for the cut.
+void stretch(Body& body, BodyState& state, Monitor& monitor) {
+  const Specimen& specimen = body.specimen;
+  const auto rests = [&] {
+    int iterations = 0;
+    body.residual = come_to_rest(state.tissue, state.platform, 0.0F, kAtRest, kMostIterations, iterations, monitor);
+    return body.residual < kAtRest;
+  };
+  const auto waited = [&](double elapsed_s) {
+    set_viscous_since(state.tissue, state.viscous_ratio, state.viscous_time_s, static_cast<float>(elapsed_s));
+    return rests();
+  };
+  state.viscous_ratio = static_cast<float>(specimen.relaxing_ratio);
+  state.viscous_time_s = static_cast<float>(specimen.relaxation_time_s);
+  if (!rests() || !waited(specimen.gauge_s)) return;
+  body.gauge_force_n = pull_n(state) * (1.0 + specimen.force_bias);
+  if (!waited(specimen.wait_s)) return;
+  body.stretch_force_n = pull_n(state);
+  body.outcome = Outcome::Success;
+}
+
+}  // namespace
+
+Body make_body(const Specimen& specimen, const Resolution& resolution, Monitor& monitor) {
+  if (const auto problems = problems_of(specimen); !problems.empty()) throw CaseError("specimen", problems.front());
+  INCISE_REQUIRE(resolution.brick_mm > 0.0 && resolution.coarse_mm >= resolution.brick_mm && resolution.way_mm > 0.0 &&
+                     resolution.relaxations > 0,
+                 "expected sizes and counts above 0, and coarse bricks that are no smaller than the others");
+  auto state = std::make_shared<BodyState>();
+  Random random(specimen.seed ^ kShapeStream);
+  state->shape = draw_tongue_shape({}, random);
+  const TongueShape& shape = state->shape;
+  const Tumor tumor = draw_tumor(specimen, shape, random);
+  state->tumor_edge_rest = tumor.edge.points;
+  BrickGrid grid = grid_of(specimen, resolution, shape, tumor);
+  const Box3 box = bounds_mm(shape);
+  const double clamp_y = box.max().y() - kClampedMm, suture_y = box.min().y() + kSuturedMm;
+  const std::vector<Voxels> voxels = fill(grid, shape, state->columns);
+
+  Random fields(specimen.seed ^ kFieldStream);
+  const SmoothField stiffness(kStiffnessWaveMm, fields), ablation(kAblationWaveMm, fields);
+  const SmoothField relief(kReliefWaveMm, fields);
+  const std::vector<Vec3> fibres = fibres_of(grid, voxels, suture_y, clamp_y);
+  std::vector<BrickMaterial> materials;
+  for (std::size_t b = 0; b < grid.brick_count(); ++b) {
+    const Vec3 size = grid.size_mm(grid.place_of(b)), middle = grid.low_mm(grid.place_of(b)) + 0.5 * size;
+    materials.push_back(material_of(specimen, specimen.stiffness_spread * stiffness.at(middle),
+                                    share_in(tumor, shape, grid, b, voxels[b]), fibres[b]));
+    state->energy_j.push_back(static_cast<float>(specimen.ablation_j_mm3 * size.prod() / kVoxels *
+                                                 std::exp(specimen.ablation_spread * ablation.at(middle))));
+  }
+  state->tissue = make_tissue(std::move(grid), materials, voxels);
+  state->platform = platform_of(state->tissue, shape, specimen, relief);
+  hold(*state, specimen, suture_y, clamp_y);
 
   Body body;
   body.specimen = specimen;
   body.resolution = resolution;
-  body.tumor_edge_rest = tumor.edge;
-  state->tumor_edge_rest = tumor.edge.points;
-  double residual = come_to_rest(*state, monitor);
-  if (residual <= kAtRest) {
-    state->viscous_ratio = static_cast<float>(specimen.relaxing_ratio);
-    state->viscous_time_s = static_cast<float>(specimen.relaxation_time_s);
-    set_viscous_since(tissue, state->viscous_ratio, state->viscous_time_s, static_cast<float>(specimen.gauge_s));
-    residual = come_to_rest(*state, monitor);
-    body.gauge_force_n = pull_n(*state) * (1.0 + specimen.force_bias);
-    set_viscous_since(tissue, state->viscous_ratio, state->viscous_time_s, static_cast<float>(specimen.wait_s));
-    residual = std::max(residual, come_to_rest(*state, monitor));
-    body.stretch_force_n = pull_n(*state);
-  }
-  body.residual = residual;
-  body.outcome = residual <= kAtRest ? Outcome::Success : Outcome::NotConverged;
+  stretch(body, *state, monitor);
   body.state = std::move(state);
-  body.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return body;
 }
 

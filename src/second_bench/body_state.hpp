@@ -16,9 +16,9 @@ struct BodyState {
   TongueShape shape;
   std::vector<std::optional<TissueSpan>> columns;  ///< of voxels, x fastest
   std::vector<float> energy_j;                     ///< per brick: what a voxel takes until it parts
-  Points tumor_edge_rest;
-  std::vector<std::int32_t> suture_nodes;
-  float viscous_ratio = 0.0F;
+  Points tumor_edge_rest;                          ///< counter-clockwise seen from above
+  std::vector<std::int32_t> suture_nodes;          ///< that the suture holds
+  float viscous_ratio = 0.0F;                      ///< as of begin_step()
   float viscous_time_s = 1.0F;
 
   [[nodiscard]] int columns_x() const { return kVoxelsAcross * tissue.grid.bricks_along(0); }

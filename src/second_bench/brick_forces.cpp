@@ -102,7 +102,7 @@ void for_each_octet(BrickTissue& tissue, Visit visit) {
 
 }  // namespace
 
-void add_elastic_forces(BrickTissue& tissue, float viscous_gain, float weight_mn_mm3) {
+void set_tissue_forces(BrickTissue& tissue, float viscous_gain, float weight_mn_mm3) {
   std::fill(tissue.force.begin(), tissue.force.end(), std::array<float, 4>{});
   for_each_octet(tissue, [&](const Octet& octet, Strain& s) {
     // First Piola-Kirchhoff stress F S + volume's part.
@@ -136,7 +136,6 @@ void add_elastic_forces(BrickTissue& tissue, float viscous_gain, float weight_mn
 }
 
 void bound_masses(BrickTissue& tissue, float viscous_gain) {
-  constexpr float kShare = 0.35F;  // above a quarter, at which an undamped step of 1 is just stable
   std::fill(tissue.mass.begin(), tissue.mass.end(), 0.0F);
   for_each_octet(tissue, [&](const Octet& octet, const Strain& s) {
     Lanes cofactor = s.j * 0.0F;
@@ -150,7 +149,7 @@ void bound_masses(BrickTissue& tissue, float viscous_gain) {
         (1.0F + viscous_gain) * (s.shape + 8.0F * octet.c2 * s.i1 + 4.0F * octet.fibre * s.i4 + s.pull) +
         viscous_gain * 8.0F * octet.c1 * s.i1 + pressure * (1.0F + 0.5F * s.i1) + past;
     const Lanes fine = larger(larger(octet.inverse_size[0], octet.inverse_size[1]), octet.inverse_size[2]);
-    const Lanes mass = kShare * (0.5F * bound * octet.volume * fine * fine + 8.0F * octet.hourglass * s.shape);
+    const Lanes mass = kMassShare * (0.5F * bound * octet.volume * fine * fine + 8.0F * octet.hourglass * s.shape);
     for (std::size_t c = 0; c < 8; ++c)
       for (int lane = 0; lane < kLanes; ++lane)
         tissue.mass[static_cast<std::size_t>(octet.node[c][static_cast<std::size_t>(lane)])] += mass[lane];

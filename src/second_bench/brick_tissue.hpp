@@ -73,7 +73,6 @@ struct Octet {
 /// [Dick2011]). mm, mN, kPa, single precision.
 struct BrickTissue {
   BrickGrid grid;
-  std::vector<BrickMaterial> materials;     ///< per brick
   std::vector<std::vector<int>> pieces_of;  ///< per brick
 
   std::vector<std::uint32_t> brick_of;  ///< per piece
@@ -84,9 +83,8 @@ struct BrickTissue {
   std::vector<std::array<float, 4>> position;  ///< mm; the fourth is not used
   std::vector<std::array<float, 4>> velocity;  ///< mm per iteration
   std::vector<std::array<float, 4>> force;     ///< mN
-  std::vector<float> mass;                     ///< mN per mm: fictitious, see relax()
+  std::vector<float> mass;                     ///< mN per mm: fictitious, see bound_masses()
   std::vector<std::uint8_t> is_held;
-  std::vector<std::uint32_t> corner_of;  ///< of the grid
 
   [[nodiscard]] bool is_there(int piece) const { return voxels_of[static_cast<std::size_t>(piece)] != 0; }
   [[nodiscard]] std::size_t piece_count() const { return voxels_of.size(); }
@@ -104,8 +102,8 @@ struct BrickTissue {
   [[nodiscard]] int piece_with(std::size_t brick, int bit) const;
 };
 
-/// Tissue at rest. @param voxels  per brick of the grid.
-[[nodiscard]] BrickTissue make_tissue(BrickGrid grid, std::vector<BrickMaterial> materials,
+/// Tissue at rest. @param materials, voxels  per brick of the grid.
+[[nodiscard]] BrickTissue make_tissue(BrickGrid grid, const std::vector<BrickMaterial>& materials,
                                       const std::vector<Voxels>& voxels);
 
 /// Takes voxels out of pieces, and parts what no longer hangs together. O(pieces changed).
@@ -118,12 +116,15 @@ void shrink(BrickTissue& tissue, int piece, float share);
 /// Takes out every piece that hangs on no held node. Returns how many voxels that were.
 std::size_t remove_loose(BrickTissue& tissue);
 
-/// Adds to `force` what deformed tissue exerts on its corners, and its weight; sets it to that alone.
-/// @param viscous_gain  see end_step.
-void add_elastic_forces(BrickTissue& tissue, float viscous_gain, float weight_mn_mm3);
+/// Sets `force` to what deformed tissue exerts on its corners, and its weight.
+/// @param viscous_gain  of begin_step(); 0: nothing is viscous but what `past` holds.
+void set_tissue_forces(BrickTissue& tissue, float viscous_gain, float weight_mn_mm3);
 
-/// Sets each node's fictitious mass so that an iteration of relax() with a step of 1 is stable: a third of the sum of
-/// bounds on the largest eigenvalues of its pieces' tangents.
+/// Of a bound on a stiffness, as fictitious mass: above a quarter, at which an undamped step of 1 is just stable.
+inline constexpr float kMassShare = 0.35F;
+
+/// Sets each node's fictitious mass so that an iteration of Relaxer is stable: kMassShare of the sum of bounds on the
+/// largest eigenvalues of its pieces' tangents.
 void bound_masses(BrickTissue& tissue, float viscous_gain);
 
 /// Viscosity, one branch: Q' = -Q / time + ratio S', S = 2 c1 (C - I) and what stiffens, the sudden stress. Between
@@ -131,6 +132,7 @@ void bound_masses(BrickTissue& tissue, float viscous_gain);
 /// @return the gain by which sudden stress counts within the step; end_step() takes it.
 float begin_step(BrickTissue& tissue, float ratio, float time_s, float step_s);
 
+/// Ends the step that begin_step() began: `past` holds Q again.
 void end_step(BrickTissue& tissue, float gain);
 
 /// The viscous stress that is left `elapsed_s` after a sudden deformation to the present state.

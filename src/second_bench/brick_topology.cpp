@@ -75,13 +75,12 @@ int add_piece(BrickTissue& tissue, std::size_t brick) {
   return piece;
 }
 
-std::int32_t add_node(BrickTissue& tissue, std::size_t corner, const std::array<float, 4>& position) {
+std::int32_t add_node(BrickTissue& tissue, const std::array<float, 4>& position) {
   tissue.position.push_back(position);
   tissue.velocity.push_back({});
   tissue.force.push_back({});
   tissue.mass.push_back(1.0F);
   tissue.is_held.push_back(0);
-  tissue.corner_of.push_back(static_cast<std::uint32_t>(corner));
   return static_cast<std::int32_t>(tissue.position.size()) - 1;
 }
 
@@ -130,7 +129,7 @@ void share_corner(BrickTissue& tissue, int i, int j, int k) {
       node = corner;
       if (std::find(taken.begin(), taken.end(), node) != taken.end()) {
         const auto old = static_cast<std::size_t>(corner);
-        node = add_node(tissue, tissue.corner_of[old], tissue.position[old]);
+        node = add_node(tissue, tissue.position[old]);
         tissue.velocity.back() = tissue.velocity[old];
         tissue.is_held.back() = tissue.is_held[old];
       }
@@ -244,13 +243,13 @@ Rider BrickTissue::rider_on(int piece, const Vec3& rest_mm) const {
   return rider;
 }
 
-BrickTissue make_tissue(BrickGrid grid, std::vector<BrickMaterial> materials, const std::vector<Voxels>& voxels) {
+BrickTissue make_tissue(BrickGrid grid, const std::vector<BrickMaterial>& materials,
+                        const std::vector<Voxels>& voxels) {
   BrickTissue tissue;
   tissue.grid = std::move(grid);
-  tissue.materials = std::move(materials);
   const BrickGrid& g = tissue.grid;
   tissue.pieces_of.resize(g.brick_count());
-  add_node(tissue, 0, {});
+  add_node(tissue, {});
   tissue.is_held[0] = 1;
   const std::size_t corners = static_cast<std::size_t>(g.bricks_along(0) + 1) *
                               static_cast<std::size_t>(g.bricks_along(1) + 1) *
@@ -265,7 +264,7 @@ BrickTissue make_tissue(BrickGrid grid, std::vector<BrickMaterial> materials, co
       tissue.pieces_of[brick].push_back(piece);
       Octet& octet = tissue.octets[static_cast<std::size_t>(piece) / kLanes];
       const Vec3 size = g.size_mm(place);
-      const BrickMaterial& material = tissue.materials[brick];
+      const BrickMaterial& material = materials[brick];
       for (int axis = 0; axis < 3; ++axis) {
         set_lane(octet.inverse_size[static_cast<std::size_t>(axis)], piece, static_cast<float>(1.0 / size[axis]));
         set_lane(octet.fibre_axis[static_cast<std::size_t>(axis)], piece, static_cast<float>(material.fibre[axis]));
@@ -279,8 +278,8 @@ BrickTissue make_tissue(BrickGrid grid, std::vector<BrickMaterial> materials, co
         std::int32_t& node = node_at[g.corner(at[0], at[1], at[2])];
         if (node < 0) {
           const Vec3 p = g.low_mm(at);
-          node = add_node(tissue, g.corner(at[0], at[1], at[2]),
-                          {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0.0F});
+          node =
+              add_node(tissue, {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()), 0.0F});
         }
         octet.node[static_cast<std::size_t>(corner)][static_cast<std::size_t>(piece) % kLanes] = node;
       }

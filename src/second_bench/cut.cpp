@@ -5,9 +5,10 @@
 #include <incise/core/units.hpp>
 #include <incise/second_bench/cut.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <set>
@@ -23,10 +24,14 @@ constexpr double kEngagedMm = 5.0;       // length of needle for which a full ar
 constexpr double kHalfSpeedMmS = 7.0;    // at which adhesion has half its fast strength
 constexpr double kCookedMm = 1.0;        // beyond the arc's reach: where tissue is heated enough to shrink
 constexpr double kBreathS = 4.0;
+constexpr double kDwellStepS = 0.5;
+constexpr double kCuttingShare = 0.9;  // of a cut's time; the rest is settling
+constexpr double kOnAxisMm = 1e-6;     // nearer than this a push has no direction
 constexpr double kLeastDamping = 0.12;
+constexpr int kRenewed = 8;  // iterations between two bounds of the masses
 constexpr double kPhotographS = 34.0;
 constexpr int kMostSettling = 600;
-constexpr double kAtRest = 3e-3;
+constexpr double kAtRest = 3e-3;  // free forces over reactions
 
 struct Needle {
   Vec3 tip = Vec3::Zero();
@@ -42,22 +47,11 @@ struct NearVoxel {
   Rider rider;
   std::size_t brick = 0;
   int bit = 0;
-  float volume_mm3 = 0.0F;
+  double volume_mm3 = 0.0;
+  double area_mm2 = 0.0;       // of a face, about
   Vec3 before = Vec3::Zero();  // at the step's start
   Vec3 drag = Vec3::Zero();    // by the needle in the last iteration
 };
-
-Rider rider_of(int piece, int bit) {
-  Rider rider;
-  rider.piece = piece;
-  const std::array<double, 3> share{(bit % 4 + 0.5) / 4, (bit / 4 % 4 + 0.5) / 4, (bit / 16 + 0.5) / 4};
-  for (int c = 0; c < 8; ++c) {
-    double weight = 1.0;
-    for (std::size_t axis = 0; axis < 3; ++axis) weight *= (c >> axis & 1) != 0 ? share[axis] : 1.0 - share[axis];
-    rider.weights[static_cast<std::size_t>(c)] = static_cast<float>(weight);
-  }
-  return rider;
-}
 
 Needle between(const TipPose& a, const TipPose& b, double share) {
   return {a.tip_mm + share * (b.tip_mm - a.tip_mm), (a.axis + share * (b.axis - a.axis)).normalized()};
@@ -69,46 +63,55 @@ class Cutting {
       : specimen_(body.specimen), resolution_(body.resolution), state_(*body.state), power_w_(power_w) {}
 
   Cut run(const std::vector<TipPose>& course, Monitor& monitor) {
-    const auto start = std::chrono::steady_clock::now();
-    std::vector<TipPose> part;
-    for (const TipPose& pose : course)
-      if (pose.is_cutting) part.push_back(pose);
-    INCISE_REQUIRE(part.size() >= 2, "expected a course that cuts");
-    double way = 0.0;
-    for (std::size_t n = 1; n < part.size(); ++n) way += (part[n].tip_mm - part[n - 1].tip_mm).norm();
-    const double begin = part.front().time_s, end = part.back().time_s;
-    const int steps = std::max(1, static_cast<int>(std::ceil(way / resolution_.way_mm)));
-    const double step_s = (end - begin) / steps;
+    const std::vector<TipPose> poses = steps_of(course);
     suture_start_ = held_at_suture();
-    std::size_t segment = 0;
-    const auto pose_at = [&](double time) {
-      while (segment + 2 < part.size() && part[segment + 1].time_s <= time) ++segment;
-      const TipPose& a = part[segment];
-      const TipPose& b = part[segment + 1];
-      const double share = b.time_s > a.time_s ? std::clamp((time - a.time_s) / (b.time_s - a.time_s), 0.0, 1.0) : 1.0;
-      const Needle needle = between(a, b, share);
-      return TipPose{time, needle.tip + swayed_mm(time - begin, (time - begin) / (end - begin)), needle.axis, true};
-    };
-    TipPose before = pose_at(begin);
-    for (int n = 0; n < steps; ++n) {
+    result_.steps = static_cast<int>(poses.size()) - 1;
+    for (std::size_t n = 1; n < poses.size(); ++n) {
       throw_if_cancelled(monitor, "cutting");
-      const TipPose after = pose_at(begin + (n + 1) * step_s);
-      creep(static_cast<double>(n + 1) / steps);
-      step(before, after, step_s);
-      travelled_mm_ += (after.tip_mm - before.tip_mm).norm();
-      before = after;
-      monitor.progress("cutting", static_cast<double>(n + 1) / (steps + 10));
+      const double share = static_cast<double>(n) / static_cast<double>(result_.steps);
+      creep(share);
+      step(poses[n - 1], poses[n], poses[n].time_s - poses[n - 1].time_s);
+      travelled_mm_ += (poses[n].tip_mm - poses[n - 1].tip_mm).norm();
+      monitor.progress("cutting", kCuttingShare * share);
     }
-    result_.steps = steps;
-    if (steps > 0) result_.mean_force_mn /= steps;
-    settle();
-    if (!(result_.residual <= kAtRest)) result_.outcome = Outcome::NotConverged;
+    result_.mean_force_mn /= result_.steps;
+    settle(monitor);
+    if (!(result_.residual < kAtRest)) result_.outcome = Outcome::NotConverged;
     result_.after = std::make_shared<const BodyState>(std::move(state_));
-    result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return std::move(result_);
   }
 
  private:
+  /// Poses at the ends of steps: every way_mm, and every half second where the tool dwells; tissue sways between them.
+  [[nodiscard]] std::vector<TipPose> steps_of(const std::vector<TipPose>& course) const {
+    std::vector<TipPose> part;
+    std::vector<double> done;  // way, in steps, until each pose
+    for (const TipPose& pose : course) {
+      if (!pose.is_cutting) continue;
+      const double way = part.empty() ? 0.0 : (pose.tip_mm - part.back().tip_mm).norm() / resolution_.way_mm;
+      const double time = part.empty() ? 0.0 : (pose.time_s - part.back().time_s) / kDwellStepS;
+      done.push_back(part.empty() ? 0.0 : done.back() + std::max(way, time));
+      part.push_back(pose);
+    }
+    INCISE_REQUIRE(part.size() >= 2 && done.back() > 0.0, "expected a course that cuts");
+    const int steps = static_cast<int>(std::ceil(done.back()));
+    std::vector<TipPose> poses;
+    std::size_t segment = 0;
+    for (int n = 0; n <= steps; ++n) {
+      const double at = done.back() * n / steps;
+      while (segment + 2 < part.size() && done[segment + 1] <= at) ++segment;
+      const TipPose &a = part[segment], &b = part[segment + 1];
+      const double span = done[segment + 1] - done[segment];
+      const double share = span > 0.0 ? std::min(1.0, (at - done[segment]) / span) : 1.0;
+      const Needle needle = between(a, b, share);
+      const double time = a.time_s + share * (b.time_s - a.time_s);
+      const double whole_s = part.back().time_s - part.front().time_s;
+      const double since_s = time - part.front().time_s;
+      poses.push_back({time, needle.tip + swayed_mm(since_s, since_s / whole_s), needle.axis, true});
+    }
+    return poses;
+  }
+
   [[nodiscard]] std::vector<std::array<float, 4>> held_at_suture() const {
     std::vector<std::array<float, 4>> places;
     for (const std::int32_t node : state_.suture_nodes)
@@ -118,7 +121,8 @@ class Cutting {
 
   /// By how much the tool moves against tissue that breathes and drifts.
   [[nodiscard]] Vec3 swayed_mm(double time_s, double share) const {
-    const double breath = std::sin(2.0 * units::kPi * time_s / kBreathS + static_cast<double>(specimen_.seed % 7));
+    const double phase = Random(stream_of(specimen_.seed, "breath")).uniform(0.0, 2.0 * units::kPi);
+    const double breath = std::sin(2.0 * units::kPi * time_s / kBreathS + phase);
     return {-share * specimen_.drift_mm, 0.0, -specimen_.breathing_mm * breath};
   }
 
@@ -132,8 +136,7 @@ class Cutting {
   void find_near(const Needle& from, const Needle& to) {
     near_.clear();
     BrickTissue& tissue = state_.tissue;
-    const double seen = specimen_.shrinking > 0.0 ? kCookedMm : 0.6;
-    const double reach = kNeedleMm + specimen_.reach_mm + 0.5 * (to.tip - from.tip).norm() + seen;
+    const double reach = kNeedleMm + specimen_.reach_mm + kCookedMm + 0.5 * (to.tip - from.tip).norm();
     const Needle middle{0.5 * (from.tip + to.tip), (from.axis + to.axis).normalized()};
     for (std::size_t p = 0; p < tissue.piece_count(); ++p) {
       if (tissue.voxels_of[p] == 0) continue;
@@ -146,45 +149,57 @@ class Cutting {
       }
       const double half = 0.5 * (high - low).norm();
       if (middle.offset(0.5 * (low + high)).norm() > reach + half) continue;
-      const float volume =
-          static_cast<float>(tissue.grid.size_mm(tissue.grid.place_of(tissue.brick_of[p])).prod() / kVoxels);
+      const std::array<int, 3> place = tissue.grid.place_of(tissue.brick_of[p]);
+      const double volume = tissue.grid.size_mm(place).prod() / kVoxels;
       for (Voxels left = tissue.voxels_of[p]; left != 0; left &= left - 1) {
         const int bit = std::countr_zero(left);
         NearVoxel voxel;
-        voxel.rider = rider_of(static_cast<int>(p), bit);
+        voxel.rider = tissue.rider_on(static_cast<int>(p), tissue.grid.voxel_mm(place, bit));
         voxel.before = tissue.position_of(voxel.rider);
         if (middle.offset(voxel.before).norm() > reach) continue;
         voxel.brick = tissue.brick_of[p];
         voxel.bit = bit;
         voxel.volume_mm3 = volume;
+        voxel.area_mm2 = std::cbrt(volume * volume);
         near_.push_back(voxel);
       }
     }
   }
 
-  /// Forces of the needle on tissue; their stiffness where `with_masses`.
-  Vec3 add_needle(const Needle& needle, const Vec3& way, bool with_masses) {
-    BrickTissue& tissue = state_.tissue;
-    const double adhesion = specimen_.adhesion_kpa * (1.0 + specimen_.char_per_mm * travelled_mm_) * speed_mm_s_ /
-                            (speed_mm_s_ + kHalfSpeedMmS);
+  /// Traction at which tissue that slips fast lets go.
+  [[nodiscard]] double adhesion_kpa() const {
+    return specimen_.adhesion_kpa * (1.0 + specimen_.char_per_mm * travelled_mm_) * speed_mm_s_ /
+           (speed_mm_s_ + kHalfSpeedMmS);
+  }
+
+  /// The needle's forces on tissue. @returns their sum, mN.
+  Vec3 add_needle(const Needle& needle, const Vec3& way) {
+    const double adhesion = adhesion_kpa();
     Vec3 sum = Vec3::Zero();
     for (NearVoxel& voxel : near_) {
-      const Vec3 p = tissue.position_of(voxel.rider);
+      const Vec3 p = state_.tissue.position_of(voxel.rider);
       const Vec3 offset = needle.offset(p);
       const double d = offset.norm();
       voxel.drag.setZero();
       if (d > kNeedleMm + kShellMm) continue;
-      const double area = std::cbrt(static_cast<double>(voxel.volume_mm3) * static_cast<double>(voxel.volume_mm3));
-      if (d < kNeedleMm && d > 1e-6) voxel.drag += kContactKpaMm * area * (kNeedleMm - d) / d * offset;
+      if (d < kNeedleMm && d > kOnAxisMm) voxel.drag += kContactKpaMm * voxel.area_mm2 * (kNeedleMm - d) / d * offset;
       const Vec3 slip = way - (p - voxel.before);
-      voxel.drag += adhesion * area / std::sqrt(slip.squaredNorm() + kStickMm * kStickMm) * slip;
+      voxel.drag += adhesion * voxel.area_mm2 / std::sqrt(slip.squaredNorm() + kStickMm * kStickMm) * slip;
       sum += voxel.drag;
-      if (with_masses)
-        add_mass(tissue, voxel.rider, (d < kNeedleMm ? kContactKpaMm * area : 0.0) + adhesion * area / kStickMm);
-      else
-        add_force(tissue, voxel.rider, voxel.drag);
+      add_force(state_.tissue, voxel.rider, voxel.drag);
     }
     return sum;
+  }
+
+  /// The stiffness of these forces, as masses.
+  void add_needle_masses(const Needle& needle) {
+    const double adhesion = adhesion_kpa();
+    for (const NearVoxel& voxel : near_) {
+      const double d = needle.offset(state_.tissue.position_of(voxel.rider)).norm();
+      if (d > kNeedleMm + kShellMm) continue;
+      add_mass(state_.tissue, voxel.rider,
+               voxel.area_mm2 * ((d < kNeedleMm ? kContactKpaMm : 0.0) + adhesion / kStickMm));
+    }
   }
 
   void step(const TipPose& from, const TipPose& to, double step_s) {
@@ -204,14 +219,14 @@ class Cutting {
       const double share = std::min(1.0, (n + 1.0) / (0.5 * count));  // the second half at rest at the step's end
       const Needle needle = between(first, last, share);
       const Vec3 way = share * (last.tip_mm - first.tip_mm);
-      if (n % 8 == 0) {
+      if (n % kRenewed == 0) {
         bound_masses(tissue, gain);
         add_platform_masses(tissue, state_.platform);
-        add_needle(end, way, true);
+        add_needle_masses(needle);
       }
-      add_elastic_forces(tissue, gain, static_cast<float>(kWeightMnMm3));
+      set_tissue_forces(tissue, gain, static_cast<float>(kWeightMnMm3));
       add_platform(tissue, state_.platform);
-      force_mn_ = add_needle(needle, way, false);
+      force_mn_ = add_needle(needle, way);
       relaxer_.iterate(tissue, kLeastDamping);
       ++result_.iterations;
     }
@@ -232,7 +247,7 @@ class Cutting {
       const double d = needle.offset(tissue.position_of(near_[n].rider)).norm();
       if (d >= reach) continue;
       const double share = 1.0 - d * d / (reach * reach);
-      weights[n] = share * static_cast<double>(near_[n].volume_mm3);
+      weights[n] = share * near_[n].volume_mm3;
       sum += weights[n];
     }
     // An eighth of the disc in reach, over the needle's length, is what a full arc feeds on; weights are 1/2 on
@@ -247,8 +262,7 @@ class Cutting {
       const double energy = static_cast<double>(state_.energy_j[voxel.brick]);
       const double heat = heat_j * weights[n] / std::max(sum, least) / energy;
       const double slip_work = voxel.drag.dot(way - (tissue.position_of(voxel.rider) - voxel.before));
-      const double area = std::cbrt(static_cast<double>(voxel.volume_mm3) * static_cast<double>(voxel.volume_mm3));
-      const double torn = std::max(0.0, slip_work) / (specimen_.toughness_j_m2 * area);
+      const double torn = std::max(0.0, slip_work) / (specimen_.toughness_j_m2 * voxel.area_mm2);  // J/m² are mN/mm
       taken += static_cast<float>(heat + torn);
       if (taken < 1.0F) continue;
       gone[voxel.rider.piece] |= Voxels{1} << voxel.bit;
@@ -267,7 +281,11 @@ class Cutting {
     for (const NearVoxel& voxel : near_) {
       const int piece = tissue.piece_with(voxel.brick, voxel.bit);
       if (piece < 0) continue;
-      if (needle.offset(tissue.position_of(rider_of(piece, voxel.bit))).norm() >= reach) continue;
+      if (needle
+              .offset(tissue.position_of(
+                  tissue.rider_on(piece, tissue.grid.voxel_mm(tissue.grid.place_of(voxel.brick), voxel.bit))))
+              .norm() >= reach)
+        continue;
       Voxels& cooked = cooked_[voxel.brick];
       const Voxels before = cooked;
       cooked |= Voxels{1} << voxel.bit;
@@ -282,25 +300,14 @@ class Cutting {
   }
 
   /// The needle is out: tissue comes to rest while it waits for the photograph.
-  void settle() {
-    BrickTissue& tissue = state_.tissue;
-    Rest rest;
+  void settle(const Monitor& monitor) {
     for (const double step_s : {1.0, 3.0, 10.0, kPhotographS - 14.0}) {
-      const float gain = begin_step(tissue, state_.viscous_ratio, state_.viscous_time_s, static_cast<float>(step_s));
-      for (int n = 0; n < kMostSettling; ++n) {
-        if (n % 20 == 0) {
-          bound_masses(tissue, gain);
-          add_platform_masses(tissue, state_.platform);
-        }
-        add_elastic_forces(tissue, gain, static_cast<float>(kWeightMnMm3));
-        add_platform(tissue, state_.platform);
-        rest = relaxer_.iterate(tissue, 0.0);
-        ++result_.iterations;
-        if (n > 20 && rest.residual_mn < kAtRest * rest.reaction_mn) break;
-      }
-      end_step(tissue, gain);
+      const float gain =
+          begin_step(state_.tissue, state_.viscous_ratio, state_.viscous_time_s, static_cast<float>(step_s));
+      result_.residual =
+          come_to_rest(state_.tissue, state_.platform, gain, kAtRest, kMostSettling, result_.iterations, monitor);
+      end_step(state_.tissue, gain);
     }
-    result_.residual = rest.residual_mn / rest.reaction_mn;
   }
 
   const Specimen& specimen_;
@@ -322,7 +329,13 @@ class Cutting {
 }  // namespace
 
 Cut cut_specimen(const Body& body, const std::vector<TipPose>& course, double power_w, Monitor& monitor) {
+  INCISE_REQUIRE(body.outcome == Outcome::Success, "expected a body at rest");
+  INCISE_REQUIRE(power_w > 0.0 && std::isfinite(power_w), fmt::format("expected a power above 0 W, found {}", power_w));
   return Cutting(body, power_w).run(course, monitor);
+}
+
+Contour tumor_edge_rest_of(const BodyState& state) {
+  return {state.tumor_edge_rest, true};
 }
 
 Contour tumor_edge_of(const BodyState& state) {

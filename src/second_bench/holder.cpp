@@ -7,7 +7,9 @@ namespace incise::second_bench {
 namespace {
 
 constexpr double kPlatformKpaMm = 20.0;  // pressure per depth
-constexpr double kMassShare = 0.35;      // as bound_masses
+constexpr double kMostDamping = 1.9;     // below 2, at which an iteration keeps no velocity
+constexpr int kRenewed = 20;             // iterations between two bounds of the masses
+constexpr int kLeastIterations = 20;     // before the residual counts
 
 }  // namespace
 
@@ -23,7 +25,7 @@ void add_force(BrickTissue& tissue, const Rider& rider, const Vec3& force_mn) {
 void add_mass(BrickTissue& tissue, const Rider& rider, double stiffness_mn_mm) {
   for (int c = 0; c < 8; ++c)
     tissue.mass[static_cast<std::size_t>(tissue.node(rider.piece, c))] +=
-        std::abs(rider.weights[static_cast<std::size_t>(c)]) * static_cast<float>(kMassShare * stiffness_mn_mm);
+        std::abs(rider.weights[static_cast<std::size_t>(c)]) * kMassShare * static_cast<float>(stiffness_mn_mm);
 }
 
 void add_platform(BrickTissue& tissue, Platform& platform) {
@@ -69,8 +71,8 @@ Rest Relaxer::iterate(BrickTissue& tissue, double least_damping) {
       kinetic += static_cast<double>(tissue.mass[n]) * v * v;
     }
   }
-  const double damping =
-      std::clamp(kinetic > 0.0 && curved > 0.0 ? 2.0 * std::sqrt(curved / kinetic) : least_damping, least_damping, 1.9);
+  const double damping = std::clamp(kinetic > 0.0 && curved > 0.0 ? 2.0 * std::sqrt(curved / kinetic) : least_damping,
+                                    least_damping, kMostDamping);
   before_ = tissue.force;
   Rest rest;
   double residual = 0.0, reaction = 0.0;
@@ -86,19 +88,35 @@ Rest Relaxer::iterate(BrickTissue& tissue, double least_damping) {
     }
     if (mass == 0.0F) continue;  // of no piece
     residual += squared;
-    double fast = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
       float& v = tissue.velocity[n][a];
       v = keep * v + gain * f[a] / mass;
       tissue.position[n][a] += v;
-      fast += static_cast<double>(v * v);
     }
-    rest.fastest_mm = std::max(rest.fastest_mm, fast);
   }
-  rest.fastest_mm = std::sqrt(rest.fastest_mm);
   rest.residual_mn = std::sqrt(residual);
   rest.reaction_mn = std::sqrt(reaction);
   return rest;
+}
+
+double come_to_rest(BrickTissue& tissue, Platform& platform, float viscous_gain, double tolerance, int most,
+                    int& iterations, const Monitor& monitor) {
+  for (auto& velocity : tissue.velocity) velocity = {};
+  Relaxer relaxer;
+  Rest rest;
+  for (int n = 0; n < most; ++n) {
+    if (n % kRenewed == 0) {
+      throw_if_cancelled(monitor, "letting tissue come to rest");
+      bound_masses(tissue, viscous_gain);
+      add_platform_masses(tissue, platform);
+    }
+    set_tissue_forces(tissue, viscous_gain, static_cast<float>(kWeightMnMm3));
+    add_platform(tissue, platform);
+    rest = relaxer.iterate(tissue, 0.0);
+    ++iterations;
+    if (n > kLeastIterations && rest.residual() < tolerance) break;
+  }
+  return rest.residual();
 }
 
 }  // namespace incise::second_bench

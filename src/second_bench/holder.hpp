@@ -2,6 +2,8 @@
 
 #include "second_bench/brick_tissue.hpp"
 
+#include <incise/core/monitor.hpp>
+
 namespace incise::second_bench {
 
 inline constexpr double kWeightMnMm3 = 1.06e-6 * 9806.65;  // of muscle
@@ -15,19 +17,22 @@ struct Platform {
   std::vector<std::uint8_t> is_down;
   double friction = 0.0;  ///< coefficient
 };
-/// Adds the platform's forces and stiffness to tissue's forces and, if wanted, masses. Anchors slide where friction is
-/// overcome.
+/// Adds the platform's forces. Anchors slide where friction is overcome.
 void add_platform(BrickTissue& tissue, Platform& platform);
+/// Adds its stiffness to masses.
 void add_platform_masses(BrickTissue& tissue, const Platform& platform);
 
 /// Spreads a force at a rider to the corners of its piece.
 void add_force(BrickTissue& tissue, const Rider& rider, const Vec3& force_mn);
+/// Spreads a stiffness to their masses.
 void add_mass(BrickTissue& tissue, const Rider& rider, double stiffness_mn_mm);
 
 struct Rest {
   double residual_mn = 0.0;  ///< norm of forces on free nodes
   double reaction_mn = 0.0;  ///< norm of forces on held nodes
-  double fastest_mm = 0.0;   ///< in an iteration
+
+  /// Free forces over reactions.
+  [[nodiscard]] double residual() const { return residual_mn / reaction_mn; }
 };
 
 /// Dynamic relaxation: nodes with fictitious masses move in steps of 1 with the damping that the last iteration's
@@ -40,5 +45,12 @@ class Relaxer {
  private:
   std::vector<std::array<float, 4>> before_;  // forces of the last iteration
 };
+
+/// Lets held tissue on its platform come to rest, from no velocity: until Rest::residual() is below `tolerance`, or for
+/// `most` iterations.
+/// @param viscous_gain  of begin_step(); 0 outside a step.  @param iterations  counts up.
+/// @returns the last residual; above the tolerance, or not a number: it did not come to rest.  @throws Cancelled
+[[nodiscard]] double come_to_rest(BrickTissue& tissue, Platform& platform, float viscous_gain, double tolerance,
+                                  int most, int& iterations, const Monitor& monitor);
 
 }  // namespace incise::second_bench

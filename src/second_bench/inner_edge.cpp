@@ -26,16 +26,12 @@ Raster whole_skin(const SeenTissue& seen, const RasterGrid& grid) {
       const std::int32_t n = view.triangles[grid.offset(i, j)];
       if (n < 0 || seen.is_skin[static_cast<std::size_t>(n)] == 0) continue;
       skin.at(i, j) = 1;
-      Vec3 sum = Vec3::Zero();
-      const Triangle& t = seen.triangles[static_cast<std::size_t>(n)];
-      const Vec2 a = seen.vertices[t[0].index()].head<2>();
-      const Vec2 b = seen.vertices[t[1].index()].head<2>() - a, c = seen.vertices[t[2].index()].head<2>() - a;
-      const Vec2 d = grid.centre(i, j) - a;
-      const double area = b.x() * c.y() - b.y() * c.x();
-      const double v = area != 0.0 ? (d.x() * c.y() - d.y() * c.x()) / area : 0.0;
-      const double w = area != 0.0 ? (b.x() * d.y() - b.y() * d.x()) / area : 0.0;
-      sum = (1.0 - v - w) * seen.rest[t[0].index()] + v * seen.rest[t[1].index()] + w * seen.rest[t[2].index()];
-      rest[grid.offset(i, j)] = sum;
+      const Triangle& corners = seen.triangles[static_cast<std::size_t>(n)];
+      const Vec3 weights = weights_seen_at(seen.vertices, corners, grid.centre(i, j));
+      Vec3& place = rest[grid.offset(i, j)];
+      place.setZero();
+      for (std::size_t c = 0; c < 3; ++c)
+        place += weights[static_cast<Eigen::Index>(c)] * seen.rest[corners[c].index()];
     }
   Raster whole = skin;
   for (int j = 1; j < grid.height; ++j)

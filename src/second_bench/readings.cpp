@@ -111,18 +111,7 @@ std::optional<std::vector<double>> true_errors_mm(const Cut& cut, double target_
   const SeenTissue seen = seen_from_above(*cut.after);
   const std::optional<Contour> edge = inner_edge_of(seen);
   if (!edge) return std::nullopt;
-  const auto flat = [](Vec3 p) {
-    p.z() = 0.0;
-    return p;
-  };
-  Contour tumor = seen.tumor_edge;
-  for (Vec3& p : tumor.points) p = flat(p);
-  std::vector<double> errors;
-  for (const Vec3& p : edge->points) {
-    const double distance = nearest_on(tumor, flat(p)).distance_mm;
-    errors.push_back((contains_in_view(tumor, p, -Vec3::UnitZ()) ? -distance : distance) - target_mm);
-  }
-  return errors;
+  return errors_seen_mm(edge->points, seen.tumor_edge, target_mm);
 }
 
 }  // namespace incise::second_bench

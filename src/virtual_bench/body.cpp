@@ -1,3 +1,4 @@
+#include <incise/bench_kit/readings.hpp>
 #include <incise/bench_kit/smooth_field.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/expect.hpp>
@@ -20,9 +21,6 @@ namespace {
 constexpr const char* kMakingStage = "making the virtual specimen";
 constexpr double kRingMarginMm = 5.0;  // Paper II-A: where a path is to be expected
 constexpr double kDepthMm = 5.0;
-constexpr double kClampMm = 14.0;             // of the root that the clamp takes hold of
-constexpr double kSutureMm = 8.0;             // of the tip that the suture takes along
-constexpr double kStretchMm = 20.0;           // Paper II-A
 constexpr double kStretchTolerance = 1e-4;    // of the residual, relative to the reactions
 constexpr std::size_t kSutureConstraint = 1;  // its place in constraints_of
 constexpr double kStiffnessWaveMm = 15.0;
@@ -130,10 +128,10 @@ Fields fields_of(const TetMesh& mesh, const Phantom& phantom, const Specimen& sp
 
 std::vector<Constraint> constraints_of(const Specimen& specimen) {
   const double angle = units::rad_from_deg(specimen.stretch_angle_deg);
-  const double way = kStretchMm + specimen.stretch_error_mm;
+  const double way = kDrawnMm + specimen.stretch_error_mm;
   const Vec3 pull = way * Vec3(std::sin(angle), -std::cos(angle), 0.0);
-  return {DisplacedConstraint{EndRegion{Vec3::UnitY(), kClampMm}, Vec3(0.0, -specimen.clamp_slip_mm, 0.0)},
-          DisplacedConstraint{EndRegion{-Vec3::UnitY(), kSutureMm}, pull},
+  return {DisplacedConstraint{EndRegion{Vec3::UnitY(), kClampedMm}, Vec3(0.0, -specimen.clamp_slip_mm, 0.0)},
+          DisplacedConstraint{EndRegion{-Vec3::UnitY(), kSuturedMm}, pull},
           SupportConstraint{Vec3::Zero(), Vec3::UnitZ()}};
 }
 

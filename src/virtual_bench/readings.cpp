@@ -1,4 +1,5 @@
 #include <incise/core/random.hpp>
+#include <incise/virtual_bench/pictures.hpp>
 #include <incise/virtual_bench/readings.hpp>
 
 #include <algorithm>
@@ -45,6 +46,7 @@ Placement placement_of(const Specimen& specimen) {
 Readings take_readings(const BenchBody& body, bool has_elasticity, Monitor& monitor) {
   Random random(body.specimen.seed ^ kReadingStream);
   Readings readings;
+  readings.stretch_force_noise_percent = 100.0 * kForceNoise;
   readings.stretch_force_n = body.stretch_force_n * (1.0 + kForceNoise * random.normal());
   readings.ct = make_phantom(phantom_settings(body.specimen), monitor).ct;
   const Placement placement = placement_of(body.specimen);

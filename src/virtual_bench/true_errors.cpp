@@ -1,3 +1,4 @@
+#include <incise/bench_kit/pictures.hpp>
 #include <incise/core/error.hpp>
 #include <incise/virtual_bench/bench_cut.hpp>
 
@@ -13,13 +14,7 @@ std::vector<double> true_errors_mm(const BenchBody& body, const BenchCut& cut, d
     }
     return contour;
   };
-  const Contour tumor = flat(cut.tumor_edge);
-  std::vector<double> errors;
-  for (const Vec3& p : resample(flat(*cut.inner_edge), points).points) {
-    const double distance = nearest_on(tumor, p).distance_mm;
-    errors.push_back((contains_in_view(tumor, p, -Vec3::UnitZ()) ? -distance : distance) - target_mm);
-  }
-  return errors;
+  return errors_seen_mm(resample(flat(*cut.inner_edge), points).points, flat(cut.tumor_edge), target_mm);
 }
 
 }  // namespace incise

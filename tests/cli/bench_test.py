@@ -88,6 +88,7 @@ class SecondLaboratoryTest(CommandTest):
             ((first, "--bench", "2"), "--bench"),
             ((second, "--factors", "heat"), "--factors"),
             ((second, "--elasticity"), "--elasticity"),
+            (("--bench", "2", "--factors", "none,ring"), "--factors"),
         ):
             self.assert_refused(self.make(*arguments), BAD_CASE, says)
             self.assert_nothing_written(self.out)
@@ -95,6 +96,37 @@ class SecondLaboratoryTest(CommandTest):
         self.assert_refused(self.make(second), BAD_DATA, "second.json", "series")
         second.write_text(json.dumps({"schema": "incise.specimen/2", "seed": 5, "series": 1, "friction": 7}))
         self.assert_refused(self.make(second), BAD_DATA, "friction", "[0, 1]")
+
+
+class AcceptanceTest(CommandTest):
+    def accept(self, *arguments):
+        return self.incise("bench", "accept", "--specimens", "1", "--factors", "none", "--no-paper-pass", *arguments, "-o", self.out, "--json")
+
+    def test_a_specimen_is_cut_as_planned_and_kept(self):
+        first = self.accept("--seed", "3")
+        self.assertEqual(first.returncode, DONE, first.stderr)
+        result = json.loads(first.stdout)
+        row = result["rows"][0]
+        self.assertEqual((row["seed"], row["prescription"]["power_w"], row["paper_pass_mm"]), (3, 35, None))
+        self.assertEqual(result["summary"]["closed_as_planned"], 1)
+        self.assertAlmostEqual(result["summary"]["planned_mean_mm"], row["planned_mm"])
+        self.assertGreater(row["planned_mm"], 0.3)
+        photo = (self.out / "S1/planned_cut/photo.png").stat().st_mtime_ns
+        again = self.accept("--seed", "3")
+        self.assertEqual(json.loads(again.stdout)["rows"], result["rows"])
+        self.assertEqual((self.out / "S1/planned_cut/photo.png").stat().st_mtime_ns, photo)  # not cut again
+        other = self.accept("--seed", "4")
+        self.assert_refused(other, BAD_DATA, "bench.json", "seed", "3")
+        self.assertEqual(json.loads((self.out / "acceptance.json").read_text())["rows"], result["rows"])
+
+    def test_only_checks_that_can_be_taken_on_are(self):
+        self.assert_refused(self.accept("--override", "reach"), BAD_CASE, "--override", "heat")
+
+    def test_a_foreign_folder_is_left_alone(self):
+        (self.out / "truth").mkdir(parents=True)
+        (self.out / "truth/thesis.txt").write_text("mine")
+        self.assert_refused(self.accept(), BAD_DATA, str(self.out))
+        self.assertEqual(files_below(self.out), ["truth", "truth/thesis.txt"])
 
 
 class BadInputTest(CommandTest):

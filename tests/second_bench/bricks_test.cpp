@@ -69,7 +69,7 @@ TEST(Bricks, AUniformDeformationIsInEquilibriumAndATurnIsFree) {
   Mat3 f;
   f << 1.3, 0.1, 0.0, -0.05, 0.9, 0.1, 0.0, 0.05, 0.95;
   map(tissue, f);
-  add_elastic_forces(tissue, 0.0F, 0.0F);
+  set_tissue_forces(tissue, 0.0F, 0.0F);
   const auto is_inside = [](const Vec3& p) {
     return p.x() > 0.1 && p.x() < 7.9 && p.y() > 0.1 && p.y() < 5.9 && p.z() > 0.1 && p.z() < 5.9;
   };
@@ -78,7 +78,7 @@ TEST(Bricks, AUniformDeformationIsInEquilibriumAndATurnIsFree) {
 
   BrickTissue turned = rest;
   map(turned, Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, 0.5).normalized()).toRotationMatrix());
-  add_elastic_forces(turned, 0.0F, 0.0F);
+  set_tissue_forces(turned, 0.0F, 0.0F);
   EXPECT_LT(most_force(turned, all, rest), 1e-4 * most_force(tissue, all, rest));
 }
 
@@ -110,7 +110,7 @@ TEST(Relaxer, ABarIsPulledAsTheClosedFormSays) {
     double force = 0.0;
     for (int n = 0; n < 1500; ++n) {
       if (n % 20 == 0) bound_masses(tissue, 0.0F);
-      add_elastic_forces(tissue, 0.0F, 0.0F);
+      set_tissue_forces(tissue, 0.0F, 0.0F);
       force = 0.0;
       for (std::size_t m = 1; m < tissue.position.size(); ++m) {
         const bool is_top = std::find(top.begin(), top.end(), m) != top.end();
@@ -149,7 +149,7 @@ TEST(Bricks, ASlitPartsThemExactly) {
   EXPECT_EQ(volume, 12 * 64 - 4 * 16);
   for (const std::int32_t node : left) EXPECT_FALSE(right.contains(node)) << node;
   // Nothing moved, so nothing is strained.
-  add_elastic_forces(tissue, 0.0F, 0.0F);
+  set_tissue_forces(tissue, 0.0F, 0.0F);
   for (const auto& f : tissue.force) EXPECT_NEAR(f[0], 0.0F, 1e-3F);
   for (std::size_t n = 1; n < tissue.position.size(); ++n)
     if (tissue.position[n][0] < 0.1F) tissue.is_held[n] = 1;
@@ -165,7 +165,7 @@ TEST(Bricks, StressRelaxesExponentially) {
   f(0, 0) = 1.2;
   map(tissue, f);
   const auto pull = [&](float gain) {
-    add_elastic_forces(tissue, gain, 0.0F);
+    set_tissue_forces(tissue, gain, 0.0F);
     double sum = 0.0;
     for (std::size_t n = 1; n < tissue.position.size(); ++n)
       if (tissue.position[n][0] > 1.0F) sum -= static_cast<double>(tissue.force[n][0]);
@@ -188,7 +188,7 @@ TEST(Bricks, AShrunkenPieceIsAtRestWhereItIsSmaller) {
   BrickTissue tissue = block(1, 1, 1);
   shrink(tissue, 0, 0.8F);
   map(tissue, 0.8 * Mat3::Identity());
-  add_elastic_forces(tissue, 0.0F, 0.0F);
+  set_tissue_forces(tissue, 0.0F, 0.0F);
   for (const auto& force : tissue.force)
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(force[a], 0.0F, 1e-4F);
 }

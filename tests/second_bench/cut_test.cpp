@@ -1,6 +1,7 @@
 #include "second_bench/body_state.hpp"
 
-#include <incise/core/units.hpp>
+#include <incise/core/error.hpp>
+#include <incise/geometry/raster.hpp>
 #include <incise/second_bench/readings.hpp>
 
 #include <gtest/gtest.h>
@@ -73,10 +74,10 @@ TEST(SecondBody, IsHeldStretchedAndPulled) {
   const Body& body = plain_body();
   EXPECT_EQ(body.outcome, Outcome::Success);
   EXPECT_GT(body.stretch_force_n, 0.3);
-  const Contour edge = tumor_edge_of(*body.state);
+  const Contour edge = tumor_edge_of(*body.state), rest = tumor_edge_rest_of(*body.state);
   // Pulled 20 mm at the tip: the edge lies some way towards it, and is longer than it was.
-  EXPECT_LT(curve_centroid(edge).y(), curve_centroid(body.tumor_edge_rest).y() - 4.0);
-  EXPECT_GT(bounding_box(edge.points).sizes().y(), 1.02 * bounding_box(body.tumor_edge_rest.points).sizes().y());
+  EXPECT_LT(curve_centroid(edge).y(), curve_centroid(rest).y() - 4.0);
+  EXPECT_GT(bounding_box(edge.points).sizes().y(), 1.02 * bounding_box(rest.points).sizes().y());
 }
 
 TEST(SecondBody, TheGaugeReadsMoreTheSoonerAfterTheStretch) {
@@ -87,6 +88,24 @@ TEST(SecondBody, TheGaugeReadsMoreTheSoonerAfterTheStretch) {
   EXPECT_GT(body.gauge_force_n, 1.3 * plain_body().gauge_force_n);
   // When the cut begins both have relaxed, to within what is called at rest.
   EXPECT_NEAR(body.stretch_force_n, plain_body().stretch_force_n, 0.01 * plain_body().stretch_force_n);
+}
+
+// Every pixel round the tumour shows skin, and neighbours show neighbouring tissue.
+TEST(SecondBody, TheSkinHasNoGaps) {
+  const SeenTissue seen = seen_from_above(*plain_body().state);
+  const Box3 box = bounding_box(seen.tumor_edge.points);
+  const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), 0.07, 8.0);
+  const DepthBuffer view = depth_buffer(grid, seen.vertices, seen.triangles);
+  std::size_t gaps = 0;
+  double most_step_mm = 0.0;
+  for (int j = 0; j < grid.height; ++j)
+    for (int i = 0; i < grid.width; ++i) {
+      const std::size_t n = grid.offset(i, j);
+      if (view.triangles[n] < 0 || seen.is_skin[static_cast<std::size_t>(view.triangles[n])] == 0) ++gaps;
+      if (i > 0) most_step_mm = std::max(most_step_mm, std::abs(view.heights_mm[n] - view.heights_mm[n - 1]));
+    }
+  EXPECT_EQ(gaps, 0U);
+  EXPECT_LT(most_step_mm, 0.2);
 }
 
 TEST(SecondCut, ClosesErrsInwardAndIsTheSameTwice) {
@@ -117,6 +136,31 @@ TEST(SecondCut, ThePowerSeriesHasThePapersOrder) {
   EXPECT_LT(weak.parted_by_heat, less.parted_by_heat);
   EXPECT_LT(less.parted_by_heat, more.parted_by_heat);
   EXPECT_FALSE(inner_edge_of(seen_from_above(*weak.after)).has_value());
+}
+
+// As a person draws it: no spikes where a ray would find a crack in the skin.
+TEST(SecondCut, TheInnerEdgeIsAnEvenLine) {
+  const auto edge = inner_edge_of(seen_from_above(*cut_at(7.0, 35.0).after));
+  ASSERT_TRUE(edge.has_value());
+  const Vec3 middle = curve_centroid(tumor_edge_of(*cut_at(7.0, 35.0).after));
+  for (std::size_t n = 0; n < edge->points.size(); ++n) {
+    const auto radius = [&](std::size_t k) {
+      return (edge->points[k % edge->points.size()] - middle).head<2>().norm();
+    };
+    EXPECT_LT(std::abs(radius(n + 4) - radius(n)), 1.0) << n;
+  }
+}
+
+TEST(SecondCut, StepsFollowTheWayAndADwell) {
+  // 6 mm at 7 mm/s, then 2 s of dwelling: ten steps of 0.6 mm and four of half a second.
+  const Vec3 tip = tumor_edge_of(*plain_body().state).points.front() - 5.0 * Vec3::UnitZ();
+  const std::vector<TipPose> course{{0.0, tip + 6.0 * Vec3::UnitZ(), -Vec3::UnitZ(), true},
+                                    {6.0 / 7.0, tip, -Vec3::UnitZ(), true},
+                                    {6.0 / 7.0 + 2.0, tip, -Vec3::UnitZ(), true}};
+  Monitor quiet;
+  EXPECT_EQ(cut_specimen(plain_body(), course, 35.0, quiet).steps, 10 + 4);
+  EXPECT_THROW((void)cut_specimen(plain_body(), {course[0], course[0]}, 35.0, quiet), InvalidArgument);
+  EXPECT_THROW((void)cut_specimen(plain_body(), course, std::nan(""), quiet), InvalidArgument);
 }
 
 TEST(SecondCut, HeatShrinksTheRim) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace incise {
@@ -37,6 +38,14 @@ struct SeenTissue {
   std::vector<std::uint8_t> is_skin;  ///< per triangle: of the uncut surface, no wall of a kerf
   Contour tumor_edge;
 };
+
+/// Weights of a triangle's corners at a place of the picture, as seen in view coordinates; sum 1. A triangle seen
+/// edge-on has its first corner's.
+[[nodiscard]] Vec3 weights_seen_at(std::span<const Vec3> in_view, const Triangle& triangle, const Vec2& place);
+
+/// How far places lie outside the tumour's edge, all in view coordinates and seen flat, less `target_mm`; mm, negative:
+/// too close.
+[[nodiscard]] std::vector<double> errors_seen_mm(const Points& places, const Contour& tumor_edge, double target_mm);
 
 /// What is wrong with a depth picture.
 struct FrameNoise {

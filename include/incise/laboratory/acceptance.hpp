@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace incise {
 
@@ -19,6 +21,7 @@ struct AcceptanceSettings {
   second_bench::Factors factors = second_bench::all_factors();  ///< that vary
   std::optional<double> speed_mm_s;                             ///< of every cut; absent: as prescribed
   std::optional<double> power_w;                                ///< likewise
+  std::vector<std::string> overrides;  ///< checks of the program that are taken on, as of ExportRequest
   bool with_paper_pass = true;  ///< and each specimen once more along the paper's correction
   int tets = 25000;             ///< of the planner's meshes
 };
