@@ -29,9 +29,9 @@ void require_series(std::span<const ErrorSeries> series) {
   }
 }
 
-/// Covers all errors and shows a little of every zone.
-double limit_of(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
-  double largest = -zones.positive_mm + 0.4;
+/// Covers all errors and shows a little of every zone that is drawn.
+double limit_of(std::span<const ErrorSeries> series, const std::optional<ZoneBorders>& zones) {
+  double largest = zones ? -zones->positive_mm + 0.4 : 0.0;
   for (const ErrorSeries& one : series) {
     for (const double error : one.signed_error_mm) largest = std::max(largest, std::abs(error));
   }
@@ -108,12 +108,9 @@ void draw_zone_key(SvgWriter& svg, const Vec2& middle) {
 }
 
 void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& boxes, bool is_signed,
-                const ZoneBorders& zones) {
-  if (is_signed) {
-    draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm);
-  } else {
-    draw_absolute_zones(svg, area, zones);
-  }
+                const std::optional<ZoneBorders>& zones) {
+  if (zones && is_signed) draw_error_zones(svg, area, zones->positive_mm, zones->too_close_mm);
+  if (zones && !is_signed) draw_absolute_zones(svg, area, *zones);
   draw_y_axis(svg, area, round_ticks(area.y_low, area.y_high, 10), is_signed ? "signed error, mm" : "|error|, mm");
   if (is_signed)
     svg.line({area.corner.x(), area.y(0.0)}, {area.corner.x() + area.size.x(), area.y(0.0)}, "stroke=\"#555\"");
@@ -171,7 +168,7 @@ void draw_curve(SvgWriter& svg, const PlotArea& area, std::vector<Vec2> curve, c
 
 }  // namespace
 
-std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
+std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const std::optional<ZoneBorders>& zones) {
   require_series(series);
   const double limit = limit_of(series, zones);
   const std::vector<Box> boxes = boxes_of(series);
@@ -190,14 +187,14 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const Z
                         .y_high = limit};
     draw_panel(svg, area, boxes, is_signed, zones);
   }
-  draw_zone_key(svg, {width / 2.0, height - 38.0});
+  if (zones) draw_zone_key(svg, {width / 2.0, height - 38.0});
   svg.text({width / 2.0, height - 14.0},
            "line: median · diamond: mean · box: quartiles · whiskers: 1.5 interquartile ranges", "middle",
            "font-size=\"12\" fill=\"#555\"");
   return svg.finish();
 }
 
-std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBorders& zones) {
+std::string error_by_clock_svg(std::span<const ErrorSeries> series, const std::optional<ZoneBorders>& zones) {
   require_series(series);
   const double limit = limit_of(series, zones);
   std::vector<double> widths;
@@ -210,7 +207,7 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBo
   SvgWriter svg(760.0, 420.0 + more, "Signed error by clock position",
                 "The error of each point against where it lies on a clock face over the tumour.");
   svg.rectangle({0.0, 0.0}, {760.0, 420.0 + more}, "fill=\"#fff\"");
-  draw_error_zones(svg, area, zones.positive_mm, zones.too_close_mm);
+  if (zones) draw_error_zones(svg, area, zones->positive_mm, zones->too_close_mm);
   draw_y_axis(svg, area, round_ticks(-limit, limit, 10), "signed error, mm");
   svg.line(area.at(0.0, 0.0), area.at(12.0, 0.0), "stroke=\"#555\" stroke-width=\"1.2\"");
   draw_x_axis(svg, area, {}, "clock position, h (12: up in the picture unless set)");
@@ -229,7 +226,7 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const ZoneBo
     svg.line(legend[i], legend[i] + Vec2(22.0, 0.0), style);
     svg.text(legend[i] + Vec2(28.0, 4.0), one.name);
   }
-  draw_error_zone_names(svg, area, zones.positive_mm, zones.too_close_mm, "too close");
+  if (zones) draw_error_zone_names(svg, area, zones->positive_mm, zones->too_close_mm, "too close");
   svg.text({740.0, 28.0}, "dashed: before · full: after", "end", "font-size=\"12\" fill=\"#555\"");
   return svg.finish();
 }

@@ -24,6 +24,7 @@ ComparedRow row_of(const EvaluationFile& file, bool is_after, const std::optiona
   ComparedRow row{.name = file.specimen.name,
                   .side = is_after ? "after" : "before",
                   .outcome = file.outcome,
+                  .target_mm = file.target_mm,
                   .hu_score = file.hu_score,
                   .hu_score_ideal = file.hu_score_ideal,
                   .centroid_shift_mm = file.centroid_shift_mm,
@@ -70,14 +71,24 @@ std::vector<ErrorSeries> series_of(const ComparedFiles& files) {
   return series;
 }
 
-/// Of the first incision that has them; all are measured alike.
-ZoneBorders borders_of(const ComparedFiles& files) {
+/// Nothing where targets differ: errors of one target are close to the tumour where those of another are not.
+std::optional<double> common_target_mm(const ComparedFiles& files) {
+  const double first = files.before.front().target_mm;
+  for (const auto* side : {&files.before, &files.after})
+    for (const EvaluationFile& file : *side)
+      if (file.target_mm != first) return std::nullopt;
+  return first;
+}
+
+/// Of the first incision that has them; none where targets differ.
+std::optional<ZoneBorders> borders_of(const ComparedFiles& files) {
+  if (!common_target_mm(files)) return std::nullopt;
   for (const auto* side : {&files.before, &files.after}) {
     for (const EvaluationFile& file : *side) {
-      if (file.positive_at_mm && file.too_close_at_mm) return {*file.positive_at_mm, *file.too_close_at_mm};
+      if (file.positive_at_mm && file.too_close_at_mm) return ZoneBorders{*file.positive_at_mm, *file.too_close_at_mm};
     }
   }
-  return {};
+  return ZoneBorders{};
 }
 
 void write_both(const std::filesystem::path& folder, const std::string& name, const std::string& svg) {
@@ -88,7 +99,7 @@ void write_both(const std::filesystem::path& folder, const std::string& name, co
 void write_figures(const std::filesystem::path& folder, const ComparedFiles& files) {
   const std::vector<ErrorSeries> series = series_of(files);
   if (series.empty()) return;
-  const ZoneBorders zones = borders_of(files);
+  const std::optional<ZoneBorders> zones = borders_of(files);
   write_both(folder, "box_plot", comparison_box_plot_svg(series, zones));
   const bool has_clock =
       std::none_of(series.begin(), series.end(), [](const auto& one) { return one.clock_h.empty(); });
@@ -112,7 +123,7 @@ CutComparison compared(ComparedFiles& files, const ComparisonSettings& settings)
   if (!before.empty() && !after.empty()) comparison = compare(before, after, settings);
   CutComparison result{.measure = settings.measure,
                        .contour = files.before.front().contour,
-                       .target_mm = files.before.front().target_mm,
+                       .target_mm = common_target_mm(files),
                        .alpha = settings.alpha,
                        .power = settings.power};
   if (comparison) {
@@ -152,22 +163,27 @@ std::vector<EvaluationFile> read_all(const std::vector<std::filesystem::path>& p
   return files;
 }
 
-/// Like is compared with like: the same line of the cut, against the same target, with the same zones.
+/// Like is compared with like: the same line of the cut, against the same target. Where specimens are paired, each may
+/// have a target of its own, which its two cuts share.
 void require_alike(const CompareRequest& request, const ComparedFiles& files) {
-  const EvaluationFile& first = files.before.front();
-  const auto check = [&](const std::filesystem::path& path, const EvaluationFile& file) {
-    const auto refuse = [&](const char* key, const std::string& found, const std::string& expected) {
-      throw DataError(path, key, found, fmt::format("{} as in {}", expected, request.before.front().string()),
-                      "Only like is compared with like");
-    };
-    if (file.contour != first.contour)
-      refuse("contour", std::string(to_string(file.contour)), std::string(to_string(first.contour)));
-    if (file.target_mm != first.target_mm) {
-      refuse("target_mm", fmt::format("{}", file.target_mm), fmt::format("{}", first.target_mm));
+  const auto refuse = [&](const std::filesystem::path& path, const char* key, const std::string& found,
+                          const std::string& expected, std::size_t like) {
+    throw DataError(path, key, found, fmt::format("{} as in {}", expected, request.before[like].string()),
+                    "Only like is compared with like");
+  };
+  const auto check = [&](const std::vector<std::filesystem::path>& paths, const std::vector<EvaluationFile>& side) {
+    const EvaluationFile& first = files.before.front();
+    for (std::size_t i = 0; i < side.size(); ++i) {
+      if (side[i].contour != first.contour)
+        refuse(paths[i], "contour", std::string(to_string(side[i].contour)), std::string(to_string(first.contour)), 0);
+      const std::size_t like = request.settings.is_paired ? i : 0;
+      const double target_mm = files.before[like].target_mm;
+      if (side[i].target_mm != target_mm)
+        refuse(paths[i], "target_mm", fmt::format("{}", side[i].target_mm), fmt::format("{}", target_mm), like);
     }
   };
-  for (std::size_t i = 0; i < request.before.size(); ++i) check(request.before[i], files.before[i]);
-  for (std::size_t i = 0; i < request.after.size(); ++i) check(request.after[i], files.after[i]);
+  check(request.before, files.before);
+  check(request.after, files.after);
 }
 
 }  // namespace
@@ -176,6 +192,7 @@ void describe(Visitor& v, ComparedRow& r) {
   v("name", r.name, "Of the file, without its ending.");
   v("side", r.side, "before or after.");
   v("outcome", r.outcome, "Of the cut.");
+  v({"target_mm", "Intended distance of the line that was measured.", "mm"}, r.target_mm);
   v("hu_score", r.hu_score, "Tumour edge against incision.");
   v("hu_score_ideal", r.hu_score_ideal, "What a perfect offset would score.");
   v({"centroid_shift_mm", "Between the centres of the filled regions.", "mm"}, r.centroid_shift_mm);
@@ -192,7 +209,7 @@ void describe(Visitor& v, ComparedRow& r) {
 void describe(Visitor& v, CutComparison& c) {
   v("measure", c.measure, "Which errors are compared.");
   v("contour", c.contour, "Which line of the cuts was measured.");
-  v({"target_mm", "Its intended distance.", "mm"}, c.target_mm);
+  v({"target_mm", "Its intended distance; null where specimens differ in it.", "mm"}, c.target_mm);
   v.derived("mean_before_mm", c.points ? std::optional(c.points->before.mean) : std::nullopt, "Over all points.");
   v.derived("mean_after_mm", c.points ? std::optional(c.points->after.mean) : std::nullopt, "Over all points.");
   v.derived("verdict", c.points ? TestVerdict::Tested : TestVerdict::TooFew, "Whether there was anything to test.");

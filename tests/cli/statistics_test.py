@@ -190,6 +190,21 @@ class CompareTest(ContourTest):
                             "centerline", "inner_edge")
         self.assert_refused(self.incise("compare", "--before", "s1.json", "--after", "s1.json"), BAD_CASE, "--after", "s1.json again")
 
+    def test_paired_specimens_may_have_targets_of_their_own(self):
+        self.four()
+        for name, source, target in (("near1", "s1", 2.5), ("near2", "s3", 2.5), ("far", "s4", 4.0)):
+            changed = json.loads((self.folder / f"{source}.json").read_text())
+            changed["target_mm"] = target
+            (self.folder / f"{name}.json").write_text(json.dumps(changed))
+        sides = ("--before", "s2.json", "near1.json", "--after", "s4.json", "near2.json")
+        result = self.json_of("compare", *sides, "--paired", "-o", "out")
+        self.assertIsNone(result["target_mm"])
+        self.assertEqual([row["target_mm"] for row in result["rows"]], [4.5, 2.5, 4.5, 2.5])
+        self.assertNotIn("tumour edge reached", (self.out / "box_plot.svg").read_text())
+        self.assert_refused(self.incise("compare", *sides), BAD_DATA, "near1.json", "target_mm", "2.5", "s2.json")
+        self.assert_refused(self.incise("compare", "--before", "s2.json", "near1.json", "--after", "s4.json", "far.json", "--paired"),
+                            BAD_DATA, "far.json", "target_mm", "near1.json")
+
     def test_levels_that_are_none_are_refused(self):
         sides = self.four()
         self.assert_refused(self.incise("compare", *sides, "--alpha", "0"), BAD_CASE, "alpha")

@@ -84,6 +84,7 @@ struct ComparedRow {
   std::string name;
   std::string side;  ///< before, after
   Outcome outcome = Outcome::OpenLoop;
+  double target_mm = 0.0;
   std::optional<double> hu_score, hu_score_ideal, centroid_shift_mm;
   std::size_t n_points = 0;
   std::optional<double> mean_mm, sd_mm;     ///< absent where nothing was compared, or it has no errors
@@ -106,7 +107,7 @@ inline void describe(Visitor& v, LeftOut& l) {
 struct CutComparison {
   ErrorMeasure measure = ErrorMeasure::Absolute;
   ContourKind contour = ContourKind::Centerline;
-  double target_mm = 0.0;
+  std::optional<double> target_mm;         ///< absent: specimens differ in it
   std::optional<PooledTests> points;       ///< absent where a side has no errors
   std::optional<SpecimenTests> specimens;  ///< likewise
   double alpha = 0.0, power = 0.0;
