@@ -120,6 +120,23 @@ TEST(SecondCut, ClosesErrsInwardAndIsTheSameTwice) {
   EXPECT_EQ(again.after->tissue.voxels_of, cut.after->tissue.voxels_of);
 }
 
+// As it was when the laboratory was frozen (docs/models/second_bench.md, Frozen): laws and their constants.
+TEST(SecondCut, IsCutByTheLawsThatWereFrozen) {
+  struct Kept {
+    double speed_mm_s, power_w, error_mm, force_mn;
+  };
+  for (const Kept& kept :
+       {Kept{7.0, 35.0, -0.850, 458.2}, Kept{4.0, 35.0, -0.720, 261.6}, Kept{2.0, 35.0, -0.665, 148.0}}) {
+    const Cut& cut = cut_at(kept.speed_mm_s, kept.power_w);
+    const auto errors = true_errors_mm(cut, 4.5);
+    ASSERT_TRUE(errors.has_value());
+    double mean = 0.0;
+    for (const double e : *errors) mean += e / static_cast<double>(errors->size());
+    EXPECT_NEAR(mean, kept.error_mm, 0.05) << kept.speed_mm_s;
+    EXPECT_NEAR(cut.mean_force_mn, kept.force_mn, 0.03 * kept.force_mn) << kept.speed_mm_s;
+  }
+}
+
 TEST(SecondCut, AFasterToolPushesHarderAndErrsMore) {
   const auto slow = true_errors_mm(cut_at(2.0, 35.0), 4.5), fast = true_errors_mm(cut_at(7.0, 35.0), 4.5);
   ASSERT_TRUE(slow && fast);

@@ -22,6 +22,28 @@ TEST(SecondSpecimen, EveryParameterSaysSpreadSourceAndReadingAndIsListedOnce) {
   EXPECT_EQ(sizeof(Specimen), 2 * sizeof(std::uint64_t) + names.size() * sizeof(double));
 }
 
+/// Of what decides how specimens are drawn and prescribed: names, kinds of spread, numbers, factors; not of words.
+std::uint64_t fingerprint_of_spreads() {
+  std::string text;
+  const Specimen still;
+  for (const Parameter& p : parameters()) {
+    text += fmt::format("{} {} {} {} {} {} {} {}\n", p.name, to_string(p.drawn_as), p.a, p.b, p.low, p.high,
+                        p.factor ? to_string(*p.factor) : "always", still.*p.member);
+  }
+  for (const double speed : {2.0, 7.0, 12.0}) {
+    Specimen asked;
+    asked.speed_mm_s = speed;
+    text += fmt::format("{}\n", prescribed_power_w(asked));
+  }
+  return stream_of(0, text);
+}
+
+// The laboratory was accepted as it is, before any planner but the paper's was run on it, and is not touched again:
+// whoever changes a spread makes every figure measured on it void (docs/models/second_bench.md, Frozen).
+TEST(SecondSpecimen, SpreadsAreThoseThatWereFrozen) {
+  EXPECT_EQ(fingerprint_of_spreads(), 7319302856234789267ULL);
+}
+
 TEST(SecondSpecimen, DrawsKeepToTheirLimitsAndDefaultsAreValid) {
   EXPECT_THAT(problems_of(Specimen{}), testing::IsEmpty());
   for (std::uint64_t seed = 0; seed < 200; ++seed)
