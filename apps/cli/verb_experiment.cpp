@@ -99,7 +99,6 @@ int study(const ExperimentSettings& settings, const CommonOptions& options) {
   const std::filesystem::path root = options.required_output("experiment");
   if (!settings.truth.empty() && is_same_folder(settings.truth, root))
     throw CaseError("command line", "--truth", settings.truth.string() + ", the output", "a folder of its own");
-  std::filesystem::create_directories(root);
   nlohmann::ordered_json result;
   try {
     Console console(options.level());  // its bar is gone before the summary
@@ -119,7 +118,7 @@ void add_experiment(Application& application) {
   auto rule = std::make_shared<std::string>(to_string(CutRule::Tets));
   CLI::App* verb =
       application.add_verb("experiment",
-                           "The paper's whole experiment on the virtual bench: specimens are cut as "
+                           "The paper's whole experiment on a virtual bench: specimens are cut as "
                            "planned, the simulation is calibrated to their photographs, further "
                            "specimens are cut as planned and corrected, and all is measured. Everything "
                            "in it is virtual. Run it again to continue where it stopped",
@@ -128,6 +127,11 @@ void add_experiment(Application& application) {
                              return study(*settings, options);
                            });
   verb->alias("study");
+  verb->add_option("--bench", settings->bench,
+                   "1: the first laboratory, whose specimens are much alike; 2: the second, whose specimens, margins, "
+                   "depths and speeds differ widely (`incise schema bench2`). Its specimens are one series, that of "
+                   "--seed")
+      ->check(whole_between("--bench", 1, 2));
   verb->add_option("--specimens", settings->specimens,
                    "2 to 200, even: half to calibrate on, half to test; 4: as in the paper, and one outside the "
                    "calibrated range. Their seeds count up from --seed, so start another experiment beyond the last "
@@ -137,7 +141,7 @@ void add_experiment(Application& application) {
   verb->add_option("--outside", settings->outside,
                    "Further specimens unlike those calibrated on (stiff, oedematous, scarred, oedematous, soft in "
                    "turn), to compare the advice of `assess` with what happens; "
-                   "by default one with four specimens, else none")
+                   "by default one with four specimens, else none. Of the first laboratory alone")
       ->check(whole_between("--outside", 0, 200));
   verb->add_flag("!--no-rivals", settings->with_rivals,
                  "Do not cut test specimens along the rivals' paths (constant offset and mean profile of the "
@@ -146,7 +150,7 @@ void add_experiment(Application& application) {
   verb->add_flag("--paper-pass", settings->with_paper_pass,
                  "With --no-rivals: still cut along the paper's single radial correction");
   verb->add_flag("--known-physics", settings->with_known_physics,
-                 "Also cut every test specimen as a planner that knows the bench's physics would");
+                 "Also cut every test specimen as a planner that knows the bench's physics would (first laboratory)");
   verb->add_flag("--withheld-force", settings->with_withheld_force,
                  "Also run `assess` as if the pull had not been measured");
   verb->add_option("--tets", settings->tets, "Tetrahedra of the planner's meshes")

@@ -51,7 +51,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 ExperimentJson settings_json(const ExperimentSettings& settings) {
-  return {{"specimens", settings.specimens},
+  return {{"bench", settings.bench},
+          {"specimens", settings.specimens},
           {"outside", settings.outside ? ExperimentJson(*settings.outside) : ExperimentJson(nullptr)},
           {"quick", settings.is_quick},
           {"rivals", settings.with_rivals},
@@ -85,11 +86,23 @@ double mean_modulus_kpa(const ExperimentJson& calibration) {
   return std::exp(sum / static_cast<double>(specimens.size()));
 }
 
+/// The second bench has specimens unlike the others among its own, and no planner that knows its physics.
+ExperimentSettings possible(ExperimentSettings settings) {
+  INCISE_REQUIRE(settings.bench == 1 || settings.bench == 2,
+                 fmt::format("expected bench 1 or 2, found {}", settings.bench));
+  if (settings.bench == 2 && settings.outside)
+    throw CaseError("command line", "--outside", fmt::format("{} on the second bench", *settings.outside),
+                    "the option on the first one alone", "Specimens of the second differ from one another as it is.");
+  if (settings.bench == 2 && settings.with_known_physics)
+    throw CaseError("command line", "--known-physics", "the second bench", "the option on the first one alone");
+  return settings;
+}
+
 class Experiment {
  public:
   Experiment(ExperimentSettings settings, std::filesystem::path output, RunContext run, Workers& workers,
              Monitor& monitor)
-      : settings_(std::move(settings)),
+      : settings_(possible(std::move(settings))),
         context_(std::move(run)),
         workers_(workers),
         monitor_(monitor),
@@ -221,17 +234,22 @@ ExperimentJson Experiment::run() {
 /// it.
 void Experiment::claim_folder() const {
   const std::filesystem::path file = root_ / "experiment.json";
+  ExperimentJson claim{{"schema", "incise.experiment/1"}, {"specimen_is", "virtual"}, {"seed", context_.seed}};
+  if (settings_.bench != 1) claim["bench"] = settings_.bench;
   if (!std::filesystem::exists(file)) {
     steps::require_own_or_empty(root_, {file.filename().string()}, "an experiment");
-    write_json(file, {{"schema", "incise.experiment/1"}, {"specimen_is", "virtual"}, {"seed", context_.seed}});
+    write_json(file, claim);
     return;
   }
   const ExperimentJson kept = read_json(file);
-  const ExperimentJson seed = kept.is_object() ? kept.value("seed", ExperimentJson()) : ExperimentJson();
-  if (seed != ExperimentJson(context_.seed)) {
-    throw DataError(file, "seed", seed.dump(), fmt::format("{}, that of this command", context_.seed),
-                    "Its specimens differ: choose another place for the output");
-  }
+  const auto require_same = [&](const char* key, const ExperimentJson& asked, const ExperimentJson& if_absent) {
+    const ExperimentJson found = kept.is_object() ? kept.value(key, if_absent) : ExperimentJson();
+    if (found != asked)
+      throw DataError(file, key, found.dump(), fmt::format("{}, that of this command", asked.dump()),
+                      "Its specimens differ: choose another place for the output");
+  };
+  require_same("seed", context_.seed, nullptr);
+  require_same("bench", settings_.bench, 1);
 }
 
 /// What an earlier run with other options said of the whole: it would be taken for this one's.
@@ -244,7 +262,8 @@ void Experiment::remove_summaries() const {
 }
 
 void Experiment::add_outside(std::uint64_t seed) {
-  const bool is_papers = settings_.specimens == 4;  // two to calibrate, two corrected, and one that fails
+  const bool is_papers =
+      settings_.specimens == 4 && settings_.bench == 1;  // two to calibrate, two corrected, and one that fails
   const std::uint64_t count = settings_.outside.value_or(is_papers ? 1 : 0);
   for (std::uint64_t i = 0; i < count; ++i) {
     Trial trial;
@@ -314,7 +333,7 @@ double Experiment::calibration_cost() const {
 void Experiment::run_trial(Trial& trial) {
   Workers one(1);
   ExperimentSteps steps(root_ / trial.name, one, monitor_);
-  VirtualLaboratory bench({.seed = trial.seed, .given = trial.given, .truth = truth_ / trial.name}, steps);
+  VirtualLaboratory bench({trial.seed, trial.given, truth_ / trial.name, settings_.bench, context_.seed}, steps);
   SpecimenTrial specimen({.name = trial.name, .tets = settings_.tets, .rule = settings_.rule}, steps, bench);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");

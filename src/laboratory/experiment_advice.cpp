@@ -1,6 +1,5 @@
 #include "laboratory/experiment_advice.hpp"
 
-#include <incise/bench_studies/planned_bench_cut.hpp>
 #include <incise/evaluation/forecast_skill.hpp>
 #include <incise/imaging/photo_contours.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -34,7 +33,7 @@ std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const Trial&
   if (!json.contains("mean_abs_error_mm")) return result;
   result.mean_abs_error_mm = json.at("mean_abs_error_mm").get<double>();
   const auto errors = json.at("signed_errors_mm").get<std::vector<double>>();
-  result.least_margin_mm = kInnerEdgeTargetMm + *std::min_element(errors.begin(), errors.end());
+  result.least_margin_mm = json.at("target_mm").get<double>() + *std::min_element(errors.begin(), errors.end());
   return result;
 }
 

@@ -94,8 +94,10 @@ class SecondSpecimen : public VirtualSpecimen {
     if (made.outcome == Outcome::NotConverged) return std::nullopt;
     nlohmann::ordered_json truth;
     truth["note"] = kCutTruth;
-    const auto errors = true_errors_mm(made, body_.specimen.margin_mm - kElectrodeRadiusMm);
+    const double target_mm = body_.specimen.margin_mm - kElectrodeRadiusMm;
+    const auto errors = true_errors_mm(made, target_mm);
     truth["outcome"] = to_string(errors ? Outcome::Success : Outcome::OpenLoop);
+    truth["target_mm"] = target_mm;
     if (errors) {
       truth["mean_abs_error_mm"] = mean_abs(*errors);
       truth["signed_errors_mm"] = *errors;
@@ -131,6 +133,7 @@ nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut) {
   nlohmann::ordered_json json;
   json["note"] = kCutTruth;
   json["outcome"] = to_string(cut.outcome);
+  json["target_mm"] = kInnerEdgeTargetMm;
   if (cut.inner_edge) {
     const std::vector<double> errors = true_errors_mm(body, cut, kInnerEdgeTargetMm);
     json["mean_abs_error_mm"] = mean_abs(errors);

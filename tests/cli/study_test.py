@@ -45,6 +45,33 @@ class StudyTest(CommandTest):
             self.assertIn(words, done.stderr)
         self.assertEqual(report.read_text(), "an older one")
 
+    def test_laboratories_are_not_mixed(self):
+        for option in (("--outside", "1"), ("--known-physics",)):
+            done = self.incise("experiment", "--quick", "--bench", "2", *option, "-o", "study")
+            self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+            for words in (option[0], "second bench"):
+                self.assertIn(words, done.stderr)
+            self.assert_nothing_written(self.folder / "study")
+        kept = self.folder / "study" / "experiment.json"
+        kept.parent.mkdir(exist_ok=True)
+        kept.write_text('{"schema": "incise.experiment/1", "seed": 1}')
+        done = self.incise("experiment", "--quick", "--bench", "2", "--seed", "1", "-o", "study")
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        for words in ("experiment.json", "bench", "found 1", "2, that of this command"):
+            self.assertIn(words, done.stderr)
+
+    def test_the_second_laboratory_is_cut_at_its_own_margins(self):
+        result = self.json_of("experiment", "--bench", "2", "--specimens", "2", "--quick", "--no-rivals", "--tets", "10000", "--seed", "41",
+                              "-o", "study")
+        self.assertEqual(result["pairs"], 1)
+        for name in ("S1_planned", "S2_planned", "S2_corrected"):
+            specimen = self.folder / "study" / name[:2]
+            margin = json.loads((specimen / "lab" / "readings.json").read_text())["prescription"]["lateral_margin_mm"]
+            self.assertEqual(json.loads((specimen / f"{name}.json").read_text())["target_mm"], margin - 0.5)
+            truth = json.loads((self.folder / "study" / "truth" / name / "cut_truth.json").read_text())
+            self.assertEqual(truth["target_mm"], margin - 0.5)
+        self.assertEqual(json.loads((self.folder / "study" / "experiment.json").read_text())["bench"], 2)
+
     def test_the_truth_needs_a_folder_of_its_own(self):
         for truth in ("study", "./study", "study/", "study/.", "other/../study", str(self.folder / "study")):
             done = self.incise("experiment", "--quick", "--truth", truth, "-o", "study")

@@ -40,7 +40,7 @@ class ByHand {
   }
   void cut(const Trial& trial, TrialCut& made, const std::string& name, std::optional<double> error_mm) {
     made.is_made = true;
-    AdviceJson truth{{"note", "by hand"}};
+    AdviceJson truth{{"note", "by hand"}, {"target_mm", target_mm}};
     if (error_mm) truth.update({{"mean_abs_error_mm", *error_mm}, {"signed_errors_mm", {-*error_mm, -*error_mm}}});
     std::filesystem::create_directories(folder / (trial.name + "_" + name));
     std::ofstream(folder / (trial.name + "_" + name) / "cut_truth.json") << truth;
@@ -49,6 +49,7 @@ class ByHand {
 
   TemporaryFolder folder;
   std::vector<Trial> trials;
+  double target_mm = 4.5;  ///< of the cuts that are added next
 };
 
 TEST(HoldAdviceAgainstTruth, TakesItsLabelsFromTheTruthAndAnUnstatedProbabilityForOneHalf) {
@@ -91,9 +92,11 @@ TEST(HoldAdviceAgainstTruth, CountsCloseMarginsOfClosedRings) {
   ByHand hand;
   hand.add(TrialRole::Test, 0.1, 2.5, 0.4);           // 4.5 - 2.5 mm is below 2.2 mm
   hand.add(TrialRole::Test, 0.1, 2.0, std::nullopt);  // 2.5 mm is not
+  hand.target_mm = 2.6;
+  hand.add(TrialRole::Test, 0.1, 0.5, std::nullopt);  // its surgeon asked for less: 2.1 mm is
   const AdviceJson margin = hand.advice().at("close_margin");
-  EXPECT_EQ(margin.at("cuts"), 3);
-  EXPECT_NEAR(margin.at("brier_score"), (0.1 * 0.1 + 0.9 * 0.9 + 0.1 * 0.1) / 3.0, 1e-12);
+  EXPECT_EQ(margin.at("cuts"), 4);
+  EXPECT_NEAR(margin.at("brier_score"), (0.1 * 0.1 + 0.9 * 0.9 + 0.1 * 0.1 + 0.1 * 0.1) / 4.0, 1e-12);
 }
 
 TEST(HoldAdviceAgainstTruth, LeavesOutWhatWasNotCutTwiceOrNotAdvisedOn) {

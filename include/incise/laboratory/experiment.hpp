@@ -13,11 +13,12 @@
 
 namespace incise {
 
-/// What an experiment on the virtual bench is asked for.
+/// What an experiment on a virtual bench is asked for.
 struct ExperimentSettings {
+  int bench = 1;  ///< the laboratory: 1 or 2; the specimens of the second are one series, that of the seed
   std::uint64_t specimens = 4;  ///< half to calibrate on, half to test; even
-  std::optional<std::uint64_t>
-      outside;                       ///< further ones, unlike the others; absent: one with four specimens, else none
+  /// Further ones, unlike the others; absent: on the first bench one with four specimens, else none.
+  std::optional<std::uint64_t> outside;
   std::filesystem::path truth;       ///< empty: truth/ in the output
   bool is_quick = false;             ///< without Table I
   /// Test specimens are cut along every rival's path, too: without that no benefit of simulation can be claimed.
@@ -41,8 +42,8 @@ struct ExperimentSettings {
 ///
 /// @param run  what the manifests say; `seed` is that of the first specimen.
 /// @returns what study.json holds.
-/// @throws DataError where nothing is left to calibrate on or a file cannot be written; Cancelled: finished steps are
-/// kept.
+/// @throws CaseError for outside specimens or known physics on the second bench, which has neither; DataError where
+/// nothing is left to calibrate on or a file cannot be written; Cancelled: finished steps are kept.
 [[nodiscard]] nlohmann::ordered_json experiment(const ExperimentSettings& settings, const std::filesystem::path& output,
                                                 const RunContext& run, Workers& workers, Monitor& monitor);
 /// The same on every thread of the machine and without messages.
