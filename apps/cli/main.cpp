@@ -106,6 +106,7 @@ int run(int argc, char** argv) {
   add_mesh(application);
   add_stages(application);
   add_compensate(application);
+  add_forecast(application);
   add_assess(application);
   add_interchange(application);
   add_evaluate(application);

@@ -122,6 +122,7 @@ int run_step(const CommonOptions& options, const std::function<steps::StepResult
 /// The same for a whole loop: for a person, the measures that matter of the two cuts side by side.
 void print_study(const CommonOptions& options, const nlohmann::ordered_json& result);
 
+void add_forecast(Application& application);
 void add_assess(Application& application);
 void add_bench(Application& application);  ///< bench make, bench cut
 void add_calibrate(Application& application);

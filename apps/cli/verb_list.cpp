@@ -32,6 +32,7 @@ const std::vector<VerbGroup>& groups() {
         {"plan", "Plan the intended incision on the stretched tissue"},
         {"simulate", "Cut along the planned path and measure the result"},
         {"compensate", "Correct the path by the simulated error and verify it by cutting again"},
+        {"forecast", "Say what the photographs of earlier cuts tell of the error of this ring"},
         {"assess", "Advise to cut a specimen along the corrected path, as planned, or not at all"}}},
       {"Robot",
        {{"surface", "Sample the surface that an observer sees, or clean a camera's cloud"},

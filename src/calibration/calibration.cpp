@@ -139,6 +139,7 @@ void describe(Visitor& v, CalibratedSpecimen& s) {
   v({"stretch_mm", "How far its end was displaced.", "mm"}, stretch_mm, {0.0, kAnatomyMm.most});
   s.stretch_mm = stretch_mm.value_or(0.0);
   v("registration", s.registration, "How well the simulated surface lies on the measured one.");
+  v("ring", s.ring, "In what ring, tissue and cut differ from others.");
   v.derived("picture_turn_deg", s.picture.turn_deg, "Turn of the photograph.");
   v.derived("picture_rms_mm", s.picture.rms_mm, "Of the distances between the edges that is left.");
   v.bulk("held", s.held, "Digest of the held specimen.");

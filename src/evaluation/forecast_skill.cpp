@@ -1,6 +1,7 @@
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
 #include <incise/evaluation/forecast_skill.hpp>
+#include <incise/evaluation/statistics.hpp>
 
 #include <fmt/format.h>
 
@@ -9,8 +10,6 @@
 
 namespace incise {
 namespace {
-
-constexpr double kNormal95 = 1.959963984540054;  // two-sided quantile of the normal distribution
 
 /// Share of the pairs in which the event's score is the higher one, equal ones counted as halves. Both sorted.
 double area_of(const std::vector<double>& happened, const std::vector<double>& did_not) {

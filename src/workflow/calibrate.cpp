@@ -75,6 +75,7 @@ class CalibrationRunner {
     specimen.simulated_force_n = bodies_.back()->simulated_force_n();
     specimen.stretch_mm = bodies_.back()->stretched_by_mm();
     specimen.registration = subject.registration;
+    specimen.ring = bodies_.back()->ring();
     specimen.held = bodies_.back()->digest();
     specimen.youngs_modulus_kpa = subject.settings.material.youngs_modulus_kpa * bodies_.back()->reference_stiffness();
     measure_photograph(subject, specimen);
@@ -222,7 +223,8 @@ class CalibrationRunner {
     }
   }
 
-  /// A photograph that fits another case of the calibration far better than its own has been mixed up with it.
+  /// A photograph that fits another case of the calibration without doubt, and far better than its own, has been mixed
+  /// up with it.
   void refuse_if_of_another_case(std::size_t s) const {
     constexpr double kBetterBy = 2.0;
     const CalibrationSubject& subject = *subjects_[s].of;
@@ -233,7 +235,7 @@ class CalibrationRunner {
       if (other == s || closed == runs.end()) continue;
       const PictureMatch match = match_picture(subject.photographed.tumor_edge, subject.photographed.approach, closed->final_tumor_edge,
                                                subjects_[other].of->settings.plan.approach);
-      if (kBetterBy * match.rms_mm > own.rms_mm) continue;
+      if (match.is_doubtful || kBetterBy * match.rms_mm > own.rms_mm) continue;
       throw DataError(subject.photograph_file, "tumor_edge",
                       fmt::format("a tumour edge that fits the case {} ({:.2f} mm apart, turned by {:.1f} degrees), not its own case {} "
                                   "({:.2f} mm, {:.1f} degrees)",

@@ -3,6 +3,7 @@
 #include <incise/core/error.hpp>
 #include <incise/workflow/assess.hpp>
 #include <incise/workflow/cut_doubts.hpp>
+#include <incise/workflow/ring_covariates.hpp>
 
 #include <fmt/format.h>
 
@@ -94,6 +95,11 @@ double CalibrationBody::stretched_by_mm() const {
 double CalibrationBody::reference_stiffness() const {
   const std::optional<double>& measured = subject_.photographed.stretch_force_n;
   return measured ? *measured / simulated_force_n_ : 1.0;
+}
+
+RingCovariates CalibrationBody::ring() const {
+  return ring_covariates(subject_.settings, *study_.model, study_.stretched->state.positions, tumor_edge(),
+                         subject_.settings.material.youngs_modulus_kpa * reference_stiffness());
 }
 
 void CalibrationBody::require_stretched(const StaticResult& stretched, double stiffness_of_case) const {

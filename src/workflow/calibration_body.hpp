@@ -36,6 +36,8 @@ class CalibrationBody {
   [[nodiscard]] double simulated_force_n() const { return simulated_force_n_; }
   /// How far the case displaces what it pulls, mm.
   [[nodiscard]] double stretched_by_mm() const;
+  /// Its covariates, the modulus being that of the reference.
+  [[nodiscard]] RingCovariates ring() const;
   /// Of all that its cuts depend on beside their setting.
   [[nodiscard]] const std::string& digest() const { return digest_; }
 

@@ -4,6 +4,7 @@
 #include <incise/calibration/drag_fit.hpp>
 #include <incise/calibration/identifiability.hpp>
 #include <incise/calibration/picture_match.hpp>
+#include <incise/calibration/ring_covariates.hpp>
 #include <incise/calibration/score_table.hpp>
 #include <incise/core/names.hpp>
 #include <incise/core/verdict.hpp>
@@ -54,6 +55,7 @@ struct CalibratedSpecimen {
   double stretch_mm = 0.0;                          ///< how far its end was displaced
   std::optional<double> stretch_force_n;            ///< measured
   std::optional<RegistrationQuality> registration;  ///< where it was given
+  std::optional<RingCovariates> ring;               ///< absent: an older file
   PictureMatch picture;
   std::string held;  ///< digest of the held specimen, see calibration_run_key
   std::vector<CalibrationRun> runs;

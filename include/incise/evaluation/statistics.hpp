@@ -24,6 +24,7 @@ inline void describe(Visitor& v, Summary& s) {
 [[nodiscard]] Summary summarize(std::span<const double> values);
 
 /// Of the standard normal distribution: its density, and the probability of a number below z.
+inline constexpr double kNormal95 = 1.959963984540054;  ///< its two-sided quantile of 95 %
 [[nodiscard]] double normal_density(double z);
 [[nodiscard]] double normal_share_below(double z);
 

@@ -82,6 +82,13 @@ struct RobustRequest {
 [[nodiscard]] StepResult assess_case(const CaseRequest& request, const CalibrationInput& calibration,
                                      const std::filesystem::path& registration, const StepContext& context);
 
+/// What the photographs of a calibration say of the error of a case's ring before it is cut, with and without its
+/// simulation; kept in forecast/ of the run's folder. The modulus of the case counts as that of its pull.
+/// Not acceptable: a specimen that cannot be stretched. @throws DataError for a calibration without fit or rings;
+/// CaseError for a plan that is no ring; as CaseRun::study.
+[[nodiscard]] StepResult forecast_case(const CaseRequest& request, const std::filesystem::path& calibration,
+                                       const StepContext& context);
+
 /// From photographed cuts to the simulated tool that cuts like them.
 struct CalibrateRequest {
   std::vector<std::filesystem::path> cases;          ///< of each specimen: how it was held, and its path

@@ -1,0 +1,77 @@
+#include "study_run.hpp"
+
+#include <incise/steps/case_steps.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <numeric>
+
+namespace incise::cli {
+namespace {
+
+struct ForecastOptions {
+  std::filesystem::path case_path, calibration;
+  CutOptions cut;
+};
+
+double mean_of(const nlohmann::ordered_json& list) {
+  const auto values = list.get<std::vector<double>>();
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+void print_forecast(const nlohmann::ordered_json& result) {
+  if (!result.contains("with_simulation")) {
+    fmt::print("not stretched: {}\n", result.at("outcome").get<std::string>());
+    return;
+  }
+  fmt::print("from {} photographs, signed error along the planned path (positive: farther out)\n",
+             result.at("photographs").get<std::size_t>());
+  const auto& alone = result.at("without_simulation");
+  const auto& joined = result.at("with_simulation");
+  fmt::print("{:<36} {:+.2f} mm in the mean, sd {:.2f} mm\n", "without simulation", mean_of(alone.at("residual_mm")),
+             alone.at("level_sd_mm").get<double>());
+  fmt::print("{:<36} {:+.2f} mm beyond {:.2f} of the simulated error, sd {:.2f} mm\n", "with simulation",
+             mean_of(joined.at("residual_mm")), joined.at("simulated_share").get<double>(),
+             joined.at("level_sd_mm").get<double>());
+  const auto& eye = joined.at("hand_eye");
+  for (int axis = 0; axis < 2; ++axis)
+    fmt::print("{:<36} {:+.2f} mm (95 %: {:+.2f} to {:+.2f})\n",
+               fmt::format("hand-eye offset, {}", axis == 0 ? "x" : "y"), eye.at("offset_mm")[axis].get<double>(),
+               eye.at("low_mm")[axis].get<double>(), eye.at("high_mm")[axis].get<double>());
+  const auto unlike = joined.at("unlike").get<std::vector<std::string>>();
+  if (!unlike.empty()) fmt::print("beyond most photographed rings in: {}\n", fmt::join(unlike, ", "));
+  fmt::print("lists for the case's compensation: {}/forecast.json\n", result.at("folder").get<std::string>());
+}
+
+int forecast_case(const ForecastOptions& chosen, const CommonOptions& options) {
+  return run_step(
+      options,
+      [&](const auto& context) {
+        return steps::forecast_case(case_request(chosen.case_path, Stage::Plan, options, chosen.cut),
+                                    chosen.calibration, context);
+      },
+      [](const CommonOptions& common, const nlohmann::ordered_json& json) {
+        common.json ? print_result(common, json) : print_forecast(json);
+      });
+}
+
+}  // namespace
+
+void add_forecast(Application& application) {
+  auto chosen = std::make_shared<ForecastOptions>();
+  CLI::App* verb = application.add_verb(
+      "forecast",
+      "What the photographs of earlier cuts say of this ring before it is cut: its expected error by direction, with "
+      "and without the simulation, how certain that is, and in what the ring lies beyond those that were photographed",
+      "incise forecast specimen --calibration calibration/calibration.json -o out",
+      [chosen](const CommonOptions& options) { return forecast_case(*chosen, options); });
+  verb->add_option("case", chosen->case_path, "Case file, or a folder with case.yaml; its modulus is that of its pull")
+      ->required();
+  verb->add_option("--calibration", chosen->calibration, "calibration.json of `incise calibrate --method fit`")
+      ->required();
+  add_cut_options(*verb, chosen->cut);
+}
+
+}  // namespace incise::cli

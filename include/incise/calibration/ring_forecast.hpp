@@ -1,0 +1,92 @@
+#pragma once
+
+#include <incise/calibration/calibration.hpp>
+#include <incise/calibration/ring_covariates.hpp>
+#include <incise/core/describe.hpp>
+#include <incise/evaluation/statistics.hpp>
+#include <incise/geometry/types.hpp>
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace incise {
+
+/// A cut that was photographed. Profiles are those of error_profile: sectors from the start direction on.
+struct RingObservation {
+  RingCovariates ring;
+  std::vector<double> photographed_mm;  ///< signed error as if cut along the planned path
+  std::vector<double> simulated_mm;     ///< of a simulated cut along it, its bias added; zeros: no simulation
+};
+
+/// The fitted specimens of a calibration. Empty: it has no fit, or is of an older version and lacks rings or errors.
+[[nodiscard]] std::vector<RingObservation> ring_observations(const Calibration& calibration);
+
+/// Mean of what was photographed by direction in the view, wherever each cut started, for a ring that starts there: by
+/// sector from its start on, linear between sectors. @throws InvalidArgument without observations.
+[[nodiscard]] std::vector<double> photographed_in_view(std::span<const RingObservation> observations, double start_deg);
+
+/// Standard deviations, mm, of what makes photographs differ from a simulation, and angles over which correlations fall
+/// to 1/e; estimated.
+struct RingSpreads {
+  double by_start_mm = 0.2;  ///< common to all cuts, by direction from the start
+  double in_view_mm = 0.2;   ///< common to all cuts, by direction in the view
+  double hand_eye_mm = 0.5;  ///< of the common offset in the view, along each axis
+  double own_mm = 0.25;      ///< of each cut by itself: along the ring …
+  double level_mm = 0.25;    ///< … all round …
+  double shift_mm = 0.25;    ///< … and of its offset, along each axis
+  double reading_mm = 0.12;  ///< of a sector's reading
+  double common_deg = 60.0;  ///< of the two common ones
+  double own_deg = 40.0;
+  double share = 0.5;          ///< of the share of simulated differences about 1; 0 without a simulation
+  CovariateValues slope_mm{};  ///< what the mean error gains per step of each covariate (see ring_forecast.cpp)
+};
+void describe(Visitor& v, RingSpreads& s);
+
+/// What photographs say of a cut that is not made yet. It is expected to err by
+/// simulated_share · (simulated error + bias) + residual_mm, sector by sector.
+struct RingForecast {
+  double simulated_share = 1.0;     ///< 0 without a simulation
+  std::vector<double> residual_mm;  ///< by sector
+  std::vector<double> sd_mm;        ///< of one photograph about that, by sector: everything that is not known of it
+  double level_sd_mm = 0.0;         ///< of its mean round the ring about the forecast's
+  std::vector<std::string_view> unlike;  ///< covariates outside the observations' 10th to 90th percentile
+};
+void describe(Visitor& v, RingForecast& f);
+
+/// The offset that all photographs of a series have in common in the view, x and y, mm.
+struct HandEyeEstimate {
+  Vec2 offset_mm = Vec2::Zero();
+  Vec2 sd_mm = Vec2::Zero();
+  /// Ends of the 95 % credible interval.
+  [[nodiscard]] Vec2 low_mm() const { return offset_mm - kNormal95 * sd_mm; }
+  [[nodiscard]] Vec2 high_mm() const { return offset_mm + kNormal95 * sd_mm; }
+};
+void describe(Visitor& v, HandEyeEstimate& e);
+
+/// Photographs y of specimens s with simulated errors m, as waves of at most four to a turn, θ from the start:
+///     y_s(θ) = m_s(θ) + β (m_s − m̄)(θ) + f(θ) + g(θ + α_s) + h · n(θ + α_s) + c · x_s + own_s(θ)
+/// f and g are Gaussian processes round the ring, h the hand-eye offset, α_s the start's direction in the view, x_s the
+/// covariates about their mean, β and c normal, own_s of each cut by itself. All is linear and normal given the
+/// spreads; these are the most probable ones under half-normal priors, found by a pattern search. Without observations
+/// it is the simulation. Source: [RasmussenWilliams2006, 2.2, 2.7, 5.4.1].
+class RingForecaster {
+ public:
+  /// @param has_simulation  else simulated errors are taken for 0 and β is left out: photographs alone.
+  /// @throws InvalidArgument for profiles of different lengths, of fewer than 9 sectors, or not finite.
+  /// @note O(evaluations · (9 n)³), n observations, some hundred evaluations; a forecast O((9 n)²).
+  RingForecaster(std::vector<RingObservation> observations, bool has_simulation);
+  ~RingForecaster();
+  RingForecaster(RingForecaster&&) noexcept;
+
+  /// @param sectors  of the forecast's lists; that of the observations where there are some.
+  [[nodiscard]] RingForecast forecast(const RingCovariates& ring, std::size_t sectors = 36) const;
+  [[nodiscard]] HandEyeEstimate hand_eye() const;
+  [[nodiscard]] const RingSpreads& spreads() const;
+
+ private:
+  struct Posterior;
+  std::unique_ptr<const Posterior> posterior_;
+};
+
+}  // namespace incise

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <incise/calibration/ring_covariates.hpp>
+#include <incise/mechanics/tissue.hpp>
+#include <incise/workflow/case.hpp>
+
+namespace incise {
+
+/// The covariates of a planned ring.
+/// @param positions   of the model's nodes, stretched, mm.
+/// @param tumor_edge  closed, on the stretched tissue, same frame.
+/// @param youngs_modulus_kpa  what the pull makes of the case's, or the case's.
+/// @note Places are told by the greatest displacement among the case's constraints; without one, along the view's y.
+[[nodiscard]] RingCovariates ring_covariates(const Case& settings, const TissueModel& model, const Points& positions,
+                                             const Contour& tumor_edge, double youngs_modulus_kpa);
+
+}  // namespace incise

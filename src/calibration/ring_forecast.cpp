@@ -1,0 +1,386 @@
+#include "calibration/sector_noise.hpp"
+
+#include <incise/calibration/ring_forecast.hpp>
+#include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace incise {
+
+using SlowWaves = Eigen::Matrix<double, static_cast<Eigen::Index>(kEntriesThatCount), 1>;
+
+/// One observation or the ring that is asked for, ready for the covariance.
+struct RingPlace {
+  double start_deg = 0.0;
+  CovariateValues steps{};                  ///< of its covariates, from their mean
+  SlowWaves simulated = SlowWaves::Zero();  ///< slow ones, less the observations' mean
+};
+
+namespace {
+
+constexpr auto kWaves = static_cast<Eigen::Index>(kEntriesThatCount);
+using WaveMatrix = Eigen::Matrix<double, kWaves, kWaves>;
+
+/// Steps of the covariates that are worth telling apart: a quarter of a radius, a tenth of the body's length, half the
+/// modulus again …; in the order of kRingCovariateNames.
+constexpr CovariateValues kSteps{0.25, 0.05, 0.1, 3.0, 0.5, 1.0, 1.0, 0.4};
+
+/// Half-normal scale of each spread, in the order of SpreadList; the angles are log-normal about theirs.
+constexpr double kSlopePriorMm = 0.15;
+constexpr double kAngleSd = 0.5;
+
+/// The spreads as a list of logarithms for the search.
+struct SpreadEntry {
+  double RingSpreads::*member;
+  double prior;
+  bool is_angle;
+};
+constexpr std::array kEntries{
+    SpreadEntry{&RingSpreads::by_start_mm, 0.3, false}, SpreadEntry{&RingSpreads::in_view_mm, 0.3, false},
+    SpreadEntry{&RingSpreads::hand_eye_mm, 1.0, false}, SpreadEntry{&RingSpreads::own_mm, 0.35, false},
+    SpreadEntry{&RingSpreads::level_mm, 0.35, false},   SpreadEntry{&RingSpreads::shift_mm, 0.35, false},
+    SpreadEntry{&RingSpreads::reading_mm, 0.2, false},  SpreadEntry{&RingSpreads::common_deg, 60.0, true},
+    SpreadEntry{&RingSpreads::own_deg, 40.0, true}};
+
+double& entry_of(RingSpreads& spreads, std::size_t k) {
+  return k < kEntries.size() ? spreads.*kEntries[k].member : spreads.slope_mm[k - kEntries.size()];
+}
+constexpr std::size_t kSpreads = kEntries.size() + std::tuple_size_v<CovariateValues>;
+
+/// Of the prior of the spreads' logarithms, but for a constant.
+double log_prior(const RingSpreads& spreads) {
+  RingSpreads copy = spreads;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kSpreads; ++k) {
+    const double value = entry_of(copy, k);
+    if (k < kEntries.size() && kEntries[k].is_angle) {
+      const double z = std::log(value / kEntries[k].prior) / kAngleSd;
+      sum -= 0.5 * z * z;
+    } else {
+      const double z = value / (k < kEntries.size() ? kEntries[k].prior : kSlopePriorMm);
+      sum += std::log(value) - 0.5 * z * z;
+    }
+  }
+  return sum;
+}
+
+SlowWaves slow_waves(const std::vector<double>& profile) {
+  const std::vector<double> spectrum = ring_spectrum(profile);
+  SlowWaves waves;
+  for (Eigen::Index i = 0; i < kWaves; ++i) waves[i] = spectrum[static_cast<std::size_t>(i)];
+  return waves;
+}
+
+std::vector<double> profile_of(const SlowWaves& waves, std::size_t sectors) {
+  std::vector<double> spectrum(sectors, 0.0);
+  for (Eigen::Index i = 0; i < kWaves; ++i) spectrum[static_cast<std::size_t>(i)] = waves[i];
+  return ring_values(spectrum);
+}
+
+SlowWaves slow_eigenvalues(std::size_t sectors, double length_deg) {
+  const std::vector<double> values = ring_eigenvalues(sectors, length_deg);
+  SlowWaves slow;
+  for (Eigen::Index i = 0; i < kWaves; ++i) slow[i] = values[static_cast<std::size_t>(i)];
+  return slow;
+}
+
+/// SlowWaves of f(θ − angle) from those of f(θ).
+WaveMatrix turned(double angle_deg) {
+  WaveMatrix turn = WaveMatrix::Identity();
+  for (Eigen::Index order = 1; 2 * order < kWaves; ++order) {
+    const double angle = static_cast<double>(order) * units::rad_from_deg(angle_deg);
+    turn.block<2, 2>(2 * order - 1, 2 * order - 1) << std::cos(angle), -std::sin(angle), std::sin(angle),
+        std::cos(angle);
+  }
+  return turn;
+}
+
+/// Covariances between two cuts of all that they have in common, for given spreads.
+class CommonCovariance {
+ public:
+  CommonCovariance(const RingSpreads& spreads, std::size_t sectors)
+      : spreads_(spreads), sectors_(static_cast<double>(sectors)) {
+    const SlowWaves shape = slow_eigenvalues(sectors, spreads.common_deg);
+    by_start_ = spreads.by_start_mm * spreads.by_start_mm * shape;
+    in_view_ = spreads.in_view_mm * spreads.in_view_mm * shape;
+    in_view_.segment<2>(1).array() += 0.5 * sectors_ * spreads.hand_eye_mm * spreads.hand_eye_mm;
+  }
+  [[nodiscard]] WaveMatrix between(const RingPlace& a, const RingPlace& b) const {
+    WaveMatrix covariance = in_view_.asDiagonal() * turned(b.start_deg - a.start_deg);
+    covariance.diagonal() += by_start_;
+    for (std::size_t k = 0; k < a.steps.size(); ++k)
+      covariance(0, 0) += sectors_ * spreads_.slope_mm[k] * spreads_.slope_mm[k] * a.steps[k] * b.steps[k];
+    covariance += spreads_.share * spreads_.share * a.simulated * b.simulated.transpose();
+    return covariance;
+  }
+  /// Between a cut and the hand-eye offset, mm.
+  [[nodiscard]] Eigen::Matrix<double, kWaves, 2> with_hand_eye(const RingPlace& a) const {
+    Eigen::Matrix<double, kWaves, 2> covariance = Eigen::Matrix<double, kWaves, 2>::Zero();
+    const double variance = spreads_.hand_eye_mm * spreads_.hand_eye_mm;
+    covariance.block<2, 2>(1, 0) = std::sqrt(0.5 * sectors_) * variance * turned(-a.start_deg).block<2, 2>(1, 1);
+    return covariance;
+  }
+
+ private:
+  const RingSpreads& spreads_;
+  double sectors_;
+  SlowWaves by_start_, in_view_;
+};
+
+/// Variance of each wave of what one cut has by itself.
+SlowWaves own_variances(const RingSpreads& spreads, std::size_t sectors) {
+  SlowWaves own = spreads.own_mm * spreads.own_mm * slow_eigenvalues(sectors, spreads.own_deg);
+  const auto count = static_cast<double>(sectors);
+  own.array() += spreads.reading_mm * spreads.reading_mm;
+  own[0] += count * spreads.level_mm * spreads.level_mm;
+  own.segment<2>(1).array() += 0.5 * count * spreads.shift_mm * spreads.shift_mm;
+  return own;
+}
+
+Eigen::MatrixXd covariance_of(const std::vector<RingPlace>& places, const RingSpreads& spreads, std::size_t sectors) {
+  const CommonCovariance common(spreads, sectors);
+  const SlowWaves own = own_variances(spreads, sectors);
+  const auto count = static_cast<Eigen::Index>(places.size());
+  Eigen::MatrixXd covariance(count * kWaves, count * kWaves);
+  for (Eigen::Index a = 0; a < count; ++a) {
+    for (Eigen::Index b = 0; b <= a; ++b)
+      covariance.block<kWaves, kWaves>(a * kWaves, b * kWaves) =
+          common.between(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)]);
+    covariance.block<kWaves, kWaves>(a * kWaves, a * kWaves).diagonal() += own;
+  }
+  return covariance;  // its lower half
+}
+
+/// Logarithm of the spreads' posterior density, but for a constant; minus infinity where the covariance is none.
+double log_posterior(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, const RingSpreads& spreads,
+                     std::size_t sectors) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(covariance_of(places, spreads, sectors));
+  if (factor.info() != Eigen::Success) return -std::numeric_limits<double>::infinity();
+  const double misfit = factor.matrixL().solve(rest).squaredNorm();
+  const double log_determinant = factor.matrixLLT().diagonal().array().log().sum();
+  return log_prior(spreads) - 0.5 * misfit - log_determinant;
+}
+
+/// One spread after the other is made greater or smaller by a factor; the factor shrinks when nothing helps.
+RingSpreads most_probable(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, RingSpreads spreads,
+                          std::size_t sectors) {
+  constexpr double kFirstFactor = 2.0, kLastFactor = 1.1;
+  constexpr int kMostRounds = 60;
+  double best = log_posterior(places, rest, spreads, sectors), factor = kFirstFactor;
+  for (int round = 0; round < kMostRounds && factor > kLastFactor; ++round) {
+    bool is_better = false;
+    for (std::size_t k = 0; k < kSpreads; ++k) {
+      for (const double change : {factor, 1.0 / factor}) {
+        RingSpreads tried = spreads;
+        entry_of(tried, k) *= change;
+        const double found = log_posterior(places, rest, tried, sectors);
+        if (found <= best) continue;
+        best = found;
+        spreads = tried;
+        is_better = true;
+        break;
+      }
+    }
+    if (!is_better) factor = std::sqrt(factor);
+  }
+  return spreads;
+}
+
+}  // namespace
+
+std::vector<RingObservation> ring_observations(const Calibration& calibration) {
+  std::vector<RingObservation> observations;
+  if (!calibration.fit) return observations;
+  const std::vector<SpecimenFit>& fitted = calibration.fit->specimens;
+  for (std::size_t s = 0; s < fitted.size(); ++s) {
+    const std::optional<RingCovariates>& ring = calibration.specimens[s].ring;
+    if (ring) observations.push_back({*ring, fitted[s].observed_mm, fitted[s].fitted_mm});
+  }
+  return observations;
+}
+
+std::vector<double> photographed_in_view(std::span<const RingObservation> observations, double start_deg) {
+  INCISE_REQUIRE(!observations.empty(), "expected at least one photograph");
+  const std::size_t sectors = observations.front().photographed_mm.size();
+  std::vector<double> mean(sectors, 0.0);
+  for (const RingObservation& one : observations) {
+    const double shift = (start_deg - one.ring.start_deg) * static_cast<double>(sectors) / 360.0;
+    const double whole = std::floor(shift), part = shift - whole;
+    const auto at = [&](std::size_t i, double by) {
+      const auto n = static_cast<double>(sectors), place = static_cast<double>(i) + by;
+      return one.photographed_mm[static_cast<std::size_t>(place - n * std::floor(place / n)) % sectors];
+    };
+    for (std::size_t i = 0; i < sectors; ++i)
+      mean[i] += ((1.0 - part) * at(i, whole) + part * at(i, whole + 1.0)) / static_cast<double>(observations.size());
+  }
+  return mean;
+}
+
+struct RingForecaster::Posterior {
+  std::vector<RingObservation> observations;
+  bool has_simulation = false;
+  std::size_t sectors = 0;
+  RingSpreads spreads;
+  CovariateValues mean{};
+  SlowWaves simulated_mean = SlowWaves::Zero();
+  std::vector<RingPlace> places;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  Eigen::VectorXd weights;  ///< covariance⁻¹ · (photographed − simulated)
+  double fast_mm = 0.12;    ///< of a sector: waves that are not forecast
+
+  [[nodiscard]] RingPlace place_of(const RingCovariates& ring) const {
+    RingPlace place{.start_deg = ring.start_deg};
+    const CovariateValues values = values_of(ring);
+    for (std::size_t k = 0; k < values.size(); ++k) place.steps[k] = (values[k] - mean[k]) / kSteps[k];
+    return place;
+  }
+};
+
+RingForecaster::RingForecaster(std::vector<RingObservation> observations, bool has_simulation) {
+  auto made = std::make_unique<Posterior>();
+  Posterior& p = *made;
+  p.has_simulation = has_simulation;
+  p.spreads.slope_mm.fill(0.1);
+  if (!has_simulation) p.spreads.share = 0.0;
+  if (observations.empty()) {
+    posterior_ = std::move(made);
+    return;
+  }
+  p.sectors = observations.front().photographed_mm.size();
+  INCISE_REQUIRE(p.sectors >= kEntriesThatCount,
+                 fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, p.sectors));
+  const auto count = static_cast<double>(observations.size());
+  double fast_squares = 0.0;
+  std::vector<SlowWaves> photographed;
+  for (RingObservation& one : observations) {
+    if (!has_simulation) one.simulated_mm.assign(p.sectors, 0.0);
+    INCISE_REQUIRE(one.photographed_mm.size() == p.sectors && one.simulated_mm.size() == p.sectors,
+                   fmt::format("expected {} sectors, found {} photographed and {} simulated", p.sectors,
+                               one.photographed_mm.size(), one.simulated_mm.size()));
+    for (const double value : one.photographed_mm) INCISE_REQUIRE(std::isfinite(value), "expected finite errors");
+    for (const double value : one.simulated_mm) INCISE_REQUIRE(std::isfinite(value), "expected finite errors");
+    const std::vector<double> slow = without_fast_waves(one.photographed_mm);
+    for (std::size_t i = 0; i < p.sectors; ++i)
+      fast_squares += std::pow(one.photographed_mm[i] - slow[i], 2) / (count * static_cast<double>(p.sectors));
+    const CovariateValues values = values_of(one.ring);
+    for (std::size_t k = 0; k < values.size(); ++k) p.mean[k] += values[k] / count;
+    p.simulated_mean += slow_waves(one.simulated_mm) / count;
+  }
+  p.fast_mm = std::sqrt(fast_squares);
+  Eigen::VectorXd rest(static_cast<Eigen::Index>(observations.size()) * kWaves);
+  for (std::size_t s = 0; s < observations.size(); ++s) {
+    const SlowWaves simulated = slow_waves(observations[s].simulated_mm);
+    RingPlace place = p.place_of(observations[s].ring);
+    place.simulated = simulated - p.simulated_mean;
+    p.places.push_back(place);
+    rest.segment<kWaves>(static_cast<Eigen::Index>(s) * kWaves) =
+        slow_waves(observations[s].photographed_mm) - simulated;
+  }
+  p.spreads = most_probable(p.places, rest, p.spreads, p.sectors);
+  p.factor.compute(covariance_of(p.places, p.spreads, p.sectors));
+  p.weights = p.factor.solve(rest);
+  p.observations = std::move(observations);
+  posterior_ = std::move(made);
+}
+
+RingForecaster::~RingForecaster() = default;
+RingForecaster::RingForecaster(RingForecaster&&) noexcept = default;
+
+const RingSpreads& RingForecaster::spreads() const {
+  return posterior_->spreads;
+}
+
+RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t sectors) const {
+  const Posterior& p = *posterior_;
+  RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 : 0.0};
+  const std::size_t count = p.places.empty() ? sectors : p.sectors;
+  const CommonCovariance common(p.spreads, count);
+  const RingPlace place = p.place_of(ring);
+  WaveMatrix variance = common.between(place, place);
+  variance.diagonal() += own_variances(p.spreads, count);
+  SlowWaves mean = SlowWaves::Zero();
+  if (!p.places.empty()) {
+    const auto n = static_cast<Eigen::Index>(p.places.size());
+    Eigen::MatrixXd cross(kWaves, n * kWaves);
+    double share = 0.0;
+    for (Eigen::Index s = 0; s < n; ++s) {
+      const RingPlace& seen = p.places[static_cast<std::size_t>(s)];
+      cross.middleCols<kWaves>(s * kWaves) = common.between(place, seen);
+      share += seen.simulated.dot(p.weights.segment<kWaves>(s * kWaves));
+    }
+    share *= p.spreads.share * p.spreads.share;
+    mean = cross * p.weights - share * p.simulated_mean;
+    variance -= cross * p.factor.solve(cross.transpose());
+    if (p.has_simulation) forecast.simulated_share += share;
+    std::vector<RingCovariates> rings;
+    for (const RingObservation& one : p.observations) rings.push_back(one.ring);
+    for (const std::size_t k : outside_covariates(ring, rings)) forecast.unlike.push_back(kRingCovariateNames[k]);
+  }
+  forecast.residual_mm = profile_of(mean, count);
+  forecast.level_sd_mm = std::sqrt(std::max(0.0, variance(0, 0)) / static_cast<double>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    std::vector<double> here(count, 0.0);
+    here[i] = 1.0;
+    const SlowWaves at = slow_waves(here);
+    forecast.sd_mm.push_back(std::sqrt(std::max(0.0, at.dot(variance * at)) + p.fast_mm * p.fast_mm));
+  }
+  return forecast;
+}
+
+HandEyeEstimate RingForecaster::hand_eye() const {
+  const Posterior& p = *posterior_;
+  HandEyeEstimate estimate;
+  Eigen::Matrix2d variance = Eigen::Matrix2d::Identity() * p.spreads.hand_eye_mm * p.spreads.hand_eye_mm;
+  if (!p.places.empty()) {
+    const CommonCovariance common(p.spreads, p.sectors);
+    Eigen::MatrixXd cross(2, p.weights.size());
+    for (std::size_t s = 0; s < p.places.size(); ++s)
+      cross.middleCols<kWaves>(static_cast<Eigen::Index>(s) * kWaves) = common.with_hand_eye(p.places[s]).transpose();
+    estimate.offset_mm = cross * p.weights;
+    variance -= cross * p.factor.solve(cross.transpose());
+  }
+  estimate.sd_mm = variance.diagonal().cwiseMax(0.0).cwiseSqrt();
+  return estimate;
+}
+
+void describe(Visitor& v, RingSpreads& s) {
+  v({"by_start_mm", "Common to all cuts, by direction from the start.", "mm"}, s.by_start_mm);
+  v({"in_view_mm", "Common to all cuts, by direction in the view.", "mm"}, s.in_view_mm);
+  v({"hand_eye_mm", "Of the common offset in the view, along each axis.", "mm"}, s.hand_eye_mm);
+  v({"own_mm", "Of each cut by itself, along the ring.", "mm"}, s.own_mm);
+  v({"level_mm", "The same, all round.", "mm"}, s.level_mm);
+  v({"shift_mm", "The same, of its offset along each axis.", "mm"}, s.shift_mm);
+  v({"reading_mm", "Of a sector's reading.", "mm"}, s.reading_mm);
+  v({"common_deg", "Angle over which the correlation of the common ones falls to 1/e.", "deg"}, s.common_deg);
+  v({"own_deg", "Likewise, of each cut's own.", "deg"}, s.own_deg);
+  v("share", s.share, "Of the share of simulated differences about 1.");
+  v.begin({"slope_mm", "What the mean error gains per step of each covariate, standard deviation.", "mm"});
+  for (std::size_t k = 0; k < s.slope_mm.size(); ++k)
+    v({kRingCovariateNames[k], "Of this covariate.", "mm"}, s.slope_mm[k]);
+  v.end();
+}
+
+void describe(Visitor& v, HandEyeEstimate& e) {
+  v.derived("offset_mm", std::vector{e.offset_mm.x(), e.offset_mm.y()}, "Along x and y of the view.");
+  v.derived("sd_mm", std::vector{e.sd_mm.x(), e.sd_mm.y()}, "Likewise.");
+  v.derived("low_mm", std::vector{e.low_mm().x(), e.low_mm().y()}, "Lower ends of the 95 % intervals.");
+  v.derived("high_mm", std::vector{e.high_mm().x(), e.high_mm().y()}, "Upper ends.");
+}
+
+void describe(Visitor& v, RingForecast& f) {
+  v.derived("simulated_share", f.simulated_share, "How much of the simulated error, its bias included, is expected.");
+  v.derived("residual_mm", f.residual_mm, "What is expected beyond that, by sector from the start direction on.");
+  v.derived("sd_mm", f.sd_mm, "Of one photograph about that, by sector.");
+  v.derived("level_sd_mm", f.level_sd_mm, "Of its mean round the ring.");
+  std::vector<std::string> unlike(f.unlike.begin(), f.unlike.end());
+  v.derived("unlike", unlike, "Covariates outside the observations' 10th to 90th percentile.");
+}
+
+}  // namespace incise

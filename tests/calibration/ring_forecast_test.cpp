@@ -1,0 +1,205 @@
+#include "calibration/sectors.hpp"
+
+#include <incise/calibration/ring_forecast.hpp>
+#include <incise/core/error.hpp>
+#include <incise/core/random.hpp>
+#include <incise/core/units.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+namespace incise {
+namespace {
+
+using testing::angle_of;
+using testing::kSectors;
+
+/// What makes the photographs of a test.
+struct World {
+  Vec2 hand_eye_mm = Vec2::Zero();
+  double speed_slope_mm = 0.0;  ///< of the level, per ln of the speed over 7 mm/s
+  double share = 1.0;           ///< of simulated differences that are real
+  double own_mm = 0.05;
+};
+
+RingCovariates ring_at(double start_deg, double speed_mm_s) {
+  return {.radius_mm = 9.0,
+          .outline = 1.02,
+          .along = 0.5,
+          .aside_mm = 2.0,
+          .youngs_modulus_kpa = 12.0,
+          .lateral_margin_mm = 5.0,
+          .depth_mm = 5.0,
+          .speed_mm_s = speed_mm_s,
+          .start_deg = start_deg};
+}
+
+/// Of a cut as the world has it, without what is its own.
+std::vector<double> expected_mm(const World& world, const RingCovariates& ring, const std::vector<double>& simulated) {
+  const double level = std::accumulate(simulated.begin(), simulated.end(), 0.0) / static_cast<double>(simulated.size());
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < kSectors; ++i) {
+    const double view = angle_of(i) + units::rad_from_deg(ring.start_deg);
+    errors.push_back(simulated[i] + (world.share - 1.0) * (level + 1.0) +
+                     world.hand_eye_mm.dot(Vec2(std::cos(view), std::sin(view))) +
+                     world.speed_slope_mm * std::log(ring.speed_mm_s / 7.0));
+  }
+  return errors;
+}
+
+/// A simulated ring that errs by −1 mm on average over specimens, and by waves of its start.
+std::vector<double> simulated_mm(double level) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i < kSectors; ++i) errors.push_back(level + 0.3 * std::cos(2.0 * angle_of(i)));
+  return errors;
+}
+
+std::vector<RingObservation> observations_of(const World& world, std::size_t count) {
+  Random random(11);
+  std::vector<RingObservation> observations;
+  for (std::size_t s = 0; s < count; ++s) {
+    RingObservation one;
+    one.ring = ring_at(random.uniform(-180.0, 180.0), random.uniform(3.0, 12.0));
+    one.simulated_mm = simulated_mm(-1.0 + (s % 2 == 0 ? 0.3 : -0.3));
+    one.photographed_mm = expected_mm(world, one.ring, one.simulated_mm);
+    const double level = world.own_mm * random.normal();
+    for (double& error : one.photographed_mm) error += level + world.own_mm * random.normal();
+    observations.push_back(std::move(one));
+  }
+  return observations;
+}
+
+double rms_apart(const std::vector<double>& a, const std::vector<double>& b) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) squares += std::pow(a[i] - b[i], 2) / static_cast<double>(a.size());
+  return std::sqrt(squares);
+}
+
+std::vector<double> forecast_mm(const RingForecast& forecast, const std::vector<double>& simulated) {
+  std::vector<double> errors = forecast.residual_mm;
+  for (std::size_t i = 0; i < errors.size(); ++i) errors[i] += forecast.simulated_share * simulated[i];
+  return errors;
+}
+
+TEST(RingForecaster, WithoutPhotographsItIsTheSimulation) {
+  const RingForecast forecast = RingForecaster({}, true).forecast(ring_at(0.0, 7.0));
+  EXPECT_EQ(forecast.simulated_share, 1.0);
+  EXPECT_THAT(forecast.residual_mm, ::testing::Each(0.0));
+  EXPECT_EQ(forecast.residual_mm.size(), kSectors);
+  EXPECT_THAT(forecast.unlike, ::testing::IsEmpty());
+  EXPECT_GT(forecast.level_sd_mm, 0.2);
+  EXPECT_EQ(RingForecaster({}, false).forecast(ring_at(0.0, 7.0)).simulated_share, 0.0);
+}
+
+TEST(RingForecaster, KnowsAnOffsetInTheViewWhereverACutStarts) {
+  const World world{.hand_eye_mm = {0.8, -0.5}};
+  const RingForecaster forecaster(observations_of(world, 12), true);
+  const RingCovariates ring = ring_at(77.0, 7.0);
+  const std::vector<double> simulated = simulated_mm(-1.2);
+  EXPECT_LT(rms_apart(forecast_mm(forecaster.forecast(ring), simulated), expected_mm(world, ring, simulated)), 0.08);
+  const HandEyeEstimate found = forecaster.hand_eye();
+  for (int axis = 0; axis < 2; ++axis) {
+    EXPECT_GT(world.hand_eye_mm[axis], found.low_mm()[axis]);
+    EXPECT_LT(world.hand_eye_mm[axis], found.high_mm()[axis]);
+    EXPECT_NEAR(found.offset_mm[axis], world.hand_eye_mm[axis], 0.2);
+    EXPECT_LT(found.sd_mm[axis], 0.3) << "told apart from nothing";
+  }
+}
+
+TEST(RingForecaster, LearnsWhatASpeedDoes) {
+  const World world{.speed_slope_mm = -0.6};
+  const RingForecaster forecaster(observations_of(world, 12), false);
+  World still = world;
+  const std::vector<double> mean = simulated_mm(-1.0);
+  for (const double speed : {3.0, 7.0, 12.0}) {
+    const RingCovariates ring = ring_at(0.0, speed);
+    // Levels of −0.7 and −1.3 mm in turn are this world's own, for whoever does not simulate.
+    EXPECT_LT(rms_apart(forecaster.forecast(ring).residual_mm, expected_mm(still, ring, mean)), 0.25) << speed;
+  }
+}
+
+TEST(RingForecaster, BelievesSimulatedDifferencesAsFarAsTheyAreReal) {
+  for (const double share : {0.0, 0.5, 1.0}) {
+    const World world{.share = share};
+    const RingForecast forecast = RingForecaster(observations_of(world, 12), true).forecast(ring_at(10.0, 7.0));
+    EXPECT_NEAR(forecast.simulated_share, share, 0.2);
+    EXPECT_LT(rms_apart(forecast_mm(forecast, simulated_mm(-1.3)),
+                        expected_mm(world, ring_at(10.0, 7.0), simulated_mm(-1.3))),
+              0.12);
+  }
+}
+
+// Of many worlds, each with its own truth, a forecast's standard deviations hold as many levels as they say.
+TEST(RingForecaster, ItsLevelsAreAsUncertainAsItSays) {
+  Random random(5);
+  int inside = 0, all = 0;
+  for (int world_number = 0; world_number < 40; ++world_number) {
+    const World world{.hand_eye_mm = {random.normal(), random.normal()}, .own_mm = 0.3};
+    std::vector<RingObservation> observations;
+    for (int s = 0; s < 7; ++s) {
+      RingObservation one{.ring = ring_at(random.uniform(-180.0, 180.0), 7.0),
+                          .photographed_mm = {},
+                          .simulated_mm = simulated_mm(-1.0)};
+      one.photographed_mm = expected_mm(world, one.ring, one.simulated_mm);
+      const double level = world.own_mm * random.normal();
+      for (double& error : one.photographed_mm) error += level + 0.1 * random.normal();
+      observations.push_back(std::move(one));
+    }
+    const RingObservation asked = observations.back();
+    observations.pop_back();
+    const RingForecast forecast = RingForecaster(std::move(observations), true).forecast(asked.ring);
+    double off = 0.0;
+    const std::vector<double> said = forecast_mm(forecast, asked.simulated_mm);
+    for (std::size_t i = 0; i < said.size(); ++i)
+      off += (asked.photographed_mm[i] - said[i]) / static_cast<double>(said.size());
+    constexpr double kNormal80 = 1.2816;
+    if (std::abs(off) < kNormal80 * forecast.level_sd_mm) ++inside;
+    ++all;
+  }
+  EXPECT_GE(inside, 26) << "of " << all;  // 32 expected; fewer than 26 or all 40 in one of a hundred such series
+  EXPECT_LE(inside, 39);
+}
+
+TEST(RingForecaster, SaysInWhatARingIsUnlikeTheOthers) {
+  const RingForecaster forecaster(observations_of({}, 12), true);
+  RingCovariates ring = ring_at(0.0, 30.0);
+  ring.depth_mm = 8.0;
+  EXPECT_THAT(forecaster.forecast(ring).unlike, ::testing::ElementsAre("depth", "speed"));
+}
+
+TEST(RingForecaster, RefusesWhatIsNoProfile) {
+  std::vector<RingObservation> observations = observations_of({}, 2);
+  observations[1].simulated_mm.pop_back();
+  EXPECT_THROW(RingForecaster(observations, true), InvalidArgument);
+  EXPECT_NO_THROW(RingForecaster(observations, false));
+  observations[0].photographed_mm[3] = std::nan("");
+  EXPECT_THROW(RingForecaster(observations, false), InvalidArgument);
+}
+
+TEST(PhotographedInView, TurnsEachCutByItsStart) {
+  const World world{.hand_eye_mm = {0.8, -0.5}, .own_mm = 0.0};
+  const std::vector<RingObservation> observations = observations_of(world, 6);
+  std::vector<RingObservation> plain = observations;
+  for (RingObservation& one : plain)
+    one.photographed_mm = expected_mm(world, one.ring, std::vector<double>(kSectors, -1.0));
+  const std::vector<double> mean = photographed_in_view(plain, 33.0);
+  EXPECT_LT(rms_apart(mean, expected_mm(world, ring_at(33.0, 7.0), std::vector<double>(kSectors, -1.0))), 0.02);
+}
+
+TEST(OutsideCovariates, CountsFromTheTenthToTheNinetiethPercentile) {
+  std::vector<RingCovariates> others;
+  for (int k = 0; k <= 10; ++k) others.push_back(ring_at(0.0, 2.0 + k));
+  EXPECT_THAT(outside_covariates(ring_at(0.0, 3.0), others), ::testing::IsEmpty());
+  EXPECT_THAT(outside_covariates(ring_at(0.0, 2.9), others), ::testing::ElementsAre(7U));
+  EXPECT_THAT(outside_covariates(ring_at(0.0, 11.1), others), ::testing::ElementsAre(7U));
+  EXPECT_THROW(static_cast<void>(outside_covariates(others[0], {})), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace incise
