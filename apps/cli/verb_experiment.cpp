@@ -35,9 +35,9 @@ void print_area(const char* name, const nlohmann::ordered_json& area) {
 }
 
 /// Every path, and how it compares with the best one without a simulated cut.
-void print_paths(const nlohmann::ordered_json& result) {
+void print_paths(const char* of, const nlohmann::ordered_json& result) {
   const nlohmann::ordered_json& best = result.at("best_without_simulation");
-  fmt::print("{:<34} {:>8} {:>9} {:>6} {:>8}  {}\n", "path", "mean, mm", "specimens", "worse", "not cut",
+  fmt::print("{:<34} {:>8} {:>9} {:>6} {:>8}  {}\n", of, "mean, mm", "specimens", "worse", "not cut",
              "difference from the best without simulation, mm (95 %)");
   for (const auto& [name, path] : result.at("rivals").items()) {
     std::string against = best == name ? "best" : "";
@@ -61,7 +61,9 @@ void print_summary(const nlohmann::ordered_json& result) {
     fmt::print("{:<34} {:.0f} % less; {} cut as planned alone\n", "  of all that were cut",
                result.at("gain_percent_of_all").get<double>(), result.at("uncorrected").get<std::size_t>());
   }
-  print_paths(result);
+  print_paths("path", result);
+  if (result.contains("unlike") && result.at("unlike").at("rivals").at("as_planned").at("pairs").get<std::size_t>() > 0)
+    print_paths("of these, unlike the calibration's", result.at("unlike"));
   if (result.contains("known_physics") && result.at("known_physics").at("mean_after_mm").is_number()) {
     fmt::print("{:<34} {:.2f} mm ({} specimens, from the truth)\n", "physics known",
                result.at("known_physics").at("mean_after_mm").get<double>(),

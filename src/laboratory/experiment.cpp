@@ -5,6 +5,7 @@
 #include "laboratory/outside_range.hpp"
 #include "laboratory/virtual_laboratory.hpp"
 
+#include <incise/calibration/ring_covariates.hpp>
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
@@ -41,8 +42,9 @@ void require_done(const StepAnswer& answer, const char* step, const ExperimentSt
 /// Along whose paths test specimens are cut.
 std::vector<RivalPath> rivals_of(const ExperimentSettings& settings) {
   if (settings.with_rivals)
-    return {RivalPath::Constant,  RivalPath::Profile,      RivalPath::ProfileSmoothed,
-            RivalPath::PaperPass, RivalPath::Uncalibrated, RivalPath::Hybrid};
+    return {RivalPath::Constant,      RivalPath::Profile,     RivalPath::ProfileSmoothed,
+            RivalPath::ProfileInView, RivalPath::Photographs, RivalPath::PaperPass,
+            RivalPath::Uncalibrated,  RivalPath::Hybrid,      RivalPath::Learned};
   return settings.with_paper_pass ? std::vector{RivalPath::PaperPass} : std::vector<RivalPath>{};
 }
 
@@ -62,6 +64,21 @@ ExperimentJson settings_json(const ExperimentSettings& settings) {
           {"tets", settings.tets},
           {"rule", to_string(settings.rule)},
           {"truth", settings.truth.string()}};
+}
+
+ExperimentJson comparison_json(const PathComparison& paths) {
+  const std::optional<std::string>& best = paths.best_without_simulation;
+  return {{"rivals", paths_json(paths)},
+          {"best_without_simulation", best ? ExperimentJson(*best) : ExperimentJson(nullptr)}};
+}
+
+/// Those whose rings are unlike the calibration's, or the others.
+std::vector<Trial> test_specimens(const std::vector<Trial>& trials, bool is_unlike) {
+  std::vector<Trial> chosen;
+  for (const Trial& trial : trials) {
+    if (trial.role == TrialRole::Test && (trial.unlike.size() >= kUnlikeFrom) == is_unlike) chosen.push_back(trial);
+  }
+  return chosen;
 }
 
 /// What the calibration's data say: estimates and sentences, without the posterior's samples. Null without a fit.
@@ -136,7 +153,8 @@ class Experiment {
                                          std::optional<double> force_n) const;
   void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
   void correct(SpecimenTrial& specimen, Trial& trial);
-  [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa) const;
+  [[nodiscard]] std::optional<ExperimentJson> forecast_of(SpecimenTrial& specimen) const;
+  [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa, const ExperimentJson& forecast) const;
   void cut_rivals(SpecimenTrial& specimen, Trial& trial);
   void calibrate();
   void compare();
@@ -189,9 +207,11 @@ ExperimentJson Experiment::run() {
   if (std::find(rivals_.begin(), rivals_.end(), RivalPath::PaperPass) != rivals_.end())
     result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, RivalPath::PaperPass));
   const PathComparison paths = compare_paths(trials_);
-  result["rivals"] = paths_json(paths);
-  result["best_without_simulation"] =
-      paths.best_without_simulation ? ExperimentJson(*paths.best_without_simulation) : ExperimentJson(nullptr);
+  result.update(comparison_json(paths));
+  if (settings_.with_rivals) {
+    for (const bool is_unlike : {true, false})
+      result[is_unlike ? "unlike" : "like"] = comparison_json(compare_paths(test_specimens(trials_, is_unlike)));
+  }
   if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
   result["advice"] = advice;
   result["calibration"] =
@@ -393,11 +413,28 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
       .result;
 }
 
+/// What photographs say of this ring; nothing where it cannot be planned.
+std::optional<ExperimentJson> Experiment::forecast_of(SpecimenTrial& specimen) const {
+  const std::filesystem::path file = specimen.case_file(), folder = specimen.at("compensated"),
+                              calibration = root_ / "calibration/calibration.json";
+  const StepAnswer answer =
+      specimen.ask({"forecast",
+                    {"forecast", file.string(), "--calibration", calibration.string(), "-o", folder.string()},
+                    {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration},
+                    {folder / "forecast/forecast.json"},
+                    [=](const steps::StepContext& context) {
+                      return steps::forecast_case({read_case_with_inputs(file), folder, {.until = Stage::Plan}},
+                                                  calibration, context);
+                    }});
+  return answer.end == StepEnd::Done ? std::optional(answer.result) : std::nullopt;
+}
+
 /// The case whose correction is the rival's path, by the same readings and photographs.
-CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa) const {
-  const auto list = [this](const char* pointer) {
-    return calibration_.at(ExperimentJson::json_pointer(pointer)).get<std::vector<double>>();
+CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, const ExperimentJson& forecast) const {
+  const auto list_in = [](const ExperimentJson& json, const char* pointer) {
+    return json.at(ExperimentJson::json_pointer(pointer)).get<std::vector<double>>();
   };
+  const auto list = [&](const char* pointer) { return list_in(calibration_, pointer); };
   CaseVariant variant{tool_, youngs_modulus_kpa, CompensationChoice{.method = CompensationMethod::Profile}};
   CompensationChoice& choice = *variant.compensation;
   switch (path) {
@@ -409,6 +446,12 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa) co
       break;
     case RivalPath::ProfileSmoothed:
       choice.photographed_mm = list("/photographed_profile/smoothed_mm");
+      break;
+    case RivalPath::ProfileInView:
+      choice.photographed_mm = list_in(forecast, "/in_view_mm");
+      break;
+    case RivalPath::Photographs:
+      choice.photographed_mm = list_in(forecast, "/without_simulation/residual_mm");
       break;
     case RivalPath::PaperPass:
       choice.method = CompensationMethod::Paper;
@@ -422,16 +465,26 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa) co
       choice.residual_mm = list("/residual_profile/mean_mm");
       choice.simulated_share = calibration_.at("residual_profile").at("simulated_share").get<double>();
       break;
+    case RivalPath::Learned:
+      choice = calibrated_choice(*tool_);
+      choice.residual_mm = list_in(forecast, "/with_simulation/residual_mm");
+      choice.simulated_share = forecast.at("with_simulation").at("simulated_share").get<double>();
+      break;
   }
   return variant;
 }
 
 /// Cuts the same specimen along every rival's path.
 void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
+  if (rivals_.empty()) return;
+  const std::optional<ExperimentJson> forecast = settings_.with_rivals ? forecast_of(specimen) : ExperimentJson();
+  if (!forecast) return;
+  if (settings_.with_rivals)
+    trial.unlike = forecast->at("with_simulation").at("unlike").get<std::vector<std::string>>();
   for (const RivalPath path : rivals_) {
     const std::string name{to_string(path)};
     const std::filesystem::path file =
-        specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa()));
+        specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa(), *forecast));
     trial.rivals.push_back({path, specimen.cut_again(file, specimen.at(name), name, !is_without_simulation(path)).cut});
   }
 }

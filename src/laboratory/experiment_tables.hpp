@@ -25,18 +25,22 @@ enum class RivalPath {
   Constant,         ///< moved out by one number, the mean signed error of the calibration's photographs
   Profile,          ///< moved by their mean error by direction
   ProfileSmoothed,  ///< the same, without fast waves
+  ProfileInView,    ///< by their mean error by direction in the view, wherever each cut started
+  Photographs,      ///< by what the photographs forecast for this ring, see RingForecaster; no simulation
   PaperPass,        ///< the paper's single pass by the simulated mid-line, with the calibrated tool
   Uncalibrated,     ///< corrected with the default tool and no bias
   Hybrid,           ///< corrected, with what the photographs say beyond the simulation by direction
+  Learned,          ///< corrected, with what they forecast for this ring beyond the simulation
 };
-inline constexpr std::array<std::string_view, 6> kRivalPathNames{
-    "constant", "profile", "profile_smoothed", "paper_pass", "incise_uncalibrated", "hybrid"};
+inline constexpr std::array<std::string_view, 9> kRivalPathNames{
+    "constant", "profile", "profile_smoothed", "profile_in_view", "photographs", "paper_pass", "incise_uncalibrated",
+    "hybrid",   "learned"};
 [[nodiscard]] constexpr Names names_of(RivalPath) {
   return kRivalPathNames;
 }
 /// Whether no simulated cut takes part in the path.
 [[nodiscard]] constexpr bool is_without_simulation(RivalPath path) {
-  return path <= RivalPath::ProfileSmoothed;
+  return path <= RivalPath::Photographs;
 }
 
 struct RivalCut {
@@ -60,6 +64,7 @@ struct Trial {
   nlohmann::ordered_json known_physics;            ///< what `incise bench floor` printed; null: not run
   double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0;
   std::optional<double> registration_rmse_mm;  ///< absent: `register` refused, or was not reached
+  std::vector<std::string> unlike;             ///< covariates outside the calibration's, see RingForecast
   std::string ended_at;                        ///< the step before the first cut that refused; empty: none did
   std::vector<std::string> commands;
 };

@@ -94,21 +94,22 @@ class StudyTest(CommandTest):
         self.assertEqual(result["specimen_is"], "virtual")
         self.assertEqual(result["pairs"], 1)
         self.assertLess(result["mean_after_mm"], result["mean_before_mm"])
-        rivals = ["constant", "profile", "profile_smoothed", "paper_pass", "incise_uncalibrated", "hybrid"]
+        without = ["constant", "profile", "profile_smoothed", "profile_in_view", "photographs"]
+        rivals = [*without, "paper_pass", "incise_uncalibrated", "hybrid", "learned"]
         self.assertEqual([row["cut"] for row in result["table_2"]],
                          ["planned", "planned", "corrected", *rivals, "planned", "corrected"])
-        self.assertEqual([row["advice"] is None for row in result["table_2"]], [True] + 10 * [False])
-        self.assertEqual([row["kind"] for row in result["table_2"]], 9 * [None] + ["stiff", "stiff"])
-        self.assertEqual(list(result["rivals"]), ["as_planned", *rivals[:5], "incise", "hybrid"])
-        self.assertIn(result["best_without_simulation"], rivals[:3])
+        self.assertEqual([row["advice"] is None for row in result["table_2"]], [True] + 13 * [False])
+        self.assertEqual([row["kind"] for row in result["table_2"]], 12 * [None] + ["stiff", "stiff"])
+        self.assertEqual(list(result["rivals"]), ["as_planned", *rivals[:7], "incise", "hybrid", "learned"])
+        self.assertIn(result["best_without_simulation"], without)
         best = result["rivals"][result["best_without_simulation"]]
-        self.assertEqual(best["mean_mm"], min(result["rivals"][name]["mean_mm"] for name in rivals[:3]))
+        self.assertEqual(best["mean_mm"], min(result["rivals"][name]["mean_mm"] for name in without))
         self.assertAlmostEqual(result["rivals"]["incise"]["difference_mm"], result["mean_after_mm"] - best["mean_mm"], delta=1e-12)
-        for name in rivals[:3]:
+        for name in without:
             folder = self.folder / "study" / "S2" / name
             self.assertFalse((folder / "as_planned").exists() or (folder / "corrected").exists(), "nothing is simulated")
         # The paper's single pass is cut as well, unless its own simulation comes too near the tumour.
-        refused = result["table_2"][6]["ended_at"]
+        refused = result["table_2"][8]["ended_at"]
         self.assertEqual(result["paper_pass"]["pairs"], 1 if refused is None else 0)
         if refused is None:
             self.assertEqual(result["paper_pass"]["mean_before_mm"], result["mean_before_mm"])
