@@ -20,7 +20,7 @@ double percentile(const std::vector<double>& sorted, double share) {
 }  // namespace
 
 CovariateValues values_of(const RingCovariates& ring) {
-  return {std::log(ring.radius_mm),          ring.outline,           ring.along,    ring.aside_mm,
+  return {std::log(ring.radius_mm),          ring.outline,           ring.along,    std::abs(ring.aside_mm),
           std::log(ring.youngs_modulus_kpa), ring.lateral_margin_mm, ring.depth_mm, std::log(ring.speed_mm_s)};
 }
 

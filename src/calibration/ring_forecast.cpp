@@ -19,7 +19,9 @@ using SlowWaves = Eigen::Matrix<double, static_cast<Eigen::Index>(kEntriesThatCo
 /// One observation or the ring that is asked for, ready for the covariance.
 struct RingPlace {
   double start_deg = 0.0;
+  double pull_deg = 90.0;
   CovariateValues steps{};                  ///< of its covariates, from their mean
+  double aside_steps = 0.0;                 ///< of its place across the pull, with its sign, from the body's middle
   SlowWaves simulated = SlowWaves::Zero();  ///< slow ones, less the observations' mean
 };
 
@@ -32,7 +34,12 @@ using WaveMatrix = Eigen::Matrix<double, kWaves, kWaves>;
 /// modulus again …; in the order of kRingCovariateNames.
 constexpr CovariateValues kSteps{0.25, 0.05, 0.1, 3.0, 0.5, 1.0, 1.0, 0.4};
 
-/// Half-normal scale of each spread, in the order of SpreadList; the angles are log-normal about theirs.
+constexpr std::size_t kAlong = 2, kAside = 3;
+static_assert(kRingCovariateNames[kAlong] == "along" && kRingCovariateNames[kAside] == "aside");
+/// Of the mean error that all cuts have in common, mm: without a simulation it may be anything that a cut can err.
+constexpr double kCommonAloneMm = 2.0;
+
+/// Half-normal scale of each spread below; the angles are log-normal about theirs.
 constexpr double kSlopePriorMm = 0.15;
 constexpr double kAngleSd = 0.5;
 
@@ -47,7 +54,8 @@ constexpr std::array kEntries{
     SpreadEntry{&RingSpreads::hand_eye_mm, 1.0, false}, SpreadEntry{&RingSpreads::own_mm, 0.35, false},
     SpreadEntry{&RingSpreads::level_mm, 0.35, false},   SpreadEntry{&RingSpreads::shift_mm, 0.35, false},
     SpreadEntry{&RingSpreads::reading_mm, 0.2, false},  SpreadEntry{&RingSpreads::common_deg, 60.0, true},
-    SpreadEntry{&RingSpreads::own_deg, 40.0, true}};
+    SpreadEntry{&RingSpreads::own_deg, 40.0, true},     SpreadEntry{&RingSpreads::along_mm, 0.2, false},
+    SpreadEntry{&RingSpreads::aside_mm, 0.2, false}};
 
 double& entry_of(RingSpreads& spreads, std::size_t k) {
   return k < kEntries.size() ? spreads.*kEntries[k].member : spreads.slope_mm[k - kEntries.size()];
@@ -117,6 +125,9 @@ class CommonCovariance {
     covariance.diagonal() += by_start_;
     for (std::size_t k = 0; k < a.steps.size(); ++k)
       covariance(0, 0) += sectors_ * spreads_.slope_mm[k] * spreads_.slope_mm[k] * a.steps[k] * b.steps[k];
+    covariance(0, 0) += sectors_ * spreads_.common_mm * spreads_.common_mm;
+    covariance.block<2, 2>(1, 1) += shift_between(spreads_.along_mm, a, 0.0, a.steps[kAlong], b, b.steps[kAlong]) +
+                                    shift_between(spreads_.aside_mm, a, 90.0, a.aside_steps, b, b.aside_steps);
     covariance += spreads_.share * spreads_.share * a.simulated * b.simulated.transpose();
     return covariance;
   }
@@ -129,6 +140,16 @@ class CommonCovariance {
   }
 
  private:
+  /// Covariance of shifts by so many steps in a direction, counter-clockwise from the pull.
+  [[nodiscard]] Eigen::Matrix2d shift_between(double spread_mm, const RingPlace& a, double from_pull_deg,
+                                              double a_steps, const RingPlace& b, double b_steps) const {
+    const auto direction = [from_pull_deg](const RingPlace& place) {
+      const double angle = units::rad_from_deg(place.pull_deg + from_pull_deg - place.start_deg);
+      return Eigen::Vector2d(std::cos(angle), std::sin(angle));
+    };
+    return 0.5 * sectors_ * spread_mm * spread_mm * a_steps * b_steps * direction(a) * direction(b).transpose();
+  }
+
   const RingSpreads& spreads_;
   double sectors_;
   SlowWaves by_start_, in_view_;
@@ -236,7 +257,8 @@ struct RingForecaster::Posterior {
   double fast_mm = 0.12;    ///< of a sector: waves that are not forecast
 
   [[nodiscard]] RingPlace place_of(const RingCovariates& ring) const {
-    RingPlace place{.start_deg = ring.start_deg};
+    RingPlace place{.start_deg = ring.start_deg, .pull_deg = ring.pull_deg};
+    place.aside_steps = ring.aside_mm / kSteps[kAside];
     const CovariateValues values = values_of(ring);
     for (std::size_t k = 0; k < values.size(); ++k) place.steps[k] = (values[k] - mean[k]) / kSteps[k];
     return place;
@@ -248,7 +270,10 @@ RingForecaster::RingForecaster(std::vector<RingObservation> observations, bool h
   Posterior& p = *made;
   p.has_simulation = has_simulation;
   p.spreads.slope_mm.fill(0.1);
-  if (!has_simulation) p.spreads.share = 0.0;
+  if (!has_simulation) {
+    p.spreads.share = 0.0;
+    p.spreads.common_mm = kCommonAloneMm;
+  }
   if (observations.empty()) {
     posterior_ = std::move(made);
     return;
@@ -360,7 +385,10 @@ void describe(Visitor& v, RingSpreads& s) {
   v({"reading_mm", "Of a sector's reading.", "mm"}, s.reading_mm);
   v({"common_deg", "Angle over which the correlation of the common ones falls to 1/e.", "deg"}, s.common_deg);
   v({"own_deg", "Likewise, of each cut's own.", "deg"}, s.own_deg);
-  v("share", s.share, "Of the share of simulated differences about 1.");
+  v({"common_mm", "Of the mean error that all cuts have in common; not estimated.", "mm"}, s.common_mm);
+  v("share", s.share, "Of the share of simulated differences about 1; not estimated.");
+  v({"along_mm", "What a cut is shifted along the pull per step of its place along it.", "mm"}, s.along_mm);
+  v({"aside_mm", "What it is shifted across it per step of its place across it.", "mm"}, s.aside_mm);
   v.begin({"slope_mm", "What the mean error gains per step of each covariate, standard deviation.", "mm"});
   for (std::size_t k = 0; k < s.slope_mm.size(); ++k)
     v({kRingCovariateNames[k], "Of this covariate.", "mm"}, s.slope_mm[k]);

@@ -48,13 +48,14 @@ RingCovariates ring_covariates(const Case& settings, const TissueModel& model, c
   const Vec3 middle = curve_centroid(flat), pull = pull_direction(model, view), aside = view.z.cross(pull);
   const Extent length = extent_along(positions, pull), width = extent_along(positions, aside);
   ring.along = std::clamp((middle.dot(pull) - length.low) / (length.high - length.low), 0.0, 1.0);
-  ring.aside_mm = std::abs(middle.dot(aside) - 0.5 * (width.low + width.high));
+  ring.aside_mm = middle.dot(aside) - 0.5 * (width.low + width.high);
   ring.youngs_modulus_kpa = youngs_modulus_kpa;
   ring.lateral_margin_mm = settings.plan.lateral_margin_mm;
   ring.depth_mm = settings.plan.depth_mm;
   ring.speed_mm_s = settings.plan.speed_mm_s;
   const Vec3& start = settings.plan.start_direction;
   ring.start_deg = units::deg_from_rad(std::atan2(start.dot(view.y), start.dot(view.x)));
+  ring.pull_deg = units::deg_from_rad(std::atan2(pull.dot(view.y), pull.dot(view.x)));
   return ring;
 }
 

@@ -23,6 +23,7 @@ using testing::kSectors;
 /// What makes the photographs of a test.
 struct World {
   Vec2 hand_eye_mm = Vec2::Zero();
+  double aside_share = 0.0;     ///< of its place across the pull, by which a cut is shifted across it
   double speed_slope_mm = 0.0;  ///< of the level, per ln of the speed over 7 mm/s
   double share = 1.0;           ///< of simulated differences that are real
   double own_mm = 0.05;
@@ -46,8 +47,10 @@ std::vector<double> expected_mm(const World& world, const RingCovariates& ring, 
   std::vector<double> errors;
   for (std::size_t i = 0; i < kSectors; ++i) {
     const double view = angle_of(i) + units::rad_from_deg(ring.start_deg);
+    const double across = view - units::rad_from_deg(ring.pull_deg + 90.0);
     errors.push_back(simulated[i] + (world.share - 1.0) * (level + 1.0) +
                      world.hand_eye_mm.dot(Vec2(std::cos(view), std::sin(view))) +
+                     world.aside_share * ring.aside_mm * std::cos(across) +
                      world.speed_slope_mm * std::log(ring.speed_mm_s / 7.0));
   }
   return errors;
@@ -66,6 +69,7 @@ std::vector<RingObservation> observations_of(const World& world, std::size_t cou
   for (std::size_t s = 0; s < count; ++s) {
     RingObservation one;
     one.ring = ring_at(random.uniform(-180.0, 180.0), random.uniform(3.0, 12.0));
+    one.ring.aside_mm = random.uniform(-6.0, 6.0);
     one.simulated_mm = simulated_mm(-1.0 + (s % 2 == 0 ? 0.3 : -0.3));
     one.photographed_mm = expected_mm(world, one.ring, one.simulated_mm);
     const double level = world.own_mm * random.normal();
@@ -110,6 +114,31 @@ TEST(RingForecaster, KnowsAnOffsetInTheViewWhereverACutStarts) {
     EXPECT_NEAR(found.offset_mm[axis], world.hand_eye_mm[axis], 0.2);
     EXPECT_LT(found.sd_mm[axis], 0.3) << "told apart from nothing";
   }
+}
+
+TEST(RingForecaster, KnowsThatATumourAsideIsCutAside) {
+  const World world{.hand_eye_mm = {0.4, 0.2}, .aside_share = 0.12};
+  const RingForecaster forecaster(observations_of(world, 12), true);
+  for (const double aside : {-5.0, 0.0, 5.0}) {
+    RingCovariates ring = ring_at(130.0, 7.0);
+    ring.aside_mm = aside;
+    const std::vector<double> simulated = simulated_mm(-1.0);
+    EXPECT_LT(rms_apart(forecast_mm(forecaster.forecast(ring), simulated), expected_mm(world, ring, simulated)), 0.15)
+        << aside;
+  }
+}
+
+TEST(RingForecaster, FewPhotographsAloneTellTheMeanError) {
+  World world;
+  const std::vector<RingObservation> observations = observations_of(world, 3);
+  const RingForecast forecast = RingForecaster(observations, false).forecast(ring_at(0.0, 7.0));
+  double mean = 0.0, seen = 0.0;
+  for (std::size_t i = 0; i < kSectors; ++i) {
+    mean += forecast.residual_mm[i] / static_cast<double>(kSectors);
+    for (const RingObservation& one : observations)
+      seen += one.photographed_mm[i] / static_cast<double>(kSectors * observations.size());
+  }
+  EXPECT_NEAR(mean, seen, 0.1);
 }
 
 TEST(RingForecaster, LearnsWhatASpeedDoes) {

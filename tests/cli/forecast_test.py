@@ -24,7 +24,7 @@ def with_rings(found):
         name = f"s{k + 1}"
         specimen = {**small_calibration.SPECIMENS[k % 2], "name": name}
         specimen["ring"] = {"radius_mm": 8.0 + 0.1 * k, "outline": 1.02, "along": 0.5, "aside_mm": 1.0, "youngs_modulus_kpa": 60.0 + k,
-                            "lateral_margin_mm": 5.0, "depth_mm": 5.0, "speed_mm_s": 7.0, "start_deg": start_deg}
+                            "lateral_margin_mm": 5.0, "depth_mm": 5.0, "speed_mm_s": 7.0, "start_deg": start_deg, "pull_deg": 90.0}
         found["specimens"].append(specimen)
         own = [0.15 * math.sin(3.0 * k + 2.0 * math.pi * (k + 1) * i / SECTORS) for i in range(SECTORS)]
         observed = [a + b for a, b in zip(photographed(start_deg, -1.2 + 0.02 * k), own)]

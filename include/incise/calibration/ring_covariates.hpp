@@ -16,19 +16,21 @@ struct RingCovariates {
   double radius_mm = 0.0;           ///< of the circle with the area inside the tumour edge, seen along the approach
   double outline = 1.0;             ///< length of the edge over that circle's, >= 1
   double along = 0.5;               ///< where the edge's middle lies along the pull, from end to end of the body
-  double aside_mm = 0.0;            ///< how far across the pull it lies from the body's middle, >= 0
+  double aside_mm = 0.0;  ///< how far across the pull it lies from the body's middle, positive to the left in the view
   double youngs_modulus_kpa = 0.0;  ///< by the pull, where it was measured
   double lateral_margin_mm = 0.0;   ///< prescribed, as the next two
   double depth_mm = 0.0;
   double speed_mm_s = 0.0;
-  double start_deg =
-      0.0;  ///< from the edge's middle to where the cut starts, counter-clockwise in the view; no covariate
+  // Directions in the view, counter-clockwise from its x; no covariates.
+  double start_deg = 0.0;  ///< from the edge's middle to where the cut starts
+  double pull_deg = 90.0;  ///< of the pull
 };
 inline void describe(Visitor& v, RingCovariates& r) {
   v({"radius_mm", "Of the circle with the area inside the tumour edge.", "mm"}, r.radius_mm, kAnatomyMm);
   v("outline", r.outline, "Length of the tumour edge over that circle's.", {1.0, 100.0});
   v("along", r.along, "Where the edge's middle lies along the pull, from end to end of the body.", {0.0, 1.0});
-  v({"aside_mm", "How far across the pull it lies from the body's middle.", "mm"}, r.aside_mm, {0.0, kAnatomyMm.most});
+  v({"aside_mm", "How far across the pull it lies from the body's middle, positive to the left in the view.", "mm"},
+    r.aside_mm, {-kAnatomyMm.most, kAnatomyMm.most});
   v({"youngs_modulus_kpa", "By the pull, where it was measured.", "kPa"}, r.youngs_modulus_kpa,
     {kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
   v({"lateral_margin_mm", "Prescribed.", "mm"}, r.lateral_margin_mm, kAnatomyMm);
@@ -36,9 +38,10 @@ inline void describe(Visitor& v, RingCovariates& r) {
   v({"speed_mm_s", "Prescribed.", "mm/s"}, r.speed_mm_s, {1e-6, 1e4});
   v({"start_deg", "From the edge's middle to where the cut starts, counter-clockwise in the view.", "deg"}, r.start_deg,
     {-360.0, 360.0});
+  v({"pull_deg", "Of the pull, likewise.", "deg"}, r.pull_deg, {-360.0, 360.0});
 }
 
-/// The covariates in the order of their names; lengths that differ by shares, modulus and speed as logarithms.
+/// The covariates in the order of their names: radius, modulus and speed as logarithms, `aside` without its sign.
 inline constexpr std::array<std::string_view, 8> kRingCovariateNames{
     "radius", "outline", "along", "aside", "youngs_modulus", "lateral_margin", "depth", "speed"};
 using CovariateValues = std::array<double, kRingCovariateNames.size()>;

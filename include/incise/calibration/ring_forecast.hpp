@@ -38,7 +38,10 @@ struct RingSpreads {
   double reading_mm = 0.12;  ///< of a sector's reading
   double common_deg = 60.0;  ///< of the two common ones
   double own_deg = 40.0;
-  double share = 0.5;          ///< of the share of simulated differences about 1; 0 without a simulation
+  double common_mm = 0.5;      ///< of the mean error that all cuts have in common; not estimated
+  double share = 0.5;          ///< of the share of simulated differences about 1; not estimated; 0 without a simulation
+  double along_mm = 0.2;       ///< what a cut is shifted along the pull per step of its place along it …
+  double aside_mm = 0.2;       ///< … and across it per step of its place across it
   CovariateValues slope_mm{};  ///< what the mean error gains per step of each covariate (see ring_forecast.cpp)
 };
 void describe(Visitor& v, RingSpreads& s);
@@ -65,9 +68,10 @@ struct HandEyeEstimate {
 void describe(Visitor& v, HandEyeEstimate& e);
 
 /// Photographs y of specimens s with simulated errors m, as waves of at most four to a turn, θ from the start:
-///     y_s(θ) = m_s(θ) + β (m_s − m̄)(θ) + f(θ) + g(θ + α_s) + h · n(θ + α_s) + c · x_s + own_s(θ)
-/// f and g are Gaussian processes round the ring, h the hand-eye offset, α_s the start's direction in the view, x_s the
-/// covariates about their mean, β and c normal, own_s of each cut by itself. All is linear and normal given the
+///     y_s(θ) = m_s(θ) + β (m_s − m̄)(θ) + b + c · x_s + f(θ) + g(θ + α_s) + (h + e_s) · n(θ + α_s) + own_s(θ)
+/// b is common, x_s are the covariates about their mean, f and g Gaussian processes round the ring, α_s the start's
+/// direction in the view, h the hand-eye offset, e_s a shift that grows with the tumour's place along and across the
+/// pull, own_s of each cut by itself. All is linear and normal given the
 /// spreads; these are the most probable ones under half-normal priors, found by a pattern search. Without observations
 /// it is the simulation. Source: [RasmussenWilliams2006, 2.2, 2.7, 5.4.1].
 class RingForecaster {
