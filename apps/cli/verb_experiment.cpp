@@ -146,8 +146,9 @@ void add_experiment(Application& application) {
                    "by default one with four specimens, else none. Of the first laboratory alone")
       ->check(whole_between("--outside", 0, 200));
   verb->add_flag("!--no-rivals", settings->with_rivals,
-                 "Do not cut test specimens along the rivals' paths (constant offset and mean profile of the "
-                 "photographs, the paper's pass, incise without calibration, hybrid). Faster, but then no benefit of "
+                 "Do not cut test specimens along the rivals' paths (constant offset, mean profiles and "
+                 "forecast of the photographs, the paper's pass, incise without calibration, and photographs with "
+                 "simulation). Faster, but then no benefit of "
                  "simulation can be claimed");
   verb->add_flag("--paper-pass", settings->with_paper_pass,
                  "With --no-rivals: still cut along the paper's single radial correction");

@@ -13,7 +13,6 @@ namespace {
 
 struct ForecastOptions {
   std::filesystem::path case_path, calibration;
-  CutOptions cut;
 };
 
 double mean_of(const nlohmann::ordered_json& list) {
@@ -26,8 +25,10 @@ void print_forecast(const nlohmann::ordered_json& result) {
     fmt::print("not stretched: {}\n", result.at("outcome").get<std::string>());
     return;
   }
-  fmt::print("from {} photographs, signed error along the planned path (positive: farther out)\n",
-             result.at("photographs").get<std::size_t>());
+  fmt::print("specimen: {}, calibration: {}\n", result.at("specimen_is").get<std::string>(),
+             result.at("calibration_is").get<std::string>());
+  fmt::print("from {} of {} photographs, signed error along the planned path (positive: farther out)\n",
+             result.at("photographs").get<std::size_t>(), result.at("calibrated").get<std::size_t>());
   const auto& alone = result.at("without_simulation");
   const auto& joined = result.at("with_simulation");
   fmt::print("{:<36} {:+.2f} mm in the mean, sd {:.2f} mm\n", "without simulation", mean_of(alone.at("residual_mm")),
@@ -41,7 +42,7 @@ void print_forecast(const nlohmann::ordered_json& result) {
                fmt::format("hand-eye offset, {}", axis == 0 ? "x" : "y"), eye.at("offset_mm")[axis].get<double>(),
                eye.at("low_mm")[axis].get<double>(), eye.at("high_mm")[axis].get<double>());
   const auto unlike = joined.at("unlike").get<std::vector<std::string>>();
-  if (!unlike.empty()) fmt::print("beyond most photographed rings in: {}\n", fmt::join(unlike, ", "));
+  if (!unlike.empty()) fmt::print("outside most photographed rings in: {}\n", fmt::join(unlike, ", "));
   fmt::print("lists for the case's compensation: {}/forecast.json\n", result.at("folder").get<std::string>());
 }
 
@@ -49,8 +50,8 @@ int forecast_case(const ForecastOptions& chosen, const CommonOptions& options) {
   return run_step(
       options,
       [&](const auto& context) {
-        return steps::forecast_case(case_request(chosen.case_path, Stage::Plan, options, chosen.cut),
-                                    chosen.calibration, context);
+        return steps::forecast_case(case_request(chosen.case_path, Stage::Plan, options, {}), chosen.calibration,
+                                    context);
       },
       [](const CommonOptions& common, const nlohmann::ordered_json& json) {
         common.json ? print_result(common, json) : print_forecast(json);
@@ -64,14 +65,15 @@ void add_forecast(Application& application) {
   CLI::App* verb = application.add_verb(
       "forecast",
       "What the photographs of earlier cuts say of this ring before it is cut: its expected error by direction, with "
-      "and without the simulation, how certain that is, and in what the ring lies beyond those that were photographed",
+      "and without the simulation, how certain that is, and in which respects the ring lies outside those photographed",
       "incise forecast specimen --calibration calibration/calibration.json -o out",
       [chosen](const CommonOptions& options) { return forecast_case(*chosen, options); });
-  verb->add_option("case", chosen->case_path, "Case file, or a folder with case.yaml; its modulus is that of its pull")
+  verb->add_option(
+          "case", chosen->case_path,
+          "Case file, or a folder with case.yaml; its Young's modulus must be the one derived from the measured pull")
       ->required();
   verb->add_option("--calibration", chosen->calibration, "calibration.json of `incise calibrate --method fit`")
       ->required();
-  add_cut_options(*verb, chosen->cut);
 }
 
 }  // namespace incise::cli

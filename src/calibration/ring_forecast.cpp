@@ -232,6 +232,8 @@ std::vector<double> photographed_in_view(std::span<const RingObservation> observ
   const std::size_t sectors = observations.front().photographed_mm.size();
   std::vector<double> mean(sectors, 0.0);
   for (const RingObservation& one : observations) {
+    INCISE_REQUIRE(one.photographed_mm.size() == sectors,
+                   fmt::format("expected {} sectors, found {}", sectors, one.photographed_mm.size()));
     const double shift = (start_deg - one.ring.start_deg) * static_cast<double>(sectors) / 360.0;
     const double whole = std::floor(shift), part = shift - whole;
     const auto at = [&](std::size_t i, double by) {
@@ -324,7 +326,7 @@ const RingSpreads& RingForecaster::spreads() const {
 
 RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t sectors) const {
   const Posterior& p = *posterior_;
-  RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 : 0.0};
+  RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 : 0.0, .share_sd = p.spreads.share};
   const std::size_t count = p.places.empty() ? sectors : p.sectors;
   const CommonCovariance common(p.spreads, count);
   const RingPlace place = p.place_of(ring);
@@ -335,12 +337,16 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
     const auto n = static_cast<Eigen::Index>(p.places.size());
     Eigen::MatrixXd cross(kWaves, n * kWaves);
     double share = 0.0;
+    Eigen::VectorXd differences(n * kWaves);
     for (Eigen::Index s = 0; s < n; ++s) {
       const RingPlace& seen = p.places[static_cast<std::size_t>(s)];
       cross.middleCols<kWaves>(s * kWaves) = common.between(place, seen);
+      differences.segment<kWaves>(s * kWaves) = seen.simulated;
       share += seen.simulated.dot(p.weights.segment<kWaves>(s * kWaves));
     }
-    share *= p.spreads.share * p.spreads.share;
+    const double prior = p.spreads.share * p.spreads.share;
+    share *= prior;
+    forecast.share_sd = std::sqrt(std::max(0.0, prior - prior * prior * differences.dot(p.factor.solve(differences))));
     mean = cross * p.weights - share * p.simulated_mean;
     variance -= cross * p.factor.solve(cross.transpose());
     if (p.has_simulation) forecast.simulated_share += share;
@@ -404,11 +410,12 @@ void describe(Visitor& v, HandEyeEstimate& e) {
 
 void describe(Visitor& v, RingForecast& f) {
   v.derived("simulated_share", f.simulated_share, "How much of the simulated error, its bias included, is expected.");
+  v.derived("share_sd", f.share_sd, "With which it is known.");
   v.derived("residual_mm", f.residual_mm, "What is expected beyond that, by sector from the start direction on.");
-  v.derived("sd_mm", f.sd_mm, "Of one photograph about that, by sector.");
+  v.derived("sd_mm", f.sd_mm, "Of one photograph about that, by sector, the share taken as known.");
   v.derived("level_sd_mm", f.level_sd_mm, "Of its mean round the ring.");
   std::vector<std::string> unlike(f.unlike.begin(), f.unlike.end());
-  v.derived("unlike", unlike, "Covariates outside the observations' 10th to 90th percentile.");
+  v.derived("unlike", unlike, "Covariates outside the observations' 10th to 90th percentile, the outline left out.");
 }
 
 }  // namespace incise

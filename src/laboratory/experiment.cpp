@@ -72,11 +72,12 @@ ExperimentJson comparison_json(const PathComparison& paths) {
           {"best_without_simulation", best ? ExperimentJson(*best) : ExperimentJson(nullptr)}};
 }
 
-/// Those whose rings are unlike the calibration's, or the others.
+/// Those whose rings are unlike the calibration's, or the others; without a forecast a ring is neither.
 std::vector<Trial> test_specimens(const std::vector<Trial>& trials, bool is_unlike) {
   std::vector<Trial> chosen;
   for (const Trial& trial : trials) {
-    if (trial.role == TrialRole::Test && (trial.unlike.size() >= kUnlikeFrom) == is_unlike) chosen.push_back(trial);
+    if (trial.role == TrialRole::Test && trial.unlike && (trial.unlike->size() >= kUnlikeFrom) == is_unlike)
+      chosen.push_back(trial);
   }
   return chosen;
 }
@@ -153,7 +154,7 @@ class Experiment {
                                          std::optional<double> force_n) const;
   void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
   void correct(SpecimenTrial& specimen, Trial& trial);
-  [[nodiscard]] std::optional<ExperimentJson> forecast_of(SpecimenTrial& specimen) const;
+  [[nodiscard]] StepAnswer forecast_of(SpecimenTrial& specimen) const;
   [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa, const ExperimentJson& forecast) const;
   void cut_rivals(SpecimenTrial& specimen, Trial& trial);
   void calibrate();
@@ -413,20 +414,18 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
       .result;
 }
 
-/// What photographs say of this ring; nothing where it cannot be planned.
-std::optional<ExperimentJson> Experiment::forecast_of(SpecimenTrial& specimen) const {
+/// What photographs say of this ring.
+StepAnswer Experiment::forecast_of(SpecimenTrial& specimen) const {
   const std::filesystem::path file = specimen.case_file(), folder = specimen.at("compensated"),
                               calibration = root_ / "calibration/calibration.json";
-  const StepAnswer answer =
-      specimen.ask({"forecast",
-                    {"forecast", file.string(), "--calibration", calibration.string(), "-o", folder.string()},
-                    {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration},
-                    {folder / "forecast/forecast.json"},
-                    [=](const steps::StepContext& context) {
-                      return steps::forecast_case({read_case_with_inputs(file), folder, {.until = Stage::Plan}},
-                                                  calibration, context);
-                    }});
-  return answer.end == StepEnd::Done ? std::optional(answer.result) : std::nullopt;
+  return specimen.ask({"forecast",
+                       {"forecast", file.string(), "--calibration", calibration.string(), "-o", folder.string()},
+                       {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration},
+                       {folder / "forecast/forecast.json"},
+                       [=](const steps::StepContext& context) {
+                         return steps::forecast_case({read_case_with_inputs(file), folder, {.until = Stage::Plan}},
+                                                     calibration, context);
+                       }});
 }
 
 /// The case whose correction is the rival's path, by the same readings and photographs.
@@ -476,15 +475,18 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, co
 
 /// Cuts the same specimen along every rival's path.
 void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
-  if (rivals_.empty()) return;
-  const std::optional<ExperimentJson> forecast = settings_.with_rivals ? forecast_of(specimen) : ExperimentJson();
-  if (!forecast) return;
-  if (settings_.with_rivals)
-    trial.unlike = forecast->at("with_simulation").at("unlike").get<std::vector<std::string>>();
+  StepAnswer forecast;
+  if (settings_.with_rivals) forecast = forecast_of(specimen);
+  const bool is_forecast = settings_.with_rivals && forecast.end == StepEnd::Done;
+  if (is_forecast) trial.unlike = forecast.result.at("with_simulation").at("unlike").get<std::vector<std::string>>();
   for (const RivalPath path : rivals_) {
     const std::string name{to_string(path)};
+    if (is_of_forecast(path) && !is_forecast) {
+      trial.rivals.push_back({path, {.ended_at = refusal_of("forecast", forecast)}});
+      continue;
+    }
     const std::filesystem::path file =
-        specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa(), *forecast));
+        specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa(), forecast.result));
     trial.rivals.push_back({path, specimen.cut_again(file, specimen.at(name), name, !is_without_simulation(path)).cut});
   }
 }

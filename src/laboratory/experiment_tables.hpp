@@ -43,6 +43,11 @@ inline constexpr std::array<std::string_view, 9> kRivalPathNames{
   return path <= RivalPath::Photographs;
 }
 
+/// Whether the path is made of a forecast.
+[[nodiscard]] constexpr bool is_of_forecast(RivalPath path) {
+  return path == RivalPath::ProfileInView || path == RivalPath::Photographs || path == RivalPath::Learned;
+}
+
 struct RivalCut {
   RivalPath path = RivalPath::Constant;
   TrialCut cut;
@@ -64,7 +69,7 @@ struct Trial {
   nlohmann::ordered_json known_physics;            ///< what `incise bench floor` printed; null: not run
   double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0;
   std::optional<double> registration_rmse_mm;  ///< absent: `register` refused, or was not reached
-  std::vector<std::string> unlike;             ///< covariates outside the calibration's, see RingForecast
+  std::optional<std::vector<std::string>> unlike;  ///< covariates outside the calibration's; absent: no forecast
   std::string ended_at;                        ///< the step before the first cut that refused; empty: none did
   std::vector<std::string> commands;
 };

@@ -31,7 +31,7 @@ void require_series(std::span<const ErrorSeries> series) {
 
 /// Covers all errors and shows a little of every zone that is drawn.
 double limit_of(std::span<const ErrorSeries> series, const std::optional<ZoneBorders>& zones) {
-  double largest = zones ? -zones->positive_mm + 0.4 : 0.0;
+  double largest = zones ? -zones->positive_mm + 0.4 : 0.5;
   for (const ErrorSeries& one : series) {
     for (const double error : one.signed_error_mm) largest = std::max(largest, std::abs(error));
   }

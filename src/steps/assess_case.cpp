@@ -27,20 +27,6 @@ Verdict read_specimens_registration(const std::filesystem::path& file, Assessmen
   return verdict_of(record, file);
 }
 
-/// A correction by another tool than the calibration's is seldom what is meant. Empty: it is the same.
-std::string other_tool(const CutSettings& cut, const Calibration& calibration) {
-  if (!calibration.chosen) return {};
-  constexpr double kSame = 1e-3;
-  const double here_mm = cut.speed_mm_s * cut.dwell_s();
-  const double calibrated_mm =
-      calibration.chosen->speed_mm_s * calibration.chosen->dullness * calibration.reference_step_s;
-  if (std::abs(here_mm / calibrated_mm - 1.0) <= kSame) return {};
-  return fmt::format(
-      "the case's cut.speed_mm_s and cut.dullness hold tissue over {:.2f} mm, those that the calibration chose over "
-      "{:.2f} mm: the correction that is judged is not that of the calibrated tool",
-      here_mm, calibrated_mm);
-}
-
 /// What is foreseen is a ring that is corrected pass by pass.
 void require_ring_by_default_method(const CaseFile& file) {
   const Case& settings = file.settings;
@@ -54,6 +40,19 @@ void require_ring_by_default_method(const CaseFile& file) {
 }
 
 }  // namespace
+
+std::string other_tool(const CutSettings& cut, const Calibration& calibration) {
+  if (!calibration.chosen) return {};
+  constexpr double kSame = 1e-3;
+  const double here_mm = cut.speed_mm_s * cut.dwell_s();
+  const double calibrated_mm =
+      calibration.chosen->speed_mm_s * calibration.chosen->dullness * calibration.reference_step_s;
+  if (std::abs(here_mm / calibrated_mm - 1.0) <= kSame) return {};
+  return fmt::format(
+      "the case's cut.speed_mm_s and cut.dullness hold tissue over {:.2f} mm, those that the calibration chose over "
+      "{:.2f} mm: the correction that is judged is not that of the calibrated tool",
+      here_mm, calibrated_mm);
+}
 
 StepResult assess_case(const CaseRequest& of, const CalibrationInput& calibration,
                        const std::filesystem::path& registration, const StepContext& context) {

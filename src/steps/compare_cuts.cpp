@@ -166,6 +166,9 @@ std::vector<EvaluationFile> read_all(const std::vector<std::filesystem::path>& p
 /// Like is compared with like: the same line of the cut, against the same target. Where specimens are paired, each may
 /// have a target of its own, which its two cuts share.
 void require_alike(const CompareRequest& request, const ComparedFiles& files) {
+  INCISE_REQUIRE(
+      !request.settings.is_paired || request.before.size() == request.after.size(),
+      fmt::format("expected pairs, found {} before and {} after", request.before.size(), request.after.size()));
   const auto refuse = [&](const std::filesystem::path& path, const char* key, const std::string& found,
                           const std::string& expected, std::size_t like) {
     throw DataError(path, key, found, fmt::format("{} as in {}", expected, request.before[like].string()),

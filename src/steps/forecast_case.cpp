@@ -5,24 +5,84 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
+#include <incise/workflow/assess.hpp>
 #include <incise/workflow/ring_covariates.hpp>
+
+#include <algorithm>
+#include <cmath>
 
 namespace incise::steps {
 namespace {
 
 using ForecastJson = nlohmann::ordered_json;
 
-/// One of both ways to forecast, and what `compensation` of the case has to say to correct by it.
-ForecastJson forecast_json(const RingForecaster& forecaster, const RingCovariates& ring) {
-  const RingForecast forecast = forecaster.forecast(ring);
+constexpr std::size_t kLeastSectors = 9;
+constexpr double kMostErrorMm = 10.0;  // that a case's lists hold
+constexpr Range kShare{-1.0, 3.0};     // likewise
+constexpr Range kLikelyShare{0.0, 2.0};
+
+double mean_bias_mm(const DragFit& fit) {
+  double mean = 0.0;
+  for (const PosteriorSample& sample : fit.samples) mean += sample.weight * sample.bias_mm;
+  return mean;
+}
+
+/// Rings whose profiles can be used together.
+std::vector<RingObservation> read_observations(const std::filesystem::path& file, const Calibration& calibration) {
+  std::vector<RingObservation> observations = ring_observations(calibration);
+  if (observations.empty())
+    throw DataError(file, "specimens", "no specimen with its ring and fitted errors",
+                    "a calibration of the method fit by this version", "Calibrate anew: finished simulations are kept");
+  const std::size_t sectors = observations.front().photographed_mm.size();
+  for (const RingObservation& one : observations) {
+    const std::size_t count = one.photographed_mm.size();
+    if (count < kLeastSectors || count != sectors)
+      throw DataError(file, "fitted", fmt::format("a profile of {} numbers", count),
+                      sectors < kLeastSectors ? fmt::format("at least {}", kLeastSectors)
+                                              : fmt::format("{}, as the first has", sectors));
+    for (const auto* list : {&one.photographed_mm, &one.simulated_mm})
+      for (const double error : *list)
+        if (!(std::abs(error) <= kMostErrorMm))
+          throw DataError(file, "fitted", fmt::format("an error of {} mm", error),
+                          fmt::format("at most {} mm either way", kMostErrorMm));
+  }
+  return observations;
+}
+
+/// One of both ways to forecast, and what the case has to say to correct by it.
+ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast& forecast) {
   ForecastJson json = to_json(forecast);
   json["spreads"] = to_json(forecaster.spreads());
   json["hand_eye"] = to_json(forecaster.hand_eye());
-  if (forecast.simulated_share != 0.0) {
-    json["compensation"] = {{"simulated_share", forecast.simulated_share}, {"residual_mm", forecast.residual_mm}};
-  } else {
-    json["compensation"] = {{"method", "profile"}, {"photographed_mm", forecast.residual_mm}};
-  }
+  return json;
+}
+
+ForecastJson without_simulation(const std::vector<RingObservation>& observations, const RingCovariates& ring) {
+  const RingForecaster forecaster(observations, false);
+  const RingForecast forecast = forecaster.forecast(ring);
+  ForecastJson json = forecast_json(forecaster, forecast);
+  json["compensation"] = {{"method", "profile"}, {"photographed_mm", forecast.residual_mm}};
+  return json;
+}
+
+ForecastJson with_simulation(const std::filesystem::path& file, const std::vector<RingObservation>& observations,
+                             const RingCovariates& ring, double bias_mm, Monitor& monitor) {
+  const RingForecaster forecaster(observations, true);
+  const RingForecast forecast = forecaster.forecast(ring);
+  const double share = forecast.simulated_share;
+  if (!contains(kShare, share))
+    throw DataError(file, "fitted", fmt::format("photographs that differ by {:.2f} of what simulations do", share),
+                    fmt::format("a share from {} to {}", kShare.least, kShare.most),
+                    "The simulation says nothing of these specimens");
+  if (!contains(kLikelyShare, share))
+    monitor.message(
+        Severity::Warning,
+        fmt::format("photographs differ by {:.2f} of what the simulations do: the simulation misleads", share));
+  ForecastJson json = forecast_json(forecaster, forecast);
+  json["compensation"] = {{"observable", "inner_edge"},
+                          {"bias_mm", bias_mm},
+                          {"simulated_share", share},
+                          {"residual_mm", forecast.residual_mm}};
   return json;
 }
 
@@ -30,14 +90,14 @@ ForecastJson forecast_json(const RingForecaster& forecaster, const RingCovariate
 
 StepResult forecast_case(const CaseRequest& request, const std::filesystem::path& calibration,
                          const StepContext& context) {
-  const Calibration found = read_calibration(calibration);
-  const std::vector<RingObservation> observations = ring_observations(found);
-  if (observations.empty())
-    throw DataError(calibration, "specimens", "no specimen with its ring and fitted errors",
-                    "a calibration of the method fit by this version", "Calibrate anew: finished simulations are kept");
+  const CalibrationInput input = read_calibration_input({calibration, std::nullopt});
+  const std::vector<RingObservation> observations = read_observations(calibration, input.found);
   if (request.file.settings.plan.kind != PlanKind::Ring)
     throw CaseError("case", "plan.kind", std::string(to_string(request.file.settings.plan.kind)), "ring")
         .in_file(request.file.file.string());
+  require_rule_of(input, request.file);
+  const std::string note = other_tool(request.file.settings.cut, input.found);
+  if (!note.empty()) context.monitor.message(Severity::Warning, note);
   CaseRun run(request.file, request.output, request.options, context.run);
   const Study study = run.study(context.workers, context.monitor);
   StepResult result;
@@ -47,24 +107,29 @@ StepResult forecast_case(const CaseRequest& request, const std::filesystem::path
     return result;
   }
   const Case& settings = run.folder.case_file().settings;
+  if (input.found.is_virtual && !settings.is_virtual)
+    context.monitor.message(Severity::Warning, fmt::format("forecast: {}", kVirtualCalibration));
   const RingCovariates ring = ring_covariates(settings, *study.model, study.stretched->state.positions,
                                               study.plan->tumor_edge, settings.material.youngs_modulus_kpa);
-  result.json["specimen_is"] = settings.is_virtual ? "virtual" : "real";
-  result.json["calibration_is"] = found.is_virtual ? "virtual" : "real";
-  result.json["photographs"] = observations.size();
-  result.json["ring"] = to_json(ring);
-  result.json["in_view_mm"] = photographed_in_view(observations, ring.start_deg);
-  result.json["without_simulation"] = forecast_json({observations, false}, ring);
-  result.json["with_simulation"] = forecast_json({observations, true}, ring);
+  ForecastJson& json = result.json;
+  json["specimen_is"] = settings.is_virtual ? "virtual" : "real";
+  json["calibration_is"] = input.found.is_virtual ? "virtual" : "real";
+  json["photographs"] = observations.size();
+  json["calibrated"] = input.found.specimens.size();
+  json["ring"] = to_json(ring);
+  json["in_view_mm"] = photographed_in_view(observations, ring.start_deg);
+  json["without_simulation"] = without_simulation(observations, ring);
+  json["with_simulation"] =
+      with_simulation(calibration, observations, ring, mean_bias_mm(*input.found.fit), context.monitor);
   const std::filesystem::path folder = run.folder.root() / "forecast";
   require_replaceable(folder);
   AtomicFolder target(folder);
-  ForecastJson kept = result.json;
+  ForecastJson kept = json;
   kept["calibration_sha256"] = sha256_of_file(calibration);
   write_json(target.path() / "forecast.json", kept);
   run.folder.write_manifest_to(target.path(), context.wall_s());
   target.commit();
-  result.json["folder"] = folder.string();
+  json["folder"] = folder.string();
   return result;
 }
 

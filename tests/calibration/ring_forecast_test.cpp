@@ -144,12 +144,11 @@ TEST(RingForecaster, FewPhotographsAloneTellTheMeanError) {
 TEST(RingForecaster, LearnsWhatASpeedDoes) {
   const World world{.speed_slope_mm = -0.6};
   const RingForecaster forecaster(observations_of(world, 12), false);
-  World still = world;
   const std::vector<double> mean = simulated_mm(-1.0);
   for (const double speed : {3.0, 7.0, 12.0}) {
     const RingCovariates ring = ring_at(0.0, speed);
     // Levels of −0.7 and −1.3 mm in turn are this world's own, for whoever does not simulate.
-    EXPECT_LT(rms_apart(forecaster.forecast(ring).residual_mm, expected_mm(still, ring, mean)), 0.25) << speed;
+    EXPECT_LT(rms_apart(forecaster.forecast(ring).residual_mm, expected_mm(world, ring, mean)), 0.25) << speed;
   }
 }
 
@@ -217,6 +216,9 @@ TEST(PhotographedInView, TurnsEachCutByItsStart) {
   std::vector<RingObservation> plain = observations;
   for (RingObservation& one : plain)
     one.photographed_mm = expected_mm(world, one.ring, std::vector<double>(kSectors, -1.0));
+  plain[1].photographed_mm.pop_back();
+  EXPECT_THROW(static_cast<void>(photographed_in_view(plain, 33.0)), InvalidArgument);
+  plain[1] = plain[0];
   const std::vector<double> mean = photographed_in_view(plain, 33.0);
   EXPECT_LT(rms_apart(mean, expected_mm(world, ring_at(33.0, 7.0), std::vector<double>(kSectors, -1.0))), 0.02);
 }
@@ -227,6 +229,9 @@ TEST(OutsideCovariates, CountsFromTheTenthToTheNinetiethPercentile) {
   EXPECT_THAT(outside_covariates(ring_at(0.0, 3.0), others), ::testing::IsEmpty());
   EXPECT_THAT(outside_covariates(ring_at(0.0, 2.9), others), ::testing::ElementsAre(7U));
   EXPECT_THAT(outside_covariates(ring_at(0.0, 11.1), others), ::testing::ElementsAre(7U));
+  RingCovariates jagged = ring_at(0.0, 11.1);
+  jagged.outline = 3.0;
+  EXPECT_THAT(outside_covariates(jagged, others), ::testing::ElementsAre(7U)) << "the outline does not count";
   EXPECT_THROW(static_cast<void>(outside_covariates(others[0], {})), InvalidArgument);
 }
 

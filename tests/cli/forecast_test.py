@@ -6,7 +6,7 @@ import unittest
 
 import small_calibration
 import small_case
-from command import BAD_DATA, CommandTest
+from command import BAD_CASE, BAD_DATA, CommandTest
 
 SECTORS = 36
 HAND_EYE_MM = (0.6, -0.4)
@@ -56,12 +56,43 @@ class ForecastTest(CommandTest):
         self.assertEqual(len(kept["calibration_sha256"]), 64)
 
         # Both blocks can be used as they are.
+        self.assertEqual(joined["compensation"]["observable"], "inner_edge")
+        self.assertAlmostEqual(joined["compensation"]["bias_mm"], 0.2)
         for kind in ("with_simulation", "without_simulation"):
             small_case.write_case(self.folder / kind, {"compensation": found[kind]["compensation"]})
             self.json_of("plan", kind, "-o", self.folder / f"{kind}_out")
         said = self.incise("forecast", "case", "--calibration", calibration, "-o", self.out).stdout
-        self.assertIn("from 4 photographs", said)
-        self.assertIn("beyond most photographed rings in: radius", said)
+        self.assertIn("from 4 of 4 photographs", said)
+        self.assertIn("outside most photographed rings in: radius", said)
+
+    def test_damaged_profiles_are_named(self):
+        def damaged(change):
+            def both(found):
+                with_rings(found)
+                change(found["fitted"])
+            return small_calibration.write(self.folder / "calibration.json", both)
+
+        def shorter(fitted):
+            fitted[1].update(observed_mm=fitted[1]["observed_mm"][:18], fitted_mm=fitted[1]["fitted_mm"][:18])
+
+        def few(fitted):
+            for one in fitted:
+                one.update(observed_mm=one["observed_mm"][:3], fitted_mm=one["fitted_mm"][:3])
+
+        def huge(fitted):
+            fitted[2]["observed_mm"][0:2] = [1e200, -1e200]
+
+        for change, words in ((shorter, ("18", "36")), (few, ("3 numbers", "at least 9")), (huge, ("1e+200", "at most 10 mm"))):
+            with self.subTest(change=change.__name__):
+                done = self.incise("forecast", "case", "--calibration", damaged(change), "-o", self.out)
+                self.assert_refused(done, BAD_DATA, "calibration.json", "fitted", *words)
+                self.assert_nothing_written()
+
+    def test_a_case_of_another_rule_is_refused(self):
+        small_case.write_case(self.folder / "case", {"cut": {"rule": "lattice"}})
+        calibration = small_calibration.write(self.folder / "calibration.json", with_rings)
+        done = self.incise("forecast", "case", "--calibration", calibration, "-o", self.out)
+        self.assert_refused(done, BAD_CASE, "cut.rule", "lattice")
 
     def test_a_calibration_without_rings_is_refused(self):
         calibration = small_calibration.write(self.folder / "calibration.json")

@@ -47,12 +47,12 @@ inline constexpr std::array<std::string_view, 8> kRingCovariateNames{
 using CovariateValues = std::array<double, kRingCovariateNames.size()>;
 [[nodiscard]] CovariateValues values_of(const RingCovariates& ring);
 
-/// With so many covariates outside, a ring is unlike others (docs/models/second_bench.md, Frozen).
-inline constexpr std::size_t kUnlikeFrom = 2;
-/// Which covariates of a ring lie outside the 10th to 90th percentile of others. Percentiles are interpolated between
-/// neighbours in order.
+/// Which covariates of a ring lie outside the 10th to 90th percentile of others, the outline left out. Percentiles are
+/// interpolated between neighbours in order.
 /// @returns places in kRingCovariateNames. @throws InvalidArgument without others.
 [[nodiscard]] std::vector<std::size_t> outside_covariates(const RingCovariates& ring,
                                                           std::span<const RingCovariates> others);
+/// With so many of them outside, a ring is unlike the others (docs/models/second_bench.md, Frozen).
+inline constexpr std::size_t kUnlikeFrom = 2;
 
 }  // namespace incise
