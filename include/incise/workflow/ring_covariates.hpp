@@ -10,7 +10,8 @@ namespace incise {
 /// @param positions   of the model's nodes, stretched, mm.
 /// @param tumor_edge  closed, on the stretched tissue, same frame.
 /// @param youngs_modulus_kpa  what the pull makes of the case's, or the case's.
-/// @note Places are told by the greatest displacement among the case's constraints; without one, along the view's y.
+/// @note The pull is the greatest displacement among the case's constraints, seen along the approach. If nothing is
+/// displaced, the view's y takes its place.
 [[nodiscard]] RingCovariates ring_covariates(const Case& settings, const TissueModel& model, const Points& positions,
                                              const Contour& tumor_edge, double youngs_modulus_kpa);
 
