@@ -1,5 +1,6 @@
 #include <incise/calibration/ring_covariates.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/quantile.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +9,6 @@ namespace incise {
 namespace {
 
 constexpr double kLowShare = 0.1, kHighShare = 0.9;
-
-/// @param sorted  at least one.
-double percentile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
 
 }  // namespace
 
@@ -33,7 +26,7 @@ std::vector<std::size_t> outside_covariates(const RingCovariates& ring, std::spa
     std::vector<double> sorted;
     for (const RingCovariates& other : others) sorted.push_back(values_of(other)[k]);
     std::sort(sorted.begin(), sorted.end());
-    if (mine[k] < percentile(sorted, kLowShare) || mine[k] > percentile(sorted, kHighShare)) outside.push_back(k);
+    if (mine[k] < quantile(sorted, kLowShare) || mine[k] > quantile(sorted, kHighShare)) outside.push_back(k);
   }
   return outside;
 }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace incise {
 
@@ -57,17 +58,16 @@ constexpr std::array kEntries{
     SpreadEntry{&RingSpreads::own_deg, 40.0, true},     SpreadEntry{&RingSpreads::along_mm, 0.2, false},
     SpreadEntry{&RingSpreads::aside_mm, 0.2, false}};
 
-double& entry_of(RingSpreads& spreads, std::size_t k) {
+auto& entry_of(auto& spreads, std::size_t k) {
   return k < kEntries.size() ? spreads.*kEntries[k].member : spreads.slope_mm[k - kEntries.size()];
 }
 constexpr std::size_t kSpreads = kEntries.size() + std::tuple_size_v<CovariateValues>;
 
 /// Of the prior of the spreads' logarithms, but for a constant.
 double log_prior(const RingSpreads& spreads) {
-  RingSpreads copy = spreads;
   double sum = 0.0;
   for (std::size_t k = 0; k < kSpreads; ++k) {
-    const double value = entry_of(copy, k);
+    const double value = entry_of(spreads, k);
     if (k < kEntries.size() && kEntries[k].is_angle) {
       const double z = std::log(value / kEntries[k].prior) / kAngleSd;
       sum -= 0.5 * z * z;
@@ -99,7 +99,7 @@ SlowWaves slow_eigenvalues(std::size_t sectors, double length_deg) {
   return slow;
 }
 
-/// SlowWaves of f(θ − angle) from those of f(θ).
+/// Waves of f(θ − angle) from those of f(θ).
 WaveMatrix turned(double angle_deg) {
   WaveMatrix turn = WaveMatrix::Identity();
   for (Eigen::Index order = 1; 2 * order < kWaves; ++order) {
@@ -189,9 +189,14 @@ double log_posterior(const std::vector<RingPlace>& places, const Eigen::VectorXd
   return log_prior(spreads) - 0.5 * misfit - log_determinant;
 }
 
+struct FoundSpreads {
+  RingSpreads spreads;
+  bool is_converged = false;  ///< no factor as small as the last one helps any more
+};
+
 /// One spread after the other is made greater or smaller by a factor; the factor shrinks when nothing helps.
-RingSpreads most_probable(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, RingSpreads spreads,
-                          std::size_t sectors) {
+FoundSpreads most_probable(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, RingSpreads spreads,
+                           std::size_t sectors) {
   constexpr double kFirstFactor = 2.0, kLastFactor = 1.1;
   constexpr int kMostRounds = 60;
   double best = log_posterior(places, rest, spreads, sectors), factor = kFirstFactor;
@@ -211,7 +216,7 @@ RingSpreads most_probable(const std::vector<RingPlace>& places, const Eigen::Vec
     }
     if (!is_better) factor = std::sqrt(factor);
   }
-  return spreads;
+  return {spreads, factor <= kLastFactor};
 }
 
 }  // namespace
@@ -251,6 +256,7 @@ struct RingForecaster::Posterior {
   bool has_simulation = false;
   std::size_t sectors = 0;
   RingSpreads spreads;
+  bool is_converged = true;
   CovariateValues mean{};
   SlowWaves simulated_mean = SlowWaves::Zero();
   std::vector<RingPlace> places;
@@ -285,7 +291,6 @@ RingForecaster::RingForecaster(std::vector<RingObservation> observations, bool h
                  fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, p.sectors));
   const auto count = static_cast<double>(observations.size());
   double fast_squares = 0.0;
-  std::vector<SlowWaves> photographed;
   for (RingObservation& one : observations) {
     if (!has_simulation) one.simulated_mm.assign(p.sectors, 0.0);
     INCISE_REQUIRE(one.photographed_mm.size() == p.sectors && one.simulated_mm.size() == p.sectors,
@@ -310,7 +315,9 @@ RingForecaster::RingForecaster(std::vector<RingObservation> observations, bool h
     rest.segment<kWaves>(static_cast<Eigen::Index>(s) * kWaves) =
         slow_waves(observations[s].photographed_mm) - simulated;
   }
-  p.spreads = most_probable(p.places, rest, p.spreads, p.sectors);
+  const FoundSpreads found = most_probable(p.places, rest, p.spreads, p.sectors);
+  p.spreads = found.spreads;
+  p.is_converged = found.is_converged;
   p.factor.compute(covariance_of(p.places, p.spreads, p.sectors));
   p.weights = p.factor.solve(rest);
   p.observations = std::move(observations);
@@ -322,6 +329,10 @@ RingForecaster::RingForecaster(RingForecaster&&) noexcept = default;
 
 const RingSpreads& RingForecaster::spreads() const {
   return posterior_->spreads;
+}
+
+bool RingForecaster::is_converged() const {
+  return posterior_->is_converged;
 }
 
 RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t sectors) const {

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/quantile.hpp>
 #include <incise/core/random.hpp>
 #include <incise/evaluation/block_bootstrap.hpp>
 #include <incise/evaluation/statistics.hpp>
@@ -129,13 +130,6 @@ bool is_constant(std::span<const ContourValues> contours) {
   });
 }
 
-double percentile(const std::vector<double>& sorted, double share) {
-  const double position = share * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(position);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return sorted[low] + (position - static_cast<double>(low)) * (sorted[high] - sorted[low]);
-}
-
 }  // namespace
 
 ContourCorrelation contour_correlation(const ContourValues& contour) {
@@ -189,7 +183,7 @@ BootstrapTest block_bootstrap_test(std::span<const ContourValues> before, std::s
   test.p = (1.0 + static_cast<double>(astray)) / (1.0 + static_cast<double>(settings.replicates));
   std::sort(drawn.begin(), drawn.end());
   const double tail = 0.5 * (1.0 - settings.level);
-  test.confidence = Interval{percentile(drawn, tail), percentile(drawn, 1.0 - tail)};
+  test.confidence = Interval{quantile(drawn, tail), quantile(drawn, 1.0 - tail)};
   return test;
 }
 

@@ -3,6 +3,7 @@
 #include "report/svg.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/quantile.hpp>
 #include <incise/core/units.hpp>
 #include <incise/report/figures.hpp>
 
@@ -72,13 +73,6 @@ void draw_series_legend(SvgWriter& svg, std::span<const ReportIncision> incision
     svg.text(at + Vec2(26.0, 4.0), incisions[k].name);
     at.x() += 48.0 + 7.0 * static_cast<double>(incisions[k].name.size());
   }
-}
-
-double quantile(const std::vector<double>& sorted, double p) {
-  const double position = p * static_cast<double>(sorted.size() - 1);
-  const auto low = static_cast<std::size_t>(position);
-  const std::size_t high = std::min(low + 1, sorted.size() - 1);
-  return sorted[low] + (position - static_cast<double>(low)) * (sorted[high] - sorted[low]);
 }
 
 void require_incisions(std::span<const ReportIncision> incisions) {

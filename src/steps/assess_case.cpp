@@ -50,7 +50,7 @@ std::string other_tool(const CutSettings& cut, const Calibration& calibration) {
   if (std::abs(here_mm / calibrated_mm - 1.0) <= kSame) return {};
   return fmt::format(
       "the case's cut.speed_mm_s and cut.dullness hold tissue over {:.2f} mm, those that the calibration chose over "
-      "{:.2f} mm: the correction that is judged is not that of the calibrated tool",
+      "{:.2f} mm: what the calibration says is not of this tool",
       here_mm, calibrated_mm);
 }
 

@@ -8,7 +8,6 @@
 #include <incise/workflow/assess.hpp>
 #include <incise/workflow/ring_covariates.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace incise::steps {
@@ -50,17 +49,21 @@ std::vector<RingObservation> read_observations(const std::filesystem::path& file
 }
 
 /// One of both ways to forecast, and what the case has to say to correct by it.
-ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast& forecast) {
+ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast& forecast, Monitor& monitor) {
+  if (!forecaster.is_converged())
+    monitor.message(Severity::Warning, "forecast: the search for its spreads was ended before it came to rest");
   ForecastJson json = to_json(forecast);
+  json["converged"] = forecaster.is_converged();
   json["spreads"] = to_json(forecaster.spreads());
   json["hand_eye"] = to_json(forecaster.hand_eye());
   return json;
 }
 
-ForecastJson without_simulation(const std::vector<RingObservation>& observations, const RingCovariates& ring) {
+ForecastJson without_simulation(const std::vector<RingObservation>& observations, const RingCovariates& ring,
+                                Monitor& monitor) {
   const RingForecaster forecaster(observations, false);
   const RingForecast forecast = forecaster.forecast(ring);
-  ForecastJson json = forecast_json(forecaster, forecast);
+  ForecastJson json = forecast_json(forecaster, forecast, monitor);
   json["compensation"] = {{"method", "profile"}, {"photographed_mm", forecast.residual_mm}};
   return json;
 }
@@ -78,7 +81,7 @@ ForecastJson with_simulation(const std::filesystem::path& file, const std::vecto
     monitor.message(
         Severity::Warning,
         fmt::format("photographs differ by {:.2f} of what the simulations do: the simulation misleads", share));
-  ForecastJson json = forecast_json(forecaster, forecast);
+  ForecastJson json = forecast_json(forecaster, forecast, monitor);
   json["compensation"] = {{"observable", "inner_edge"},
                           {"bias_mm", bias_mm},
                           {"simulated_share", share},
@@ -118,7 +121,7 @@ StepResult forecast_case(const CaseRequest& request, const std::filesystem::path
   json["calibrated"] = input.found.specimens.size();
   json["ring"] = to_json(ring);
   json["in_view_mm"] = photographed_in_view(observations, ring.start_deg);
-  json["without_simulation"] = without_simulation(observations, ring);
+  json["without_simulation"] = without_simulation(observations, ring, context.monitor);
   json["with_simulation"] =
       with_simulation(calibration, observations, ring, mean_bias_mm(*input.found.fit), context.monitor);
   const std::filesystem::path folder = run.folder.root() / "forecast";

@@ -44,10 +44,10 @@ RingCovariates ring_covariates(const Case& settings, const TissueModel& model, c
   const double area_mm2 = std::abs(signed_area_mm2(flat, settings.plan.approach));
   RingCovariates ring;
   ring.radius_mm = std::sqrt(area_mm2 / std::numbers::pi);
-  ring.outline = std::max(1.0, length_mm(flat) / (2.0 * std::numbers::pi * ring.radius_mm));
+  ring.outline = length_mm(flat) / (2.0 * std::numbers::pi * ring.radius_mm);
   const Vec3 middle = curve_centroid(flat), pull = pull_direction(model, view), aside = view.z.cross(pull);
   const Extent length = extent_along(positions, pull), width = extent_along(positions, aside);
-  ring.along = std::clamp((middle.dot(pull) - length.low) / (length.high - length.low), 0.0, 1.0);
+  ring.along = (middle.dot(pull) - length.low) / (length.high - length.low);
   ring.aside_mm = middle.dot(aside) - 0.5 * (width.low + width.high);
   ring.youngs_modulus_kpa = youngs_modulus_kpa;
   ring.lateral_margin_mm = settings.plan.lateral_margin_mm;

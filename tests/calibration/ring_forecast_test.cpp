@@ -104,6 +104,7 @@ TEST(RingForecaster, WithoutPhotographsItIsTheSimulation) {
 TEST(RingForecaster, KnowsAnOffsetInTheViewWhereverACutStarts) {
   const World world{.hand_eye_mm = {0.8, -0.5}};
   const RingForecaster forecaster(observations_of(world, 12), true);
+  EXPECT_TRUE(forecaster.is_converged());
   const RingCovariates ring = ring_at(77.0, 7.0);
   const std::vector<double> simulated = simulated_mm(-1.2);
   EXPECT_LT(rms_apart(forecast_mm(forecaster.forecast(ring), simulated), expected_mm(world, ring, simulated)), 0.08);

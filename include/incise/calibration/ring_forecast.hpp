@@ -23,7 +23,8 @@ struct RingObservation {
 [[nodiscard]] std::vector<RingObservation> ring_observations(const Calibration& calibration);
 
 /// Mean of what was photographed by direction in the view, wherever each cut started, for a ring that starts there: by
-/// sector from its start on, linear between sectors. @throws InvalidArgument without observations.
+/// sector from its start on, linear between sectors, mm. @throws InvalidArgument without observations, or where their
+/// sectors differ in number.
 [[nodiscard]] std::vector<double> photographed_in_view(std::span<const RingObservation> observations, double start_deg);
 
 /// Standard deviations, mm, of what makes photographs differ from a simulation, and angles over which correlations fall
@@ -72,9 +73,9 @@ void describe(Visitor& v, HandEyeEstimate& e);
 ///     y_s(θ) = m_s(θ) + β (m_s − m̄)(θ) + b + c · x_s + f(θ) + g(θ + α_s) + (h + e_s) · n(θ + α_s) + own_s(θ)
 /// b is common, x_s are the covariates about their mean, f and g Gaussian processes round the ring, α_s the start's
 /// direction in the view, h the hand-eye offset, e_s a shift that grows with the tumour's place along and across the
-/// pull, own_s of each cut by itself. All is linear and normal given the
-/// spreads; these are the most probable ones under half-normal priors, found by a pattern search. Without observations
-/// it is the simulation. Source: [RasmussenWilliams2006, 2.2, 2.7, 5.4.1].
+/// pull, own_s of each cut by itself. All is linear and normal given the spreads; these are the most probable ones
+/// under half-normal priors, found by a pattern search. Without observations it is the simulation. Source:
+/// [RasmussenWilliams2006, 2.2, 2.7, 5.4.1].
 class RingForecaster {
  public:
   /// @param has_simulation  else simulated errors are taken for 0 and β is left out: photographs alone.
@@ -89,6 +90,8 @@ class RingForecaster {
   [[nodiscard]] RingForecast forecast(const RingCovariates& ring, std::size_t sectors = 36) const;
   [[nodiscard]] HandEyeEstimate hand_eye() const;
   [[nodiscard]] const RingSpreads& spreads() const;
+  /// Whether the search for the spreads ended by itself, and not by its limit of 60 rounds.
+  [[nodiscard]] bool is_converged() const;
 
  private:
   struct Posterior;
