@@ -4,6 +4,7 @@
 #include <incise/core/error.hpp>
 #include <incise/laboratory/acceptance.hpp>
 #include <incise/laboratory/bench_steps.hpp>
+#include <incise/laboratory/factor_screening.hpp>
 #include <incise/robot/checks.hpp>
 
 #include <fmt/format.h>
@@ -74,13 +75,57 @@ int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
   return kDone;
 }
 
+int screen(const CommonOptions& options, const ScreeningSettings& settings) {
+  const std::filesystem::path root = options.required_output("factors");
+  std::filesystem::create_directories(root);
+  nlohmann::ordered_json result;
+  try {
+    Console console(options.level());
+    Workers workers(options.threads);
+    result = screen_factors(settings, root, options.context(), workers, console);
+  } catch (const Cancelled& error) {
+    throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
+  }
+  if (options.json) {
+    print_result(options, result);
+    return kDone;
+  }
+  const auto shown = [](const nlohmann::ordered_json& value) {
+    return value.is_number() ? fmt::format("{:.2f}", value.get<double>()) : std::string("-");
+  };
+  const auto moved = [&](const char* name, const nlohmann::ordered_json& parts) {
+    fmt::print("{:<14} {:>6} {:>6} {:>6}", name, shown(parts.at("level_mm")), shown(parts.at("shift_mm")),
+               shown(parts.at("rest_mm")));
+  };
+  fmt::print(
+      "VIRTUAL specimens: what a factor moves of each ring, and changes of the mean |error|, mm\n{:<14} {:>6} "
+      "{:>6} {:>6} {:>24} {:>18}\n",
+      "factor", "mean", "shift", "rest", "change (95 %)", "closed with/without");
+  for (const auto& factor : result.at("factors")) {
+    const auto& ends = factor.at("change_95_mm");
+    moved(factor.at("factor").get<std::string>().c_str(), factor.at("moved"));
+    fmt::print(" {:>24} {:>8}/{}\n",
+               fmt::format("{} ({} to {})", shown(factor.at("change_mm")), shown(ends.is_array() ? ends[0] : ends),
+                           shown(ends.is_array() ? ends[1] : ends)),
+               fmt::format("{} of {}", factor.at("measured_with").dump(), factor.at("made_with").dump()),
+               fmt::format("{} of {}", factor.at("measured_without").dump(), factor.at("made_without").dump()));
+  }
+  moved("by chance", result.at("chance"));
+  fmt::print("\n");
+  nlohmann::ordered_json summary{{"cuts", result.at("cuts")}, {"measured", result.at("measured")}};
+  if (!result.at("pairs").empty()) summary["least_p_of_pairs"] = result.at("pairs").front().at("p");
+  summary["figure"] = result.at("figure");
+  print_result(options, summary);
+  return kDone;
+}
+
 std::vector<std::string> factor_names() {
   std::vector<std::string> names(second_bench::kFactorNames.begin(), second_bench::kFactorNames.end());
   names.emplace_back("none");
   return names;
 }
 
-void add_factors(CLI::App& verb, const std::function<void(second_bench::Factors)>& take) {
+void add_factors(CLI::App& verb, const std::string& meaning, const std::function<void(second_bench::Factors)>& take) {
   verb.add_option_function<std::vector<std::string>>(
           "--factors",
           [take](const std::vector<std::string>& given) {
@@ -91,10 +136,24 @@ void add_factors(CLI::App& verb, const std::function<void(second_bench::Factors)
               if (name != "none") factors.insert(*value_of<second_bench::Factor>(name));
             take(std::move(factors));
           },
-          "Of laboratory 2: what varies beside placement, stretch and stiffness; the rest has the defaults of `incise "
-          "schema bench2`. By default everything; none: nothing more")
+          meaning)
       ->delimiter(',')
       ->check(CLI::IsMember(factor_names()));
+}
+
+constexpr const char* kVaries =
+    "Of laboratory 2: what varies beside placement, stretch and stiffness; the rest has the defaults of `incise schema "
+    "bench2`. By default everything; none: nothing more";
+
+void add_overrides(CLI::App& verb, std::vector<std::string>& overrides) {
+  std::vector<std::string> checks;
+  std::ranges::copy_if(check_names(), std::back_inserter(checks), can_be_overridden);
+  verb.add_option("--override", overrides,
+                  "Cut although this check of the program fails, as `incise export` would: the tissue is virtual. "
+                  "Repeat for each check")
+      ->expected(1)
+      ->take_all()
+      ->check(CLI::IsMember(checks));
 }
 
 }  // namespace
@@ -113,7 +172,7 @@ void add_bench(Application& application) {
   verb->add_option("--bench", made->bench,
                    "1, or 2: the laboratory that varies far more. A specimen file says it itself")
       ->check(whole_between("--bench", 1, 2));
-  add_factors(*verb, [made](second_bench::Factors factors) { made->factors = std::move(factors); });
+  add_factors(*verb, kVaries, [made](second_bench::Factors factors) { made->factors = std::move(factors); });
   verb->add_option("--series", made->series,
                    "Of laboratory 2: specimens of one series share the hand-eye error; by default the seed")
       ->check(CLI::NonNegativeNumber);
@@ -152,20 +211,34 @@ void add_bench(Application& application) {
       [accepted](const CommonOptions& options) { return accept(options, *accepted); });
   verb->add_option("--specimens", accepted->specimens, "1 to 200; their seeds count up from --seed")
       ->check(whole_between("--specimens", 1, 200));
-  add_factors(*verb, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
+  add_factors(*verb, kVaries, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
   verb->add_option("--speed-mm-s", accepted->speed_mm_s, "Of every cut; by default as prescribed")
       ->check(CLI::Range(1.0, 15.0));
   verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
       ->check(CLI::Range(1.0, 120.0));
-  std::vector<std::string> checks;
-  std::ranges::copy_if(check_names(), std::back_inserter(checks), can_be_overridden);
-  verb->add_option("--override", accepted->overrides,
-                   "Cut although this check of the program fails, as `incise export` would: the tissue is virtual. "
-                   "Repeat for each check")
-      ->expected(1)
-      ->take_all()
-      ->check(CLI::IsMember(checks));
+  add_overrides(*verb, accepted->overrides);
   verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut as planned alone");
+
+  auto screened = std::make_shared<ScreeningSettings>();
+  verb =
+      application.add_verb_to(*bench, "factors",
+                              "Find which factors of laboratory 2 drive the error as planned: a fractional "
+                              "factorial of up to 32 cuts of each specimen. Run it again to continue where it stopped",
+                              "incise bench factors --seed 1 -o factors",
+                              [screened](const CommonOptions& options) { return screen(options, *screened); });
+  verb->add_option("--specimens", screened->specimens, "1 to 24; their seeds count up from --seed")
+      ->check(whole_between("--specimens", 1, 24));
+  add_factors(
+      *verb,
+      "Of laboratory 2: those to switch; the others stay off. By default all, by 32 cuts of each specimen; up to "
+      "8 need 16, 3 or 4 need 8, two need 4",
+      [screened](second_bench::Factors factors) {
+        if (factors.size() < 2)
+          throw CaseError("command line", "--factors", fmt::format("{} of them", factors.size()),
+                          "at least two, or what is chance is not known");
+        screened->factors = std::move(factors);
+      });
+  add_overrides(*verb, screened->overrides);
 }
 
 }  // namespace incise::cli

@@ -1,5 +1,5 @@
 #include "laboratory/experiment_tables.hpp"
-#include "laboratory/virtual_laboratory.hpp"
+#include "laboratory/trial_on_bench.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -26,7 +26,6 @@ using Rows = nlohmann::ordered_json;
 
 constexpr const char* kAcceptanceFile = "acceptance.json";
 constexpr const char* kAcceptanceTable = "acceptance.csv";
-constexpr const char* kClaim = "bench.json";
 
 Rows asked_json(const AcceptanceSettings& settings) {
   Rows factors = Rows::array();
@@ -40,33 +39,16 @@ Rows asked_json(const AcceptanceSettings& settings) {
           {"tets", settings.tets}};
 }
 
-/// One folder holds the specimens of one first seed. What an earlier run said of the whole would be taken for this
-/// one's.
-void claim_folder(const std::filesystem::path& output, std::uint64_t seed) {
-  const std::filesystem::path claim = output / kClaim;
-  steps::require_own_or_empty(output, {kClaim}, "an acceptance");
-  if (!std::filesystem::exists(claim)) {
-    write_json(claim, {{"schema", "incise.acceptance/1"}, {"specimen_is", "virtual"}, {"seed", seed}});
-  } else if (const Rows kept = read_json(claim); !kept.is_object() || kept.value("seed", Rows()) != Rows(seed)) {
-    throw DataError(claim, "seed", kept.is_object() ? kept.value("seed", Rows()).dump() : kept.type_name(),
-                    fmt::format("{}, that of this command", seed),
-                    "Its specimens differ: choose another place for the output");
-  }
-  for (const char* file : {kAcceptanceFile, kAcceptanceTable}) std::filesystem::remove(output / file);
-}
-
 /// As planned, then along the paper's correction.
 void cut_twice(const AcceptanceSettings& settings, const std::filesystem::path& root, std::uint64_t series,
                Monitor& monitor, Trial& trial, Rows& row) {
-  Workers one(1);
-  laboratory::ExperimentSteps steps(root / trial.name, one, monitor);
   laboratory::HiddenSpecimen hidden{trial.seed, trial.given, root / "truth" / trial.name, 2, series};
   hidden.factors = settings.factors;
-  laboratory::VirtualLaboratory bench(hidden, steps);
   laboratory::TrialSetup setup{.name = trial.name, .tets = settings.tets};
   setup.given_power_w = settings.power_w;
   setup.overrides = settings.overrides;
-  laboratory::SpecimenTrial specimen(setup, steps, bench);
+  laboratory::TrialOnBench on_bench(root / trial.name, setup, hidden, monitor);
+  laboratory::SpecimenTrial& specimen = on_bench.specimen();
   if (specimen.prepare(std::nullopt)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
     if (trial.planned.is_made && settings.with_paper_pass) {
@@ -137,7 +119,8 @@ nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const st
                                     const RunContext& run, Workers& workers, Monitor& monitor) {
   const auto start = std::chrono::steady_clock::now();
   const FolderLock lock(output);
-  claim_folder(output, run.seed);
+  laboratory::claim_folder(output, {"incise.acceptance/1", "an acceptance"}, run.seed,
+                           {kAcceptanceFile, kAcceptanceTable});
   std::vector<Trial> trials(settings.specimens);
   std::vector<Rows> rows(settings.specimens);
   for (std::size_t i = 0; i < trials.size(); ++i) {

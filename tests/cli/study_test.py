@@ -72,6 +72,26 @@ class StudyTest(CommandTest):
             self.assertEqual(truth["target_mm"], margin - 0.5)
         self.assertEqual(json.loads((self.folder / "study" / "experiment.json").read_text())["bench"], 2)
 
+    def test_factors_are_switched_by_a_design_and_what_was_cut_is_kept(self):
+        asked = ("bench", "factors", "--seed", "1", "--specimens", "1", "--factors", "hand_eye,motion,arm", "--override", "heat", "--threads", "2", "-o", "study")
+        found = self.json_of(*asked)
+        self.assertEqual((found["cuts"], found["settings"]["runs"]), (8, 8))
+        self.assertEqual([factor["factor"] for factor in found["factors"]], ["motion", "hand_eye", "arm"])
+        self.assertTrue(all(factor["made_with"] == 4 for factor in found["factors"]))
+        self.assertEqual(len({row["folder"] for row in found["rows"]}), 8)
+        self.assertGreater(found["measured"], 5)
+        hand_eye = found["factors"][1]["moved"]
+        self.assertGreater(hand_eye["shift_mm"], 2.0 * hand_eye["level_mm"], "an offset of the tip shifts the ring")
+        table = (self.folder / "study" / "factors.csv").read_text().splitlines()
+        self.assertEqual([row.split(",")[0] for row in table], ["factor", "motion", "hand_eye", "arm"])
+        self.assertEqual(len((self.folder / "study" / "cuts.csv").read_text().splitlines()), 1 + 8)
+        self.assertIn("<svg", (self.folder / "study" / "factors.svg").read_text())
+        again = self.json_of(*asked)
+        self.assertEqual({**again, "wall_s": 0}, {**found, "wall_s": 0})
+        self.assertLess(again["wall_s"], 0.5 * found["wall_s"], "finished cuts are kept")
+        self.assert_refused(self.incise("bench", "factors", "--seed", "2", "-o", "study"), BAD_DATA, "bench.json", "seed")
+        self.assert_refused(self.incise("bench", "factors", "--factors", "arm", "-o", "other"), BAD_CASE, "--factors", "at least two")
+
     def test_the_truth_needs_a_folder_of_its_own(self):
         for truth in ("study", "./study", "study/", "study/.", "other/../study", str(self.folder / "study")):
             done = self.incise("experiment", "--quick", "--truth", truth, "-o", "study")

@@ -1,6 +1,7 @@
 #include "report/markup.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/report/category_plot.hpp>
 #include <incise/report/comparison_figures.hpp>
 #include <incise/report/svg_png.hpp>
 
@@ -143,6 +144,40 @@ TEST(PngOfSvg, RefusesWhatIsNoFigure) {
   EXPECT_THROW(static_cast<void>(png_of_svg("no figure")), Error);
   EXPECT_THROW(static_cast<void>(png_of_svg("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"10\"")), Error);
   EXPECT_THROW(static_cast<void>(png_of_svg(error_by_clock_svg(kFour), 0.0)), InvalidArgument);
+}
+
+CategoryPlot two_panels() {
+  return {.title = "effects",
+          .categories = {"drift", "wander", "idle"},
+          .panels = {{"moved, mm",
+                      {{.name = "mean", .values = {0.1, 0.2, 0.0}, .chance = 0.05},
+                       {.name = "shift", .values = {0.6, 0.1, 0.1}}}},
+                     {"change, mm",
+                      {{.name = "", .values = {0.0, 0.3, -0.1}, .low = {-0.1, 0.2, -0.2}, .high = {0.1, 0.4, 0.0}}}}}};
+}
+
+TEST(CategoryPlot, ShowsEachCategoryOnceAndAMarkForEachValue) {
+  const std::string svg = category_plot_svg(two_panels());
+  expect_whole(svg);
+  for (const char* text : {"drift", "wander", "idle", "mean", "shift", "moved, mm", "change, mm"})
+    EXPECT_THAT(svg, HasSubstr(std::string(">") + text + "<"));
+  EXPECT_EQ(texts_between(svg, "<circle", "/>").size(), 9U + 2U) << "marks, and those of the legend";
+  EXPECT_EQ(texts_between(svg, "stroke-dasharray=\"4 3\"", ">").size(), 1U) << "chance";
+}
+
+TEST(CategoryPlot, RefusesWhatItCannotDraw) {
+  CategoryPlot plot = two_panels();
+  plot.panels[0].series[0].values.pop_back();
+  EXPECT_THROW((void)category_plot_svg(plot), InvalidArgument);
+  plot = two_panels();
+  plot.panels[1].series[0].low.pop_back();
+  EXPECT_THROW((void)category_plot_svg(plot), InvalidArgument);
+  plot = two_panels();
+  plot.panels[0].series[1].values[2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)category_plot_svg(plot), InvalidArgument);
+  plot = two_panels();
+  plot.categories.clear();
+  EXPECT_THROW((void)category_plot_svg(plot), InvalidArgument);
 }
 
 }  // namespace

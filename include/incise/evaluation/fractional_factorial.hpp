@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace incise {
+
+/// Two-level designs of 8, 16 or 32 runs for at most 4, 8 or 16 factors; of 2 and 4 runs for one and two. No two runs
+/// have the same factors on. They are regular and of resolution IV: what a factor changes is told apart from what any
+/// other and any pair of others changes; pairs are not told apart from every other pair. Source: [BoxHunter1961].
+class FractionalFactorial {
+ public:
+  using Pair = std::pair<std::size_t, std::size_t>;  ///< of factors, the lower one first
+
+  /// The smallest design that holds so many. @throws InvalidArgument unless 1 to 16.
+  explicit FractionalFactorial(std::size_t factors);
+
+  [[nodiscard]] std::size_t factors() const { return words_.size(); }
+  [[nodiscard]] std::size_t runs() const { return std::size_t{1} << bits_; }
+  /// @pre run < runs(), factor < factors(). In run 0 every factor is off. Each is on in half of the runs.
+  [[nodiscard]] bool is_on(std::size_t run, std::size_t factor) const;
+  /// Whether both factors of a pair are in the same state.
+  [[nodiscard]] bool is_alike(std::size_t run, const Pair& pair) const {
+    return is_on(run, pair.first) == is_on(run, pair.second);
+  }
+  /// All pairs; those of one group are alike in the same runs, so that only what they do together is seen.
+  [[nodiscard]] const std::vector<std::vector<Pair>>& pair_groups() const { return pair_groups_; }
+
+ private:
+  unsigned bits_ = 1;
+  std::vector<unsigned> words_;  ///< of each factor: bits of the run whose parity is its state
+  std::vector<std::vector<Pair>> pair_groups_;
+};
+
+/// A change of the response, in its unit.
+struct FactorialEffect {
+  double change = 0.0;
+  double standard_error = 0.0;
+};
+
+struct FactorialFit {
+  std::vector<FactorialEffect> factors;      ///< response with the factor less that without it
+  std::vector<FactorialEffect> pair_groups;  ///< response where a group's pairs are alike less that where not; or empty
+  std::size_t degrees_of_freedom = 0;        ///< >= 1, of the residual that the standard errors are from
+};
+
+/// Least squares: every block has a level of its own, and all share the effects.
+/// @param blocks      one list of responses each, run by run; absent ones were not measured.
+/// @param with_pairs  also estimates the groups of pairs.
+/// @returns nothing where what was measured does not determine the effects and their standard errors.
+/// @throws InvalidArgument unless every block has design.runs() responses, the measured ones finite.
+/// @note O(n p²), n responses, p blocks and effects.
+[[nodiscard]] std::optional<FactorialFit> fit_factorial(const FractionalFactorial& design,
+                                                        std::span<const std::vector<std::optional<double>>> blocks,
+                                                        bool with_pairs);
+
+}  // namespace incise

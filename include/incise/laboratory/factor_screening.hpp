@@ -1,0 +1,37 @@
+#pragma once
+
+#include <incise/core/monitor.hpp>
+#include <incise/core/workers.hpp>
+#include <incise/second_bench/specimen.hpp>
+#include <incise/storage/run_folder.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace incise {
+
+/// Which factors of the second laboratory are switched, and on which specimens.
+struct ScreeningSettings {
+  std::uint64_t specimens = 6;                                  ///< their seeds count up from the run's; each a series
+  second_bench::Factors factors = second_bench::all_factors();  ///< at least two; the others stay off
+  std::vector<std::string> overrides;                           ///< as of AcceptanceSettings
+  int tets = 25000;                                             ///< of the planner's meshes
+};
+
+/// Cuts every specimen as planned under a two-level fractional factorial design of the factors (see
+/// FractionalFactorial), and says from the photographs what each factor, and pairs of them, do to the error. Nothing is
+/// calibrated or corrected. Finished steps are kept in each cut's cache/ and not run again.
+///
+///   S1/01/ …  the first run of the first specimen, as of an experiment;  truth/  the specimens;
+///   factors.json  factors.csv (a row for each factor)  cuts.csv (for each cut)  factors.svg  manifest.json  bench.json
+///
+/// @returns what factors.json holds. @throws DataError where a file cannot be written; Cancelled.
+[[nodiscard]] nlohmann::ordered_json screen_factors(const ScreeningSettings& settings,
+                                                    const std::filesystem::path& output, const RunContext& run,
+                                                    Workers& workers, Monitor& monitor);
+
+}  // namespace incise

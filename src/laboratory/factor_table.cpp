@@ -1,0 +1,188 @@
+#include "laboratory/factor_table.hpp"
+
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace incise::laboratory {
+namespace {
+
+using Responses = std::vector<std::optional<double>>;  // run by run
+using Runs = std::vector<std::optional<ErrorByDirection>>;
+
+/// Mean, both halves of the first wave, and what is left in each direction: a linear map of the errors.
+std::vector<double> parts_of(const ErrorByDirection& errors) {
+  const auto count = static_cast<double>(errors.size());
+  const auto angle = [count](std::size_t i) { return 2.0 * std::numbers::pi * static_cast<double>(i) / count; };
+  std::vector<double> parts(3 + errors.size(), 0.0);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    INCISE_REQUIRE(std::isfinite(errors[i]), "expected finite errors");
+    parts[0] += errors[i] / count;
+    parts[1] += 2.0 / count * errors[i] * std::cos(angle(i));
+    parts[2] += 2.0 / count * errors[i] * std::sin(angle(i));
+  }
+  for (std::size_t i = 0; i < errors.size(); ++i)
+    parts[3 + i] = errors[i] - parts[0] - parts[1] * std::cos(angle(i)) - parts[2] * std::sin(angle(i));
+  return parts;
+}
+
+/// Of what was found for each part: its squares summed up as level, shift and rest.
+ErrorParts squares_of(std::span<const double> parts) {
+  ErrorParts squares{parts[0] * parts[0], parts[1] * parts[1] + parts[2] * parts[2], 0.0};
+  const std::span<const double> rest = parts.subspan(3);
+  for (const double value : rest) squares.rest_mm += value * value / static_cast<double>(rest.size());
+  return squares;
+}
+
+void add(ErrorParts& sum, const ErrorParts& squares, double share) {
+  sum.level_mm += share * squares.level_mm;
+  sum.shift_mm += share * squares.shift_mm;
+  sum.rest_mm += share * squares.rest_mm;
+}
+
+ErrorParts roots_of(const ErrorParts& squares) {
+  return {std::sqrt(squares.level_mm), std::sqrt(squares.shift_mm), std::sqrt(squares.rest_mm)};
+}
+
+/// What each factor does to one specimen, part by part, and how far that is known.
+struct SpecimenEffects {
+  std::vector<std::vector<double>> changes, standard_errors;  // by factor and part
+};
+
+std::optional<SpecimenEffects> effects_of(const FractionalFactorial& design, const Runs& runs) {
+  std::vector<Responses> by_part;
+  for (std::size_t run = 0; run < runs.size(); ++run) {
+    if (!runs[run]) continue;
+    const std::vector<double> parts = parts_of(*runs[run]);
+    if (by_part.empty()) by_part.assign(parts.size(), Responses(runs.size()));
+    INCISE_REQUIRE(parts.size() == by_part.size() && parts.size() >= 3 + 4,
+                   "expected errors in equally many directions, 4 or more");
+    for (std::size_t k = 0; k < parts.size(); ++k) by_part[k][run] = parts[k];
+  }
+  SpecimenEffects effects{std::vector<std::vector<double>>(design.factors()),
+                          std::vector<std::vector<double>>(design.factors())};
+  if (by_part.empty()) return std::nullopt;
+  for (const Responses& responses : by_part) {
+    const auto fit = fit_factorial(design, std::span(&responses, 1), false);
+    if (!fit) return std::nullopt;
+    for (std::size_t k = 0; k < design.factors(); ++k) {
+      effects.changes[k].push_back(fit->factors[k].change);
+      effects.standard_errors[k].push_back(fit->factors[k].standard_error);
+    }
+  }
+  return effects;
+}
+
+void count_cuts(const FractionalFactorial& design, const std::vector<Runs>& errors, std::size_t factor,
+                FactorEffect& effect) {
+  for (const Runs& runs : errors) {
+    for (std::size_t run = 0; run < design.runs(); ++run) {
+      const bool is_on = design.is_on(run, factor);
+      ++(is_on ? effect.made_with : effect.made_without);
+      if (runs[run]) ++(is_on ? effect.measured_with : effect.measured_without);
+    }
+  }
+}
+
+std::vector<PairEffect> pairs_of(const FractionalFactorial& design, std::span<const std::string> names,
+                                 const std::vector<Responses>& mean_abs_mm) {
+  std::vector<PairEffect> found;
+  const auto fit = fit_factorial(design, mean_abs_mm, true);
+  if (!fit) return found;
+  for (std::size_t g = 0; g < fit->pair_groups.size(); ++g) {
+    const FactorialEffect& effect = fit->pair_groups[g];
+    PairEffect one{.change_mm = effect.change, .standard_error_mm = effect.standard_error};
+    if (effect.standard_error > 0.0)
+      one.p = two_tailed_p(effect.change / effect.standard_error, static_cast<double>(fit->degrees_of_freedom));
+    for (const auto& [a, b] : design.pair_groups()[g]) one.pairs.emplace_back(names[a], names[b]);
+    found.push_back(std::move(one));
+  }
+  std::stable_sort(found.begin(), found.end(), [](const PairEffect& a, const PairEffect& b) { return a.p < b.p; });
+  return found;
+}
+
+}  // namespace
+
+FactorTable factor_table(const FractionalFactorial& design, std::span<const std::string> names,
+                         const std::vector<Runs>& errors, const std::vector<Responses>& mean_abs_mm) {
+  INCISE_REQUIRE(names.size() == design.factors() && errors.size() == mean_abs_mm.size(),
+                 "expected one name for each factor, and as many lists of means as of errors");
+  FactorTable table;
+  std::vector<SpecimenEffects> specimens;
+  std::vector<Responses> means;
+  for (std::size_t s = 0; s < errors.size(); ++s) {
+    INCISE_REQUIRE(errors[s].size() == design.runs() && mean_abs_mm[s].size() == design.runs(),
+                   fmt::format("expected {} runs of each specimen", design.runs()));
+    table.cuts += design.runs();
+    table.measured += static_cast<std::size_t>(std::ranges::count_if(errors[s], [](const auto& e) { return !!e; }));
+    if (auto effects = effects_of(design, errors[s])) {
+      specimens.push_back(std::move(*effects));
+      means.push_back(mean_abs_mm[s]);
+      table.estimated.push_back(s);
+    }
+  }
+  ErrorParts chance;
+  for (std::size_t k = 0; k < design.factors(); ++k) {
+    FactorEffect effect{.factor = names[k]};
+    count_cuts(design, errors, k, effect);
+    ErrorParts moved;
+    const double share = 1.0 / std::max(1.0, static_cast<double>(specimens.size()));
+    for (const SpecimenEffects& one : specimens) {
+      add(moved, squares_of(one.changes[k]), share);
+      add(chance, squares_of(one.standard_errors[k]), share / static_cast<double>(design.factors()));
+    }
+    effect.moved = roots_of(moved);
+    std::vector<double> changes;
+    for (const Responses& responses : means)
+      if (const auto fit = fit_factorial(design, std::span(&responses, 1), false))
+        changes.push_back(fit->factors[k].change);
+    if (!changes.empty()) {
+      const TTest test = paired_t_test(std::vector<double>(changes.size(), 0.0), changes);
+      effect.change_mm = test.difference;
+      effect.change_95 = test.confidence;
+    }
+    table.factors.push_back(std::move(effect));
+  }
+  table.chance = roots_of(chance);
+  if (!means.empty()) table.pairs = pairs_of(design, names, means);
+  return table;
+}
+
+void describe(Visitor& v, FactorEffect& e) {
+  v("factor", e.factor, "Its name.");
+  v({"change_mm", "Of the mean absolute error, mean over specimens.", "mm"}, e.change_mm);
+  describe_interval(v, {"change_95_mm", "Interval of that mean.", "mm"}, e.change_95);
+  v.begin({"moved", "Root mean squares over specimens of what the factor does to each."});
+  describe(v, e.moved);
+  v.end();
+  v("made_with", e.made_with, "Cuts with it.");
+  v("measured_with", e.measured_with, "Of these those whose ring could be measured.");
+  v("made_without", e.made_without, "Cuts without it.");
+  v("measured_without", e.measured_without, "Of these those whose ring could be measured.");
+}
+
+void describe(Visitor& v, PairEffect& e) {
+  std::vector<std::string> names;
+  for (const auto& [a, b] : e.pairs) names.push_back(a + " and " + b);
+  v.derived("pairs", names, "That the design does not tell apart.");
+  v({"change_mm", "Of the mean absolute error where both of the first pair are on, or both off.", "mm"}, e.change_mm);
+  v({"standard_error_mm", "Of the change.", "mm"}, e.standard_error_mm);
+  v("p", e.p, "Two-tailed, that it is chance.");
+}
+
+void describe(Visitor& v, FactorTable& t) {
+  v("cuts", t.cuts, "That were asked for.");
+  v("measured", t.measured, "Of these those whose ring could be measured.");
+  v("estimated", t.estimated, "Specimens, counted from 0, whose measured cuts determine their effects.");
+  v("factors", t.factors, "In the order of the design.");
+  v.begin({"chance", "What an idle factor would be found to move."});
+  describe(v, t.chance);
+  v.end();
+  v("pairs", t.pairs, "The least p first.");
+}
+
+}  // namespace incise::laboratory
