@@ -21,14 +21,13 @@ void print_assessment(const nlohmann::ordered_json& result) {
   for (const auto& d : result.at("distances"))
     fmt::print("{:<36} {:>10.4g}   {:+.2f} sd from the calibration's {:.4g}\n", d.at("name").get<std::string>(),
                d.at("value").get<double>(), d.at("in_sd").get<double>(), d.at("calibrated_mean").get<double>());
-  for (const auto& s : result.at("sensitivity"))
-    fmt::print("{:<36} {:>10.3f} mm of error per sd of {:.3g}\n", s.at("name").get<std::string>(),
-               s.at("change_mm").get<double>(), s.at("sd").get<double>());
   for (const char* path : {"intended", "corrected"}) {
     const auto& risk = result.at(path);
     if (!risk.is_object() || risk.at("p_close_margin").is_null()) continue;
-    fmt::print("{:<36} {:>10.3f} mm expected, P(close margin) {:.3f}\n", path,
-               risk.at("expected_abs_error_mm").get<double>(), risk.at("p_close_margin").get<double>());
+    const auto& middle = risk.at("abs_error_80_mm");
+    fmt::print("{:<36} {:>10.3f} mm expected ({:.2f} to {:.2f} with 80 %), P(close margin) {:.3f}\n", path,
+               risk.at("expected_abs_error_mm").get<double>(), middle.at(0).get<double>(), middle.at(1).get<double>(),
+               risk.at("p_close_margin").get<double>());
   }
 }
 

@@ -35,8 +35,11 @@ using WaveMatrix = Eigen::Matrix<double, kWaves, kWaves>;
 /// modulus again …; in the order of kRingCovariateNames.
 constexpr CovariateValues kSteps{0.25, 0.05, 0.1, 3.0, 0.5, 1.0, 1.0, 0.4};
 
-constexpr std::size_t kAlong = 2, kAside = 3;
-static_assert(kRingCovariateNames[kAlong] == "along" && kRingCovariateNames[kAside] == "aside");
+constexpr std::size_t kAlong = 2, kAside = 3, kModulus = 4;
+static_assert(kRingCovariateNames[kAlong] == "along" && kRingCovariateNames[kAside] == "aside" &&
+              kRingCovariateNames[kModulus] == "youngs_modulus");
+/// As how many observations the priors of the spreads count. Chosen, as in distance_from.
+constexpr std::size_t kPriorDegrees = 3;
 /// Of the mean error that all cuts have in common, mm: without a simulation it may be anything that a cut can err.
 constexpr double kCommonAloneMm = 2.0;
 
@@ -271,6 +274,20 @@ struct RingForecaster::Posterior {
     for (std::size_t k = 0; k < values.size(); ++k) place.steps[k] = (values[k] - mean[k]) / kSteps[k];
     return place;
   }
+  /// Covariances of a ring with all observations. @pre some.
+  [[nodiscard]] Eigen::MatrixXd cross_to(const RingPlace& place, const CommonCovariance& common) const {
+    Eigen::MatrixXd cross(kWaves, weights.size());
+    for (std::size_t s = 0; s < places.size(); ++s)
+      cross.middleCols<kWaves>(static_cast<Eigen::Index>(s) * kWaves) = common.between(place, places[s]);
+    return cross;
+  }
+  [[nodiscard]] std::vector<std::string_view> unlike(const RingCovariates& ring) const {
+    std::vector<RingCovariates> rings;
+    for (const RingObservation& one : observations) rings.push_back(one.ring);
+    std::vector<std::string_view> names;
+    for (const std::size_t k : outside_covariates(ring, rings)) names.push_back(kRingCovariateNames[k]);
+    return names;
+  }
 };
 
 RingForecaster::RingForecaster(std::vector<RingObservation> observations, bool has_simulation) {
@@ -346,12 +363,11 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
   SlowWaves mean = SlowWaves::Zero();
   if (!p.places.empty()) {
     const auto n = static_cast<Eigen::Index>(p.places.size());
-    Eigen::MatrixXd cross(kWaves, n * kWaves);
+    const Eigen::MatrixXd cross = p.cross_to(place, common);
     double share = 0.0;
     Eigen::VectorXd differences(n * kWaves);
     for (Eigen::Index s = 0; s < n; ++s) {
       const RingPlace& seen = p.places[static_cast<std::size_t>(s)];
-      cross.middleCols<kWaves>(s * kWaves) = common.between(place, seen);
       differences.segment<kWaves>(s * kWaves) = seen.simulated;
       share += seen.simulated.dot(p.weights.segment<kWaves>(s * kWaves));
     }
@@ -361,9 +377,7 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
     mean = cross * p.weights - share * p.simulated_mean;
     variance -= cross * p.factor.solve(cross.transpose());
     if (p.has_simulation) forecast.simulated_share += share;
-    std::vector<RingCovariates> rings;
-    for (const RingObservation& one : p.observations) rings.push_back(one.ring);
-    for (const std::size_t k : outside_covariates(ring, rings)) forecast.unlike.push_back(kRingCovariateNames[k]);
+    forecast.unlike = p.unlike(ring);
   }
   forecast.residual_mm = profile_of(mean, count);
   forecast.level_sd_mm = std::sqrt(std::max(0.0, variance(0, 0)) / static_cast<double>(count));
@@ -374,6 +388,41 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
     forecast.sd_mm.push_back(std::sqrt(std::max(0.0, at.dot(variance * at)) + p.fast_mm * p.fast_mm));
   }
   return forecast;
+}
+
+RingPrediction RingForecaster::predict(const RingCovariates& ring, const std::vector<double>& simulated_mm,
+                                       double ln_modulus_sd, std::size_t sectors) const {
+  const Posterior& p = *posterior_;
+  const std::size_t count = p.places.empty() ? sectors : p.sectors;
+  INCISE_REQUIRE(simulated_mm.empty() || simulated_mm.size() == count,
+                 fmt::format("expected simulated errors in {} sectors, found {}", count, simulated_mm.size()));
+  for (const double value : simulated_mm) INCISE_REQUIRE(std::isfinite(value), "expected finite errors");
+  INCISE_REQUIRE(ln_modulus_sd >= 0.0 && std::isfinite(ln_modulus_sd), "expected a spread of 0 or more");
+  const CommonCovariance common(p.spreads, count);
+  RingPlace place = p.place_of(ring);
+  if (!simulated_mm.empty()) place.simulated = slow_waves(simulated_mm) - p.simulated_mean;
+  WaveMatrix variance = common.between(place, place);
+  variance.diagonal() += own_variances(p.spreads, count);
+  variance(0, 0) +=
+      static_cast<double>(count) * std::pow(p.spreads.slope_mm[kModulus] * ln_modulus_sd / kSteps[kModulus], 2);
+  SlowWaves mean = SlowWaves::Zero();
+  RingPrediction prediction{.degrees = p.places.size() + kPriorDegrees};
+  if (!p.places.empty()) {
+    const Eigen::MatrixXd cross = p.cross_to(place, common);
+    mean = cross * p.weights;
+    variance -= cross * p.factor.solve(cross.transpose());
+    prediction.unlike = p.unlike(ring);
+  }
+  prediction.residual_mm = profile_of(mean, count);
+  const auto rows = static_cast<Eigen::Index>(count);
+  Eigen::MatrixXd basis(rows, kWaves);
+  for (Eigen::Index k = 0; k < kWaves; ++k) {
+    const std::vector<double> wave = profile_of(SlowWaves::Unit(k), count);
+    basis.col(k) = Eigen::Map<const Eigen::VectorXd>(wave.data(), rows);
+  }
+  prediction.covariance_mm2 = basis * variance * basis.transpose();
+  prediction.covariance_mm2.diagonal().array() += p.fast_mm * p.fast_mm;
+  return prediction;
 }
 
 HandEyeEstimate RingForecaster::hand_eye() const {

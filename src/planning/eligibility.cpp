@@ -27,7 +27,7 @@ std::vector<std::string> failings(const EligibilityEvidence& e, const Eligibilit
   }
   if (!(e.corrected.unmeasured_weight <= rules.most_unmeasured)) {
     reasons.push_back(fmt::format(
-        "along the corrected path the ring stays open in {:.0f} % of the calibration's tissues, above {:.0f} %",
+        "along the corrected path the ring stays open in {:.0f} % of what the calibration expects, above {:.0f} %",
         100.0 * e.corrected.unmeasured_weight, 100.0 * rules.most_unmeasured));
   }
   if (!e.gain) reasons.push_back(fmt::format("the gain cannot be predicted: {}", e.no_gain_because));
@@ -58,7 +58,7 @@ double likeness(double t, double degrees) {
 /// What p_worse leaves out of a corrected path; empty: nothing, its ring closed in all tissues.
 std::string open_rings(const EligibilityEvidence& e) {
   if (!(e.corrected.unmeasured_weight > 0.0)) return {};
-  return fmt::format("; also, its ring stays open in {:.0f} % of the calibration's tissues",
+  return fmt::format("; also, its ring stays open in {:.0f} % of what the calibration expects",
                      100.0 * e.corrected.unmeasured_weight);
 }
 

@@ -3,15 +3,43 @@
 #include <incise/core/random.hpp>
 #include <incise/evaluation/statistics.hpp>
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <compare>
 
 namespace incise {
 namespace {
 
-constexpr double kJitter = 1e-9;  // keeps the covariance of waypoints that nearly coincide positive definite
+struct WeightedValue {
+  double value = 0.0;
+  double weight = 0.0;
+  auto operator<=>(const WeightedValue&) const = default;
+};
+
+double mean_of(const std::vector<WeightedValue>& values) {
+  double sum = 0.0, weights = 0.0;
+  for (const WeightedValue& one : values) {
+    sum += one.weight * one.value;
+    weights += one.weight;
+  }
+  return sum / weights;
+}
+
+/// Ends between which a share of the weight lies, as much of the rest on either side. @pre ascending, not empty.
+Interval middle_of(const std::vector<WeightedValue>& values, double share) {
+  double weights = 0.0;
+  for (const WeightedValue& one : values) weights += one.weight;
+  const auto below = [&](double part) {
+    double sum = 0.0;
+    for (const WeightedValue& one : values) {
+      sum += one.weight;
+      if (sum >= part * weights) return one.value;
+    }
+    return values.back().value;
+  };
+  return {below(0.5 * (1.0 - share)), below(0.5 * (1.0 + share))};
+}
 
 }  // namespace
 
@@ -27,29 +55,26 @@ FoldedNormal expected_shortfall(double mean, double sd, double least) {
           normal_density(z) / sd};
 }
 
-MarginRisk::MarginRisk(const PathCourse& course, const RobustSettings& settings)
-    : sd_(std::hypot(settings.residual_sd_mm, settings.common_sd_mm, settings.placement_sd_mm)) {
+MarginRisk::MarginRisk(const CutResidual& residual, const RobustSettings& settings) {
   least_error_ = settings.region.close_margin_mm + settings.kerf_allowance_mm - settings.target_mm;
-  const auto n = static_cast<Eigen::Index>(course.waypoints());
-  const double common = std::pow(settings.common_sd_mm, 2);
-  Eigen::MatrixXd covariance(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const double apart =
-          std::abs(course.way(course.at(static_cast<std::size_t>(i)), course.at(static_cast<std::size_t>(j))));
-      const double turn = 2.0 * std::numbers::pi * apart / course.length_mm();
-      covariance(i, j) = std::pow(settings.residual_sd_mm, 2) * std::exp(-apart / settings.residual_length_mm) +
-                         common + std::pow(settings.placement_sd_mm, 2) * std::cos(turn);
-    }
-  }
-  covariance.diagonal().array() += kJitter * sd_ * sd_;
-  const Eigen::MatrixXd factor = covariance.llt().matrixL();
+  const auto degrees = static_cast<double>(residual.degrees);
+  const double widening = residual.degrees > 0 ? degrees / (degrees - 2.0) : 1.0;
+  sd_ = (widening * residual.covariance_mm2.diagonal()).cwiseSqrt();
+  // A root that also a covariance of less than full rank has.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(residual.covariance_mm2);
+  const Eigen::MatrixXd root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   Random random(settings.seed);
-  residuals_.resize(n, settings.samples);
+  residuals_.resize(residual.covariance_mm2.rows(), settings.samples);
   for (Eigen::Index k = 0; k < residuals_.cols(); ++k) {
-    for (Eigen::Index i = 0; i < n; ++i) residuals_(i, k) = random.normal();
+    for (Eigen::Index i = 0; i < residuals_.rows(); ++i) residuals_(i, k) = random.normal();
   }
-  residuals_ = factor * residuals_;
+  residuals_ = root * residuals_;
+  if (residual.degrees == 0) return;
+  for (Eigen::Index k = 0; k < residuals_.cols(); ++k) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < residual.degrees; ++i) squares += std::pow(random.normal(), 2);
+    residuals_.col(k) *= std::sqrt(degrees / squares);
+  }
 }
 
 double MarginRisk::p_close(const std::vector<ScenarioErrors>& scenarios) const {
@@ -66,39 +91,46 @@ double MarginRisk::p_close(const std::vector<ScenarioErrors>& scenarios) const {
   return sum / weights;
 }
 
-double MarginRisk::expected_abs_error(const std::vector<ScenarioErrors>& scenarios) const {
-  double sum = 0.0;
-  double weights = 0.0;
+PathRisk MarginRisk::of(const std::vector<ScenarioErrors>& scenarios) const {
+  PathRisk risk;
+  risk.p_close_margin = p_close(scenarios);
+  std::vector<WeightedValue> means;
   for (const ScenarioErrors& scenario : scenarios) {
-    double mean = 0.0;
-    for (const double error : scenario.error_mm) mean += folded_normal(error, sd_).value;
-    sum += scenario.weight * mean / static_cast<double>(scenario.error_mm.size());
-    weights += scenario.weight;
+    for (Eigen::Index k = 0; k < residuals_.cols(); ++k)
+      means.push_back({(scenario.error_mm + residuals_.col(k)).cwiseAbs().mean(), scenario.weight});
   }
-  return sum / weights;
+  risk.expected_abs_error_mm = mean_of(means);
+  std::sort(means.begin(), means.end());
+  risk.abs_error_80 = middle_of(means, 0.80);
+  risk.abs_error_95 = middle_of(means, 0.95);
+  return risk;
 }
 
 CutGain MarginRisk::gain(const std::vector<ScenarioErrors>& first, const std::vector<ScenarioErrors>& second) const {
   CutGain gain;
+  std::vector<WeightedValue> won;
   double weights = 0.0;
-  double squares = 0.0;
-  const double share = 1.0 / static_cast<double>(residuals_.cols());
   for (std::size_t s = 0; s < first.size(); ++s) {
-    const double weight = share * first[s].weight;
     weights += first[s].weight;
     gain.move_mm += first[s].weight * (second[s].error_mm - first[s].error_mm).mean();
     for (Eigen::Index k = 0; k < residuals_.cols(); ++k) {
       const double before = (first[s].error_mm + residuals_.col(k)).cwiseAbs().mean();
-      const double won = before - (second[s].error_mm + residuals_.col(k)).cwiseAbs().mean();
-      gain.mean_mm += weight * won;
-      squares += weight * won * won;
-      gain.p_worse += won < 0.0 ? weight : 0.0;
+      won.push_back({before - (second[s].error_mm + residuals_.col(k)).cwiseAbs().mean(), first[s].weight});
     }
   }
-  gain.mean_mm /= weights;
-  gain.p_worse /= weights;
   gain.move_mm /= weights;
-  gain.sd_mm = std::sqrt(std::max(0.0, squares / weights - gain.mean_mm * gain.mean_mm));
+  gain.mean_mm = mean_of(won);
+  double squares = 0.0, worse = 0.0;
+  for (const WeightedValue& one : won) {
+    squares += one.weight * one.value * one.value;
+    worse += one.value < 0.0 ? one.weight : 0.0;
+  }
+  const double all = weights * static_cast<double>(residuals_.cols());
+  gain.p_worse = worse / all;
+  gain.sd_mm = std::sqrt(std::max(0.0, squares / all - gain.mean_mm * gain.mean_mm));
+  std::sort(won.begin(), won.end());
+  gain.interval_80 = middle_of(won, 0.80);
+  gain.interval_95 = middle_of(won, 0.95);
   return gain;
 }
 

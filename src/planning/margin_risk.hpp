@@ -1,7 +1,5 @@
 #pragma once
 
-#include "planning/path_course.hpp"
-
 #include <incise/planning/robust_compensation.hpp>
 
 #include <Eigen/Core>
@@ -14,24 +12,25 @@ struct ScenarioErrors {
   Eigen::VectorXd error_mm;
 };
 
-/// Probabilities of what real cuts leave, with a residual that is correlated along the path.
+/// Probabilities of what real cuts leave, counted over residuals that are drawn about what is expected.
 class MarginRisk {
  public:
-  MarginRisk(const PathCourse& course, const RobustSettings& settings);
+  /// @pre as require_scenarios.
+  MarginRisk(const CutResidual& residual, const RobustSettings& settings);
 
   /// That anywhere along the path less tissue is left than the close margin; over the scenarios, by their weights.
   [[nodiscard]] double p_close(const std::vector<ScenarioErrors>& scenarios) const;
-  /// E |error| over scenarios, residual and waypoints.
-  [[nodiscard]] double expected_abs_error(const std::vector<ScenarioErrors>& scenarios) const;
+  /// What is to be expected of a path; nothing is said of unmeasured scenarios.
+  [[nodiscard]] PathRisk of(const std::vector<ScenarioErrors>& scenarios) const;
   /// What the second path wins over the first, scenario by scenario. @pre lists of one length and order, not empty.
   [[nodiscard]] CutGain gain(const std::vector<ScenarioErrors>& first, const std::vector<ScenarioErrors>& second) const;
-  /// Standard deviation of the error at one place, about its scenario's.
-  [[nodiscard]] double sd_mm() const { return sd_; }
+  /// Standard deviation of the error at each waypoint, about what is expected.
+  [[nodiscard]] const Eigen::VectorXd& sd_mm() const { return sd_; }
   /// The signed error at which just the close margin is left.
   [[nodiscard]] double least_error_mm() const { return least_error_; }
 
  private:
-  double sd_ = 0.0;
+  Eigen::VectorXd sd_;
   double least_error_ = 0.0;
   Eigen::MatrixXd residuals_;  ///< waypoints x samples, mm; the same for every path
 };

@@ -18,9 +18,10 @@ std::vector<ScenarioErrors> errors_in_common(const ScenarioCuts::Cut& of, const 
 
 PathOutlook foresee_paths(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                           const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-                          const MeasureScenarios& measure, const RobustSettings& settings) {
-  require_scenarios(intended, corrected_offset_mm, surface, scenarios, settings);
-  ScenarioCuts cuts(intended, surface, scenarios, measure, settings);
+                          const MeasureScenarios& measure, const CutResidual& residual,
+                          const RobustSettings& settings) {
+  require_scenarios(intended, corrected_offset_mm, surface, scenarios, residual, settings);
+  ScenarioCuts cuts(intended, surface, scenarios, measure, residual, settings);
   const ScenarioCuts::Cut planned = cuts.along_intended();
   const ScenarioCuts::Cut corrected = cuts.along(corrected_offset_mm);
   PathOutlook outlook;
@@ -28,10 +29,6 @@ PathOutlook foresee_paths(const ToolPath& intended, const std::vector<double>& c
   outlook.corrected = corrected.risk;
   const std::vector<ScenarioErrors> before = errors_in_common(planned, corrected);
   if (!before.empty()) outlook.gain = cuts.risk().gain(before, errors_in_common(corrected, planned));
-  outlook.corrected_error_mm.resize(scenarios.size());
-  for (const LinearScenario& scenario : corrected.scenarios) {
-    outlook.corrected_error_mm[scenario.place] = {scenario.error_mm.begin(), scenario.error_mm.end()};
-  }
   return outlook;
 }
 

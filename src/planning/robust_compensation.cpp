@@ -30,7 +30,8 @@ Eigen::MatrixXd roughness(Eigen::Index n) {
 }
 
 /// The move that minimises expected |error| + price · expected shortfall, per waypoint, + roughness: a convex function,
-/// by Newton's method with steps that are halved until it falls.
+/// by Newton's method with steps that are halved until it falls. It takes residuals for normal with their variances;
+/// the probability that a path is chosen by is counted.
 class PricedMove {
  public:
   PricedMove(const std::vector<LinearScenario>& scenarios, const MarginRisk& risk)
@@ -65,8 +66,8 @@ class PricedMove {
       Eigen::VectorXd first(n_);
       Eigen::VectorXd second(n_);
       for (Eigen::Index i = 0; i < n_; ++i) {
-        const FoldedNormal off = folded_normal(error[i], sd_);
-        const FoldedNormal close = expected_shortfall(error[i], sd_, risk_.least_error_mm());
+        const FoldedNormal off = folded_normal(error[i], sd_[i]);
+        const FoldedNormal close = expected_shortfall(error[i], sd_[i], risk_.least_error_mm());
         sum += s.weight * (off.value + price * close.value);
         first[i] = s.weight * (off.slope + price * close.slope);
         second[i] = s.weight * (off.curvature + price * close.curvature);
@@ -79,7 +80,7 @@ class PricedMove {
 
   const std::vector<LinearScenario>& scenarios_;
   const MarginRisk& risk_;
-  double sd_;
+  const Eigen::VectorXd& sd_;
   Eigen::Index n_;
   Eigen::MatrixXd roughness_;
 };
@@ -195,9 +196,10 @@ class RobustChoice {
 
 RobustCompensation compensate_robust(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                                      const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-                                     const MeasureScenarios& measure, const RobustSettings& settings) {
-  require_scenarios(intended, corrected_offset_mm, surface, scenarios, settings);
-  ScenarioCuts cuts(intended, surface, scenarios, measure, settings);
+                                     const MeasureScenarios& measure, const CutResidual& residual,
+                                     const RobustSettings& settings) {
+  require_scenarios(intended, corrected_offset_mm, surface, scenarios, residual, settings);
+  ScenarioCuts cuts(intended, surface, scenarios, measure, residual, settings);
   return RobustChoice(cuts, settings).run(corrected_offset_mm);
 }
 

@@ -20,14 +20,16 @@ std::vector<ScenarioErrors> moved_errors(const std::vector<LinearScenario>& scen
 
 ScenarioCuts::ScenarioCuts(const ToolPath& intended, const SurfaceQuery& surface,
                            const std::vector<CutScenario>& scenarios, const MeasureScenarios& measure,
-                           const RobustSettings& settings)
+                           const CutResidual& residual, const RobustSettings& settings)
     : intended_(intended),
       scenarios_(scenarios),
       measure_(measure),
+      expected_residual_mm_(Eigen::Map<const Eigen::VectorXd>(residual.mean_mm.data(),
+                                                              static_cast<Eigen::Index>(residual.mean_mm.size()))),
       settings_(settings),
       course_(intended),
       movable_(intended, surface, settings.region),
-      risk_(course_, settings) {
+      risk_(residual, settings) {
   for (const CutScenario& scenario : scenarios) all_weights_ += scenario.weight;
 }
 
@@ -52,9 +54,9 @@ ScenarioCuts::Cut ScenarioCuts::along(MovablePath::Moved moved) {
   made.risk.unmeasured_weight = made.scenarios.size() == scenarios_.size() ? 0.0 : 1.0 - weight;
   if (made.scenarios.empty()) return made;
   const auto still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(course_.waypoints()));
-  const std::vector<ScenarioErrors> here = moved_errors(made.scenarios, still);
-  made.risk.expected_abs_error_mm = risk_.expected_abs_error(here);
-  made.risk.p_close_margin = risk_.p_close(here);
+  const double unmeasured = made.risk.unmeasured_weight;
+  made.risk = risk_.of(moved_errors(made.scenarios, still));
+  made.risk.unmeasured_weight = unmeasured;
   return made;
 }
 
@@ -66,19 +68,30 @@ LinearScenario ScenarioCuts::linear(std::size_t place, const PathErrors& errors)
   const std::vector<double> at_waypoints = course_.average(along_mm, expected, settings_.smoothing_mm).value;
   const TissueResponse response(course_, settings_.shift_lags * errors.lag_mm, settings_.spread_lags * errors.lag_mm);
   return {place, scenarios_[place].weight / all_weights_,
-          Eigen::Map<const Eigen::VectorXd>(at_waypoints.data(), static_cast<Eigen::Index>(at_waypoints.size())),
+          Eigen::Map<const Eigen::VectorXd>(at_waypoints.data(), static_cast<Eigen::Index>(at_waypoints.size())) +
+              expected_residual_mm_,
           response.matrix()};
 }
 
 void require_scenarios(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                        const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-                       const RobustSettings& settings) {
+                       const CutResidual& residual, const RobustSettings& settings) {
   require_none(problems_of(settings));
   INCISE_REQUIRE(intended.is_closed && intended.tumor_edge.points.size() >= 3,
                  "expected a closed path with a tumour edge of at least 3 points");
   INCISE_REQUIRE(corrected_offset_mm.size() == intended.waypoints.size(),
                  fmt::format("expected an offset for each of {} waypoints, found {}", intended.waypoints.size(),
                              corrected_offset_mm.size()));
+  const auto n = static_cast<Eigen::Index>(intended.waypoints.size());
+  INCISE_REQUIRE(residual.mean_mm.size() == intended.waypoints.size() && residual.covariance_mm2.rows() == n &&
+                     residual.covariance_mm2.cols() == n,
+                 fmt::format("expected a residual at each of {} waypoints, found {}", n, residual.mean_mm.size()));
+  INCISE_REQUIRE(residual.covariance_mm2.allFinite() && (residual.covariance_mm2.diagonal().array() > 0.0).all(),
+                 "expected a residual with variances above 0");
+  for (const double mean : residual.mean_mm) INCISE_REQUIRE(std::isfinite(mean), "expected finite residuals");
+  INCISE_REQUIRE(
+      residual.degrees == 0 || residual.degrees > 2,
+      fmt::format("expected a residual with 0 or more than 2 degrees of freedom, found {}", residual.degrees));
   INCISE_REQUIRE(!scenarios.empty(), "expected at least one scenario");
   for (const CutScenario& scenario : scenarios) {
     INCISE_REQUIRE(std::isfinite(scenario.weight) && scenario.weight > 0.0 && std::isfinite(scenario.bias_mm),

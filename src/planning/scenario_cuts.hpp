@@ -10,7 +10,7 @@
 
 namespace incise {
 
-/// A scenario about a path that was cut: its errors there, and how they answer to moves.
+/// A scenario about a path that was cut: what real cuts are expected to err there, and how that answers to moves.
 struct LinearScenario {
   std::size_t place = 0;  ///< in the list of scenarios
   double weight = 0.0;    ///< of all weights
@@ -32,7 +32,7 @@ class ScenarioCuts {
 
   /// @throws InvalidArgument as compensate_robust. The arguments outlive this object.
   ScenarioCuts(const ToolPath& intended, const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-               const MeasureScenarios& measure, const RobustSettings& settings);
+               const MeasureScenarios& measure, const CutResidual& residual, const RobustSettings& settings);
 
   [[nodiscard]] Cut along_intended();
   [[nodiscard]] Cut along(MovablePath::Moved moved);
@@ -48,6 +48,7 @@ class ScenarioCuts {
   const ToolPath& intended_;
   const std::vector<CutScenario>& scenarios_;
   const MeasureScenarios& measure_;
+  const Eigen::VectorXd expected_residual_mm_;  ///< per waypoint
   const RobustSettings& settings_;
   const PathCourse course_;
   const MovablePath movable_;
@@ -59,6 +60,6 @@ class ScenarioCuts {
 /// @throws InvalidArgument naming what compensate_robust cannot use.
 void require_scenarios(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                        const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-                       const RobustSettings& settings);
+                       const CutResidual& residual, const RobustSettings& settings);
 
 }  // namespace incise

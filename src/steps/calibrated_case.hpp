@@ -30,8 +30,4 @@ void require_rule_of(const CalibrationInput& calibration, const CaseFile& file);
 /// Empty: it is the same.
 [[nodiscard]] std::string other_tool(const CutSettings& cut, const Calibration& calibration);
 
-/// What a calibration says of close margins holds for corrections by its bias alone.
-/// @throws CaseError for a case that expects errors by direction.
-void require_no_profile(const CaseFile& file);
-
 }  // namespace incise::steps

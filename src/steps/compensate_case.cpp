@@ -52,7 +52,6 @@ void require_default_method(const CaseFile& file) {
   if (method != CompensationMethod::Default)
     throw CaseError("command line", "--robust", fmt::format("method {}", to_string(method)),
                     "--method default, from whose path it starts");
-  require_no_profile(file);
 }
 
 /// The path that is right for the whole posterior; what is said of it.
@@ -77,11 +76,11 @@ nlohmann::ordered_json add_robust_path(const RobustRequest& chosen, CaseRun& run
   if (made.outcome != RobustOutcome::Met) {
     context.monitor.message(
         Severity::Warning,
-        fmt::format(
-            "robust path: {}: a margin below {} mm somewhere has a probability of {:.3f}, or {:.3f} if the tissues "
-            "whose ring stayed open count, and not at most {}",
-            to_string(made.outcome), robust.settings.region.close_margin_mm, made.robust.p_close_margin,
-            made.robust.p_close_bound(), chosen.max_probability));
+        fmt::format("robust path: {}: a margin below {} mm somewhere has a probability of {:.3f}, or {:.3f} if tissue "
+                    "whose ring "
+                    "stayed open counts, and not at most {}",
+                    to_string(made.outcome), robust.settings.region.close_margin_mm, made.robust.p_close_margin,
+                    made.robust.p_close_bound(), chosen.max_probability));
   }
   return json;
 }
@@ -111,18 +110,6 @@ void require_rule_of(const CalibrationInput& calibration, const CaseFile& file) 
   throw CaseError(
       "case", "cut.rule", std::string(to_string(rule)),
       fmt::format("{}, the rule of the cuts in {}", to_string(calibrated), calibration.request.calibration.string()))
-      .in_file(file.file.string());
-}
-
-void require_no_profile(const CaseFile& file) {
-  const CompensationChoice& choice = file.settings.compensation;
-  if (!expects_by_direction(choice)) return;
-  const bool is_share = choice.simulated_share != 1.0;
-  throw CaseError("case", is_share ? "compensation.simulated_share" : "compensation.residual_mm",
-                  is_share ? fmt::format("{}", choice.simulated_share) : std::string("expected errors by direction"),
-                  is_share ? "1" : "none",
-                  "The calibration's posterior holds a constant bias alone: its probabilities would not be those of "
-                  "this correction")
       .in_file(file.file.string());
 }
 

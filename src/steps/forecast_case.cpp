@@ -8,44 +8,18 @@
 #include <incise/workflow/assess.hpp>
 #include <incise/workflow/ring_covariates.hpp>
 
-#include <cmath>
-
 namespace incise::steps {
 namespace {
 
 using ForecastJson = nlohmann::ordered_json;
 
-constexpr std::size_t kLeastSectors = 9;
-constexpr double kMostErrorMm = 10.0;  // that a case's lists hold
-constexpr Range kShare{-1.0, 3.0};     // likewise
+constexpr Range kShare{-1.0, 3.0};  // that a case holds
 constexpr Range kLikelyShare{0.0, 2.0};
 
 double mean_bias_mm(const DragFit& fit) {
   double mean = 0.0;
   for (const PosteriorSample& sample : fit.samples) mean += sample.weight * sample.bias_mm;
   return mean;
-}
-
-/// Rings whose profiles can be used together.
-std::vector<RingObservation> read_observations(const std::filesystem::path& file, const Calibration& calibration) {
-  std::vector<RingObservation> observations = ring_observations(calibration);
-  if (observations.empty())
-    throw DataError(file, "specimens", "no specimen with its ring and fitted errors",
-                    "a calibration of the method fit by this version", "Calibrate anew: finished simulations are kept");
-  const std::size_t sectors = observations.front().photographed_mm.size();
-  for (const RingObservation& one : observations) {
-    const std::size_t count = one.photographed_mm.size();
-    if (count < kLeastSectors || count != sectors)
-      throw DataError(file, "fitted", fmt::format("a profile of {} numbers", count),
-                      sectors < kLeastSectors ? fmt::format("at least {}", kLeastSectors)
-                                              : fmt::format("{}, as the first has", sectors));
-    for (const auto* list : {&one.photographed_mm, &one.simulated_mm})
-      for (const double error : *list)
-        if (!(std::abs(error) <= kMostErrorMm))
-          throw DataError(file, "fitted", fmt::format("an error of {} mm", error),
-                          fmt::format("at most {} mm either way", kMostErrorMm));
-  }
-  return observations;
 }
 
 /// One of both ways to forecast, and what the case has to say to correct by it.
@@ -94,7 +68,7 @@ ForecastJson with_simulation(const std::filesystem::path& file, const std::vecto
 StepResult forecast_case(const CaseRequest& request, const std::filesystem::path& calibration,
                          const StepContext& context) {
   const CalibrationInput input = read_calibration_input({calibration, std::nullopt});
-  const std::vector<RingObservation> observations = read_observations(calibration, input.found);
+  const std::vector<RingObservation>& observations = input.belief.rings;
   if (request.file.settings.plan.kind != PlanKind::Ring)
     throw CaseError("case", "plan.kind", std::string(to_string(request.file.settings.plan.kind)), "ring")
         .in_file(request.file.file.string());

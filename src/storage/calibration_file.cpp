@@ -1,5 +1,9 @@
+#include <incise/calibration/ring_forecast.hpp>
+#include <incise/core/error.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/storage/calibration_file.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,18 +13,29 @@ namespace {
 
 constexpr const char* kCalibrationHint = "Write the file with `incise calibrate`";
 
-/// Nothing where a specimen's pull or fit is not known.
-std::optional<StiffnessTrend> trend_of(const Calibration& calibration) {
-  std::vector<StiffnessReading> readings;
-  if (calibration.fit->specimens.empty()) return std::nullopt;
-  for (std::size_t i = 0; i < calibration.specimens.size(); ++i) {
-    if (!calibration.specimens[i].stretch_force_n) return std::nullopt;
-    readings.push_back({calibration.specimens[i].youngs_modulus_kpa, difference_mm(calibration.fit->specimens[i])});
+constexpr std::size_t kLeastSectors = 9;
+constexpr double kMostErrorMm = 10.0;  // that a case's lists hold
+
+/// Rings whose profiles can be used together.
+std::vector<RingObservation> rings_of(const Calibration& calibration, const std::filesystem::path& file) {
+  std::vector<RingObservation> rings = ring_observations(calibration);
+  if (rings.empty())
+    throw DataError(file, "specimens", "no specimen with its ring and fitted errors",
+                    "a calibration of the method fit by this version", "Calibrate anew: finished simulations are kept");
+  const std::size_t sectors = rings.front().photographed_mm.size();
+  for (const RingObservation& one : rings) {
+    const std::size_t count = one.photographed_mm.size();
+    if (count < kLeastSectors || count != sectors)
+      throw DataError(file, "fitted", fmt::format("a profile of {} numbers", count),
+                      sectors < kLeastSectors ? fmt::format("at least {}", kLeastSectors)
+                                              : fmt::format("{}, as the first has", sectors));
+    for (const auto* list : {&one.photographed_mm, &one.simulated_mm})
+      for (const double error : *list)
+        if (!(std::abs(error) <= kMostErrorMm))
+          throw DataError(file, "fitted", fmt::format("an error of {} mm", error),
+                          fmt::format("at most {} mm either way", kMostErrorMm));
   }
-  if (readings.empty()) return std::nullopt;
-  const ResidualEstimate& residual = calibration.fit->residual;
-  const double ring_mm = residual.sd_mm / std::sqrt(std::max(1.0, residual.n_effective));
-  return stiffness_trend(readings, std::hypot(residual.specimen_spread_mm, ring_mm));
+  return rings;
 }
 
 }  // namespace
@@ -35,12 +50,11 @@ CalibratedBelief belief_of(const Calibration& calibration, const std::filesystem
   if (!calibration.chosen) throw DataError(path, "chosen", "null", "a setting with which a simulated ring closed");
   CalibratedBelief belief;
   belief.samples = calibration.fit->samples;
-  belief.residual = calibration.fit->residual;
+  belief.rings = rings_of(calibration, path);
   belief.speed_mm_s = calibration.chosen->speed_mm_s;
   belief.knows_forces = !calibration.specimens.empty() &&
                         std::all_of(calibration.specimens.begin(), calibration.specimens.end(),
                                     [](const CalibratedSpecimen& s) { return s.stretch_force_n.has_value(); });
-  belief.trend = trend_of(calibration);
   return belief;
 }
 

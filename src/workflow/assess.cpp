@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -89,37 +88,6 @@ double stretch_mm(const TissueModel& model) {
   return farthest;
 }
 
-std::vector<ParameterSensitivity> sensitivity_of(const TissueScenarios& tissues,
-                                                 const std::vector<std::vector<double>>& errors_mm) {
-  INCISE_REQUIRE(
-      errors_mm.size() == tissues.points.size() && !errors_mm.empty(),
-      fmt::format("expected errors for each of {} scenarios, found {}", tissues.points.size(), errors_mm.size()));
-  for (const std::vector<double>& errors : errors_mm) {
-    if (errors.empty()) return {};
-  }
-  // Per scenario one row: 1 and both parameters in standard deviations. The simulated error is without the bias.
-  const auto count = static_cast<Eigen::Index>(tissues.points.size());
-  const auto waypoints = static_cast<Eigen::Index>(errors_mm.front().size());
-  const TissueScenario& middle = tissues.points.front();
-  Eigen::MatrixXd places(count, 3);
-  Eigen::MatrixXd errors(count, waypoints);
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const TissueScenario& tissue = tissues.points[static_cast<std::size_t>(k)];
-    places.row(k) << 1.0, (tissue.drag_length_mm - middle.drag_length_mm) / std::max(tissues.drag_length_sd_mm, 1e-9),
-        std::log(tissue.stiffness_factor / middle.stiffness_factor) / std::max(tissues.ln_stiffness_sd, 1e-9);
-    errors.row(k) = Eigen::Map<const Eigen::RowVectorXd>(errors_mm[static_cast<std::size_t>(k)].data(), waypoints);
-    errors.row(k).array() -= tissue.bias_mm;
-  }
-  const Eigen::MatrixXd slopes = places.colPivHouseholderQr().solve(errors);
-  const auto told = [&](const char* name, double sd, Eigen::Index row) {
-    return ParameterSensitivity{name, sd, std::sqrt(slopes.row(row).squaredNorm() / static_cast<double>(waypoints)),
-                                slopes.row(row).mean()};
-  };
-  return {told("drag_length_mm", tissues.drag_length_sd_mm, 1),
-          told("ln_stiffness_factor", tissues.ln_stiffness_sd, 2),
-          {"bias_mm", tissues.bias_sd_mm, tissues.bias_sd_mm, tissues.bias_sd_mm}};
-}
-
 Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Study& done, const CalibratedBelief& belief,
                   const AssessmentRequest& request, Workers& workers, Monitor& monitor) {
   Assessment assessment{.rules = request.rules, .registration_scale = request.registration.scale};
@@ -141,10 +109,8 @@ Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Stud
     evidence.intended = paths.intended;
     evidence.corrected = paths.corrected;
     evidence.gain = paths.gain;
-    if (!paths.gain)
-      evidence.no_gain_because = "in none of the calibration's tissues did the ring close along both paths";
+    if (!paths.gain) evidence.no_gain_because = "in the calibration's tissue the ring did not close along both paths";
     compare_stiffness(request, assessment.outlook->scenarios, *done.model, assessment);
-    assessment.sensitivity = sensitivity_of(assessment.outlook->scenarios.tissues, paths.corrected_error_mm);
   }
   evidence.is_stiffness_compared =
       std::ranges::any_of(evidence.distances, [](const SpecimenDistance& d) { return d.name == kModulusName; });
@@ -165,6 +131,8 @@ void describe(Visitor& v, Assessment& a) {
     v.begin({"expected_gain_mm", "Of the correction.", "mm"});
     v("mean", gain->mean_mm, "Over scenarios and residuals.");
     v("sd", gain->sd_mm, "Likewise.");
+    describe_interval(v, {"middle_80", "Middle 80 %, likewise.", "mm"}, gain->interval_80);
+    describe_interval(v, {"middle_95", "Middle 95 %, likewise.", "mm"}, gain->interval_95);
     v.end();
   }
   v("p_worse", a.eligibility.p_worse, "That the corrected cut is the worse one.");
@@ -181,14 +149,13 @@ void describe(Visitor& v, Assessment& a) {
   }
   if (v.optional({"intended"}, is_foreseen)) v("intended", evidence.intended, "Risk of the intended path.");
   if (v.optional({"corrected"}, is_foreseen)) v("corrected", evidence.corrected, "Of the corrected one.");
-  if (v.optional({"scenarios"}, is_foreseen)) describe_scenarios(v, a.outlook->scenarios, a.outlook->settings);
+  if (v.optional({"scenarios"}, is_foreseen)) describe_scenarios(v, a.outlook->scenarios);
   v.begin({"registration", "Of this specimen."});
   v("converged", evidence.is_registered, "Whether a transform was found that nothing argues against.");
   v({"rmse_mm", "Of the simulated surface against the measured one.", "mm"}, evidence.registration_rmse_mm);
   v("scale", a.registration_scale, "That was found.");
   v.end();
   v("distances", evidence.distances, "Of everything that is known of this specimen and the calibrated ones.");
-  v("sensitivity", a.sensitivity, "What one standard deviation of a parameter does to the corrected cut.");
   v("rules", a.rules, "That it was judged by.");
 }
 

@@ -253,18 +253,10 @@ class CalibrationRunner {
     monitor_.message(Severity::Warning, "caution: photo_specimen: " + message);
   }
 
-  [[nodiscard]] static ProfileSettings simulated_profile(const Case& settings) {
-    ProfileSettings profile;
-    profile.target_mm = target_of(settings);
-    profile.approach = settings.plan.approach;
-    profile.start_direction = settings.plan.start_direction;
-    return profile;
-  }
-
   /// The start direction of the simulation, as it lies in the photograph.
   [[nodiscard]] std::vector<double> photographed_profile(std::size_t s) const {
     const CalibrationSubject& subject = *subjects_[s].of;
-    ProfileSettings profile = simulated_profile(subject.settings);
+    ProfileSettings profile = profile_of_inner_edge(subject.settings);
     const ViewFrame view = view_along(subject.settings.plan.approach);
     const ViewFrame picture = view_along(subject.photographed.approach);
     const Vec3& start = subject.settings.plan.start_direction;
@@ -283,7 +275,7 @@ class CalibrationRunner {
   /// Empty: the ring did not part at the skin, or does not go round the tumour's middle.
   [[nodiscard]] std::vector<double> inner_edge_profile(std::size_t s, const CalibrationRun& run) const {
     if (!run.inner_edge || !run.closed_loop) return {};
-    return error_profile(*run.inner_edge, run.final_tumor_edge, simulated_profile(subjects_[s].of->settings))
+    return error_profile(*run.inner_edge, run.final_tumor_edge, profile_of_inner_edge(subjects_[s].of->settings))
         .value_or(std::vector<double>{});
   }
 
@@ -292,8 +284,8 @@ class CalibrationRunner {
   [[nodiscard]] std::vector<double> midline_profile(std::size_t s, const CalibrationRun& run) const {
     if (!run.ring || !run.closed_loop) return {};
     const Case& settings = subjects_[s].of->settings;
-    ProfileSettings profile = simulated_profile(settings);
-    profile.target_mm = target_of(settings) + run.ring->half_width_mm;
+    ProfileSettings profile = profile_of_inner_edge(settings);
+    profile.target_mm += run.ring->half_width_mm;
     return error_profile(run.ring->midline, bodies_[s]->tumor_edge(), profile).value_or(std::vector<double>{});
   }
 

@@ -135,6 +135,12 @@ const HeldBody& CalibrationBody::with_stiffness(double stiffness_of_case, Worker
   return *body;
 }
 
+ProfileSettings profile_of_inner_edge(const Case& settings) {
+  return {.target_mm = settings.plan.lateral_margin_mm - radius_mm(settings.tool),
+          .approach = settings.plan.approach,
+          .start_direction = settings.plan.start_direction};
+}
+
 CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJobResult result, const HeldBody& body) {
   CalibrationRun run;
   run.setting = setting;

@@ -2,6 +2,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/cutting/incision_batch.hpp>
+#include <incise/evaluation/error_profile.hpp>
 #include <incise/workflow/calibrate.hpp>
 #include <incise/workflow/study.hpp>
 
@@ -59,6 +60,9 @@ class CalibrationBody {
 
 /// The case with another Young's modulus, and the simulated tool's speed and dullness.
 [[nodiscard]] Case with_setting(const Case& settings, const RunSetting& setting);
+
+/// How the errors of a case's inner edge become a profile from its start direction on.
+[[nodiscard]] ProfileSettings profile_of_inner_edge(const Case& settings);
 
 /// What is kept of a simulated cut.
 [[nodiscard]] CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJobResult result,

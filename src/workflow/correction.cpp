@@ -95,17 +95,6 @@ std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& f
                      100.0 * least(corrected), 100.0 * least(first));
 }
 
-/// What a list by direction says of each waypoint.
-std::vector<double> values_at_waypoints(const Case& settings, const std::vector<double>& sectors, const ToolPath& path,
-                                        const Contour& tumor_edge) {
-  ProfileSettings profile;
-  profile.approach = settings.plan.approach;
-  profile.start_direction = settings.plan.start_direction;
-  Points places;
-  for (const Waypoint& waypoint : path.waypoints) places.push_back(waypoint.position_mm);
-  return values_at(sectors, places, tumor_edge, profile);
-}
-
 ConvergenceSettings convergence_settings(const Case& settings, double floor_mm) {
   ConvergenceSettings convergence;
   convergence.region = safe_region(settings);
@@ -136,6 +125,16 @@ SafeRegion safe_region(const Case& settings) {
   region.axis_mode = settings.plan.axis_mode;
   region.rim_clearance_mm = settings.plan.rim_clearance_mm;
   return region;
+}
+
+std::vector<double> values_at_waypoints(const Case& settings, const std::vector<double>& sectors, const ToolPath& path,
+                                        const Contour& tumor_edge) {
+  ProfileSettings profile;
+  profile.approach = settings.plan.approach;
+  profile.start_direction = settings.plan.start_direction;
+  Points places;
+  for (const Waypoint& waypoint : path.waypoints) places.push_back(waypoint.position_mm);
+  return values_at(sectors, places, tumor_edge, profile);
 }
 
 std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,

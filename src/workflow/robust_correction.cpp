@@ -1,6 +1,7 @@
 #include "workflow/calibration_body.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/evaluation/error_profile.hpp>
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/robust_correction.hpp>
 
@@ -11,8 +12,6 @@
 
 namespace incise {
 namespace {
-
-constexpr double kDegreesRound = 360.0;
 
 /// The case as a calibration compares it: by the inner edge.
 Case by_inner_edge(const Case& settings) {
@@ -50,25 +49,27 @@ class TissueCuts {
     intended_.tumor_edge = done.plan->tumor_edge;
     corrected_offset_mm_ = done.correction->moves.move_mm;
     find_scenarios();
+    expect_photographs();
   }
 
   [[nodiscard]] RobustCorrection choose() {
     const RobustSettings chosen_by = robust_settings();
     RobustCompensation compensation =
-        compensate_robust(intended_, corrected_offset_mm_, surface_, weighted(), measure(), chosen_by);
+        compensate_robust(intended_, corrected_offset_mm_, surface_, weighted(), measure(), residual_, chosen_by);
     return {scenarios_, chosen_by, corrected_offset_mm_, std::move(compensation)};
   }
 
   [[nodiscard]] CorrectionOutlook foresee() {
     const RobustSettings judged_by = robust_settings();
-    PathOutlook paths = foresee_paths(intended_, corrected_offset_mm_, surface_, weighted(), measure(), judged_by);
+    PathOutlook paths =
+        foresee_paths(intended_, corrected_offset_mm_, surface_, weighted(), measure(), residual_, judged_by);
     return {scenarios_, judged_by, std::move(paths)};
   }
 
  private:
   /// How far this specimen's modulus may be from its reference, beside what the calibration says.
   [[nodiscard]] double own_stiffness_sd() const {
-    if (request_.stretch_force_n) return request_.force_sd;
+    if (request_.stretch_force_n) return 0.0;  // how far a pull misleads is in the calibration's photographs, too
     return belief_.knows_forces ? request_.unknown_stiffness_sd : 0.0;
   }
 
@@ -79,31 +80,44 @@ class TissueCuts {
     }
     const double reference = body_.reference_stiffness();
     scenarios_.own_stiffness_sd = own_stiffness_sd();
-    scenarios_.tissues = tissue_scenarios(belief_.samples, belief_.residual, scenarios_.own_stiffness_sd);
+    scenarios_.tissues = tissue_scenarios(belief_.samples, scenarios_.own_stiffness_sd);
     scenarios_.simulated_force_n = body_.simulated_force_n();
     scenarios_.reference_kpa = settings_.material.youngs_modulus_kpa * reference;
-    if (belief_.trend) follow_trend(*belief_.trend);
-    for (const TissueScenario& tissue : scenarios_.tissues.points) {
+    for (const TissueScenario& tissue : scenarios_.tissues) {
       const double dullness = tissue.drag_length_mm / (belief_.speed_mm_s * settings_.cut.reference_step_s);
       scenarios_.settings.push_back({belief_.speed_mm_s, dullness, tissue.stiffness_factor * reference});
     }
   }
 
-  /// The farther this specimen's stiffness lies from the calibrated ones, the less their bias says of it.
-  void follow_trend(const StiffnessTrend& trend) {
-    TissueScenarios& tissues = scenarios_.tissues;
-    const double kpa = scenarios_.reference_kpa;
-    scenarios_.stiffness_shift_mm = trend.shift_mm(kpa);
-    scenarios_.stiffness_shift_sd_mm =
-        std::hypot(trend.shift_sd_mm(kpa), trend.rise_sd_mm(kpa) * scenarios_.own_stiffness_sd);
-    for (TissueScenario& tissue : tissues.points) tissue.bias_mm += trend.shift_mm(kpa * tissue.stiffness_factor);
-    tissues.bias_sd_mm = std::hypot(tissues.bias_sd_mm, scenarios_.stiffness_shift_sd_mm);
-    tissues.common_sd_mm = std::hypot(tissues.common_sd_mm, scenarios_.stiffness_shift_sd_mm);
+  /// What the calibration's photographs say of real cuts of this ring.
+  void expect_photographs() {
+    planned_ = runs_along(intended_);
+    std::vector<double> simulated_mm = planned_.front().profile_mm;
+    for (double& error : simulated_mm) error += scenarios_.tissues.front().bias_mm;
+    const RingForecaster forecaster(belief_.rings, true);
+    if (!forecaster.is_converged())
+      monitor_.message(Severity::Warning, "forecast: the search for its spreads was ended before it came to rest");
+    scenarios_.photographs = belief_.rings.size();
+    scenarios_.prediction = forecaster.predict(body_.ring(), simulated_mm, scenarios_.own_stiffness_sd);
+    const RingPrediction& prediction = scenarios_.prediction;
+    residual_.degrees = prediction.degrees;
+    residual_.mean_mm = values_at_waypoints(settings_, prediction.residual_mm, intended_, intended_.tumor_edge);
+    const std::size_t sectors = prediction.residual_mm.size();
+    Eigen::MatrixXd at_waypoints(static_cast<Eigen::Index>(intended_.waypoints.size()),
+                                 static_cast<Eigen::Index>(sectors));
+    for (std::size_t k = 0; k < sectors; ++k) {
+      std::vector<double> one(sectors, 0.0);
+      one[k] = 1.0;
+      const std::vector<double> share = values_at_waypoints(settings_, one, intended_, intended_.tumor_edge);
+      at_waypoints.col(static_cast<Eigen::Index>(k)) =
+          Eigen::Map<const Eigen::VectorXd>(share.data(), at_waypoints.rows());
+    }
+    residual_.covariance_mm2 = at_waypoints * prediction.covariance_mm2 * at_waypoints.transpose();
   }
 
   [[nodiscard]] std::vector<CutScenario> weighted() const {
     std::vector<CutScenario> list;
-    for (const TissueScenario& tissue : scenarios_.tissues.points) list.push_back({tissue.weight, tissue.bias_mm});
+    for (const TissueScenario& tissue : scenarios_.tissues) list.push_back({tissue.weight, tissue.bias_mm});
     return list;
   }
 
@@ -113,10 +127,6 @@ class TissueCuts {
     robust.target_mm = settings_.plan.lateral_margin_mm - radius_mm(settings_.tool);
     robust.kerf_allowance_mm = 0.0;  // an inner edge is where the tissue ends
     robust.max_probability = request_.max_probability;
-    robust.residual_sd_mm = belief_.residual.sd_mm;
-    robust.residual_length_mm = belief_.residual.correlation_deg / kDegreesRound * length_mm(entry_contour(intended_));
-    robust.common_sd_mm = scenarios_.tissues.common_sd_mm;
-    robust.placement_sd_mm = belief_.residual.placement_mm;
     robust.seed = request_.seed;
     return robust;
   }
@@ -124,9 +134,14 @@ class TissueCuts {
   [[nodiscard]] MeasureScenarios measure() {
     return [this](const ToolPath& path) {
       std::vector<std::optional<PathErrors>> errors;
-      for (ScenarioRun& run : runs_along(path)) errors.push_back(std::move(run.errors));
+      const bool is_cut_already = key_along(path) == key_along(intended_);
+      for (const ScenarioRun& run : is_cut_already ? planned_ : runs_along(path)) errors.push_back(run.errors);
       return errors;
     };
+  }
+
+  [[nodiscard]] std::string key_along(const ToolPath& path) const {
+    return scenario_run_key(body_.digest(), scenarios_.settings.front(), path).digest();
   }
 
   /// One run for each tissue: those that the store has, and the others simulated side by side.
@@ -140,8 +155,9 @@ class TissueCuts {
       made.push_back(kept ? std::move(*kept) : ScenarioRun{.setting = setting});
     }
     monitor_.message(Severity::Notice,
-                     fmt::format("tissues of the calibration: {} cuts along a path, {} of them finished already",
-                                 made.size(), made.size() - missing.size()));
+                     fmt::format("tissue of the calibration: {} along a path, {} finished already",
+                                 made.size() == 1 ? std::string("1 cut") : fmt::format("{} cuts", made.size()),
+                                 made.size() - missing.size()));
     simulate(path, missing, made);
     for (const ScenarioRun& run : made) {
       if (run.problem.empty()) continue;
@@ -170,13 +186,13 @@ class TissueCuts {
       if (result.incision.outcome == Outcome::Cancelled) return;
       ScenarioRun& run = made[simulated[i]];
       run.problem = result.problem;
-      if (run.problem.empty()) run.errors = errors_of(std::move(result.incision), path, run.setting, *held[i]);
+      if (run.problem.empty()) measure_into(run, std::move(result.incision), path, *held[i]);
       const CacheKey key = scenario_run_key(body_.digest(), run.setting, path);
       cache_.keep(slot_of(key), key, run);
       ++done;
     });
     if (done < tasks.size())
-      throw Cancelled(fmt::format("the tissues of the calibration were interrupted with {} of {} cuts to go",
+      throw Cancelled(fmt::format("the cuts of the calibration's tissue were interrupted with {} of {} cuts to go",
                                   tasks.size() - done, tasks.size()));
   }
 
@@ -190,14 +206,16 @@ class TissueCuts {
     }
   }
 
-  /// Absent: no closed ring, or an inner edge that is open at the skin.
-  [[nodiscard]] std::optional<PathErrors> errors_of(IncisionResult incision, const ToolPath& followed,
-                                                    const RunSetting& setting, const HeldBody& held) const {
-    const Case settings = with_setting(settings_, setting);
+  /// Nothing where there is no closed ring, or an inner edge that is open at the skin.
+  void measure_into(ScenarioRun& run, IncisionResult incision, const ToolPath& followed, const HeldBody& held) const {
+    const Case settings = with_setting(settings_, run.setting);
     const SimulatedCut cut = judge(settings, std::move(incision), followed, held.plan, held.model.mesh.tets.size());
-    if (!cut.incision.is_closed_loop.value_or(false) || !cut.incision.inner_edge) return std::nullopt;
+    if (!cut.incision.is_closed_loop.value_or(false) || !cut.incision.inner_edge) return;
     Monitor silent;  // any thread may come here
-    return path_errors(settings, cut, held.plan.tumor_edge, silent);
+    run.errors = path_errors(settings, cut, held.plan.tumor_edge, silent);
+    run.profile_mm =
+        error_profile(*cut.incision.inner_edge, cut.incision.final_tumor_edge, profile_of_inner_edge(settings))
+            .value_or(std::vector<double>{});
   }
 
   const Case settings_;
@@ -212,6 +230,8 @@ class TissueCuts {
   SurfaceQuery surface_;
   std::vector<double> corrected_offset_mm_;
   ScenarioSet scenarios_;
+  std::vector<ScenarioRun> planned_;  ///< along the intended path
+  CutResidual residual_;
 };
 
 }  // namespace
@@ -232,27 +252,21 @@ CorrectionOutlook foresee_correction(const Case& settings, Inputs& inputs, Cache
   return TissueCuts(settings, inputs, cache, done, belief, request, workers, monitor).foresee();
 }
 
-void describe_scenarios(Visitor& v, ScenarioSet& s, RobustSettings& settings) {
-  v.begin({"scenarios", "Tissues that the calibration leaves possible."});
+void describe_scenarios(Visitor& v, ScenarioSet& s) {
+  v.begin({"scenarios", "The tissue that the calibration expects, and what its photographs say beyond it."});
   v({"reference_kpa", "Young's modulus that stiffness factors are over.", "kPa"}, s.reference_kpa);
   v({"simulated_force_n", "Pull of the specimen at the case's modulus.", "N"}, s.simulated_force_n);
-  v("own_stiffness_sd", s.own_stiffness_sd, "Of the logarithm of the specimen's own stiffness.");
-  v.begin({"spread", "Of what is believed of the next specimen."});
-  v({"drag_length_sd_mm", "Of the drag length.", "mm"}, s.tissues.drag_length_sd_mm);
-  v("ln_stiffness_sd", s.tissues.ln_stiffness_sd, "The specimen's own included.");
-  v({"bias_sd_mm", "From specimen to specimen included.", "mm"}, s.tissues.bias_sd_mm);
-  v.end();
-  v.begin({"stiffness_shift_mm", "By which the bias is expected to differ at this specimen's stiffness.", "mm"});
-  v("mean", s.stiffness_shift_mm, "Expected.");
-  v("sd", s.stiffness_shift_sd_mm, "Standard deviation.");
-  v.end();
-  v.begin({"residual", "Of a real cut about what its scenario says."});
-  v({"sd_mm", "Standard deviation.", "mm"}, settings.residual_sd_mm);
-  v({"length_mm", "Over which its correlation falls to 1/e.", "mm"}, settings.residual_length_mm);
-  v({"common_sd_mm", "Of what is the same all round.", "mm"}, settings.common_sd_mm);
-  v({"placement_sd_mm", "Of a shift of the whole cut.", "mm"}, settings.placement_sd_mm);
-  v.end();
-  v("tissues", s.tissues.points, "The first: the middle.");
+  v("own_stiffness_sd", s.own_stiffness_sd, "Of the logarithm of the specimen's own stiffness; 0: its pull is known.");
+  v("photographs", s.photographs, "Of the calibration's specimens.");
+  std::vector<double> sd_mm;
+  for (const double variance : s.prediction.covariance_mm2.diagonal()) sd_mm.push_back(std::sqrt(variance));
+  v.derived("residual_mm", s.prediction.residual_mm, "Expected beyond the first tissue, by sector from the start on.");
+  v.derived("sd_mm", sd_mm, "Of one photograph about that: scale of Student's distribution.");
+  v.derived("degrees", s.prediction.degrees, "Of its freedom.");
+  v.derived("unlike", std::vector<std::string>(s.prediction.unlike.begin(), s.prediction.unlike.end()),
+            "Covariates outside the photographs' 10th to 90th percentile, the outline left out.");
+  v("tissues", s.tissues, "The first: the middle.");
+  v("settings", s.settings, "What each of them was simulated with.");
   v.end();
 }
 
@@ -266,7 +280,7 @@ void describe(Visitor& v, RobustCorrection& r) {
   v("corrected", chosen.corrected, "Of the corrected one.");
   v("robust", chosen.robust, "Of the chosen one.");
   v("simulations", chosen.simulations, "Scenarios times paths.");
-  describe_scenarios(v, r.scenarios, r.settings);
+  describe_scenarios(v, r.scenarios);
   v.bulk("corrected_offset_mm", r.corrected_offset_mm, "Per waypoint: of the corrected path.");
 }
 

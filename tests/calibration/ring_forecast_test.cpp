@@ -236,5 +236,68 @@ TEST(OutsideCovariates, CountsFromTheTenthToTheNinetiethPercentile) {
   EXPECT_THROW(static_cast<void>(outside_covariates(others[0], {})), InvalidArgument);
 }
 
+TEST(RingPrediction, IsTheForecastWithTheSimulatedShareInIt) {
+  const World world{.hand_eye_mm = {0.5, -0.3}, .share = 0.6};
+  const RingForecaster forecaster(observations_of(world, 20), true);
+  const RingCovariates ring = ring_at(40.0, 7.0);
+  const std::vector<double> simulated = simulated_mm(-1.4);
+  const RingPrediction found = forecaster.predict(ring, simulated);
+  const RingForecast forecast = forecaster.forecast(ring);
+  const std::vector<double> expected = expected_mm(world, ring, simulated);
+  for (std::size_t i = 0; i < kSectors; ++i) {
+    EXPECT_NEAR(found.residual_mm[i], (forecast.simulated_share - 1.0) * simulated[i] + forecast.residual_mm[i], 1e-9);
+    EXPECT_NEAR(simulated[i] + found.residual_mm[i], expected[i], 0.2);
+    const double sd = std::sqrt(found.covariance_mm2(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)));
+    EXPECT_GE(sd, forecast.sd_mm[i] - 1e-12) << "the share is not known exactly";
+  }
+  EXPECT_EQ(found.degrees, 23U);
+  EXPECT_NEAR((found.covariance_mm2 - found.covariance_mm2.transpose()).cwiseAbs().maxCoeff(), 0.0, 1e-12);
+}
+
+TEST(RingPrediction, ItsIntervalsHoldAsOftenAsTheySay) {
+  // Worlds drawn anew; a photograph that took no part, one number of it: its mean, and its first sector.
+  Random random(5);
+  int level_inside = 0, sector_inside = 0;
+  constexpr int kWorlds = 60;
+  for (int n = 0; n < kWorlds; ++n) {
+    const World world{.hand_eye_mm = {0.4 * random.normal(), 0.4 * random.normal()}, .own_mm = 0.25};
+    std::vector<RingObservation> observations;
+    for (std::size_t s = 0; s < 9; ++s) {
+      RingObservation one;
+      one.ring = ring_at(random.uniform(-180.0, 180.0), random.uniform(3.0, 12.0));
+      one.simulated_mm = simulated_mm(-1.0 + 0.3 * random.normal());
+      one.photographed_mm = expected_mm(world, one.ring, one.simulated_mm);
+      const double level = world.own_mm * random.normal();
+      for (double& error : one.photographed_mm) error += level + 0.1 * random.normal();
+      observations.push_back(std::move(one));
+    }
+    const RingObservation next = observations.back();
+    observations.pop_back();
+    const RingPrediction found = RingForecaster(observations, true).predict(next.ring, next.simulated_mm);
+    constexpr double kStudent80 = 1.363;  // of 11 degrees
+    ASSERT_EQ(found.degrees, 11U);
+    double off = 0.0;
+    for (std::size_t i = 0; i < kSectors; ++i)
+      off += (next.photographed_mm[i] - next.simulated_mm[i] - found.residual_mm[i]) / static_cast<double>(kSectors);
+    const double level_sd = std::sqrt(found.covariance_mm2.mean());
+    level_inside += std::abs(off) < kStudent80 * level_sd ? 1 : 0;
+    const double first = next.photographed_mm[0] - next.simulated_mm[0] - found.residual_mm[0];
+    sector_inside += std::abs(first) < kStudent80 * std::sqrt(found.covariance_mm2(0, 0)) ? 1 : 0;
+  }
+  EXPECT_NEAR(level_inside / static_cast<double>(kWorlds), 0.8, 0.12);
+  EXPECT_NEAR(sector_inside / static_cast<double>(kWorlds), 0.8, 0.12);
+}
+
+TEST(RingPrediction, IsLessSureWhereStiffnessIsNotKnown) {
+  const RingForecaster forecaster(observations_of({}, 8), true);
+  const RingCovariates ring = ring_at(40.0, 7.0);
+  const double known = forecaster.predict(ring, simulated_mm(-1.0)).covariance_mm2.mean();
+  EXPECT_GT(forecaster.predict(ring, simulated_mm(-1.0), 0.5).covariance_mm2.mean(), known);
+  EXPECT_NO_THROW((void)forecaster.predict(ring, {}));
+  EXPECT_THROW((void)forecaster.predict(ring, {1.0, 2.0}), InvalidArgument);
+  EXPECT_THROW((void)forecaster.predict(ring, simulated_mm(std::nan(""))), InvalidArgument);
+  EXPECT_THROW((void)forecaster.predict(ring, simulated_mm(-1.0), -0.1), InvalidArgument);
+}
+
 }  // namespace
 }  // namespace incise

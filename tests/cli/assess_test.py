@@ -8,7 +8,7 @@ import small_case
 from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 from sealed_json import sealed
 
-KEYS = ("advice", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "registration", "distances", "sensitivity", "scenarios", "rules", "notes")
+KEYS = ("advice", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "registration", "distances", "scenarios", "rules", "notes")
 SCALE = 1.001
 T_TARGET_SOURCE = [[SCALE, 0, 0, 0], [0, SCALE, 0, 0], [0, 0, SCALE, 0], [0, 0, 0, 1]]
 PULL_N = 27.0  # about what the block pulls at the case's modulus
@@ -45,7 +45,12 @@ class AssessTest(CommandTest):
         self.assertEqual([entry["name"] for entry in found["distances"]],
                          ["registration_rmse_mm", "registration_scale", "youngs_modulus_kpa", "compliance_mm_n"])
         self.assertLess(max(abs(entry["in_sd"]) for entry in found["distances"]), 3.0)
-        self.assertEqual([entry["name"] for entry in found["sensitivity"]], ["drag_length_mm", "ln_stiffness_factor", "bias_mm"])
+        for middle, whole in ((gain["middle_80"], gain["middle_95"]), (found["corrected"]["abs_error_80_mm"], found["corrected"]["abs_error_95_mm"])):
+            self.assertTrue(whole[0] < middle[0] < middle[1] < whole[1], (middle, whole))
+        expected = found["scenarios"]
+        self.assertEqual((expected["photographs"], expected["degrees"], expected["own_stiffness_sd"]), (2, 5, 0.0))
+        self.assertEqual((len(expected["residual_mm"]), len(expected["sd_mm"]), len(expected["tissues"])), (36, 36, 1))
+        self.assertGreater(min(expected["sd_mm"]), 0.05)
         self.assertEqual(found["notes"], [])
         self.assertTrue(0.0 < found["p_worse_if_unlike"] < 0.5, "cuts err inwards, the correction moves them outwards")
         mixed = (1.0 - found["p_unlike"]) * found["p_worse_if_alike"] + found["p_unlike"] * found["p_worse_if_unlike"]
@@ -56,7 +61,7 @@ class AssessTest(CommandTest):
 
         # What was cut for it serves the robust path, and the other way round.
         done = self.incise("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, "--stretch-force-n", PULL_N)
-        self.assertIn("5 cuts along a path, 5 of them finished already", done.stderr)
+        self.assertIn("1 cut along a path, 1 finished already", done.stderr)
 
         # A correction that the tissue does not need: the bias undoes what was foreseen.
         small_calibration.write(self.calibration, lambda c: c["posterior"].update(samples=small_calibration.samples(bias_mm=(3.4, 3.8))))
@@ -109,7 +114,10 @@ class AssessTest(CommandTest):
         known = self.assessed("--stretch-force-n", PULL_N)
         withheld = self.assessed()
         self.assertTrue(any("pull was not measured" in note for note in withheld["notes"]), withheld["notes"])
-        self.assertGreater(withheld["scenarios"]["spread"]["ln_stiffness_sd"], 3.0 * known["scenarios"]["spread"]["ln_stiffness_sd"])
+        self.assertEqual((len(known["scenarios"]["tissues"]), len(withheld["scenarios"]["tissues"])), (1, 3))
+        self.assertEqual(withheld["scenarios"]["own_stiffness_sd"], 0.5)
+        width = lambda found: found["intended"]["abs_error_80_mm"][1] - found["intended"]["abs_error_80_mm"][0]
+        self.assertGreater(width(withheld), width(known))
         self.assertEqual([entry["name"] for entry in withheld["distances"]], ["registration_rmse_mm", "registration_scale"])
         self.assertGreaterEqual(withheld["p_unlike"], 0.05, "not surer than before anything was measured")
         # A calibration of an earlier version does not say how its cuts erred.
@@ -128,6 +136,24 @@ class AssessTest(CommandTest):
         found = self.assessed("--stretch-force-n", PULL_N)
         self.assertEqual((found["specimen_is"], found["calibration_is"]), ("real", "real"))
         self.assertFalse(any("virtual" in reason for reason in found["reasons"]), found["reasons"])
+
+    def test_what_photographs_show_beyond_the_simulation_is_expected_of_this_cut(self):
+        plain = self.assessed("--stretch-force-n", PULL_N)
+
+        def farther_out(found):
+            for one in found["fitted"]:
+                one["observed_mm"] = [error + 1.5 for error in one["observed_mm"]]
+
+        small_calibration.write(self.calibration, farther_out)
+        out = self.assessed("--stretch-force-n", PULL_N)
+        mean = lambda found: sum(found["scenarios"]["residual_mm"]) / 36
+        self.assertGreater(mean(out) - mean(plain), 0.8)
+        self.assertLess(out["intended"]["expected_abs_error_mm"], plain["intended"]["expected_abs_error_mm"] - 0.8)
+        # A correction that expects it itself is assessed, too.
+        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2, "residual_mm": [1.5]}})
+        knowing = self.assessed("--stretch-force-n", PULL_N)
+        self.assertAlmostEqual(knowing["intended"]["expected_abs_error_mm"], out["intended"]["expected_abs_error_mm"], delta=1e-9)
+        self.assertLess(knowing["corrected"]["expected_abs_error_mm"], out["corrected"]["expected_abs_error_mm"])
 
     def test_a_ring_that_stays_open_cannot_be_foretold(self):
         small_case.write_case(self.folder / "case", {"cut": {"dullness": 900}})
@@ -157,9 +183,9 @@ class AssessTest(CommandTest):
         small_calibration.write(self.calibration)
         small_case.write_case(self.folder / "case", {"compensation": {"method": "paper"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "compensation.method", "paper")
-        for field, value in (("residual_mm", [0.1]), ("simulated_share", 0.5)):
-            small_case.write_case(self.folder / "case", {"compensation": {field: value}})
-            self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", f"compensation.{field}", "constant bias")
+        small_calibration.write(self.calibration, lambda c: [s.pop("ring") for s in c["specimens"]])
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "specimens", "Calibrate anew")
+        small_calibration.write(self.calibration)
         small_case.write_case(self.folder / "case", {"cut": {"rule": "lattice"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", "cut.rule", "lattice", "expected tets")
         small_calibration.write(self.calibration, lambda c: c.update(cut_rule="paper"))
@@ -169,7 +195,7 @@ class AssessTest(CommandTest):
         self.assert_nothing_written()
 
     def test_an_interrupted_assessment_goes_on(self):
-        stopped = self.interrupted(*self.arguments("--threads", 1), after="tissues of the calibration: 5 cuts")
+        stopped = self.interrupted(*self.arguments("--threads", 1), after="tissue of the calibration: 3 cuts")
         self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
         self.assertFalse((self.out / "assessment").exists())
         self.incise(*self.arguments())

@@ -8,7 +8,7 @@ import small_calibration
 import small_case
 from command import BAD_CASE, BAD_DATA, CommandTest
 
-SECTORS = 36
+SECTORS = small_calibration.SECTORS
 HAND_EYE_MM = (0.6, -0.4)
 
 
@@ -23,8 +23,7 @@ def with_rings(found):
     for k, start_deg in enumerate((-90.0, 20.0, 110.0, 200.0)):
         name = f"s{k + 1}"
         specimen = {**small_calibration.SPECIMENS[k % 2], "name": name}
-        specimen["ring"] = {"radius_mm": 8.0 + 0.1 * k, "outline": 1.02, "along": 0.5, "aside_mm": 1.0, "youngs_modulus_kpa": 60.0 + k,
-                            "lateral_margin_mm": 5.0, "depth_mm": 5.0, "speed_mm_s": 7.0, "start_deg": start_deg, "pull_deg": 90.0}
+        specimen["ring"] = {**small_calibration.ring(8.0 + 0.1 * k, 60.0 + k), "outline": 1.02, "aside_mm": 1.0, "start_deg": start_deg, "pull_deg": 90.0}
         found["specimens"].append(specimen)
         own = [0.15 * math.sin(3.0 * k + 2.0 * math.pi * (k + 1) * i / SECTORS) for i in range(SECTORS)]
         observed = [a + b for a, b in zip(photographed(start_deg, -1.2 + 0.02 * k), own)]
@@ -95,7 +94,7 @@ class ForecastTest(CommandTest):
         self.assert_refused(done, BAD_CASE, "cut.rule", "lattice")
 
     def test_a_calibration_without_rings_is_refused(self):
-        calibration = small_calibration.write(self.folder / "calibration.json")
+        calibration = small_calibration.write(self.folder / "calibration.json", lambda c: [s.pop("ring") for s in c["specimens"]])
         done = self.incise("forecast", "case", "--calibration", calibration, "-o", self.out)
         self.assert_refused(done, BAD_DATA, "calibration.json", "specimens", "Calibrate anew")
         self.assert_nothing_written()

@@ -1,4 +1,4 @@
-"""The path that is right for a calibration's whole posterior: what it leaves, how it goes on, what is refused."""
+"""The path of least expected error by a calibration: what it leaves, how it goes on, what is refused."""
 
 import json
 import unittest
@@ -7,8 +7,8 @@ import small_calibration
 import small_case
 from command import BAD_CASE, BAD_DATA, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
-RISK = {"expected_abs_error_mm", "p_close_margin", "unmeasured_weight"}
-CUTS = "tissues of the calibration: 5 cuts along a path, "
+RISK = {"expected_abs_error_mm", "abs_error_80_mm", "abs_error_95_mm", "p_close_margin", "unmeasured_weight"}
+CUTS = "tissue of the calibration: 1 cut along a path, "
 
 
 class RobustTest(CommandTest):
@@ -26,21 +26,20 @@ class RobustTest(CommandTest):
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
         return json.loads(done.stdout)["robust"], done.stderr
 
-    def test_three_paths_in_every_tissue_and_none_is_cut_twice(self):
+    def test_three_paths_and_none_is_cut_twice(self):
         found, said = self.robust("--stretch-force-n", 27)
         for path in ("intended", "corrected", "robust"):
             self.assertEqual(set(found[path]), RISK)
             self.assertEqual(found[path]["unmeasured_weight"], 0.0)
         self.assertLess(found["corrected"]["expected_abs_error_mm"], found["intended"]["expected_abs_error_mm"])
-        self.assertIn(found["simulations"], (15, 20))
+        self.assertIn(found["simulations"], (3, 4))
         tissues = found["scenarios"]["tissues"]
-        self.assertEqual(len(tissues), 5)
-        self.assertAlmostEqual(sum(tissue["weight"] for tissue in tissues), 1.0)
-        self.assertAlmostEqual(sum(tissue["weight"] * tissue["drag_length_mm"] for tissue in tissues), 1.3, delta=1e-9)
-        self.assertEqual(found["scenarios"]["own_stiffness_sd"], 0.05)
+        self.assertEqual(len(tissues), 1)
+        self.assertAlmostEqual(tissues[0]["drag_length_mm"], 1.3, delta=1e-9)
+        self.assertEqual(found["scenarios"]["own_stiffness_sd"], 0.0)
         kpa = 70.0 * 27.0 / found["scenarios"]["simulated_force_n"]
         self.assertAlmostEqual(found["scenarios"]["reference_kpa"], kpa, delta=1e-9 * kpa)
-        self.assertEqual(said.count(CUTS + "0 of them"), found["simulations"] // 5)
+        self.assertEqual(said.count(CUTS + "0 finished"), found["simulations"])
 
         self.assertLessEqual({"robust/path.json", "robust/path.vtp", "robust/robust.json", "robust/manifest.json",
                               "correction/path.json", "figures/compensation_robust.svg"}, set(files_below(self.out)))
@@ -52,7 +51,7 @@ class RobustTest(CommandTest):
         self.assertEqual(len(written["offset_mm"]), 24)
 
         again, said = self.robust("--stretch-force-n", 27)
-        self.assertEqual(said.count(CUTS + "5 of them"), found["simulations"] // 5, said)
+        self.assertEqual(said.count(CUTS + "1 finished"), found["simulations"], said)
         self.assertEqual({key: again[key] for key in again if key != "wall_s"}, {key: found[key] for key in found if key != "wall_s"})
 
     def test_a_virtual_calibration_for_a_real_specimen_is_told(self):
@@ -88,7 +87,7 @@ class RobustTest(CommandTest):
 
     def test_an_interrupted_choice_keeps_its_cuts_and_goes_on(self):
         stopped = self.interrupted("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, "--threads", 1,
-                                   after="tissues of the calibration: 5 cuts")
+                                   after="tissue of the calibration: 3 cuts")
         self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
         self.assertIn("run the same command to go on", stopped.stderr)
         self.assertFalse((self.out / "robust").exists())
@@ -112,9 +111,6 @@ class RobustTest(CommandTest):
         small_calibration.write(self.calibration)
         self.assert_refused(self.compensate("--method", "paper"), BAD_CASE, "--robust", "--method default")
         self.assert_refused(self.compensate("--no-verify"), BAD_CASE, "--no-verify", "--robust")
-        small_case.write_case(self.folder / "case", {"compensation": {"residual_mm": [0.1]}})
-        self.assert_refused(self.compensate(), BAD_CASE, "case.yaml", "compensation.residual_mm", "constant bias")
-        small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}})
         for probability in (0, 1, -0.1):
             self.assert_refused(self.compensate("--max-probability", probability), BAD_CASE, "--max-probability")
         self.assert_refused(self.compensate("--stretch-force-n", 0), BAD_CASE, "--stretch-force-n")

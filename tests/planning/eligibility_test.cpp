@@ -19,9 +19,9 @@ using ::testing::HasSubstr;
 /// A specimen like those of the calibration, whose correction wins a millimetre.
 EligibilityEvidence good() {
   EligibilityEvidence evidence;
-  evidence.intended = {1.6, 0.30, 0.0};
-  evidence.corrected = {0.6, 0.01, 0.0};
-  evidence.gain = CutGain{1.0, 0.4, 0.01};
+  evidence.intended = {.expected_abs_error_mm = 1.6, .p_close_margin = 0.30, .unmeasured_weight = 0.0};
+  evidence.corrected = {.expected_abs_error_mm = 0.6, .p_close_margin = 0.01, .unmeasured_weight = 0.0};
+  evidence.gain = CutGain{.mean_mm = 1.0, .sd_mm = 0.4, .p_worse = 0.01};
   evidence.registration_rmse_mm = 0.4;
   evidence.distances = {{"youngs_modulus_kpa", 13.0, 12.0, 0.3}};
   return evidence;
@@ -35,7 +35,7 @@ TEST(JudgeEligibility, CompensatesWhereTheGainIsAboveItsUncertainty) {
 
 TEST(JudgeEligibility, TellsInWhichShareOfTissuesTheCorrectedRingStaysOpen) {
   EligibilityEvidence evidence = good();
-  evidence.intended = {1.6, 0.95, 0.0};
+  evidence.intended = {.expected_abs_error_mm = 1.6, .p_close_margin = 0.95, .unmeasured_weight = 0.0};
   evidence.corrected.unmeasured_weight = 0.4;
   EXPECT_THAT(judge_eligibility(evidence).reasons, ElementsAre(HasSubstr("stays open in 40 % of")));
   evidence.gain->p_worse = 0.2;
@@ -51,7 +51,7 @@ TEST(JudgeEligibility, CutsAsPlannedWhereTheGainIsNotAboveItsUncertainty) {
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("expected gain of 0.40 mm")));
   evidence.gain->mean_mm = 0.401;
   EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate);
-  evidence.gain = CutGain{-0.5, 0.1, 0.99};
+  evidence.gain = CutGain{.mean_mm = -0.5, .sd_mm = 0.1, .p_worse = 0.99};
   judged = judge_eligibility(evidence);
   EXPECT_EQ(judged.advice, Advice::CutAsPlanned);
   EXPECT_THAT(judged.reasons, ElementsAre(HasSubstr("-0.50 mm"), HasSubstr("probability of 0.99")));
@@ -67,9 +67,9 @@ TEST(JudgeEligibility, CutsAsPlannedWhereTheCorrectionIsNotAccepted) {
 
 TEST(JudgeEligibility, AGainWithoutAnyUncertaintyHasToBeAGain) {
   EligibilityEvidence evidence = good();
-  evidence.gain = CutGain{0.0, 0.0, 0.0};
+  evidence.gain = CutGain{.mean_mm = 0.0, .sd_mm = 0.0, .p_worse = 0.0};
   EXPECT_EQ(judge_eligibility(evidence).advice, Advice::CutAsPlanned) << "nothing to win";
-  evidence.gain = CutGain{0.01, 0.0, 0.0};
+  evidence.gain = CutGain{.mean_mm = 0.01, .sd_mm = 0.0, .p_worse = 0.0};
   EXPECT_EQ(judge_eligibility(evidence).advice, Advice::Compensate);
 }
 

@@ -83,6 +83,18 @@ Calibration fitted() {
   return calibration;
 }
 
+/// With rings and profiles, as a planner needs them.
+Calibration with_rings(std::size_t sectors) {
+  Calibration calibration = fitted();
+  for (CalibratedSpecimen& specimen : calibration.specimens)
+    specimen.ring = RingCovariates{
+        .radius_mm = 9.0, .youngs_modulus_kpa = 12.0, .lateral_margin_mm = 5.0, .depth_mm = 5.0, .speed_mm_s = 7.0};
+  calibration.fit->specimens = {
+      {.name = "s1", .observed_mm = std::vector(sectors, -1.0), .fitted_mm = std::vector(sectors, -0.9)},
+      {.name = "s2", .observed_mm = std::vector(sectors, -0.5), .fitted_mm = std::vector(sectors, -0.7)}};
+  return calibration;
+}
+
 class CalibrationFileTest : public ::testing::Test {
  protected:
   [[nodiscard]] std::filesystem::path path() const { return folder_.path() / "calibration.json"; }
@@ -110,7 +122,7 @@ TEST_F(CalibrationFileTest, GivesAPlannerThePosteriorAgain) {
 }
 
 TEST_F(CalibrationFileTest, KeepsWhatWasMeasuredOfItsSpecimens) {
-  Calibration calibration = fitted();
+  Calibration calibration = with_rings(36);
   calibration.specimens[0].youngs_modulus_kpa = 12.5;
   calibration.specimens[0].stretch_force_n = 4.2;
   calibration.specimens[0].registration = RegistrationQuality{0.31, 1.02};
@@ -138,23 +150,26 @@ TEST_F(CalibrationFileTest, KeepsWhatWasMeasuredOfItsSpecimens) {
   EXPECT_TRUE(range_of(read_calibration(path())).signed_error_mm.empty());
 }
 
-TEST_F(CalibrationFileTest, TellsHowTheBiasFollowsStiffness) {
-  Calibration calibration = fitted();
-  calibration.fit->specimens = {{.name = "s1", .observed_mm = {-1.0, -1.4}, .fitted_mm = {-0.9, -0.9}},
-                                {.name = "s2", .observed_mm = {-0.5, -0.3}, .fitted_mm = {-0.9, -0.7}}};
-  calibration.specimens[0].youngs_modulus_kpa = 10.0;
-  calibration.specimens[1].youngs_modulus_kpa = 20.0;
+TEST_F(CalibrationFileTest, GivesAPlannerThePhotographsOfItsRings) {
+  const Calibration calibration = with_rings(36);
   write_json(path(), to_json(calibration));
-  Calibration found = read_calibration(path());
-  EXPECT_NEAR(difference_mm(found.fit->specimens[0]), -0.3, 1e-12);
-  EXPECT_NEAR(difference_mm(found.fit->specimens[1]), 0.4, 1e-12);
-  EXPECT_FALSE(belief_of(found, path()).trend) << "the pulls are not known";
-  found.specimens[0].stretch_force_n = 4.0;
-  found.specimens[1].stretch_force_n = 8.0;
-  const auto trend = belief_of(found, path()).trend;
-  ASSERT_TRUE(trend);
-  EXPECT_GT(trend->slope_mm, 0.0) << "the stiffer one's edge lay farther out than fitted";
-  EXPECT_LT(trend->slope_mm, 0.7 / (2.0 / 3.0)) << "drawn towards 0";
+  const CalibratedBelief belief = belief_of(read_calibration(path()), path());
+  ASSERT_EQ(belief.rings.size(), 2U);
+  EXPECT_EQ(belief.rings[1].photographed_mm, std::vector(36, -0.5));
+  EXPECT_EQ(belief.rings[1].simulated_mm, std::vector(36, -0.7));
+  EXPECT_EQ(belief.rings[0].ring.youngs_modulus_kpa, 12.0);
+  const auto expect_no_belief = [&](const Calibration& found, const char* words) {
+    EXPECT_THAT([&] { static_cast<void>(belief_of(found, path())); },
+                ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("calibration.json"), HasSubstr(words))));
+  };
+  expect_no_belief(fitted(), "Calibrate anew");
+  expect_no_belief(with_rings(8), "at least 9");
+  Calibration other = calibration;
+  other.fit->specimens[1].observed_mm.resize(18);
+  expect_no_belief(other, "18 numbers");
+  other = calibration;
+  other.fit->specimens[1].fitted_mm[3] = 11.0;
+  expect_no_belief(other, "at most 10 mm");
 
   nlohmann::ordered_json bad = to_json(calibration);
   bad["fitted"][1]["name"] = "s9";
@@ -163,7 +178,7 @@ TEST_F(CalibrationFileTest, TellsHowTheBiasFollowsStiffness) {
   bad["fitted"][0]["fitted_mm"] = {-0.9};
   expect_refused(bad, "/fitted/0/fitted_mm");
   bad = to_json(calibration);
-  bad["fitted"][0]["observed_mm"] = {1e308, 1e308};
+  bad["fitted"][0]["observed_mm"] = std::vector(36, 1e308);
   expect_refused(bad, "/fitted/0/observed_mm");
   bad = to_json(calibration);
   bad["fitted"].erase(1);

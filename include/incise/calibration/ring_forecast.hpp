@@ -6,6 +6,8 @@
 #include <incise/evaluation/statistics.hpp>
 #include <incise/geometry/types.hpp>
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -59,6 +61,15 @@ struct RingForecast {
 };
 void describe(Visitor& v, RingForecast& f);
 
+/// What photographs say of a cut that has been simulated: by how much its photograph is expected to differ from the
+/// simulation, and how far that is known.
+struct RingPrediction {
+  std::vector<double> residual_mm;  ///< expected photographed less simulated error, by sector
+  Eigen::MatrixXd covariance_mm2;  ///< of one photograph about that, between sectors: scale of Student's distribution …
+  std::size_t degrees = 0;         ///< … of so many degrees of freedom, because the spreads are estimated
+  std::vector<std::string_view> unlike;  ///< see outside_covariates
+};
+
 /// The offset that all photographs of a series have in common in the view, x and y, mm.
 struct HandEyeEstimate {
   Vec2 offset_mm = Vec2::Zero();
@@ -88,6 +99,13 @@ class RingForecaster {
 
   /// @param sectors  of the forecast's lists; that of the observations where there are some.
   [[nodiscard]] RingForecast forecast(const RingCovariates& ring, std::size_t sectors = 36) const;
+  /// What the photograph of this ring is expected to show beyond a simulated cut along the planned path.
+  /// @param simulated_mm     its errors by sector, the calibration's bias added; empty: not known.
+  /// @param ln_modulus_sd    of the logarithm of the ring's Young's modulus, where no pull tells it; else 0.
+  /// @throws InvalidArgument for other sectors than those of the observations, errors that are not finite, or a spread
+  /// below 0.
+  [[nodiscard]] RingPrediction predict(const RingCovariates& ring, const std::vector<double>& simulated_mm,
+                                       double ln_modulus_sd = 0.0, std::size_t sectors = 36) const;
   [[nodiscard]] HandEyeEstimate hand_eye() const;
   [[nodiscard]] const RingSpreads& spreads() const;
   /// Whether the search for the spreads ended by itself, and not by its limit of 60 rounds.

@@ -3,8 +3,11 @@
 #include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
 #include <incise/core/problem.hpp>
+#include <incise/evaluation/t_tests.hpp>
 #include <incise/planning/converging_compensation.hpp>
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,15 +26,19 @@ struct CutScenario {
 /// measure.
 using MeasureScenarios = std::function<std::vector<std::optional<PathErrors>>(const ToolPath&)>;
 
+/// What a real cut is expected to err beyond its scenario, at the waypoints of the intended path, and how far that is
+/// known: of what all cuts have in common and of each cut by itself. It is the same along every path of one specimen.
+struct CutResidual {
+  std::vector<double> mean_mm;     ///< per waypoint
+  Eigen::MatrixXd covariance_mm2;  ///< between waypoints: scale of the distribution, its diagonal above 0
+  std::size_t degrees = 0;         ///< of freedom of Student's distribution, above 2; 0: normal
+};
+
 struct RobustSettings {
   SafeRegion region;
   double target_mm = 5.0;
   double kerf_allowance_mm = 0.5;
   double max_probability = 0.05;
-  double residual_sd_mm = 0.3;
-  double residual_length_mm = 6.0;
-  double common_sd_mm = 0.0;
-  double placement_sd_mm = 0.0;
   double smoothing_mm = 1.5;
   double shift_lags = 0.15;
   double spread_lags = 1.0;
@@ -48,12 +55,6 @@ inline void describe(Visitor& v, RobustSettings& s) {
     s.kerf_allowance_mm, kNotNegative);
   v("max_probability", s.max_probability, "Of less tissue than the region's close margin anywhere along the cut.",
     {0.0, 1.0, true, true});
-  v({"residual_sd_mm", "Of a real cut's error about what its scenario says.", "mm"}, s.residual_sd_mm, kPositive);
-  v({"residual_length_mm", "Way along the path over which its correlation falls to 1/e.", "mm"}, s.residual_length_mm,
-    kPositive);
-  v({"common_sd_mm", "Of a further error that is the same all round.", "mm"}, s.common_sd_mm, kNotNegative);
-  v({"placement_sd_mm", "Of a shift of the whole cut, along each axis of the picture.", "mm"}, s.placement_sd_mm,
-    kNotNegative);
   describe_blur(v, s.smoothing_mm, s.shift_lags, s.spread_lags);
   v({"trust_mm", "Farthest that a waypoint moves from the corrected path.", "mm"}, s.trust_mm, kPositive);
   v("rounds", s.rounds, "Most times that the path is chosen and cut in every scenario.", {1.0});
@@ -64,6 +65,9 @@ inline void describe(Visitor& v, RobustSettings& s) {
 /// What is to be expected of a path, from cuts along it in every scenario.
 struct PathRisk {
   double expected_abs_error_mm = 0.0;  ///< mean over scenarios, residuals and the path
+  /// Of the mean |error| along the path of one cut: the middle 80 and 95 % of scenarios and residuals; absent:
+  /// unmeasured.
+  std::optional<Interval> abs_error_80, abs_error_95;
   double p_close_margin = 0.0;         ///< that somewhere less tissue is left than the close margin
   double unmeasured_weight = 0.0;      ///< share of the scenarios whose cut left nothing to measure; left out above
   /// The probability if every scenario that could not be measured came too close.
@@ -75,6 +79,9 @@ inline void describe(Visitor& v, PathRisk& r) {
   };
   v.derived("expected_abs_error_mm", if_measured(r.expected_abs_error_mm),
             "Mean over scenarios, residuals and the path.");
+  describe_interval(v, {"abs_error_80_mm", "Middle 80 % of the mean absolute error along one cut.", "mm"},
+                    r.abs_error_80);
+  describe_interval(v, {"abs_error_95_mm", "Middle 95 %, likewise.", "mm"}, r.abs_error_95);
   v.derived("p_close_margin", if_measured(r.p_close_margin),
             "That somewhere less tissue is left than the close margin.");
   v("unmeasured_weight", r.unmeasured_weight, "Share of the scenarios whose cut left nothing to measure.", {0.0, 1.0});
@@ -104,16 +111,20 @@ struct RobustCompensation {
 /// intended, the corrected and the chosen path; in between their errors are taken to answer to moves as
 /// compensate_converging takes them to. See docs/models/compensation.md.
 /// @param corrected_offset_mm  per waypoint: of the path that the iteration ended with.
-/// @throws InvalidArgument with every violation of the settings, without scenarios, for weights that are not above 0 or
-/// an open path; CaseError if the intended path fails check_path.
-[[nodiscard]] RobustCompensation compensate_robust(
-    const ToolPath& intended, const std::vector<double>& corrected_offset_mm, const SurfaceQuery& surface,
-    const std::vector<CutScenario>& scenarios, const MeasureScenarios& measure, const RobustSettings& settings = {});
+/// @throws InvalidArgument with every violation of the settings, without scenarios, for weights that are not above 0, a
+/// residual that does not fit the path or an open path; CaseError if the intended path fails check_path.
+[[nodiscard]] RobustCompensation compensate_robust(const ToolPath& intended,
+                                                   const std::vector<double>& corrected_offset_mm,
+                                                   const SurfaceQuery& surface,
+                                                   const std::vector<CutScenario>& scenarios,
+                                                   const MeasureScenarios& measure, const CutResidual& residual,
+                                                   const RobustSettings& settings = {});
 
 /// What a correction is expected to win, mm: mean |error| along the intended path less that along the corrected one.
 struct CutGain {
   double mean_mm = 0.0;
   double sd_mm = 0.0;    ///< over scenarios and residuals; both cuts of one specimen have the same residual
+  std::optional<Interval> interval_80, interval_95;  ///< the middle 80 and 95 %, likewise
   double p_worse = 0.0;  ///< that it is below 0; of scenarios whose ring closes along both paths, as all of this
   double move_mm =
       0.0;  ///< by which the correction moves the cut, mean along it and over scenarios; positive: outwards
@@ -123,14 +134,13 @@ struct CutGain {
 struct PathOutlook {
   PathRisk intended, corrected;
   std::optional<CutGain> gain;  ///< absent: no scenario could be measured along both
-  /// By scenario, per waypoint, mm: along the corrected path, averaged along it, bias added; empty: not measured.
-  std::vector<std::vector<double>> corrected_error_mm;
 };
 
 /// The risks of two paths and what the second is expected to win, without looking for a better one.
 /// @throws as compensate_robust.
 [[nodiscard]] PathOutlook foresee_paths(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                                         const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
-                                        const MeasureScenarios& measure, const RobustSettings& settings = {});
+                                        const MeasureScenarios& measure, const CutResidual& residual,
+                                        const RobustSettings& settings = {});
 
 }  // namespace incise

@@ -70,12 +70,12 @@ struct RobustRequest {
 };
 /// Corrects the path of a case and verifies it by another cut.
 /// Not acceptable: a correction that is not accepted, or a verdict that refuses its cut. @throws as CaseRun::study;
-/// CaseError for a robust path of another method than the default or with errors by direction, or where case and
-/// calibration differ in the rule of their cuts.
+/// CaseError for a robust path of another method than the default, or where case and calibration differ in the rule of
+/// their cuts.
 [[nodiscard]] StepResult compensate_case(const CaseRequest& request, const std::optional<RobustRequest>& robust,
                                          const StepContext& context);
 
-/// Should a case be cut along its corrected path? A ring that is corrected pass by pass, by a constant bias at most.
+/// Should a case be cut along its corrected path? A ring that is corrected pass by pass.
 /// @param registration  file of the specimen's registration.
 /// Not acceptable: the advice not to use the simulation. @throws DataError, CaseError, also where case and calibration
 /// differ in the rule of their cuts; as CaseRun::study.

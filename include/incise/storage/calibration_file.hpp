@@ -24,7 +24,8 @@ namespace incise {
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& path);
 
 /// What it says of the next specimen. @param path  of the file, for the message.
-/// @throws DataError for a calibration without a posterior (--method paper) or without a setting that worked.
+/// @throws DataError for a calibration without a posterior (--method paper), without a setting that worked, without
+/// rings (of an older version), or with profiles that do not go together.
 [[nodiscard]] CalibratedBelief belief_of(const Calibration& calibration, const std::filesystem::path& path);
 
 /// What it says of its specimens, to hold a further one against. A modulus counts only where the pull was measured.

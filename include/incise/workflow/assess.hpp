@@ -28,35 +28,19 @@ struct AssessmentRequest {
   bool is_calibration_virtual = false;  ///< a specimen of the calibration is a synthetic body
 };
 
-/// What one standard deviation of a parameter does to the corrected cut.
-struct ParameterSensitivity {
-  std::string name;             ///< drag_length_mm, ln_stiffness_factor, bias_mm
-  double sd = 0.0;              ///< of the parameter
-  double change_mm = 0.0;       ///< by how much the error along the corrected path then changes: root mean square …
-  double mean_change_mm = 0.0;  ///< … and signed mean, positive = farther out
-};
-inline void describe(Visitor& v, ParameterSensitivity& s) {
-  v("name", s.name, "Of the parameter.");
-  v("sd", s.sd, "Of the parameter.");
-  v({"change_mm", "By how much one such deviation changes the error along the corrected path, rms.", "mm"},
-    s.change_mm);
-  v({"mean_change_mm", "The same, signed mean; positive: farther out.", "mm"}, s.mean_change_mm);
-}
-
 struct Assessment {
   Eligibility eligibility;
   EligibilityEvidence evidence;
   std::optional<CorrectionOutlook> outlook;       ///< absent: there was no correction to look at
-  std::vector<ParameterSensitivity> sensitivity;  ///< empty, likewise or where a tissue could not be measured
   std::vector<std::string> notes;                 ///< what was not known, and what that costs
   EligibilityRules rules;                         ///< that it was judged by
   double registration_scale = 1.0;
 };
 void describe(Visitor& v, Assessment& a);
 
-/// Should this specimen be cut along the corrected path? Gathers what is known of it, cuts both paths in the tissues
-/// that the calibration leaves possible, and judges. A calibration of virtual specimens never advises to correct a real
-/// one. See docs/models/eligibility.md.
+/// Should this specimen be cut along the corrected path? Gathers what is known of it, cuts both paths in the tissue
+/// that the calibration expects, adds what its photographs say of real cuts, and judges. A calibration of virtual
+/// specimens never advises to correct a real one. See docs/models/eligibility.md.
 /// @param done  the case's study up to Stage::Verify, however it ended.
 /// @throws as correct_robustly.
 [[nodiscard]] Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
@@ -71,10 +55,5 @@ inline constexpr const char* kVirtualCalibration =
 
 /// How far the case displaces the tissue that it pulls, mm: the farthest of its displacements; 0: it does not pull.
 [[nodiscard]] double stretch_mm(const TissueModel& model);
-
-/// From the cuts along the corrected path: a straight line through the scenarios for each waypoint.
-/// @param errors_mm  by scenario, per waypoint; an empty one was not measured. @returns nothing unless all were.
-[[nodiscard]] std::vector<ParameterSensitivity> sensitivity_of(const TissueScenarios& tissues,
-                                                               const std::vector<std::vector<double>>& errors_mm);
 
 }  // namespace incise

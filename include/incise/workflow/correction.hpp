@@ -26,6 +26,11 @@ namespace incise {
 [[nodiscard]] std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut,
                                                     const Contour& tumor_edge, Monitor& monitor);
 
+/// What a list of one value for each sector, from the case's start direction on, says of each waypoint.
+/// @throws InvalidArgument as values_at.
+[[nodiscard]] std::vector<double> values_at_waypoints(const Case& settings, const std::vector<double>& sectors,
+                                                      const ToolPath& path, const Contour& tumor_edge);
+
 /// Where the case lets waypoints go.
 [[nodiscard]] SafeRegion safe_region(const Case& settings);
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <incise/calibration/calibration_run.hpp>
-#include <incise/calibration/stiffness_trend.hpp>
+#include <incise/calibration/ring_forecast.hpp>
 #include <incise/calibration/tissue_scenarios.hpp>
 #include <incise/core/cache.hpp>
 #include <incise/core/monitor.hpp>
@@ -20,17 +20,14 @@ namespace incise {
 /// What a calibration says of the next specimen.
 struct CalibratedBelief {
   std::vector<PosteriorSample> samples;
-  ResidualEstimate residual;
-  double speed_mm_s = 13.0;             ///< of the simulated tool; a drag length is reached by its dullness
-  bool knows_forces = false;            ///< the pull of every calibration specimen was measured: stiffness is over that
-  std::optional<StiffnessTrend> trend;  ///< of the bias with stiffness; absent: pulls or fits are not known
+  std::vector<RingObservation> rings;  ///< its photographs, at least one, as many sectors each, 9 or more
+  double speed_mm_s = 13.0;            ///< of the simulated tool; a drag length is reached by its dullness
+  bool knows_forces = false;           ///< the pull of every calibration specimen was measured: stiffness is over that
 };
 
 /// What is known of this specimen's stiffness, and what is asked of the path.
 struct ScenarioRequest {
-  std::optional<double>
-      stretch_force_n;     ///< measured pull at the case's stretch; absent: the case's modulus is used …
-  double force_sd = 0.05;  ///< of a measured force, relative, > 0
+  std::optional<double> stretch_force_n;  ///< measured pull at the case's stretch; absent: the case's modulus is used …
   double unknown_stiffness_sd =
       0.5;  ///< … to this, of its logarithm, where the calibration specimens' pull is known, > 0
   double max_probability = 0.05;  ///< of a close margin anywhere, (0, 1)
@@ -41,27 +38,28 @@ struct ScenarioRequest {
 struct ScenarioRun {
   RunSetting setting;
   std::optional<PathErrors> errors;  ///< absent: no closed ring
+  std::vector<double> profile_mm;    ///< of its inner edge, from the start direction on; empty: likewise
   std::string problem;               ///< why it could not be carried out; empty: it was
 };
 
 inline void describe(Visitor& v, ScenarioRun& r) {
   v("setting", r.setting, "The tissue.");
   v("errors", r.errors, "Absent: no closed ring.");
+  v({"profile_mm", "Signed error of its inner edge by sector, from the start direction on.", "mm"}, r.profile_mm);
   v("problem", r.problem, "Why it could not be carried out; empty: it was.");
 }
 /// The key of a scenario's cut. @param held  digest of the held specimen, as for calibration_run_key.
 [[nodiscard]] CacheKey scenario_run_key(const std::string& held, const RunSetting& setting, const ToolPath& path);
 
-/// The tissues that were simulated for a correction.
+/// The tissues that were simulated for a correction, and what photographs say beyond them.
 struct ScenarioSet {
-  TissueScenarios tissues;
+  std::vector<TissueScenario> tissues;
   std::vector<RunSetting> settings;  ///< one for each point
   double simulated_force_n = 0.0;    ///< pull of the specimen at the case's modulus
   double reference_kpa = 0.0;        ///< Young's modulus that stiffness factors are over
-  double own_stiffness_sd = 0.0;     ///< of its logarithm
-  /// By which the calibration's bias is expected to differ at this specimen's stiffness, and how uncertain that is;
-  /// both are in `tissues` already. 0 and 0 without a trend.
-  double stiffness_shift_mm = 0.0, stiffness_shift_sd_mm = 0.0;
+  double own_stiffness_sd = 0.0;     ///< of its logarithm; 0: the pull was measured
+  std::size_t photographs = 0;
+  RingPrediction prediction;  ///< of the photograph of a cut as planned, beyond the middle tissue's
 };
 
 struct RobustCorrection {
@@ -71,9 +69,10 @@ struct RobustCorrection {
   RobustCompensation compensation;
 };
 
-/// Chooses the path of least expected error over a calibration's posterior (see compensate_robust): each of its tissues
-/// is cut along the intended, the corrected and the chosen path, side by side, one thread each. What is measured is the
-/// inner edge, tool out, as in the calibration, whatever line the case corrects by.
+/// Chooses the path of least expected error by a calibration (see compensate_robust): the tissue that it expects is cut
+/// along the intended, the corrected and the chosen path, and photographs of its specimens say how real cuts differ
+/// (RingForecaster). Without a measured pull two more tissues are cut, side by side. What is measured is the inner
+/// edge, tool out, as in the calibration, whatever line the case corrects by.
 /// @param done  the case's study, with a correction by the default method.
 /// A tissue that cannot be stretched counts as one that left nothing to measure.
 /// @throws CaseError where force and calibration do not go together; Cancelled when the monitor asks to stop: finished
@@ -89,8 +88,8 @@ struct CorrectionOutlook {
 };
 void describe(Visitor& v, RobustCorrection& r);
 
-/// The tissues that were simulated, their spread, the specimen's reference stiffness and the residual about them.
-void describe_scenarios(Visitor& v, ScenarioSet& scenarios, RobustSettings& settings);
+/// The tissues that were simulated, the specimen's reference stiffness and what photographs say beyond them.
+void describe_scenarios(Visitor& v, ScenarioSet& scenarios);
 
 /// The same cuts along the intended and the corrected path alone: what the correction is expected to win.
 [[nodiscard]] CorrectionOutlook foresee_correction(const Case& settings, Inputs& inputs, Cache& cache,
