@@ -94,8 +94,8 @@ int screen(const CommonOptions& options, const ScreeningSettings& settings) {
     return value.is_number() ? fmt::format("{:.2f}", value.get<double>()) : std::string("-");
   };
   const auto moved = [&](const char* name, const nlohmann::ordered_json& parts) {
-    fmt::print("{:<14} {:>6} {:>6} {:>6}", name, shown(parts.at("level_mm")), shown(parts.at("shift_mm")),
-               shown(parts.at("rest_mm")));
+    const auto part = [&](const char* key) { return parts.is_object() ? shown(parts.at(key)) : std::string("-"); };
+    fmt::print("{:<14} {:>6} {:>6} {:>6}", name, part("level_mm"), part("shift_mm"), part("rest_mm"));
   };
   fmt::print(
       "VIRTUAL specimens: what a factor moves of each ring, and changes of the mean |error|, mm\n{:<14} {:>6} "
@@ -113,6 +113,7 @@ int screen(const CommonOptions& options, const ScreeningSettings& settings) {
   moved("by chance", result.at("chance"));
   fmt::print("\n");
   nlohmann::ordered_json summary{{"cuts", result.at("cuts")}, {"measured", result.at("measured")}};
+  summary["left_out"] = result.at("left_out");
   if (!result.at("pairs").empty()) summary["least_p_of_pairs"] = result.at("pairs").front().at("p");
   summary["figure"] = result.at("figure");
   print_result(options, summary);

@@ -73,6 +73,12 @@ void print_summary(const nlohmann::ordered_json& result) {
     print_area("advice: area under the curve", result.at("advice").at("auc"));
     print_area("  of those outside alone", result.at("advice").at("auc_outside_alone"));
     print_area("the same without the pull", result.at("advice").at("auc_without_pull"));
+    for (const auto& interval : result.at("advice").at("intervals"))
+      fmt::print("{:<34} {:.2f} ({:.2f} to {:.2f}), {} cuts\n",
+                 fmt::format("{:.0f} % interval, {}: holds", 100.0 * interval.at("level").get<double>(),
+                             interval.at("of").get<std::string>()),
+                 interval.at("share").get<double>(), interval.at("low").get<double>(),
+                 interval.at("high").get<double>(), interval.at("cuts").get<std::size_t>());
   }
   for (const auto& one : result.at("left_out_of_calibration")) {
     fmt::print("{} (calibrate): left out of the fit: {}\n", one.at("name").get<std::string>(),

@@ -84,7 +84,7 @@ void describe_parameters(Visitor& v, DragFit& fit, Identifiability& told) {
   v.derived("correlation", fit.correlation, "Of the three, in this order.");
 }
 
-/// A reader needs the samples, the residual and, for the trend with stiffness, the fitted errors.
+/// A reader needs the samples, the residual and, for what photographs say of the next ring, the fitted errors.
 void describe_fit(Visitor& v, DragFit& fit, Identifiability& told) {
   v.begin({"posterior"});
   if (!v.sets()) describe_parameters(v, fit, told);

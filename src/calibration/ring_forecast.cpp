@@ -96,7 +96,7 @@ std::vector<double> profile_of(const SlowWaves& waves, std::size_t sectors) {
 }
 
 SlowWaves slow_eigenvalues(std::size_t sectors, double length_deg) {
-  const std::vector<double> values = ring_eigenvalues(sectors, length_deg);
+  const std::vector<double> values = ring_eigenvalues(sectors, length_deg, kEntriesThatCount);
   SlowWaves slow;
   for (Eigen::Index i = 0; i < kWaves; ++i) slow[i] = values[static_cast<std::size_t>(i)];
   return slow;
@@ -274,6 +274,13 @@ struct RingForecaster::Posterior {
     for (std::size_t k = 0; k < values.size(); ++k) place.steps[k] = (values[k] - mean[k]) / kSteps[k];
     return place;
   }
+  /// Expected difference of the simulated share from 1; 0 without observations.
+  [[nodiscard]] double share() const {
+    double share = 0.0;
+    for (std::size_t s = 0; s < places.size(); ++s)
+      share += places[s].simulated.dot(weights.segment<kWaves>(static_cast<Eigen::Index>(s) * kWaves));
+    return share * spreads.share * spreads.share;
+  }
   /// Covariances of a ring with all observations. @pre some.
   [[nodiscard]] Eigen::MatrixXd cross_to(const RingPlace& place, const CommonCovariance& common) const {
     Eigen::MatrixXd cross(kWaves, weights.size());
@@ -364,15 +371,10 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
   if (!p.places.empty()) {
     const auto n = static_cast<Eigen::Index>(p.places.size());
     const Eigen::MatrixXd cross = p.cross_to(place, common);
-    double share = 0.0;
+    const double share = p.share(), prior = p.spreads.share * p.spreads.share;
     Eigen::VectorXd differences(n * kWaves);
-    for (Eigen::Index s = 0; s < n; ++s) {
-      const RingPlace& seen = p.places[static_cast<std::size_t>(s)];
-      differences.segment<kWaves>(s * kWaves) = seen.simulated;
-      share += seen.simulated.dot(p.weights.segment<kWaves>(s * kWaves));
-    }
-    const double prior = p.spreads.share * p.spreads.share;
-    share *= prior;
+    for (Eigen::Index s = 0; s < n; ++s)
+      differences.segment<kWaves>(s * kWaves) = p.places[static_cast<std::size_t>(s)].simulated;
     forecast.share_sd = std::sqrt(std::max(0.0, prior - prior * prior * differences.dot(p.factor.solve(differences))));
     mean = cross * p.weights - share * p.simulated_mean;
     variance -= cross * p.factor.solve(cross.transpose());
@@ -394,19 +396,24 @@ RingPrediction RingForecaster::predict(const RingCovariates& ring, const std::ve
                                        double ln_modulus_sd, std::size_t sectors) const {
   const Posterior& p = *posterior_;
   const std::size_t count = p.places.empty() ? sectors : p.sectors;
-  INCISE_REQUIRE(simulated_mm.empty() || simulated_mm.size() == count,
-                 fmt::format("expected simulated errors in {} sectors, found {}", count, simulated_mm.size()));
+  INCISE_REQUIRE(simulated_mm.empty() || simulated_mm.size() >= kEntriesThatCount,
+                 fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, simulated_mm.size()));
   for (const double value : simulated_mm) INCISE_REQUIRE(std::isfinite(value), "expected finite errors");
   INCISE_REQUIRE(ln_modulus_sd >= 0.0 && std::isfinite(ln_modulus_sd), "expected a spread of 0 or more");
   const CommonCovariance common(p.spreads, count);
   RingPlace place = p.place_of(ring);
-  if (!simulated_mm.empty()) place.simulated = slow_waves(simulated_mm) - p.simulated_mean;
+  if (!simulated_mm.empty()) {
+    // A wave's entry grows with the root of the number of sectors.
+    const double scale = std::sqrt(static_cast<double>(count) / static_cast<double>(simulated_mm.size()));
+    place.simulated = scale * slow_waves(simulated_mm) - p.simulated_mean;
+  }
   WaveMatrix variance = common.between(place, place);
   variance.diagonal() += own_variances(p.spreads, count);
   variance(0, 0) +=
       static_cast<double>(count) * std::pow(p.spreads.slope_mm[kModulus] * ln_modulus_sd / kSteps[kModulus], 2);
   SlowWaves mean = SlowWaves::Zero();
-  RingPrediction prediction{.degrees = p.places.size() + kPriorDegrees};
+  RingPrediction prediction{.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0,
+                            .degrees = p.places.size() + kPriorDegrees};
   if (!p.places.empty()) {
     const Eigen::MatrixXd cross = p.cross_to(place, common);
     mean = cross * p.weights;

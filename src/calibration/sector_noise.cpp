@@ -47,10 +47,10 @@ std::vector<double> without_fast_waves(const std::vector<double>& values) {
   return ring_values(spectrum);
 }
 
-std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg) {
+std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg, std::size_t entries) {
   const auto count = static_cast<double>(sectors);
-  std::vector<double> values(sectors, 0.0);
-  for (std::size_t entry = 0; entry < sectors; ++entry) {
+  std::vector<double> values(std::min(sectors, entries), 0.0);
+  for (std::size_t entry = 0; entry < values.size(); ++entry) {
     const std::size_t order = order_of(entry);
     for (std::size_t k = 0; k < sectors; ++k) {
       const double apart_deg = static_cast<double>(std::min(k, sectors - k)) * 360.0 / count;

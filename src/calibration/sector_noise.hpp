@@ -13,7 +13,9 @@ namespace incise {
 [[nodiscard]] std::vector<double> ring_values(const std::vector<double>& spectrum);
 
 /// Eigenvalues, in the order of ring_spectrum, of the correlation exp(−angle / length) between `sectors` sectors.
-[[nodiscard]] std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg);
+/// @param entries  of the spectrum, at most `sectors`; by default all.
+[[nodiscard]] std::vector<double> ring_eigenvalues(std::size_t sectors, double length_deg,
+                                                   std::size_t entries = static_cast<std::size_t>(-1));
 
 /// Waves above this order are left to the mesh's grain and to the reading of photographs: what drags tissue is smooth.
 inline constexpr std::size_t kOrdersThatCount = 4;

@@ -39,50 +39,35 @@ bool FractionalFactorial::is_on(std::size_t run, std::size_t factor) const {
 }
 
 std::optional<FactorialFit> fit_factorial(const FractionalFactorial& design,
-                                          std::span<const std::vector<std::optional<double>>> blocks, bool with_pairs) {
-  Eigen::Index measured = 0;
-  for (const auto& block : blocks) {
-    INCISE_REQUIRE(block.size() == design.runs(),
-                   fmt::format("expected {} responses in a block, found {}", design.runs(), block.size()));
-    for (const std::optional<double>& response : block) {
-      INCISE_REQUIRE(!response || std::isfinite(*response), "expected finite responses");
-      measured += response ? 1 : 0;
-    }
+                                          std::span<const std::optional<double>> responses) {
+  INCISE_REQUIRE(responses.size() == design.runs(),
+                 fmt::format("expected {} responses, found {}", design.runs(), responses.size()));
+  std::vector<std::size_t> measured;
+  for (std::size_t run = 0; run < responses.size(); ++run) {
+    INCISE_REQUIRE(!responses[run] || std::isfinite(*responses[run]), "expected finite responses");
+    if (responses[run]) measured.push_back(run);
   }
-  const auto levels = static_cast<Eigen::Index>(blocks.size());
-  const auto factors = static_cast<Eigen::Index>(design.factors());
-  const auto groups = with_pairs ? static_cast<Eigen::Index>(design.pair_groups().size()) : 0;
-  const Eigen::Index effects = levels + factors + groups;
-  if (measured <= effects) return std::nullopt;
-  Eigen::MatrixXd model = Eigen::MatrixXd::Zero(measured, effects);
-  Eigen::VectorXd responses(measured);
-  const auto half = [](bool is_high) { return is_high ? 0.5 : -0.5; };
-  Eigen::Index row = 0;
-  for (Eigen::Index block = 0; block < levels; ++block) {
-    for (std::size_t run = 0; run < design.runs(); ++run) {
-      const std::optional<double>& response = blocks[static_cast<std::size_t>(block)][run];
-      if (!response) continue;
-      responses[row] = *response;
-      model(row, block) = 1.0;
-      for (Eigen::Index k = 0; k < factors; ++k)
-        model(row, levels + k) = half(design.is_on(run, static_cast<std::size_t>(k)));
-      for (Eigen::Index k = 0; k < groups; ++k)
-        model(row, levels + factors + k) =
-            half(design.is_alike(run, design.pair_groups()[static_cast<std::size_t>(k)].front()));
-      ++row;
-    }
+  const auto rows = static_cast<Eigen::Index>(measured.size());
+  const auto effects = static_cast<Eigen::Index>(design.factors()) + 1;
+  if (rows <= effects) return std::nullopt;
+  Eigen::MatrixXd model = Eigen::MatrixXd::Ones(rows, effects);
+  Eigen::VectorXd values(rows);
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    const std::size_t run = measured[static_cast<std::size_t>(row)];
+    values[row] = *responses[run];
+    for (Eigen::Index k = 1; k < effects; ++k)
+      model(row, k) = design.is_on(run, static_cast<std::size_t>(k - 1)) ? 0.5 : -0.5;
   }
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(model);
   if (solver.rank() < effects) return std::nullopt;
-  const Eigen::VectorXd found = solver.solve(responses);
-  FactorialFit fit{
-      .factors = {}, .pair_groups = {}, .degrees_of_freedom = static_cast<std::size_t>(measured - effects)};
-  const double variance = (responses - model * found).squaredNorm() / static_cast<double>(fit.degrees_of_freedom);
+  const Eigen::VectorXd found = solver.solve(values);
+  const Eigen::VectorXd rest = values - model * found;
+  const double variance = rest.squaredNorm() / static_cast<double>(rows - effects);
   const Eigen::MatrixXd inverse = (model.transpose() * model).inverse();
-  for (Eigen::Index k = levels; k < effects; ++k) {
-    auto& list = k < levels + factors ? fit.factors : fit.pair_groups;
-    list.push_back({found[k], std::sqrt(variance * inverse(k, k))});
-  }
+  FactorialFit fit;
+  for (Eigen::Index k = 1; k < effects; ++k) fit.factors.push_back({found[k], std::sqrt(variance * inverse(k, k))});
+  fit.differences.resize(responses.size());
+  for (Eigen::Index row = 0; row < rows; ++row) fit.differences[measured[static_cast<std::size_t>(row)]] = rest[row];
   return fit;
 }
 

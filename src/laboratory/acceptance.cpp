@@ -120,7 +120,7 @@ nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const st
   const auto start = std::chrono::steady_clock::now();
   const FolderLock lock(output);
   laboratory::claim_folder(output, {"incise.acceptance/1", "an acceptance"}, run.seed,
-                           {kAcceptanceFile, kAcceptanceTable});
+                           {kAcceptanceFile, kAcceptanceTable, "manifest.json"});
   std::vector<Trial> trials(settings.specimens);
   std::vector<Rows> rows(settings.specimens);
   for (std::size_t i = 0; i < trials.size(); ++i) {

@@ -129,6 +129,52 @@ AdviceJson close_margin_json(const std::vector<AdvisedSpecimen>& specimens) {
           {"bins", std::move(bins)}};
 }
 
+/// What a photograph shows of one thing that was foretold; nothing: it was not measured.
+using Shown = std::optional<double> (*)(const Trial&);
+struct ForetoldInterval {
+  const char* of;
+  Shown shown;
+  const char* middle_80;  ///< where an assessment has it
+  const char* middle_95;
+};
+constexpr ForetoldInterval kForetold[] = {
+    {"planned", [](const Trial& trial) { return mean_error_mm(trial.planned); }, "/intended/abs_error_80_mm",
+     "/intended/abs_error_95_mm"},
+    {"corrected", [](const Trial& trial) { return mean_error_mm(trial.corrected); }, "/corrected/abs_error_80_mm",
+     "/corrected/abs_error_95_mm"},
+    {"gain",
+     [](const Trial& trial) -> std::optional<double> {
+       const auto before = mean_error_mm(trial.planned), after = mean_error_mm(trial.corrected);
+       return before && after ? std::optional(*before - *after) : std::nullopt;
+     },
+     "/expected_gain_mm/middle_80", "/expected_gain_mm/middle_95"}};
+
+/// How often intervals of `assess` hold what photographs then show.
+AdviceJson intervals_json(const std::vector<AdvisedSpecimen>& specimens) {
+  AdviceJson list = AdviceJson::array();
+  for (const ForetoldInterval& foretold : kForetold) {
+    for (const auto& [level, pointer] : {std::pair(0.80, foretold.middle_80), std::pair(0.95, foretold.middle_95)}) {
+      std::vector<Forecast> held;
+      for (const AdvisedSpecimen& specimen : specimens) {
+        const std::optional<double> shown = foretold.shown(*specimen.trial);
+        const AdviceJson ends = specimen.trial->assessment.value(AdviceJson::json_pointer(pointer), AdviceJson());
+        if (!shown || !ends.is_array()) continue;
+        held.push_back({level, *shown >= ends.at(0).get<double>() && *shown <= ends.at(1).get<double>()});
+      }
+      if (held.empty()) continue;
+      const ReliabilityBin all = reliability(held, 1).bins.front();
+      list.push_back({{"of", foretold.of},
+                      {"level", level},
+                      {"cuts", all.forecasts},
+                      {"held", all.happened},
+                      {"share", all.share},
+                      {"low", all.confidence.low},
+                      {"high", all.confidence.high}});
+    }
+  }
+  return list;
+}
+
 AdviceJson specimen_json(const AdvisedSpecimen& specimen) {
   const auto or_null = [](const auto& value) { return value ? AdviceJson(*value) : AdviceJson(nullptr); };
   const AdviceJson& said = specimen.trial->assessment;
@@ -238,6 +284,7 @@ AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std
   }
   json["auc_without_pull"] = auc_json(forecasts_without_pull(specimens));
   json["close_margin"] = close_margin_json(specimens);
+  json["intervals"] = intervals_json(specimens);
   json["specimens"] = AdviceJson::array();
   for (const AdvisedSpecimen& specimen : specimens) json["specimens"].push_back(specimen_json(specimen));
   json["skipped"] = std::move(skipped);

@@ -12,7 +12,7 @@ namespace incise::laboratory {
 ///          gain), `skipped`, `worse`, `auc`, `auc_outside_alone` and `auc_without_pull` (advice and correction without
 ///          it; each null where all or none were worse), `auc_of` and `auc_of_outside_alone` (the same of what
 ///          p_worse is made of; a probability that was not stated counts as one half), `close_margin` (reliability of
-///          the stated probability).
+///          the stated probability), `intervals` (how often those of error and gain hold the photographs').
 [[nodiscard]] nlohmann::ordered_json hold_advice_against_truth(const std::vector<Trial>& trials,
                                                                const std::filesystem::path& truth);
 

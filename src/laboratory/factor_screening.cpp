@@ -91,37 +91,43 @@ TextTable factors_csv(const FactorTable& table) {
   TextTable csv{{"factor", "change_mm", "change_low_mm", "change_high_mm", "level_mm", "shift_mm", "rest_mm",
                  "made_with", "measured_with", "made_without", "measured_without"},
                 {}};
-  const auto text = [](double value) { return fmt::format("{}", value); };
+  const auto text = [](bool is_there, double value) { return is_there ? fmt::format("{}", value) : std::string(); };
   for (const laboratory::FactorEffect& f : table.factors) {
-    const std::string change = f.change_mm ? text(*f.change_mm) : "", low = f.change_95 ? text(f.change_95->low) : "",
-                      high = f.change_95 ? text(f.change_95->high) : "";
-    csv.rows.push_back({f.factor, change, low, high, text(f.moved.level_mm), text(f.moved.shift_mm),
-                        text(f.moved.rest_mm), fmt::format("{}", f.made_with), fmt::format("{}", f.measured_with),
-                        fmt::format("{}", f.made_without), fmt::format("{}", f.measured_without)});
+    const Interval ends = f.change_95.value_or(Interval{});
+    const laboratory::ErrorParts moved = f.moved.value_or(laboratory::ErrorParts{});
+    const bool is_estimated = f.moved.has_value();
+    csv.rows.push_back(
+        {f.factor, text(f.change_mm.has_value(), f.change_mm.value_or(0.0)), text(f.change_95.has_value(), ends.low),
+         text(f.change_95.has_value(), ends.high), text(is_estimated, moved.level_mm),
+         text(is_estimated, moved.shift_mm), text(is_estimated, moved.rest_mm), fmt::format("{}", f.made_with),
+         fmt::format("{}", f.measured_with), fmt::format("{}", f.made_without), fmt::format("{}", f.measured_without)});
   }
   return csv;
 }
 
+/// @pre effects are estimated.
 std::string factors_svg(const FactorTable& table) {
   // The greatest first.
   std::vector<const laboratory::FactorEffect*> sorted;
   for (const laboratory::FactorEffect& factor : table.factors) sorted.push_back(&factor);
-  const auto size = [](const laboratory::FactorEffect* f) { return std::hypot(f->moved.level_mm, f->moved.shift_mm); };
+  const auto size = [](const laboratory::FactorEffect* f) {
+    return std::hypot(f->moved->level_mm, f->moved->shift_mm);
+  };
   std::ranges::stable_sort(sorted, [&](const auto* a, const auto* b) { return size(a) > size(b); });
   CategoryPlot plot{.title = "Virtual specimens: what each factor does to the error as planned",
                     .categories = {},
                     .panels = {{"moves the ring of a specimen, mm (dashed: by chance)",
-                                {{.name = "mean error", .values = {}, .chance = table.chance.level_mm},
-                                 {.name = "shift", .values = {}, .chance = table.chance.shift_mm},
-                                 {.name = "rest", .values = {}, .chance = table.chance.rest_mm}}},
+                                {{.name = "mean error", .values = {}, .chance = table.chance->level_mm},
+                                 {.name = "shift", .values = {}, .chance = table.chance->shift_mm},
+                                 {.name = "rest", .values = {}, .chance = table.chance->rest_mm}}},
                                {"changes the mean |error|, mm (95 % over specimens)", {{.name = "", .values = {}}}}}};
   std::vector<CategorySeries>& moved = plot.panels[0].series;
   CategorySeries& change = plot.panels[1].series[0];
   for (const laboratory::FactorEffect* factor : sorted) {
     plot.categories.push_back(factor->factor);
-    moved[0].values.push_back(factor->moved.level_mm);
-    moved[1].values.push_back(factor->moved.shift_mm);
-    moved[2].values.push_back(factor->moved.rest_mm);
+    moved[0].values.push_back(factor->moved->level_mm);
+    moved[1].values.push_back(factor->moved->shift_mm);
+    moved[2].values.push_back(factor->moved->rest_mm);
     const double middle = factor->change_mm.value_or(0.0);
     change.values.push_back(middle);
     change.low.push_back(factor->change_95 ? factor->change_95->low : middle);
@@ -139,7 +145,7 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
   const FractionalFactorial design(settings.factors.size());
   const FolderLock lock(output);
   laboratory::claim_folder(output, {"incise.factors/1", "a screening of factors"}, run.seed,
-                           {"factors.json", "factors.csv", "cuts.csv", "factors.svg"});
+                           {"factors.json", "factors.csv", "cuts.csv", "factors.svg", "manifest.json"});
   const std::size_t runs = design.runs();
   const auto specimens = static_cast<std::size_t>(settings.specimens);
   std::vector<ScreenedCut> cuts(specimens * runs);
@@ -196,10 +202,10 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
   result["rows"] = rows;
   write_atomically(output / "factors.csv", csv_text(factors_csv(table)));
   write_atomically(output / "cuts.csv", csv_text(csv));
-  write_atomically(output / "factors.svg", factors_svg(table));
+  if (table.chance) write_atomically(output / "factors.svg", factors_svg(table));
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_manifest(output, steps::manifest_of(run, screening_json(settings, design).dump(), {}, wall_s));
-  result["figure"] = (output / "factors.svg").string();
+  result["figure"] = table.chance ? ScreeningJson((output / "factors.svg").string()) : ScreeningJson(nullptr);
   result["wall_s"] = wall_s;
   write_json(output / "factors.json", result);
   return result;

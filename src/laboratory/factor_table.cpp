@@ -67,7 +67,7 @@ std::optional<SpecimenEffects> effects_of(const FractionalFactorial& design, con
                           std::vector<std::vector<double>>(design.factors())};
   if (by_part.empty()) return std::nullopt;
   for (const Responses& responses : by_part) {
-    const auto fit = fit_factorial(design, std::span(&responses, 1), false);
+    const auto fit = fit_factorial(design, responses);
     if (!fit) return std::nullopt;
     for (std::size_t k = 0; k < design.factors(); ++k) {
       effects.changes[k].push_back(fit->factors[k].change);
@@ -88,20 +88,38 @@ void count_cuts(const FractionalFactorial& design, const std::vector<Runs>& erro
   }
 }
 
+/// Mean of what a fit leaves in runs where a group's pairs are alike, less that in the others; absent: it was measured
+/// in none of one kind.
+std::optional<double> contrast_of(const FractionalFactorial& design, const FractionalFactorial::Pair& pair,
+                                  const Responses& differences) {
+  double sums[2] = {0.0, 0.0}, counts[2] = {0.0, 0.0};
+  for (std::size_t run = 0; run < differences.size(); ++run) {
+    if (!differences[run]) continue;
+    const std::size_t kind = design.is_alike(run, pair) ? 1 : 0;
+    sums[kind] += *differences[run];
+    counts[kind] += 1.0;
+  }
+  if (!(counts[0] > 0.0 && counts[1] > 0.0)) return std::nullopt;
+  return sums[1] / counts[1] - sums[0] / counts[0];
+}
+
+/// @param fits  of the mean |error|, one for each specimen.
 std::vector<PairEffect> pairs_of(const FractionalFactorial& design, std::span<const std::string> names,
-                                 const std::vector<Responses>& mean_abs_mm) {
+                                 const std::vector<FactorialFit>& fits) {
   std::vector<PairEffect> found;
-  const auto fit = fit_factorial(design, mean_abs_mm, true);
-  if (!fit) return found;
-  for (std::size_t g = 0; g < fit->pair_groups.size(); ++g) {
-    const FactorialEffect& effect = fit->pair_groups[g];
-    PairEffect one{.change_mm = effect.change, .standard_error_mm = effect.standard_error};
-    if (effect.standard_error > 0.0)
-      one.p = two_tailed_p(effect.change / effect.standard_error, static_cast<double>(fit->degrees_of_freedom));
-    for (const auto& [a, b] : design.pair_groups()[g]) one.pairs.emplace_back(names[a], names[b]);
+  const auto groups = static_cast<double>(design.pair_groups().size());
+  for (const std::vector<FractionalFactorial::Pair>& group : design.pair_groups()) {
+    std::vector<double> changes;
+    for (const FactorialFit& fit : fits)
+      if (const auto change = contrast_of(design, group.front(), fit.differences)) changes.push_back(*change);
+    if (changes.empty()) continue;
+    const TTest test = paired_t_test(std::vector<double>(changes.size(), 0.0), changes);
+    PairEffect one{.change_mm = test.difference, .change_95 = test.confidence};
+    if (test.p) one.p = std::min(1.0, groups * *test.p);
+    for (const auto& [a, b] : group) one.pairs.emplace_back(names[a], names[b]);
     found.push_back(std::move(one));
   }
-  std::stable_sort(found.begin(), found.end(), [](const PairEffect& a, const PairEffect& b) { return a.p < b.p; });
+  std::ranges::stable_sort(found, {}, [](const PairEffect& effect) { return effect.p.value_or(1.0); });
   return found;
 }
 
@@ -113,42 +131,42 @@ FactorTable factor_table(const FractionalFactorial& design, std::span<const std:
                  "expected one name for each factor, and as many lists of means as of errors");
   FactorTable table;
   std::vector<SpecimenEffects> specimens;
-  std::vector<Responses> means;
+  std::vector<FactorialFit> means;
   for (std::size_t s = 0; s < errors.size(); ++s) {
     INCISE_REQUIRE(errors[s].size() == design.runs() && mean_abs_mm[s].size() == design.runs(),
                    fmt::format("expected {} runs of each specimen", design.runs()));
     table.cuts += design.runs();
     table.measured += static_cast<std::size_t>(std::ranges::count_if(errors[s], [](const auto& e) { return !!e; }));
-    if (auto effects = effects_of(design, errors[s])) {
-      specimens.push_back(std::move(*effects));
-      means.push_back(mean_abs_mm[s]);
-      table.estimated.push_back(s);
-    }
+    std::optional<SpecimenEffects> effects = effects_of(design, errors[s]);
+    std::optional<FactorialFit> mean = fit_factorial(design, mean_abs_mm[s]);
+    if (!effects || !mean) continue;
+    specimens.push_back(std::move(*effects));
+    means.push_back(std::move(*mean));
+    table.estimated.push_back(s);
   }
+  const double share = 1.0 / std::max(1.0, static_cast<double>(specimens.size()));
   ErrorParts chance;
   for (std::size_t k = 0; k < design.factors(); ++k) {
     FactorEffect effect{.factor = names[k]};
     count_cuts(design, errors, k, effect);
     ErrorParts moved;
-    const double share = 1.0 / std::max(1.0, static_cast<double>(specimens.size()));
-    for (const SpecimenEffects& one : specimens) {
-      add(moved, squares_of(one.changes[k]), share);
-      add(chance, squares_of(one.standard_errors[k]), share / static_cast<double>(design.factors()));
-    }
-    effect.moved = roots_of(moved);
     std::vector<double> changes;
-    for (const Responses& responses : means)
-      if (const auto fit = fit_factorial(design, std::span(&responses, 1), false))
-        changes.push_back(fit->factors[k].change);
+    for (std::size_t s = 0; s < specimens.size(); ++s) {
+      add(moved, squares_of(specimens[s].changes[k]), share);
+      add(chance, squares_of(specimens[s].standard_errors[k]), share / static_cast<double>(design.factors()));
+      changes.push_back(means[s].factors[k].change);
+    }
     if (!changes.empty()) {
+      effect.moved = roots_of(moved);
       const TTest test = paired_t_test(std::vector<double>(changes.size(), 0.0), changes);
       effect.change_mm = test.difference;
       effect.change_95 = test.confidence;
     }
     table.factors.push_back(std::move(effect));
   }
+  if (specimens.empty()) return table;
   table.chance = roots_of(chance);
-  if (!means.empty()) table.pairs = pairs_of(design, names, means);
+  table.pairs = pairs_of(design, names, means);
   return table;
 }
 
@@ -156,9 +174,7 @@ void describe(Visitor& v, FactorEffect& e) {
   v("factor", e.factor, "Its name.");
   v({"change_mm", "Of the mean absolute error, mean over specimens.", "mm"}, e.change_mm);
   describe_interval(v, {"change_95_mm", "Interval of that mean.", "mm"}, e.change_95);
-  v.begin({"moved", "Root mean squares over specimens of what the factor does to each."});
-  describe(v, e.moved);
-  v.end();
+  v("moved", e.moved, "Root mean squares over specimens of what the factor does to each.");
   v("made_with", e.made_with, "Cuts with it.");
   v("measured_with", e.measured_with, "Of these those whose ring could be measured.");
   v("made_without", e.made_without, "Cuts without it.");
@@ -169,9 +185,10 @@ void describe(Visitor& v, PairEffect& e) {
   std::vector<std::string> names;
   for (const auto& [a, b] : e.pairs) names.push_back(a + " and " + b);
   v.derived("pairs", names, "That the design does not tell apart.");
-  v({"change_mm", "Of the mean absolute error where both of the first pair are on, or both off.", "mm"}, e.change_mm);
-  v({"standard_error_mm", "Of the change.", "mm"}, e.standard_error_mm);
-  v("p", e.p, "Two-tailed, that it is chance.");
+  v({"change_mm", "Of the mean absolute error where both of a pair are on, or both off; mean over specimens.", "mm"},
+    e.change_mm);
+  describe_interval(v, {"change_95_mm", "Interval of that mean.", "mm"}, e.change_95);
+  v("p", e.p, "Two-tailed, that it is chance for one of all groups: times their number.");
 }
 
 void describe(Visitor& v, FactorTable& t) {
@@ -179,9 +196,7 @@ void describe(Visitor& v, FactorTable& t) {
   v("measured", t.measured, "Of these those whose ring could be measured.");
   v("estimated", t.estimated, "Specimens, counted from 0, whose measured cuts determine their effects.");
   v("factors", t.factors, "In the order of the design.");
-  v.begin({"chance", "What an idle factor would be found to move."});
-  describe(v, t.chance);
-  v.end();
+  v("chance", t.chance, "What an idle factor would be found to move.");
   v("pairs", t.pairs, "The least p first.");
 }
 

@@ -33,7 +33,7 @@ struct FactorEffect {
   std::string factor;
   std::optional<double> change_mm;               ///< of the mean |error|: mean over specimens
   std::optional<Interval> change_95;             ///< of that mean, Student's; absent for fewer than two specimens
-  ErrorParts moved;                              ///< root mean squares over specimens of what the factor does to each
+  std::optional<ErrorParts> moved;               ///< root mean squares over specimens of what the factor does to each
   std::size_t made_with = 0, measured_with = 0;  ///< cuts, and those whose ring could be measured
   std::size_t made_without = 0, measured_without = 0;  ///< likewise where the factor is off
 };
@@ -42,9 +42,11 @@ void describe(Visitor& v, FactorEffect& e);
 /// What pairs of factors do together that the design does not tell apart.
 struct PairEffect {
   std::vector<std::pair<std::string, std::string>> pairs;
-  double change_mm = 0.0;  ///< of the mean |error| where both of a pair are on, or both off
-  double standard_error_mm = 0.0;
-  double p = 1.0;  ///< two-tailed, that it is chance
+  /// Of the mean |error| where both of a pair are on, or both off, beyond the factors' own effects: mean over
+  /// specimens.
+  double change_mm = 0.0;
+  std::optional<Interval> change_95;  ///< of that mean, Student's
+  std::optional<double> p;            ///< two-tailed, that it is chance, for one of all groups: times their number
 };
 void describe(Visitor& v, PairEffect& e);
 
@@ -52,12 +54,14 @@ struct FactorTable {
   std::size_t cuts = 0, measured = 0;
   std::vector<std::size_t> estimated;  ///< specimens, by index, whose measured cuts determine their effects
   std::vector<FactorEffect> factors;   ///< in the order of the design
-  ErrorParts chance;                   ///< what an idle factor would be found to move
+  std::optional<ErrorParts> chance;    ///< what an idle factor would be found to move
   std::vector<PairEffect> pairs;       ///< the least p first; empty: too few cuts could be measured
 };
 void describe(Visitor& v, FactorTable& t);
 
 /// Effects by specimen, of which root mean squares are taken: a drift to the left and one to the right do not cancel.
+/// What is said to be chance of a mean follows from how specimens differ. Without a specimen whose cuts determine its
+/// effects `moved`, `chance` and `pairs` are absent.
 /// @param names    of the design's factors.
 /// @param errors   by specimen and run; absent: no closed ring. All lists are equally long, 4 or more.
 /// @throws InvalidArgument for lists of other lengths, or errors that are not finite.

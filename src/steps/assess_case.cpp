@@ -36,6 +36,7 @@ void require_ring_by_default_method(const CaseFile& file) {
   if (settings.compensation.method != CompensationMethod::Default)
     throw CaseError("case", "compensation.method", std::string(to_string(settings.compensation.method)), "default")
         .in_file(file.file.string());
+  require_planned_path(file);
 }
 
 }  // namespace

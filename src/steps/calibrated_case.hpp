@@ -26,6 +26,10 @@ auto with_tissues(CaseRun& run, Work work) -> decltype(work()) {
 /// @throws CaseError where the case cuts by another rule than the calibration did.
 void require_rule_of(const CalibrationInput& calibration, const CaseFile& file);
 
+/// What photographs say of a ring holds for a cut along the planned path.
+/// @throws CaseError for a case that gives a path of its own.
+void require_planned_path(const CaseFile& file);
+
 /// What is to be said where the case cuts with another simulated tool than the calibration chose: that is seldom meant.
 /// Empty: it is the same.
 [[nodiscard]] std::string other_tool(const CutSettings& cut, const Calibration& calibration);

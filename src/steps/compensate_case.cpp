@@ -52,9 +52,10 @@ void require_default_method(const CaseFile& file) {
   if (method != CompensationMethod::Default)
     throw CaseError("command line", "--robust", fmt::format("method {}", to_string(method)),
                     "--method default, from whose path it starts");
+  require_planned_path(file);
 }
 
-/// The path that is right for the whole posterior; what is said of it.
+/// The path of least expected error; what is said of it.
 nlohmann::ordered_json add_robust_path(const RobustRequest& chosen, CaseRun& run, const Study& study,
                                        const StepContext& context) {
   const CalibrationInput& calibration = chosen.calibration;
@@ -110,6 +111,13 @@ void require_rule_of(const CalibrationInput& calibration, const CaseFile& file) 
   throw CaseError(
       "case", "cut.rule", std::string(to_string(rule)),
       fmt::format("{}, the rule of the cuts in {}", to_string(calibrated), calibration.request.calibration.string()))
+      .in_file(file.file.string());
+}
+
+void require_planned_path(const CaseFile& file) {
+  if (file.inputs.tool_path.empty()) return;
+  throw CaseError("case", "path", "a path of its own", "none",
+                  "Photographs of earlier cuts say how far a cut along the planned path errs")
       .in_file(file.file.string());
 }
 

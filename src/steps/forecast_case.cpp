@@ -13,9 +13,6 @@ namespace {
 
 using ForecastJson = nlohmann::ordered_json;
 
-constexpr Range kShare{-1.0, 3.0};  // that a case holds
-constexpr Range kLikelyShare{0.0, 2.0};
-
 double mean_bias_mm(const DragFit& fit) {
   double mean = 0.0;
   for (const PosteriorSample& sample : fit.samples) mean += sample.weight * sample.bias_mm;
@@ -47,9 +44,9 @@ ForecastJson with_simulation(const std::filesystem::path& file, const std::vecto
   const RingForecaster forecaster(observations, true);
   const RingForecast forecast = forecaster.forecast(ring);
   const double share = forecast.simulated_share;
-  if (!contains(kShare, share))
+  if (!contains(kUsableShare, share))
     throw DataError(file, "fitted", fmt::format("photographs that differ by {:.2f} of what simulations do", share),
-                    fmt::format("a share from {} to {}", kShare.least, kShare.most),
+                    fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
                     "The simulation says nothing of these specimens");
   if (!contains(kLikelyShare, share))
     monitor.message(

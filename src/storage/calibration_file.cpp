@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kCalibrationHint = "Write the file with `incise calibrate`";
 
-constexpr std::size_t kLeastSectors = 9;
+constexpr std::size_t kLeastSectors = 9, kMostSectors = 360;
 constexpr double kMostErrorMm = 10.0;  // that a case's lists hold
 
 /// Rings whose profiles can be used together.
@@ -25,10 +25,11 @@ std::vector<RingObservation> rings_of(const Calibration& calibration, const std:
   const std::size_t sectors = rings.front().photographed_mm.size();
   for (const RingObservation& one : rings) {
     const std::size_t count = one.photographed_mm.size();
-    if (count < kLeastSectors || count != sectors)
+    if (count < kLeastSectors || count > kMostSectors || count != sectors)
       throw DataError(file, "fitted", fmt::format("a profile of {} numbers", count),
-                      sectors < kLeastSectors ? fmt::format("at least {}", kLeastSectors)
-                                              : fmt::format("{}, as the first has", sectors));
+                      sectors < kLeastSectors || sectors > kMostSectors
+                          ? fmt::format("{} to {}", kLeastSectors, kMostSectors)
+                          : fmt::format("{}, as the first has", sectors));
     for (const auto* list : {&one.photographed_mm, &one.simulated_mm})
       for (const double error : *list)
         if (!(std::abs(error) <= kMostErrorMm))
@@ -51,6 +52,7 @@ CalibratedBelief belief_of(const Calibration& calibration, const std::filesystem
   CalibratedBelief belief;
   belief.samples = calibration.fit->samples;
   belief.rings = rings_of(calibration, path);
+  belief.specimens = calibration.fit->specimens.size();
   belief.speed_mm_s = calibration.chosen->speed_mm_s;
   belief.knows_forces = !calibration.specimens.empty() &&
                         std::all_of(calibration.specimens.begin(), calibration.specimens.end(),

@@ -29,7 +29,7 @@ CalibrationSubject subject_of(const Case& settings, Inputs& inputs, Cache& cache
   return subject;
 }
 
-/// A specimen in the tissues that a calibration leaves possible.
+/// A specimen in the tissue that a calibration expects.
 class TissueCuts {
  public:
   TissueCuts(const Case& settings, Inputs& inputs, Cache& cache, const Study& done, const CalibratedBelief& belief,
@@ -93,6 +93,15 @@ class TissueCuts {
   void expect_photographs() {
     planned_ = runs_along(intended_);
     std::vector<double> simulated_mm = planned_.front().profile_mm;
+    if (simulated_mm.empty())
+      monitor_.message(Severity::Warning,
+                       "forecast: the calibrated tissue left no closed ring as planned, so that this ring is taken for "
+                       "an average one");
+    if (belief_.rings.size() < belief_.specimens)
+      monitor_.message(Severity::Warning,
+                       fmt::format("forecast: {} of the calibration's {} specimens have a ring and a "
+                                   "photograph; the others are left out of it",
+                                   belief_.rings.size(), belief_.specimens));
     for (double& error : simulated_mm) error += scenarios_.tissues.front().bias_mm;
     const RingForecaster forecaster(belief_.rings, true);
     if (!forecaster.is_converged())
@@ -100,6 +109,7 @@ class TissueCuts {
     scenarios_.photographs = belief_.rings.size();
     scenarios_.prediction = forecaster.predict(body_.ring(), simulated_mm, scenarios_.own_stiffness_sd);
     const RingPrediction& prediction = scenarios_.prediction;
+    require_usable(prediction.simulated_share);
     residual_.degrees = prediction.degrees;
     residual_.mean_mm = values_at_waypoints(settings_, prediction.residual_mm, intended_, intended_.tumor_edge);
     const std::size_t sectors = prediction.residual_mm.size();
@@ -113,6 +123,19 @@ class TissueCuts {
           Eigen::Map<const Eigen::VectorXd>(share.data(), at_waypoints.rows());
     }
     residual_.covariance_mm2 = at_waypoints * prediction.covariance_mm2 * at_waypoints.transpose();
+  }
+
+  void require_usable(double share) const {
+    if (!contains(kUsableShare, share))
+      throw CaseError("calibration", "fitted",
+                      fmt::format("photographs that differ by {:.2f} of what simulations do", share),
+                      fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
+                      "The simulation says nothing of these specimens");
+    if (!contains(kLikelyShare, share))
+      monitor_.message(Severity::Warning,
+                       fmt::format("forecast: photographs differ by {:.2f} of what the simulations do: the simulation "
+                                   "misleads",
+                                   share));
   }
 
   [[nodiscard]] std::vector<CutScenario> weighted() const {
@@ -134,14 +157,15 @@ class TissueCuts {
   [[nodiscard]] MeasureScenarios measure() {
     return [this](const ToolPath& path) {
       std::vector<std::optional<PathErrors>> errors;
-      const bool is_cut_already = key_along(path) == key_along(intended_);
-      for (const ScenarioRun& run : is_cut_already ? planned_ : runs_along(path)) errors.push_back(run.errors);
+      const RunSetting& middle = scenarios_.settings.front();
+      const bool is_planned = key_of(middle, path).digest() == key_of(middle, intended_).digest();
+      for (const ScenarioRun& run : is_planned ? planned_ : runs_along(path)) errors.push_back(run.errors);
       return errors;
     };
   }
 
-  [[nodiscard]] std::string key_along(const ToolPath& path) const {
-    return scenario_run_key(body_.digest(), scenarios_.settings.front(), path).digest();
+  [[nodiscard]] CacheKey key_of(const RunSetting& setting, const ToolPath& path) const {
+    return CacheKey("scenario_run").add_text(body_.digest()).add(setting).add(unmarked(path));
   }
 
   /// One run for each tissue: those that the store has, and the others simulated side by side.
@@ -149,7 +173,7 @@ class TissueCuts {
     std::vector<ScenarioRun> made;
     std::vector<std::size_t> missing;
     for (const RunSetting& setting : scenarios_.settings) {
-      const CacheKey key = scenario_run_key(body_.digest(), setting, path);
+      const CacheKey key = key_of(setting, path);
       std::optional<ScenarioRun> kept = cache_.find<ScenarioRun>(slot_of(key), key, monitor_);
       if (!kept) missing.push_back(made.size());
       made.push_back(kept ? std::move(*kept) : ScenarioRun{.setting = setting});
@@ -187,7 +211,7 @@ class TissueCuts {
       ScenarioRun& run = made[simulated[i]];
       run.problem = result.problem;
       if (run.problem.empty()) measure_into(run, std::move(result.incision), path, *held[i]);
-      const CacheKey key = scenario_run_key(body_.digest(), run.setting, path);
+      const CacheKey key = key_of(run.setting, path);
       cache_.keep(slot_of(key), key, run);
       ++done;
     });
@@ -236,10 +260,6 @@ class TissueCuts {
 
 }  // namespace
 
-CacheKey scenario_run_key(const std::string& held, const RunSetting& setting, const ToolPath& path) {
-  return CacheKey("scenario_run").add_text(held).add(setting).add(unmarked(path));
-}
-
 RobustCorrection correct_robustly(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
                                   const CalibratedBelief& belief, const ScenarioRequest& request, Workers& workers,
                                   Monitor& monitor) {
@@ -256,8 +276,10 @@ void describe_scenarios(Visitor& v, ScenarioSet& s) {
   v.begin({"scenarios", "The tissue that the calibration expects, and what its photographs say beyond it."});
   v({"reference_kpa", "Young's modulus that stiffness factors are over.", "kPa"}, s.reference_kpa);
   v({"simulated_force_n", "Pull of the specimen at the case's modulus.", "N"}, s.simulated_force_n);
-  v("own_stiffness_sd", s.own_stiffness_sd, "Of the logarithm of the specimen's own stiffness; 0: its pull is known.");
+  v("own_stiffness_sd", s.own_stiffness_sd,
+    "Of the logarithm of the specimen's own stiffness; 0: its pull is known, or no pull was ever measured.");
   v("photographs", s.photographs, "Of the calibration's specimens.");
+  v.derived("simulated_share", s.prediction.simulated_share, "How much of simulated differences is expected.");
   std::vector<double> sd_mm;
   for (const double variance : s.prediction.covariance_mm2.diagonal()) sd_mm.push_back(std::sqrt(variance));
   v.derived("residual_mm", s.prediction.residual_mm, "Expected beyond the first tissue, by sector from the start on.");

@@ -251,6 +251,12 @@ TEST(RingPrediction, IsTheForecastWithTheSimulatedShareInIt) {
     EXPECT_GE(sd, forecast.sd_mm[i] - 1e-12) << "the share is not known exactly";
   }
   EXPECT_EQ(found.degrees, 23U);
+  EXPECT_NEAR(found.simulated_share, forecast.simulated_share, 1e-12);
+  std::vector<double> finer;  // the same errors in twice as many sectors
+  for (std::size_t i = 0; i < 2 * kSectors; ++i)
+    finer.push_back(-1.4 + 0.3 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / kSectors));
+  const RingPrediction same = forecaster.predict(ring, finer);
+  for (std::size_t i = 0; i < kSectors; ++i) EXPECT_NEAR(same.residual_mm[i], found.residual_mm[i], 1e-9);
   EXPECT_NEAR((found.covariance_mm2 - found.covariance_mm2.transpose()).cwiseAbs().maxCoeff(), 0.0, 1e-12);
 }
 
@@ -292,7 +298,10 @@ TEST(RingPrediction, IsLessSureWhereStiffnessIsNotKnown) {
   const RingForecaster forecaster(observations_of({}, 8), true);
   const RingCovariates ring = ring_at(40.0, 7.0);
   const double known = forecaster.predict(ring, simulated_mm(-1.0)).covariance_mm2.mean();
-  EXPECT_GT(forecaster.predict(ring, simulated_mm(-1.0), 0.5).covariance_mm2.mean(), known);
+  const double unknown = forecaster.predict(ring, simulated_mm(-1.0), 0.5).covariance_mm2.mean();
+  constexpr std::size_t kModulus = 4;  // whose step is a half
+  ASSERT_EQ(kRingCovariateNames[kModulus], "youngs_modulus");
+  EXPECT_NEAR(unknown - known, std::pow(forecaster.spreads().slope_mm[kModulus], 2), 1e-12);
   EXPECT_NO_THROW((void)forecaster.predict(ring, {}));
   EXPECT_THROW((void)forecaster.predict(ring, {1.0, 2.0}), InvalidArgument);
   EXPECT_THROW((void)forecaster.predict(ring, simulated_mm(std::nan(""))), InvalidArgument);

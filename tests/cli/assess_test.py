@@ -149,6 +149,31 @@ class AssessTest(CommandTest):
         mean = lambda found: sum(found["scenarios"]["residual_mm"]) / 36
         self.assertGreater(mean(out) - mean(plain), 0.8)
         self.assertLess(out["intended"]["expected_abs_error_mm"], plain["intended"]["expected_abs_error_mm"] - 0.8)
+        # Profiles of another calibration may have other sectors.
+        def coarser(found):
+            farther_out(found)
+            for one in found["fitted"]:
+                one.update(observed_mm=one["observed_mm"][::2], fitted_mm=one["fitted_mm"][::2])
+
+        small_calibration.write(self.calibration, coarser)
+        coarse = self.assessed("--stretch-force-n", PULL_N)
+        self.assertEqual(len(coarse["scenarios"]["residual_mm"]), 18)
+        self.assertAlmostEqual(coarse["intended"]["expected_abs_error_mm"], out["intended"]["expected_abs_error_mm"], delta=0.1)
+        small_calibration.write(self.calibration, farther_out)
+        # Of two photographs one is not used, which is said.
+        small_calibration.write(self.calibration, lambda c: c["specimens"][0].pop("ring"))
+        done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
+        self.assertIn("1 of the calibration's 2 specimens have a ring", done.stderr)
+
+        # Photographs that fall as simulations rise: the simulation says nothing.
+        def contrary(found):
+            for one, fit in zip(found["fitted"], (-1.0, -6.0)):
+                one.update(fitted_mm=[fit] * 36, observed_mm=[-7.0 - 1.3 * fit] * 36)
+
+        small_calibration.write(self.calibration, contrary)
+        done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
+        self.assertRegex(done.stderr, "photographs (that )?differ by -[0-9.]+ of what")
+        small_calibration.write(self.calibration, farther_out)
         # A correction that expects it itself is assessed, too.
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2, "residual_mm": [1.5]}})
         knowing = self.assessed("--stretch-force-n", PULL_N)
@@ -183,6 +208,10 @@ class AssessTest(CommandTest):
         small_calibration.write(self.calibration)
         small_case.write_case(self.folder / "case", {"compensation": {"method": "paper"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "compensation.method", "paper")
+        small_case.write_case(self.folder / "case", {"path": "other.json"})
+        (self.folder / "case" / "other.json").write_text("{}")
+        self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", "path", "a path of its own")
+        small_case.write_case(self.folder / "case")
         small_calibration.write(self.calibration, lambda c: [s.pop("ring") for s in c["specimens"]])
         self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "specimens", "Calibrate anew")
         small_calibration.write(self.calibration)

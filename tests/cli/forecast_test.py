@@ -81,7 +81,7 @@ class ForecastTest(CommandTest):
         def huge(fitted):
             fitted[2]["observed_mm"][0:2] = [1e200, -1e200]
 
-        for change, words in ((shorter, ("18", "36")), (few, ("3 numbers", "at least 9")), (huge, ("1e+200", "at most 10 mm"))):
+        for change, words in ((shorter, ("18", "36")), (few, ("3 numbers", "9 to 360")), (huge, ("1e+200", "at most 10 mm"))):
             with self.subTest(change=change.__name__):
                 done = self.incise("forecast", "case", "--calibration", damaged(change), "-o", self.out)
                 self.assert_refused(done, BAD_DATA, "calibration.json", "fitted", *words)

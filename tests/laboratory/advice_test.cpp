@@ -99,6 +99,31 @@ TEST(HoldAdviceAgainstTruth, CountsCloseMarginsOfClosedRings) {
   EXPECT_NEAR(margin.at("brier_score"), (0.1 * 0.1 + 0.9 * 0.9 + 0.1 * 0.1 + 0.1 * 0.1) / 4.0, 1e-12);
 }
 
+TEST(HoldAdviceAgainstTruth, CountsHowOftenIntervalsHoldWhatPhotographsShow) {
+  ByHand hand;
+  const auto photographed = [](TrialCut& cut, double mean_mm) {
+    cut.measured = MeasuredCut{"", {{"abs_error_mm", {{"mean", mean_mm}}}}};
+  };
+  for (const double corrected_mm : {0.3, 0.5, 0.9}) {
+    Trial& trial = hand.add(TrialRole::Test, 0.1, 1.5, 0.4);
+    photographed(trial.planned, 1.4);
+    photographed(trial.corrected, corrected_mm);
+    trial.assessment["intended"] = {{"abs_error_80_mm", {1.0, 1.6}}, {"abs_error_95_mm", {0.8, 1.8}}};
+    trial.assessment["corrected"] = {{"abs_error_80_mm", {0.4, 0.8}}, {"abs_error_95_mm", {0.2, 0.95}}};
+    trial.assessment["expected_gain_mm"] = {{"middle_80", {1.0, 1.2}}, {"middle_95", nullptr}};
+  }
+  hand.add(TrialRole::Test, 0.1, 1.5, 0.4);  // not measured, not foretold
+  std::map<std::pair<std::string, double>, std::pair<int, int>> found;
+  const AdviceJson advice = hand.advice();
+  for (const AdviceJson& one : advice.at("intervals"))
+    found[{one.at("of"), one.at("level")}] = {one.at("held"), one.at("cuts")};
+  EXPECT_EQ((found[{"planned", 0.80}]), std::pair(3, 3));
+  EXPECT_EQ((found[{"corrected", 0.80}]), std::pair(1, 3));
+  EXPECT_EQ((found[{"corrected", 0.95}]), std::pair(3, 3));
+  EXPECT_EQ((found[{"gain", 0.80}]), std::pair(1, 3)) << "1.1, 0.9 and 0.5 mm";
+  EXPECT_FALSE(found.contains({"gain", 0.95})) << "it was not foretold";
+}
+
 TEST(HoldAdviceAgainstTruth, LeavesOutWhatWasNotCutTwiceOrNotAdvisedOn) {
   ByHand hand;
   EXPECT_TRUE(hand.advice().is_null());

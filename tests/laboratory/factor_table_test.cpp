@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -63,15 +64,15 @@ TEST(FactorTable, TellsWhatEachFactorMoves) {
   const FactorTable table = table_of(known_cuts());
   ASSERT_EQ(table.factors.size(), 5U);
   EXPECT_EQ(table.factors[1].factor, "drift");
-  EXPECT_NEAR(table.factors[0].moved.level_mm, 0.4, 0.01);
-  EXPECT_NEAR(table.factors[1].moved.shift_mm, 0.6, 0.02);  // though it goes to both sides
-  EXPECT_NEAR(table.factors[2].moved.rest_mm, 0.5 / std::sqrt(2.0), 0.02);
-  EXPECT_LT(table.factors[0].moved.shift_mm, 0.03);
-  EXPECT_LT(table.factors[3].moved.level_mm, 0.01);
-  EXPECT_LT(table.factors[4].moved.rest_mm, 0.04);
+  EXPECT_NEAR(table.factors[0].moved->level_mm, 0.4, 0.01);
+  EXPECT_NEAR(table.factors[1].moved->shift_mm, 0.6, 0.02);  // though it goes to both sides
+  EXPECT_NEAR(table.factors[2].moved->rest_mm, 0.5 / std::sqrt(2.0), 0.02);
+  EXPECT_LT(table.factors[0].moved->shift_mm, 0.03);
+  EXPECT_LT(table.factors[3].moved->level_mm, 0.01);
+  EXPECT_LT(table.factors[4].moved->rest_mm, 0.04);
   // Two means of eight cuts each; one number for a mean of 36 directions.
-  EXPECT_NEAR(table.chance.rest_mm, kNoiseMm * std::sqrt(2.0 / 8.0), 0.003);
-  EXPECT_NEAR(table.chance.level_mm, kNoiseMm * std::sqrt(2.0 / 8.0 / 36.0), 0.0008);
+  EXPECT_NEAR(table.chance->rest_mm, kNoiseMm * std::sqrt(2.0 / 8.0), 0.003);
+  EXPECT_NEAR(table.chance->level_mm, kNoiseMm * std::sqrt(2.0 / 8.0 / 36.0), 0.0008);
 }
 
 TEST(FactorTable, TheMeanErrorChangesByWhatIsKnown) {
@@ -81,6 +82,33 @@ TEST(FactorTable, TheMeanErrorChangesByWhatIsKnown) {
   EXPECT_LT(table.factors[0].change_95->low, 0.4);
   EXPECT_GT(table.factors[0].change_95->high, 0.39);
   EXPECT_NEAR(*table.factors[3].change_mm, 0.0, 0.01);
+}
+
+TEST(FactorTable, PairsAreJudgedByHowSpecimensDiffer) {
+  KnownCuts cuts = known_cuts();
+  const auto add_where_alike = [&](const FractionalFactorial::Pair& pair, const std::vector<double>& by_specimen) {
+    for (std::size_t s = 0; s < cuts.errors.size(); ++s)
+      for (std::size_t run = 0; run < cuts.design.runs(); ++run)
+        if (cuts.design.is_alike(run, pair)) *cuts.means[s][run] += by_specimen[s];
+  };
+  add_where_alike({0, 1}, {0.25, 0.30, 0.35, 0.30});
+  add_where_alike({2, 3}, {0.60, -0.60, 0.55, -0.55});  // as much either way
+  const FactorTable table = table_of(cuts);
+  const auto has = [](const PairEffect& effect, const std::string& a, const std::string& b) {
+    return std::ranges::find(effect.pairs, std::pair(a, b)) != effect.pairs.end();
+  };
+  ASSERT_FALSE(table.pairs.empty());
+  const PairEffect& first = table.pairs.front();
+  EXPECT_TRUE(has(first, "creep", "drift"));
+  EXPECT_NEAR(first.change_mm, 0.30, 0.02);
+  ASSERT_TRUE(first.p && first.change_95);
+  EXPECT_LT(*first.p, 0.05);
+  EXPECT_LT(first.change_95->low, 0.30);
+  for (const PairEffect& effect : table.pairs) {
+    if (!has(effect, "wander", "idle")) continue;
+    EXPECT_NEAR(effect.change_mm, 0.0, 0.02);
+    EXPECT_EQ(effect.p, 1.0) << "great in each specimen, none on average";
+  }
 }
 
 TEST(FactorTable, OpenRingsAreCountedAndLeftOut) {
@@ -95,7 +123,7 @@ TEST(FactorTable, OpenRingsAreCountedAndLeftOut) {
   EXPECT_EQ(table.factors[4].made_with, 32U);
   EXPECT_EQ(table.factors[4].made_without, 32U);
   EXPECT_EQ(table.factors[4].measured_with + table.factors[4].measured_without, table.measured);
-  EXPECT_NEAR(table.factors[0].moved.level_mm, 0.4, 0.02);
+  EXPECT_NEAR(table.factors[0].moved->level_mm, 0.4, 0.02);
 }
 
 TEST(FactorTable, SaysNothingWithoutMeasuredCuts) {
@@ -106,7 +134,7 @@ TEST(FactorTable, SaysNothingWithoutMeasuredCuts) {
   EXPECT_EQ(table.measured, 0U);
   EXPECT_THAT(table.estimated, IsEmpty());
   EXPECT_THAT(table.pairs, IsEmpty());
-  EXPECT_FALSE(table.factors[0].change_mm);
+  EXPECT_FALSE(table.factors[0].change_mm || table.factors[0].moved || table.chance);
 }
 
 TEST(FactorTable, RefusesListsThatDoNotGoTogether) {

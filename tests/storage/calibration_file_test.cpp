@@ -163,7 +163,8 @@ TEST_F(CalibrationFileTest, GivesAPlannerThePhotographsOfItsRings) {
                 ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("calibration.json"), HasSubstr(words))));
   };
   expect_no_belief(fitted(), "Calibrate anew");
-  expect_no_belief(with_rings(8), "at least 9");
+  expect_no_belief(with_rings(8), "9 to 360");
+  expect_no_belief(with_rings(361), "9 to 360");
   Calibration other = calibration;
   other.fit->specimens[1].observed_mm.resize(18);
   expect_no_belief(other, "18 numbers");

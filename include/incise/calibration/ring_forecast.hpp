@@ -29,6 +29,10 @@ struct RingObservation {
 /// sectors differ in number.
 [[nodiscard]] std::vector<double> photographed_in_view(std::span<const RingObservation> observations, double start_deg);
 
+/// The share of simulated differences with which a simulation can be used, and with which it is no surprise.
+inline constexpr Range kUsableShare{-1.0, 3.0};
+inline constexpr Range kLikelyShare{0.0, 2.0};
+
 /// Standard deviations, mm, of what makes photographs differ from a simulation, and angles over which correlations fall
 /// to 1/e; estimated.
 struct RingSpreads {
@@ -64,6 +68,7 @@ void describe(Visitor& v, RingForecast& f);
 /// What photographs say of a cut that has been simulated: by how much its photograph is expected to differ from the
 /// simulation, and how far that is known.
 struct RingPrediction {
+  double simulated_share = 1.0;     ///< how much of simulated differences is expected; it is in the residual already
   std::vector<double> residual_mm;  ///< expected photographed less simulated error, by sector
   Eigen::MatrixXd covariance_mm2;  ///< of one photograph about that, between sectors: scale of Student's distribution …
   std::size_t degrees = 0;         ///< … of so many degrees of freedom, because the spreads are estimated
@@ -100,10 +105,10 @@ class RingForecaster {
   /// @param sectors  of the forecast's lists; that of the observations where there are some.
   [[nodiscard]] RingForecast forecast(const RingCovariates& ring, std::size_t sectors = 36) const;
   /// What the photograph of this ring is expected to show beyond a simulated cut along the planned path.
-  /// @param simulated_mm     its errors by sector, the calibration's bias added; empty: not known.
-  /// @param ln_modulus_sd    of the logarithm of the ring's Young's modulus, where no pull tells it; else 0.
-  /// @throws InvalidArgument for other sectors than those of the observations, errors that are not finite, or a spread
-  /// below 0.
+  /// @param simulated_mm   its errors by sector, 9 or more, the calibration's bias added; empty: not known, and taken
+  /// for the observations' mean.
+  /// @param ln_modulus_sd  of the logarithm of the ring's Young's modulus, where no pull tells it; else 0.
+  /// @throws InvalidArgument for fewer sectors, errors that are not finite, or a spread below 0.
   [[nodiscard]] RingPrediction predict(const RingCovariates& ring, const std::vector<double>& simulated_mm,
                                        double ln_modulus_sd = 0.0, std::size_t sectors = 36) const;
   [[nodiscard]] HandEyeEstimate hand_eye() const;

@@ -42,19 +42,16 @@ struct FactorialEffect {
 };
 
 struct FactorialFit {
-  std::vector<FactorialEffect> factors;      ///< response with the factor less that without it
-  std::vector<FactorialEffect> pair_groups;  ///< response where a group's pairs are alike less that where not; or empty
-  std::size_t degrees_of_freedom = 0;        ///< >= 1, of the residual that the standard errors are from
+  std::vector<FactorialEffect> factors;            ///< response with the factor less that without it
+  std::vector<std::optional<double>> differences;  ///< run by run: measured less fitted response
 };
 
-/// Least squares: every block has a level of its own, and all share the effects.
-/// @param blocks      one list of responses each, run by run; absent ones were not measured.
-/// @param with_pairs  also estimates the groups of pairs.
+/// Least squares of a level and the effects of all factors.
+/// @param responses  run by run; absent ones were not measured.
 /// @returns nothing where what was measured does not determine the effects and their standard errors.
-/// @throws InvalidArgument unless every block has design.runs() responses, the measured ones finite.
-/// @note O(n p²), n responses, p blocks and effects.
+/// @throws InvalidArgument unless there are design.runs() responses, the measured ones finite.
+/// @note O(runs · factors²).
 [[nodiscard]] std::optional<FactorialFit> fit_factorial(const FractionalFactorial& design,
-                                                        std::span<const std::vector<std::optional<double>>> blocks,
-                                                        bool with_pairs);
+                                                        std::span<const std::optional<double>> responses);
 
 }  // namespace incise

@@ -26,7 +26,8 @@ struct ScreeningSettings {
 /// FractionalFactorial), and says from the photographs what each factor, and pairs of them, do to the error. Nothing is
 /// calibrated or corrected. Finished steps are kept in each cut's cache/ and not run again.
 ///
-///   S1/01/ …  the first run of the first specimen, as of an experiment;  truth/  the specimens;
+///   S1/0000/ …  the first specimen's cut without any factor, as of an experiment; the name has a bit for each factor
+///   that is on, in their order, the first the lowest;  truth/  the specimens;
 ///   factors.json  factors.csv (a row for each factor)  cuts.csv (for each cut)  factors.svg  manifest.json  bench.json
 ///
 /// @returns what factors.json holds. @throws DataError where a file cannot be written; Cancelled.

@@ -27,7 +27,7 @@ struct CutScenario {
 using MeasureScenarios = std::function<std::vector<std::optional<PathErrors>>(const ToolPath&)>;
 
 /// What a real cut is expected to err beyond its scenario, at the waypoints of the intended path, and how far that is
-/// known: of what all cuts have in common and of each cut by itself. It is the same along every path of one specimen.
+/// known. It is taken to be the same along every path of one specimen, the reading of its photograph included.
 struct CutResidual {
   std::vector<double> mean_mm;     ///< per waypoint
   Eigen::MatrixXd covariance_mm2;  ///< between waypoints: scale of the distribution, its diagonal above 0

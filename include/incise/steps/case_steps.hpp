@@ -63,7 +63,7 @@ struct CalibrationInput {
 /// calibration has none.
 [[nodiscard]] CalibrationInput read_calibration_input(const CalibratedRequest& request);
 
-/// The path that is right for the whole posterior is asked for, too.
+/// The path of least expected error by a calibration is asked for, too.
 struct RobustRequest {
   CalibrationInput calibration;
   double max_probability = ScenarioRequest{}.max_probability;  ///< of a close margin anywhere

@@ -20,7 +20,8 @@ namespace incise {
 /// What a calibration says of the next specimen.
 struct CalibratedBelief {
   std::vector<PosteriorSample> samples;
-  std::vector<RingObservation> rings;  ///< its photographs, at least one, as many sectors each, 9 or more
+  std::vector<RingObservation> rings;  ///< its photographs, at least one, as many sectors each, 9 to 360
+  std::size_t specimens = 0;           ///< that were fitted
   double speed_mm_s = 13.0;            ///< of the simulated tool; a drag length is reached by its dullness
   bool knows_forces = false;           ///< the pull of every calibration specimen was measured: stiffness is over that
 };
@@ -48,16 +49,14 @@ inline void describe(Visitor& v, ScenarioRun& r) {
   v({"profile_mm", "Signed error of its inner edge by sector, from the start direction on.", "mm"}, r.profile_mm);
   v("problem", r.problem, "Why it could not be carried out; empty: it was.");
 }
-/// The key of a scenario's cut. @param held  digest of the held specimen, as for calibration_run_key.
-[[nodiscard]] CacheKey scenario_run_key(const std::string& held, const RunSetting& setting, const ToolPath& path);
 
 /// The tissues that were simulated for a correction, and what photographs say beyond them.
 struct ScenarioSet {
   std::vector<TissueScenario> tissues;
-  std::vector<RunSetting> settings;  ///< one for each point
+  std::vector<RunSetting> settings;  ///< one for each tissue
   double simulated_force_n = 0.0;    ///< pull of the specimen at the case's modulus
   double reference_kpa = 0.0;        ///< Young's modulus that stiffness factors are over
-  double own_stiffness_sd = 0.0;     ///< of its logarithm; 0: the pull was measured
+  double own_stiffness_sd = 0.0;     ///< of its logarithm; 0: the pull was measured, or that of no specimen was
   std::size_t photographs = 0;
   RingPrediction prediction;  ///< of the photograph of a cut as planned, beyond the middle tissue's
 };
